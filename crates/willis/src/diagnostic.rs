@@ -1,0 +1,207 @@
+//! What is wrong, where, with which numbers, and what to do about it.
+//!
+//! The user's mistakes are [`Diagnostics`]: all of them at once, each with a stable [`Code`], the
+//! place in the train (`set[1].ring.teeth`) and, when the train came from text, the bytes it
+//! stands on. An unusual answer of the physics (locked, several solutions) is no error: it is a
+//! verdict in the result, with a diagnostic of severity [`Severity::Warning`] or
+//! [`Severity::Note`] beside it.
+
+mod codes;
+
+use std::fmt;
+use std::ops::Range;
+
+use annotate_snippets::{AnnotationKind, Group, Level, Patch, Renderer, Snippet};
+use serde::Serialize;
+
+pub use codes::Code;
+
+/// How much a diagnostic matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// The input cannot be answered.
+    Error,
+    /// The answer holds, and there is something its reader must know.
+    Warning,
+    /// A fact that explains the answer.
+    Note,
+}
+
+/// One thing to tell the user.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct Diagnostic {
+    /// Stable code; `willis explain CODE` tells more.
+    pub code: Code,
+    /// How much it matters.
+    pub severity: Severity,
+    /// The place in the train, such as `set[1].ring.teeth`; empty for the train as a whole.
+    pub place: String,
+    /// What is the case, with the numbers and names in it.
+    pub message: String,
+    /// What to do; may name a value that works.
+    pub hints: Vec<String>,
+    /// Bytes of the source text it stands on, when there is one.
+    #[serde(skip)]
+    pub span: Option<Range<usize>>,
+    /// What to put in place of the spanned text, when that is known.
+    #[serde(skip)]
+    pub replacement: Option<String>,
+}
+
+impl Diagnostic {
+    /// A diagnostic of the severity that its code carries.
+    pub fn new(code: Code, place: impl Into<String>, message: impl Into<String>) -> Self {
+        Self {
+            code,
+            severity: code.severity(),
+            place: place.into(),
+            message: message.into(),
+            hints: Vec::new(),
+            span: None,
+            replacement: None,
+        }
+    }
+
+    /// Adds a hint.
+    #[must_use]
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hints.push(hint.into());
+        self
+    }
+
+    /// Adds the hint "did you mean …" when one of `known` is near `found`.
+    #[must_use]
+    pub fn suggest<'a>(mut self, found: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
+        if let Some(near) = nearest(found, known) {
+            self.hints.push(format!("did you mean `{near}`?"));
+            self.replacement = Some(near.to_owned());
+        }
+        self
+    }
+}
+
+/// The known word that a misspelt one most likely stands for.
+fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if found.len() > 64 {
+        return None;
+    }
+    known
+        .into_iter()
+        .map(|k| (strsim::damerau_levenshtein(&found.to_lowercase(), &k.to_lowercase()), k))
+        .filter(|(distance, k)| *distance <= (k.chars().count().max(found.chars().count()) / 3).max(1))
+        .min_by_key(|(distance, _)| *distance)
+        .map(|(_, k)| k)
+        .filter(|k| *k != found)
+}
+
+/// Everything there is to say about one input.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[serde(transparent)]
+pub struct Diagnostics(Vec<Diagnostic>);
+
+impl Diagnostics {
+    /// Adds one.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        self.0.push(diagnostic);
+    }
+
+    /// Adds many.
+    pub fn extend(&mut self, other: impl IntoIterator<Item = Diagnostic>) {
+        self.0.extend(other);
+    }
+
+    /// All, in the order found.
+    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
+        self.0.iter()
+    }
+
+    /// Whether an error is among them.
+    pub fn has_errors(&self) -> bool {
+        self.0.iter().any(|d| d.severity == Severity::Error)
+    }
+
+    /// Whether there is nothing to say.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub(crate) fn iter_mut(&mut self) -> std::slice::IterMut<'_, Diagnostic> {
+        self.0.iter_mut()
+    }
+
+    /// The text for people, each place underlined in `source` where there is one. `file` is what
+    /// the source is called; `color` adds ANSI styles. Long lists are cut after 50 with a count.
+    pub fn render(&self, file: &str, source: &str, color: bool) -> String {
+        const MOST: usize = 50;
+        let renderer = if color { Renderer::styled() } else { Renderer::plain() };
+        let mut out = String::new();
+        for d in self.0.iter().take(MOST) {
+            let level = match d.severity {
+                Severity::Error => Level::ERROR,
+                Severity::Warning => Level::WARNING,
+                Severity::Note => Level::NOTE,
+            };
+            let title = level.primary_title(d.message.as_str()).id(d.code.as_str());
+            let mut group = Group::with_title(title);
+            let span = d.span.clone().filter(|s| source.get(s.clone()).is_some());
+            if let Some(span) = &span {
+                let label = AnnotationKind::Primary.span(span.clone()).label(d.place.as_str());
+                group = group.element(Snippet::source(source).path(file).annotation(label));
+            } else if !d.place.is_empty() {
+                group = group.element(Level::NOTE.message(format!("at {}", d.place)));
+            }
+            for hint in &d.hints {
+                group = group.element(Level::HELP.message(hint.as_str()));
+            }
+            let mut report = vec![group];
+            if let (Some(span), Some(new)) = (span, &d.replacement) {
+                report.push(
+                    Level::HELP
+                        .secondary_title("with that change")
+                        .element(Snippet::source(source).path(file).patch(Patch::new(span, new.as_str()))),
+                );
+            }
+            out += &renderer.render(&report);
+            out.push_str("\n\n");
+        }
+        if self.0.len() > MOST {
+            out += &format!("… and {} more of the kind\n\n", self.0.len() - MOST);
+        }
+        out
+    }
+}
+
+impl IntoIterator for Diagnostics {
+    type Item = Diagnostic;
+    type IntoIter = std::vec::IntoIter<Diagnostic>;
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, d) in self.0.iter().enumerate() {
+            if k > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{}[{}]: {}", format!("{:?}", d.severity).to_lowercase(), d.code, d.message)?;
+            if !d.place.is_empty() {
+                write!(f, " (at {})", d.place)?;
+            }
+            for hint in &d.hints {
+                write!(f, "; {hint}")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Diagnostics {}

@@ -1,0 +1,185 @@
+//! Every code there is. A code is never reused for something else.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+use super::Severity;
+
+macro_rules! codes {
+    ($($(#[doc = $doc:literal])+ $code:ident $name:ident: $title:literal;)+) => {
+        /// A stable diagnostic code: `E…` an error in the input, `W…` a warning, `N…` a note.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
+        pub enum Code {
+            $($(#[doc = $doc])+ $name,)+
+        }
+
+        impl Code {
+            /// Every code, in order.
+            pub const ALL: &'static [Self] = &[$(Self::$name),+];
+
+            /// The code as it is printed, `E101`.
+            pub const fn as_str(self) -> &'static str {
+                match self { $(Self::$name => stringify!($code)),+ }
+            }
+
+            /// One line that names the matter.
+            pub const fn title(self) -> &'static str {
+                match self { $(Self::$name => $title),+ }
+            }
+
+            /// What it means, why it matters and what to do.
+            pub const fn explanation(self) -> &'static str {
+                match self { $(Self::$name => concat!($($doc, "\n"),+)),+ }
+            }
+        }
+    };
+}
+
+codes! {
+    /// The text is not TOML. The message is the TOML reader's own and stands at the place where
+    /// reading stopped. A frequent cause: a name with a dot or a blank needs quotes, as in
+    /// `speeds = { "P1.planet" = "10 rpm" }`.
+    E001 Syntax: "the file is not valid TOML";
+    /// The file could not be read at all: it does not exist, is a directory, may not be read, is
+    /// larger than 4 MiB, or is not text in UTF-8.
+    E002 Unreadable: "the file cannot be read";
+    /// Every train file says which format it is written in: `format = 1`. The number changes only
+    /// when an old file would be read differently.
+    E003 Format: "the format number is missing or unknown";
+    /// A key stands where this format has none of that name. Keys are never ignored: a misspelt
+    /// one would silently drop a datum. `willis schema` prints every key there is.
+    E004 UnknownKey: "unknown key";
+    /// Something that cannot be assumed was not given.
+    E005 MissingKey: "a required key is missing";
+    /// The value is of another kind than the key takes, a text where a list belongs for example.
+    E006 WrongType: "value of the wrong kind";
+    /// A quantity is a text of a number and a unit, `"1450 rpm"`, `"350 N m"`, `"75 kW"`. A bare
+    /// number is refused because nobody can tell rad/s from rpm afterwards. NaN, infinities,
+    /// unknown units and units of another kind of quantity are refused too.
+    E007 Quantity: "not a quantity with a suitable unit";
+    /// A number lies outside what is possible or sensible: tooth counts are integers from 1 to
+    /// 100000, counts of planets or meshes from 1 to 1000, an efficiency is above 0 and at
+    /// most 1.
+    E008 OutOfRange: "number out of range";
+    /// A name is used that nothing carries. Members, shift elements and states are found by the
+    /// exact name, upper and lower case included; `frame` always exists.
+    E101 UnknownName: "unknown name";
+    /// Two things of one kind carry one name, so that a later reference could mean either.
+    E102 DuplicateName: "name used twice";
+    /// A name is empty, longer than 64 characters, contains a dot or a control character, or is
+    /// the reserved word `frame`. (The dot separates a set from its planet in `P1.planet`.)
+    E103 BadName: "name not allowed";
+    /// The parts of a mesh or set do not make a pair of gears on a carrier: a gear meshes with
+    /// itself, a gear is its own carrier, or both gears are internal.
+    E104 ImpossibleMesh: "these parts cannot mesh";
+    /// A set misses a part that its type needs, or gives one that its type does not have.
+    E105 IncompleteSet: "the parts of a set do not make that type of set";
+    /// Sun and ring of a simple set lie on one axis, so unshifted gears need
+    /// `z_ring = z_sun + 2 z_planet`. Profile shift closes a difference of one or two teeth (a
+    /// warning, W301); more than that is a typing error or another type of set.
+    E106 NotCoaxial: "the gears of this set do not lie on one axis";
+    /// A clutch joins two different members, a brake holds one, a one-way clutch has one or two.
+    E107 ShiftElement: "a shift element joins the wrong members";
+    /// A train beyond 512 meshes, 1024 members, 256 states or 4096 operations is refused, so
+    /// that time and memory stay bounded.
+    E108 TooLarge: "the train is too large";
+    /// Two keys say the same thing in two ways, or exclude each other.
+    E109 Conflict: "these keys exclude each other";
+    /// The prescribed speeds cannot all hold: the gears already tie some of them together. Give
+    /// as many independent speeds as the train has degrees of freedom.
+    E201 ContradictorySpeeds: "the prescribed speeds contradict each other";
+    /// The torques cannot be found from what is given. As many terminals as there are degrees of
+    /// freedom are left to balance the train; every other terminal needs a torque or a power
+    /// (`"0 N m"` when nothing acts on it).
+    E202 MissingTorque: "a torque or power is missing";
+    /// Too many torques are prescribed: with every terminal loaded nothing is left to balance the
+    /// train, and equilibrium would hold only by chance. Leave as many terminals open as there
+    /// are degrees of freedom.
+    E203 TooManyTorques: "too many torques are prescribed";
+    /// An external torque is given on a member that is not a terminal. List it in `terminals`.
+    E204 NotATerminal: "a torque acts on a member that is no terminal";
+    /// A member is held and at the same time driven, loaded, or asked for twice.
+    E205 HeldAndDriven: "a member is held and driven at once";
+    /// A power is given on a member that stands still, where no torque can make it.
+    E206 PowerAtRest: "a power is given on a member at rest";
+    /// The state or operation asked for is not in the file.
+    E207 UnknownSelection: "there is no such state or operation";
+    /// Profile shift (or another number of planet teeth) has to close a difference of one or two
+    /// teeth between ring and sun plus planets. Ratios and efficiencies do not depend on it.
+    W301 NearlyCoaxial: "the set closes only with profile shift";
+    /// Planets at equal angles mesh only when (z_sun + z_ring) / planets is an integer; for
+    /// stepped planets (z_1 y_2 - z_2 y_1) / (planets gcd(y_1, y_2)), ring gears negative. They
+    /// can be assembled at unequal angles, at the price of balance and load sharing.
+    W302 UnequalSpacing: "the planets cannot be spaced equally";
+    /// The tip circles of neighbouring planets (addendum one module) overlap.
+    W303 PlanetsTouch: "neighbouring planets touch";
+    /// The planet's tooth number was not given and (z_ring - z_sun) / 2 is not an integer: the
+    /// real planet differs, so planet speeds shown are nominal. Ratios and efficiencies come from
+    /// sun and ring and do not depend on it.
+    W304 NominalPlanet: "planet teeth taken as a nominal fraction";
+    /// Nothing meshes with this member and no shift element touches it.
+    W305 Unconnected: "member connected to nothing";
+    /// The train has more freedoms than the prescribed speeds settle, or a part of it spins
+    /// freely: the members named have no determined speed. Give one more speed, or hold a member.
+    W306 Undetermined: "speeds are not determined";
+    /// No member of a set can move: the shift elements or held members leave no motion.
+    W307 KinematicallyLocked: "the train cannot turn";
+    /// More gear pairs (or clutches) than independent constraints: the train is statically
+    /// indeterminate. Real tooth and shaft stiffness decides how the load divides; statics
+    /// cannot, and does not pretend to.
+    W308 Indeterminate: "statically indeterminate";
+    /// Friction holds the train: with the mesh losses given no equilibrium exists in which a load
+    /// is driven. Naive formulas return an efficiency below 0 or above 1 here.
+    W309 SelfLocking: "the train locks by friction";
+    /// With the same speeds and the same prescribed torques several equilibria exist, with
+    /// different efficiencies. A rigid quasi-static model cannot choose between them (it is the
+    /// gear form of the Painlevé paradox); all are reported. They live beside self-locking:
+    /// better mesh efficiency makes the answer unique.
+    W310 SeveralSolutions: "several equilibria exist";
+    /// Every loaded member puts power in and none takes power out: all of it turns into heat.
+    /// There is no efficiency to speak of.
+    W311 AllDissipated: "all power is dissipated";
+    /// A one-way clutch would have to transmit torque in the direction in which it runs free, or
+    /// turn in the direction that it blocks.
+    W312 OneWay: "a one-way clutch cannot do that";
+    /// The certificate failed and the train has too many interacting meshes to try every sign
+    /// pattern; a solution that was found may not be the only one.
+    W313 NotEnumerated: "uniqueness could not be decided";
+    /// A loaded mesh without relative motion: its friction may act in either direction, up to the
+    /// sliding value, so torques behind it are known only within a range. Shown: the value
+    /// without friction.
+    N401 Stiction: "friction in a mesh at rest is not determined";
+    /// The load on one mesh or the relative speed in it is close to zero: a small change of the
+    /// operating point changes which gear drives, and with it the loss formula.
+    N402 NearBoundary: "close to a change of the loss formula";
+}
+
+impl Code {
+    /// The severity that diagnostics with this code have.
+    pub fn severity(self) -> Severity {
+        match self.as_str().as_bytes()[0] {
+            b'E' => Severity::Error,
+            b'W' => Severity::Warning,
+            _ => Severity::Note,
+        }
+    }
+
+    /// The code with this text (`E101`, upper or lower case).
+    pub fn parse(text: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|c| c.as_str().eq_ignore_ascii_case(text))
+    }
+}
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+impl Serialize for Code {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.as_str())
+    }
+}

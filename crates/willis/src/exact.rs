@@ -1,0 +1,390 @@
+//! Exact numbers: rationals that never overflow, and the integer elimination that kinematics and
+//! borderline decisions stand on.
+//!
+//! Speeds, ratios and the signs that decide a verdict must not depend on a tolerance (a gear train
+//! with ratio 10000/9999 is a real thing), so they are computed here. A [`Rational`] is a pair of
+//! `i128` until it no longer fits, then a big integer; no operation can overflow or round.
+
+use std::cmp::Ordering;
+use std::fmt;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use std::str::FromStr;
+
+use num_bigint::BigInt;
+use num_rational::{BigRational, Ratio};
+use num_traits::{CheckedAdd, CheckedDiv, CheckedMul, CheckedSub, Signed, ToPrimitive, Zero};
+
+/// An exact rational number, as small as it can be and as large as it must be.
+///
+/// # Example
+/// ```
+/// use willis::exact::Rational;
+/// let eta: Rational = "0.985".parse().unwrap();
+/// assert_eq!(eta.to_string(), "197/200");
+/// assert_eq!((Rational::from(1) / Rational::from(3) * Rational::from(3)), Rational::from(1));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Rational(Repr);
+
+#[derive(Clone, Debug)]
+enum Repr {
+    Small(Ratio<i128>),
+    Big(Box<BigRational>),
+}
+
+impl Rational {
+    /// Zero.
+    pub const ZERO: Self = Self(Repr::Small(Ratio::new_raw(0, 1)));
+    /// One.
+    pub const ONE: Self = Self(Repr::Small(Ratio::new_raw(1, 1)));
+
+    /// `numerator / denominator`, reduced. The denominator must not be zero.
+    ///
+    /// # Panics
+    /// If `denominator` is zero.
+    pub fn new(numerator: i64, denominator: i64) -> Self {
+        Self(Repr::Small(Ratio::new(numerator as i128, denominator as i128)))
+    }
+
+    /// The exact value of the shortest decimal that reads back as `value`: `0.98` becomes 49/50,
+    /// as its writer meant, not the binary fraction next to it. `None` for NaN and infinities.
+    pub fn from_f64(value: f64) -> Option<Self> {
+        value.is_finite().then(|| format!("{value:?}").parse().ok()).flatten()
+    }
+
+    fn big(&self) -> BigRational {
+        match &self.0 {
+            Repr::Small(r) => BigRational::new_raw((*r.numer()).into(), (*r.denom()).into()),
+            Repr::Big(r) => (**r).clone(),
+        }
+    }
+
+    fn from_big(value: BigRational) -> Self {
+        match (value.numer().to_i128(), value.denom().to_i128()) {
+            (Some(n), Some(d)) => Self(Repr::Small(Ratio::new_raw(n, d))),
+            _ => Self(Repr::Big(Box::new(value))),
+        }
+    }
+
+    /// Whether this is zero, exactly.
+    pub fn is_zero(&self) -> bool {
+        match &self.0 {
+            Repr::Small(r) => r.is_zero(),
+            Repr::Big(r) => r.is_zero(),
+        }
+    }
+
+    /// −1, 0 or 1.
+    pub fn sign(&self) -> i8 {
+        match &self.0 {
+            Repr::Small(r) => r.numer().signum() as i8,
+            Repr::Big(r) => {
+                if r.is_zero() {
+                    0
+                } else if r.is_negative() {
+                    -1
+                } else {
+                    1
+                }
+            }
+        }
+    }
+
+    /// Whether the denominator is one.
+    pub fn is_integer(&self) -> bool {
+        match &self.0 {
+            Repr::Small(r) => r.is_integer(),
+            Repr::Big(r) => r.is_integer(),
+        }
+    }
+
+    /// Absolute value.
+    pub fn abs(&self) -> Self {
+        if self.sign() < 0 { -self.clone() } else { self.clone() }
+    }
+
+    /// `1 / self`.
+    ///
+    /// # Panics
+    /// If this is zero.
+    pub fn recip(&self) -> Self {
+        Self::ONE / self
+    }
+
+    /// The nearest floating point number (to one unit in the last place).
+    pub fn to_f64(&self) -> f64 {
+        match &self.0 {
+            Repr::Small(r) => {
+                let (n, d) = (*r.numer(), *r.denom());
+                if n.unsigned_abs() < 1 << 53 && d < 1 << 53 {
+                    n as f64 / d as f64
+                } else {
+                    self.big().to_f64().unwrap_or(f64::NAN)
+                }
+            }
+            Repr::Big(r) => r.to_f64().unwrap_or(f64::NAN),
+        }
+    }
+
+    /// `p/q`, also for integers (`3/1`): the form of the machine-readable results.
+    pub fn to_fraction(&self) -> String {
+        match &self.0 {
+            Repr::Small(r) => format!("{}/{}", r.numer(), r.denom()),
+            Repr::Big(r) => format!("{}/{}", r.numer(), r.denom()),
+        }
+    }
+}
+
+impl From<i64> for Rational {
+    fn from(value: i64) -> Self {
+        Self(Repr::Small(Ratio::from_integer(value as i128)))
+    }
+}
+
+impl fmt::Display for Rational {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Repr::Small(r) => r.fmt(f),
+            Repr::Big(r) => r.fmt(f),
+        }
+    }
+}
+
+/// Text that is neither a decimal number nor a fraction `p/q`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotANumber;
+
+impl fmt::Display for NotANumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("not a finite decimal number or fraction")
+    }
+}
+
+impl std::error::Error for NotANumber {}
+
+impl FromStr for Rational {
+    type Err = NotANumber;
+
+    /// Reads `12`, `-0.985`, `1.5e-3`, `1_000` and `97/35`, exactly. Exponents beyond ±60 and more
+    /// than 100 characters are refused, so that no text can demand unbounded work.
+    fn from_str(text: &str) -> Result<Self, NotANumber> {
+        if text.len() > 100 {
+            return Err(NotANumber);
+        }
+        if let Some((n, d)) = text.split_once('/') {
+            let (n, d): (Self, Self) = (n.trim().parse()?, d.trim().parse()?);
+            return if d.is_zero() { Err(NotANumber) } else { Ok(n / d) };
+        }
+        let (mantissa, exponent) = match text.split_once(['e', 'E']) {
+            Some((m, e)) => (m, e.parse::<i32>().map_err(|_| NotANumber)?),
+            None => (text, 0),
+        };
+        let (negative, digits) = match mantissa.as_bytes().first() {
+            Some(b'-') => (true, &mantissa[1..]),
+            Some(b'+') => (false, &mantissa[1..]),
+            _ => (false, mantissa),
+        };
+        let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+        let mut value = BigInt::zero();
+        let mut count = 0;
+        for c in whole.chars().chain(fraction.chars()).filter(|c| *c != '_') {
+            value = value * 10 + c.to_digit(10).ok_or(NotANumber)?;
+            count += 1;
+        }
+        let places = fraction.chars().filter(|c| *c != '_').count() as i32;
+        let power = exponent.checked_sub(places).ok_or(NotANumber)?;
+        if count == 0 || exponent.abs() > 60 {
+            return Err(NotANumber);
+        }
+        let ten = BigInt::from(10).pow(power.unsigned_abs());
+        let value = if negative { -value } else { value };
+        Ok(Self::from_big(if power < 0 {
+            BigRational::new(value, ten)
+        } else {
+            BigRational::from_integer(value * ten)
+        }))
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $checked:ident, $op:tt) => {
+        impl $trait<&Rational> for &Rational {
+            type Output = Rational;
+            fn $method(self, other: &Rational) -> Rational {
+                if let (Repr::Small(a), Repr::Small(b)) = (&self.0, &other.0) {
+                    if let Some(r) = a.$checked(b) {
+                        return Rational(Repr::Small(r));
+                    }
+                }
+                Rational::from_big(self.big() $op other.big())
+            }
+        }
+        impl $trait<Rational> for Rational {
+            type Output = Rational;
+            fn $method(self, other: Rational) -> Rational { &self $op &other }
+        }
+        impl $trait<&Rational> for Rational {
+            type Output = Rational;
+            fn $method(self, other: &Rational) -> Rational { &self $op other }
+        }
+        impl $trait<Rational> for &Rational {
+            type Output = Rational;
+            fn $method(self, other: Rational) -> Rational { self $op &other }
+        }
+    };
+}
+operator!(Add, add, checked_add, +);
+operator!(Sub, sub, checked_sub, -);
+operator!(Mul, mul, checked_mul, *);
+operator!(Div, div, checked_div, /);
+
+impl AddAssign<Rational> for Rational {
+    fn add_assign(&mut self, other: Rational) {
+        *self = &*self + &other;
+    }
+}
+
+impl SubAssign<Rational> for Rational {
+    fn sub_assign(&mut self, other: Rational) {
+        *self = &*self - &other;
+    }
+}
+
+impl Neg for Rational {
+    type Output = Rational;
+    fn neg(self) -> Rational {
+        &Rational::ZERO - &self
+    }
+}
+
+impl PartialEq for Rational {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Rational {}
+impl PartialOrd for Rational {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Rational {
+    fn cmp(&self, other: &Self) -> Ordering {
+        match (&self.0, &other.0) {
+            (Repr::Small(a), Repr::Small(b)) => a.cmp(b),
+            _ => self.big().cmp(&other.big()),
+        }
+    }
+}
+
+/// A dense matrix of rationals, rows of equal length.
+pub(crate) type Matrix = Vec<Vec<Rational>>;
+
+/// Reduced row echelon form in place, pivoting only in the first `columns` columns; returns the
+/// pivot column of each of the leading rows. The rows after them are zero in those columns.
+pub(crate) fn reduce(matrix: &mut Matrix, columns: usize) -> Vec<usize> {
+    let mut pivots = Vec::new();
+    for column in 0..columns {
+        let top = pivots.len();
+        // A pivot of ±1, or failing that the shortest row, keeps fractions small.
+        let found = (top..matrix.len())
+            .filter(|&r| !matrix[r][column].is_zero())
+            .min_by_key(|&r| matrix[r].iter().filter(|x| !x.is_zero()).count());
+        let Some(found) = found else { continue };
+        matrix.swap(top, found);
+        let inverse = matrix[top][column].recip();
+        for x in matrix[top].iter_mut().filter(|x| !x.is_zero()) {
+            *x = &*x * &inverse;
+        }
+        let pivot_row = std::mem::take(&mut matrix[top]);
+        for (r, row) in matrix.iter_mut().enumerate() {
+            if r == top || row[column].is_zero() {
+                continue;
+            }
+            let factor = row[column].clone();
+            for (x, p) in row.iter_mut().zip(&pivot_row).filter(|(_, p)| !p.is_zero()) {
+                *x = &*x - &(&factor * p);
+            }
+        }
+        matrix[top] = pivot_row;
+        pivots.push(column);
+    }
+    pivots
+}
+
+/// Solution of a square system, or `None` when it is singular.
+pub(crate) fn solve(matrix: &Matrix, right: &[Rational]) -> Option<Vec<Rational>> {
+    let n = right.len();
+    let mut rows: Matrix =
+        matrix.iter().zip(right).map(|(row, b)| row.iter().chain([b]).cloned().collect()).collect();
+    (reduce(&mut rows, n).len() == n).then(|| rows.into_iter().map(|mut r| r.pop().unwrap()).collect())
+}
+
+/// Determinant of a square matrix.
+pub(crate) fn determinant(matrix: &Matrix) -> Rational {
+    let mut m = matrix.clone();
+    let n = m.len();
+    let mut det = Rational::ONE;
+    for c in 0..n {
+        let Some(p) = (c..n).find(|&r| !m[r][c].is_zero()) else { return Rational::ZERO };
+        if p != c {
+            m.swap(p, c);
+            det = -det;
+        }
+        det = &det * &m[c][c];
+        let (done, rest) = m.split_at_mut(c + 1);
+        let pivot = &done[c];
+        for row in rest.iter_mut().filter(|row| !row[c].is_zero()) {
+            let factor = &row[c] / &pivot[c];
+            for k in c..n {
+                if !pivot[k].is_zero() {
+                    row[k] = &row[k] - &(&factor * &pivot[k]);
+                }
+            }
+        }
+    }
+    det
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_decimals_exactly() {
+        let read = |s: &str| s.parse::<Rational>().map(|r| r.to_string());
+        assert_eq!(read("0.985").unwrap(), "197/200");
+        assert_eq!(read("-1.5e-3").unwrap(), "-3/2000");
+        assert_eq!(read("2e3").unwrap(), "2000");
+        assert_eq!(read("97/35").unwrap(), "97/35");
+        for bad in ["", "-", ".", "nan", "inf", "1/0", "1e400", "0x10", "1 2", "--1"] {
+            assert_eq!(read(bad), Err(NotANumber), "{bad}");
+        }
+        assert_eq!(Rational::from_f64(0.98).unwrap().to_string(), "49/50");
+        assert_eq!(Rational::from_f64(f64::NAN), None);
+    }
+
+    #[test]
+    fn grows_past_128_bits_and_comes_back() {
+        let third = Rational::new(1, 3);
+        let mut x = Rational::ONE;
+        for _ in 0..120 {
+            x = &x * &third;
+        }
+        assert!(matches!(x.0, Repr::Big(_)));
+        for _ in 0..120 {
+            x = &x / &third;
+        }
+        assert!(matches!(x.0, Repr::Small(_)));
+        assert_eq!(x, Rational::ONE);
+    }
+
+    #[test]
+    fn solves_and_finds_singular() {
+        let m = |v: [[i64; 2]; 2]| v.map(|r| r.map(Rational::from).to_vec()).to_vec();
+        let x = solve(&m([[2, 1], [1, 3]]), &[5.into(), 10.into()]).unwrap();
+        assert_eq!(x, [1.into(), 3.into()]);
+        assert_eq!(solve(&m([[1, 2], [2, 4]]), &[1.into(), 2.into()]), None);
+        assert_eq!(determinant(&m([[0, 1], [1, 3]])), Rational::from(-1));
+    }
+}

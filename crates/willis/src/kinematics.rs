@@ -1,0 +1,392 @@
+//! Exact speeds: what turns how fast, what is locked, what is free, what is redundant.
+//!
+//! Every gear pair ties its members by Willis' equation,
+//! `z_p (ω_p − ω_c) ± z_q (ω_q − ω_c) = 0` (+ for opposite senses), and every engaged shift element
+//! makes two members one *node*. The rows are solved by exact elimination, so a ratio is a
+//! fraction and a zero is a zero. Source: Willis 1841; `R^v_{w,u}` relations in Esmail 2018.
+
+use crate::exact::{self, Matrix, Rational};
+use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train};
+use crate::units::Quantity;
+
+/// A chain of meshes that behaves as one: it ends at two members, and the rotors between them
+/// touch nothing else, so one power passes through all of it.
+///
+/// With the ends `p`, `q` and the common carrier `c` it obeys
+/// `a (ω_p − ω_c) + b (ω_q − ω_c) = 0`; its efficiency is the product over its meshes.
+#[derive(Clone, Debug)]
+pub(crate) struct Element {
+    pub links: Vec<Link>,
+    pub p: MemberId,
+    pub q: MemberId,
+    pub carrier: MemberId,
+    pub a: Rational,
+    pub b: Rational,
+    /// Efficiency when p drives, and when q drives.
+    pub forward: Rational,
+    pub backward: Rational,
+}
+
+/// A mesh in a chain; `along` when the chain runs from its first gear to its second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Link {
+    pub mesh: MeshId,
+    pub along: bool,
+}
+
+impl Element {
+    fn from_mesh(train: &Train, id: MeshId) -> Self {
+        let mesh = &train.meshes[id.0];
+        let [first, second] = &mesh.gears;
+        let sign = Rational::from(if mesh.same_sense { -1 } else { 1 });
+        Self {
+            links: vec![Link { mesh: id, along: true }],
+            p: first.member,
+            q: second.member,
+            carrier: mesh.carrier,
+            a: first.teeth.clone(),
+            b: &second.teeth * &sign,
+            forward: mesh.efficiency.forward.clone(),
+            backward: mesh.efficiency.backward.clone(),
+        }
+    }
+
+    fn reversed(mut self) -> Self {
+        std::mem::swap(&mut self.p, &mut self.q);
+        std::mem::swap(&mut self.a, &mut self.b);
+        std::mem::swap(&mut self.forward, &mut self.backward);
+        self.links.reverse();
+        self.links.iter_mut().for_each(|l| l.along = !l.along);
+        self
+    }
+
+    /// `self` ends where `next` begins.
+    fn joined(mut self, next: Self) -> Self {
+        self.b = -(&self.b * &next.b / &next.a);
+        self.q = next.q;
+        self.forward = self.forward * next.forward;
+        self.backward = self.backward * next.backward;
+        self.links.extend(next.links);
+        self
+    }
+}
+
+/// A group of members that turn as one, or `None` for the group of the frame.
+pub(crate) type Node = Option<usize>;
+
+/// A train with certain shift elements engaged and certain members held.
+#[derive(Clone, Debug)]
+pub struct Configuration<'t> {
+    pub(crate) train: &'t Train,
+    pub(crate) engaged: Vec<ShiftElementId>,
+    pub(crate) held: Vec<MemberId>,
+    pub(crate) elements: Vec<Element>,
+    /// Node of each member; meaningless for the inner rotors of chains.
+    pub(crate) node_of: Vec<Node>,
+    pub(crate) nodes: usize,
+    /// Rotors inside a chain, that is, planets that touch nothing else.
+    pub(crate) inner: Vec<bool>,
+    rank: usize,
+}
+
+/// Speeds of every member as combinations of prescribed ones.
+#[derive(Clone, Debug)]
+pub struct Transfer {
+    /// For each member the factors of the prescribed speeds; `None` when they do not determine it.
+    pub speeds: Vec<Option<Vec<Rational>>>,
+    /// Combinations of the prescribed speeds that the gears force to be zero.
+    pub conflicts: Vec<Vec<Rational>>,
+}
+
+/// The ratio between two members.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Ratio {
+    /// `ω_input/ω_output`.
+    Exact(Rational),
+    /// The output stands still while the input turns.
+    OutputAtRest,
+    /// The input cannot turn.
+    InputLocked,
+    /// The input's speed does not settle the output's.
+    Undetermined,
+}
+
+/// Exact speeds of every member, in multiples of `π^pi_power` rad/s.
+#[derive(Clone, Debug)]
+pub struct Motion {
+    /// By member; `None` where the prescribed speeds do not settle it.
+    pub speeds: Vec<Option<Rational>>,
+    /// Power of π that all speeds share.
+    pub pi_power: i8,
+}
+
+impl Motion {
+    /// Speed in rad/s.
+    pub fn si(&self, member: MemberId) -> Option<f64> {
+        self.speeds[member.0].as_ref().map(|w| w.to_f64() * std::f64::consts::PI.powi(self.pi_power.into()))
+    }
+}
+
+impl<'t> Configuration<'t> {
+    /// The train with `engaged` shift elements closed and `held` members at rest. Members in
+    /// `keep` stay visible to loads and prescribed speeds even if they are mere planets.
+    pub fn new(train: &'t Train, engaged: &[ShiftElementId], held: &[MemberId], keep: &[MemberId]) -> Self {
+        let count = train.members.len();
+        let mut group: Vec<usize> = (0..count).collect();
+        fn root(group: &mut [usize], mut m: usize) -> usize {
+            while group[m] != m {
+                group[m] = group[group[m]];
+                m = group[m];
+            }
+            m
+        }
+        let ties = engaged.iter().map(|e| train.shift_elements[e.0].members);
+        for [a, b] in ties.chain(held.iter().map(|m| [*m, FRAME])) {
+            let (a, b) = (root(&mut group, a.0), root(&mut group, b.0));
+            group[a.max(b)] = a.min(b);
+        }
+
+        let mut loaded = vec![false; count];
+        loaded[FRAME.0] = true;
+        let touched = train.terminals.iter().chain(keep).chain(held).copied();
+        let shifting = train.shift_elements.iter().flat_map(|e| e.members);
+        let carriers = train.meshes.iter().map(|m| m.carrier);
+        touched.chain(shifting).chain(carriers).for_each(|m| loaded[m.0] = true);
+        let (elements, inner) = chains(train, &loaded);
+
+        // Inner rotors are in no group; the rest are numbered, the frame's group being `None`.
+        let mut number = vec![None; count];
+        let mut node_of = vec![None; count];
+        let mut nodes = 0;
+        let ground = root(&mut group, FRAME.0);
+        for m in (0..count).filter(|&m| !inner[m]) {
+            let r = root(&mut group, m);
+            if r != ground {
+                let n = *number[r].get_or_insert_with(|| {
+                    nodes += 1;
+                    nodes - 1
+                });
+                node_of[m] = Some(n);
+            }
+        }
+        let (engaged, held) = (engaged.to_vec(), held.to_vec());
+        let mut c = Self { train, engaged, held, elements, node_of, nodes, inner, rank: 0 };
+        let mut rows = c.rows(0);
+        c.rank = exact::reduce(&mut rows, nodes).len();
+        c
+    }
+
+    pub(crate) fn node(&self, member: MemberId) -> Node {
+        self.node_of[member.0]
+    }
+
+    /// The Willis equation of an element over the nodes, padded with `extra` zero columns.
+    fn row(&self, e: &Element, extra: usize) -> Vec<Rational> {
+        let mut row = vec![Rational::ZERO; self.nodes + extra];
+        let carrier = -(&e.a + &e.b);
+        for (member, coefficient) in [(e.p, &e.a), (e.q, &e.b), (e.carrier, &carrier)] {
+            if let Some(n) = self.node(member) {
+                row[n] += coefficient.clone();
+            }
+        }
+        row
+    }
+
+    fn rows(&self, extra: usize) -> Matrix {
+        self.elements.iter().map(|e| self.row(e, extra)).collect()
+    }
+
+    /// Number of speeds that can be chosen freely.
+    ///
+    /// # Example
+    /// ```
+    /// # use willis::train::{SetSpec, Train};
+    /// # use willis::kinematics::Configuration;
+    /// let train = Train::builder("set")
+    ///     .members(["s", "r", "c"])
+    ///     .set(SetSpec::simple("P1", ("s", 30), ("r", 70), "c"))
+    ///     .build()?;
+    /// assert_eq!(Configuration::new(&train, &[], &[], &[]).degrees_of_freedom(), 2);
+    /// # Ok::<(), willis::diagnostic::Diagnostics>(())
+    /// ```
+    pub fn degrees_of_freedom(&self) -> usize {
+        self.nodes - self.rank
+    }
+
+    /// Meshes that constrain what other meshes already constrain, one list for each independent
+    /// self-stress (left null vector of the Willis equations).
+    pub fn redundant(&self) -> Vec<Vec<MeshId>> {
+        let n = self.elements.len();
+        if self.rank == n {
+            return vec![];
+        }
+        let mut rows = self.rows(n);
+        for (k, row) in rows.iter_mut().enumerate() {
+            row[self.nodes + k] = Rational::ONE;
+        }
+        let rank = exact::reduce(&mut rows, self.nodes).len();
+        rows[rank..]
+            .iter()
+            .map(|row| {
+                (0..n)
+                    .filter(|&k| !row[self.nodes + k].is_zero())
+                    .flat_map(|k| self.elements[k].links.iter().map(|l| l.mesh))
+                    .collect()
+            })
+            .collect()
+    }
+
+    /// Speeds as combinations of the speeds of `prescribed`.
+    pub fn transfer(&self, prescribed: &[MemberId]) -> Transfer {
+        let extra = prescribed.len();
+        let mut rows = self.rows(extra);
+        let mut conflicts = Vec::new();
+        for (k, &member) in prescribed.iter().enumerate() {
+            let mut row = vec![Rational::ZERO; self.nodes + extra];
+            if let Some(n) = self.node(member) {
+                row[n] = Rational::ONE;
+            }
+            row[self.nodes + k] = Rational::ONE;
+            rows.push(row);
+        }
+        let pivots = exact::reduce(&mut rows, self.nodes);
+        let mut of_node: Vec<Option<Vec<Rational>>> = vec![None; self.nodes];
+        for (row, &column) in rows.iter().zip(&pivots) {
+            let free = (0..self.nodes).any(|n| n != column && !row[n].is_zero());
+            if !free {
+                of_node[column] = Some(row[self.nodes..].to_vec());
+            }
+        }
+        for row in &rows[pivots.len()..] {
+            if row[self.nodes..].iter().any(|x| !x.is_zero()) {
+                conflicts.push(row[self.nodes..].to_vec());
+            }
+        }
+        let mut speeds: Vec<_> = (0..self.train.members.len())
+            .map(|m| match (self.inner[m], self.node_of[m]) {
+                (true, _) => None,
+                (false, None) => Some(vec![Rational::ZERO; extra]),
+                (false, Some(n)) => of_node[n].clone(),
+            })
+            .collect();
+        for e in &self.elements {
+            self.inner_speeds(e, &mut speeds);
+        }
+        Transfer { speeds, conflicts }
+    }
+
+    /// Walks a chain from p and sets the speeds of the rotors in it:
+    /// `ω_next − ω_c = −(z/z_next)(ω − ω_c)` for opposite senses.
+    fn inner_speeds(&self, e: &Element, speeds: &mut [Option<Vec<Rational>>]) {
+        let (Some(mut at), Some(carrier)) = (speeds[e.p.0].clone(), speeds[e.carrier.0].clone()) else { return };
+        for link in &e.links[..e.links.len() - 1] {
+            let mesh = &self.train.meshes[link.mesh.0];
+            let [first, second] = &mesh.gears;
+            let (from, to) = if link.along { (first, second) } else { (second, first) };
+            let ratio = &from.teeth / &to.teeth * Rational::from(if mesh.same_sense { 1 } else { -1 });
+            for (x, c) in at.iter_mut().zip(&carrier) {
+                *x = c + &(&ratio * &(&*x - c));
+            }
+            speeds[to.member.0] = Some(at.clone());
+        }
+    }
+
+    /// Ratio `ω_input/ω_output` with nothing else prescribed.
+    pub fn ratio(&self, input: MemberId, output: MemberId) -> Ratio {
+        let transfer = self.transfer(&[input]);
+        if !transfer.conflicts.is_empty() {
+            return Ratio::InputLocked;
+        }
+        match &transfer.speeds[output.0] {
+            None => Ratio::Undetermined,
+            Some(w) if w[0].is_zero() => Ratio::OutputAtRest,
+            Some(w) => Ratio::Exact(w[0].recip()),
+        }
+    }
+
+    /// Exact speeds for prescribed ones. `Err` gives the members of a contradiction: each list is
+    /// tied together by the gears in a way that the prescribed values do not respect.
+    pub fn motion(&self, prescribed: &[(MemberId, Quantity)]) -> Result<Motion, Vec<Vec<MemberId>>> {
+        let members: Vec<_> = prescribed.iter().map(|(m, _)| *m).collect();
+        let (values, pi_power) = common(prescribed.iter().map(|(_, q)| q));
+        let transfer = self.transfer(&members);
+        let dot = |factors: &[Rational]| {
+            factors.iter().zip(&values).fold(Rational::ZERO, |sum, (f, v)| if f.is_zero() { sum } else { sum + f * v })
+        };
+        let broken: Vec<Vec<MemberId>> = transfer
+            .conflicts
+            .iter()
+            .filter(|c| !dot(c).is_zero())
+            .map(|c| (0..members.len()).filter(|&k| !c[k].is_zero()).map(|k| members[k]).collect())
+            .collect();
+        if !broken.is_empty() {
+            return Err(broken);
+        }
+        let speeds = transfer.speeds.iter().map(|s| s.as_ref().map(|f| dot(f))).collect();
+        Ok(Motion { speeds, pi_power })
+    }
+
+    /// Rotors that cannot turn although no shift element or hold grips them directly.
+    pub fn locked_members(&self) -> Vec<MemberId> {
+        let transfer = self.transfer(&[]);
+        (1..self.train.members.len())
+            .filter(|&m| self.inner[m] || self.node_of[m].is_some())
+            .filter(|&m| transfer.speeds[m].is_some())
+            .map(MemberId)
+            .collect()
+    }
+
+    /// Sign of the speed of end p relative to the carrier, times the sign of `a`: the sign with
+    /// which a positive force variable makes p the driver.
+    pub(crate) fn sigma(&self, e: &Element, motion: &Motion) -> Option<i8> {
+        let p = motion.speeds[e.p.0].as_ref()?;
+        let c = motion.speeds[e.carrier.0].as_ref()?;
+        Some((p - c).sign() * e.a.sign())
+    }
+}
+
+/// Exact values of several quantities of one kind with one common power of π. Where units mix
+/// (rpm with rad/s) no common exact form exists, and all go through floating point.
+pub(crate) fn common<'q>(quantities: impl Iterator<Item = &'q Quantity> + Clone) -> (Vec<Rational>, i8) {
+    let mut powers = quantities.clone().filter(|q| !q.value.is_zero()).map(|q| q.pi_power);
+    let first = powers.next().unwrap_or(0);
+    if powers.all(|p| p == first) {
+        return (quantities.map(|q| q.value.clone()).collect(), first);
+    }
+    (quantities.map(|q| Rational::from_f64(q.si()).unwrap_or(Rational::ZERO)).collect(), 0)
+}
+
+/// Joins meshes through rotors that carry nothing but those two meshes.
+fn chains(train: &Train, loaded: &[bool]) -> (Vec<Element>, Vec<bool>) {
+    let count = train.members.len();
+    let mut elements: Vec<Option<Element>> =
+        (0..train.meshes.len()).map(|k| Some(Element::from_mesh(train, MeshId(k)))).collect();
+    let mut ends: Vec<Vec<usize>> = vec![vec![]; count];
+    for (k, e) in elements.iter().enumerate() {
+        let e = e.as_ref().expect("just made");
+        ends[e.p.0].push(k);
+        ends[e.q.0].push(k);
+    }
+    let mut inner = vec![false; count];
+    for m in (0..count).filter(|&m| !loaded[m] && train.members[m].kind != MemberKind::Frame) {
+        let [i, j] = ends[m][..] else { continue };
+        let carrier = |k: usize| elements[k].as_ref().map(|e| e.carrier);
+        if i == j || carrier(i) != carrier(j) {
+            continue;
+        }
+        let (left, right) = (elements[i].take().expect("alive"), elements[j].take().expect("alive"));
+        let left = if left.q.0 == m { left } else { left.reversed() };
+        let right = if right.p.0 == m { right } else { right.reversed() };
+        let whole = left.joined(right);
+        for end in &mut ends[whole.q.0] {
+            if *end == j {
+                *end = i;
+            }
+        }
+        // A loop back to the same rotor keeps both its ends in the list.
+        elements[i] = Some(whole);
+        inner[m] = true;
+    }
+    (elements.into_iter().flatten().collect(), inner)
+}

@@ -1,0 +1,7 @@
+//! Willis: planetary gear trains, exactly.
+pub mod exact;
+pub mod units;
+pub mod diagnostic;
+pub mod train;
+pub mod kinematics;
+pub mod statics;

@@ -1,0 +1,521 @@
+//! Torques with mesh losses: a complementarity problem, its certificate, its verdict.
+//!
+//! Element `j` (a mesh, or a chain of meshes) loads its ends and carrier with
+//! `f_j b_j(ρ_j)`, `b(ρ) = a e_p + b ρ e_q − (a + b ρ) e_c`, where `ρ = η` when end p drives
+//! (`f σ > 0`, with `σ` the speed of p relative to the carrier), `1/η` when q drives. Which end
+//! drives is part of the solution: a horizontal linear complementarity problem
+//! `B₊f₊ − B₋f₋ = t`, `f± ≥ 0`, `f₊·f₋ = 0`, `k` unknowns and `2^k` sign patterns.
+//!
+//! * **Certificate.** If `det B(ρ) ≠ 0` on the whole box `ρ_j ∈ [η_j, 1/η_j]`, exactly one solution
+//!   exists for every load (W-property: Samelson, Thrall, Wesler; Sznajder and Gowda for the
+//!   horizontal form). It is proved by a verified bound on the spectral radius, or by the
+//!   determinants of all sign patterns, the box being split only where the bound fails.
+//! * **Solution.** With a certificate: least-index pivoting from the lossless pattern, which ends
+//!   under the W-property (Murty). Without: every pattern is tried and every solution returned.
+//! * **Decisions** that lie within the error bound of the floating point solution are made again
+//!   in exact rationals. No tolerance decides a sign.
+//!
+//! An element at rest relative to its carrier transmits without loss (`ρ = 1`); its friction may
+//! lie anywhere between, which is reported, not guessed. An element with zero force is idle: it
+//! has no driver and no loss (the one deterministic rule for idle meshes).
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::exact::{self, Matrix, Rational};
+use crate::kinematics::{Configuration, Node};
+
+/// How uniqueness was established.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Certificate {
+    /// One solution for every load: verified bound on the spectral radius over the whole box.
+    SpectralRadius,
+    /// One solution for every load: the determinants of all sign patterns share one sign.
+    Determinants,
+    /// For some load there is no or more than one solution (determinants of both signs or zero);
+    /// what is reported for the load at hand was found by trying every sign pattern.
+    Enumeration,
+    /// Too many interacting elements to decide; a solution was found by pivoting.
+    Undecided,
+}
+
+impl Certificate {
+    /// Whether one solution exists whatever the loads.
+    pub fn unique_for_every_load(self) -> bool {
+        matches!(self, Self::SpectralRadius | Self::Determinants)
+    }
+
+    /// The name in the machine-readable results.
+    pub fn method(self) -> &'static str {
+        match self {
+            Self::SpectralRadius => "spectral-radius",
+            Self::Determinants => "determinants",
+            Self::Enumeration => "enumeration",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// Why no equilibrium problem can be set up.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Unsolvable {
+    /// This many more terminals must be loaded, or fewer left open.
+    MissingLoads(usize),
+    /// This many loads too many.
+    TooManyLoads(usize),
+    /// The forces are not determined by equilibrium even without friction.
+    Indeterminate,
+    /// A loaded element's relative speed is not determined.
+    UndeterminedSpeed,
+}
+
+/// One element as the statics sees it.
+#[derive(Clone, Debug)]
+struct Column {
+    /// Index of the element in the configuration.
+    element: usize,
+    /// Sign of the relative speed of end p times the sign of its coefficient; 0 at rest.
+    sigma: i8,
+    /// (row, constant part, part times ρ).
+    entries: Vec<(usize, Rational, Rational)>,
+    /// The same in floating point.
+    floats: Vec<(usize, f64, f64)>,
+    /// ρ when p drives, ρ when q drives.
+    rho: [Rational; 2],
+    rho_floats: [f64; 2],
+}
+
+/// An equilibrium of the train.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// Force variable of each element of the configuration; the torque on end p is `a f`.
+    pub(crate) forces: Vec<f64>,
+    /// ρ of each element.
+    pub(crate) rho: Vec<f64>,
+    /// Exact forces, where they were needed for a decision or asked for.
+    pub(crate) exact: Option<Vec<Rational>>,
+    /// For each element: p drives, q drives, or neither (idle or at rest).
+    pub(crate) driver: Vec<Option<bool>>,
+    pattern: Vec<bool>,
+}
+
+/// What the statics says for one load.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// Every solution found; none means that friction locks the train.
+    pub solutions: Vec<Solution>,
+    /// What is known about their number.
+    pub certificate: Certificate,
+    /// A continuum of solutions exists beside those listed.
+    pub continuum: bool,
+}
+
+/// The equilibrium problem of a configuration with given directions of motion: which torques are
+/// known is fixed, their values are not.
+#[derive(Clone, Debug)]
+pub struct Equilibrium {
+    columns: Vec<Column>,
+    /// Node of each row.
+    rows: Vec<usize>,
+    elements: usize,
+    certificate: Certificate,
+}
+
+/// Most elements (with relative motion) for which all sign patterns are tried.
+const MOST_ENUMERATED: usize = 20;
+/// Most boxes looked at for the determinant certificate.
+const MOST_BOXES: usize = 1 << 13;
+
+impl Equilibrium {
+    /// Sets up the problem: `sigma` by element (see [`Configuration::sigma`]), `open` the nodes
+    /// whose external torque is unknown, `loaded` the nodes whose torque may differ from zero.
+    pub(crate) fn new(
+        configuration: &Configuration<'_>,
+        sigma: &[Option<i8>],
+        open: &[usize],
+        loaded: &[usize],
+    ) -> Result<Self, Unsolvable> {
+        let c = configuration;
+        let mut row_alive: Vec<bool> = (0..c.nodes).map(|n| !open.contains(&n)).collect();
+        let mut alive = vec![true; c.elements.len()];
+        // An unloaded node that a single gear end touches carries no force: the element is idle.
+        // A carrier may balance a force at a displaced point (its coefficient can vanish inside the
+        // box), so it does not count as such an end unless its coefficient keeps its sign.
+        loop {
+            let mut touching: Vec<Vec<usize>> = vec![vec![]; c.nodes];
+            for (j, e) in c.elements.iter().enumerate().filter(|(j, _)| alive[*j]) {
+                let mut nodes: Vec<Node> = vec![c.node(e.p), c.node(e.q), c.node(e.carrier)];
+                nodes.sort_unstable();
+                nodes.dedup();
+                nodes.into_iter().flatten().for_each(|n| touching[n].push(j));
+            }
+            let mut changed = false;
+            for n in 0..c.nodes {
+                if !row_alive[n] || loaded.contains(&n) {
+                    continue;
+                }
+                match touching[n][..] {
+                    [] => {
+                        row_alive[n] = false;
+                        changed = true;
+                    }
+                    [j] if alive[j] && keeps_sign(c, j, n) => {
+                        alive[j] = false;
+                        row_alive[n] = false;
+                        changed = true;
+                    }
+                    _ => {}
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+        let rows: Vec<usize> = (0..c.nodes).filter(|&n| row_alive[n]).collect();
+        let active: Vec<usize> = (0..c.elements.len()).filter(|&j| alive[j]).collect();
+        if rows.len() < active.len() {
+            // Fewer equations than forces: a load is missing, unless the gears are redundant.
+            return Err(match active.len() - rows.len() {
+                n if !c.redundant().is_empty() && open.len() <= c.degrees_of_freedom() => {
+                    let _ = n;
+                    Unsolvable::Indeterminate
+                }
+                n => Unsolvable::MissingLoads(n),
+            });
+        }
+        if rows.len() > active.len() {
+            return Err(Unsolvable::TooManyLoads(rows.len() - active.len()));
+        }
+        let mut row_of = vec![None; c.nodes];
+        rows.iter().enumerate().for_each(|(r, &n)| row_of[n] = Some(r));
+        let mut columns = Vec::with_capacity(active.len());
+        for &j in &active {
+            let e = &c.elements[j];
+            let sigma = sigma[j].ok_or(Unsolvable::UndeterminedSpeed)?;
+            let mut entries: Vec<(usize, Rational, Rational)> = Vec::with_capacity(3);
+            let parts = [
+                (e.p, e.a.clone(), Rational::ZERO),
+                (e.q, Rational::ZERO, e.b.clone()),
+                (e.carrier, -e.a.clone(), -e.b.clone()),
+            ];
+            for (member, constant, slope) in parts {
+                let Some(r) = c.node(member).and_then(|n| row_of[n]) else { continue };
+                match entries.iter_mut().find(|x| x.0 == r) {
+                    Some(x) => {
+                        x.1 += constant;
+                        x.2 += slope;
+                    }
+                    None => entries.push((r, constant, slope)),
+                }
+            }
+            let rho = if sigma == 0 {
+                [Rational::ONE, Rational::ONE]
+            } else {
+                [e.forward.clone(), e.backward.recip()]
+            };
+            columns.push(Column {
+                element: j,
+                sigma,
+                floats: entries.iter().map(|(r, a, b)| (*r, a.to_f64(), b.to_f64())).collect(),
+                entries,
+                rho_floats: [rho[0].to_f64(), rho[1].to_f64()],
+                rho,
+            });
+        }
+        let mut problem =
+            Self { columns, rows, elements: c.elements.len(), certificate: Certificate::Undecided };
+        if exact::determinant(&problem.exact_matrix(&|_| Rational::ONE)).is_zero() {
+            return Err(Unsolvable::Indeterminate);
+        }
+        problem.certificate = problem.certify();
+        Ok(problem)
+    }
+
+    /// What is known about the number of solutions, before any load is given.
+    pub fn certificate(&self) -> Certificate {
+        self.certificate
+    }
+
+    fn exact_matrix(&self, rho: &dyn Fn(usize) -> Rational) -> Matrix {
+        let n = self.columns.len();
+        let mut m = vec![vec![Rational::ZERO; n]; n];
+        for (j, column) in self.columns.iter().enumerate() {
+            let rho = rho(j);
+            for (r, constant, slope) in &column.entries {
+                m[*r][j] = constant + &(slope * &rho);
+            }
+        }
+        m
+    }
+
+    fn float_matrix(&self, rho: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
+        let n = self.columns.len();
+        let mut m = DMatrix::zeros(n, n);
+        for (j, column) in self.columns.iter().enumerate() {
+            let rho = rho(j);
+            for &(r, constant, slope) in &column.floats {
+                m[(r, j)] = constant + slope * rho;
+            }
+        }
+        m
+    }
+
+    /// Whether `B(ρ)` is regular on the whole box given by a centre and a radius for each column.
+    ///
+    /// With any matrix `R ≈ B_c⁻¹`, `R B(ρ)` differs from the identity by at most
+    /// `M = |I − R B_c| + Σ |R d_j| r_j`; it is regular when some `x > 0` has `M x < x` (the spectral
+    /// radius of the non-negative `M` is then below one). Rounding is covered by inflating `M`.
+    fn regular(&self, centre: &[f64], radius: &[f64]) -> bool {
+        let n = self.columns.len();
+        let b = self.float_matrix(&|j| centre[j]);
+        let Some(r) = b.clone().try_inverse() else { return false };
+        let product = &r * &b;
+        let bound = r.abs() * b.abs();
+        let mut m = DMatrix::from_fn(n, n, |i, j| {
+            let unit = if i == j { 1.0 } else { 0.0 };
+            (unit - product[(i, j)]).abs() + 4.0 * (n as f64) * f64::EPSILON * bound[(i, j)]
+        });
+        for (j, column) in self.columns.iter().enumerate() {
+            if radius[j] == 0.0 {
+                continue;
+            }
+            for i in 0..n {
+                let mut sum = 0.0;
+                let mut size = 0.0;
+                for &(row, _, slope) in &column.floats {
+                    sum += r[(i, row)] * slope;
+                    size += (r[(i, row)] * slope).abs();
+                }
+                m[(i, j)] += (sum.abs() + 8.0 * f64::EPSILON * size) * radius[j] * (1.0 + 1e-12);
+            }
+        }
+        if !m.iter().all(|x| x.is_finite()) {
+            return false;
+        }
+        let system = DMatrix::identity(n, n) - &m;
+        let Some(x) = system.lu().solve(&DVector::from_element(n, 1.0)) else { return false };
+        let y = &m * &x;
+        (0..n).all(|i| x[i] > 0.0 && x[i].is_finite() && y[i] < x[i] * (1.0 - 1e-9))
+    }
+
+    fn certify(&self) -> Certificate {
+        let n = self.columns.len();
+        let full: Vec<(f64, f64)> = self
+            .columns
+            .iter()
+            .map(|c| {
+                let [lo, hi] = c.rho_floats;
+                // Outward, so that the rounded box contains the exact one.
+                ((lo + hi) / 2.0, if lo == hi { 0.0 } else { (hi - lo) / 2.0 * (1.0 + 1e-12) })
+            })
+            .collect();
+        let (centre, radius): (Vec<f64>, Vec<f64>) = full.iter().copied().unzip();
+        if n == 0 || self.regular(&centre, &radius) {
+            return Certificate::SpectralRadius;
+        }
+        // Split the box, widest column first. det B is affine in each ρ_j, so the vertices decide.
+        let mut sign = 0i8;
+        let mut open: Vec<Vec<Option<bool>>> = vec![vec![None; n]];
+        let mut looked_at = 0;
+        while let Some(fixed) = open.pop() {
+            looked_at += 1;
+            if looked_at > MOST_BOXES {
+                return if self.moving() <= MOST_ENUMERATED { Certificate::Enumeration } else { Certificate::Undecided };
+            }
+            let vertex = |j: usize, p: bool| self.columns[j].rho[usize::from(!p)].clone();
+            let at = |j: usize| fixed[j].map_or(full[j].0, |p| self.columns[j].rho_floats[usize::from(!p)]);
+            let centre: Vec<f64> = (0..n).map(at).collect();
+            let radius: Vec<f64> = (0..n).map(|j| if fixed[j].is_some() { 0.0 } else { full[j].1 }).collect();
+            let widest = (0..n)
+                .filter(|&j| radius[j] > 0.0)
+                .max_by(|&i, &j| (radius[i] / centre[i]).total_cmp(&(radius[j] / centre[j])));
+            if widest.is_none() || self.regular(&centre, &radius) {
+                let here = exact::determinant(&self.exact_matrix(&|j| vertex(j, fixed[j].unwrap_or(true)))).sign();
+                if here == 0 || (sign != 0 && here != sign) {
+                    return if self.moving() <= MOST_ENUMERATED {
+                        Certificate::Enumeration
+                    } else {
+                        Certificate::Undecided
+                    };
+                }
+                sign = here;
+            } else if let Some(j) = widest {
+                for p in [true, false] {
+                    let mut half = fixed.clone();
+                    half[j] = Some(p);
+                    open.push(half);
+                }
+            }
+        }
+        Certificate::Determinants
+    }
+
+    /// Elements whose sign matters.
+    fn moving(&self) -> usize {
+        self.columns.iter().filter(|c| c.rho[0] != c.rho[1]).count()
+    }
+
+    /// Every equilibrium under the torques `loads` (by node, exact, in any common unit).
+    pub(crate) fn solve(&self, loads: &[Rational]) -> Answer {
+        let t: Vec<Rational> = self.rows.iter().map(|&n| loads[n].clone()).collect();
+        let t_float: Vec<f64> = t.iter().map(Rational::to_f64).collect();
+        match self.certificate {
+            Certificate::SpectralRadius | Certificate::Determinants | Certificate::Undecided => {
+                let found = self.pivot(&t, &t_float);
+                Answer { solutions: found.into_iter().collect(), certificate: self.certificate, continuum: false }
+            }
+            Certificate::Enumeration => self.enumerate(&t, &t_float),
+        }
+    }
+
+    /// Least-index pivoting from the pattern of the lossless train.
+    fn pivot(&self, t: &[Rational], t_float: &[f64]) -> Option<Solution> {
+        let n = self.columns.len();
+        let lossless = self.attempt(&vec![None; n], t, t_float)?;
+        let mut pattern: Vec<bool> = (0..n).map(|j| lossless.signs[j] * self.columns[j].sigma >= 0).collect();
+        // 2^n steps suffice under the W-property; far fewer are met.
+        let most = 1usize << n.min(16);
+        for _ in 0..=most {
+            let choice: Vec<_> = pattern.iter().map(|p| Some(*p)).collect();
+            let trial = self.attempt(&choice, t, t_float)?;
+            match self.wrong(&trial, &pattern) {
+                None => return Some(self.solution(trial, pattern)),
+                Some(j) => pattern[j] = !pattern[j],
+            }
+        }
+        None
+    }
+
+    /// The first element whose force contradicts the pattern.
+    fn wrong(&self, trial: &Trial, pattern: &[bool]) -> Option<usize> {
+        (0..pattern.len()).find(|&j| {
+            let c = &self.columns[j];
+            let drives = trial.signs[j] * c.sigma;
+            c.rho[0] != c.rho[1] && if pattern[j] { drives < 0 } else { drives > 0 }
+        })
+    }
+
+    /// Tries every sign pattern.
+    fn enumerate(&self, t: &[Rational], t_float: &[f64]) -> Answer {
+        let n = self.columns.len();
+        let moving: Vec<usize> = (0..n).filter(|&j| self.columns[j].rho[0] != self.columns[j].rho[1]).collect();
+        let mut solutions: Vec<Solution> = Vec::new();
+        let mut continuum = false;
+        for mask in 0u32..1 << moving.len() {
+            let mut pattern = vec![true; n];
+            moving.iter().enumerate().for_each(|(bit, &j)| pattern[j] = mask >> bit & 1 == 0);
+            let choice: Vec<_> = pattern.iter().map(|p| Some(*p)).collect();
+            let Some(trial) = self.attempt(&choice, t, t_float) else {
+                continuum |= self.singular_but_solvable(&pattern, t);
+                continue;
+            };
+            // An idle element fits both signs; it is counted once, as if p drove.
+            let doubled = (0..n).any(|j| trial.signs[j] == 0 && !pattern[j]);
+            if !doubled && self.wrong(&trial, &pattern).is_none() {
+                let mut exact_trial = trial;
+                if exact_trial.exact.is_none() {
+                    exact_trial.exact = self.exact_forces(&choice, t);
+                }
+                solutions.push(self.solution(exact_trial, pattern));
+            }
+        }
+        Answer { solutions, certificate: self.certificate, continuum }
+    }
+
+    /// Whether a singular pattern has a ray of solutions with consistent signs for this load: the
+    /// load lies exactly on a self-locking threshold.
+    fn singular_but_solvable(&self, pattern: &[bool], t: &[Rational]) -> bool {
+        let n = self.columns.len();
+        let m = self.exact_matrix(&|j| self.columns[j].rho[usize::from(!pattern[j])].clone());
+        let mut rows: Matrix = m.iter().zip(t).map(|(row, b)| row.iter().chain([b]).cloned().collect()).collect();
+        let pivots = exact::reduce(&mut rows, n);
+        // Solvable at all? Signs along a ray are a cone question; only solvability is decided here.
+        rows[pivots.len()..].iter().all(|row| row[n].is_zero()) && t.iter().any(|x| !x.is_zero())
+    }
+
+    fn exact_forces(&self, choice: &[Option<bool>], t: &[Rational]) -> Option<Vec<Rational>> {
+        exact::solve(&self.exact_matrix(&|j| self.rho_exact(j, choice[j])), t)
+    }
+
+    fn rho_exact(&self, j: usize, choice: Option<bool>) -> Rational {
+        match choice {
+            None => Rational::ONE,
+            Some(p) => self.columns[j].rho[usize::from(!p)].clone(),
+        }
+    }
+
+    /// Solves one pattern (`None`: lossless); signs of the forces are certain, by error bound or
+    /// by exact arithmetic. `None` when the pattern is exactly singular.
+    fn attempt(&self, choice: &[Option<bool>], t: &[Rational], t_float: &[f64]) -> Option<Trial> {
+        let n = self.columns.len();
+        let rho = |j: usize| choice[j].map_or(1.0, |p| self.columns[j].rho_floats[usize::from(!p)]);
+        let b = self.float_matrix(&rho);
+        let exact = || -> Option<Trial> {
+            let f = self.exact_forces(choice, t)?;
+            let signs = f.iter().map(Rational::sign).collect();
+            Some(Trial { forces: f.iter().map(Rational::to_f64).collect(), signs, exact: Some(f) })
+        };
+        let Some(inverse) = b.clone().try_inverse() else { return exact() };
+        let t = DVector::from_column_slice(t_float);
+        let mut f = &inverse * &t;
+        f += &inverse * (&t - &b * &f);
+        // |f − f*| ≤ |R| |residual| / (1 − ‖I − R B‖), with rounding of the residual itself.
+        let residual = (&t - &b * &f).abs();
+        let rounding = (b.abs() * f.abs() + t.abs()) * (4.0 * (n as f64 + 2.0) * f64::EPSILON);
+        let defect = (DMatrix::identity(n, n) - &inverse * &b).abs().row_sum().max() + 1e-12;
+        let bound = inverse.abs() * (residual + rounding) * (2.0 / (1.0 - defect).max(1e-300));
+        if !(defect < 0.1) || (0..n).any(|j| !(f[j].abs() > bound[j])) {
+            return exact();
+        }
+        let signs = f.iter().map(|x| if *x > 0.0 { 1 } else { -1 }).collect();
+        Some(Trial { forces: f.iter().copied().collect(), signs, exact: None })
+    }
+
+    fn solution(&self, trial: Trial, pattern: Vec<bool>) -> Solution {
+        let mut s = Solution {
+            forces: vec![0.0; self.elements],
+            rho: vec![1.0; self.elements],
+            exact: trial.exact.as_ref().map(|_| vec![Rational::ZERO; self.elements]),
+            driver: vec![None; self.elements],
+            pattern: pattern.clone(),
+        };
+        for (j, c) in self.columns.iter().enumerate() {
+            s.forces[c.element] = trial.forces[j];
+            s.rho[c.element] = c.rho_floats[usize::from(!pattern[j])];
+            s.driver[c.element] = match trial.signs[j] * c.sigma {
+                0 => None,
+                sign => Some(sign > 0),
+            };
+            if let (Some(all), Some(own)) = (&mut s.exact, &trial.exact) {
+                all[c.element] = own[j].clone();
+            }
+        }
+        s
+    }
+}
+
+/// Forces for one pattern.
+struct Trial {
+    forces: Vec<f64>,
+    signs: Vec<i8>,
+    exact: Option<Vec<Rational>>,
+}
+
+/// Whether the coefficient of node `n` in element `j` is non-zero for every efficiency in the box.
+fn keeps_sign(c: &Configuration<'_>, j: usize, n: usize) -> bool {
+    let e = &c.elements[j];
+    let at = |rho: &Rational| {
+        let b = &e.b * rho;
+        let mut sum = Rational::ZERO;
+        let carrier = -(&e.a + &b);
+        for (member, x) in [(e.p, &e.a), (e.q, &b), (e.carrier, &carrier)] {
+            if c.node(member) == Some(n) {
+                sum += x.clone();
+            }
+        }
+        sum.sign()
+    };
+    let (low, high) = (at(&e.forward), at(&e.backward.recip()));
+    low != 0 && low == high
+}

@@ -1,0 +1,358 @@
+//! What a gear train is: members, meshes, sets, shift elements, states and operations.
+//!
+//! A [`Train`] is valid by construction. It comes from a file's text ([`Train::from_toml`]) or from
+//! a builder ([`Train::builder`]); both go through the same checks. Sets (simple, stepped,
+//! Ravigneaux, …) are expanded into their meshes, so that everything downstream knows only
+//! members and meshes.
+
+mod assemble;
+mod describe;
+mod expand;
+mod format;
+
+use std::fmt;
+
+use serde::Serialize;
+
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::exact::Rational;
+use crate::units::Quantity;
+
+pub use describe::{
+    EfficiencySpec, GearSpec, MeshSpec, OperationSpec, SetEfficiencySpec, SetSpec, ShiftElementSpec, StateSpec,
+    TrainBuilder,
+};
+pub use format::{schema, Reading};
+
+/// A member's number within its train. The frame is number 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MemberId(pub(crate) usize);
+
+/// A mesh's number within its train.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MeshId(pub(crate) usize);
+
+/// A shift element's number within its train.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ShiftElementId(pub(crate) usize);
+
+/// The frame: always there, always at rest.
+pub const FRAME: MemberId = MemberId(0);
+
+impl MemberId {
+    /// Position in [`Train::members`].
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+impl MeshId {
+    /// Position in [`Train::meshes`].
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+impl ShiftElementId {
+    /// Position in [`Train::shift_elements`].
+    pub fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// What a member is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MemberKind {
+    /// The housing.
+    Frame,
+    /// A rotor that the user named.
+    Shaft,
+    /// A planet that a set brought along.
+    Planet,
+}
+
+/// A rotor, or the frame.
+#[derive(Clone, Debug)]
+pub struct Member {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub kind: MemberKind,
+}
+
+/// One gear of a mesh.
+#[derive(Clone, Debug)]
+pub struct Gear {
+    /// The rotor it sits on.
+    pub member: MemberId,
+    /// Tooth count; a fraction only where a set's planet is nominal.
+    pub teeth: Rational,
+    /// Whether it is a ring gear.
+    pub internal: bool,
+}
+
+/// Efficiency of a mesh or set in its carrier frame, by driving direction; `0 < η ≤ 1`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Efficiency {
+    /// When the first gear drives.
+    pub forward: Rational,
+    /// When the second gear drives.
+    pub backward: Rational,
+}
+
+impl Efficiency {
+    /// No loss.
+    pub fn lossless() -> Self {
+        Self { forward: Rational::ONE, backward: Rational::ONE }
+    }
+}
+
+/// A gear pair on a carrier, or `count` identical ones in parallel.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// Its name.
+    pub name: String,
+    /// The two gears; the efficiency's "forward" is the first one driving.
+    pub gears: [Gear; 2],
+    /// The member that carries the axes.
+    pub carrier: MemberId,
+    /// Efficiency in the carrier frame.
+    pub efficiency: Efficiency,
+    /// Whether both gears turn in the same sense relative to the carrier.
+    pub same_sense: bool,
+    /// Whether the axes intersect: a planet's speed is then that of the carrier plus its spin.
+    pub bevel: bool,
+    /// Identical meshes in parallel.
+    pub count: u32,
+    /// The set that it belongs to.
+    pub set: Option<usize>,
+}
+
+/// A set as its writer named it; its gears are among the train's meshes.
+#[derive(Clone, Debug)]
+pub struct Set {
+    /// Its name.
+    pub name: String,
+    /// The type, as in the file: `simple`, `stepped`, …
+    pub kind: &'static str,
+    /// Number of (first) planets, when given.
+    pub planets: Option<u32>,
+}
+
+/// Kind of shift element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShiftElementKind {
+    /// Joins two members.
+    Clutch,
+    /// Holds a member.
+    Brake,
+    /// Joins two members (or holds one) against turning in one direction.
+    OneWay,
+}
+
+impl fmt::Display for ShiftElementKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Clutch => "clutch",
+            Self::Brake => "brake",
+            Self::OneWay => "one-way clutch",
+        })
+    }
+}
+
+/// A clutch, brake or one-way clutch.
+#[derive(Clone, Debug)]
+pub struct ShiftElement {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub kind: ShiftElementKind,
+    /// The member it acts on and the one it joins it to (the frame for a brake).
+    pub members: [MemberId; 2],
+    /// For a one-way clutch: the sign of the relative speed of the first member that it prevents.
+    pub blocks: i8,
+}
+
+/// A row of the shift table.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Its name.
+    pub name: String,
+    /// The shift elements that are closed.
+    pub engaged: Vec<ShiftElementId>,
+    /// Where power enters when driving.
+    pub input: Option<MemberId>,
+    /// Where power leaves when driving.
+    pub output: Option<MemberId>,
+}
+
+/// What an operation prescribes on a terminal.
+#[derive(Clone, Debug)]
+pub enum Load {
+    /// External torque on the member.
+    Torque(Quantity),
+    /// External power into the train.
+    Power(Quantity),
+}
+
+/// An operating point to analyse.
+#[derive(Clone, Debug)]
+pub struct Operation {
+    /// Its name.
+    pub name: String,
+    /// The state of the shift table (position in [`Train::states`]), if not as drawn.
+    pub state: Option<usize>,
+    /// Prescribed speeds.
+    pub speeds: Vec<(MemberId, Quantity)>,
+    /// Members held at rest from outside.
+    pub fixed: Vec<MemberId>,
+    /// Prescribed torques and powers.
+    pub loads: Vec<(MemberId, Load)>,
+    pub(crate) place: String,
+}
+
+/// A gear train that passed every check.
+///
+/// # Example
+/// ```
+/// use willis::train::{SetSpec, ShiftElementSpec, StateSpec, Train};
+///
+/// let train = Train::builder("reducer")
+///     .members(["s", "r", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("r", 70), "c").planet(20, 4).mesh_efficiency(0.99))
+///     .shift_element(ShiftElementSpec::brake("B", "r"))
+///     .state(StateSpec::new("1", ["B"]))
+///     .build()?;
+/// assert_eq!(train.meshes().len(), 2);
+/// # Ok::<(), willis::diagnostic::Diagnostics>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Train {
+    pub(crate) name: String,
+    pub(crate) source: Option<String>,
+    pub(crate) members: Vec<Member>,
+    pub(crate) meshes: Vec<Mesh>,
+    pub(crate) sets: Vec<Set>,
+    pub(crate) shift_elements: Vec<ShiftElement>,
+    pub(crate) states: Vec<State>,
+    pub(crate) operations: Vec<Operation>,
+    pub(crate) terminals: Vec<MemberId>,
+    pub(crate) input: Option<MemberId>,
+    pub(crate) output: Option<MemberId>,
+    pub(crate) warnings: Vec<Diagnostic>,
+    pub(crate) assumptions: Vec<String>,
+}
+
+impl Train {
+    /// Starts a train.
+    pub fn builder(name: impl Into<String>) -> TrainBuilder {
+        TrainBuilder::new(name)
+    }
+
+    /// Reads the text of a train file (TOML, format 1). No file is touched.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text, each with its place.
+    ///
+    /// # Example
+    /// ```
+    /// let wrong = willis::train::Train::from_toml("format = 1\nname = 'x'\nmembres = []").unwrap_err();
+    /// assert!(wrong.to_string().contains("did you mean `members`?"));
+    /// ```
+    pub fn from_toml(text: &str) -> Result<Self, Diagnostics> {
+        let Reading { train, diagnostics } = Self::read_toml(text);
+        train.ok_or(diagnostics)
+    }
+
+    /// Like [`Train::from_toml`], and tells the warnings about a good train too.
+    pub fn read_toml(text: &str) -> Reading {
+        format::read(text)
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where its data come from, in the writer's words.
+    pub fn source(&self) -> Option<&str> {
+        self.source.as_deref()
+    }
+
+    /// The frame, then every rotor: the named ones, then the planets of the sets.
+    pub fn members(&self) -> &[Member] {
+        &self.members
+    }
+
+    /// Every gear pair.
+    pub fn meshes(&self) -> &[Mesh] {
+        &self.meshes
+    }
+
+    /// Every set.
+    pub fn sets(&self) -> &[Set] {
+        &self.sets
+    }
+
+    /// Every clutch and brake.
+    pub fn shift_elements(&self) -> &[ShiftElement] {
+        &self.shift_elements
+    }
+
+    /// The shift table.
+    pub fn states(&self) -> &[State] {
+        &self.states
+    }
+
+    /// The operating points of the file.
+    pub fn operations(&self) -> &[Operation] {
+        &self.operations
+    }
+
+    /// Members on which an external torque may act.
+    pub fn terminals(&self) -> &[MemberId] {
+        &self.terminals
+    }
+
+    /// Where power enters when driving, if the state does not say otherwise.
+    pub fn input(&self) -> Option<MemberId> {
+        self.input
+    }
+
+    /// Where power leaves when driving, if the state does not say otherwise.
+    pub fn output(&self) -> Option<MemberId> {
+        self.output
+    }
+
+    /// Warnings about the train itself: assembly conditions, nominal planets, loose members.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// What stands in for data that were not given.
+    pub fn assumptions(&self) -> &[String] {
+        &self.assumptions
+    }
+
+    /// The member of that name.
+    pub fn member(&self, name: &str) -> Option<MemberId> {
+        self.members.iter().position(|m| m.name == name).map(MemberId)
+    }
+
+    /// The name of a member.
+    pub fn member_name(&self, id: MemberId) -> &str {
+        &self.members[id.0].name
+    }
+
+    /// The mesh of that name.
+    pub fn mesh(&self, name: &str) -> Option<MeshId> {
+        self.meshes.iter().position(|m| m.name == name).map(MeshId)
+    }
+
+    /// The state of that name.
+    pub fn state(&self, name: &str) -> Option<&State> {
+        self.states.iter().find(|s| s.name == name)
+    }
+}

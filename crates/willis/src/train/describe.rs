@@ -1,0 +1,517 @@
+//! The train as a person describes it: names and numbers, not yet checked.
+
+use crate::diagnostic::Diagnostics;
+use crate::exact::Rational;
+use crate::train::{Efficiency, ShiftElementKind, Train};
+use crate::units::{AngularSpeed, Power, Quantity, Torque};
+
+use super::{assemble, Load};
+
+/// A gear of a mesh: its member, tooth count, and whether it is a ring gear.
+#[derive(Clone, Debug)]
+pub struct GearSpec {
+    pub(crate) member: String,
+    pub(crate) teeth: i64,
+    pub(crate) internal: bool,
+    /// The step of the planet that it meshes with, in a stepped set.
+    pub(crate) planet_teeth: Option<i64>,
+    /// Right side of the planet's apex, in a bevel set.
+    pub(crate) right: Option<bool>,
+}
+
+impl GearSpec {
+    /// An external gear.
+    pub fn external(member: impl Into<String>, teeth: i64) -> Self {
+        Self { member: member.into(), teeth, internal: false, planet_teeth: None, right: None }
+    }
+
+    /// A ring gear.
+    pub fn internal(member: impl Into<String>, teeth: i64) -> Self {
+        Self { internal: true, ..Self::external(member, teeth) }
+    }
+}
+
+/// Efficiency as given: one value for both directions, or one each.
+#[derive(Clone, Debug)]
+pub struct EfficiencySpec(pub(crate) Efficiency);
+
+impl EfficiencySpec {
+    /// By direction: the first gear driving, the second gear driving.
+    ///
+    /// # Panics
+    /// If a value is NaN or infinite.
+    pub fn directed(forward: f64, backward: f64) -> Self {
+        let exact = |v| Rational::from_f64(v).expect("a finite efficiency");
+        Self(Efficiency { forward: exact(forward), backward: exact(backward) })
+    }
+}
+
+impl From<f64> for EfficiencySpec {
+    fn from(value: f64) -> Self {
+        Self::directed(value, value)
+    }
+}
+
+impl From<Rational> for EfficiencySpec {
+    fn from(value: Rational) -> Self {
+        Self(Efficiency { forward: value.clone(), backward: value })
+    }
+}
+
+/// What is known of the losses of a set.
+#[derive(Clone, Debug)]
+pub enum SetEfficiencySpec {
+    /// Each mesh: between external gears, and with a ring gear.
+    Meshes {
+        /// Sun to planet, planet to planet.
+        external: EfficiencySpec,
+        /// Planet to ring.
+        internal: EfficiencySpec,
+    },
+    /// From the first to the second central gear with the carrier held.
+    Basic(EfficiencySpec),
+}
+
+/// A gear pair on a carrier.
+#[derive(Clone, Debug)]
+pub struct MeshSpec {
+    pub(crate) name: Option<String>,
+    pub(crate) gears: [GearSpec; 2],
+    pub(crate) carrier: String,
+    pub(crate) efficiency: Option<EfficiencySpec>,
+    pub(crate) same_sense: Option<bool>,
+    pub(crate) bevel: bool,
+    pub(crate) count: i64,
+}
+
+impl MeshSpec {
+    /// A pair carried by the frame, with no loss given.
+    pub fn new(first: GearSpec, second: GearSpec) -> Self {
+        Self {
+            name: None,
+            gears: [first, second],
+            carrier: "frame".into(),
+            efficiency: None,
+            same_sense: None,
+            bevel: false,
+            count: 1,
+        }
+    }
+
+    /// Names it; otherwise the name is built from its gears.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = Some(name.into());
+        self
+    }
+
+    /// Puts it on a carrier.
+    #[must_use]
+    pub fn carrier(mut self, member: impl Into<String>) -> Self {
+        self.carrier = member.into();
+        self
+    }
+
+    /// Gives its efficiency in the carrier frame.
+    #[must_use]
+    pub fn efficiency(mut self, efficiency: impl Into<EfficiencySpec>) -> Self {
+        self.efficiency = Some(efficiency.into());
+        self
+    }
+
+    /// Identical meshes in parallel.
+    #[must_use]
+    pub fn count(mut self, count: i64) -> Self {
+        self.count = count;
+        self
+    }
+
+    /// Both gears turn in the same sense (a chain, the second side gear of a bevel set).
+    #[must_use]
+    pub fn same_sense(mut self) -> Self {
+        self.same_sense = Some(true);
+        self
+    }
+
+    /// Makes it a bevel pair.
+    #[must_use]
+    pub fn bevel(mut self) -> Self {
+        self.bevel = true;
+        self
+    }
+}
+
+/// Planets of a set: teeth and number, as far as known.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PlanetSpec {
+    pub teeth: Option<i64>,
+    pub count: Option<i64>,
+}
+
+/// The parts of a set, by type.
+#[derive(Clone, Debug)]
+pub(crate) enum Parts {
+    Simple { sun: GearSpec, ring: GearSpec, planet: PlanetSpec },
+    DoublePlanet { sun: GearSpec, ring: GearSpec, inner: PlanetSpec, outer: PlanetSpec },
+    Stepped { central: Vec<GearSpec>, planet: PlanetSpec },
+    Ravigneaux { small_sun: Option<GearSpec>, large_sun: Option<GearSpec>, ring: Option<GearSpec>, short: PlanetSpec, long: PlanetSpec },
+    Bevel { sides: Vec<GearSpec>, planet: PlanetSpec },
+}
+
+/// A planetary set.
+///
+/// Sun, ring and carrier are given as `(member, teeth)` and `member`; planets are added with
+/// [`SetSpec::planet`] or [`SetSpec::planets`].
+#[derive(Clone, Debug)]
+pub struct SetSpec {
+    pub(crate) name: String,
+    pub(crate) carrier: String,
+    pub(crate) parts: Parts,
+    pub(crate) efficiency: Option<SetEfficiencySpec>,
+}
+
+impl SetSpec {
+    pub(crate) fn new(name: impl Into<String>, carrier: impl Into<String>, parts: Parts) -> Self {
+        Self { name: name.into(), carrier: carrier.into(), parts, efficiency: None }
+    }
+
+    /// Sun, planets, ring.
+    pub fn simple(name: impl Into<String>, sun: (&str, i64), ring: (&str, i64), carrier: impl Into<String>) -> Self {
+        Self::new(name, carrier, Parts::Simple {
+            sun: GearSpec::external(sun.0, sun.1),
+            ring: GearSpec::internal(ring.0, ring.1),
+            planet: PlanetSpec::default(),
+        })
+    }
+
+    /// Sun, inner planets, outer planets, ring: sun and ring turn in the same sense on a held
+    /// carrier.
+    pub fn double_planet(
+        name: impl Into<String>,
+        sun: (&str, i64),
+        ring: (&str, i64),
+        carrier: impl Into<String>,
+    ) -> Self {
+        Self::new(name, carrier, Parts::DoublePlanet {
+            sun: GearSpec::external(sun.0, sun.1),
+            ring: GearSpec::internal(ring.0, ring.1),
+            inner: PlanetSpec::default(),
+            outer: PlanetSpec::default(),
+        })
+    }
+
+    /// One planet shaft with several steps; add central gears with [`SetSpec::sun`] and
+    /// [`SetSpec::ring`].
+    pub fn stepped(name: impl Into<String>, carrier: impl Into<String>) -> Self {
+        Self::new(name, carrier, Parts::Stepped { central: Vec::new(), planet: PlanetSpec::default() })
+    }
+
+    /// A bevel set; add its gears with [`SetSpec::side`].
+    pub fn bevel(name: impl Into<String>, carrier: impl Into<String>) -> Self {
+        Self::new(name, carrier, Parts::Bevel { sides: Vec::new(), planet: PlanetSpec::default() })
+    }
+
+    /// Short planets on the small sun, long planets on the large sun and the ring, short and long
+    /// in mesh.
+    pub fn ravigneaux(
+        name: impl Into<String>,
+        small_sun: (&str, i64),
+        large_sun: (&str, i64),
+        ring: (&str, i64),
+        carrier: impl Into<String>,
+    ) -> Self {
+        Self::new(name, carrier, Parts::Ravigneaux {
+            small_sun: Some(GearSpec::external(small_sun.0, small_sun.1)),
+            large_sun: Some(GearSpec::external(large_sun.0, large_sun.1)),
+            ring: Some(GearSpec::internal(ring.0, ring.1)),
+            short: PlanetSpec::default(),
+            long: PlanetSpec::default(),
+        })
+    }
+
+    /// Adds a sun that meshes with the step of `planet_teeth` teeth (stepped sets).
+    ///
+    /// # Panics
+    /// On a set of another type.
+    #[must_use]
+    pub fn sun(mut self, member: &str, teeth: i64, planet_teeth: i64) -> Self {
+        let Parts::Stepped { central, .. } = &mut self.parts else { panic!("only a stepped set takes more suns") };
+        central.push(GearSpec { planet_teeth: Some(planet_teeth), ..GearSpec::external(member, teeth) });
+        self
+    }
+
+    /// Adds a ring that meshes with the step of `planet_teeth` teeth (stepped sets).
+    ///
+    /// # Panics
+    /// On a set of another type.
+    #[must_use]
+    pub fn ring(mut self, member: &str, teeth: i64, planet_teeth: i64) -> Self {
+        let Parts::Stepped { central, .. } = &mut self.parts else { panic!("only a stepped set takes more rings") };
+        central.push(GearSpec { planet_teeth: Some(planet_teeth), ..GearSpec::internal(member, teeth) });
+        self
+    }
+
+    /// Adds a gear of a bevel set, on the left or the right of the planet.
+    ///
+    /// # Panics
+    /// On a set of another type.
+    #[must_use]
+    pub fn side(mut self, member: &str, teeth: i64, right: bool) -> Self {
+        let Parts::Bevel { sides, .. } = &mut self.parts else { panic!("only a bevel set has sides") };
+        sides.push(GearSpec { right: Some(right), ..GearSpec::external(member, teeth) });
+        self
+    }
+
+    /// Teeth and number of the planets (the first kind, where there are two).
+    #[must_use]
+    pub fn planet(mut self, teeth: i64, count: i64) -> Self {
+        let spec = PlanetSpec { teeth: Some(teeth), count: Some(count) };
+        match &mut self.parts {
+            Parts::Simple { planet, .. } | Parts::Stepped { planet, .. } | Parts::Bevel { planet, .. } => *planet = spec,
+            Parts::DoublePlanet { inner, .. } => *inner = spec,
+            Parts::Ravigneaux { short, .. } => *short = spec,
+        }
+        self
+    }
+
+    /// Teeth of the second kind of planet (outer, long), as many as of the first.
+    ///
+    /// # Panics
+    /// On a set with one kind of planet.
+    #[must_use]
+    pub fn second_planet(mut self, teeth: i64) -> Self {
+        match &mut self.parts {
+            Parts::DoublePlanet { inner: first, outer: second, .. }
+            | Parts::Ravigneaux { short: first, long: second, .. } => {
+                *second = PlanetSpec { teeth: Some(teeth), count: first.count };
+            }
+            _ => panic!("this set has one kind of planet"),
+        }
+        self
+    }
+
+    /// The efficiency of every mesh.
+    #[must_use]
+    pub fn mesh_efficiency(mut self, efficiency: impl Into<EfficiencySpec>) -> Self {
+        let efficiency = efficiency.into();
+        self.efficiency = Some(SetEfficiencySpec::Meshes { external: efficiency.clone(), internal: efficiency });
+        self
+    }
+
+    /// The efficiency from the first central gear to the second with the carrier held.
+    #[must_use]
+    pub fn basic_efficiency(mut self, efficiency: impl Into<EfficiencySpec>) -> Self {
+        self.efficiency = Some(SetEfficiencySpec::Basic(efficiency.into()));
+        self
+    }
+
+    /// The losses in any of the ways that they may be known.
+    #[must_use]
+    pub fn efficiency(mut self, efficiency: SetEfficiencySpec) -> Self {
+        self.efficiency = Some(efficiency);
+        self
+    }
+}
+
+/// A clutch, brake or one-way clutch.
+#[derive(Clone, Debug)]
+pub struct ShiftElementSpec {
+    pub(crate) name: String,
+    pub(crate) kind: ShiftElementKind,
+    pub(crate) members: Vec<String>,
+    pub(crate) blocks: i8,
+}
+
+impl ShiftElementSpec {
+    /// Joins two members when engaged.
+    pub fn clutch(name: impl Into<String>, a: &str, b: &str) -> Self {
+        Self { name: name.into(), kind: ShiftElementKind::Clutch, members: vec![a.into(), b.into()], blocks: -1 }
+    }
+
+    /// Holds a member when engaged.
+    pub fn brake(name: impl Into<String>, member: &str) -> Self {
+        Self { name: name.into(), kind: ShiftElementKind::Brake, members: vec![member.into()], blocks: -1 }
+    }
+
+    /// Prevents `member` from turning backward relative to `other` (use `"frame"` for the housing).
+    pub fn one_way(name: impl Into<String>, member: &str, other: &str) -> Self {
+        let members = vec![member.into(), other.into()];
+        Self { name: name.into(), kind: ShiftElementKind::OneWay, members, blocks: -1 }
+    }
+}
+
+/// A row of the shift table.
+#[derive(Clone, Debug)]
+pub struct StateSpec {
+    pub(crate) name: String,
+    pub(crate) engaged: Vec<String>,
+    pub(crate) input: Option<String>,
+    pub(crate) output: Option<String>,
+}
+
+impl StateSpec {
+    /// A state with these elements engaged.
+    pub fn new<'a>(name: impl Into<String>, engaged: impl IntoIterator<Item = &'a str>) -> Self {
+        let engaged = engaged.into_iter().map(String::from).collect();
+        Self { name: name.into(), engaged, input: None, output: None }
+    }
+
+    /// Input and output in this state, where they differ from the train's.
+    #[must_use]
+    pub fn between(mut self, input: &str, output: &str) -> Self {
+        (self.input, self.output) = (Some(input.into()), Some(output.into()));
+        self
+    }
+}
+
+/// An operating point.
+#[derive(Clone, Debug)]
+pub struct OperationSpec {
+    pub(crate) name: String,
+    pub(crate) state: Option<String>,
+    pub(crate) speeds: Vec<(String, Quantity)>,
+    pub(crate) fixed: Vec<String>,
+    pub(crate) loads: Vec<(String, Load)>,
+}
+
+impl OperationSpec {
+    /// An operating point of the train as drawn.
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), state: None, speeds: vec![], fixed: vec![], loads: vec![] }
+    }
+
+    /// In a state of the shift table.
+    #[must_use]
+    pub fn state(mut self, name: &str) -> Self {
+        self.state = Some(name.into());
+        self
+    }
+
+    /// Prescribes a speed.
+    #[must_use]
+    pub fn speed(mut self, member: &str, speed: AngularSpeed) -> Self {
+        self.speeds.push((member.into(), speed.0));
+        self
+    }
+
+    /// Holds a member from outside.
+    #[must_use]
+    pub fn fixed(mut self, member: &str) -> Self {
+        self.fixed.push(member.into());
+        self
+    }
+
+    /// Prescribes the external torque on a terminal.
+    #[must_use]
+    pub fn torque(mut self, member: &str, torque: Torque) -> Self {
+        self.loads.push((member.into(), Load::Torque(torque.0)));
+        self
+    }
+
+    /// Prescribes the external power into a terminal.
+    #[must_use]
+    pub fn power(mut self, member: &str, power: Power) -> Self {
+        self.loads.push((member.into(), Load::Power(power.0)));
+        self
+    }
+}
+
+/// Collects a train's parts; [`TrainBuilder::build`] checks them all.
+#[derive(Clone, Debug)]
+pub struct TrainBuilder {
+    pub(crate) name: String,
+    pub(crate) source: Option<String>,
+    pub(crate) members: Vec<String>,
+    pub(crate) terminals: Vec<String>,
+    pub(crate) input: Option<String>,
+    pub(crate) output: Option<String>,
+    pub(crate) meshes: Vec<MeshSpec>,
+    pub(crate) sets: Vec<SetSpec>,
+    pub(crate) shift_elements: Vec<ShiftElementSpec>,
+    pub(crate) states: Vec<StateSpec>,
+    pub(crate) operations: Vec<OperationSpec>,
+}
+
+impl TrainBuilder {
+    pub(crate) fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            source: None,
+            members: vec![],
+            terminals: vec![],
+            input: None,
+            output: None,
+            meshes: vec![],
+            sets: vec![],
+            shift_elements: vec![],
+            states: vec![],
+            operations: vec![],
+        }
+    }
+
+    /// Names the rotors (the frame and the planets of sets exist without being named).
+    #[must_use]
+    pub fn members<'a>(mut self, names: impl IntoIterator<Item = &'a str>) -> Self {
+        self.members.extend(names.into_iter().map(String::from));
+        self
+    }
+
+    /// Names the members on which an external torque may act. The first is the input and the last
+    /// the output, unless a state says otherwise.
+    #[must_use]
+    pub fn terminals<'a>(mut self, names: impl IntoIterator<Item = &'a str>) -> Self {
+        self.terminals.extend(names.into_iter().map(String::from));
+        self
+    }
+
+    /// Says where the data come from.
+    #[must_use]
+    pub fn source(mut self, text: impl Into<String>) -> Self {
+        self.source = Some(text.into());
+        self
+    }
+
+    /// Adds a mesh.
+    #[must_use]
+    pub fn mesh(mut self, mesh: MeshSpec) -> Self {
+        self.meshes.push(mesh);
+        self
+    }
+
+    /// Adds a set.
+    #[must_use]
+    pub fn set(mut self, set: SetSpec) -> Self {
+        self.sets.push(set);
+        self
+    }
+
+    /// Adds a clutch or brake.
+    #[must_use]
+    pub fn shift_element(mut self, element: ShiftElementSpec) -> Self {
+        self.shift_elements.push(element);
+        self
+    }
+
+    /// Adds a row of the shift table.
+    #[must_use]
+    pub fn state(mut self, state: StateSpec) -> Self {
+        self.states.push(state);
+        self
+    }
+
+    /// Adds an operating point.
+    #[must_use]
+    pub fn operation(mut self, operation: OperationSpec) -> Self {
+        self.operations.push(operation);
+        self
+    }
+
+    /// Checks everything and makes the train.
+    ///
+    /// # Errors
+    /// Everything that is wrong, not only the first.
+    pub fn build(self) -> Result<Train, Diagnostics> {
+        let mut diagnostics = Diagnostics::default();
+        assemble::assemble(self, &mut diagnostics).ok_or(diagnostics)
+    }
+}

@@ -1,0 +1,190 @@
+//! The train file, format 1: one description of its keys drives the reader, the suggestions for
+//! misspelt keys and the JSON Schema.
+//!
+//! The text is read twice in spirit, once in fact: [`keys`] says which keys exist and what kind of
+//! value each takes, [`read`] checks the whole document against it and collects every error with
+//! its place, and the little that is left is to pour checked values into a [`TrainBuilder`].
+
+mod keys;
+mod reader;
+mod schema;
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::train::{ShiftElementKind, Train};
+
+use super::describe::{
+    GearSpec, MeshSpec, OperationSpec, Parts, PlanetSpec, SetEfficiencySpec, SetSpec, ShiftElementSpec, StateSpec,
+    TrainBuilder,
+};
+use super::{Load, assemble};
+use reader::Fields;
+
+pub use schema::schema;
+
+/// What reading a train file gave.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The train, unless there were errors.
+    pub train: Option<Train>,
+    /// Errors and warnings, with their places in the text.
+    pub diagnostics: Diagnostics,
+}
+
+pub(super) fn read(text: &str) -> Reading {
+    let mut diagnostics = Diagnostics::default();
+    if text.trim().is_empty() {
+        diagnostics.push(
+            Diagnostic::new(Code::MissingKey, "", "the file is empty").hint(
+                "a train file begins with `format = 1` and names its `members`; see the examples for a start",
+            ),
+        );
+        return Reading { train: None, diagnostics };
+    }
+    let (root, spans) = reader::read(text, &keys::FILE, &mut diagnostics);
+    let mut train = None;
+    if !diagnostics.has_errors() {
+        train = assemble::assemble(builder(&root), &mut diagnostics);
+    } else if !diagnostics.iter().any(|d| d.code == Code::Syntax) {
+        // Names can be checked too where the shape is sound; what is missing was already reported.
+        let mut more = Diagnostics::default();
+        assemble::assemble(builder(&root), &mut more);
+        let reported: Vec<String> = diagnostics.iter().map(|d| d.place.clone()).collect();
+        let doubtful = |d: &Diagnostic| {
+            matches!(d.code, Code::MissingKey | Code::IncompleteSet | Code::Unconnected)
+                || d.severity != crate::diagnostic::Severity::Error
+                || reported.iter().any(|r| !r.is_empty() && (d.place.starts_with(r) || r.starts_with(&d.place)))
+        };
+        diagnostics.extend(more.into_iter().filter(|d| !doubtful(d)));
+    }
+    for d in diagnostics.iter_mut().filter(|d| d.span.is_none()) {
+        d.span = spans.nearest(&d.place);
+        // A suggestion replaces a name; inside quotes, if that is what stands there.
+        if let (Some(span), Some(new)) = (&d.span, &mut d.replacement) {
+            if let Some(quote) = text[span.clone()].chars().next().filter(|c| matches!(c, '"' | '\'')) {
+                *new = format!("{quote}{new}{quote}");
+            }
+        }
+    }
+    if let Some(train) = &mut train {
+        train.warnings = diagnostics.iter().cloned().collect();
+    }
+    Reading { train, diagnostics }
+}
+
+fn builder(root: &Fields) -> TrainBuilder {
+    let mut b = TrainBuilder::new(root.text("name"));
+    b.source = root.optional_text("source");
+    b.members = root.names("members");
+    b.terminals = root.names("terminals");
+    b.input = root.optional_text("input");
+    b.output = root.optional_text("output");
+    b.meshes = root.tables("mesh").iter().map(mesh).collect();
+    b.sets = root.tables("set").iter().map(set).collect();
+    b.shift_elements = root.tables("shift_element").iter().map(shift_element).collect();
+    b.states = root.tables("state").iter().map(state).collect();
+    b.operations = root.tables("operation").iter().map(operation).collect();
+    b
+}
+
+fn gear(t: &Fields) -> GearSpec {
+    GearSpec {
+        member: t.text("member"),
+        teeth: t.integer("teeth").unwrap_or(1),
+        internal: t.flag("internal"),
+        planet_teeth: t.integer("planet_teeth"),
+        right: t.optional_text("side").map(|s| s == "right"),
+    }
+}
+
+fn mesh(t: &Fields) -> MeshSpec {
+    let blank = || GearSpec::external("", 1);
+    let mut gears = t.tables("gears").iter().map(gear);
+    let first = gears.next().unwrap_or_else(blank);
+    let second = gears.next().unwrap_or_else(blank);
+    MeshSpec {
+        name: t.optional_text("name"),
+        carrier: t.optional_text("carrier").unwrap_or_else(|| "frame".into()),
+        efficiency: t.efficiency("efficiency"),
+        same_sense: t.optional_text("sense").map(|s| s == "same"),
+        bevel: t.optional_text("kind").is_some_and(|k| k == "bevel"),
+        count: t.integer("count").unwrap_or(1),
+        ..MeshSpec::new(first, second)
+    }
+}
+
+fn planet(t: &Fields, key: &str) -> PlanetSpec {
+    t.table(key).map_or(PlanetSpec::default(), |p| PlanetSpec { teeth: p.integer("teeth"), count: p.integer("count") })
+}
+
+fn set(t: &Fields) -> SetSpec {
+    let sun_or_ring = |key: &str| t.table(key).map(gear).map(|g| GearSpec { internal: key == "ring", ..g });
+    let required = |key: &str| sun_or_ring(key).unwrap_or_else(|| GearSpec::external("", 1));
+    let parts = match t.optional_text("type").as_deref() {
+        Some("double-planet") => Parts::DoublePlanet {
+            sun: required("sun"),
+            ring: GearSpec { internal: true, ..required("ring") },
+            inner: planet(t, "inner_planet"),
+            outer: planet(t, "outer_planet"),
+        },
+        Some("stepped") => {
+            let rings = t.tables("rings").iter().map(|r| GearSpec { internal: true, ..gear(r) });
+            let central = t.tables("suns").iter().map(gear).chain(rings).collect();
+            Parts::Stepped { central, planet: planet(t, "planet") }
+        }
+        Some("ravigneaux") => Parts::Ravigneaux {
+            small_sun: sun_or_ring("small_sun"),
+            large_sun: sun_or_ring("large_sun"),
+            ring: sun_or_ring("ring"),
+            short: planet(t, "short_planet"),
+            long: planet(t, "long_planet"),
+        },
+        Some("bevel") => {
+            Parts::Bevel { sides: t.tables("sides").iter().map(gear).collect(), planet: planet(t, "planet") }
+        }
+        _ => Parts::Simple {
+            sun: required("sun"),
+            ring: GearSpec { internal: true, ..required("ring") },
+            planet: planet(t, "planet"),
+        },
+    };
+    let mut set = SetSpec::new(t.text("name"), t.text("carrier"), parts);
+    set.efficiency = t
+        .set_efficiency("mesh_efficiency")
+        .map(|(external, internal)| SetEfficiencySpec::Meshes { external, internal })
+        .or(t.efficiency("basic_efficiency").map(SetEfficiencySpec::Basic));
+    set
+}
+
+fn shift_element(t: &Fields) -> ShiftElementSpec {
+    ShiftElementSpec {
+        name: t.text("name"),
+        kind: match t.text("kind").as_str() {
+            "brake" => ShiftElementKind::Brake,
+            "one-way" => ShiftElementKind::OneWay,
+            _ => ShiftElementKind::Clutch,
+        },
+        members: t.names("members"),
+        blocks: if t.optional_text("blocks").is_some_and(|b| b == "forward") { 1 } else { -1 },
+    }
+}
+
+fn state(t: &Fields) -> StateSpec {
+    StateSpec {
+        name: t.text("name"),
+        engaged: t.names("engaged"),
+        input: t.optional_text("input"),
+        output: t.optional_text("output"),
+    }
+}
+
+fn operation(t: &Fields) -> OperationSpec {
+    let loads = t.quantities("torques").into_iter().map(|(m, q)| (m, Load::Torque(q)));
+    let powers = t.quantities("powers").into_iter().map(|(m, q)| (m, Load::Power(q)));
+    OperationSpec {
+        name: t.text("name"),
+        state: t.optional_text("state"),
+        speeds: t.quantities("speeds"),
+        fixed: t.names("fixed"),
+        loads: loads.chain(powers).collect(),
+    }
+}

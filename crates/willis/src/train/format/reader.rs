@@ -1,0 +1,464 @@
+//! Checks a TOML document against [`keys`](super::keys) and keeps where everything stood.
+
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
+use crate::train::assemble::clip;
+use crate::train::describe::EfficiencySpec;
+use crate::train::Efficiency;
+use crate::units::{self, Dimension, Quantity, QuantityError};
+
+use super::keys::{Kind, Table};
+
+/// Where each place of the document stands in the text.
+#[derive(Default)]
+pub(super) struct Spans(HashMap<String, Range<usize>>);
+
+impl Spans {
+    /// The span of a place, or of the smallest thing around it that has one.
+    pub fn nearest(&self, place: &str) -> Option<Range<usize>> {
+        let mut place = place;
+        loop {
+            if let Some(span) = self.0.get(place) {
+                return Some(span.clone());
+            }
+            place = &place[..place.rfind(['.', '['])?];
+        }
+    }
+}
+
+/// A checked value.
+enum Node {
+    Text(String),
+    Integer(i64),
+    Flag(bool),
+    Names(Vec<String>),
+    Efficiency(EfficiencySpec),
+    SetEfficiency(EfficiencySpec, EfficiencySpec),
+    Quantities(Vec<(String, Quantity)>),
+    Table(Fields),
+    Tables(Vec<Fields>),
+}
+
+/// The checked keys of a table. What was absent or wrong is not there; it was reported.
+#[derive(Default)]
+pub(super) struct Fields(BTreeMap<&'static str, Node>);
+
+macro_rules! getter {
+    ($name:ident, $variant:pat => $value:expr, $type:ty) => {
+        pub fn $name(&self, key: &str) -> $type {
+            match self.0.get(key) {
+                Some($variant) => $value.into(),
+                _ => Default::default(),
+            }
+        }
+    };
+}
+
+impl Fields {
+    getter!(text, Node::Text(t) => t.clone(), String);
+    getter!(optional_text, Node::Text(t) => t.clone(), Option<String>);
+    getter!(integer, Node::Integer(i) => *i, Option<i64>);
+    getter!(flag, Node::Flag(b) => *b, bool);
+    getter!(names, Node::Names(n) => n.clone(), Vec<String>);
+    getter!(efficiency, Node::Efficiency(e) => e.clone(), Option<EfficiencySpec>);
+    getter!(set_efficiency, Node::SetEfficiency(e, i) => (e.clone(), i.clone()), Option<(EfficiencySpec, EfficiencySpec)>);
+    getter!(quantities, Node::Quantities(q) => q.clone(), Vec<(String, Quantity)>);
+
+    pub fn table(&self, key: &str) -> Option<&Fields> {
+        match self.0.get(key) {
+            Some(Node::Table(t)) => Some(t),
+            _ => None,
+        }
+    }
+
+    pub fn tables(&self, key: &str) -> &[Fields] {
+        match self.0.get(key) {
+            Some(Node::Tables(t)) => t,
+            _ => &[],
+        }
+    }
+}
+
+pub(super) fn read(text: &str, table: &Table, diagnostics: &mut Diagnostics) -> (Fields, Spans) {
+    let (root, errors) = DeTable::parse_recoverable(text);
+    for error in &errors {
+        let mut d = Diagnostic::new(Code::Syntax, "", error.message().trim().replace('\n', ", "));
+        d.span = error.span().map(|s| s.start.min(text.len())..s.end.min(text.len()));
+        diagnostics.push(d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"));
+    }
+    let mut reader = Reader { diagnostics, spans: Spans::default() };
+    if !errors.is_empty() {
+        return (Fields::default(), reader.spans);
+    }
+    let fields = reader.table(root.get_ref(), table, "", 0..text.len().min(1));
+    (fields, reader.spans)
+}
+
+struct Reader<'d> {
+    diagnostics: &'d mut Diagnostics,
+    spans: Spans,
+}
+
+type Value<'i> = Spanned<DeValue<'i>>;
+
+impl Reader<'_> {
+    fn report(&mut self, code: Code, place: &str, message: String, hint: impl Into<String>) {
+        let hint = hint.into();
+        let d = Diagnostic::new(code, place, message);
+        self.diagnostics.push(if hint.is_empty() { d } else { d.hint(hint) });
+    }
+
+    fn wrong_type(&mut self, place: &str, value: &Value<'_>, wanted: &str) {
+        let found = describe(value.get_ref());
+        let key = place.rsplit('.').next().unwrap_or(place);
+        self.report(Code::WrongType, place, format!("`{}` takes {wanted}, here is {found}", clip(key)), "");
+    }
+
+    fn table(&mut self, map: &DeTable<'_>, table: &Table, path: &str, own: Range<usize>) -> Fields {
+        let mut fields = Fields::default();
+        for (key, value) in map {
+            let name = key.get_ref();
+            let place = join(path, name);
+            self.spans.0.insert(place.clone(), value.span());
+            match table.keys.iter().find(|k| k.name == name.as_ref()) {
+                Some(known) => {
+                    if let Some(node) = self.value(value, &known.kind, &place) {
+                        fields.0.insert(known.name, node);
+                    }
+                }
+                None => {
+                    let message = format!("there is no key `{}` here", clip(name));
+                    let mut d = Diagnostic::new(Code::UnknownKey, place, message)
+                        .suggest(name, table.keys.iter().map(|k| k.name));
+                    if d.hints.is_empty() {
+                        let known: Vec<_> = table.keys.iter().map(|k| k.name).collect();
+                        d = d.hint(format!("the keys here are: {}", known.join(", ")));
+                    }
+                    d.span = Some(key.span());
+                    self.diagnostics.push(d);
+                }
+            }
+        }
+        for key in table.keys.iter().filter(|k| k.required) {
+            if !map.iter().any(|(k, _)| k.get_ref() == key.name) {
+                let place = join(path, key.name);
+                let message = match path {
+                    "" => format!("`{}` is missing", key.name),
+                    _ => format!("`{}` is missing in {path}", key.name),
+                };
+                let hint = match key.kind {
+                    Kind::Format => "write `format = 1` at the top".to_owned(),
+                    _ => format!("{}: {}", key.name, key.doc),
+                };
+                let mut d = Diagnostic::new(Code::MissingKey, place, message).hint(hint);
+                d.span = Some(own.clone());
+                self.diagnostics.push(d);
+            }
+        }
+        fields
+    }
+
+    fn value(&mut self, value: &Value<'_>, kind: &Kind, place: &str) -> Option<Node> {
+        match kind {
+            Kind::Format => {
+                let found = integer(value.get_ref());
+                if found != Some(1) {
+                    let message = match found {
+                        Some(n) => format!("format {n} is not known here; this version reads format 1"),
+                        None => format!("`format` is the number 1, here is {}", describe(value.get_ref())),
+                    };
+                    self.report(Code::Format, place, message, "write `format = 1`");
+                }
+                None
+            }
+            Kind::Text | Kind::Name => match value.get_ref().as_str() {
+                Some(text) => Some(Node::Text(text.to_owned())),
+                None => {
+                    let hint = match value.get_ref().as_integer() {
+                        Some(i) => format!(", write \"{}\"", i.as_str()),
+                        None => String::new(),
+                    };
+                    self.wrong_type(place, value, &format!("a text in quotes{hint}"));
+                    None
+                }
+            },
+            Kind::Names => {
+                let Some(array) = value.get_ref().as_array() else {
+                    self.wrong_type(place, value, "a list of names, [\"a\", \"b\"]");
+                    return None;
+                };
+                let mut names = Vec::new();
+                for (k, item) in array.iter().enumerate() {
+                    let place = format!("{place}[{k}]");
+                    self.spans.0.insert(place.clone(), item.span());
+                    match item.get_ref().as_str() {
+                        Some(name) => names.push(name.to_owned()),
+                        None => self.wrong_type(&place, item, "names in quotes"),
+                    }
+                }
+                Some(Node::Names(names))
+            }
+            Kind::Integer => {
+                let found = integer(value.get_ref());
+                if found.is_none() {
+                    match value.get_ref() {
+                        DeValue::Integer(i) => {
+                            let message = format!("{} is too large a number", clip(i.as_str()));
+                            self.report(Code::OutOfRange, place, message, "");
+                        }
+                        DeValue::Float(x) => {
+                            let message = format!("`{}` is a whole number, here is {}", last(place), clip(x.as_str()));
+                            self.report(Code::WrongType, place, message, "a tooth or planet count has no fraction");
+                        }
+                        _ => self.wrong_type(place, value, "a whole number"),
+                    }
+                }
+                found.map(Node::Integer)
+            }
+            Kind::Flag => {
+                let found = value.get_ref().as_bool();
+                if found.is_none() {
+                    self.wrong_type(place, value, "true or false");
+                }
+                found.map(Node::Flag)
+            }
+            Kind::Choice(choices) => match value.get_ref().as_str() {
+                Some(text) if choices.contains(&text) => Some(Node::Text(text.to_owned())),
+                Some(text) => {
+                    let message = format!("`{}` is not a known `{}`", clip(text), last(place));
+                    let mut d = Diagnostic::new(Code::UnknownName, place, message).suggest(text, choices.iter().copied());
+                    if d.hints.is_empty() {
+                        d = d.hint(format!("one of: {}", choices.join(", ")));
+                    }
+                    self.diagnostics.push(d);
+                    None
+                }
+                None => {
+                    self.wrong_type(place, value, &format!("one of the texts {}", choices.join(", ")));
+                    None
+                }
+            },
+            Kind::Efficiency => self.efficiency(value, place).map(Node::Efficiency),
+            Kind::SetEfficiency => {
+                let by_kind = value.get_ref().as_table().filter(|t| {
+                    t.keys().any(|k| matches!(k.get_ref().as_ref(), "external" | "internal"))
+                });
+                let Some(table) = by_kind else {
+                    return self.efficiency(value, place).map(|e| Node::SetEfficiency(e.clone(), e));
+                };
+                let [external, internal] = self.two(table, place, ["external", "internal"], value.span(), Self::efficiency)?;
+                Some(Node::SetEfficiency(external, internal))
+            }
+            Kind::Quantities(dimension) => {
+                let Some(table) = value.get_ref().as_table() else {
+                    let (_, example) = dimension.describe();
+                    self.wrong_type(place, value, &format!("a table of members, {{ sun = \"{example}\" }}"));
+                    return None;
+                };
+                let mut all = Vec::new();
+                for (name, value) in table {
+                    let place = format!("{place}.{}", name.get_ref());
+                    // The whole entry, so that a message about the member underlines its name.
+                    self.spans.0.insert(place.clone(), name.span());
+                    if let Some(q) = self.quantity(value, *dimension, &place) {
+                        all.push((name.get_ref().to_string(), q));
+                    }
+                }
+                Some(Node::Quantities(all))
+            }
+            Kind::Table(table) => match value.get_ref().as_table() {
+                Some(map) => Some(Node::Table(self.table(map, table, place, value.span()))),
+                None => {
+                    let keys: Vec<_> = table.keys.iter().map(|k| format!("{} = …", k.name)).collect();
+                    self.wrong_type(place, value, &format!("a table, {{ {} }}", keys.join(", ")));
+                    None
+                }
+            },
+            Kind::Tables(table, exactly) => {
+                let tables = self.tables(value, place, |_| Some(*table))?;
+                if *exactly > 0 && tables.len() != *exactly {
+                    let message = format!("`{}` has {} entries, it needs {exactly}", last(place), tables.len());
+                    self.report(Code::WrongType, place, message, "a mesh is a pair of gears");
+                }
+                Some(Node::Tables(tables))
+            }
+            Kind::Variants(variants) => self
+                .tables(value, place, |map| match map.get("type").map(|t| t.get_ref().as_str()) {
+                    None => Some(variants[0].1),
+                    Some(name) => variants.iter().find(|v| Some(v.0) == name).map(|v| v.1).or(Some(variants[0].1)),
+                })
+                .map(Node::Tables),
+        }
+    }
+
+    fn tables<'t>(
+        &mut self,
+        value: &Value<'_>,
+        place: &str,
+        table_of: impl Fn(&DeTable<'_>) -> Option<&'t Table>,
+    ) -> Option<Vec<Fields>> {
+        let Some(array) = value.get_ref().as_array() else {
+            let hint = if place.contains(['.', '[']) {
+                "a list of tables, [ { … }, { … } ]".to_owned()
+            } else {
+                format!("a list: write [[{place}]] with two brackets")
+            };
+            self.wrong_type(place, value, &hint);
+            return None;
+        };
+        let mut all = Vec::new();
+        for (k, item) in array.iter().enumerate() {
+            let place = format!("{place}[{k}]");
+            self.spans.0.insert(place.clone(), item.span());
+            match item.get_ref().as_table() {
+                Some(map) => {
+                    if let Some(table) = table_of(map) {
+                        all.push(self.table(map, table, &place, item.span()));
+                    }
+                }
+                None => self.wrong_type(&place, item, "a table, { … }"),
+            }
+        }
+        Some(all)
+    }
+
+    /// Reads a table of exactly two keys.
+    fn two<T>(
+        &mut self,
+        table: &DeTable<'_>,
+        place: &str,
+        names: [&str; 2],
+        span: Range<usize>,
+        read: impl Fn(&mut Self, &Value<'_>, &str) -> Option<T>,
+    ) -> Option<[T; 2]> {
+        let mut found = [None, None];
+        for (key, value) in table {
+            let place = join(place, key.get_ref());
+            self.spans.0.insert(place.clone(), value.span());
+            match names.iter().position(|n| n == key.get_ref()) {
+                Some(k) => found[k] = Some(read(self, value, &place)),
+                None => {
+                    let message = format!("there is no key `{}` here", clip(key.get_ref()));
+                    let mut d = Diagnostic::new(Code::UnknownKey, place, message).suggest(key.get_ref(), names);
+                    d.span = Some(key.span());
+                    self.diagnostics.push(d.hint(format!("the keys here are: {}", names.join(", "))));
+                }
+            }
+        }
+        for (k, name) in names.iter().enumerate() {
+            if found[k].is_none() {
+                let message = format!("`{name}` is missing: give both {} and {}", names[0], names[1]);
+                let mut d = Diagnostic::new(Code::MissingKey, join(place, name), message);
+                d.span = Some(span.clone());
+                self.diagnostics.push(d);
+            }
+        }
+        let [a, b] = found.map(Option::flatten);
+        Some([a?, b?])
+    }
+
+    fn efficiency(&mut self, value: &Value<'_>, place: &str) -> Option<EfficiencySpec> {
+        match value.get_ref() {
+            DeValue::Table(table) => {
+                let [forward, backward] =
+                    self.two(table, place, ["forward", "backward"], value.span(), Self::number)?;
+                Some(EfficiencySpec(Efficiency { forward, backward }))
+            }
+            _ => self.number(value, place).map(EfficiencySpec::from),
+        }
+    }
+
+    fn number(&mut self, value: &Value<'_>, place: &str) -> Option<Rational> {
+        let text = match value.get_ref() {
+            DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
+            DeValue::Float(x) => x.as_str(),
+            DeValue::String(s) => {
+                let message = format!("`{}` is a number without quotes, here is \"{}\"", last(place), clip(s));
+                self.report(Code::WrongType, place, message, "write 0.98 for 98 %");
+                return None;
+            }
+            _ => {
+                self.wrong_type(place, value, "a number such as 0.98, or { forward = 0.98, backward = 0.97 }");
+                return None;
+            }
+        };
+        match text.parse() {
+            Ok(value) => Some(value),
+            Err(_) => {
+                let message = format!("{} is not a finite number of sensible size", clip(text));
+                self.report(Code::OutOfRange, place, message, "");
+                None
+            }
+        }
+    }
+
+    fn quantity(&mut self, value: &Value<'_>, dimension: Dimension, place: &str) -> Option<Quantity> {
+        let (kind, example) = dimension.describe();
+        let unit = example.split_once(' ').map_or("", |e| e.1);
+        let at = value.span();
+        let mut report = |message: String, hint: String| {
+            let mut d = Diagnostic::new(Code::Quantity, place, message).hint(hint);
+            d.span = Some(at.clone());
+            self.diagnostics.push(d);
+        };
+        match value.get_ref() {
+            DeValue::String(text) => match units::parse(text, dimension) {
+                Ok(q) => return Some(q),
+                Err(error) => {
+                    let shown = clip(text);
+                    let hint = match &error {
+                        QuantityError::NoUnit => format!("write \"{} {unit}\" if that is the unit meant", shown.trim()),
+                        QuantityError::UnknownUnit(_, Some(near)) => format!("did you mean `{near}`?"),
+                        _ => format!("an example of {kind}: \"{example}\""),
+                    };
+                    report(format!("\"{shown}\" is no {kind}: {error}"), hint);
+                }
+            },
+            DeValue::Integer(_) | DeValue::Float(_) => {
+                let shown = match value.get_ref() {
+                    DeValue::Integer(i) => clip(i.as_str()),
+                    DeValue::Float(x) => clip(x.as_str()),
+                    _ => unreachable!(),
+                };
+                let hint = format!("write \"{shown} {unit}\" if that is the unit meant");
+                report(format!("{shown} has no unit; a {kind} is a text with one"), hint);
+            }
+            other => {
+                let found = describe(other);
+                report(format!("a {kind} is a text with a unit, here is {found}"), format!("an example: \"{example}\""));
+            }
+        }
+        None
+    }
+}
+
+fn integer(value: &DeValue<'_>) -> Option<i64> {
+    let i = value.as_integer()?;
+    i64::from_str_radix(&i.as_str().replace('_', ""), i.radix()).ok()
+}
+
+fn describe(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(s) => format!("the text \"{}\"", clip(s)),
+        DeValue::Integer(i) => format!("the number {}", clip(i.as_str())),
+        DeValue::Float(x) => format!("the number {}", clip(x.as_str())),
+        DeValue::Boolean(b) => format!("{b}"),
+        DeValue::Datetime(_) => "a date".into(),
+        DeValue::Array(_) => "a list".into(),
+        DeValue::Table(_) => "a table".into(),
+    }
+}
+
+fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+fn last(place: &str) -> &str {
+    place.rsplit('.').next().unwrap_or(place)
+}

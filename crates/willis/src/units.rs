@@ -1,0 +1,306 @@
+//! Quantities and unit strings at the boundary; inside, everything is SI.
+//!
+//! A value keeps its exact rational and its power of π (`1 rpm = π/30 rad/s`), because whether two
+//! shafts turn at the same speed is decided exactly, and π would spoil that. [`AngularSpeed`],
+//! [`Torque`] and [`Power`] are what the library takes; their limit: the types do not know which
+//! shaft a torque acts on.
+
+use std::fmt;
+
+use crate::exact::Rational;
+
+/// Exponents of metre, kilogram, second and radian.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimension([i8; 4]);
+
+impl Dimension {
+    /// rad/s
+    pub const ANGULAR_SPEED: Self = Self([0, 0, -1, 1]);
+    /// N m
+    pub const TORQUE: Self = Self([2, 1, -2, 0]);
+    /// W
+    pub const POWER: Self = Self([2, 1, -3, 0]);
+
+    /// What a person calls it, and an example that the reader accepts.
+    pub fn describe(self) -> (&'static str, &'static str) {
+        match self {
+            Self::ANGULAR_SPEED => ("angular speed", "1450 rpm"),
+            Self::TORQUE => ("torque", "350 N m"),
+            Self::POWER => ("power", "75 kW"),
+            _ => ("quantity of another kind", ""),
+        }
+    }
+}
+
+/// An exact value `value · π^pi_power` in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// The rational factor.
+    pub value: Rational,
+    /// The exponent of π.
+    pub pi_power: i8,
+    /// What kind of quantity it is.
+    pub dimension: Dimension,
+}
+
+impl Quantity {
+    /// The SI value in floating point.
+    pub fn si(&self) -> f64 {
+        self.value.to_f64() * std::f64::consts::PI.powi(self.pi_power.into())
+    }
+}
+
+/// Symbol, factor (exact), power of π, exponents of m, kg, s, rad.
+type Unit = (&'static str, &'static str, i8, [i8; 4]);
+
+/// Every unit the reader knows. The first of a kind is the one suggested in messages.
+#[rustfmt::skip]
+const UNITS: &[Unit] = &[
+    // BIPM, The International System of Units, 9th ed.; 1 rev = 2π rad.
+    ("rpm",   "1/30",  1, [0, 0, -1, 1]),
+    ("1/min", "1/30",  1, [0, 0, -1, 1]),
+    ("min^-1","1/30",  1, [0, 0, -1, 1]),
+    ("rad",   "1",     0, [0, 0, 0, 1]),
+    ("deg",   "1/180", 1, [0, 0, 0, 1]),
+    ("°",     "1/180", 1, [0, 0, 0, 1]),
+    ("rev",   "2",     1, [0, 0, 0, 1]),
+    ("s",     "1",     0, [0, 0, 1, 0]),
+    ("ms",    "1/1000",0, [0, 0, 1, 0]),
+    ("min",   "60",    0, [0, 0, 1, 0]),
+    ("h",     "3600",  0, [0, 0, 1, 0]),
+    ("N",     "1",     0, [1, 1, -2, 0]),
+    ("kN",    "1000",  0, [1, 1, -2, 0]),
+    ("MN",    "1e6",   0, [1, 1, -2, 0]),
+    ("m",     "1",     0, [1, 0, 0, 0]),
+    ("mm",    "1/1000",0, [1, 0, 0, 0]),
+    ("cm",    "1/100", 0, [1, 0, 0, 0]),
+    ("Nm",    "1",     0, [2, 1, -2, 0]),
+    ("kNm",   "1000",  0, [2, 1, -2, 0]),
+    ("MNm",   "1e6",   0, [2, 1, -2, 0]),
+    ("mNm",   "1/1000",0, [2, 1, -2, 0]),
+    ("Nmm",   "1/1000",0, [2, 1, -2, 0]),
+    ("J",     "1",     0, [2, 1, -2, 0]),
+    ("W",     "1",     0, [2, 1, -3, 0]),
+    ("mW",    "1/1000",0, [2, 1, -3, 0]),
+    ("kW",    "1000",  0, [2, 1, -3, 0]),
+    ("MW",    "1e6",   0, [2, 1, -3, 0]),
+    // NIST SP 811, appendix B: kgf = 9.80665 N and lbf, ft, in exact by definition; hp = 550 ft lbf/s.
+    ("kgf",   "9.80665",           0, [1, 1, -2, 0]),
+    ("lbf",   "4.4482216152605",   0, [1, 1, -2, 0]),
+    ("ft",    "0.3048",            0, [1, 0, 0, 0]),
+    ("in",    "0.0254",            0, [1, 0, 0, 0]),
+    ("hp",    "745.69987158227022",0, [2, 1, -3, 0]),
+    ("PS",    "735.49875",         0, [2, 1, -3, 0]),
+];
+
+/// Why a quantity string was refused; the text says what to write instead.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum QuantityError {
+    /// The text does not begin with a number.
+    NoNumber,
+    /// The number is fine, the unit is missing.
+    NoUnit,
+    /// A unit symbol is not known; with the nearest known one.
+    UnknownUnit(String, Option<&'static str>),
+    /// The unit measures something else.
+    WrongDimension,
+}
+
+impl fmt::Display for QuantityError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoNumber => f.write_str("it does not begin with a finite number"),
+            Self::NoUnit => f.write_str("the unit is missing"),
+            Self::UnknownUnit(unit, _) => write!(f, "`{unit}` is not a unit known here"),
+            Self::WrongDimension => f.write_str("its unit measures something else"),
+        }
+    }
+}
+
+impl std::error::Error for QuantityError {}
+
+/// Reads a number with a unit: `4920 rpm`, `-12.5 N·m`, `150 lbf ft`, `424kW`, `3/4 N m`.
+///
+/// # Errors
+/// What is wrong with the text, see [`QuantityError`].
+///
+/// # Example
+/// ```
+/// use willis::units::{parse, Dimension};
+/// let w = parse("30 rpm", Dimension::ANGULAR_SPEED).unwrap();
+/// assert_eq!((w.value.to_string().as_str(), w.pi_power), ("1", 1));   // π rad/s
+/// assert!(parse("30 N", Dimension::TORQUE).is_err());
+/// ```
+pub fn parse(text: &str, expected: Dimension) -> Result<Quantity, QuantityError> {
+    let text = text.trim().replace('\u{2212}', "-");
+    // The number ends where a unit begins: a letter that is not an exponent, or white space.
+    let bytes = text.as_bytes();
+    let mut end = 0;
+    while end < bytes.len() {
+        let exponent = matches!(bytes[end], b'e' | b'E')
+            && end > 0
+            && text[end + 1..].trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit());
+        let after_exponent = end > 0 && matches!(bytes[end - 1], b'e' | b'E');
+        let sign = matches!(bytes[end], b'+' | b'-') && (end == 0 || after_exponent);
+        if bytes[end].is_ascii_digit() || matches!(bytes[end], b'.' | b'_' | b'/') || sign || exponent {
+            end += 1;
+        } else {
+            break;
+        }
+    }
+    let value: Rational = text[..end].parse().map_err(|_| QuantityError::NoNumber)?;
+    let unit = text[end..].trim();
+    if unit.is_empty() {
+        return Err(QuantityError::NoUnit);
+    }
+    let (factor, pi_power, dimension) = parse_unit(unit)?;
+    if dimension != expected.0 {
+        return Err(QuantityError::WrongDimension);
+    }
+    Ok(Quantity { value: value * factor, pi_power, dimension: expected })
+}
+
+/// Products and quotients of known symbols: `N m`, `N·m`, `N*m`, `rad/s`, `kg m^2`.
+fn parse_unit(text: &str) -> Result<(Rational, i8, [i8; 4]), QuantityError> {
+    let one = |symbol: &str| UNITS.iter().find(|u| u.0 == symbol);
+    let factor = |u: &Unit| u.1.parse::<Rational>().expect("the table holds numbers");
+    if let Some(u) = one(text) {
+        return Ok((factor(u), u.2, u.3));
+    }
+    let unknown = |symbol: &str| {
+        let near = UNITS
+            .iter()
+            .map(|u| (strsim::damerau_levenshtein(&u.0.to_lowercase(), &symbol.to_lowercase()), u.0))
+            .filter(|(distance, known)| *distance <= known.len().div_ceil(3))
+            .min()
+            .map(|(_, known)| known);
+        QuantityError::UnknownUnit(symbol.chars().take(40).collect(), near)
+    };
+    let mut value = Rational::ONE;
+    let (mut pi_power, mut dimension) = (0i8, [0i8; 4]);
+    let mut divide = false;
+    for (k, part) in text.split('/').enumerate() {
+        if k > 1 {
+            return Err(unknown(text));
+        }
+        for symbol in part.split([' ', '·', '*', '⋅', '.']).filter(|s| !s.is_empty()) {
+            let (name, power) = match symbol.split_once('^') {
+                Some((name, power)) => (name, power.parse::<i8>().map_err(|_| unknown(symbol))?),
+                None => (symbol, 1),
+            };
+            let unit = one(name).ok_or_else(|| unknown(name))?;
+            if !(-4..=4).contains(&power) {
+                return Err(unknown(symbol));
+            }
+            let power = if divide { -power } else { power };
+            for _ in 0..power.unsigned_abs() {
+                let f = factor(unit);
+                value = if power > 0 { value * f } else { value / f };
+            }
+            pi_power = pi_power.saturating_add(unit.2 * power);
+            for (d, u) in dimension.iter_mut().zip(unit.3) {
+                *d = d.saturating_add(u * power);
+            }
+        }
+        divide = true;
+    }
+    Ok((value, pi_power, dimension))
+}
+
+macro_rules! quantity {
+    ($(#[$doc:meta])* $name:ident, $dimension:ident, $($(#[$cdoc:meta])* $constructor:ident = $unit:literal),+) => {
+        $(#[$doc])*
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $name(pub(crate) Quantity);
+
+        impl $name {
+            $(
+                $(#[$cdoc])*
+                ///
+                /// # Panics
+                /// If `value` is NaN or infinite.
+                pub fn $constructor(value: f64) -> Self {
+                    let (factor, pi_power, _) = parse_unit($unit).expect("a known unit");
+                    let value = Rational::from_f64(value).expect("a finite value") * factor;
+                    Self(Quantity { value, pi_power, dimension: Dimension::$dimension })
+                }
+            )+
+
+            /// Reads a number with a unit.
+            ///
+            /// # Errors
+            /// See [`parse`].
+            pub fn parse(text: &str) -> Result<Self, QuantityError> {
+                parse(text, Dimension::$dimension).map(Self)
+            }
+
+            /// An exact SI value.
+            pub fn exact(value: Rational) -> Self {
+                Self(Quantity { value, pi_power: 0, dimension: Dimension::$dimension })
+            }
+
+            /// The SI value.
+            pub fn si(&self) -> f64 {
+                self.0.si()
+            }
+        }
+    };
+}
+
+quantity!(
+    /// Angular speed of a member, positive in the one axis direction of the whole train.
+    AngularSpeed, ANGULAR_SPEED,
+    /// From revolutions per minute.
+    rpm = "rpm",
+    /// From radians per second.
+    rad_s = "rad/s"
+);
+quantity!(
+    /// Torque on a member about the train's axis.
+    Torque, TORQUE,
+    /// From newton metres.
+    n_m = "N m"
+);
+quantity!(
+    /// Power into the train.
+    Power, POWER,
+    /// From watts.
+    w = "W",
+    /// From kilowatts.
+    kw = "kW"
+);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_engineering_notation() {
+        let si = |t: &str, d| parse(t, d).map(|q| q.si());
+        let close = |a: Result<f64, _>, b: f64| assert!((a.as_ref().unwrap() - b).abs() < 1e-12 * b.abs(), "{a:?}");
+        close(si("4920 rpm", Dimension::ANGULAR_SPEED), 4920.0 * std::f64::consts::PI / 30.0);
+        close(si("82 rev/s", Dimension::ANGULAR_SPEED), 82.0 * std::f64::consts::TAU);
+        close(si("1450 1/min", Dimension::ANGULAR_SPEED), 1450.0 * std::f64::consts::PI / 30.0);
+        close(si("150Nm", Dimension::TORQUE), 150.0);
+        close(si("-1.5e-1 kN·m", Dimension::TORQUE), -150.0);
+        close(si("8 kgf m", Dimension::TORQUE), 78.4532);
+        close(si("100 lbf ft", Dimension::TORQUE), 135.581_794_833_140_04);
+        close(si("424 kW", Dimension::POWER), 424e3);
+        close(si("1 hp", Dimension::POWER), 745.699_871_582_270_2);
+    }
+
+    #[test]
+    fn says_what_is_wrong() {
+        use QuantityError::*;
+        let err = |t: &str| parse(t, Dimension::TORQUE).unwrap_err();
+        assert_eq!(err("ten N m"), NoNumber);
+        assert_eq!(err("nan N m"), NoNumber);
+        assert_eq!(err(""), NoNumber);
+        assert_eq!(err("10"), NoUnit);
+        assert_eq!(err("10 rpm"), WrongDimension);
+        assert_eq!(err("10 Nn"), UnknownUnit("Nn".into(), Some("N")));
+        assert_eq!(err("10 N m/s/s"), UnknownUnit("N m/s/s".into(), None));
+        assert!(parse("1e999 N m", Dimension::TORQUE).is_err());
+        assert!(parse(&"9".repeat(10_000), Dimension::TORQUE).is_err());
+    }
+}
