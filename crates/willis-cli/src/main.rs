@@ -1,2 +1,217 @@
-fn main() { for f in std::env::args().skip(1) { let t = std::fs::read_to_string(&f).unwrap(); let r = willis::train::Train::read_toml(&t);
- println!("{f}: {} meshes", r.train.as_ref().map_or(0,|t|t.meshes().len())); print!("{}", r.diagnostics.render(&f,&t,false)); } }
+//! `willis`: reads files, calls the library, prints.
+
+mod csv;
+mod input;
+mod text;
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
+use willis::analysis::{self, Analysis, Selection};
+use willis::diagnostic::{Code, Diagnostics, Severity};
+use willis::train::{Reading, Train};
+
+/// Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that
+/// the answer is the only one.
+#[derive(Parser)]
+#[command(name = "willis", version, max_term_width = 100)]
+struct Arguments {
+    /// When to use colours.
+    #[arg(long, global = true, value_enum, default_value = "auto")]
+    color: Color,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Analyse a train: its shift table and its operating points.
+    ///
+    /// Prints for every state the exact ratio and the efficiency driving and coasting; for every
+    /// operation speeds, torques, powers, losses, the verdict and its certificate. A train that
+    /// locks is an answer: exit status 0. Status 1 means the input is wrong.
+    Analyze {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// Only this state of the shift table.
+        #[arg(long)]
+        state: Option<String>,
+        /// Only this operation.
+        #[arg(long)]
+        operation: Option<String>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: Format,
+        /// With --format csv: only this table, without a heading.
+        #[arg(long, value_enum)]
+        table: Option<csv::Table>,
+    },
+    /// Check a train file and say everything that is wrong with it.
+    Check {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+    },
+    /// Print the JSON Schema of the train file, for editors.
+    Schema,
+    /// Explain a diagnostic code, or list all of them.
+    Explain {
+        /// The code, such as E106.
+        code: Option<String>,
+    },
+    /// Print a completion script for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, or write one for every command into a folder.
+    Man {
+        /// The folder.
+        folder: Option<std::path::PathBuf>,
+    },
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Format {
+    /// For eyes.
+    Text,
+    /// The results contract `willis-analysis-1`.
+    Json,
+    /// Tables.
+    Csv,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match arguments.color {
+        Color::Auto => {}
+        Color::Always => anstream::ColorChoice::Always.write_global(),
+        Color::Never => anstream::ColorChoice::Never.write_global(),
+    }
+    match run(&arguments.command) {
+        Ok(output) => {
+            // A reader that closes the pipe early (`willis … | head`) is no error.
+            let mut out = anstream::stdout();
+            let _ = out.write_all(output.as_bytes()).and_then(|()| out.flush());
+            ExitCode::SUCCESS
+        }
+        Err(message) => {
+            let _ = anstream::stderr().write_all(message.as_bytes());
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// What goes to standard output, or to standard error with exit status 1.
+fn run(command: &Command) -> Result<String, String> {
+    match command {
+        Command::Analyze { file, state, operation, format, table } => {
+            let selection = Selection { state: state.clone(), operation: operation.clone() };
+            let job = Job::read(file)?;
+            let analysis = job.analyze(&selection)?;
+            Ok(match format {
+                Format::Text => text::analysis(&job.train, &analysis) + &job.notes(&analysis),
+                Format::Json => {
+                    serde_json::to_string_pretty(&analysis).expect("plain data") + "\n"
+                }
+                Format::Csv => csv::analysis(&analysis, *table),
+            })
+        }
+        Command::Check { file } => {
+            let job = Job::read(file)?;
+            let analysis = job.analyze(&Selection::default())?;
+            let (train, notes) = (&job.train, job.notes(&analysis));
+            let warnings = analysis.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
+            Ok(format!(
+                "{notes}{}: {} members, {} meshes, {} shift elements, {} states, {} operations: no errors, {warnings} warning{}\n",
+                job.file,
+                train.members().len() - 1,
+                train.meshes().len(),
+                train.shift_elements().len(),
+                train.states().len(),
+                train.operations().len(),
+                if warnings == 1 { "" } else { "s" }
+            ))
+        }
+        Command::Schema => {
+            Ok(serde_json::to_string_pretty(&willis::train::schema()).expect("plain data") + "\n")
+        }
+        Command::Explain { code: None } => {
+            Ok(Code::ALL.iter().map(|c| format!("{c}  {}\n", c.title())).collect())
+        }
+        Command::Explain { code: Some(code) } => match Code::parse(code) {
+            Some(code) => {
+                let text = code.explanation().lines().map(|l| l.trim_start()).collect::<Vec<_>>().join("\n");
+                Ok(format!("{code}: {}\n\n{}\n", code.title(), text.trim()))
+            }
+            None => Err(format!("there is no diagnostic `{code}`; `willis explain` lists all of them\n")),
+        },
+        Command::Completions { shell } => {
+            let mut script = Vec::new();
+            clap_complete::generate(*shell, &mut Arguments::command(), "willis", &mut script);
+            Ok(String::from_utf8(script).expect("scripts are text"))
+        }
+        Command::Man { folder: None } => {
+            let mut page = Vec::new();
+            clap_mangen::Man::new(Arguments::command()).render(&mut page).expect("writing to memory");
+            Ok(String::from_utf8(page).expect("pages are text"))
+        }
+        Command::Man { folder: Some(folder) } => {
+            let written = clap_mangen::generate_to(Arguments::command(), folder);
+            written.map(|()| String::new()).map_err(|e| format!("{}: {e}\n", folder.display()))
+        }
+    }
+}
+
+/// A train read from somewhere, with what is needed to tell where things stand in its text.
+struct Job {
+    file: String,
+    text: String,
+    reading: Reading,
+    train: Train,
+}
+
+impl Job {
+    fn read(file: &str) -> Result<Self, String> {
+        let name = if file == "-" { "standard input" } else { file };
+        let text = input::read(file).map_err(|d| d.render(name, "", color()))?;
+        let mut reading = Train::read_toml(&text);
+        match reading.train.take() {
+            Some(train) => Ok(Self { file: name.to_owned(), text, reading, train }),
+            None => Err(failure(&reading.diagnostics, name, &text)),
+        }
+    }
+
+    fn analyze(&self, selection: &Selection) -> Result<Analysis, String> {
+        analysis::analyze(&self.train, selection).map_err(|mut wrong| {
+            self.reading.locate(&self.text, &mut wrong);
+            failure(&wrong, &self.file, &self.text)
+        })
+    }
+
+    /// Warnings and notes, each at its place in the file.
+    fn notes(&self, analysis: &Analysis) -> String {
+        let mut all = Diagnostics::default();
+        all.extend(analysis.diagnostics.iter().cloned());
+        self.reading.locate(&self.text, &mut all);
+        all.render(&self.file, &self.text, color())
+    }
+}
+
+fn failure(diagnostics: &Diagnostics, file: &str, text: &str) -> String {
+    let errors = diagnostics.iter().filter(|d| d.severity == Severity::Error).count();
+    let s = if errors == 1 { "" } else { "s" };
+    format!("{}{file}: {errors} error{s}\n", diagnostics.render(file, text, color()))
+}
+
+/// Styles are always written; the stream strips them where they do not belong.
+fn color() -> bool {
+    true
+}

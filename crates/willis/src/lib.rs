@@ -5,3 +5,5 @@ pub mod diagnostic;
 pub mod train;
 pub mod kinematics;
 pub mod statics;
+pub mod power_flow;
+pub mod analysis;

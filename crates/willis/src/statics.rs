@@ -519,3 +519,112 @@ fn keeps_sign(c: &Configuration<'_>, j: usize, n: usize) -> bool {
     let (low, high) = (at(&e.forward), at(&e.backward.recip()));
     low != 0 && low == high
 }
+
+/// What a solution's pattern says beyond the solution itself.
+impl Equilibrium {
+    /// ρ of an element of the configuration in a solution, exactly.
+    pub(crate) fn rho_of(&self, solution: &Solution, element: usize) -> Rational {
+        let column = self.columns.iter().position(|c| c.element == element);
+        column.map_or(Rational::ONE, |j| self.rho_exact(j, Some(solution.pattern[j])))
+    }
+
+    /// A solution of another problem on the same train, seen in this problem: same drivers. `None`
+    /// when this problem has an element that is idle there.
+    pub(crate) fn same_pattern(&self, other: &Solution) -> Option<Solution> {
+        let pattern: Option<Vec<bool>> = self
+            .columns
+            .iter()
+            .map(|c| if c.sigma == 0 { Some(true) } else { other.driver[c.element] })
+            .collect();
+        Some(Solution { pattern: pattern?, ..other.clone() })
+    }
+
+    /// The solution with other values of ρ in some elements (those at rest), in floating point.
+    pub(crate) fn with_rho(&self, s: &Solution, rho: &[(usize, f64)], loads: &[Rational]) -> Option<Solution> {
+        let own = |j: usize| {
+            let element = self.columns[j].element;
+            let given = rho.iter().find(|(e, _)| *e == element).map(|(_, r)| *r);
+            given.unwrap_or(self.columns[j].rho_floats[usize::from(!s.pattern[j])])
+        };
+        let t = DVector::from_iterator(self.rows.len(), self.rows.iter().map(|&n| loads[n].to_f64()));
+        let f = self.float_matrix(&own).lu().solve(&t)?;
+        let mut shifted = Solution { exact: None, ..s.clone() };
+        for (j, c) in self.columns.iter().enumerate() {
+            shifted.forces[c.element] = f[j];
+            shifted.rho[c.element] = own(j);
+        }
+        Some(shifted)
+    }
+}
+
+/// How far a solution is from a change of its sign pattern, or from locking.
+impl Equilibrium {
+    /// `∂f_j/∂t_n` for the solution's pattern: by element, for each of `nodes`; zero where a node
+    /// has no row.
+    pub(crate) fn sensitivity(&self, solution: &Solution, nodes: &[usize]) -> Option<Vec<(usize, Vec<f64>)>> {
+        let inverse = self.float_matrix(&|j| self.columns[j].rho_floats[usize::from(!solution.pattern[j])]);
+        let inverse = inverse.try_inverse()?;
+        let row = |n: &usize| self.rows.iter().position(|r| r == n);
+        Some(
+            self.columns
+                .iter()
+                .enumerate()
+                .map(|(j, c)| (c.element, nodes.iter().map(|n| row(n).map_or(0.0, |r| inverse[(j, r)])).collect()))
+                .collect(),
+        )
+    }
+
+    /// Efficiency of each moving element at which the pattern's determinant vanishes, all others
+    /// unchanged: the train locks there. Only thresholds between 0 and the present efficiency.
+    pub(crate) fn lock_thresholds(&self, solution: &Solution) -> Vec<(usize, f64)> {
+        let rho = |j: usize| self.columns[j].rho_floats[usize::from(!solution.pattern[j])];
+        let Some(inverse) = self.float_matrix(&rho).try_inverse() else { return vec![] };
+        let mut all = Vec::new();
+        for (j, c) in self.columns.iter().enumerate().filter(|(_, c)| c.sigma != 0) {
+            // det B(ρ*)/det B(ρ) = 1 + (ρ* − ρ) (B⁻¹ d)_j vanishes.
+            let slope: f64 = c.floats.iter().map(|&(r, _, s)| inverse[(j, r)] * s).sum();
+            if slope == 0.0 || solution.driver[c.element].is_none() {
+                continue;
+            }
+            let at = rho(j) - 1.0 / slope;
+            let (eta, now) = if solution.pattern[j] { (at, rho(j)) } else { (1.0 / at, 1.0 / rho(j)) };
+            if eta > 0.0 && eta < now {
+                all.push((c.element, eta));
+            }
+        }
+        all
+    }
+
+    /// The factor on all losses `1 − η` at which the pattern's determinant vanishes.
+    pub(crate) fn lock_factor(&self, solution: &Solution) -> Option<f64> {
+        let eta = |j: usize, factor: f64| {
+            let r = self.columns[j].rho_floats[usize::from(!solution.pattern[j])];
+            if solution.pattern[j] { 1.0 - factor * (1.0 - r) } else { 1.0 - factor * (1.0 - 1.0 / r) }
+        };
+        let n = self.columns.len();
+        let determinant = |factor: f64| {
+            let m = self.float_matrix(&|j| {
+                let e = eta(j, factor);
+                if solution.pattern[j] { e } else { 1.0 / e }
+            });
+            m.determinant()
+        };
+        let start = determinant(1.0);
+        let (mut low, mut high) = (1.0, 1.0);
+        loop {
+            high *= 1.1;
+            if (0..n).any(|j| eta(j, high) <= 0.0) || high > 1e6 {
+                return None;
+            }
+            if determinant(high) * start <= 0.0 {
+                break;
+            }
+            low = high;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if determinant(middle) * start > 0.0 { low = middle } else { high = middle }
+        }
+        Some(low)
+    }
+}

@@ -262,7 +262,7 @@ impl Train {
     /// assert!(wrong.to_string().contains("did you mean `members`?"));
     /// ```
     pub fn from_toml(text: &str) -> Result<Self, Diagnostics> {
-        let Reading { train, diagnostics } = Self::read_toml(text);
+        let Reading { train, diagnostics, .. } = Self::read_toml(text);
         train.ok_or(diagnostics)
     }
 

@@ -28,6 +28,26 @@ pub struct Reading {
     pub train: Option<Train>,
     /// Errors and warnings, with their places in the text.
     pub diagnostics: Diagnostics,
+    spans: reader::Spans,
+}
+
+impl Reading {
+    /// Gives later diagnostics (of an analysis) their places in `text`, the text that was read.
+    pub fn locate(&self, text: &str, diagnostics: &mut Diagnostics) {
+        locate(&self.spans, text, diagnostics);
+    }
+}
+
+fn locate(spans: &reader::Spans, text: &str, diagnostics: &mut Diagnostics) {
+    for d in diagnostics.iter_mut().filter(|d| d.span.is_none()) {
+        d.span = spans.nearest(&d.place);
+        // A suggestion replaces a name; inside quotes, if that is what stands there.
+        if let (Some(span), Some(new)) = (&d.span, &mut d.replacement) {
+            if let Some(quote) = text[span.clone()].chars().next().filter(|c| matches!(c, '"' | '\'')) {
+                *new = format!("{quote}{new}{quote}");
+            }
+        }
+    }
 }
 
 pub(super) fn read(text: &str) -> Reading {
@@ -38,7 +58,7 @@ pub(super) fn read(text: &str) -> Reading {
                 "a train file begins with `format = 1` and names its `members`; see the examples for a start",
             ),
         );
-        return Reading { train: None, diagnostics };
+        return Reading { train: None, diagnostics, spans: reader::Spans::default() };
     }
     let (root, spans) = reader::read(text, &keys::FILE, &mut diagnostics);
     let mut train = None;
@@ -56,19 +76,11 @@ pub(super) fn read(text: &str) -> Reading {
         };
         diagnostics.extend(more.into_iter().filter(|d| !doubtful(d)));
     }
-    for d in diagnostics.iter_mut().filter(|d| d.span.is_none()) {
-        d.span = spans.nearest(&d.place);
-        // A suggestion replaces a name; inside quotes, if that is what stands there.
-        if let (Some(span), Some(new)) = (&d.span, &mut d.replacement) {
-            if let Some(quote) = text[span.clone()].chars().next().filter(|c| matches!(c, '"' | '\'')) {
-                *new = format!("{quote}{new}{quote}");
-            }
-        }
-    }
+    locate(&spans, text, &mut diagnostics);
     if let Some(train) = &mut train {
         train.warnings = diagnostics.iter().cloned().collect();
     }
-    Reading { train, diagnostics }
+    Reading { train, diagnostics, spans }
 }
 
 fn builder(root: &Fields) -> TrainBuilder {

@@ -16,7 +16,7 @@ use crate::units::{self, Dimension, Quantity, QuantityError};
 use super::keys::{Kind, Table};
 
 /// Where each place of the document stands in the text.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Spans(HashMap<String, Range<usize>>);
 
 impl Spans {

@@ -1,0 +1,443 @@
+//! An analysis for eyes: what an engineer looks for first comes first.
+
+use comfy_table::{CellAlignment, Table, presets};
+use willis::analysis::{
+    Analysis, CertificateReport, Direction, MemberReport, OperationReport, Role, SolutionReport, StateReport, Verdict,
+};
+use willis::train::Train;
+
+pub fn analysis(train: &Train, a: &Analysis) -> String {
+    let mut out = String::new();
+    out += &bold(&a.train);
+    out.push('\n');
+    let mut facts = vec![plural(a.degrees_of_freedom, "degree of freedom", "degrees of freedom") + " as drawn"];
+    facts.push(plural(train.meshes().len(), "mesh", "meshes"));
+    for (n, one, many) in [
+        (train.sets().len(), "set", "sets"),
+        (train.shift_elements().len(), "shift element", "shift elements"),
+        (train.states().len(), "state", "states"),
+        (train.operations().len(), "operation", "operations"),
+    ] {
+        if n > 0 {
+            facts.push(plural(n, one, many));
+        }
+    }
+    out += &facts.join(" · ");
+    out.push('\n');
+    if let Some(source) = &a.source {
+        out += &dim(&wrap(&format!("Source: {source}"), ""));
+        out.push('\n');
+    }
+    if !a.ratios.is_empty() {
+        out.push('\n');
+        out += &shift_table(a);
+    }
+    for o in &a.operations {
+        out.push('\n');
+        out += &operation(o);
+    }
+    out.push('\n');
+    out += &bold("Assumptions in force");
+    out.push('\n');
+    for line in &a.assumptions {
+        out += &wrap(line, "  · ");
+        out.push('\n');
+    }
+    out.push('\n');
+    out
+}
+
+fn shift_table(a: &Analysis) -> String {
+    let rows = &a.ratios.0;
+    let ends = |s: &StateReport| (s.input.clone(), s.output.clone());
+    let first = ends(&rows[0].1);
+    let same = rows.iter().all(|(_, s)| ends(s) == first);
+    let mut out = match same {
+        true => format!("{}   {} → {}\n", bold("Ratios"), first.0, first.1),
+        false => bold("Ratios") + "\n",
+    };
+    let engaged = rows.iter().any(|(_, s)| !s.engaged.is_empty());
+    let steps = rows.iter().any(|(_, s)| s.step.is_some());
+    let mut t = table();
+    let mut header = vec!["state"];
+    if engaged {
+        header.push("engaged");
+    }
+    if !same {
+        header.extend(["input", "output"]);
+    }
+    header.extend(["ratio", "exact"]);
+    if steps {
+        header.push("step");
+    }
+    header.extend(["η driving", "η coasting", "verdict driving / coasting"]);
+    let columns = header.len();
+    set_header(&mut t, &header);
+    for (name, s) in rows {
+        let mut row = vec![name.clone()];
+        if engaged {
+            row.push(s.engaged.join(" "));
+        }
+        if !same {
+            row.extend([s.input.clone(), s.output.clone()]);
+        }
+        let exact = s.exact.as_deref().map(|e| e.strip_suffix("/1").unwrap_or(e).to_owned());
+        row.push(s.value.map_or("-".into(), |v| significant(v, 5)));
+        row.push(exact.unwrap_or("-".into()));
+        if steps {
+            row.push(s.step.map_or(String::new(), |v| format!("{v:.3}")));
+        }
+        row.push(efficiency_cell(&s.drive));
+        row.push(efficiency_cell(&s.coast));
+        row.push(verdicts(s));
+        t.add_row(row);
+    }
+    let text_columns = 1 + usize::from(engaged) + 2 * usize::from(!same);
+    for k in text_columns..columns - 1 {
+        t.column_mut(k).expect("it was just added").set_cell_alignment(CellAlignment::Right);
+    }
+    out += &show(&t);
+    if rows.iter().any(|(_, s)| proved(&s.drive) || proved(&s.coast)) {
+        out += &dim("proved: exactly one equilibrium exists whatever the load (certificate)");
+        out.push('\n');
+    }
+    for (name, s) in rows {
+        for (way, d) in [("driving", &s.drive), ("coasting", &s.coast)] {
+            if let (Verdict::Multiple, Some(reason)) = (d.verdict, &d.reason) {
+                let all: Vec<_> = d.efficiencies.iter().map(|e| percent(*e)).collect();
+                out += &format!("{name}, {way}: {reason}: η = {}\n", all.join(" or "));
+            }
+        }
+        if let Some(why) = &s.no_ratio {
+            out += &wrap(&format!("{name}: {why}"), "");
+            out.push('\n');
+        }
+    }
+    out
+}
+
+fn efficiency_cell(d: &Direction) -> String {
+    match (d.verdict, d.efficiency) {
+        (_, Some(e)) => percent(e),
+        (Verdict::Locked, _) => "locked".into(),
+        (Verdict::Multiple, _) => "several".into(),
+        _ => "-".into(),
+    }
+}
+
+fn proved(d: &Direction) -> bool {
+    d.verdict == Verdict::Unique && d.certificate.is_some_and(|c| c.unique_for_every_load)
+}
+
+fn verdicts(s: &StateReport) -> String {
+    let word = |d: &Direction| match d.verdict {
+        Verdict::Unique if proved(d) => "unique, proved".to_owned(),
+        v => verdict_word(v).to_owned(),
+    };
+    let (drive, coast) = (word(&s.drive), word(&s.coast));
+    if drive == coast { drive } else { format!("{drive} / {coast}") }
+}
+
+fn verdict_word(v: Verdict) -> &'static str {
+    match v {
+        Verdict::Unique => "unique",
+        Verdict::Multiple => "several solutions",
+        Verdict::Locked => "locked",
+        Verdict::Unloaded => "unloaded",
+        _ => "undetermined",
+    }
+}
+
+fn certificate(c: &CertificateReport) -> String {
+    match (c.unique_for_every_load, c.method) {
+        (true, "spectral-radius") => "exactly one equilibrium for every load (spectral-radius certificate)".into(),
+        (true, _) => "exactly one equilibrium for every load (all sign patterns' determinants agree)".into(),
+        (false, "enumeration") => "not unique for every load; for this one every sign pattern was tried".into(),
+        _ => "uniqueness undecided".into(),
+    }
+}
+
+fn operation(o: &OperationReport) -> String {
+    let mut out = bold(&format!("Operation: {}", o.name));
+    if let Some(state) = &o.state {
+        out += &format!("   state {state}");
+    }
+    if o.degrees_of_freedom > 1 {
+        out += &format!("   {} degrees of freedom", o.degrees_of_freedom);
+    }
+    out.push('\n');
+    out += &format!("  verdict      {}", bold(verdict_word(o.verdict)));
+    if let Some(c) = &o.certificate {
+        out += &format!(": {}", certificate(c));
+    }
+    out.push('\n');
+    if let Some(reason) = &o.reason {
+        out += &wrap(reason, "               ");
+        out.push('\n');
+    }
+    if o.solutions.is_empty() && o.dissipative_solutions.is_empty() {
+        let mut t = table();
+        set_header(&mut t, &["member", "speed rpm"]);
+        for (name, w) in o.speeds_rad_s.iter() {
+            t.add_row([name.clone(), w.map_or("not determined".into(), |w| significant(rpm(w), 6))]);
+        }
+        right(&mut t, 1..2);
+        out += &show(&t);
+    }
+    for (k, s) in o.solutions.iter().enumerate() {
+        if o.solutions.len() > 1 {
+            out += &bold(&format!("  Solution {} of {}", k + 1, o.solutions.len()));
+            out.push('\n');
+        }
+        out += &solution(s);
+    }
+    for s in &o.dissipative_solutions {
+        out += &bold("  Only when every loaded member pushes");
+        out.push('\n');
+        out += &solution(s);
+    }
+    out
+}
+
+fn solution(s: &SolutionReport) -> String {
+    let mut out = String::new();
+    let (unit, scale) = power_unit(s);
+    let power = |p: f64| significant(p / scale, 5);
+    let exact = match &s.efficiency_exact {
+        Some(e) if e.len() < 40 => format!(" = {}", e.strip_suffix("/1").unwrap_or(e)),
+        _ => String::new(),
+    };
+    let efficiency = match (s.all_dissipated, s.efficiency) {
+        (true, _) => "none: every loaded member is an input, all power is dissipated".into(),
+        (_, Some(e)) => percent(e) + &exact,
+        _ => "none: nothing is loaded".into(),
+    };
+    out += &format!("  efficiency   {efficiency}\n");
+    out += &format!(
+        "  power        in {} {unit}, out {} {unit}, lost {} {unit}; balance closes to {:.1e} W\n",
+        power(s.input_power_w),
+        power(s.output_power_w),
+        power(s.loss_w),
+        s.power_residual_w.abs()
+    );
+    match s.recirculation.first() {
+        None => out += "  recirculates nothing\n",
+        Some(_) => {
+            for r in &s.recirculation {
+                let share = if r.share_of_input.is_finite() {
+                    format!(" ({} of the input)", percent(r.share_of_input))
+                } else {
+                    String::new()
+                };
+                let path = r.path.iter().chain(r.path.first()).cloned().collect::<Vec<_>>().join(" → ");
+                out += &format!("  recirculates {} {unit}{share}: {path}\n", power(r.power_w));
+            }
+        }
+    }
+    out += &margins(s);
+
+    let mut t = table();
+    let relative = s.members.iter().any(|(_, m)| m.carrier.is_some());
+    let mut header = vec!["member".to_owned(), "role".into(), "speed rpm".into()];
+    if relative {
+        header.push("on its carrier rpm".into());
+    }
+    header.extend(["torque N m".into(), format!("power {unit}")]);
+    set_header(&mut t, &header.iter().map(String::as_str).collect::<Vec<_>>());
+    for (name, m) in s.members.iter() {
+        let mut row = vec![name.clone(), role(m).into(), m.speed_rad_s.map_or("any".into(), |w| significant(rpm(w), 6))];
+        if relative {
+            row.push(match m.carrier {
+                Some(_) => m.relative_speed_rad_s.map_or("any".into(), |w| significant(rpm(w), 6)),
+                None => String::new(),
+            });
+        }
+        row.push(m.torque_n_m.map_or("?".into(), |t| dash(t, significant(t, 6))));
+        row.push(m.power_w.map_or("?".into(), |p| dash(p, power(p))));
+        t.add_row(row);
+    }
+    right(&mut t, 2..header.len());
+    out += &show(&t);
+
+    let mut t = table();
+    set_header(&mut t, &["mesh", "driver", "rel. speed rpm", &format!("potential power {unit}"), "η", "loss W"]);
+    for (name, m) in s.meshes.iter() {
+        let driver = match &m.driver {
+            Some(d) => d.clone(),
+            None if m.first_torque_n_m == 0.0 => "idle".into(),
+            None => "no motion".into(),
+        };
+        t.add_row([
+            name.clone(),
+            driver,
+            significant(rpm(m.relative_speed_rad_s), 6),
+            dash(m.potential_power_w, power(m.potential_power_w)),
+            if m.driver.is_some() { significant(m.efficiency, 5) } else { "-".into() },
+            dash(m.loss_w, significant(m.loss_w, 5)),
+        ]);
+    }
+    right(&mut t, 2..6);
+    out += &show(&t);
+
+    if !s.shift_elements.is_empty() {
+        let mut t = table();
+        set_header(&mut t, &["shift element", "joins", "torque N m"]);
+        for (name, e) in s.shift_elements.iter() {
+            t.add_row([
+                format!("{} {name}", e.kind),
+                format!("{} - {}", e.members[0], e.members[1]),
+                e.torque_n_m.map_or("?".into(), |t| significant(t, 6)),
+            ]);
+        }
+        right(&mut t, 2..3);
+        out += &show(&t);
+    }
+    out
+}
+
+fn margins(s: &SolutionReport) -> String {
+    let mut lines = Vec::new();
+    if let Some(b) = &s.margin.torque {
+        lines.push(format!(
+            "{} unloads when the torque on {} goes from {} to {} N m",
+            b.mesh,
+            b.member,
+            significant(b.value, 5),
+            significant(b.boundary, 5)
+        ));
+    }
+    if let Some(b) = &s.margin.speed {
+        lines.push(format!(
+            "{} stops moving when the speed of {} goes from {} to {} rpm",
+            b.mesh,
+            b.member,
+            significant(rpm(b.value), 5),
+            significant(rpm(b.boundary), 5)
+        ));
+    }
+    if let Some(l) = &s.margin.lock {
+        lines.push(format!(
+            "locks when η of {} falls from {} to {}",
+            l.meshes.join(", "),
+            significant(l.efficiency, 5),
+            significant(l.threshold, 5)
+        ));
+    }
+    if let Some(f) = s.margin.lock_loss_factor {
+        lines.push(format!("locks when all losses grow {} times", significant(f, 4)));
+    }
+    let text: String = lines.iter().enumerate().map(|(k, l)| {
+        format!("  {:<12} {l}\n", if k == 0 { "margin" } else { "" })
+    }).collect();
+    text
+}
+
+fn role(m: &MemberReport) -> &'static str {
+    match m.role {
+        Role::Input => "input",
+        Role::Output => "output",
+        Role::Fixed => "fixed",
+        _ => "",
+    }
+}
+
+fn power_unit(s: &SolutionReport) -> (&'static str, f64) {
+    let most = s.members.iter().filter_map(|(_, m)| m.power_w).fold(0.0f64, |a, p| a.max(p.abs()));
+    if most >= 10e6 {
+        ("MW", 1e6)
+    } else if most >= 1e3 {
+        ("kW", 1e3)
+    } else {
+        ("W", 1.0)
+    }
+}
+
+fn rpm(rad_s: f64) -> f64 {
+    rad_s * 30.0 / std::f64::consts::PI
+}
+
+fn percent(x: f64) -> String {
+    // Two decimals, more where two would hide the loss or the efficiency.
+    let p = 100.0 * x;
+    if (99.995..100.0).contains(&p) || (0.0 < p && p < 0.1) { format!("{p:.4} %") } else { format!("{p:.2} %") }
+}
+
+/// A number with so many significant digits, in plain notation where that is readable.
+fn significant(x: f64, digits: i32) -> String {
+    if x == 0.0 {
+        return "0".into();
+    }
+    let size = x.abs().log10().floor() as i32;
+    if !(-4..9).contains(&size) {
+        return format!("{x:.*e}", digits as usize - 1);
+    }
+    let decimals = (digits - 1 - size).clamp(0, 8) as usize;
+    let text = format!("{x:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// Zero as a dash: the eye looks for what is there.
+fn dash(x: f64, text: String) -> String {
+    if x == 0.0 { "-".into() } else { text }
+}
+
+fn plural(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
+fn table() -> Table {
+    let mut t = Table::new();
+    t.load_style(presets::NOTHING);
+    t
+}
+
+fn set_header(t: &mut Table, names: &[&str]) {
+    t.set_header(names.iter().copied());
+    t.column_mut(0).expect("a table has a column").set_padding((2, 1));
+}
+
+/// The table with its header dimmed and no blanks at line ends.
+fn show(t: &Table) -> String {
+    let text = t.to_string();
+    let mut lines = text.lines().map(str::trim_end);
+    let header = dim(lines.next().unwrap_or_default());
+    std::iter::once(header).chain(lines.map(String::from)).map(|l| l + "\n").collect()
+}
+
+fn right(t: &mut Table, columns: std::ops::Range<usize>) {
+    for k in columns {
+        if let Some(c) = t.column_mut(k) {
+            c.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+}
+
+fn bold(text: &str) -> String {
+    format!("\u{1b}[1m{text}\u{1b}[0m")
+}
+
+fn dim(text: &str) -> String {
+    format!("\u{1b}[2m{text}\u{1b}[0m")
+}
+
+/// Breaks a line at 100 characters; the first line begins with `head`, the others are indented
+/// as far.
+fn wrap(text: &str, head: &str) -> String {
+    const WIDTH: usize = 100;
+    let indent = " ".repeat(head.chars().count());
+    let mut lines = vec![head.to_owned()];
+    for word in text.split_whitespace() {
+        let line = lines.last_mut().expect("never empty");
+        let used = line.chars().count();
+        let blank = used == indent.len();
+        if !blank && used + 1 + word.chars().count() > WIDTH {
+            lines.push(format!("{indent}{word}"));
+        } else {
+            if !blank {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    lines.join("\n")
+}

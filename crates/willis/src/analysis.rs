@@ -1,0 +1,488 @@
+//! The whole answer for a train: its shift table and its operating points, as one structure that
+//! every front end shows.
+//!
+//! Serialised as JSON it is the results contract `willis-analysis-1`; fields are added, never
+//! renamed. Units are SI and stand in the names.
+
+mod operation;
+mod table;
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::kinematics::Configuration;
+use crate::statics::Certificate;
+use crate::train::{Efficiency, ShiftElementId, ShiftElementKind, Train};
+
+/// Values by name, in the order of the train file; a JSON object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named<T>(pub Vec<(String, T)>);
+
+impl<T> Default for Named<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T> Named<T> {
+    /// The value of that name.
+    pub fn get(&self, name: &str) -> Option<&T> {
+        self.0.iter().find(|(n, _)| n == name).map(|(_, v)| v)
+    }
+
+    /// All, in order.
+    pub fn iter(&self) -> std::slice::Iter<'_, (String, T)> {
+        self.0.iter()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl<T: Serialize> Serialize for Named<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
+    }
+}
+
+/// What can be said of a load case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Verdict {
+    /// Exactly one equilibrium.
+    Unique,
+    /// Several equilibria; the model cannot choose.
+    Multiple,
+    /// No equilibrium in which a load is driven: friction (or the kinematics) holds the train.
+    Locked,
+    /// Nothing is loaded.
+    Unloaded,
+    /// The question has no determined answer: a freedom too many, or a redundant constraint.
+    Undetermined,
+}
+
+/// Whether the answer is the only one, and how that is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct CertificateReport {
+    /// Whether exactly one solution exists whatever the loads (with these directions of motion).
+    pub unique_for_every_load: bool,
+    /// `spectral-radius`, `determinants`, `enumeration` or `undecided`.
+    pub method: &'static str,
+}
+
+impl From<Certificate> for CertificateReport {
+    fn from(c: Certificate) -> Self {
+        Self { unique_for_every_load: c.unique_for_every_load(), method: c.method() }
+    }
+}
+
+/// One direction of power through a state.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Direction {
+    /// What can be said of it.
+    pub verdict: Verdict,
+    /// Output over input power; absent unless the verdict is `unique`.
+    pub efficiency: Option<f64>,
+    /// The efficiency of every equilibrium.
+    pub efficiencies: Vec<f64>,
+    /// Certificate, where a problem could be set up.
+    pub certificate: Option<CertificateReport>,
+    /// One sentence that explains a verdict other than `unique`.
+    pub reason: Option<String>,
+}
+
+/// A row of the shift table.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StateReport {
+    /// Where power enters when driving.
+    pub input: String,
+    /// Where power leaves when driving.
+    pub output: String,
+    /// `ω_input/ω_output` as a fraction `p/q`; absent when there is no such number.
+    pub exact: Option<String>,
+    /// The same as a decimal.
+    pub value: Option<f64>,
+    /// Why there is no ratio.
+    pub no_ratio: Option<String>,
+    /// Ratio of this state over that of the next in the table, where both have the same sign.
+    pub step: Option<f64>,
+    /// Shift elements that are closed.
+    pub engaged: Vec<String>,
+    /// Degrees of freedom in this state.
+    pub degrees_of_freedom: usize,
+    /// Input drives output.
+    pub drive: Direction,
+    /// Output drives input.
+    pub coast: Direction,
+}
+
+/// What a member does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Role {
+    /// External power enters.
+    Input,
+    /// External power leaves.
+    Output,
+    /// Held at rest.
+    Fixed,
+    /// No external power.
+    Idle,
+}
+
+/// A member in an operating point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MemberReport {
+    /// Absolute speed (for a bevel planet: carrier speed plus spin), rad/s; absent when not
+    /// determined.
+    pub speed_rad_s: Option<f64>,
+    /// The carrier it rides on, for a planet.
+    pub carrier: Option<String>,
+    /// Speed relative to that carrier, rad/s.
+    pub relative_speed_rad_s: Option<f64>,
+    /// External torque on it, N m; absent when statics cannot divide it.
+    pub torque_n_m: Option<f64>,
+    /// External power into it, W.
+    pub power_w: Option<f64>,
+    /// What it does.
+    pub role: Role,
+}
+
+/// A mesh in an operating point; totals over its `count` pairs in parallel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MeshReport {
+    /// The member that drives, seen from the carrier; absent when idle or without relative motion.
+    pub driver: Option<String>,
+    /// Speed of the driver (else of the first gear) relative to the carrier, rad/s.
+    pub relative_speed_rad_s: f64,
+    /// Power of the driver seen from the carrier, W.
+    pub potential_power_w: f64,
+    /// Efficiency in force.
+    pub efficiency: f64,
+    /// Loss, W.
+    pub loss_w: f64,
+    /// Torque that the first gear puts into the mesh, N m.
+    pub first_torque_n_m: f64,
+    /// Torque that the second gear puts into the mesh, N m.
+    pub second_torque_n_m: f64,
+    /// Torque that the carrier puts into the mesh, N m.
+    pub carrier_torque_n_m: f64,
+    /// Identical pairs in parallel.
+    pub count: u32,
+}
+
+/// An engaged shift element in an operating point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ShiftElementReport {
+    /// What it is.
+    pub kind: ShiftElementKind,
+    /// The members it joins.
+    pub members: [String; 2],
+    /// Torque it exerts on its first member, N m; absent when statics cannot divide it.
+    pub torque_n_m: Option<f64>,
+}
+
+/// Losses by kind, W.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Losses {
+    /// Tooth friction.
+    pub mesh: f64,
+    /// Bearings.
+    pub bearing: f64,
+    /// Air and oil mist.
+    pub windage: f64,
+    /// Oil sump.
+    pub churning: f64,
+    /// Shaft seals.
+    pub seal: f64,
+}
+
+/// Power that goes round in circles.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CirculationReport {
+    /// The power, W.
+    pub power_w: f64,
+    /// The power over the input power.
+    pub share_of_input: f64,
+    /// The shafts and sets it passes, in order.
+    pub path: Vec<String>,
+}
+
+/// How far a solution is from a change.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Margin {
+    /// The smallest change of a prescribed torque that unloads a mesh (and beyond which another
+    /// loss formula holds).
+    pub torque: Option<Boundary>,
+    /// The smallest change of a prescribed speed that stops the relative motion in a mesh.
+    pub speed: Option<Boundary>,
+    /// The mesh (or set) whose efficiency is nearest to the value at which the train locks.
+    pub lock: Option<LockMargin>,
+    /// The factor on all losses `1 − η` at which the train locks.
+    pub lock_loss_factor: Option<f64>,
+}
+
+/// A boundary of the region in which the present loss formula holds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Boundary {
+    /// The member whose prescribed value moves.
+    pub member: String,
+    /// Its value now, SI.
+    pub value: f64,
+    /// Its value on the boundary, SI.
+    pub boundary: f64,
+    /// The mesh that is unloaded, or stops moving, there.
+    pub mesh: String,
+}
+
+/// The nearest self-locking threshold of one efficiency.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LockMargin {
+    /// The mesh, or the meshes in a row that share one efficiency.
+    pub meshes: Vec<String>,
+    /// Their efficiency now.
+    pub efficiency: f64,
+    /// The efficiency at which the train locks.
+    pub threshold: f64,
+}
+
+/// A torque range that friction in a mesh at rest leaves open.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StictionRange {
+    /// What varies: `efficiency`, or `torque on <member>`.
+    pub what: String,
+    /// Smallest value.
+    pub low: f64,
+    /// Largest value.
+    pub high: f64,
+}
+
+/// One equilibrium.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SolutionReport {
+    /// Output over input power; 0 when everything is dissipated, absent when nothing is loaded.
+    pub efficiency: Option<f64>,
+    /// The exact efficiency as a fraction, where it was computed.
+    pub efficiency_exact: Option<String>,
+    /// Whether every loaded member is an input.
+    pub all_dissipated: bool,
+    /// Power in, W.
+    pub input_power_w: f64,
+    /// Power out, W.
+    pub output_power_w: f64,
+    /// All losses, W.
+    pub loss_w: f64,
+    /// Input less output less losses, W.
+    pub power_residual_w: f64,
+    /// Every member but the frame.
+    pub members: Named<MemberReport>,
+    /// Every mesh.
+    pub meshes: Named<MeshReport>,
+    /// Every engaged shift element.
+    pub shift_elements: Named<ShiftElementReport>,
+    /// Losses by kind.
+    pub losses_w: Losses,
+    /// Recirculating powers.
+    pub recirculation: Vec<CirculationReport>,
+    /// Distance to the next change.
+    pub margin: Margin,
+    /// What friction in meshes at rest leaves open.
+    pub stiction: Vec<StictionRange>,
+}
+
+/// An operating point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OperationReport {
+    /// Its name.
+    pub name: String,
+    /// The state of the shift table.
+    pub state: Option<String>,
+    /// Degrees of freedom with its elements engaged and members held.
+    pub degrees_of_freedom: usize,
+    /// What can be said of it.
+    pub verdict: Verdict,
+    /// Certificate, where a problem could be set up.
+    pub certificate: Option<CertificateReport>,
+    /// One sentence that explains the verdict.
+    pub reason: Option<String>,
+    /// Speeds, also when the torques have no answer; rad/s.
+    pub speeds_rad_s: Named<Option<f64>>,
+    /// Every equilibrium that drives a load (or, with two or more freedoms, any equilibrium).
+    pub solutions: Vec<SolutionReport>,
+    /// Of a locked train: equilibria in which every loaded member must push.
+    pub dissipative_solutions: Vec<SolutionReport>,
+}
+
+/// Everything that is known about a train.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Analysis {
+    /// `willis-analysis-1`.
+    pub format: &'static str,
+    /// Name of the train.
+    pub train: String,
+    /// Source of its data.
+    pub source: Option<String>,
+    /// Degrees of freedom as drawn, no shift element engaged.
+    pub degrees_of_freedom: usize,
+    /// The shift table, or one row `as drawn`.
+    pub ratios: Named<StateReport>,
+    /// The operating points.
+    pub operations: Vec<OperationReport>,
+    /// What stands in for data that were not given, and what the model leaves out.
+    pub assumptions: Vec<String>,
+    /// Warnings and notes.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// Which states and operations to analyse; `None` means all.
+#[derive(Clone, Debug, Default)]
+pub struct Selection {
+    /// Only this state, and only operations in it.
+    pub state: Option<String>,
+    /// Only this operation.
+    pub operation: Option<String>,
+}
+
+/// Name of the single row of a train without states.
+pub const AS_DRAWN: &str = "as drawn";
+
+/// Analyses a train: every state of its shift table and every operation.
+///
+/// # Errors
+/// Operations that cannot be answered because of what they prescribe (contradictory speeds, loads
+/// missing or too many), and a selection that matches nothing. All of them at once.
+///
+/// # Example
+/// ```
+/// use willis::analysis::{analyze, Selection, Verdict};
+/// use willis::train::Train;
+///
+/// let train = Train::from_toml(r#"
+///     format = 1
+///     name = "one set"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     planet = { teeth = 20, count = 4 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+///     mesh_efficiency = 0.99
+///     [[operation]]
+///     name = "full load"
+///     speeds = { s = "1000 rpm" }
+///     torques = { s = "10 N m" }
+/// "#)?;
+/// let analysis = analyze(&train, &Selection::default())?;
+/// let row = analysis.ratios.get("as drawn").unwrap();
+/// assert_eq!(row.exact.as_deref(), Some("10/3"));
+/// let load = &analysis.operations[0];
+/// assert_eq!(load.verdict, Verdict::Unique);
+/// assert!(load.certificate.unwrap().unique_for_every_load);
+/// // (1 + i0 η)/(1 + i0) with i0 = 7/3, η = 0.99²
+/// assert!((load.solutions[0].efficiency.unwrap() - 0.98607).abs() < 1e-9);
+/// # Ok::<(), willis::diagnostic::Diagnostics>(())
+/// ```
+pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnostics> {
+    let mut errors = Diagnostics::default();
+    if let Some(name) = &selection.state {
+        if train.state(name).is_none() {
+            let known = train.states.iter().map(|s| s.name.as_str());
+            let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
+            d = d.suggest(name, known.clone());
+            errors.push(d.hint(format!("its states are: {}", known.collect::<Vec<_>>().join(", "))));
+        }
+    }
+    if let Some(name) = &selection.operation {
+        let known = train.operations.iter().map(|o| o.name.as_str());
+        if !known.clone().any(|n| n == name) {
+            let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
+            d = d.suggest(name, known.clone());
+            errors.push(d.hint(format!("its operations are: {}", known.collect::<Vec<_>>().join(", "))));
+        }
+    }
+    if errors.has_errors() {
+        return Err(errors);
+    }
+
+    let mut diagnostics: Diagnostics = Diagnostics::default();
+    diagnostics.extend(train.warnings.iter().cloned());
+    let mut ratios = Named::default();
+    if train.states.is_empty() {
+        if let Some(row) = table::row(train, None, &[], AS_DRAWN, &mut diagnostics) {
+            ratios.0.push((AS_DRAWN.to_owned(), row));
+        }
+    }
+    for (k, state) in train.states.iter().enumerate() {
+        if selection.state.as_ref().is_some_and(|s| *s != state.name) {
+            continue;
+        }
+        if let Some(row) = table::row(train, Some(k), &state.engaged, &state.name, &mut diagnostics) {
+            ratios.0.push((state.name.clone(), row));
+        }
+    }
+    table::steps(&mut ratios);
+
+    let mut operations = Vec::new();
+    for operation in &train.operations {
+        let state = operation.state.map(|k| &train.states[k].name);
+        let wanted = selection.operation.as_ref().is_none_or(|o| *o == operation.name)
+            && selection.state.as_ref().is_none_or(|s| Some(s) == state);
+        if !wanted {
+            continue;
+        }
+        match operation::report(train, operation, &mut diagnostics) {
+            Ok(report) => operations.push(report),
+            Err(wrong) => errors.extend(wrong),
+        }
+    }
+    if errors.has_errors() {
+        return Err(errors);
+    }
+    let degrees_of_freedom = Configuration::new(train, &[], &[], &[]).degrees_of_freedom();
+    Ok(Analysis {
+        format: "willis-analysis-1",
+        train: train.name.clone(),
+        source: train.source.clone(),
+        degrees_of_freedom,
+        ratios,
+        operations,
+        assumptions: assumptions(train),
+        diagnostics: diagnostics.into_iter().collect(),
+    })
+}
+
+/// What the model leaves out, then what stands in for missing data.
+fn assumptions(train: &Train) -> Vec<String> {
+    let mut all = vec!["steady state: no inertia".to_owned()];
+    if train.meshes.iter().any(|m| m.efficiency != Efficiency::lossless()) {
+        all.push("mesh efficiencies are constants: independent of load, speed and temperature".into());
+    }
+    all.push("no bearing, windage, churning or seal losses, no drag of open shift elements".into());
+    if train.meshes.iter().any(|m| m.count > 1) {
+        all.push("parallel planets share the load equally".into());
+    }
+    all.extend(train.assumptions.iter().cloned());
+    all
+}
+
+/// Names of members, for sentences.
+fn names(train: &Train, members: impl IntoIterator<Item = crate::train::MemberId>) -> String {
+    let all: Vec<_> = members.into_iter().map(|m| train.member_name(m)).collect();
+    all.join(", ")
+}
+
+/// Names of shift elements.
+fn element_names(train: &Train, elements: &[ShiftElementId]) -> Vec<String> {
+    elements.iter().map(|e| train.shift_elements[e.0].name.clone()).collect()
+}

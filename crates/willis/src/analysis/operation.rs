@@ -1,0 +1,782 @@
+//! One operating point: speeds, torques, power flow, margins.
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
+use crate::kinematics::{Configuration, Motion, common};
+use crate::power_flow::{External, Flow};
+use crate::statics::{Equilibrium, Solution, Unsolvable};
+use crate::train::{FRAME, Load, MemberId, MemberKind, Operation, ShiftElementKind, Train};
+use crate::units::{Dimension, Quantity};
+
+use super::table::{torque, torque_exact, unsolvable};
+use super::{
+    Boundary, CirculationReport, LockMargin, Losses, Margin, MemberReport, MeshReport, Named, OperationReport, Role,
+    ShiftElementReport, SolutionReport, StictionRange, Verdict, names,
+};
+
+/// Analyses an operation; `Err` when what it prescribes makes no question.
+pub(super) fn report(
+    train: &Train,
+    operation: &Operation,
+    diagnostics: &mut Diagnostics,
+) -> Result<OperationReport, Diagnostics> {
+    let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
+    let keep: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
+    let c = Configuration::new(train, engaged, &operation.fixed, &keep);
+    let place = operation.place.as_str();
+    let title = format!("operation `{}`", operation.name);
+    let mut report = OperationReport {
+        name: operation.name.clone(),
+        state: operation.state.map(|k| train.states[k].name.clone()),
+        degrees_of_freedom: c.degrees_of_freedom(),
+        verdict: Verdict::Undetermined,
+        certificate: None,
+        reason: None,
+        speeds_rad_s: Named::default(),
+        solutions: vec![],
+        dissipative_solutions: vec![],
+    };
+
+    let motion = c.motion(&operation.speeds).map_err(|broken| contradiction(&c, operation, &broken))?;
+    report.speeds_rad_s = Named(
+        (1..train.members.len()).map(|m| (train.members[m].name.clone(), motion.si(MemberId(m)))).collect(),
+    );
+    if c.degrees_of_freedom() == 0 {
+        let text = "nothing can turn: every freedom is taken by brakes, clutches and held members".to_owned();
+        diagnostics.push(
+            Diagnostic::new(Code::KinematicallyLocked, place, format!("{title}: {text}")).hint("release one of them"),
+        );
+        report.verdict = Verdict::Locked;
+        report.reason = Some(text);
+        return Ok(report);
+    }
+
+    let problem = match Loads::new(&c, operation, &motion) {
+        Ok(loads) => loads,
+        Err(wrong) => return Err(wrong),
+    };
+    let loose: Vec<_> = (1..train.members.len())
+        .map(MemberId)
+        .filter(|m| motion.speeds[m.0].is_none() && !c.inner[m.0])
+        .collect();
+    let missing_speeds = c.degrees_of_freedom().saturating_sub(independent(&c, &keep));
+    let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
+    let undetermined = |text: String, hint: String, code: Code| {
+        let d = Diagnostic::new(code, place, format!("{title}: {text}"));
+        (text, if hint.is_empty() { d } else { d.hint(hint) })
+    };
+    let equilibrium = match Equilibrium::new(&c, &sigma, &problem.open, &problem.loaded) {
+        Ok(equilibrium) => equilibrium,
+        Err(why) => {
+            let redundant = c.redundant();
+            let (text, d) = if !loose.is_empty() {
+                let text = format!(
+                    "{} degrees of freedom and {} independent speed(s) prescribed: no determined speed for {}",
+                    c.degrees_of_freedom(),
+                    c.degrees_of_freedom() - missing_speeds,
+                    names(train, loose)
+                );
+                let hint = match missing_speeds {
+                    1 => "give one more speed, or hold one member".to_owned(),
+                    n => format!("give {n} more speeds, or hold {n} members"),
+                };
+                undetermined(text, hint, Code::Undetermined)
+            } else if why == Unsolvable::Indeterminate {
+                let meshes: Vec<String> = redundant
+                    .iter()
+                    .map(|g| g.iter().map(|m| train.meshes[m.0].name.clone()).collect::<Vec<_>>().join(", "))
+                    .collect();
+                let text = match meshes.is_empty() {
+                    true => "statically indeterminate: equilibrium does not fix the tooth forces".to_owned(),
+                    false => format!("statically indeterminate: the meshes {} constrain each other", meshes.join("; ")),
+                };
+                undetermined(text, "remove a mesh, or release a held member".into(), Code::Indeterminate)
+            } else if let Unsolvable::MissingLoads(n) | Unsolvable::TooManyLoads(n) = why {
+                return Err(wrong_loads(&c, operation, &problem, matches!(why, Unsolvable::MissingLoads(_)), n));
+            } else {
+                undetermined(unsolvable(&why).to_owned(), String::new(), Code::Undetermined)
+            };
+            diagnostics.push(d);
+            report.reason = Some(text);
+            return Ok(report);
+        }
+    };
+    if !loose.is_empty() {
+        diagnostics.push(
+            Diagnostic::new(
+                Code::Undetermined,
+                place,
+                format!("{title}: {} may spin at any speed; nothing is transmitted there", names(train, loose)),
+            ),
+        );
+    }
+
+    let answer = equilibrium.solve(&problem.torques);
+    report.certificate = Some(answer.certificate.into());
+    if answer.certificate == crate::statics::Certificate::Undecided {
+        diagnostics.push(Diagnostic::new(
+            Code::NotEnumerated,
+            place,
+            format!("{title}: uniqueness could not be decided; the solution shown was found by pivoting"),
+        ));
+    }
+    let unloaded = problem.torques.iter().all(Rational::is_zero);
+    let frame = Frame { c: &c, motion: &motion, problem: &problem, equilibrium: &equilibrium, operation };
+    let mut all: Vec<SolutionReport> = answer.solutions.iter().map(|s| frame.solution(s)).collect();
+    all.sort_by(|a, b| a.efficiency.partial_cmp(&b.efficiency).unwrap_or(std::cmp::Ordering::Equal));
+    for solution in &all {
+        for range in &solution.stiction {
+            diagnostics.push(Diagnostic::new(
+                Code::Stiction,
+                place,
+                format!(
+                    "{title}: a loaded mesh is at rest relative to its carrier; its friction leaves {} between {} and {}",
+                    range.what, short(range.low), short(range.high)
+                ),
+            ));
+        }
+    }
+    let driving = all.iter().any(|s| !s.all_dissipated);
+    let one_freedom = c.degrees_of_freedom() == 1;
+    if unloaded {
+        report.verdict = Verdict::Unloaded;
+        report.reason = Some("no torque or power acts on any terminal".into());
+        report.solutions = all;
+    } else if all.is_empty() || (one_freedom && !driving) {
+        report.verdict = Verdict::Locked;
+        let text = if all.is_empty() {
+            "friction locks the train: no equilibrium exists for this load in this motion".to_owned()
+        } else {
+            "friction locks the train: it moves this way only when every loaded member is driven, and all of that \
+             power is dissipated"
+                .to_owned()
+        };
+        diagnostics.push(
+            Diagnostic::new(Code::SelfLocking, place, format!("{title}: {text}"))
+                .hint("higher mesh efficiency, or a basic ratio farther from 1, frees it"),
+        );
+        report.reason = Some(text);
+        report.dissipative_solutions = all;
+    } else {
+        report.verdict = if all.len() > 1 || answer.continuum { Verdict::Multiple } else { Verdict::Unique };
+        if report.verdict == Verdict::Multiple {
+            let list: Vec<_> = all
+                .iter()
+                .map(|s| match (s.all_dissipated, s.efficiency) {
+                    (true, _) => "all dissipated".to_owned(),
+                    (_, Some(e)) => format!("{e:.4}"),
+                    _ => "unloaded".to_owned(),
+                })
+                .collect();
+            let text = match answer.continuum {
+                true => "the load lies on a self-locking threshold: a whole range of torques balances it".to_owned(),
+                false => format!("{} equilibria carry the same load, with efficiencies {}", list.len(), list.join(" and ")),
+            };
+            diagnostics.push(
+                Diagnostic::new(Code::SeveralSolutions, place, format!("{title}: {text}"))
+                    .hint("a rigid quasi-static model cannot choose between them; better mesh efficiency makes it unique"),
+            );
+            report.reason = Some(text);
+        }
+        if all.iter().any(|s| s.all_dissipated) {
+            let inputs = all.iter().find(|s| s.all_dissipated).map(|s| inputs(s)).unwrap_or_default();
+            let text = format!("{inputs} all put power in and none takes power out: everything is dissipated");
+            diagnostics.push(Diagnostic::new(Code::AllDissipated, place, format!("{title}: {text}")));
+            report.reason.get_or_insert(text);
+        }
+        report.solutions = all;
+    }
+    for s in report.solutions.iter() {
+        one_way_torques(train, s, place, &title, diagnostics);
+        near_boundary(s, place, &title, diagnostics);
+    }
+    Ok(report)
+}
+
+fn inputs(s: &SolutionReport) -> String {
+    let all: Vec<_> = s.members.iter().filter(|(_, m)| m.role == Role::Input).map(|(n, _)| n.as_str()).collect();
+    all.join(", ")
+}
+
+/// A number for a sentence.
+fn short(x: f64) -> String {
+    let text = format!("{x:.4}");
+    if text.parse::<f64>() == Ok(0.0) && x != 0.0 { format!("{x:.3e}") } else { text }
+}
+
+/// Rank of the prescribed speeds.
+fn independent(c: &Configuration<'_>, prescribed: &[MemberId]) -> usize {
+    prescribed.len() - c.transfer(prescribed).conflicts.len()
+}
+
+fn contradiction(c: &Configuration<'_>, operation: &Operation, broken: &[Vec<MemberId>]) -> Diagnostics {
+    let train = c.train;
+    let mut all = Diagnostics::default();
+    for members in broken {
+        let value = |m: MemberId| {
+            operation.speeds.iter().find(|(n, _)| *n == m).map_or(0.0, |(_, q)| q.si())
+                * 30.0
+                / std::f64::consts::PI
+        };
+        let place = format!("{}.speeds", operation.place);
+        let (last, others) = members.split_last().expect("a conflict names members");
+        // What the gears make of the others.
+        let given: Vec<_> = operation.speeds.iter().filter(|(m, _)| m != last).cloned().collect();
+        let follows = c.motion(&given).ok().and_then(|m| m.si(*last)).map(|w| w * 30.0 / std::f64::consts::PI);
+        let message = match others {
+            [] => format!(
+                "operation `{}`: `{}` cannot turn, but {} rpm is prescribed",
+                operation.name,
+                train.member_name(*last),
+                short(value(*last))
+            ),
+            _ => format!(
+                "operation `{}`: the gears tie {} together; with the other speeds `{}` turns at {} rpm, not at {} rpm",
+                operation.name,
+                names(train, members.iter().copied()),
+                train.member_name(*last),
+                follows.map_or("another speed".into(), short),
+                short(value(*last))
+            ),
+        };
+        all.push(Diagnostic::new(Code::ContradictorySpeeds, place, message).hint(format!(
+            "prescribe {} independent speed(s) in this configuration",
+            c.degrees_of_freedom()
+        )));
+    }
+    all
+}
+
+/// External torques as the statics takes them.
+struct Loads {
+    /// Prescribed torques by member, in units of `π^pi_power`.
+    given: Vec<(MemberId, Rational)>,
+    pi_power: i8,
+    /// By node.
+    torques: Vec<Rational>,
+    open: Vec<usize>,
+    loaded: Vec<usize>,
+    externals: Vec<External>,
+}
+
+impl Loads {
+    fn new(c: &Configuration<'_>, operation: &Operation, motion: &Motion) -> Result<Self, Diagnostics> {
+        let train = c.train;
+        let mut wrong = Diagnostics::default();
+        let mut quantities: Vec<(MemberId, Quantity)> = Vec::new();
+        for (member, load) in &operation.loads {
+            let name = train.member_name(*member);
+            match load {
+                Load::Torque(q) => quantities.push((*member, q.clone())),
+                Load::Power(p) => match &motion.speeds[member.0] {
+                    Some(w) if w.is_zero() && !p.value.is_zero() => wrong.push(
+                        Diagnostic::new(
+                            Code::PowerAtRest,
+                            format!("{}.powers.{name}", operation.place),
+                            format!(
+                                "operation `{}`: {} W at `{name}`, which stands still here",
+                                operation.name,
+                                short(p.si())
+                            ),
+                        )
+                        .hint("give its torque instead"),
+                    ),
+                    Some(w) if w.is_zero() => {
+                        quantities.push((*member, Quantity { dimension: Dimension::TORQUE, ..p.clone() }));
+                    }
+                    Some(w) => quantities.push((
+                        *member,
+                        Quantity {
+                            value: &p.value / w,
+                            pi_power: p.pi_power - motion.pi_power,
+                            dimension: Dimension::TORQUE,
+                        },
+                    )),
+                    None => wrong.push(
+                        Diagnostic::new(
+                            Code::PowerAtRest,
+                            format!("{}.powers.{name}", operation.place),
+                            format!("operation `{}`: `{name}` has no determined speed here", operation.name),
+                        )
+                        .hint("give its torque instead, or prescribe another speed"),
+                    ),
+                },
+            }
+        }
+        if wrong.has_errors() {
+            return Err(wrong);
+        }
+        let (values, pi_power) = common(quantities.iter().map(|(_, q)| q));
+        let given: Vec<(MemberId, Rational)> = quantities.iter().map(|(m, _)| *m).zip(values).collect();
+
+        let si = std::f64::consts::PI.powi(pi_power.into());
+        let mut torques = vec![Rational::ZERO; c.nodes];
+        let mut externals = Vec::new();
+        let mut loaded = Vec::new();
+        for (member, torque) in &given {
+            externals.push(External { member: *member, torque: Some(torque.to_f64() * si) });
+            if let Some(n) = c.node(*member) {
+                torques[n] += torque.clone();
+                if !torque.is_zero() && !loaded.contains(&n) {
+                    loaded.push(n);
+                }
+            }
+        }
+        // Terminals on the frame's node carry only the reaction of their brake or hold.
+        let mut open = Vec::new();
+        for &terminal in &train.terminals {
+            let Some(n) = c.node(terminal) else { continue };
+            if given.iter().any(|(m, _)| *m == terminal) || operation.fixed.contains(&terminal) {
+                continue;
+            }
+            if open.contains(&n) {
+                let other = externals
+                    .iter()
+                    .find(|x| x.torque.is_none() && c.node(x.member) == Some(n))
+                    .map_or("another terminal", |x| train.member_name(x.member));
+                wrong.push(
+                    Diagnostic::new(
+                        Code::MissingTorque,
+                        format!("{}.torques", operation.place),
+                        format!(
+                            "operation `{}`: `{other}` and `{}` turn as one here, and neither has a torque: only \
+                             their sum can be found",
+                            operation.name,
+                            train.member_name(terminal)
+                        ),
+                    )
+                    .hint("give the torque or power of one of them"),
+                );
+                continue;
+            }
+            open.push(n);
+            externals.push(External { member: terminal, torque: None });
+        }
+        if wrong.has_errors() {
+            return Err(wrong);
+        }
+        Ok(Self { given, pi_power, torques, open, loaded, externals })
+    }
+}
+
+fn wrong_loads(c: &Configuration<'_>, operation: &Operation, loads: &Loads, missing: bool, n: usize) -> Diagnostics {
+    let train = c.train;
+    let freedoms = c.degrees_of_freedom();
+    let open: Vec<MemberId> = loads.externals.iter().filter(|x| x.torque.is_none()).map(|x| x.member).collect();
+    let mut all = Diagnostics::default();
+    let place = format!("{}.torques", operation.place);
+    let s = if freedoms == 1 { "" } else { "s" };
+    all.push(if missing {
+        Diagnostic::new(
+            Code::MissingTorque,
+            place,
+            format!(
+                "operation `{}`: {freedoms} degree{s} of freedom balance{} {freedoms} terminal{s}, but {} have no torque or power: {}",
+                operation.name,
+                if freedoms == 1 { "s" } else { "" },
+                open.len(),
+                names(train, open)
+            ),
+        )
+        .hint(format!("give {n} more, \"0 N m\" where nothing acts"))
+    } else {
+        Diagnostic::new(
+            Code::TooManyTorques,
+            place,
+            format!(
+                "operation `{}`: {freedoms} degree{s} of freedom need {freedoms} terminal{s} without a prescribed torque \
+                 to balance the train; here {} {} open",
+                operation.name,
+                open.len(),
+                if open.len() == 1 { "is" } else { "are" },
+            ),
+        )
+        .hint(match train.terminals.is_empty() {
+            true => "name the members that take part in `terminals`".to_owned(),
+            false => format!("leave out {n} of the torques, or list another member in `terminals`"),
+        })
+    });
+    all
+}
+
+/// Everything a solution is seen against.
+struct Frame<'a> {
+    c: &'a Configuration<'a>,
+    motion: &'a Motion,
+    problem: &'a Loads,
+    equilibrium: &'a Equilibrium,
+    operation: &'a Operation,
+}
+
+impl Frame<'_> {
+    fn scale(&self) -> f64 {
+        std::f64::consts::PI.powi(self.problem.pi_power.into())
+    }
+
+    fn flow(&self, s: &Solution) -> Flow {
+        Flow::new(self.c, self.motion, s, self.scale(), &self.problem.externals)
+    }
+
+    fn solution(&self, s: &Solution) -> SolutionReport {
+        let flow = self.flow(s);
+        let train = self.c.train;
+        let held: Vec<MemberId> = self.held();
+        let members = (1..train.members.len()).map(|m| {
+            let id = MemberId(m);
+            let speed = self.motion.si(id);
+            let torque = flow.torques[m];
+            let power = match (torque, speed) {
+                (Some(t), Some(w)) => Some(t * w),
+                (None, Some(0.0)) => Some(0.0),
+                _ => None,
+            };
+            let real = power.is_some_and(|p| p.abs() > 1e-12 * flow.input_power.max(flow.output_power));
+            let at_rest = self.motion.speeds[m].as_ref().is_some_and(Rational::is_zero);
+            let role = match power {
+                _ if held.contains(&id) => Role::Fixed,
+                Some(p) if real && p > 0.0 => Role::Input,
+                Some(p) if real && p < 0.0 => Role::Output,
+                _ if at_rest && torque.is_none_or(|t| t != 0.0) => Role::Fixed,
+                _ => Role::Idle,
+            };
+            let carrier = (train.members[m].kind == MemberKind::Planet || self.c.inner[m])
+                .then(|| train.meshes.iter().find(|x| x.gears.iter().any(|g| g.member == id)).map(|x| x.carrier))
+                .flatten();
+            let report = MemberReport {
+                speed_rad_s: speed,
+                carrier: carrier.filter(|c| *c != FRAME).map(|c| train.member_name(c).to_owned()),
+                relative_speed_rad_s: carrier.and_then(|c| {
+                    let (w, c) = (self.motion.speeds[m].as_ref()?, self.motion.speeds[c.0].as_ref()?);
+                    Some((w - c).to_f64() * std::f64::consts::PI.powi(self.motion.pi_power.into()))
+                }),
+                torque_n_m: torque.map(|t| t + 0.0),
+                power_w: power.map(|p| p + 0.0),
+                role,
+            };
+            (train.members[m].name.clone(), report)
+        });
+        let members = Named(members.collect());
+        let meshes = flow.meshes.iter().map(|f| {
+            let mesh = &train.meshes[f.mesh.0];
+            let report = MeshReport {
+                driver: f.driver.map(|d| train.member_name(mesh.gears[d].member).to_owned()),
+                relative_speed_rad_s: f.relative_speeds[f.driver.unwrap_or(0)],
+                potential_power_w: f.potential_power,
+                efficiency: f.efficiency,
+                loss_w: f.loss,
+                first_torque_n_m: f.torques[0] + 0.0,
+                second_torque_n_m: f.torques[1] + 0.0,
+                carrier_torque_n_m: f.torques[2] + 0.0,
+                count: mesh.count,
+            };
+            (mesh.name.clone(), report)
+        });
+        let meshes = Named(meshes.collect());
+        let shift_elements = flow.ties.iter().map(|t| {
+            let e = &train.shift_elements[t.element.0];
+            let members = e.members.map(|m| train.member_name(m).to_owned());
+            (e.name.clone(), ShiftElementReport { kind: e.kind, members, torque_n_m: t.torque.map(|t| t + 0.0) })
+        });
+        let all_dissipated = flow.input_power > 0.0 && flow.output_power <= 0.0;
+        let exact = s.exact.as_ref().and_then(|f| self.exact_efficiency(s, f));
+        let efficiency = if flow.input_power <= 0.0 {
+            None
+        } else if let Some(e) = &exact {
+            Some(e.to_f64())
+        } else {
+            Some((flow.output_power / flow.input_power).clamp(0.0, 1.0))
+        };
+        SolutionReport {
+            efficiency,
+            efficiency_exact: exact.map(|e| e.to_fraction()),
+            all_dissipated,
+            input_power_w: flow.input_power,
+            output_power_w: flow.output_power,
+            loss_w: flow.loss,
+            power_residual_w: flow.residual,
+            members,
+            meshes,
+            shift_elements: Named(shift_elements.collect()),
+            losses_w: Losses { mesh: flow.loss, ..Losses::default() },
+            recirculation: flow
+                .circulations
+                .iter()
+                .map(|r| CirculationReport {
+                    power_w: r.power,
+                    share_of_input: r.power / flow.input_power,
+                    path: r.path.clone(),
+                })
+                .collect(),
+            margin: self.margin(s, &flow),
+            stiction: self.stiction(s, &flow),
+        }
+    }
+
+    /// Members held by a brake, by the operation, or tied to something that is.
+    fn held(&self) -> Vec<MemberId> {
+        let train = self.c.train;
+        let brakes = self.c.engaged.iter().flat_map(|e| {
+            let m = train.shift_elements[e.0].members;
+            if m.contains(&FRAME) { m.to_vec() } else { vec![] }
+        });
+        brakes.chain(self.operation.fixed.iter().copied()).filter(|m| *m != FRAME).collect()
+    }
+
+    /// Output over input power in rationals.
+    fn exact_efficiency(&self, s: &Solution, forces: &[Rational]) -> Option<Rational> {
+        let (mut power_in, mut power_out) = (Rational::ZERO, Rational::ZERO);
+        let mut add = |power: Rational| match power.sign() {
+            1 => power_in += power,
+            -1 => power_out += -power,
+            _ => {}
+        };
+        for x in &self.problem.externals {
+            let speed = self.motion.speeds[x.member.0].as_ref()?;
+            let torque = match (self.problem.given.iter().find(|(m, _)| *m == x.member), self.c.node(x.member)) {
+                (Some((_, t)), _) => t.clone(),
+                (None, Some(n)) => &torque_exact(self.c, self.equilibrium, s, forces, n) - &self.problem.torques[n],
+                (None, None) => continue,
+            };
+            add(speed * &torque);
+        }
+        (power_in.sign() > 0).then(|| power_out / power_in)
+    }
+
+    fn margin(&self, s: &Solution, flow: &Flow) -> Margin {
+        let (c, train) = (self.c, self.c.train);
+        let meshes_of = |e: usize| -> Vec<String> {
+            c.elements[e].links.iter().map(|l| train.meshes[l.mesh.0].name.clone()).collect()
+        };
+        let mut margin = Margin::default();
+
+        // Torques: with one load all forces scale with it, so only two or more have a boundary.
+        let given: Vec<(MemberId, usize, f64)> = self
+            .problem
+            .given
+            .iter()
+            .filter_map(|(m, t)| c.node(*m).map(|n| (*m, n, t.to_f64())))
+            .collect();
+        let largest = given.iter().fold(0.0f64, |a, g| a.max(g.2.abs()));
+        if given.len() > 1 && largest > 0.0 {
+            let nodes: Vec<usize> = given.iter().map(|g| g.1).collect();
+            let mut best: Option<(f64, Boundary)> = None;
+            for (e, row) in self.equilibrium.sensitivity(s, &nodes).unwrap_or_default() {
+                if s.driver[e].is_none() {
+                    continue;
+                }
+                for (k, &(member, _, value)) in given.iter().enumerate().filter(|(k, _)| row[*k] != 0.0) {
+                    let change = -s.forces[e] / row[k];
+                    if best.as_ref().is_none_or(|b| change.abs() < b.0) {
+                        let boundary = Boundary {
+                            member: train.member_name(member).to_owned(),
+                            value: value * self.scale(),
+                            boundary: (value + change) * self.scale(),
+                            mesh: meshes_of(e).join(", "),
+                        };
+                        best = Some((change.abs(), boundary));
+                    }
+                }
+            }
+            margin.torque = best.map(|b| b.1);
+        }
+
+        // Speeds: likewise only with two freedoms or more.
+        let prescribed: Vec<MemberId> = self.operation.speeds.iter().map(|(m, _)| *m).collect();
+        if prescribed.len() > 1 {
+            let transfer = c.transfer(&prescribed);
+            let mut best: Option<(f64, Boundary)> = None;
+            for (j, e) in c.elements.iter().enumerate().filter(|(j, _)| s.driver[*j].is_some()) {
+                let (Some(p), Some(q)) = (&transfer.speeds[e.p.0], &transfer.speeds[e.carrier.0]) else { continue };
+                let relative = flow.speeds[e.p.0] - flow.speeds[e.carrier.0];
+                for (k, &member) in prescribed.iter().enumerate() {
+                    let factor = (&p[k] - &q[k]).to_f64();
+                    if factor == 0.0 {
+                        continue;
+                    }
+                    let change = -relative / factor;
+                    if best.as_ref().is_none_or(|b| change.abs() < b.0) {
+                        let value = flow.speeds[member.0];
+                        let boundary = Boundary {
+                            member: train.member_name(member).to_owned(),
+                            value,
+                            boundary: value + change,
+                            mesh: meshes_of(j).join(", "),
+                        };
+                        best = Some((change.abs(), boundary));
+                    }
+                }
+            }
+            margin.speed = best.map(|b| b.1);
+        }
+
+        // Locking: with the loads at the outputs given, the input's torque grows without bound.
+        if c.degrees_of_freedom() == 1 && flow.output_power > 0.0 {
+            let inputs: Vec<usize> = self
+                .problem
+                .externals
+                .iter()
+                .filter(|x| flow.torques[x.member.0].is_some_and(|t| t * flow.speeds[x.member.0] > 0.0))
+                .filter_map(|x| c.node(x.member))
+                .collect();
+            let outputs: Vec<usize> = self
+                .problem
+                .externals
+                .iter()
+                .filter(|x| flow.torques[x.member.0].is_some_and(|t| t * flow.speeds[x.member.0] < 0.0))
+                .filter_map(|x| c.node(x.member))
+                .collect();
+            let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, self.motion)).collect();
+            if let ([input], false) = (&inputs[..], outputs.iter().any(|o| inputs.contains(o))) {
+                if let Ok(resisting) = Equilibrium::new(c, &sigma, &[*input], &outputs) {
+                    if let Some(s) = resisting.same_pattern(s) {
+                        margin.lock = resisting
+                            .lock_thresholds(&s)
+                            .into_iter()
+                            .map(|(e, threshold)| LockMargin {
+                                meshes: meshes_of(e),
+                                efficiency: match s.driver[e] {
+                                    Some(false) => c.elements[e].backward.to_f64(),
+                                    _ => c.elements[e].forward.to_f64(),
+                                },
+                                threshold,
+                            })
+                            .min_by(|a, b| (a.efficiency - a.threshold).total_cmp(&(b.efficiency - b.threshold)));
+                        margin.lock_loss_factor = resisting.lock_factor(&s);
+                    }
+                }
+            }
+        }
+        margin
+    }
+
+    /// Ranges that friction in loaded meshes at rest leaves open: every vertex of their ρ-box.
+    fn stiction(&self, s: &Solution, flow: &Flow) -> Vec<StictionRange> {
+        let c = self.c;
+        let stuck: Vec<usize> = (0..c.elements.len())
+            .filter(|&j| {
+                let e = &c.elements[j];
+                let lossy = e.forward != Rational::ONE || e.backward != Rational::ONE;
+                lossy && s.forces[j] != 0.0 && c.sigma(e, self.motion) == Some(0)
+            })
+            .collect();
+        if stuck.is_empty() || stuck.len() > 6 {
+            return vec![];
+        }
+        let mut low: Vec<Option<f64>> = flow.torques.clone();
+        let mut high = low.clone();
+        let efficiency = |f: &Flow| if f.input_power > 0.0 { f.output_power / f.input_power } else { 0.0 };
+        let mut eta = (efficiency(flow), efficiency(flow));
+        for mask in 0..1u32 << stuck.len() {
+            let choice: Vec<(usize, f64)> = stuck
+                .iter()
+                .enumerate()
+                .map(|(bit, &j)| {
+                    let e = &c.elements[j];
+                    (j, if mask >> bit & 1 == 0 { e.forward.to_f64() } else { 1.0 / e.backward.to_f64() })
+                })
+                .collect();
+            let Some(shifted) = self.equilibrium.with_rho(s, &choice, &self.problem.torques) else { continue };
+            let f = stuck_flow(self, &shifted);
+            for m in 0..low.len() {
+                if let (Some(l), Some(h), Some(t)) = (low[m], high[m], f[m]) {
+                    (low[m], high[m]) = (Some(l.min(t)), Some(h.max(t)));
+                }
+            }
+            // Efficiency from the torques of the terminals.
+            let (mut power_in, mut power_out) = (0.0, 0.0);
+            for (m, t) in f.iter().enumerate() {
+                let p = t.unwrap_or(0.0) * flow.speeds[m];
+                if p > 0.0 { power_in += p } else { power_out -= p }
+            }
+            if power_in > 0.0 {
+                eta = (eta.0.min(power_out / power_in), eta.1.max(power_out / power_in));
+            }
+        }
+        let size = flow.torques.iter().flatten().fold(0.0f64, |a, t| a.max(t.abs()));
+        let mut all = Vec::new();
+        if eta.1 - eta.0 > 1e-9 {
+            all.push(StictionRange { what: "the efficiency".into(), low: eta.0, high: eta.1 });
+        }
+        for m in 1..low.len() {
+            if let (Some(l), Some(h)) = (low[m], high[m]) {
+                if h - l > 1e-9 * size {
+                    let what = format!("the torque on {} (N m)", c.train.members[m].name);
+                    all.push(StictionRange { what, low: l, high: h });
+                }
+            }
+        }
+        all
+    }
+}
+
+/// External torques with other ρ in stuck elements. The mesh walk of [`Flow`] takes ρ from the
+/// driver, so the torques are summed here from the elements.
+fn stuck_flow(frame: &Frame<'_>, s: &Solution) -> Vec<Option<f64>> {
+    let c = frame.c;
+    let scale = frame.scale();
+    let mut demand = vec![0.0; c.train.members.len()];
+    for (j, e) in c.elements.iter().enumerate() {
+        let (a, b) = (e.a.to_f64(), e.b.to_f64() * s.rho[j]);
+        for (member, x) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
+            demand[member.0] += s.forces[j] * x * scale;
+        }
+    }
+    let mut external = vec![0.0; demand.len()];
+    for x in &frame.problem.externals {
+        external[x.member.0] = match (x.torque, c.node(x.member)) {
+            (Some(t), _) => t,
+            (None, Some(n)) => (torque(c, s, n) - frame.problem.torques[n].to_f64()) * scale,
+            (None, None) => 0.0,
+        };
+    }
+    crate::power_flow::reactions(c, &demand, &external)
+        .into_iter()
+        .zip(&external)
+        .map(|(r, x)| r.map(|r| r + x))
+        .collect()
+}
+
+/// A one-way clutch can only push one way.
+fn one_way_torques(train: &Train, s: &SolutionReport, place: &str, title: &str, diagnostics: &mut Diagnostics) {
+    for (name, e) in s.shift_elements.iter().filter(|(_, e)| e.kind == ShiftElementKind::OneWay) {
+        let blocks = train.shift_elements.iter().find(|x| x.name == *name).map_or(-1, |x| x.blocks);
+        if e.torque_n_m.is_some_and(|t| t * f64::from(blocks) > 0.0) {
+            diagnostics.push(
+                Diagnostic::new(
+                    Code::OneWay,
+                    place,
+                    format!(
+                        "{title}: the one-way clutch {name} would have to hold {} against its free direction ({} N m); \
+                         it overruns instead and the torques shown do not arise",
+                        e.members[0],
+                        short(e.torque_n_m.unwrap_or(0.0))
+                    ),
+                )
+                .hint("analyse the state without it, or engage a brake beside it"),
+            );
+        }
+    }
+}
+
+/// Warns when a prescribed value lies within a percent of a boundary.
+fn near_boundary(s: &SolutionReport, place: &str, title: &str, diagnostics: &mut Diagnostics) {
+    let near = |b: &Boundary| (b.boundary - b.value).abs() <= 0.01 * b.value.abs().max(b.boundary.abs());
+    for (b, what, unit, factor, effect) in [
+        (&s.margin.torque, "torque", "N m", 1.0, "unloads"),
+        (&s.margin.speed, "speed", "rpm", 30.0 / std::f64::consts::PI, "stops the relative motion in"),
+    ] {
+        if let Some(b) = b.as_ref().filter(|b| near(b)) {
+            diagnostics.push(Diagnostic::new(
+                Code::NearBoundary,
+                place,
+                format!(
+                    "{title}: a {what} of {} instead of {} {unit} at {} {effect} {}",
+                    short(b.boundary * factor),
+                    short(b.value * factor),
+                    b.member,
+                    b.mesh
+                ),
+            ));
+        }
+    }
+}

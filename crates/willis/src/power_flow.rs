@@ -1,0 +1,328 @@
+//! Where the power runs: torque and power of every member, mesh and shift element for one
+//! equilibrium, the balance, and the power that goes round in circles.
+
+use std::collections::HashMap;
+
+use crate::kinematics::{Configuration, Element, Motion};
+use crate::statics::Solution;
+use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train};
+
+/// Torques and powers at one mesh (all `count` of them together).
+#[derive(Clone, Debug)]
+pub struct MeshFlow {
+    /// The mesh.
+    pub mesh: MeshId,
+    /// Torques that first gear, second gear and carrier put into the mesh, N m.
+    pub torques: [f64; 3],
+    /// Speeds of first and second gear relative to the carrier, rad/s.
+    pub relative_speeds: [f64; 2],
+    /// Which gear drives (0 or 1), seen from the carrier; none when idle or at rest.
+    pub driver: Option<usize>,
+    /// Power that the driving gear puts in, seen from the carrier, W (potential power).
+    pub potential_power: f64,
+    /// Efficiency in force, 1 when nothing drives.
+    pub efficiency: f64,
+    /// Loss, W.
+    pub loss: f64,
+}
+
+/// Torque in an engaged shift element.
+#[derive(Clone, Debug)]
+pub struct TieFlow {
+    /// The element.
+    pub element: ShiftElementId,
+    /// Torque it exerts on its first member, N m; `None` when several elements share a load in a
+    /// way that statics cannot divide.
+    pub torque: Option<f64>,
+}
+
+/// Power that circulates: it passes every station of the path and comes back.
+#[derive(Clone, Debug)]
+pub struct Circulation {
+    /// The power that goes round, W.
+    pub power: f64,
+    /// Sets and shafts in the order in which it passes them.
+    pub path: Vec<String>,
+}
+
+/// The power flow of one equilibrium.
+#[derive(Clone, Debug)]
+pub struct Flow {
+    /// External torque on each member, N m, reactions of brakes and holds included; `None` where
+    /// brakes share a load indeterminately.
+    pub torques: Vec<Option<f64>>,
+    /// Speed of each member, rad/s.
+    pub speeds: Vec<f64>,
+    /// Every mesh.
+    pub meshes: Vec<MeshFlow>,
+    /// Every engaged shift element.
+    pub ties: Vec<TieFlow>,
+    /// Power in at all inputs, W.
+    pub input_power: f64,
+    /// Power out at all outputs, W, positive.
+    pub output_power: f64,
+    /// Sum of all losses, W.
+    pub loss: f64,
+    /// Input less output less losses, W: zero up to round-off.
+    pub residual: f64,
+    /// Recirculating powers, largest first.
+    pub circulations: Vec<Circulation>,
+}
+
+/// What acts on a terminal.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct External {
+    pub member: MemberId,
+    /// `None`: whatever balances the train.
+    pub torque: Option<f64>,
+}
+
+impl Flow {
+    /// Works out the flow of a solution. `scale` turns its forces into SI.
+    pub(crate) fn new(
+        c: &Configuration<'_>,
+        motion: &Motion,
+        solution: &Solution,
+        scale: f64,
+        externals: &[External],
+    ) -> Self {
+        let train = c.train;
+        // Idle parts may have no determined speed; nothing flows there.
+        let speeds: Vec<f64> =
+            (0..train.members.len()).map(|m| motion.si(MemberId(m)).unwrap_or(0.0)).collect();
+        let mut meshes = Vec::with_capacity(train.meshes.len());
+        let mut demand = vec![0.0; train.members.len()];
+        for (j, e) in c.elements.iter().enumerate() {
+            walk(train, e, solution.forces[j] * scale, solution.driver[j], &speeds, &mut meshes);
+        }
+        meshes.sort_by_key(|m: &MeshFlow| m.mesh);
+        for m in &meshes {
+            let mesh = &train.meshes[m.mesh.0];
+            for (member, torque) in
+                [mesh.gears[0].member, mesh.gears[1].member, mesh.carrier].into_iter().zip(m.torques)
+            {
+                demand[member.0] += torque;
+            }
+        }
+
+        let mut external: Vec<f64> = vec![0.0; train.members.len()];
+        for x in externals {
+            if let Some(t) = x.torque {
+                external[x.member.0] = t;
+            }
+        }
+        for x in externals.iter().filter(|x| x.torque.is_none()) {
+            let Some(node) = c.node(x.member) else { continue };
+            let total: f64 = (1..demand.len())
+                .filter(|&m| !c.inner[m] && c.node_of[m] == Some(node))
+                .map(|m| demand[m] - external[m])
+                .sum();
+            external[x.member.0] = total;
+        }
+        let (ties, reactions) = ties(c, &demand, &external);
+        let torques: Vec<Option<f64>> = (0..external.len()).map(|m| reactions[m].map(|r| external[m] + r)).collect();
+
+        let powers: Vec<f64> = (0..external.len()).map(|m| external[m] * speeds[m]).collect();
+        let largest = powers.iter().fold(0.0f64, |a, p| a.max(p.abs()));
+        // A torque that is zero comes out as round-off; it makes no input or output.
+        let real = |p: &&f64| p.abs() > 1e-12 * largest;
+        let input_power: f64 = powers.iter().filter(real).filter(|p| **p > 0.0).sum();
+        let output_power: f64 = -powers.iter().filter(real).filter(|p| **p < 0.0).sum::<f64>();
+        let loss: f64 = meshes.iter().map(|m| m.loss).sum();
+        let residual = powers.iter().sum::<f64>() - loss;
+        let circulations = circulations(c, &meshes, &speeds, input_power);
+        Self { torques, speeds, meshes, ties, input_power, output_power, loss, residual, circulations }
+    }
+}
+
+/// Follows the force through a chain, mesh by mesh.
+fn walk(train: &Train, e: &Element, force: f64, p_drives: Option<bool>, speeds: &[f64], out: &mut Vec<MeshFlow>) {
+    let mut torque = force * e.a.to_f64();
+    for link in &e.links {
+        let mesh = &train.meshes[link.mesh.0];
+        let (enter, leave) = if link.along { (0, 1) } else { (1, 0) };
+        let efficiency = match p_drives {
+            None => 1.0,
+            // Power runs along the chain, or against it.
+            Some(true) if link.along => mesh.efficiency.forward.to_f64(),
+            Some(true) => mesh.efficiency.backward.to_f64(),
+            Some(false) if link.along => mesh.efficiency.backward.to_f64(),
+            Some(false) => mesh.efficiency.forward.to_f64(),
+        };
+        let rho = if p_drives == Some(false) { 1.0 / efficiency } else { efficiency };
+        let ratio = mesh.gears[leave].teeth.to_f64() / mesh.gears[enter].teeth.to_f64();
+        let left = torque * ratio * if mesh.same_sense { -1.0 } else { 1.0 } * rho;
+        let mut torques = [0.0, 0.0, -(torque + left)];
+        torques[enter] = torque;
+        torques[leave] = left;
+        let relative_speeds = [0, 1].map(|g: usize| speeds[mesh.gears[g].member.0] - speeds[mesh.carrier.0]);
+        let driver = p_drives.map(|p| if p { enter } else { leave });
+        let potential_power = driver.map_or(0.0, |d| (torques[d] * relative_speeds[d]).max(0.0));
+        out.push(MeshFlow {
+            mesh: link.mesh,
+            torques,
+            relative_speeds,
+            driver,
+            potential_power,
+            efficiency,
+            loss: potential_power * (1.0 - efficiency),
+        });
+        torque = -left;
+    }
+}
+
+/// Torques in shift elements and holds: leaf by leaf, as far as equilibrium determines them.
+/// Returns also the reaction of the frame on each member.
+fn ties(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> (Vec<TieFlow>, Vec<Option<f64>>) {
+    let train = c.train;
+    let mut edges: Vec<([MemberId; 2], Option<ShiftElementId>, Option<f64>)> = c
+        .engaged
+        .iter()
+        .map(|e| (train.shift_elements[e.0].members, Some(*e), None))
+        .chain(c.held.iter().map(|m| ([*m, FRAME], None, None)))
+        .collect();
+    let mut need: Vec<f64> = demand.iter().zip(external).map(|(d, x)| d - x).collect();
+    let mut open = vec![0; need.len()];
+    for (m, ..) in &edges {
+        m.iter().for_each(|m| open[m.0] += 1);
+    }
+    loop {
+        let leaf = (0..edges.len()).find_map(|k| {
+            let (members, _, done) = &edges[k];
+            let at = (0..2).find(|&s| members[s] != FRAME && open[members[s].0] == 1)?;
+            done.is_none().then_some((k, at))
+        });
+        let Some((k, at)) = leaf else { break };
+        let [leaf, other] = [edges[k].0[at], edges[k].0[1 - at]];
+        let on_leaf = need[leaf.0];
+        need[other.0] += on_leaf;
+        need[leaf.0] = 0.0;
+        open[leaf.0] -= 1;
+        open[other.0] -= 1;
+        edges[k].2 = Some(if at == 0 { on_leaf } else { -on_leaf });
+    }
+    let mut reactions = vec![Some(0.0); need.len()];
+    for (members, _, torque) in &edges {
+        for (side, m) in members.iter().enumerate() {
+            if members[1 - side] == FRAME {
+                reactions[m.0] = match (reactions[m.0], torque) {
+                    (Some(r), Some(t)) => Some(r + if side == 0 { *t } else { -*t }),
+                    _ => None,
+                };
+            }
+        }
+    }
+    let ties =
+        edges.iter().filter_map(|(_, id, torque)| id.map(|element| TieFlow { element, torque: *torque })).collect();
+    (ties, reactions)
+}
+
+/// Reaction of the frame on each member, see [`ties`].
+pub(crate) fn reactions(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> Vec<Option<f64>> {
+    ties(c, demand, external).1
+}
+
+/// Sets, and meshes that share a planet, count as one station of the power flow.
+pub(crate) fn families(train: &Train) -> Vec<usize> {
+    let mut family: Vec<usize> = (0..train.meshes.len()).collect();
+    let planet = |m: MemberId| {
+        m != FRAME
+            && (train.members[m.0].kind == MemberKind::Planet
+                || !train.terminals.contains(&m)
+                    && !train.shift_elements.iter().any(|e| e.members.contains(&m))
+                    && train.meshes.iter().all(|x| x.carrier != m))
+    };
+    for i in 0..family.len() {
+        for j in 0..i {
+            let (a, b) = (&train.meshes[i], &train.meshes[j]);
+            let shared = a.gears.iter().any(|g| b.gears.iter().any(|h| g.member == h.member && planet(g.member)));
+            let same_set = a.set.is_some() && a.set == b.set;
+            if same_set || (a.carrier == b.carrier && a.carrier != FRAME && shared) {
+                let (from, to) = (family[i], family[j]);
+                family.iter_mut().filter(|f| **f == from).for_each(|f| *f = to);
+            }
+        }
+    }
+    family
+}
+
+/// Cycles in the directed graph of powers between shafts and sets, taken out one by one with the
+/// smallest power on them.
+fn circulations(c: &Configuration<'_>, meshes: &[MeshFlow], speeds: &[f64], input: f64) -> Vec<Circulation> {
+    let train = c.train;
+    if meshes.len() < 2 || input <= 0.0 {
+        return vec![];
+    }
+    let family = families(train);
+    // Power from node n into family f.
+    let mut power: HashMap<(usize, usize), f64> = HashMap::new();
+    for m in meshes {
+        let mesh = &train.meshes[m.mesh.0];
+        for (member, torque) in [mesh.gears[0].member, mesh.gears[1].member, mesh.carrier].into_iter().zip(m.torques) {
+            if c.inner[member.0] {
+                continue;
+            }
+            if let Some(n) = c.node(member) {
+                *power.entry((n, family[m.mesh.0])).or_default() += torque * speeds[member.0];
+            }
+        }
+    }
+    let smallest = 1e-9 * input;
+    // Directed edges between vertices: nodes first, families after them.
+    let mut edges: Vec<(usize, usize, f64)> = power
+        .iter()
+        .filter(|(_, p)| p.abs() > smallest)
+        .map(|(&(n, f), &p)| if p > 0.0 { (n, c.nodes + f, p) } else { (c.nodes + f, n, -p) })
+        .collect();
+    edges.sort_by_key(|e| (e.0, e.1));
+    let label = |v: usize| -> String {
+        if v >= c.nodes {
+            let k = (0..train.meshes.len()).find(|&k| family[k] == v - c.nodes).expect("a family has a mesh");
+            return match train.meshes[k].set {
+                Some(s) => train.sets[s].name.clone(),
+                None => train.meshes[k].name.clone(),
+            };
+        }
+        let names: Vec<_> = (1..train.members.len())
+            .filter(|&m| !c.inner[m] && c.node_of[m] == Some(v))
+            .map(|m| train.members[m].name.as_str())
+            .collect();
+        names.join("=")
+    };
+    let mut found: Vec<Circulation> = Vec::new();
+    while let Some(cycle) = find_cycle(&edges) {
+        let least = cycle.iter().map(|&k| edges[k].2).fold(f64::INFINITY, f64::min);
+        let path = cycle.iter().map(|&k| label(edges[k].0)).collect();
+        found.push(Circulation { power: least, path });
+        cycle.iter().for_each(|&k| edges[k].2 -= least);
+        edges.retain(|e| e.2 > smallest);
+    }
+    found.sort_by(|a, b| b.power.total_cmp(&a.power));
+    found
+}
+
+/// Edges of a directed cycle, if there is one: walk forward from each vertex, never twice along
+/// one edge.
+fn find_cycle(edges: &[(usize, usize, f64)]) -> Option<Vec<usize>> {
+    let mut dead = vec![false; edges.len()];
+    for start in 0..edges.len() {
+        if dead[start] {
+            continue;
+        }
+        let mut path = vec![start];
+        while let Some(&last) = path.last() {
+            let head = edges[last].1;
+            if let Some(k) = path.iter().position(|&e| edges[e].0 == head) {
+                return Some(path[k..].to_vec());
+            }
+            match (0..edges.len()).find(|&e| edges[e].0 == head && !dead[e] && !path.contains(&e)) {
+                Some(next) => path.push(next),
+                None => {
+                    dead[last] = true;
+                    path.pop();
+                }
+            }
+        }
+    }
+    None
+}
