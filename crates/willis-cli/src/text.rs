@@ -167,8 +167,10 @@ fn operation(o: &OperationReport) -> String {
     }
     out.push('\n');
     out += &format!("  verdict      {}", bold(verdict_word(o.verdict)));
-    if let Some(c) = &o.certificate {
-        out += &format!(": {}", certificate(c));
+    match (&o.certificate, o.verdict) {
+        (Some(c), Verdict::Unique | Verdict::Multiple) => out += &format!(": {}", certificate(c)),
+        (Some(c), Verdict::Locked) if c.method != "undecided" => out += ": no other equilibrium exists (proved)",
+        _ => {}
     }
     out.push('\n');
     if let Some(reason) = &o.reason {
@@ -232,6 +234,13 @@ fn solution(s: &SolutionReport) -> String {
                 let path = r.path.iter().chain(r.path.first()).cloned().collect::<Vec<_>>().join(" → ");
                 out += &format!("  recirculates {} {unit}{share}: {path}\n", power(r.power_w));
             }
+        }
+    }
+    // Tooth power far above the input is what makes high ratios lossy; no shaft shows it.
+    if let Some((name, m)) = s.meshes.iter().max_by(|a, b| a.1.potential_power_w.total_cmp(&b.1.potential_power_w)) {
+        let times = m.potential_power_w / s.input_power_w;
+        if times.is_finite() && times > 1.0 + 1e-9 {
+            out += &format!("  tooth power  {} times the input in {name}\n", significant(times, 4));
         }
     }
     out += &margins(s);
@@ -299,7 +308,7 @@ fn margins(s: &SolutionReport) -> String {
     let mut lines = Vec::new();
     if let Some(b) = &s.margin.torque {
         lines.push(format!(
-            "{} unloads when the torque on {} goes from {} to {} N m",
+            "load on {} vanishes when the torque on {} goes from {} to {} N m",
             b.mesh,
             b.member,
             significant(b.value, 5),
@@ -308,7 +317,7 @@ fn margins(s: &SolutionReport) -> String {
     }
     if let Some(b) = &s.margin.speed {
         lines.push(format!(
-            "{} stops moving when the speed of {} goes from {} to {} rpm",
+            "relative motion in {} stops when the speed of {} goes from {} to {} rpm",
             b.mesh,
             b.member,
             significant(rpm(b.value), 5),

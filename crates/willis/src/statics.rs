@@ -588,7 +588,8 @@ impl Equilibrium {
             }
             let at = rho(j) - 1.0 / slope;
             let (eta, now) = if solution.pattern[j] { (at, rho(j)) } else { (1.0 / at, 1.0 / rho(j)) };
-            if eta > 0.0 && eta < now {
+            // A threshold of zero (round-off) is no threshold.
+            if eta > 1e-9 && eta < now {
                 all.push((c.element, eta));
             }
         }

@@ -124,17 +124,20 @@ pub(super) fn report(
     let frame = Frame { c: &c, motion: &motion, problem: &problem, equilibrium: &equilibrium, operation };
     let mut all: Vec<SolutionReport> = answer.solutions.iter().map(|s| frame.solution(s)).collect();
     all.sort_by(|a, b| a.efficiency.partial_cmp(&b.efficiency).unwrap_or(std::cmp::Ordering::Equal));
-    for solution in &all {
-        for range in &solution.stiction {
-            diagnostics.push(Diagnostic::new(
-                Code::Stiction,
-                place,
-                format!(
-                    "{title}: a loaded mesh is at rest relative to its carrier; its friction leaves {} between {} and {}",
-                    range.what, short(range.low), short(range.high)
-                ),
-            ));
-        }
+    for solution in all.iter().filter(|s| !s.stiction.is_empty()) {
+        let ranges: Vec<_> = solution
+            .stiction
+            .iter()
+            .map(|r| format!("{} between {} and {}", r.what, short(r.low), short(r.high)))
+            .collect();
+        diagnostics.push(Diagnostic::new(
+            Code::Stiction,
+            place,
+            format!(
+                "{title}: a loaded mesh is at rest relative to its carrier; its friction leaves {}",
+                ranges.join(", ")
+            ),
+        ));
     }
     let driving = all.iter().any(|s| !s.all_dissipated);
     let one_freedom = c.degrees_of_freedom() == 1;
@@ -700,7 +703,7 @@ impl Frame<'_> {
         for m in 1..low.len() {
             if let (Some(l), Some(h)) = (low[m], high[m]) {
                 if h - l > 1e-9 * size {
-                    let what = format!("the torque on {} (N m)", c.train.members[m].name);
+                    let what = format!("the torque on {} in N m", c.train.members[m].name);
                     all.push(StictionRange { what, low: l, high: h });
                 }
             }

@@ -112,9 +112,9 @@ pub(super) fn row(
 /// Ratio of each state over that of the next one.
 pub(super) fn steps(ratios: &mut Named<StateReport>) {
     for k in 1..ratios.0.len() {
-        let (a, b) = (ratios.0[k - 1].1.value, ratios.0[k].1.value);
-        if let (Some(a), Some(b)) = (a, b) {
-            ratios.0[k - 1].1.step = (a * b > 0.0).then_some(a / b);
+        let [(_, a), (_, b)] = &ratios.0[k - 1..=k] else { unreachable!("two rows") };
+        if let (Some(i), Some(j), true) = (a.value, b.value, (&a.input, &a.output) == (&b.input, &b.output)) {
+            ratios.0[k - 1].1.step = (i * j > 0.0).then_some(i / j);
         }
     }
 }

@@ -24,7 +24,8 @@ pub(super) struct Assembler<'a> {
     pub diagnostics: &'a mut Diagnostics,
     pub members: Vec<Member>,
     pub meshes: Vec<Mesh>,
-    pub assumptions: Vec<String>,
+    /// What it is about, and what was assumed of it.
+    pub assumptions: Vec<(String, String)>,
     by_name: HashMap<String, MemberId>,
 }
 
@@ -46,6 +47,22 @@ impl Assembler<'_> {
             self.report(d);
         }
         found
+    }
+
+    pub fn assume(&mut self, about: &str, what: impl Into<String>) {
+        self.assumptions.push((about.to_owned(), what.into()));
+    }
+
+    /// The assumptions as sentences, one for all parts of which the same is assumed.
+    fn assumptions(&self) -> Vec<String> {
+        let mut all: Vec<(Vec<&str>, &str)> = Vec::new();
+        for (about, what) in &self.assumptions {
+            match all.iter_mut().find(|(_, w)| w == what) {
+                Some((list, _)) => list.push(about),
+                None => all.push((vec![about], what)),
+            }
+        }
+        all.into_iter().map(|(about, what)| format!("{}: {what}", about.join(", "))).collect()
     }
 
     pub fn add_planet(&mut self, name: String) -> MemberId {
@@ -120,7 +137,7 @@ impl Assembler<'_> {
         }
         let name = spec.name.clone().unwrap_or_else(|| format!("{}-{}", spec.gears[0].member, spec.gears[1].member));
         if efficiency.is_none() {
-            self.assumptions.push(format!("mesh {name}: no efficiency given, taken as lossless"));
+            self.assume(&name, "no efficiency given, taken as lossless");
         }
         let (Some(carrier), Ok([first, second])) = (carrier, <[Gear; 2]>::try_from(gears)) else { return };
         let mut wrong = |m: String, hint: &str| {
@@ -421,9 +438,8 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
     loose_members(&mut a, &shift_elements);
 
     let failed = a.diagnostics.iter().skip(before).any(|d| d.severity == crate::diagnostic::Severity::Error);
-    let Assembler { diagnostics, members, meshes, mut assumptions, .. } = a;
-    assumptions.sort();
-    assumptions.dedup();
+    let assumptions = a.assumptions();
+    let Assembler { diagnostics, members, meshes, .. } = a;
     (!failed).then(|| Train {
         name: spec.name,
         source: spec.source,

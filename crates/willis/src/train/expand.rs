@@ -87,9 +87,10 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
             // Any planets give the same ratio; a quarter of the difference is the inline arrangement.
             let mut or_nominal = |z: Option<Rational>, which: &str| {
                 z.unwrap_or_else(|| {
-                    a.assumptions.push(format!(
-                        "set {name}: teeth of the {which} planet not given, taken as (z_ring - z_sun)/4; its speed is nominal"
-                    ));
+                    a.assume(
+                        &format!("{name}.{which}_planet"),
+                        "teeth not given, taken as (z_ring - z_sun)/4; its speed is nominal",
+                    );
                     let z = Rational::new(ring.teeth - sun.teeth, 4);
                     if z.sign() > 0 { z } else { Rational::from(sun.teeth) }
                 })
@@ -148,9 +149,10 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 }
             };
             let z_short = z_short.unwrap_or_else(|| {
-                a.assumptions.push(format!(
-                    "set {name}: teeth of the short planet not given, taken as the long planet's; its speed is nominal"
-                ));
+                a.assume(
+                    &format!("{name}.short_planet"),
+                    "teeth not given, taken as the long planet's; its speed is nominal",
+                );
                 z_long.clone()
             });
             let (short, long) = ((planets[0], z_short, false), (planets[1], z_long, false));
@@ -181,9 +183,10 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 let key = format!("sides[{k}]");
                 let own = g.planet_teeth.map(|t| a.teeth(t, &format!("{place}.{key}.planet_teeth")));
                 let step = own.or(plain.clone()).unwrap_or_else(|| {
-                    a.assumptions.push(format!(
-                        "set {name}: teeth of the planet not given, taken as those of its side gears; its spin is nominal"
-                    ));
+                    a.assume(
+                        &format!("{name}.planet"),
+                        "teeth not given, taken as those of the first side gear; its spin is nominal",
+                    );
                     // All side gears on one plain planet: any planet gives the same ratios.
                     Rational::from(sides[0].teeth.max(1))
                 });
@@ -222,7 +225,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
         });
     }
     if count.is_none() {
-        a.assumptions.push(format!("set {name}: number of planets not given; assembly not checked, totals shown"));
+        a.assume(name, "number of planets not given: assembly not checked, torques and losses are totals");
     }
     Some(Set { name: name.clone(), kind, planets: count })
 }
@@ -242,7 +245,7 @@ fn efficiencies(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair
     let name = &set.name;
     match &set.efficiency {
         None => {
-            a.assumptions.push(format!("set {name}: no efficiency given, taken as lossless"));
+            a.assume(name, "no efficiency given, taken as lossless");
             vec![Efficiency::lossless(); pairs.len()]
         }
         Some(SetEfficiencySpec::Meshes { external, internal }) => {
@@ -272,16 +275,11 @@ fn efficiencies(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair
                             given += 1;
                         }
                     }
-                    a.assumptions.push(format!(
-                        "set {name}: the basic efficiency holds from each sun to the ring and is booked on the sun's mesh"
-                    ));
+                    a.assume(name, "the basic efficiency holds from each sun to the ring and is booked on the sun's mesh");
                 }
                 _ if sources == 2 => {
                     all[0] = eta;
-                    a.assumptions.push(format!(
-                        "set {name}: only the basic efficiency is known, booked on its mesh {}.{}",
-                        name, pairs[0].name
-                    ));
+                    a.assume(name, "only the basic efficiency is known; its loss is booked on the set's first mesh");
                 }
                 _ => {
                     let message = format!(
@@ -322,7 +320,7 @@ fn nominal(
         return Rational::ONE;
     }
     if z.is_integer() {
-        a.assumptions.push(format!("set {}: teeth of the {key} not given, taken as (z_ring - z_sun)/2 = {z}", set.name));
+        a.assume(&format!("{}.{key} ({z})", set.name), "teeth not given, taken as (z_ring - z_sun)/2");
     } else {
         let message = format!(
             "set `{name}`: the {key}'s teeth are not given and (z_ring - z_sun)/2 = ({ring} - {sun})/2 = {} is no integer",
