@@ -6,4 +6,5 @@ pub mod train;
 pub mod kinematics;
 pub mod statics;
 pub mod power_flow;
+pub mod compiled;
 pub mod analysis;

@@ -119,7 +119,7 @@ impl Flow {
                 .sum();
             external[x.member.0] = total;
         }
-        let (ties, reactions) = ties(c, &demand, &external);
+        let (ties, reactions) = self::ties(c, &demand, &external);
         let torques: Vec<Option<f64>> = (0..external.len()).map(|m| reactions[m].map(|r| external[m] + r)).collect();
 
         let powers: Vec<f64> = (0..external.len()).map(|m| external[m] * speeds[m]).collect();
@@ -173,7 +173,7 @@ fn walk(train: &Train, e: &Element, force: f64, p_drives: Option<bool>, speeds: 
 
 /// Torques in shift elements and holds: leaf by leaf, as far as equilibrium determines them.
 /// Returns also the reaction of the frame on each member.
-fn ties(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> (Vec<TieFlow>, Vec<Option<f64>>) {
+pub(crate) fn ties(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> (Vec<TieFlow>, Vec<Option<f64>>) {
     let train = c.train;
     let mut edges: Vec<([MemberId; 2], Option<ShiftElementId>, Option<f64>)> = c
         .engaged
@@ -215,11 +215,6 @@ fn ties(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> (Vec<TieFlow
     let ties =
         edges.iter().filter_map(|(_, id, torque)| id.map(|element| TieFlow { element, torque: *torque })).collect();
     (ties, reactions)
-}
-
-/// Reaction of the frame on each member, see [`ties`].
-pub(crate) fn reactions(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> Vec<Option<f64>> {
-    ties(c, demand, external).1
 }
 
 /// Sets, and meshes that share a planet, count as one station of the power flow.

@@ -520,6 +520,31 @@ fn keeps_sign(c: &Configuration<'_>, j: usize, n: usize) -> bool {
     low != 0 && low == high
 }
 
+/// The equations in floating point, for the compiled train.
+pub(crate) struct System {
+    /// Node of each row.
+    pub rows: Vec<usize>,
+    pub columns: Vec<SystemColumn>,
+}
+
+/// One element: its index, ρ when p or q drives, and (row, constant part, part times ρ).
+pub(crate) struct SystemColumn {
+    pub element: usize,
+    pub rho: [f64; 2],
+    pub entries: Vec<(usize, f64, f64)>,
+}
+
+impl Equilibrium {
+    pub(crate) fn system(&self) -> System {
+        let columns = self
+            .columns
+            .iter()
+            .map(|c| SystemColumn { element: c.element, rho: c.rho_floats, entries: c.floats.clone() })
+            .collect();
+        System { rows: self.rows.clone(), columns }
+    }
+}
+
 /// What a solution's pattern says beyond the solution itself.
 impl Equilibrium {
     /// ρ of an element of the configuration in a solution, exactly.

@@ -732,7 +732,8 @@ fn stuck_flow(frame: &Frame<'_>, s: &Solution) -> Vec<Option<f64>> {
             (None, None) => 0.0,
         };
     }
-    crate::power_flow::reactions(c, &demand, &external)
+    let (_, reactions) = crate::power_flow::ties(c, &demand, &external);
+    reactions
         .into_iter()
         .zip(&external)
         .map(|(r, x)| r.map(|r| r + x))

@@ -1,0 +1,198 @@
+//! Speed of the compiled train, the cold start, and nothing else. `cargo xtask bench` runs this
+//! beside the Python baselines of `benches/baselines/` and prints ratios.
+//!
+//! Checksums go to `target/willis-bench/checksums.jsonl` in the baselines' format, so that a ratio
+//! is only printed between programs that agree.
+
+use std::fs;
+use std::hint::black_box;
+use std::io::Write;
+use std::path::Path;
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use willis::analysis::{Selection, analyze};
+use willis::compiled::{CompiledTrain, Duty, Output, Points, ShaftDrag};
+use willis::train::{SetSpec, Train};
+
+fn points(default: usize) -> usize {
+    std::env::var("WILLIS_BENCH_POINTS").ok().and_then(|p| p.parse().ok()).unwrap_or(default)
+}
+
+/// xorshift64 of Marsaglia (2003), as in `benches/baselines/common.py`.
+struct Xorshift(u64);
+
+impl Xorshift {
+    fn new() -> Self {
+        Self(88172645463325252)
+    }
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+fn record(task: &str, sums: &[(&str, f64)], points: usize) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/willis-bench");
+    fs::create_dir_all(&folder).unwrap();
+    let mut file = fs::OpenOptions::new().create(true).append(true).open(folder.join("checksums.jsonl")).unwrap();
+    let sums: Vec<String> = sums.iter().map(|(k, v)| format!("\"{k}\": {v:?}")).collect();
+    writeln!(file, "{{\"task\": \"{task}\", \"peer\": \"willis\", \"points\": {points}, \"checksum\": {{{}}}}}", sums.join(", "))
+        .unwrap();
+}
+
+/// Pairwise, so that sums that nearly cancel can be compared.
+fn sum(x: &[f64]) -> f64 {
+    if x.len() <= 128 { x.iter().sum() } else { sum(&x[..x.len() / 2]) + sum(&x[x.len() / 2..]) }
+}
+
+fn power_split(outputs: &[Output]) -> CompiledTrain {
+    let train = Train::builder("power split")
+        .members(["sun", "ring", "carrier"])
+        .terminals(["sun", "ring", "carrier"])
+        .set(SetSpec::simple("P1", ("sun", 30), ("ring", 70), "carrier").basic_efficiency(0.97515))
+        .build()
+        .unwrap();
+    let mut duty = Duty::new(["sun", "carrier"], ["sun"]);
+    for (m, coulomb, viscous) in [("sun", 0.4, 1e-3), ("ring", 0.8, 2e-3), ("carrier", 0.6, 1.5e-3)] {
+        duty = duty.drag(m, ShaftDrag { coulomb, viscous });
+    }
+    for o in outputs {
+        duty = duty.output(o.clone());
+    }
+    train.compile(&duty).unwrap()
+}
+
+fn map(c: &mut Criterion) {
+    let n = points(10_000_000);
+    let mut random = Xorshift::new();
+    let (mut ws, mut wc, mut ts) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    for i in 0..n {
+        ws[i] = random.next() * 800.0 - 400.0;
+        wc[i] = random.next() * 300.0 - 150.0;
+        ts[i] = random.next() * 400.0 - 200.0;
+    }
+    let (speeds, torques): ([&[f64]; 2], [&[f64]; 1]) = ([&ws, &wc], [&ts]);
+    let input = Points { speeds: &speeds, torques: &torques };
+    let mut group = c.benchmark_group("map");
+    group.throughput(Throughput::Elements(n as u64)).sample_size(10);
+
+    let all = power_split(&[
+        Output::Torque("ring".into()),
+        Output::Torque("carrier".into()),
+        Output::Loss,
+        Output::Efficiency,
+    ]);
+    let mut work = all.workspace();
+    let mut out = vec![vec![0.5; n]; 4];
+    let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+    group.bench_function("map-all", |b| b.iter(|| all.evaluate_batch(&input, &mut work, &mut slices)));
+    let names = ["torque_ring", "torque_carrier", "loss", "efficiency"];
+    record("map-all", &names.iter().zip(&out).map(|(k, o)| (*k, sum(o))).collect::<Vec<_>>(), n);
+
+    let efficiency = power_split(&[Output::Efficiency]);
+    let mut work = efficiency.workspace();
+    let [e, ..] = &mut out[..] else { unreachable!() };
+    group.bench_function("map-efficiency", |b| {
+        b.iter(|| efficiency.evaluate_batch(&input, &mut work, &mut [&mut e[..]]));
+    });
+    record("map-efficiency", &[("efficiency", sum(e))], n);
+    let mut sums = [0.0];
+    group.bench_function("map-reduced", |b| b.iter(|| efficiency.sum_batch(&input, &mut work, black_box(&mut sums))));
+    record("map-reduced", &[("efficiency", sums[0])], n);
+    group.finish();
+}
+
+fn eight_speed() -> Train {
+    let text = include_str!("../../../examples/zf-8hp70.toml")
+        .replace("mesh_efficiency = { external = 0.98, internal = 0.99 }", "basic_efficiency = 0.97515");
+    Train::from_toml(&text).unwrap()
+}
+
+fn automatic(c: &mut Criterion) {
+    let n = points(1_000_000);
+    let mut random = Xorshift::new();
+    let (mut w, mut t) = (vec![0.0; n], vec![0.0; n]);
+    for i in 0..n {
+        w[i] = 80.0 + random.next() * 420.0;
+        t[i] = -100.0 + random.next() * 450.0;
+    }
+    let (speeds, torques): ([&[f64]; 1], [&[f64]; 1]) = ([&w], [&t]);
+    let input = Points { speeds: &speeds, torques: &torques };
+    let train = eight_speed();
+    let mut group = c.benchmark_group("automatic");
+    group.sample_size(20);
+    for (gear, elements) in [("1", "ABC"), ("3", "BCE"), ("5", "BCD")] {
+        let mut duty = Duty::new(["input"], ["input"]).state(gear);
+        for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
+            duty = duty.drag(m, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
+        }
+        for s in 1..=4 {
+            duty = duty.output(Output::MeshTorque(format!("P{s}.sun-planet")));
+        }
+        for e in elements.chars() {
+            duty = duty.output(Output::ShiftElementTorque(e.to_string()));
+        }
+        let compiled = train.compile(&duty.output(Output::Torque("output".into()))).unwrap();
+        let mut work = compiled.workspace();
+        let mut out = vec![vec![0.5; n]; 8];
+        let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+        let task = format!("automatic-gear-{gear}");
+        group.throughput(Throughput::Elements(n as u64));
+        group.bench_function(&task, |b| b.iter(|| compiled.evaluate_batch(&input, &mut work, &mut slices)));
+        let all: f64 = out.iter().map(|o| sum(o)).sum();
+        record(&task, &[("torque_out", sum(&out[7])), ("torque_all", all)], n);
+        if gear == "3" {
+            let mut one = [0.0; 8];
+            let mut i = 0;
+            group.throughput(Throughput::Elements(1));
+            group.bench_function("automatic-one-point", |b| {
+                b.iter(|| {
+                    i = (i + 1) % n;
+                    compiled.evaluate(&[w[i]], &[t[i]], &mut work, &mut one)
+                });
+            });
+        }
+    }
+    group.finish();
+}
+
+/// From text to every ratio and efficiency, driving and coasting, of every gear.
+fn cold(c: &mut Criterion) {
+    let mut group = c.benchmark_group("cold");
+    let text = include_str!("../../../examples/zf-8hp70.toml");
+    group.bench_function("eight-speed-text-to-answer", |b| {
+        b.iter(|| analyze(&Train::from_toml(black_box(text)).unwrap(), &Selection::default()).unwrap());
+    });
+    let texts: Vec<String> = [
+        include_str!("../../../examples/simpson-ford-c4.toml"),
+        include_str!("../../../examples/zf-4hp22.toml"),
+        include_str!("../../../examples/zf-5hp24.toml"),
+        include_str!("../../../examples/mercedes-w5a580.toml"),
+        include_str!("../../../examples/zf-8hp-gen4.toml"),
+        include_str!("../../../examples/mercedes-9g-tronic.toml"),
+        include_str!("../../../examples/ford-10r80.toml"),
+        include_str!("../../../examples/aisin-tl-80sn.toml"),
+        include_str!("../../../examples/aisin-ab80.toml"),
+    ]
+    .iter()
+    .flat_map(|t| {
+        [t.to_string(), t.replace("basic_efficiency = 0.98", "basic_efficiency = 0.97").replace("external = 0.98", "external = 0.97")]
+    })
+    .collect();
+    group.bench_function("nine-automatics-two-loss-levels", |b| {
+        b.iter(|| {
+            for text in &texts {
+                black_box(analyze(&Train::from_toml(text).unwrap(), &Selection::default()).unwrap());
+            }
+        });
+    });
+    let duty = Duty::new(["input"], ["input"]).state("5").output(Output::Efficiency);
+    let train = eight_speed();
+    group.bench_function("eight-speed-compile-one-gear", |b| b.iter(|| train.compile(black_box(&duty)).unwrap()));
+    group.finish();
+}
+
+criterion_group!(benches, map, automatic, cold);
+criterion_main!(benches);

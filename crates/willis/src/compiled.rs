@@ -1,0 +1,722 @@
+//! A train compiled for many operating points: no allocation and no elimination per point.
+//!
+//! For a fixed choice of what is prescribed (a [`Duty`]) every torque is linear in the prescribed
+//! torques, the prescribed speeds and the signs of the shaft speeds (Coulomb drag), once it is known
+//! which end of each element drives. So the sign patterns are factorised once, at compile time,
+//! and a point costs a small matrix-vector product and a check that the pattern fits. Batches are
+//! structures of arrays, worked off in chunks that stay in the first-level cache, with the vector
+//! width of the machine chosen at run time.
+//!
+//! The answers are those of [`crate::analysis`]: an element exactly at rest transmits without
+//! loss, and where the train has no certificate of uniqueness every pattern is tried and the number
+//! of solutions reported.
+
+mod kernel;
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
+use crate::kinematics::Configuration;
+use crate::power_flow;
+use crate::train::{MemberId, ShiftElementId, Train};
+
+use kernel::{CHUNK, Chunk, General, Single};
+
+/// Most elements with relative motion for which all sign patterns are kept.
+const MOST_MOVING: usize = 12;
+/// Most quantities that torques may depend on.
+const MOST_FEATURES: usize = 32;
+
+/// Drag of a shaft against the housing: `−coulomb · sign(ω) − viscous · ω`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ShaftDrag {
+    /// Part that does not depend on speed, N m.
+    pub coulomb: f64,
+    /// Part that grows with speed, N m s.
+    pub viscous: f64,
+}
+
+/// A result to compute for every point.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Output {
+    /// Speed of a member, rad/s.
+    Speed(String),
+    /// External torque on a terminal, N m.
+    Torque(String),
+    /// Torque that the first gear puts into a mesh, N m.
+    MeshTorque(String),
+    /// Torque that a shift element exerts on its first member, N m.
+    ShiftElementTorque(String),
+    /// Sum of the external powers: everything that is lost, drag included, W.
+    Loss,
+    /// Output power over input power of the terminals; 0 when no power enters.
+    Efficiency,
+}
+
+/// What is prescribed at every point, and what is wanted.
+///
+/// # Example
+/// See [`Train::compile`].
+#[derive(Clone, Debug, Default)]
+pub struct Duty {
+    state: Option<String>,
+    fixed: Vec<String>,
+    speeds: Vec<String>,
+    torques: Vec<String>,
+    drag: Vec<(String, ShaftDrag)>,
+    outputs: Vec<Output>,
+}
+
+impl Duty {
+    /// Prescribed: the speeds of some members and the external torques on some terminals, in the
+    /// order in which a point gives them.
+    pub fn new<'a>(
+        speeds: impl IntoIterator<Item = &'a str>,
+        torques: impl IntoIterator<Item = &'a str>,
+    ) -> Self {
+        Self {
+            speeds: speeds.into_iter().map(String::from).collect(),
+            torques: torques.into_iter().map(String::from).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// In a state of the shift table.
+    #[must_use]
+    pub fn state(mut self, name: &str) -> Self {
+        self.state = Some(name.into());
+        self
+    }
+
+    /// Holds a member from outside.
+    #[must_use]
+    pub fn fixed(mut self, member: &str) -> Self {
+        self.fixed.push(member.into());
+        self
+    }
+
+    /// Adds drag of a shaft against the housing.
+    #[must_use]
+    pub fn drag(mut self, member: &str, drag: ShaftDrag) -> Self {
+        self.drag.push((member.into(), drag));
+        self
+    }
+
+    /// Asks for a result; results come in the order asked for.
+    #[must_use]
+    pub fn output(mut self, output: Output) -> Self {
+        self.outputs.push(output);
+        self
+    }
+}
+
+/// How many equilibria a point has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PointVerdict {
+    /// One; the outputs are its.
+    Unique,
+    /// Several; the outputs are those of the pattern with the lowest number.
+    Multiple,
+    /// None: friction locks the train for this load. The outputs are NaN.
+    Locked,
+}
+
+/// A train ready to be evaluated at many points.
+#[derive(Clone, Debug)]
+pub struct CompiledTrain {
+    outputs: Vec<Column>,
+    speeds: usize,
+    torques: usize,
+    general: General,
+    single: Option<Single>,
+    arch: pulp::Arch,
+}
+
+/// Where an output comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Column {
+    /// A row over the prescribed speeds.
+    Speed(usize),
+    /// A prescribed torque, handed through.
+    Input(usize),
+    /// A linear output of the statics.
+    Linear(usize),
+    Loss,
+    Efficiency,
+}
+
+/// Room for the work on a batch; make it once and use it again.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    chunk: Chunk,
+    /// The pattern that fitted last.
+    hint: usize,
+}
+
+impl Train {
+    /// Compiles the train for a duty.
+    ///
+    /// # Errors
+    /// Names that do not exist, speeds that do not determine the motion or contradict each other,
+    /// loads missing or too many, a redundant train, or more than 12 elements whose direction of
+    /// power matters.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::compiled::{Duty, Output};
+    /// use willis::train::{SetSpec, Train};
+    ///
+    /// let train = Train::builder("power split")
+    ///     .members(["sun", "ring", "carrier"])
+    ///     .terminals(["sun", "ring", "carrier"])
+    ///     .set(SetSpec::simple("P1", ("sun", 30), ("ring", 70), "carrier").mesh_efficiency(0.99))
+    ///     .build()?;
+    /// let duty = Duty::new(["sun", "carrier"], ["sun"])
+    ///     .output(Output::Torque("ring".into()))
+    ///     .output(Output::Efficiency);
+    /// let compiled = train.compile(&duty)?;
+    /// let mut work = compiled.workspace();
+    /// let mut out = [0.0; 2];
+    /// compiled.evaluate(&[300.0, 100.0], &[10.0], &mut work, &mut out);
+    /// // The sun drives (10 N m · 200 rad/s > 0): T_r = i0 η T_s, i0 = 7/3.
+    /// assert!((out[0] - 7.0 / 3.0 * 0.9801 * 10.0).abs() < 1e-12);
+    /// # Ok::<(), willis::diagnostic::Diagnostics>(())
+    /// ```
+    pub fn compile(&self, duty: &Duty) -> Result<CompiledTrain, Diagnostics> {
+        Compiler::new(self, duty)?.compile()
+    }
+}
+
+struct Compiler<'t> {
+    train: &'t Train,
+    c: Configuration<'t>,
+    speeds: Vec<MemberId>,
+    torques: Vec<MemberId>,
+    drag: Vec<(MemberId, ShaftDrag)>,
+    outputs: Vec<Output>,
+}
+
+fn fail(code: Code, message: String, hint: &str) -> Diagnostics {
+    let mut all = Diagnostics::default();
+    all.push(Diagnostic::new(code, "duty", message).hint(hint));
+    all
+}
+
+impl<'t> Compiler<'t> {
+    fn new(train: &'t Train, duty: &Duty) -> Result<Self, Diagnostics> {
+        let mut wrong = Diagnostics::default();
+        let mut find = |names: &[String]| -> Vec<MemberId> {
+            let mut ids = Vec::new();
+            for name in names {
+                match train.member(name) {
+                    Some(id) => ids.push(id),
+                    None => {
+                        let d = Diagnostic::new(Code::UnknownName, "duty", format!("there is no member `{name}`"));
+                        wrong.push(d.suggest(name, train.members.iter().map(|m| m.name.as_str())));
+                    }
+                }
+            }
+            ids
+        };
+        let speeds = find(&duty.speeds);
+        let torques = find(&duty.torques);
+        let fixed = find(&duty.fixed);
+        let dragged = find(&duty.drag.iter().map(|d| d.0.clone()).collect::<Vec<_>>());
+        let state = duty.state.as_ref().map(|name| {
+            train.state(name).ok_or_else(|| {
+                let d = Diagnostic::new(Code::UnknownSelection, "duty", format!("the train has no state `{name}`"));
+                d.suggest(name, train.states.iter().map(|s| s.name.as_str()))
+            })
+        });
+        let engaged: &[ShiftElementId] = match &state {
+            Some(Ok(s)) => &s.engaged,
+            Some(Err(d)) => {
+                wrong.push(d.clone());
+                &[]
+            }
+            None => &[],
+        };
+        for t in torques.iter().filter(|t| !train.terminals.contains(t)) {
+            let message = format!("`{}` is no terminal and takes no torque", train.member_name(*t));
+            wrong.push(Diagnostic::new(Code::NotATerminal, "duty", message));
+        }
+        if wrong.has_errors() {
+            return Err(wrong);
+        }
+        let keep: Vec<MemberId> = speeds.iter().chain(&dragged).copied().collect();
+        let c = Configuration::new(train, engaged, &fixed, &keep);
+        let drag = dragged.into_iter().zip(duty.drag.iter().map(|d| d.1)).collect();
+        Ok(Self { train, c, speeds, torques, drag, outputs: duty.outputs.clone() })
+    }
+
+    fn compile(self) -> Result<CompiledTrain, Diagnostics> {
+        let (train, c) = (self.train, &self.c);
+        let transfer = c.transfer(&self.speeds);
+        if !transfer.conflicts.is_empty() || self.speeds.len() > c.degrees_of_freedom() {
+            return Err(fail(
+                Code::ContradictorySpeeds,
+                format!("{} speeds are prescribed and {} can be chosen", self.speeds.len(), c.degrees_of_freedom()),
+                "prescribe as many independent speeds as there are degrees of freedom",
+            ));
+        }
+        let d = self.speeds.len();
+        let speed_row = |m: MemberId| -> Option<Vec<f64>> {
+            transfer.speeds[m.0].as_ref().map(|r| r.iter().map(Rational::to_f64).collect())
+        };
+
+        // Terminals: loaded, or open. Their nodes give the rows.
+        let mut open: Vec<(MemberId, usize)> = Vec::new();
+        for &t in train.terminals.iter().filter(|t| !self.torques.contains(t)) {
+            if let Some(n) = c.node(t) {
+                if open.iter().any(|o| o.1 == n) {
+                    return Err(fail(
+                        Code::MissingTorque,
+                        format!("`{}` turns with another terminal that has no torque either", train.member_name(t)),
+                        "prescribe the torque of one of them",
+                    ));
+                }
+                open.push((t, n));
+            }
+        }
+        let mut loaded: Vec<usize> = self.torques.iter().filter_map(|t| c.node(*t)).collect();
+        loaded.extend(self.drag.iter().filter_map(|(m, _)| c.node(*m)));
+        let open_nodes: Vec<usize> = open.iter().map(|o| o.1).collect();
+        // Generic directions of motion: an element at rest whatever the speeds stays at rest.
+        let relative: Vec<Option<Vec<f64>>> = c
+            .elements
+            .iter()
+            .map(|e| {
+                let (p, q) = (transfer.speeds[e.p.0].as_ref()?, transfer.speeds[e.carrier.0].as_ref()?);
+                let sign = Rational::from(i64::from(e.a.sign()));
+                Some(p.iter().zip(q).map(|(p, q)| (&(p - q) * &sign).to_f64()).collect())
+            })
+            .collect();
+        let sigma: Vec<Option<i8>> =
+            relative.iter().map(|r| r.as_ref().map(|r| i8::from(r.iter().any(|x| *x != 0.0)))).collect();
+        let equilibrium = crate::statics::Equilibrium::new(c, &sigma, &open_nodes, &loaded).map_err(|why| {
+            use crate::statics::Unsolvable::*;
+            match why {
+                MissingLoads(n) => fail(Code::MissingTorque, format!("{n} more torques are needed"), "list them in the duty"),
+                TooManyLoads(n) => {
+                    fail(Code::TooManyTorques, format!("{n} torques too many"), "leave as many terminals open as there are degrees of freedom")
+                }
+                UndeterminedSpeed => fail(Code::Undetermined, "a loaded part has no determined speed".into(), "prescribe another speed"),
+                Indeterminate => fail(Code::Indeterminate, "the train is statically indeterminate".into(), "remove the redundant mesh"),
+            }
+        })?;
+        let system = equilibrium.system();
+        let k = system.columns.len();
+        let moving: Vec<usize> = (0..k).filter(|&j| system.columns[j].rho[0] != system.columns[j].rho[1]).collect();
+        if moving.len() > MOST_MOVING {
+            let message = format!("{} elements whose direction of power matters: at most {MOST_MOVING} are compiled", moving.len());
+            return Err(fail(Code::TooLarge, message, "split the train at a shaft"));
+        }
+
+        // Features: prescribed torques, prescribed speeds, signs of dragged shafts.
+        let l = self.torques.len();
+        let mut coulomb: Vec<(Vec<f64>, f64)> = Vec::new(); // speed row of a sign, and its reference for one freedom
+        let mut drag_of: Vec<(MemberId, usize, f64, Vec<f64>, ShaftDrag)> = Vec::new();
+        for (m, drag) in &self.drag {
+            let Some(row) = speed_row(*m) else {
+                return Err(fail(
+                    Code::Undetermined,
+                    format!("`{}` has drag and no determined speed", train.member_name(*m)),
+                    "prescribe another speed",
+                ));
+            };
+            if c.node(*m).is_none() || row.iter().all(|x| *x == 0.0) {
+                continue;
+            }
+            // Shafts that turn in fixed proportion share one sign.
+            let parallel = |other: &Vec<f64>| {
+                let at = row.iter().position(|x| *x != 0.0)?;
+                let factor = other[at] / row[at];
+                (factor != 0.0 && row.iter().zip(other).all(|(a, b)| (b - a * factor).abs() <= 1e-15 * b.abs()))
+                    .then_some(factor.signum())
+            };
+            let found = coulomb.iter().enumerate().find_map(|(i, (other, _))| parallel(other).map(|s| (i, s)));
+            let (index, sign) = found.unwrap_or_else(|| {
+                coulomb.push((row.clone(), 1.0));
+                (coulomb.len() - 1, 1.0)
+            });
+            drag_of.push((*m, index, sign, row, *drag));
+        }
+        let features = l + d + coulomb.len();
+        if features > MOST_FEATURES {
+            return Err(fail(Code::TooLarge, format!("{features} independent inputs"), "prescribe fewer"));
+        }
+
+        // External torque on each member from each feature (drag and prescribed torques).
+        let mut external = vec![vec![0.0; train.members.len()]; features];
+        for (i, t) in self.torques.iter().enumerate() {
+            external[i][t.0] += 1.0;
+        }
+        for (m, index, sign, row, drag) in &drag_of {
+            external[l + d + index][m.0] -= drag.coulomb * sign;
+            for (i, w) in row.iter().enumerate() {
+                external[l + i][m.0] -= drag.viscous * w;
+            }
+        }
+        let load = |feature: usize, node: usize| -> f64 {
+            (1..train.members.len()).filter(|&m| !c.inner[m] && c.node_of[m] == Some(node)).map(|m| external[feature][m]).sum()
+        };
+        let right: Vec<Vec<f64>> =
+            (0..features).map(|i| system.rows.iter().map(|&n| load(i, n)).collect()).collect();
+
+        // Linear outputs: open terminals first, then what was asked for.
+        let mut linear: Vec<Linear> = open.iter().map(|o| Linear::Torque(o.0)).collect();
+        let mut columns = Vec::new();
+        let mut speed_rows: Vec<Vec<f64>> = Vec::new();
+        for output in &self.outputs {
+            columns.push(self.column(output, &mut linear, &mut speed_rows, &speed_row)?);
+        }
+        let probe = |forces: &dyn Fn(usize) -> f64, rho: f64, features_on: Option<usize>| -> Vec<f64> {
+            self.probe(&open, forces, rho, features_on.map(|i| &external[i][..]), &linear)
+        };
+        let zero = probe(&|_| 0.0, 1.0, None);
+        debug_assert!(zero.iter().all(|x| *x == 0.0));
+        let direct: Vec<Vec<f64>> = (0..features).map(|i| probe(&|_| 0.0, 1.0, Some(i))).collect();
+        let per_force: Vec<[Vec<f64>; 2]> = system
+            .columns
+            .iter()
+            .map(|col| {
+                let unit = |e: usize| if e == col.element { 1.0 } else { 0.0 };
+                let at_zero = probe(&unit, 0.0, None);
+                let slope = probe(&unit, 1.0, None).iter().zip(&at_zero).map(|(a, b)| a - b).collect();
+                [at_zero, slope]
+            })
+            .collect();
+
+        let terminals: Vec<kernel::Terminal> = self
+            .torques
+            .iter()
+            .enumerate()
+            .map(|(i, t)| (*t, kernel::TorqueFrom::Input(i)))
+            .chain(open.iter().enumerate().map(|(i, o)| (o.0, kernel::TorqueFrom::Linear(i))))
+            .filter(|(t, _)| c.node(*t).is_some())
+            .map(|(t, torque)| {
+                let row = speed_row(t).unwrap_or_else(|| vec![0.0; d]);
+                kernel::Terminal { torque, speed: row }
+            })
+            .collect();
+        let general = General::new(kernel::Parts {
+            speeds: d,
+            torques: l,
+            signs: coulomb.into_iter().map(|s| s.0).collect(),
+            columns: system
+                .columns
+                .iter()
+                .map(|col| kernel::Element {
+                    rho: col.rho,
+                    relative: relative[col.element].clone().unwrap_or_else(|| vec![0.0; d]),
+                    entries: col.entries.clone(),
+                })
+                .collect(),
+            right,
+            direct,
+            per_force,
+            speed_rows,
+            terminals,
+            linear: linear.len(),
+            certified: equilibrium.certificate().unique_for_every_load(),
+        });
+        let single = self.single(&general, &open, &drag_of, &columns);
+        Ok(CompiledTrain { outputs: columns, speeds: d, torques: l, general, single, arch: pulp::Arch::new() })
+    }
+
+    /// The fused kernel for one set with two freedoms, if this duty is of that kind.
+    fn single(
+        &self,
+        general: &General,
+        open: &[(MemberId, usize)],
+        drag: &[(MemberId, usize, f64, Vec<f64>, ShaftDrag)],
+        columns: &[Column],
+    ) -> Option<Single> {
+        let [loaded] = self.torques[..] else { return None };
+        let [first, second] = self.speeds[..] else { return None };
+        let node = |m: MemberId| self.c.node(m);
+        let terminals = [node(loaded)?, open.first()?.1, open.get(1)?.1];
+        let third = *terminals.iter().find(|n| Some(**n) != node(first) && Some(**n) != node(second))?;
+        let order = [node(first)?, node(second)?, third];
+        let known = columns.iter().all(|c| match c {
+            Column::Linear(i) => *i < 2,
+            Column::Input(_) | Column::Loss | Column::Efficiency => true,
+            Column::Speed(_) => false,
+        });
+        if !known || open.len() != 2 || order[0] == order[1] || !order.iter().all(|n| terminals.contains(n)) {
+            return None;
+        }
+        let mut drags = [ShaftDrag::default(); 3];
+        for (m, .., d) in drag {
+            let at = order.iter().position(|n| node(*m) == Some(*n))?;
+            drags[at].coulomb += d.coulomb;
+            drags[at].viscous += d.viscous;
+        }
+        let place = |n: usize| order.iter().position(|o| *o == n).expect("checked above");
+        Single::new(general, place(terminals[0]), [place(terminals[1]), place(terminals[2])], drags)
+    }
+
+    fn column(
+        &self,
+        output: &Output,
+        linear: &mut Vec<Linear>,
+        speed_rows: &mut Vec<Vec<f64>>,
+        speed_row: &dyn Fn(MemberId) -> Option<Vec<f64>>,
+    ) -> Result<Column, Diagnostics> {
+        let train = self.train;
+        let unknown = |what: &str, name: &str| {
+            fail(Code::UnknownName, format!("there is no {what} `{name}` to give that result"), "check the name")
+        };
+        let mut add = |x: Linear| {
+            let at = linear.iter().position(|y| *y == x).unwrap_or_else(|| {
+                linear.push(x);
+                linear.len() - 1
+            });
+            Column::Linear(at)
+        };
+        Ok(match output {
+            Output::Speed(name) => {
+                let m = train.member(name).ok_or_else(|| unknown("member", name))?;
+                let row = speed_row(m).ok_or_else(|| {
+                    fail(Code::Undetermined, format!("the speed of `{name}` is not determined"), "prescribe another speed")
+                })?;
+                speed_rows.push(row);
+                Column::Speed(speed_rows.len() - 1)
+            }
+            Output::Torque(name) => {
+                let m = train.member(name).ok_or_else(|| unknown("terminal", name))?;
+                match self.torques.iter().position(|t| *t == m) {
+                    Some(i) => Column::Input(i),
+                    None => add(Linear::Torque(m)),
+                }
+            }
+            Output::MeshTorque(name) => {
+                let mesh = train.mesh(name).ok_or_else(|| unknown("mesh", name))?;
+                let first = self.c.elements.iter().position(|e| e.links[0].mesh == mesh && e.links[0].along);
+                match first {
+                    Some(e) => add(Linear::ElementTorque(e)),
+                    None => {
+                        return Err(fail(
+                            Code::UnknownName,
+                            format!("the torque of mesh `{name}` follows from that of the mesh before it"),
+                            "ask for the first mesh of the set",
+                        ));
+                    }
+                }
+            }
+            Output::ShiftElementTorque(name) => {
+                let e = train.shift_elements.iter().position(|e| e.name == *name);
+                let e = ShiftElementId(e.ok_or_else(|| unknown("shift element", name))?);
+                if !self.c.engaged.contains(&e) {
+                    return Err(fail(Code::UnknownName, format!("`{name}` is not engaged"), "name an engaged element"));
+                }
+                add(Linear::Tie(e))
+            }
+            Output::Loss => Column::Loss,
+            Output::Efficiency => Column::Efficiency,
+        })
+    }
+
+    /// The linear outputs for given forces of the elements, all with one ρ, and external torques.
+    fn probe(
+        &self,
+        open: &[(MemberId, usize)],
+        forces: &dyn Fn(usize) -> f64,
+        rho: f64,
+        external: Option<&[f64]>,
+        linear: &[Linear],
+    ) -> Vec<f64> {
+        let c = &self.c;
+        let mut demand = vec![0.0; self.train.members.len()];
+        for (j, e) in c.elements.iter().enumerate() {
+            let f = forces(j);
+            let (a, b) = (e.a.to_f64(), e.b.to_f64() * rho);
+            for (member, x) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
+                demand[member.0] += f * x;
+            }
+        }
+        let mut total = external.map_or_else(|| vec![0.0; demand.len()], <[f64]>::to_vec);
+        let mut balance = vec![0.0; demand.len()];
+        for (member, node) in open {
+            balance[member.0] = (1..demand.len())
+                .filter(|&m| !c.inner[m] && c.node_of[m] == Some(*node))
+                .map(|m| demand[m] - total[m])
+                .sum();
+        }
+        // The frame of a tie sees drag and terminal torque together; the terminal only its own.
+        total.iter_mut().zip(&balance).for_each(|(t, b)| *t += b);
+        let (ties, reactions) = power_flow::ties(c, &demand, &total);
+        linear
+            .iter()
+            .map(|x| match x {
+                Linear::Torque(m) => balance[m.0] + reactions[m.0].unwrap_or(f64::NAN),
+                Linear::ElementTorque(e) => forces(*e) * c.elements[*e].a.to_f64(),
+                Linear::Tie(id) => ties.iter().find(|t| t.element == *id).and_then(|t| t.torque).unwrap_or(f64::NAN),
+            })
+            .collect()
+    }
+}
+
+/// A result that is linear in the features for a given sign pattern.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Linear {
+    Torque(MemberId),
+    /// Torque of end p into an element.
+    ElementTorque(usize),
+    Tie(ShiftElementId),
+}
+
+/// Inputs of a batch: one slice for each prescribed speed and torque, all of one length.
+#[derive(Clone, Copy, Debug)]
+pub struct Points<'a> {
+    /// Prescribed speeds, rad/s.
+    pub speeds: &'a [&'a [f64]],
+    /// Prescribed torques, N m.
+    pub torques: &'a [&'a [f64]],
+}
+
+impl Points<'_> {
+    fn len(&self, speeds: usize, torques: usize) -> usize {
+        assert_eq!((self.speeds.len(), self.torques.len()), (speeds, torques), "inputs as the duty names them");
+        let n = self.speeds.first().or(self.torques.first()).map_or(0, |s| s.len());
+        assert!(self.speeds.iter().chain(self.torques).all(|s| s.len() == n), "inputs of one length");
+        n
+    }
+}
+
+impl CompiledTrain {
+    /// Room for evaluation; reuse it.
+    pub fn workspace(&self) -> Workspace {
+        Workspace { chunk: Chunk::new(&self.general), hint: 0 }
+    }
+
+    /// Number of results per point.
+    pub fn outputs(&self) -> usize {
+        self.outputs.len()
+    }
+
+    /// Whether every load has exactly one solution.
+    pub fn is_certified(&self) -> bool {
+        self.general.certified()
+    }
+
+    /// Evaluates one point. Nothing is allocated.
+    ///
+    /// # Panics
+    /// If the slices are not as long as the duty has speeds, torques and outputs.
+    pub fn evaluate(&self, speeds: &[f64], torques: &[f64], work: &mut Workspace, out: &mut [f64]) -> PointVerdict {
+        assert_eq!((speeds.len(), torques.len(), out.len()), (self.speeds, self.torques, self.outputs.len()));
+        let mut linear = [0.0; kernel::MOST_LINEAR];
+        let linear = &mut linear[..self.general.linear()];
+        let verdict = self.general.point(speeds, torques, &mut work.hint, linear);
+        let (power_in, power) = self.general.powers(speeds, torques, linear);
+        for (o, c) in out.iter_mut().zip(&self.outputs) {
+            *o = match *c {
+                Column::Speed(i) => self.general.speed(i, speeds),
+                Column::Input(i) => torques[i],
+                Column::Linear(i) => linear[i],
+                Column::Loss => power,
+                Column::Efficiency if power_in > 0.0 => (power_in - power) / power_in,
+                Column::Efficiency => if power_in.is_nan() { f64::NAN } else { 0.0 },
+            };
+        }
+        verdict
+    }
+
+    /// Evaluates many points into one slice per output. Returns how many points are not unique.
+    ///
+    /// # Panics
+    /// If a slice has another length than the inputs.
+    pub fn evaluate_batch(&self, points: &Points<'_>, work: &mut Workspace, out: &mut [&mut [f64]]) -> usize {
+        let n = points.len(self.speeds, self.torques);
+        assert_eq!(out.len(), self.outputs.len(), "one slice for each output of the duty");
+        assert!(out.iter().all(|o| o.len() == n), "outputs as long as the inputs");
+        if let Some(single) = &self.single {
+            let mut direct = kernel::SingleOut::default();
+            let mut copies: Vec<usize> = Vec::new();
+            let mut rest = out.iter_mut();
+            // Every quantity is written once, straight to where it was asked for.
+            for (k, c) in self.outputs.iter().enumerate() {
+                let o: &mut [f64] = rest.next().expect("as many as columns");
+                match *c {
+                    Column::Linear(i) if direct.torque[i].is_none() => direct.torque[i] = Some(o),
+                    Column::Loss if direct.loss.is_none() => direct.loss = Some(o),
+                    Column::Efficiency if direct.efficiency.is_none() => direct.efficiency = Some(o),
+                    Column::Input(i) => o.copy_from_slice(points.torques[i]),
+                    _ => copies.push(k),
+                }
+            }
+            single.run(self.arch, points.speeds[0], points.speeds[1], points.torques[0], direct);
+            for k in copies {
+                let from = self.outputs.iter().position(|c| *c == self.outputs[k]).expect("the first of its kind");
+                let (head, tail) = out.split_at_mut(k);
+                tail[0].copy_from_slice(head[from]);
+            }
+            return 0;
+        }
+        let mut odd = 0;
+        let mut start = 0;
+        while start < n {
+            let len = CHUNK.min(n - start);
+            let range = start..start + len;
+            odd += self.general.chunk(self.arch, points, range.clone(), &mut work.chunk, &mut work.hint, self.needs_power());
+            for (o, c) in out.iter_mut().zip(&self.outputs) {
+                let o = &mut o[range.clone()];
+                match *c {
+                    Column::Input(i) => o.copy_from_slice(&points.torques[i][range.clone()]),
+                    _ => o.copy_from_slice(self.chunk_column(c, work, len)),
+                }
+            }
+            start += len;
+        }
+        odd
+    }
+
+    /// The sum of each output over many points, with no result stored.
+    ///
+    /// # Panics
+    /// If `sums` is not as long as the outputs.
+    pub fn sum_batch(&self, points: &Points<'_>, work: &mut Workspace, sums: &mut [f64]) -> usize {
+        let n = points.len(self.speeds, self.torques);
+        assert_eq!(sums.len(), self.outputs.len(), "one sum for each output of the duty");
+        sums.fill(0.0);
+        let mut odd = 0;
+        let mut start = 0;
+        while start < n {
+            let len = CHUNK.min(n - start);
+            let range = start..start + len;
+            match &self.single {
+                Some(single) => {
+                    let only_efficiency = self.outputs.iter().all(|c| *c == Column::Efficiency);
+                    single.chunk(self.arch, points, range.clone(), &mut work.chunk, only_efficiency);
+                }
+                None => {
+                    odd += self.general.chunk(self.arch, points, range.clone(), &mut work.chunk, &mut work.hint, self.needs_power());
+                }
+            }
+            for (sum, c) in sums.iter_mut().zip(&self.outputs) {
+                *sum += match *c {
+                    Column::Input(i) => kernel::sum(self.arch, &points.torques[i][range.clone()]),
+                    _ => kernel::sum(self.arch, self.chunk_column(c, work, len)),
+                };
+            }
+            start += len;
+        }
+        odd
+    }
+
+    fn needs_power(&self) -> bool {
+        self.outputs.iter().any(|c| matches!(c, Column::Loss | Column::Efficiency))
+    }
+
+    fn chunk_column<'w>(&self, c: &Column, work: &'w Workspace, len: usize) -> &'w [f64] {
+        match *c {
+            Column::Speed(i) => &work.chunk.speeds[i][..len],
+            Column::Linear(i) => &work.chunk.linear[i][..len],
+            Column::Loss => &work.chunk.loss[..len],
+            Column::Efficiency => &work.chunk.efficiency[..len],
+            Column::Input(_) => unreachable!("handed through by the caller"),
+        }
+    }
+}

@@ -1,0 +1,931 @@
+//! The arithmetic of a compiled train, point by point and in chunks.
+//!
+//! Chunks are worked off in passes over arrays that the compiler vectorises; [`pulp`] picks the
+//! vector width at run time. No fused multiply-add: the same input gives the same bits at every
+//! width.
+
+use std::ops::Range;
+
+use super::{Points, PointVerdict, ShaftDrag};
+
+/// Points per chunk: every array of a chunk stays in the first-level cache.
+pub(super) const CHUNK: usize = 256;
+/// Most linear outputs.
+pub(super) const MOST_LINEAR: usize = 64;
+/// Most elements.
+const MOST_ELEMENTS: usize = 64;
+/// Patterns tried on whole chunks; other lanes go one by one.
+const RECENT: usize = 4;
+
+/// A pattern number that means: not found yet.
+const NONE: u64 = u64::MAX;
+/// A pattern number that means: an element is at rest at this point.
+const AT_REST: u64 = u64::MAX - 1;
+
+/// Where the torque of a terminal comes from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum TorqueFrom {
+    Input(usize),
+    Linear(usize),
+}
+
+/// A terminal, for the power balance.
+#[derive(Clone, Debug)]
+pub(super) struct Terminal {
+    pub torque: TorqueFrom,
+    /// Over the prescribed speeds.
+    pub speed: Vec<f64>,
+}
+
+/// An element of the equilibrium.
+#[derive(Clone, Debug)]
+pub(super) struct Element {
+    pub rho: [f64; 2],
+    /// Relative speed of end p over the prescribed speeds, with the sign of its coefficient.
+    pub relative: Vec<f64>,
+    pub entries: Vec<(usize, f64, f64)>,
+}
+
+/// What the compiler hands over.
+#[derive(Clone, Debug)]
+pub(super) struct Parts {
+    pub speeds: usize,
+    pub torques: usize,
+    /// Speed rows whose signs are features.
+    pub signs: Vec<Vec<f64>>,
+    pub columns: Vec<Element>,
+    /// Right-hand side by feature.
+    pub right: Vec<Vec<f64>>,
+    /// Linear outputs by feature, with no force in any element.
+    pub direct: Vec<Vec<f64>>,
+    /// Linear outputs per force: constant part, and part times ρ.
+    pub per_force: Vec<[Vec<f64>; 2]>,
+    pub speed_rows: Vec<Vec<f64>>,
+    pub terminals: Vec<Terminal>,
+    pub linear: usize,
+    pub certified: bool,
+}
+
+/// Any train.
+#[derive(Clone, Debug)]
+pub(super) struct General {
+    p: Parts,
+    features: usize,
+    /// Columns with two values of ρ and relative motion.
+    moving: Vec<usize>,
+    /// By pattern: forces of the moving elements over the features; `None` where singular.
+    forces: Vec<Option<Vec<Vec<f64>>>>,
+    /// By pattern: linear outputs over the features.
+    table: Vec<Vec<Vec<f64>>>,
+}
+
+/// Work arrays of a chunk.
+#[derive(Clone, Debug)]
+pub(super) struct Chunk {
+    pub speeds: Vec<[f64; CHUNK]>,
+    pub linear: Vec<[f64; CHUNK]>,
+    pub loss: [f64; CHUNK],
+    pub efficiency: [f64; CHUNK],
+    signs: Vec<[f64; CHUNK]>,
+    sigma: Vec<[f64; CHUNK]>,
+    worst: [f64; CHUNK],
+    which: [u64; CHUNK],
+    power_in: [f64; CHUNK],
+    speed: [f64; CHUNK],
+    recent: [usize; RECENT],
+}
+
+impl Chunk {
+    pub fn new(g: &General) -> Self {
+        let many = |n: usize| vec![[0.0; CHUNK]; n];
+        let last = g.forces.len() - 1;
+        Self {
+            speeds: many(g.p.speed_rows.len()),
+            linear: many(g.p.linear),
+            loss: [0.0; CHUNK],
+            efficiency: [0.0; CHUNK],
+            signs: many(g.p.signs.len()),
+            sigma: many(g.moving.len()),
+            worst: [0.0; CHUNK],
+            which: [0; CHUNK],
+            power_in: [0.0; CHUNK],
+            speed: [0.0; CHUNK],
+            recent: [0, last, last, last],
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |s, (a, b)| s + a * b)
+}
+
+fn sign(x: f64) -> f64 {
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+impl General {
+    pub fn new(p: Parts) -> Self {
+        let k = p.columns.len();
+        assert!(k <= MOST_ELEMENTS && p.linear <= MOST_LINEAR, "bounded by the limits of a train");
+        let features = p.torques + p.speeds + p.signs.len();
+        let moving: Vec<usize> = (0..k)
+            .filter(|&j| p.columns[j].rho[0] != p.columns[j].rho[1] && p.columns[j].relative.iter().any(|x| *x != 0.0))
+            .collect();
+        let mut g = Self { features, moving, forces: vec![], table: vec![], p };
+        for pattern in 0..1usize << g.moving.len() {
+            let rho: Vec<f64> = (0..k).map(|j| g.rho(j, pattern)).collect();
+            let matrix = nalgebra::DMatrix::from_fn(k, k, |r, j| {
+                g.p.columns[j].entries.iter().filter(|e| e.0 == r).map(|e| e.1 + e.2 * rho[j]).sum()
+            });
+            let right = nalgebra::DMatrix::from_fn(k, features, |r, i| g.p.right[i][r]);
+            let lu = matrix.clone().lu();
+            let solved = lu.solve(&right).and_then(|x| {
+                // One step of refinement: the table serves millions of points.
+                let correction = lu.solve(&(&right - &matrix * &x))?;
+                Some(x + correction)
+            });
+            let Some(all) = solved else {
+                g.forces.push(None);
+                g.table.push(vec![vec![f64::NAN; features]; g.p.linear]);
+                continue;
+            };
+            g.forces.push(Some(g.moving.iter().map(|&j| all.row(j).iter().copied().collect()).collect()));
+            let table = (0..g.p.linear).map(|o| {
+                (0..features)
+                    .map(|i| {
+                        let through: f64 = (0..k)
+                            .map(|j| all[(j, i)] * (g.p.per_force[j][0][o] + rho[j] * g.p.per_force[j][1][o]))
+                            .sum();
+                        g.p.direct[i][o] + through
+                    })
+                    .collect()
+            });
+            let table = table.collect();
+            g.table.push(table);
+        }
+        g
+    }
+
+    pub fn certified(&self) -> bool {
+        self.p.certified
+    }
+
+    pub fn linear(&self) -> usize {
+        self.p.linear
+    }
+
+    pub fn speed(&self, row: usize, speeds: &[f64]) -> f64 {
+        dot(&self.p.speed_rows[row], speeds)
+    }
+
+    /// ρ of a column in a pattern: bit clear, p drives; bit set, q drives.
+    fn rho(&self, j: usize, pattern: usize) -> f64 {
+        let bit = self.moving.iter().position(|m| *m == j);
+        self.p.columns[j].rho[bit.map_or(0, |b| pattern >> b & 1)]
+    }
+
+    /// Power in and balance of the external powers.
+    pub fn powers(&self, speeds: &[f64], torques: &[f64], linear: &[f64]) -> (f64, f64) {
+        let (mut power_in, mut sum) = (0.0, 0.0);
+        for t in &self.p.terminals {
+            let torque = match t.torque {
+                TorqueFrom::Input(i) => torques[i],
+                TorqueFrom::Linear(i) => linear[i],
+            };
+            let power = torque * dot(&t.speed, speeds);
+            power_in += if power > 0.0 { power } else { 0.0 };
+            sum += power;
+        }
+        // NaN (a locked point) must not vanish in the comparison above.
+        (if sum.is_nan() { f64::NAN } else { power_in }, sum)
+    }
+
+    /// One point: its linear outputs and how many solutions it has.
+    pub fn point(&self, speeds: &[f64], torques: &[f64], hint: &mut usize, out: &mut [f64]) -> PointVerdict {
+        let mut x = [0.0; super::MOST_FEATURES];
+        let x = &mut x[..self.features];
+        x[..torques.len()].copy_from_slice(torques);
+        x[torques.len()..torques.len() + speeds.len()].copy_from_slice(speeds);
+        for (slot, row) in x[torques.len() + speeds.len()..].iter_mut().zip(&self.p.signs) {
+            *slot = sign(dot(row, speeds));
+        }
+        let mut sigma = [0.0; super::MOST_MOVING];
+        let sigma = &mut sigma[..self.moving.len()];
+        for (s, &j) in sigma.iter_mut().zip(&self.moving) {
+            *s = dot(&self.p.columns[j].relative, speeds);
+        }
+        if sigma.contains(&0.0) {
+            return self.at_rest(x, sigma, out);
+        }
+        let (verdict, pattern) = self.find(x, sigma, *hint);
+        match pattern {
+            Some(pattern) => {
+                *hint = pattern;
+                out.iter_mut().zip(&self.table[pattern]).for_each(|(o, row)| *o = dot(row, x));
+            }
+            None => out.fill(f64::NAN),
+        }
+        verdict
+    }
+
+    /// The first moving element that contradicts a pattern, and whether one is idle with bit set.
+    fn wrong(&self, pattern: usize, x: &[f64], sigma: &[f64]) -> Option<(Option<usize>, bool)> {
+        let forces = self.forces[pattern].as_ref()?;
+        let mut doubled = false;
+        for (bit, (row, s)) in forces.iter().zip(sigma).enumerate() {
+            let drive = dot(row, x) * s;
+            let q = pattern >> bit & 1 == 1;
+            if if q { drive > 0.0 } else { drive < 0.0 } {
+                return Some((Some(bit), false));
+            }
+            doubled |= q && drive == 0.0;
+        }
+        Some((None, doubled))
+    }
+
+    fn find(&self, x: &[f64], sigma: &[f64], hint: usize) -> (PointVerdict, Option<usize>) {
+        if self.p.certified {
+            // Least-index pivoting ends under the W-property from any start.
+            let mut pattern = hint;
+            for _ in 0..=self.forces.len() {
+                match self.wrong(pattern, x, sigma) {
+                    Some((Some(bit), _)) => pattern ^= 1 << bit,
+                    Some((None, _)) => return (PointVerdict::Unique, Some(pattern)),
+                    None => break,
+                }
+            }
+        }
+        let mut found = None;
+        for pattern in 0..self.forces.len() {
+            if self.wrong(pattern, x, sigma) == Some((None, false)) {
+                if found.is_some() {
+                    return (PointVerdict::Multiple, found);
+                }
+                found = Some(pattern);
+            }
+        }
+        (if found.is_some() { PointVerdict::Unique } else { PointVerdict::Locked }, found)
+    }
+
+    /// A point at which some element has no relative motion: it transmits without loss, so its
+    /// pattern is in no table and is solved here.
+    fn at_rest(&self, x: &[f64], sigma: &[f64], out: &mut [f64]) -> PointVerdict {
+        let k = self.p.columns.len();
+        let mut found = 0;
+        for pattern in 0..self.forces.len() {
+            if (0..sigma.len()).any(|b| sigma[b] == 0.0 && pattern >> b & 1 == 1) {
+                continue;
+            }
+            let mut rho = [1.0; MOST_ELEMENTS];
+            for j in 0..k {
+                let bit = self.moving.iter().position(|m| *m == j);
+                let rests = bit.is_some_and(|b| sigma[b] == 0.0);
+                rho[j] = if rests { 1.0 } else { self.rho(j, pattern) };
+            }
+            let mut f = [0.0; MOST_ELEMENTS];
+            if !self.solve(&rho[..k], x, &mut f[..k]) {
+                continue;
+            }
+            let fits = self.moving.iter().enumerate().all(|(b, &j)| {
+                let drive = f[j] * sigma[b];
+                if pattern >> b & 1 == 1 { drive < 0.0 } else { drive >= 0.0 }
+            });
+            if !fits {
+                continue;
+            }
+            found += 1;
+            if found > 1 {
+                return PointVerdict::Multiple;
+            }
+            for (o, slot) in out.iter_mut().enumerate() {
+                let through: f64 =
+                    (0..k).map(|j| f[j] * (self.p.per_force[j][0][o] + rho[j] * self.p.per_force[j][1][o])).sum();
+                *slot = through + (0..self.features).map(|i| self.p.direct[i][o] * x[i]).sum::<f64>();
+            }
+        }
+        if found == 0 {
+            out.fill(f64::NAN);
+            return PointVerdict::Locked;
+        }
+        PointVerdict::Unique
+    }
+
+    /// Gaussian elimination with row exchange, on the stack.
+    fn solve(&self, rho: &[f64], x: &[f64], f: &mut [f64]) -> bool {
+        let k = rho.len();
+        let mut m = [[0.0; MOST_MOVING_SQUARE]; MOST_MOVING_SQUARE];
+        if k > MOST_MOVING_SQUARE {
+            return false;
+        }
+        for (j, column) in self.p.columns.iter().enumerate() {
+            for &(r, constant, slope) in &column.entries {
+                m[r][j] = constant + slope * rho[j];
+            }
+        }
+        for r in 0..k {
+            f[r] = (0..self.features).map(|i| self.p.right[i][r] * x[i]).sum();
+        }
+        for c in 0..k {
+            let Some(pivot) = (c..k).max_by(|&a, &b| m[a][c].abs().total_cmp(&m[b][c].abs())) else { return false };
+            if m[pivot][c] == 0.0 {
+                return false;
+            }
+            m.swap(pivot, c);
+            f.swap(pivot, c);
+            for r in c + 1..k {
+                let factor = m[r][c] / m[c][c];
+                if factor != 0.0 {
+                    for n in c..k {
+                        m[r][n] -= factor * m[c][n];
+                    }
+                    f[r] -= factor * f[c];
+                }
+            }
+        }
+        for c in (0..k).rev() {
+            let sum: f64 = (c + 1..k).map(|n| m[c][n] * f[n]).sum();
+            f[c] = (f[c] - sum) / m[c][c];
+        }
+        true
+    }
+
+    /// A chunk of points into the chunk's arrays; returns how many are not unique.
+    pub fn chunk(
+        &self,
+        arch: pulp::Arch,
+        points: &Points<'_>,
+        range: Range<usize>,
+        w: &mut Chunk,
+        hint: &mut usize,
+        powers: bool,
+    ) -> usize {
+        let n = range.len();
+        let (l, d) = (self.p.torques, self.p.speeds);
+        let mut inputs: [&[f64]; super::MOST_FEATURES] = [&[]; super::MOST_FEATURES];
+        for (slot, s) in inputs.iter_mut().zip(points.torques.iter().chain(points.speeds)) {
+            *slot = &s[range.clone()];
+        }
+        for (out, row) in w.signs.iter_mut().zip(&self.p.signs) {
+            combine(arch, &inputs[l..l + d], row, &mut out[..n]);
+            arch.dispatch(Signs { x: &mut out[..n] });
+        }
+        for (out, row) in w.speeds.iter_mut().zip(&self.p.speed_rows) {
+            combine(arch, &inputs[l..l + d], row, &mut out[..n]);
+        }
+        for (slot, s) in inputs[l + d..].iter_mut().zip(&w.signs) {
+            *slot = &s[..n];
+        }
+        let x = &inputs[..self.features];
+
+        w.which[..n].fill(NONE);
+        for (out, &j) in w.sigma.iter_mut().zip(&self.moving) {
+            combine(arch, &x[l..l + d], &self.p.columns[j].relative, &mut out[..n]);
+            arch.dispatch(Rest { sigma: &out[..n], which: &mut w.which[..n] });
+        }
+        let mut left = n as u64;
+        if self.p.certified {
+            for &pattern in &w.recent {
+                let Some(forces) = &self.forces[pattern] else { continue };
+                w.worst[..n].fill(f64::INFINITY);
+                for (bit, row) in forces.iter().enumerate() {
+                    let side = if pattern >> bit & 1 == 1 { -1.0 } else { 1.0 };
+                    fit(arch, x, row, &w.sigma[bit][..n], side, &mut w.worst[..n]);
+                }
+                left = arch.dispatch(Assign { worst: &w.worst[..n], pattern: pattern as u64, which: &mut w.which[..n] });
+                if left == 0 {
+                    break;
+                }
+            }
+        }
+        // What no recent pattern fits goes one by one, and may bring a new pattern in.
+        let mut odd = 0;
+        let mut single = [0.0; super::MOST_FEATURES];
+        let mut sigma = [0.0; super::MOST_MOVING];
+        let mut lone: usize = 0;
+        let (lanes, found) = select(&w.which[..if left == 0 { 0 } else { n }], |k| k == NONE);
+        for i in lanes[..found].iter().map(|i| usize::from(*i)) {
+            single.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
+            sigma.iter_mut().zip(&w.sigma).for_each(|(s, a)| *s = a[i]);
+            let (verdict, pattern) =
+                self.find(&single[..self.features], &sigma[..self.moving.len()], *hint);
+            odd += usize::from(verdict != PointVerdict::Unique);
+            lone += 1;
+            match pattern {
+                Some(p) => {
+                    *hint = p;
+                    w.which[i] = p as u64;
+                }
+                None => {}
+            }
+        }
+        if lone > n / 16 && !w.recent.contains(hint) {
+            w.recent.rotate_right(1);
+            w.recent[0] = *hint;
+        }
+
+        // Outputs: the two commonest patterns in one pass over the chunk, other frequent ones where
+        // they hold, what is left lane by lane.
+        let mut common: [(usize, usize); RECENT] = [(0, 0); RECENT];
+        for (k, &pattern) in w.recent.iter().enumerate() {
+            if !w.recent[..k].contains(&pattern) {
+                common[k] = (arch.dispatch(Count { which: &w.which[..n], pattern: pattern as u64 }) as usize, pattern);
+            }
+        }
+        common.sort_unstable_by(|a, b| b.cmp(a));
+        let [(most, first), (second_most, second), ..] = common;
+        let mut covered = most + second_most;
+        for (o, out) in w.linear.iter_mut().enumerate() {
+            let (a, b) = (&self.table[first][o], &self.table[second][o]);
+            if second_most == 0 {
+                combine(arch, x, a, &mut out[..n]);
+            } else {
+                combine_two(arch, x, a, b, &w.which[..n], first as u64, &mut out[..n]);
+            }
+        }
+        let frequent = 2 + common[2..].iter().filter(|(own, _)| *own > n / 32).count();
+        for &(own, pattern) in &common[2..frequent] {
+            covered += own;
+            for (out, row) in w.linear.iter_mut().zip(&self.table[pattern]) {
+                combine_where(arch, x, row, &w.which[..n], pattern as u64, &mut out[..n]);
+            }
+        }
+        let mut linear = [0.0; MOST_LINEAR];
+        let settled = [0, 1, 2, 3].map(|k| if k < frequent && common[k].0 > 0 { common[k].1 as u64 } else { NONE - 2 });
+        let [p, q, r, s] = settled;
+        let (lanes, found) = select(&w.which[..if covered < n { n } else { 0 }], |k| {
+            (k != p) & (k != q) & (k != r) & (k != s)
+        });
+        for i in lanes[..found].iter().map(|i| usize::from(*i)) {
+            match w.which[i] {
+                NONE => w.linear.iter_mut().for_each(|o| o[i] = f64::NAN),
+                AT_REST => {
+                    single.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
+                    sigma.iter_mut().zip(&w.sigma).for_each(|(s, a)| *s = a[i]);
+                    let linear = &mut linear[..self.p.linear];
+                    let verdict = self.at_rest(&single[..self.features], &sigma[..self.moving.len()], linear);
+                    odd += usize::from(verdict != PointVerdict::Unique);
+                    w.linear.iter_mut().zip(linear).for_each(|(o, v)| o[i] = *v);
+                }
+                pattern => {
+                    single.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
+                    for (out, row) in w.linear.iter_mut().zip(&self.table[pattern as usize]) {
+                        out[i] = dot(row, &single[..self.features]);
+                    }
+                }
+            }
+        }
+        if powers {
+            w.loss[..n].fill(0.0);
+            w.power_in[..n].fill(0.0);
+            for t in &self.p.terminals {
+                combine(arch, &x[l..l + d], &t.speed, &mut w.speed[..n]);
+                let torque: &[f64] = match t.torque {
+                    TorqueFrom::Input(i) => x[i],
+                    TorqueFrom::Linear(i) => &w.linear[i][..n],
+                };
+                let speed = &w.speed[..n];
+                arch.dispatch(AddPower { torque, speed, loss: &mut w.loss[..n], power_in: &mut w.power_in[..n] });
+            }
+            let (loss, power_in) = (&w.loss[..n], &w.power_in[..n]);
+            arch.dispatch(Efficiency { loss, power_in, out: &mut w.efficiency[..n] });
+        }
+        odd
+    }
+}
+
+/// The lanes that are wanted, and how many: looked for sixteen at a time, because they are rare.
+fn select(which: &[u64], wanted: impl Fn(u64) -> bool) -> ([u8; CHUNK], usize) {
+    let mut lanes = [0; CHUNK];
+    let mut found = 0;
+    for (block, k) in which.chunks(16).enumerate() {
+        if k.iter().fold(false, |any, k| any | wanted(*k)) {
+            for (i, _) in k.iter().enumerate().filter(|(_, k)| wanted(**k)) {
+                lanes[found] = (16 * block + i) as u8;
+                found += 1;
+            }
+        }
+    }
+    (lanes, found)
+}
+
+/// Largest system solved on the stack, at rest.
+const MOST_MOVING_SQUARE: usize = 24;
+
+/// Calls a function that is generic over the number of features with that number as a constant.
+macro_rules! by_count {
+    ($count:expr, $call:ident ( $($argument:expr),* )) => {
+        match $count {
+            1 => $call::<1>($($argument),*),
+            2 => $call::<2>($($argument),*),
+            3 => $call::<3>($($argument),*),
+            4 => $call::<4>($($argument),*),
+            5 => $call::<5>($($argument),*),
+            6 => $call::<6>($($argument),*),
+            7 => $call::<7>($($argument),*),
+            8 => $call::<8>($($argument),*),
+            _ => $call::<0>($($argument),*),
+        }
+    };
+}
+
+/// The first `F` columns and factors; all of them for `F = 0`, which is then not constant.
+#[inline(always)]
+fn lane<const F: usize>(x: &[&[f64]; F], row: &[f64; F], i: usize) -> f64 {
+    let mut s = row[0] * x[0][i];
+    for k in 1..F {
+        s += row[k] * x[k][i];
+    }
+    s
+}
+
+/// Declares loops over lanes that are compiled for each vector width and chosen at run time. (A
+/// closure would do, but nothing forces it to be inlined into the function that has the width.)
+macro_rules! lanes {
+    ($($(#[$doc:meta])* $name:ident<$lt:lifetime $(, const $g:ident)*> { $($field:ident: $type:ty),+ $(,)? } -> $out:ty $body:block)+) => {
+        $(
+            $(#[$doc])*
+            struct $name<$lt $(, const $g: usize)*> { $($field: $type),+ }
+
+            impl<$lt $(, const $g: usize)*> pulp::WithSimd for $name<$lt $(, $g)*> {
+                type Output = $out;
+                #[inline(always)]
+                fn with_simd<S: pulp::Simd>(self, _: S) -> $out {
+                    let Self { $($field),+ } = self;
+                    $body
+                }
+            }
+        )+
+    };
+}
+
+lanes! {
+    /// `out = Σ row_k x_k`.
+    Combine<'a, const F> { x: [&'a [f64]; F], row: [f64; F], out: &'a mut [f64] } -> () {
+        let n = out.len();
+        let x = x.map(|x| &x[..n]);
+        for i in 0..n {
+            out[i] = lane::<F>(&x, &row, i);
+        }
+    }
+    /// One row where `which` is `pattern`, another elsewhere.
+    CombineTwo<'a, const F> {
+        x: [&'a [f64]; F], a: [f64; F], b: [f64; F], which: &'a [u64], pattern: u64, out: &'a mut [f64],
+    } -> () {
+        let n = out.len();
+        let x = x.map(|x| &x[..n]);
+        let which = &which[..n];
+        for i in 0..n {
+            let (first, second) = (lane::<F>(&x, &a, i), lane::<F>(&x, &b, i));
+            out[i] = if which[i] == pattern { first } else { second };
+        }
+    }
+    /// A row where `which` is `pattern`, nothing elsewhere.
+    CombineWhere<'a, const F> {
+        x: [&'a [f64]; F], row: [f64; F], which: &'a [u64], pattern: u64, out: &'a mut [f64],
+    } -> () {
+        let n = out.len();
+        let x = x.map(|x| &x[..n]);
+        let which = &which[..n];
+        for i in 0..n {
+            let value = lane::<F>(&x, &row, i);
+            out[i] = if which[i] == pattern { value } else { out[i] };
+        }
+    }
+    /// `worst = min(worst, side · sigma · Σ row_k x_k)`.
+    Fit<'a, const F> {
+        x: [&'a [f64]; F], row: [f64; F], sigma: &'a [f64], side: f64, worst: &'a mut [f64],
+    } -> () {
+        let n = worst.len();
+        let x = x.map(|x| &x[..n]);
+        let sigma = &sigma[..n];
+        for i in 0..n {
+            let g = side * sigma[i] * lane::<F>(&x, &row, i);
+            worst[i] = if g < worst[i] { g } else { worst[i] };
+        }
+    }
+    /// Speeds become their signs.
+    Signs<'a> { x: &'a mut [f64] } -> () {
+        for x in x {
+            *x = sign(*x);
+        }
+    }
+    /// Marks points at which an element rests.
+    Rest<'a> { sigma: &'a [f64], which: &'a mut [u64] } -> () {
+        for (k, s) in which.iter_mut().zip(sigma) {
+            *k = if *s == 0.0 { AT_REST } else { *k };
+        }
+    }
+    /// Gives the pattern to the points that it fits; returns how many are left without one.
+    Assign<'a> { worst: &'a [f64], pattern: u64, which: &'a mut [u64] } -> u64 {
+        let mut left = 0u64;
+        for (k, worst) in which.iter_mut().zip(worst) {
+            let fits = *k == NONE && *worst >= 0.0;
+            *k = if fits { pattern } else { *k };
+            left += u64::from(*k == NONE);
+        }
+        left
+    }
+    /// How many points have the pattern.
+    Count<'a> { which: &'a [u64], pattern: u64 } -> u64 {
+        which.iter().map(|p| u64::from(*p == pattern)).sum()
+    }
+    /// Adds the power of a terminal to the balance and, where positive, to the input.
+    AddPower<'a> { torque: &'a [f64], speed: &'a [f64], loss: &'a mut [f64], power_in: &'a mut [f64] } -> () {
+        let n = loss.len();
+        let (torque, speed, power_in) = (&torque[..n], &speed[..n], &mut power_in[..n]);
+        for i in 0..n {
+            let p = torque[i] * speed[i];
+            loss[i] += p;
+            power_in[i] += if p > 0.0 { p } else { 0.0 };
+        }
+    }
+    /// Output over input power; 0 without input, NaN where the point has no solution.
+    Efficiency<'a> { loss: &'a [f64], power_in: &'a [f64], out: &'a mut [f64] } -> () {
+        let n = out.len();
+        let (loss, power_in) = (&loss[..n], &power_in[..n]);
+        for i in 0..n {
+            let e = (power_in[i] - loss[i]) / power_in[i];
+            out[i] = if power_in[i] > 0.0 { e } else { loss[i] * 0.0 };
+        }
+    }
+    /// Sum in 32 partial sums.
+    Sum<'a> { x: &'a [f64] } -> f64 {
+        let (chunks, rest) = x.as_chunks::<32>();
+        let mut partial = [0.0; 32];
+        for c in chunks {
+            for k in 0..32 {
+                partial[k] += c[k];
+            }
+        }
+        partial.iter().sum::<f64>() + rest.iter().sum::<f64>()
+    }
+    /// All results of a power split.
+    SingleAll<'a, const LOADED> {
+        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64],
+        first: &'a mut [f64], second: &'a mut [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
+    } -> () {
+        let n = torque.len();
+        let (w0, w1) = (&w0[..n], &w1[..n]);
+        let (first, second) = (&mut first[..n], &mut second[..n]);
+        let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
+        let set = *set;
+        for i in 0..n {
+            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
+            first[i] = p.torque[0];
+            second[i] = p.torque[1];
+            loss[i] = p.loss;
+            efficiency[i] = p.efficiency;
+        }
+    }
+    /// One result of a power split: 0 and 1 the torques, 2 the loss, 3 the efficiency.
+    SingleOne<'a, const LOADED, const WHAT> {
+        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], out: &'a mut [f64],
+    } -> () {
+        let n = out.len();
+        let (w0, w1, torque) = (&w0[..n], &w1[..n], &torque[..n]);
+        let set = *set;
+        for i in 0..n {
+            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
+            out[i] = match WHAT {
+                0 => p.torque[0],
+                1 => p.torque[1],
+                2 => p.loss,
+                _ => p.efficiency,
+            };
+        }
+    }
+}
+
+/// `out = Σ row_k x_k`.
+fn combine(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
+    fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
+        let n = out.len();
+        match (<[&[f64]; F]>::try_from(x), <[f64; F]>::try_from(row)) {
+            (Ok(x), Ok(row)) => arch.dispatch(Combine { x, row, out }),
+            _ => {
+                out.fill(0.0);
+                for (x, r) in x.iter().zip(row) {
+                    out.iter_mut().zip(&x[..n]).for_each(|(o, x)| *o += r * x);
+                }
+            }
+        }
+    }
+    if x.is_empty() {
+        return out.fill(0.0);
+    }
+    by_count!(x.len(), go(arch, x, row, out));
+}
+
+/// `out = Σ a_k x_k` where `which` is `pattern`, `Σ b_k x_k` elsewhere.
+fn combine_two(arch: pulp::Arch, x: &[&[f64]], a: &[f64], b: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
+    fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], rows: [&[f64]; 2], which: &[u64], pattern: u64, out: &mut [f64]) {
+        match (<[&[f64]; F]>::try_from(x), rows.map(<[f64; F]>::try_from)) {
+            (Ok(x), [Ok(a), Ok(b)]) => arch.dispatch(CombineTwo { x, a, b, which, pattern, out }),
+            _ => {
+                for i in 0..out.len() {
+                    let row = rows[usize::from(which[i] != pattern)];
+                    out[i] = x.iter().zip(row).map(|(x, r)| r * x[i]).sum();
+                }
+            }
+        }
+    }
+    by_count!(x.len(), go(arch, x, [a, b], which, pattern, out));
+}
+
+/// The same, only where `which` is `pattern`.
+fn combine_where(arch: pulp::Arch, x: &[&[f64]], row: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
+    fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], row: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
+        match (<[&[f64]; F]>::try_from(x), <[f64; F]>::try_from(row)) {
+            (Ok(x), Ok(row)) => arch.dispatch(CombineWhere { x, row, which, pattern, out }),
+            _ => {
+                for i in (0..out.len()).filter(|&i| which[i] == pattern) {
+                    out[i] = x.iter().zip(row).map(|(x, r)| r * x[i]).sum();
+                }
+            }
+        }
+    }
+    by_count!(x.len(), go(arch, x, row, which, pattern, out));
+}
+
+/// `worst = min(worst, side · sigma · Σ row_k x_k)`.
+fn fit(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, worst: &mut [f64]) {
+    fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, worst: &mut [f64]) {
+        match (<[&[f64]; F]>::try_from(x), <[f64; F]>::try_from(row)) {
+            (Ok(x), Ok(row)) => arch.dispatch(Fit { x, row, sigma, side, worst }),
+            _ => {
+                for i in 0..worst.len() {
+                    let force: f64 = x.iter().zip(row).map(|(x, r)| r * x[i]).sum();
+                    worst[i] = worst[i].min(side * sigma[i] * force);
+                }
+            }
+        }
+    }
+    by_count!(x.len(), go(arch, x, row, sigma, side, worst));
+}
+
+/// Sum of a slice.
+pub(super) fn sum(arch: pulp::Arch, x: &[f64]) -> f64 {
+    arch.dispatch(Sum { x })
+}
+
+/// One lossy element, two prescribed speeds on two of its three shafts, one torque: the power split
+/// of a hybrid, in one fused pass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Single {
+    /// Speed of the third shaft over those of the first two.
+    third: [f64; 2],
+    /// Relative speed of end p over the first two, with the sign of the force per loaded torque.
+    drive: [f64; 2],
+    /// Torques of the two open shafts per torque that reaches the set: p drives, q drives, at rest.
+    gain: [[f64; 3]; 2],
+    drag: [ShaftDrag; 3],
+    /// Place (of the three shafts) of the loaded shaft and of the open ones.
+    loaded: usize,
+    open: [usize; 2],
+}
+
+/// Where the results of [`Single`] go.
+#[derive(Default)]
+pub(super) struct SingleOut<'o> {
+    pub torque: [Option<&'o mut [f64]>; 2],
+    pub loss: Option<&'o mut [f64]>,
+    pub efficiency: Option<&'o mut [f64]>,
+}
+
+/// Results at one point.
+struct SinglePoint {
+    torque: [f64; 2],
+    loss: f64,
+    efficiency: f64,
+}
+
+impl Single {
+    pub fn new(g: &General, loaded: usize, open: [usize; 2], drag: [ShaftDrag; 3]) -> Option<Self> {
+        let p = &g.p;
+        if p.columns.len() != 1 || g.moving.len() != 1 || !p.certified || p.torques != 1 || p.speeds != 2 {
+            return None;
+        }
+        let element = &p.columns[0];
+        // Terminals of the balance: the loaded one first, then the open ones.
+        let mut rows = [[0.0; 2]; 3];
+        for (t, place) in p.terminals.iter().zip([loaded, open[0], open[1]]) {
+            rows[place] = [t.speed[0], t.speed[1]];
+        }
+        if rows[0] != [1.0, 0.0] || rows[1] != [0.0, 1.0] {
+            return None;
+        }
+        let &[(_, constant, slope)] = &element.entries[..] else { return None };
+        let force = |rho: f64| 1.0 / (constant + slope * rho);
+        let rho = [element.rho[0], element.rho[1], 1.0];
+        // Certified: the coefficient has one sign, so the sign of the force is that of the torque.
+        let side = force(1.0).signum();
+        let gain = [0, 1].map(|o| {
+            rho.map(|r| force(r) * (p.per_force[0][0][o] + r * p.per_force[0][1][o]))
+        });
+        Some(Self {
+            third: rows[2],
+            drive: [element.relative[0] * side, element.relative[1] * side],
+            gain,
+            drag,
+            loaded,
+            open,
+        })
+    }
+
+    /// One point. Scalars throughout: an array indexed in here would become a gather.
+    #[inline(always)]
+    fn point<const LOADED: usize>(&self, w0: f64, w1: f64, torque: f64) -> SinglePoint {
+        let Self { third: [t0, t1], drive: [r0, r1], gain: [[ap, aq, ar], [bp, bq, br]], drag: [d0, d1, d2], .. } = *self;
+        let w2 = t0 * w0 + t1 * w1;
+        let drag = |d: ShaftDrag, w: f64| (if w == 0.0 { 0.0 } else { d.coulomb.copysign(w) }) + d.viscous * w;
+        let (d0, d1, d2) = (drag(d0, w0), drag(d1, w1), drag(d2, w2));
+        // Loaded shaft first, then the open ones in order.
+        let ((wl, dl), (wa, da), (wb, db)) = match LOADED {
+            0 => ((w0, d0), (w1, d1), (w2, d2)),
+            1 => ((w1, d1), (w0, d0), (w2, d2)),
+            _ => ((w2, d2), (w0, d0), (w1, d1)),
+        };
+        let reaches = torque - dl;
+        let drive = reaches * (r0 * w0 + r1 * w1);
+        let pick = |p: f64, q: f64, rest: f64| {
+            let moving = if drive > 0.0 { p } else { q };
+            if drive == 0.0 { rest } else { moving }
+        };
+        let ta = pick(ap, aq, ar) * reaches + da;
+        let tb = pick(bp, bq, br) * reaches + db;
+        let (pl, pa, pb) = (torque * wl, ta * wa, tb * wb);
+        let pos = |p: f64| if p > 0.0 { p } else { 0.0 };
+        let power_in = pos(pl) + pos(pa) + pos(pb);
+        let loss = pl + pa + pb;
+        let efficiency = if power_in > 0.0 { (power_in - loss) / power_in } else { 0.0 };
+        SinglePoint { torque: [ta, tb], loss, efficiency }
+    }
+
+    /// The open shafts in ascending place, as [`Single::point`] numbers them.
+    fn ordered(&self) -> Self {
+        let mut s = *self;
+        if s.open[0] > s.open[1] {
+            s.open.swap(0, 1);
+            s.gain.swap(0, 1);
+        }
+        s
+    }
+
+    pub fn run(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], mut out: SingleOut<'_>) {
+        let s = self.ordered();
+        if self.open[0] > self.open[1] {
+            out.torque.swap(0, 1);
+        }
+        match s.loaded {
+            0 => s.go::<0>(arch, w0, w1, torque, out),
+            1 => s.go::<1>(arch, w0, w1, torque, out),
+            _ => s.go::<2>(arch, w0, w1, torque, out),
+        }
+    }
+
+    fn go<const LOADED: usize>(&self, arch: pulp::Arch, w0: &[f64], w1: &[f64], torque: &[f64], out: SingleOut<'_>) {
+        let SingleOut { torque: [first, second], loss, efficiency } = out;
+        let set = self;
+        match (first, second, loss, efficiency) {
+            (Some(first), Some(second), Some(loss), Some(efficiency)) => {
+                arch.dispatch(SingleAll::<LOADED> { set, w0, w1, torque, first, second, loss, efficiency });
+            }
+            (first, second, loss, efficiency) => {
+                if let Some(out) = first {
+                    arch.dispatch(SingleOne::<LOADED, 0> { set, w0, w1, torque, out });
+                }
+                if let Some(out) = second {
+                    arch.dispatch(SingleOne::<LOADED, 1> { set, w0, w1, torque, out });
+                }
+                if let Some(out) = loss {
+                    arch.dispatch(SingleOne::<LOADED, 2> { set, w0, w1, torque, out });
+                }
+                if let Some(out) = efficiency {
+                    arch.dispatch(SingleOne::<LOADED, 3> { set, w0, w1, torque, out });
+                }
+            }
+        }
+    }
+
+    /// A chunk into the chunk's arrays.
+    pub fn chunk(&self, arch: pulp::Arch, points: &Points<'_>, range: Range<usize>, w: &mut Chunk, only_efficiency: bool) {
+        let n = range.len();
+        let efficiency = Some(&mut w.efficiency[..n]);
+        let out = match &mut w.linear[..] {
+            [first, second, ..] if !only_efficiency => SingleOut {
+                torque: [Some(&mut first[..n]), Some(&mut second[..n])],
+                loss: Some(&mut w.loss[..n]),
+                efficiency,
+            },
+            _ => SingleOut { efficiency, ..SingleOut::default() },
+        };
+        let (speeds, torques) = (points.speeds, points.torques);
+        self.run(arch, &speeds[0][range.clone()], &speeds[1][range.clone()], &torques[0][range], out);
+    }
+}
