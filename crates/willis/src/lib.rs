@@ -1,4 +1,43 @@
-//! Willis: planetary gear trains, exactly.
+//! Planetary (epicyclic) gear trains: exact ratios, speeds, torques with mesh losses, power flow,
+//! efficiency, and a certificate that the answer is the only one.
+//!
+//! The modules are listed in the order of the pipeline, and a module uses only those above it:
+//!
+//! 1. [`exact`] numbers and [`units`];
+//! 2. [`diagnostic`]: what is wrong, where, and what to do;
+//! 3. [`train`]: what a gear train is, and the train file;
+//! 4. [`kinematics`]: exact speeds, what is locked, free or redundant;
+//! 5. [`statics`]: torques with losses, the certificate, the verdict;
+//! 6. [`power_flow`]: torque and power everywhere, recirculation;
+//! 7. [`compiled`]: a train made ready for many points;
+//! 8. [`analysis`]: the whole answer, as every front end shows it.
+//!
+//! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
+//!
+//! ```
+//! use willis::{Selection, Train, analyze};
+//!
+//! let train = Train::from_toml(r#"
+//!     format = 1
+//!     name = "sun drives, ring held"
+//!     members = ["sun", "carrier"]
+//!     terminals = ["sun", "carrier"]
+//!
+//!     [[set]]
+//!     name = "P1"
+//!     sun = { member = "sun", teeth = 30 }
+//!     planet = { teeth = 20, count = 4 }
+//!     ring = { member = "frame", teeth = 70 }
+//!     carrier = "carrier"
+//!     mesh_efficiency = 0.99
+//! "#)?;
+//! let analysis = analyze(&train, &Selection::default())?;
+//! let (_, row) = &analysis.ratios.0[0];
+//! assert_eq!(row.exact.as_deref(), Some("10/3"));
+//! assert!(row.drive.certificate.unwrap().unique_for_every_load);
+//! # Ok::<(), willis::Diagnostics>(())
+//! ```
+
 pub mod exact;
 pub mod units;
 pub mod diagnostic;
@@ -8,3 +47,7 @@ pub mod statics;
 pub mod power_flow;
 pub mod compiled;
 pub mod analysis;
+
+pub use analysis::{Analysis, Selection, analyze};
+pub use diagnostic::Diagnostics;
+pub use train::Train;
