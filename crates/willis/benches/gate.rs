@@ -1,0 +1,172 @@
+//! Instructions per point, counted by callgrind, against `benches/instructions.toml`: a regression
+//! shows without a clock, the same on every run.
+//!
+//! Counts are those of the AVX2 (or narrower) code, since valgrind emulates no AVX-512.
+//! `WILLIS_WRITE=1 cargo bench -p willis --bench gate` records new counts; say why in the commit.
+
+use std::hint::black_box;
+use std::path::Path;
+use std::process::Command;
+
+use willis::analysis::{Selection, analyze};
+use willis::compiled::{CompiledTrain, Duty, Output, Points, ShaftDrag};
+use willis::train::{SetSpec, Train};
+
+/// More than this above the recorded count fails.
+const TOLERANCE: f64 = 0.05;
+
+/// Task, points per repetition, and what it does so many times.
+const TASKS: &[(&str, usize, fn(usize))] = &[
+    ("map-all", POINTS, map_all),
+    ("map-efficiency", POINTS, map_efficiency),
+    ("automatic-gear-1", POINTS, |n| automatic("1", n)),
+    ("automatic-gear-5", POINTS, |n| automatic("5", n)),
+    ("automatic-one-point", POINTS, one_point),
+    ("eight-speed-text-to-answer", 1, cold),
+];
+
+/// Points of one repetition.
+const POINTS: usize = 4096;
+
+fn inputs(ranges: [(f64, f64); 3]) -> [Vec<f64>; 3] {
+    let mut s = 88172645463325252u64;
+    let mut next = || {
+        s ^= s << 13;
+        s ^= s >> 7;
+        s ^= s << 17;
+        (s >> 11) as f64 / (1u64 << 53) as f64
+    };
+    ranges.map(|(low, high)| (0..POINTS).map(|_| low + (high - low) * next()).collect())
+}
+
+fn power_split(outputs: &[Output]) -> CompiledTrain {
+    let train = Train::builder("power split")
+        .members(["sun", "ring", "carrier"])
+        .terminals(["sun", "ring", "carrier"])
+        .set(SetSpec::simple("P1", ("sun", 30), ("ring", 70), "carrier").basic_efficiency(0.97515))
+        .build()
+        .unwrap();
+    let drag = ShaftDrag { coulomb: 0.5, viscous: 1e-3 };
+    let duty = Duty::new(["sun", "carrier"], ["sun"]).drag("sun", drag).drag("ring", drag).drag("carrier", drag);
+    train.compile(&outputs.iter().cloned().fold(duty, Duty::output)).unwrap()
+}
+
+fn run(compiled: &CompiledTrain, speeds: &[&[f64]], torque: &[f64], times: usize) {
+    let mut out = vec![vec![0.0; torque.len()]; compiled.outputs()];
+    let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+    let mut work = compiled.workspace();
+    for _ in 0..times {
+        compiled.evaluate_batch(&Points { speeds, torques: &[torque] }, &mut work, black_box(&mut slices));
+    }
+}
+
+fn map_all(n: usize) {
+    let [w0, w1, t] = inputs([(-400.0, 400.0), (-150.0, 150.0), (-200.0, 200.0)]);
+    let outputs = [Output::Torque("ring".into()), Output::Torque("carrier".into()), Output::Loss, Output::Efficiency];
+    run(&power_split(&outputs), &[&w0, &w1], &t, n);
+}
+
+fn map_efficiency(n: usize) {
+    let [w0, w1, t] = inputs([(-400.0, 400.0), (-150.0, 150.0), (-200.0, 200.0)]);
+    run(&power_split(&[Output::Efficiency]), &[&w0, &w1], &t, n);
+}
+
+fn eight_speed(gear: &str) -> CompiledTrain {
+    let train = Train::from_toml(include_str!("../../../examples/zf-8hp70.toml")).unwrap();
+    let mut duty = Duty::new(["input"], ["input"]).state(gear).output(Output::Torque("output".into()));
+    for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
+        duty = duty.drag(m, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
+    }
+    for s in 1..=4 {
+        duty = duty.output(Output::MeshTorque(format!("P{s}.sun-planet")));
+    }
+    train.compile(&duty).unwrap()
+}
+
+fn automatic(gear: &str, n: usize) {
+    let [w, t, _] = inputs([(80.0, 500.0), (-100.0, 350.0), (0.0, 1.0)]);
+    run(&eight_speed(gear), &[&w], &t, n);
+}
+
+fn one_point(n: usize) {
+    let [w, t, _] = inputs([(80.0, 500.0), (-100.0, 350.0), (0.0, 1.0)]);
+    let compiled = eight_speed("3");
+    let mut work = compiled.workspace();
+    let mut out = vec![0.0; compiled.outputs()];
+    for _ in 0..n {
+        for (w, t) in w.iter().zip(&t) {
+            compiled.evaluate(&[*w], &[*t], &mut work, black_box(&mut out));
+        }
+    }
+}
+
+fn cold(n: usize) {
+    let text = include_str!("../../../examples/zf-8hp70.toml");
+    for _ in 0..n {
+        black_box(analyze(&Train::from_toml(black_box(text)).unwrap(), &Selection::default()).unwrap());
+    }
+}
+
+/// Instructions of this program running a task so many times.
+fn count(task: &str, times: usize) -> Option<f64> {
+    let own = std::env::current_exe().ok()?;
+    let output = Command::new("valgrind")
+        .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
+        .arg(own)
+        .args(["run", task, &times.to_string()])
+        .output()
+        .ok()?;
+    let text = String::from_utf8_lossy(&output.stderr).into_owned();
+    let line = text.lines().find(|l| l.contains("Collected :"))?;
+    line.rsplit(':').next()?.trim().parse().ok()
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    if let Some(at) = arguments.iter().position(|a| a == "run") {
+        let (name, times) = (&arguments[at + 1], arguments[at + 2].parse().unwrap());
+        let task = TASKS.iter().find(|t| t.0 == name).unwrap();
+        return (task.2)(times);
+    }
+    if !Command::new("valgrind").arg("--version").output().is_ok_and(|o| o.status.success()) {
+        println!("skipped: valgrind is not installed");
+        return;
+    }
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../benches/instructions.toml");
+    let recorded: toml::Table = std::fs::read_to_string(&file).unwrap_or_default().parse().unwrap();
+    let write = std::env::var_os("WILLIS_WRITE").is_some();
+    let mut text = String::from(
+        "# Instructions per point (per train for text-to-answer), callgrind, no AVX-512.\n\
+         # Written by `WILLIS_WRITE=1 cargo bench -p willis --bench gate`.\n",
+    );
+    let mut failed = false;
+    for (name, points, _) in TASKS {
+        let (Some(some), Some(more)) = (count(name, 2), count(name, 6)) else {
+            println!("{name}: valgrind gave no count");
+            failed = true;
+            continue;
+        };
+        let each = (more - some) / (4 * points) as f64;
+        text += &format!("{name} = {each:.1}\n");
+        match recorded.get(*name).and_then(toml::Value::as_float) {
+            _ if write => println!("{name:30} {each:12.1} recorded"),
+            None => {
+                println!("{name:30} {each:12.1} not recorded yet");
+                failed = true;
+            }
+            Some(old) => {
+                let change = each / old - 1.0;
+                let bad = change > TOLERANCE;
+                failed |= bad;
+                let verdict = if bad { "MORE THAN RECORDED" } else { "ok" };
+                println!("{name:30} {each:12.1} recorded {old:12.1} {:+6.1} % {verdict}", 100.0 * change);
+            }
+        }
+    }
+    if write {
+        std::fs::write(file, text).unwrap();
+    } else if failed {
+        println!("if the growth is meant: WILLIS_WRITE=1 cargo bench -p willis --bench gate");
+        std::process::exit(1);
+    }
+}

@@ -1,0 +1,81 @@
+//! Text → train → analysis. Whatever the text, nothing panics and no number is undefined.
+
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use serde_json::Value;
+use willis::analysis::{Direction, SolutionReport, Verdict, analyze};
+use willis::train::Train;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let reading = Train::read_toml(text);
+    let _ = reading.diagnostics.render("train.toml", text, false);
+    let _ = reading.diagnostics.to_string();
+    assert!(reading.train.is_some() != reading.diagnostics.has_errors(), "a train, or else an error");
+    let Some(train) = &reading.train else { return };
+    match analyze(train, &Default::default()) {
+        Err(mut diagnostics) => {
+            assert!(diagnostics.has_errors(), "refused without a reason");
+            reading.locate(text, &mut diagnostics);
+            let _ = diagnostics.render("train.toml", text, true);
+        }
+        Ok(analysis) => {
+            for (name, row) in analysis.ratios.iter() {
+                direction(&row.drive, name);
+                direction(&row.coast, name);
+                assert!(row.value.is_none_or(|v| !v.is_nan()), "ratio of {name}");
+            }
+            for operation in &analysis.operations {
+                for s in &operation.solutions {
+                    solution(s, operation.verdict == Verdict::Unique, &operation.name);
+                }
+            }
+            no_null(&serde_json::to_value(&analysis).expect("an analysis is plain data"), "analysis");
+        }
+    }
+});
+
+fn direction(d: &Direction, name: &str) {
+    for e in d.efficiency.iter().chain(&d.efficiencies) {
+        assert!(is_efficiency(*e), "efficiency {e} in {name}");
+    }
+}
+
+fn solution(s: &SolutionReport, unique: bool, name: &str) {
+    assert!(!unique || s.efficiency.is_none_or(is_efficiency), "efficiency {:?} in {name}", s.efficiency);
+    assert!(s.power_residual_w.is_finite(), "residual {} in {name}", s.power_residual_w);
+}
+
+fn is_efficiency(e: f64) -> bool {
+    (0.0..=1.0 + 1e-12).contains(&e)
+}
+
+/// Undefined and infinite numbers are `null` in JSON: these keys always have a number.
+fn no_null(value: &Value, place: &str) {
+    const NUMBERS: &[&str] = &[
+        "potential_power_w",
+        "loss_w",
+        "input_power_w",
+        "output_power_w",
+        "power_residual_w",
+        "first_torque_n_m",
+        "second_torque_n_m",
+        "carrier_torque_n_m",
+        "share_of_input",
+        "boundary",
+        "threshold",
+        "low",
+        "high",
+    ];
+    match value {
+        Value::Object(map) => {
+            for (key, value) in map {
+                assert!(!value.is_null() || !NUMBERS.contains(&key.as_str()), "{place}.{key} is no number");
+                no_null(value, key);
+            }
+        }
+        Value::Array(list) => list.iter().for_each(|v| no_null(v, place)),
+        _ => {}
+    }
+}
