@@ -36,13 +36,25 @@ fn rows(a: &Analysis, table: Table) -> String {
     match table {
         Table::States => {
             out.row([
-                "state", "engaged", "input", "output", "degrees_of_freedom", "ratio_exact", "ratio", "step",
-                "efficiency_driving", "verdict_driving", "efficiency_coasting", "verdict_coasting",
-                "certified_driving", "certified_coasting",
+                "state",
+                "engaged",
+                "input",
+                "output",
+                "degrees_of_freedom",
+                "ratio_exact",
+                "ratio",
+                "step",
+                "efficiency_driving",
+                "verdict_driving",
+                "efficiency_coasting",
+                "verdict_coasting",
+                "certified_driving",
+                "certified_coasting",
             ]);
             for (name, s) in a.ratios.iter() {
-                let certified =
-                    |d: &willis::analysis::Direction| d.certificate.is_some_and(|c| c.unique_for_every_load).to_string();
+                let certified = |d: &willis::analysis::Direction| {
+                    d.certificate.is_some_and(|c| c.unique_for_every_load).to_string()
+                };
                 out.row([
                     name,
                     &s.engaged.join(" "),
@@ -63,8 +75,17 @@ fn rows(a: &Analysis, table: Table) -> String {
         }
         Table::Operations => {
             out.row([
-                "operation", "state", "solution", "verdict", "certificate", "efficiency", "input_power_w",
-                "output_power_w", "loss_w", "power_residual_w", "recirculating_power_w",
+                "operation",
+                "state",
+                "solution",
+                "verdict",
+                "certificate",
+                "efficiency",
+                "input_power_w",
+                "output_power_w",
+                "loss_w",
+                "power_residual_w",
+                "recirculating_power_w",
             ]);
             for o in &a.operations {
                 let head = |solution: &str| {
@@ -94,8 +115,16 @@ fn rows(a: &Analysis, table: Table) -> String {
         }
         Table::Members => {
             out.row([
-                "operation", "state", "solution", "member", "role", "speed_rad_s", "carrier",
-                "relative_speed_rad_s", "torque_n_m", "power_w",
+                "operation",
+                "state",
+                "solution",
+                "member",
+                "role",
+                "speed_rad_s",
+                "carrier",
+                "relative_speed_rad_s",
+                "torque_n_m",
+                "power_w",
             ]);
             each(a, |head, s| {
                 for (name, m) in s.members.iter() {
@@ -115,8 +144,19 @@ fn rows(a: &Analysis, table: Table) -> String {
         }
         Table::Meshes => {
             out.row([
-                "operation", "state", "solution", "mesh", "driver", "relative_speed_rad_s", "potential_power_w",
-                "efficiency", "loss_w", "first_torque_n_m", "second_torque_n_m", "carrier_torque_n_m", "count",
+                "operation",
+                "state",
+                "solution",
+                "mesh",
+                "driver",
+                "relative_speed_rad_s",
+                "potential_power_w",
+                "efficiency",
+                "loss_w",
+                "first_torque_n_m",
+                "second_torque_n_m",
+                "carrier_torque_n_m",
+                "count",
             ]);
             each(a, |head, s| {
                 for (name, m) in s.meshes.iter() {
@@ -178,7 +218,8 @@ fn verdict(v: Verdict) -> &'static str {
 
 /// The shortest text that reads back as the same number.
 fn number(x: Option<f64>) -> String {
-    x.map_or(String::new(), |x| format!("{x:?}"))
+    // Adding zero turns -0.0 into 0.0.
+    x.map_or(String::new(), |x| format!("{:?}", x + 0.0))
 }
 
 #[derive(Default)]

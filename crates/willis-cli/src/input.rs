@@ -25,7 +25,10 @@ pub fn read(file: &str) -> Result<String, Diagnostics> {
         handle.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
     }
     if bytes.len() as u64 > MOST_BYTES {
-        return Err(refuse(format!("{file} is larger than {} MiB", MOST_BYTES >> 20), "a train file is a few kilobytes"));
+        return Err(refuse(
+            format!("{file} is larger than {} MiB", MOST_BYTES >> 20),
+            "a train file is a few kilobytes",
+        ));
     }
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();

@@ -118,9 +118,7 @@ fn run(command: &Command) -> Result<String, String> {
             let analysis = job.analyze(&selection)?;
             Ok(match format {
                 Format::Text => text::analysis(&job.train, &analysis) + &job.notes(&analysis),
-                Format::Json => {
-                    serde_json::to_string_pretty(&analysis).expect("plain data") + "\n"
-                }
+                Format::Json => serde_json::to_string_pretty(&analysis).expect("plain data") + "\n",
                 Format::Csv => csv::analysis(&analysis, *table),
             })
         }
@@ -140,12 +138,8 @@ fn run(command: &Command) -> Result<String, String> {
                 if warnings == 1 { "" } else { "s" }
             ))
         }
-        Command::Schema => {
-            Ok(serde_json::to_string_pretty(&willis::train::schema()).expect("plain data") + "\n")
-        }
-        Command::Explain { code: None } => {
-            Ok(Code::ALL.iter().map(|c| format!("{c}  {}\n", c.title())).collect())
-        }
+        Command::Schema => Ok(serde_json::to_string_pretty(&willis::train::schema()).expect("plain data") + "\n"),
+        Command::Explain { code: None } => Ok(Code::ALL.iter().map(|c| format!("{c}  {}\n", c.title())).collect()),
         Command::Explain { code: Some(code) } => match Code::parse(code) {
             Some(code) => {
                 let text = code.explanation().lines().map(|l| l.trim_start()).collect::<Vec<_>>().join("\n");

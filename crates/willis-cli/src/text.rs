@@ -169,7 +169,7 @@ fn operation(o: &OperationReport) -> String {
     out += &format!("  verdict      {}", bold(verdict_word(o.verdict)));
     match (&o.certificate, o.verdict) {
         (Some(c), Verdict::Unique | Verdict::Multiple) => out += &format!(": {}", certificate(c)),
-        (Some(c), Verdict::Locked) if c.method != "undecided" => out += ": no other equilibrium exists (proved)",
+        (Some(c), Verdict::Locked) if c.method != "undecided" => out += ": proved, no equilibrium drives a load",
         _ => {}
     }
     out.push('\n');
@@ -254,7 +254,8 @@ fn solution(s: &SolutionReport) -> String {
     header.extend(["torque N m".into(), format!("power {unit}")]);
     set_header(&mut t, &header.iter().map(String::as_str).collect::<Vec<_>>());
     for (name, m) in s.members.iter() {
-        let mut row = vec![name.clone(), role(m).into(), m.speed_rad_s.map_or("any".into(), |w| significant(rpm(w), 6))];
+        let mut row =
+            vec![name.clone(), role(m).into(), m.speed_rad_s.map_or("any".into(), |w| significant(rpm(w), 6))];
         if relative {
             row.push(match m.carrier {
                 Some(_) => m.relative_speed_rad_s.map_or("any".into(), |w| significant(rpm(w), 6)),
@@ -335,9 +336,8 @@ fn margins(s: &SolutionReport) -> String {
     if let Some(f) = s.margin.lock_loss_factor {
         lines.push(format!("locks when all losses grow {} times", significant(f, 4)));
     }
-    let text: String = lines.iter().enumerate().map(|(k, l)| {
-        format!("  {:<12} {l}\n", if k == 0 { "margin" } else { "" })
-    }).collect();
+    let text: String =
+        lines.iter().enumerate().map(|(k, l)| format!("  {:<12} {l}\n", if k == 0 { "margin" } else { "" })).collect();
     text
 }
 

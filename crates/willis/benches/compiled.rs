@@ -38,8 +38,12 @@ fn record(task: &str, sums: &[(&str, f64)], points: usize) {
     fs::create_dir_all(&folder).unwrap();
     let mut file = fs::OpenOptions::new().create(true).append(true).open(folder.join("checksums.jsonl")).unwrap();
     let sums: Vec<String> = sums.iter().map(|(k, v)| format!("\"{k}\": {v:?}")).collect();
-    writeln!(file, "{{\"task\": \"{task}\", \"peer\": \"willis\", \"points\": {points}, \"checksum\": {{{}}}}}", sums.join(", "))
-        .unwrap();
+    writeln!(
+        file,
+        "{{\"task\": \"{task}\", \"peer\": \"willis\", \"points\": {points}, \"checksum\": {{{}}}}}",
+        sums.join(", ")
+    )
+    .unwrap();
 }
 
 /// Pairwise, so that sums that nearly cancel can be compared.
@@ -178,7 +182,11 @@ fn cold(c: &mut Criterion) {
     ]
     .iter()
     .flat_map(|t| {
-        [t.to_string(), t.replace("basic_efficiency = 0.98", "basic_efficiency = 0.97").replace("external = 0.98", "external = 0.97")]
+        [
+            t.to_string(),
+            t.replace("basic_efficiency = 0.98", "basic_efficiency = 0.97")
+                .replace("external = 0.98", "external = 0.97"),
+        ]
     })
     .collect();
     group.bench_function("nine-automatics-two-loss-levels", |b| {

@@ -15,8 +15,10 @@ use willis::train::{SetSpec, Train};
 /// More than this above the recorded count fails.
 const TOLERANCE: f64 = 0.05;
 
-/// Task, points per repetition, and what it does so many times.
-const TASKS: &[(&str, usize, fn(usize))] = &[
+/// Name, points per repetition, and what is done so many times.
+type Task = (&'static str, usize, fn(usize));
+
+const TASKS: &[Task] = &[
     ("map-all", POINTS, map_all),
     ("map-efficiency", POINTS, map_efficiency),
     ("automatic-gear-1", POINTS, |n| automatic("1", n)),

@@ -260,10 +260,10 @@ pub struct LockMargin {
 pub struct StictionRange {
     /// What varies: `efficiency`, or `torque on <member>`.
     pub what: String,
-    /// Smallest value.
-    pub low: f64,
+    /// Smallest value; absent when too many meshes rest to bound it.
+    pub low: Option<f64>,
     /// Largest value.
-    pub high: f64,
+    pub high: Option<f64>,
 }
 
 /// One equilibrium.
@@ -389,19 +389,19 @@ pub const AS_DRAWN: &str = "as drawn";
 /// let load = &analysis.operations[0];
 /// assert_eq!(load.verdict, Verdict::Unique);
 /// assert!(load.certificate.unwrap().unique_for_every_load);
-/// // (1 + i0 η)/(1 + i0) with i0 = 7/3, η = 0.99²
+/// // (1 − i0 η)/(1 − i0) with i0 = −7/3, η = 0.99²
 /// assert!((load.solutions[0].efficiency.unwrap() - 0.98607).abs() < 1e-9);
 /// # Ok::<(), willis::diagnostic::Diagnostics>(())
 /// ```
 pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnostics> {
     let mut errors = Diagnostics::default();
-    if let Some(name) = &selection.state {
-        if train.state(name).is_none() {
-            let known = train.states.iter().map(|s| s.name.as_str());
-            let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
-            d = d.suggest(name, known.clone());
-            errors.push(d.hint(format!("its states are: {}", known.collect::<Vec<_>>().join(", "))));
-        }
+    if let Some(name) = &selection.state
+        && train.state(name).is_none()
+    {
+        let known = train.states.iter().map(|s| s.name.as_str());
+        let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
+        d = d.suggest(name, known.clone());
+        errors.push(d.hint(format!("its states are: {}", known.collect::<Vec<_>>().join(", "))));
     }
     if let Some(name) = &selection.operation {
         let known = train.operations.iter().map(|o| o.name.as_str());
@@ -418,10 +418,10 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
     let mut diagnostics: Diagnostics = Diagnostics::default();
     diagnostics.extend(train.warnings.iter().cloned());
     let mut ratios = Named::default();
-    if train.states.is_empty() {
-        if let Some(row) = table::row(train, None, &[], AS_DRAWN, &mut diagnostics) {
-            ratios.0.push((AS_DRAWN.to_owned(), row));
-        }
+    if train.states.is_empty()
+        && let Some(row) = table::row(train, None, &[], AS_DRAWN, &mut diagnostics)
+    {
+        ratios.0.push((AS_DRAWN.to_owned(), row));
     }
     for (k, state) in train.states.iter().enumerate() {
         if selection.state.as_ref().is_some_and(|s| *s != state.name) {

@@ -70,10 +70,7 @@ pub struct Duty {
 impl Duty {
     /// Prescribed: the speeds of some members and the external torques on some terminals, in the
     /// order in which a point gives them.
-    pub fn new<'a>(
-        speeds: impl IntoIterator<Item = &'a str>,
-        torques: impl IntoIterator<Item = &'a str>,
-    ) -> Self {
+    pub fn new<'a>(speeds: impl IntoIterator<Item = &'a str>, torques: impl IntoIterator<Item = &'a str>) -> Self {
         Self {
             speeds: speeds.into_iter().map(String::from).collect(),
             torques: torques.into_iter().map(String::from).collect(),
@@ -225,14 +222,16 @@ impl<'t> Compiler<'t> {
         let dragged = find(&duty.drag.iter().map(|d| d.0.clone()).collect::<Vec<_>>());
         let state = duty.state.as_ref().map(|name| {
             train.state(name).ok_or_else(|| {
-                let d = Diagnostic::new(Code::UnknownSelection, "duty", format!("the train has no state `{name}`"));
-                d.suggest(name, train.states.iter().map(|s| s.name.as_str()))
+                Box::new({
+                    let d = Diagnostic::new(Code::UnknownSelection, "duty", format!("the train has no state `{name}`"));
+                    d.suggest(name, train.states.iter().map(|s| s.name.as_str()))
+                })
             })
         });
         let engaged: &[ShiftElementId] = match &state {
             Some(Ok(s)) => &s.engaged,
             Some(Err(d)) => {
-                wrong.push(d.clone());
+                wrong.push((**d).clone());
                 &[]
             }
             None => &[],
@@ -297,19 +296,32 @@ impl<'t> Compiler<'t> {
         let equilibrium = crate::statics::Equilibrium::new(c, &sigma, &open_nodes, &loaded).map_err(|why| {
             use crate::statics::Unsolvable::*;
             match why {
-                MissingLoads(n) => fail(Code::MissingTorque, format!("{n} more torques are needed"), "list them in the duty"),
-                TooManyLoads(n) => {
-                    fail(Code::TooManyTorques, format!("{n} torques too many"), "leave as many terminals open as there are degrees of freedom")
+                MissingLoads(n) => {
+                    fail(Code::MissingTorque, format!("{n} more torques are needed"), "list them in the duty")
                 }
-                UndeterminedSpeed => fail(Code::Undetermined, "a loaded part has no determined speed".into(), "prescribe another speed"),
-                Indeterminate => fail(Code::Indeterminate, "the train is statically indeterminate".into(), "remove the redundant mesh"),
+                TooManyLoads(n) => fail(
+                    Code::TooManyTorques,
+                    format!("{n} torques too many"),
+                    "leave as many terminals open as there are degrees of freedom",
+                ),
+                UndeterminedSpeed => {
+                    fail(Code::Undetermined, "a loaded part has no determined speed".into(), "prescribe another speed")
+                }
+                Indeterminate => fail(
+                    Code::Indeterminate,
+                    "the train is statically indeterminate".into(),
+                    "remove the redundant mesh",
+                ),
             }
         })?;
         let system = equilibrium.system();
         let k = system.columns.len();
         let moving: Vec<usize> = (0..k).filter(|&j| system.columns[j].rho[0] != system.columns[j].rho[1]).collect();
         if moving.len() > MOST_MOVING {
-            let message = format!("{} elements whose direction of power matters: at most {MOST_MOVING} are compiled", moving.len());
+            let message = format!(
+                "{} elements whose direction of power matters: at most {MOST_MOVING} are compiled",
+                moving.len()
+            );
             return Err(fail(Code::TooLarge, message, "split the train at a shaft"));
         }
 
@@ -359,10 +371,12 @@ impl<'t> Compiler<'t> {
             }
         }
         let load = |feature: usize, node: usize| -> f64 {
-            (1..train.members.len()).filter(|&m| !c.inner[m] && c.node_of[m] == Some(node)).map(|m| external[feature][m]).sum()
+            (1..train.members.len())
+                .filter(|&m| !c.inner[m] && c.node_of[m] == Some(node))
+                .map(|m| external[feature][m])
+                .sum()
         };
-        let right: Vec<Vec<f64>> =
-            (0..features).map(|i| system.rows.iter().map(|&n| load(i, n)).collect()).collect();
+        let right: Vec<Vec<f64>> = (0..features).map(|i| system.rows.iter().map(|&n| load(i, n)).collect()).collect();
 
         // Linear outputs: open terminals first, then what was asked for.
         let mut linear: Vec<Linear> = open.iter().map(|o| Linear::Torque(o.0)).collect();
@@ -479,7 +493,11 @@ impl<'t> Compiler<'t> {
             Output::Speed(name) => {
                 let m = train.member(name).ok_or_else(|| unknown("member", name))?;
                 let row = speed_row(m).ok_or_else(|| {
-                    fail(Code::Undetermined, format!("the speed of `{name}` is not determined"), "prescribe another speed")
+                    fail(
+                        Code::Undetermined,
+                        format!("the speed of `{name}` is not determined"),
+                        "prescribe another speed",
+                    )
                 })?;
                 speed_rows.push(row);
                 Column::Speed(speed_rows.len() - 1)
@@ -618,7 +636,13 @@ impl CompiledTrain {
                 Column::Linear(i) => linear[i],
                 Column::Loss => power,
                 Column::Efficiency if power_in > 0.0 => (power_in - power) / power_in,
-                Column::Efficiency => if power_in.is_nan() { f64::NAN } else { 0.0 },
+                Column::Efficiency => {
+                    if power_in.is_nan() {
+                        f64::NAN
+                    } else {
+                        0.0
+                    }
+                }
             };
         }
         verdict
@@ -660,7 +684,14 @@ impl CompiledTrain {
         while start < n {
             let len = CHUNK.min(n - start);
             let range = start..start + len;
-            odd += self.general.chunk(self.arch, points, range.clone(), &mut work.chunk, &mut work.hint, self.needs_power());
+            odd += self.general.chunk(
+                self.arch,
+                points,
+                range.clone(),
+                &mut work.chunk,
+                &mut work.hint,
+                self.needs_power(),
+            );
             for (o, c) in out.iter_mut().zip(&self.outputs) {
                 let o = &mut o[range.clone()];
                 match *c {
@@ -692,7 +723,14 @@ impl CompiledTrain {
                     single.chunk(self.arch, points, range.clone(), &mut work.chunk, only_efficiency);
                 }
                 None => {
-                    odd += self.general.chunk(self.arch, points, range.clone(), &mut work.chunk, &mut work.hint, self.needs_power());
+                    odd += self.general.chunk(
+                        self.arch,
+                        points,
+                        range.clone(),
+                        &mut work.chunk,
+                        &mut work.hint,
+                        self.needs_power(),
+                    );
                 }
             }
             for (sum, c) in sums.iter_mut().zip(&self.outputs) {

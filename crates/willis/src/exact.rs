@@ -315,8 +315,7 @@ pub(crate) fn reduce(matrix: &mut Matrix, columns: usize) -> Vec<usize> {
 /// Solution of a square system, or `None` when it is singular.
 pub(crate) fn solve(matrix: &Matrix, right: &[Rational]) -> Option<Vec<Rational>> {
     let n = right.len();
-    let mut rows: Matrix =
-        matrix.iter().zip(right).map(|(row, b)| row.iter().chain([b]).cloned().collect()).collect();
+    let mut rows: Matrix = matrix.iter().zip(right).map(|(row, b)| row.iter().chain([b]).cloned().collect()).collect();
     (reduce(&mut rows, n).len() == n).then(|| rows.into_iter().map(|mut r| r.pop().unwrap()).collect())
 }
 

@@ -51,3 +51,20 @@ pub mod analysis;
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;
 pub use train::Train;
+
+/// The Rust code of the README and of the book runs as doctests.
+#[cfg(doctest)]
+mod prose {
+    #[doc = include_str!("../../../README.md")]
+    struct Readme;
+    #[doc = include_str!("../../../book/src/first-train.md")]
+    struct FirstTrain;
+    #[doc = include_str!("../../../book/src/verdict.md")]
+    struct WhatTheVerdictMeans;
+    #[doc = include_str!("../../../book/src/train-file.md")]
+    struct TheTrainFile;
+    #[doc = include_str!("../../../book/src/shift-tables.md")]
+    struct ShiftTables;
+    #[doc = include_str!("../../../book/src/library.md")]
+    struct UsingTheLibrary;
+}

@@ -1,7 +1,7 @@
 //! Where the power runs: torque and power of every member, mesh and shift element for one
 //! equilibrium, the balance, and the power that goes round in circles.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use crate::kinematics::{Configuration, Element, Motion};
 use crate::statics::Solution;
@@ -88,8 +88,7 @@ impl Flow {
     ) -> Self {
         let train = c.train;
         // Idle parts may have no determined speed; nothing flows there.
-        let speeds: Vec<f64> =
-            (0..train.members.len()).map(|m| motion.si(MemberId(m)).unwrap_or(0.0)).collect();
+        let speeds: Vec<f64> = (0..train.members.len()).map(|m| motion.si(MemberId(m)).unwrap_or(0.0)).collect();
         let mut meshes = Vec::with_capacity(train.meshes.len());
         let mut demand = vec![0.0; train.members.len()];
         for (j, e) in c.elements.iter().enumerate() {
@@ -133,6 +132,18 @@ impl Flow {
         let circulations = circulations(c, &meshes, &speeds, input_power);
         Self { torques, speeds, meshes, ties, input_power, output_power, loss, residual, circulations }
     }
+}
+
+/// Torque that the elements ask of each member, straight from their forces (chains as a whole).
+pub(crate) fn demand(c: &Configuration<'_>, s: &Solution) -> Vec<f64> {
+    let mut demand = vec![0.0; c.train.members.len()];
+    for (j, e) in c.elements.iter().enumerate() {
+        let (a, b) = (e.a.to_f64(), e.b.to_f64() * s.rho[j]);
+        for (member, x) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
+            demand[member.0] += s.forces[j] * x;
+        }
+    }
+    demand
 }
 
 /// Follows the force through a chain, mesh by mesh.
@@ -250,7 +261,7 @@ fn circulations(c: &Configuration<'_>, meshes: &[MeshFlow], speeds: &[f64], inpu
     }
     let family = families(train);
     // Power from node n into family f.
-    let mut power: HashMap<(usize, usize), f64> = HashMap::new();
+    let mut power: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for m in meshes {
         let mesh = &train.meshes[m.mesh.0];
         for (member, torque) in [mesh.gears[0].member, mesh.gears[1].member, mesh.carrier].into_iter().zip(m.torques) {

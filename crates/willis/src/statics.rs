@@ -32,8 +32,9 @@ pub enum Certificate {
     SpectralRadius,
     /// One solution for every load: the determinants of all sign patterns share one sign.
     Determinants,
-    /// For some load there is no or more than one solution (determinants of both signs or zero);
-    /// what is reported for the load at hand was found by trying every sign pattern.
+    /// No certificate for every load (determinants of both signs or zero: for some load there is no
+    /// or more than one solution; or too many boxes to look at). What is reported for the load at
+    /// hand was found by trying every sign pattern.
     Enumeration,
     /// Too many interacting elements to decide; a solution was found by pivoting.
     Undecided,
@@ -209,11 +210,7 @@ impl Equilibrium {
                     None => entries.push((r, constant, slope)),
                 }
             }
-            let rho = if sigma == 0 {
-                [Rational::ONE, Rational::ONE]
-            } else {
-                [e.forward.clone(), e.backward.recip()]
-            };
+            let rho = if sigma == 0 { [Rational::ONE, Rational::ONE] } else { [e.forward.clone(), e.backward.recip()] };
             columns.push(Column {
                 element: j,
                 sigma,
@@ -223,8 +220,7 @@ impl Equilibrium {
                 rho,
             });
         }
-        let mut problem =
-            Self { columns, rows, elements: c.elements.len(), certificate: Certificate::Undecided };
+        let mut problem = Self { columns, rows, elements: c.elements.len(), certificate: Certificate::Undecided };
         if exact::determinant(&problem.exact_matrix(&|_| Rational::ONE)).is_zero() {
             return Err(Unsolvable::Indeterminate);
         }
@@ -321,7 +317,11 @@ impl Equilibrium {
         while let Some(fixed) = open.pop() {
             looked_at += 1;
             if looked_at > MOST_BOXES {
-                return if self.moving() <= MOST_ENUMERATED { Certificate::Enumeration } else { Certificate::Undecided };
+                return if self.moving() <= MOST_ENUMERATED {
+                    Certificate::Enumeration
+                } else {
+                    Certificate::Undecided
+                };
             }
             let vertex = |j: usize, p: bool| self.columns[j].rho[usize::from(!p)].clone();
             let at = |j: usize| fixed[j].map_or(full[j].0, |p| self.columns[j].rho_floats[usize::from(!p)]);
@@ -465,7 +465,9 @@ impl Equilibrium {
         let rounding = (b.abs() * f.abs() + t.abs()) * (4.0 * (n as f64 + 2.0) * f64::EPSILON);
         let defect = (DMatrix::identity(n, n) - &inverse * &b).abs().row_sum().max() + 1e-12;
         let bound = inverse.abs() * (residual + rounding) * (2.0 / (1.0 - defect).max(1e-300));
-        if !(defect < 0.1) || (0..n).any(|j| !(f[j].abs() > bound[j])) {
+        // NaN fails both comparisons and goes the exact way too.
+        let certain = defect < 0.1 && (0..n).all(|j| f[j].abs() > bound[j]);
+        if !certain {
             return exact();
         }
         let signs = f.iter().map(|x| if *x > 0.0 { 1 } else { -1 }).collect();
@@ -556,11 +558,8 @@ impl Equilibrium {
     /// A solution of another problem on the same train, seen in this problem: same drivers. `None`
     /// when this problem has an element that is idle there.
     pub(crate) fn same_pattern(&self, other: &Solution) -> Option<Solution> {
-        let pattern: Option<Vec<bool>> = self
-            .columns
-            .iter()
-            .map(|c| if c.sigma == 0 { Some(true) } else { other.driver[c.element] })
-            .collect();
+        let pattern: Option<Vec<bool>> =
+            self.columns.iter().map(|c| if c.sigma == 0 { Some(true) } else { other.driver[c.element] }).collect();
         Some(Solution { pattern: pattern?, ..other.clone() })
     }
 

@@ -22,7 +22,7 @@ pub use describe::{
     EfficiencySpec, GearSpec, MeshSpec, OperationSpec, SetEfficiencySpec, SetSpec, ShiftElementSpec, StateSpec,
     TrainBuilder,
 };
-pub use format::{schema, Reading};
+pub use format::{Reading, schema};
 
 /// A member's number within its train. The frame is number 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

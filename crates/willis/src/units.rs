@@ -24,10 +24,10 @@ impl Dimension {
     /// What a person calls it, and an example that the reader accepts.
     pub fn describe(self) -> (&'static str, &'static str) {
         match self {
-            Self::ANGULAR_SPEED => ("angular speed", "1450 rpm"),
-            Self::TORQUE => ("torque", "350 N m"),
-            Self::POWER => ("power", "75 kW"),
-            _ => ("quantity of another kind", ""),
+            Self::ANGULAR_SPEED => ("an angular speed", "1450 rpm"),
+            Self::TORQUE => ("a torque", "350 N m"),
+            Self::POWER => ("a power", "75 kW"),
+            _ => ("a quantity of another kind", ""),
         }
     }
 }
@@ -153,7 +153,7 @@ pub fn parse(text: &str, expected: Dimension) -> Result<Quantity, QuantityError>
     if unit.is_empty() {
         return Err(QuantityError::NoUnit);
     }
-    let (factor, pi_power, dimension) = parse_unit(unit)?;
+    let (factor, pi_power, dimension) = parse_unit(unit, expected)?;
     if dimension != expected.0 {
         return Err(QuantityError::WrongDimension);
     }
@@ -161,7 +161,7 @@ pub fn parse(text: &str, expected: Dimension) -> Result<Quantity, QuantityError>
 }
 
 /// Products and quotients of known symbols: `N m`, `N·m`, `N*m`, `rad/s`, `kg m^2`.
-fn parse_unit(text: &str) -> Result<(Rational, i8, [i8; 4]), QuantityError> {
+fn parse_unit(text: &str, expected: Dimension) -> Result<(Rational, i8, [i8; 4]), QuantityError> {
     let one = |symbol: &str| UNITS.iter().find(|u| u.0 == symbol);
     let factor = |u: &Unit| u.1.parse::<Rational>().expect("the table holds numbers");
     if let Some(u) = one(text) {
@@ -170,10 +170,14 @@ fn parse_unit(text: &str) -> Result<(Rational, i8, [i8; 4]), QuantityError> {
     let unknown = |symbol: &str| {
         let near = UNITS
             .iter()
-            .map(|u| (strsim::damerau_levenshtein(&u.0.to_lowercase(), &symbol.to_lowercase()), u.0))
-            .filter(|(distance, known)| *distance <= known.len().div_ceil(3))
+            .map(|u| {
+                let distance = strsim::damerau_levenshtein(&u.0.to_lowercase(), &symbol.to_lowercase());
+                // Among equally near ones, a unit of the kind that is wanted.
+                (distance, u.3 != expected.0, u.0)
+            })
+            .filter(|(distance, _, known)| *distance <= known.len().div_ceil(3))
             .min()
-            .map(|(_, known)| known);
+            .map(|(.., known)| known);
         QuantityError::UnknownUnit(symbol.chars().take(40).collect(), near)
     };
     let mut value = Rational::ONE;
@@ -220,7 +224,7 @@ macro_rules! quantity {
                 /// # Panics
                 /// If `value` is NaN or infinite.
                 pub fn $constructor(value: f64) -> Self {
-                    let (factor, pi_power, _) = parse_unit($unit).expect("a known unit");
+                    let (factor, pi_power, _) = parse_unit($unit, Dimension::$dimension).expect("a known unit");
                     let value = Rational::from_f64(value).expect("a finite value") * factor;
                     Self(Quantity { value, pi_power, dimension: Dimension::$dimension })
                 }
@@ -298,7 +302,7 @@ mod tests {
         assert_eq!(err(""), NoNumber);
         assert_eq!(err("10"), NoUnit);
         assert_eq!(err("10 rpm"), WrongDimension);
-        assert_eq!(err("10 Nn"), UnknownUnit("Nn".into(), Some("N")));
+        assert_eq!(err("10 Nn"), UnknownUnit("Nn".into(), Some("Nm")));
         assert_eq!(err("10 N m/s/s"), UnknownUnit("N m/s/s".into(), None));
         assert!(parse("1e999 N m", Dimension::TORQUE).is_err());
         assert!(parse(&"9".repeat(10_000), Dimension::TORQUE).is_err());

@@ -58,7 +58,9 @@ fn a_module_uses_only_those_above_it() {
 fn the_physics_touches_nothing_outside() {
     for file in rust_files(&src()) {
         let code = code(&file);
-        for outside in ["std::fs", "std::io", "std::env", "std::time", "std::thread", "std::net", "std::process", "println!"] {
+        for outside in
+            ["std::fs", "std::io", "std::env", "std::time", "std::thread", "std::net", "std::process", "println!"]
+        {
             assert!(!code.contains(outside), "{} uses {outside}", file.display());
         }
     }

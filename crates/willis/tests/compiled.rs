@@ -96,7 +96,8 @@ fn compiled_equals_analysis_with_two_freedoms() {
             assert_eq!(verdict, PointVerdict::Unique);
             let s = &o.solutions[0];
             let member = |name: &str| s.members.get(name).unwrap();
-            let close = |x: f64, y: f64, size: f64| assert!((x - y).abs() <= 1e-11 * size.max(1e-9), "{w:?} {t}: {x} {y}");
+            let close =
+                |x: f64, y: f64, size: f64| assert!((x - y).abs() <= 1e-11 * size.max(1e-9), "{w:?} {t}: {x} {y}");
             close(out[0], member(open[0]).torque_n_m.unwrap(), 1e3);
             close(out[1], member(open[1]).torque_n_m.unwrap(), 1e3);
             close(out[2], s.loss_w, 1e5);
@@ -133,7 +134,9 @@ fn compiled_equals_analysis_in_every_gear() {
             let mut out = vec![0.0; compiled.outputs()];
             for _ in 0..4 {
                 let (w, t) = (random.between(50.0, 500.0).round(), random.between(-200.0, 400.0).round());
-                let text = std::fs::read_to_string(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
+                let text =
+                    std::fs::read_to_string(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR")))
+                        .unwrap();
                 let text = format!(
                     "{text}\n[[operation]]\nname = \"one more\"\nstate = \"{}\"\nspeeds = {{ {input} = \"{w} rad/s\" }}\ntorques = {{ {input} = \"{t} N m\" }}\n",
                     state.name
@@ -142,7 +145,9 @@ fn compiled_equals_analysis_in_every_gear() {
                 let a = analyze(&Train::from_toml(&text).unwrap(), &selection).unwrap();
                 let s = &a.operations[0].solutions[0];
                 compiled.evaluate(&[w], &[t], &mut work, &mut out);
-                let close = |x: f64, y: f64| assert!((x - y).abs() <= 1e-9 * y.abs().max(1.0), "{name} {}: {x} {y}", state.name);
+                let close = |x: f64, y: f64| {
+                    assert!((x - y).abs() <= 1e-9 * y.abs().max(1.0), "{name} {}: {x} {y}", state.name)
+                };
                 close(out[0], s.members.get(&output).unwrap().torque_n_m.unwrap());
                 close(out[1], s.efficiency.unwrap());
                 for (k, e) in elements.iter().enumerate() {
@@ -158,9 +163,10 @@ fn compiled_equals_analysis_in_every_gear() {
 }
 
 fn with_drag(duty: Duty, members: &[&str]) -> Duty {
-    members.iter().enumerate().fold(duty, |d, (k, m)| {
-        d.drag(m, ShaftDrag { coulomb: 0.2 + 0.1 * k as f64, viscous: 1e-3 * (k + 1) as f64 })
-    })
+    members
+        .iter()
+        .enumerate()
+        .fold(duty, |d, (k, m)| d.drag(m, ShaftDrag { coulomb: 0.2 + 0.1 * k as f64, viscous: 1e-3 * (k + 1) as f64 }))
 }
 
 #[test]
@@ -171,7 +177,8 @@ fn a_batch_equals_its_points() {
     let column = |low: f64, high: f64, random: &mut Random| -> Vec<f64> {
         (0..n).map(|i| if i % 97 == 0 { 0.0 } else { random.between(low, high) }).collect()
     };
-    let (w0, w1, t) = (column(-400.0, 400.0, &mut random), column(-150.0, 150.0, &mut random), column(-200.0, 200.0, &mut random));
+    let (w0, w1, t) =
+        (column(-400.0, 400.0, &mut random), column(-150.0, 150.0, &mut random), column(-200.0, 200.0, &mut random));
     let eight = example("zf-8hp70");
     let shafts = ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"];
     let mut duties: Vec<(Train, Duty, usize)> = Vec::new();
@@ -196,7 +203,9 @@ fn a_batch_equals_its_points() {
         }
         duties.push((power_split().build().unwrap(), duty, 2));
     }
-    let duty = with_drag(Duty::new(["a", "d"], ["a"]), &["a", "c"]).output(Output::Torque("b".into())).output(Output::Efficiency);
+    let duty = with_drag(Duty::new(["a", "d"], ["a"]), &["a", "c"])
+        .output(Output::Torque("b".into()))
+        .output(Output::Efficiency);
     duties.push((compound_split().build().unwrap(), duty, 2));
     for (train, duty, freedoms) in duties {
         let compiled = train.compile(&duty).unwrap();

@@ -30,9 +30,8 @@ struct RandomTrain {
 
 fn random_set(members: usize) -> impl Strategy<Value = RandomSet> {
     let three = proptest::sample::subsequence((0..members).collect::<Vec<_>>(), 3).prop_shuffle();
-    (three, [12i64..90, 12i64..90, 12i64..60, 12i64..60], any::<bool>(), [700i64..1000, 700i64..1000]).prop_map(
-        |(m, teeth, ring, eta)| RandomSet { members: [m[0], m[1], m[2]], teeth, ring, eta },
-    )
+    (three, [12i64..90, 12i64..90, 12i64..60, 12i64..60], any::<bool>(), [700i64..1000, 700i64..1000])
+        .prop_map(|(m, teeth, ring, eta)| RandomSet { members: [m[0], m[1], m[2]], teeth, ring, eta })
 }
 
 /// `k` sets on `k + 2` members have two freedoms; holding one member leaves one.
@@ -76,7 +75,13 @@ impl RandomTrain {
             .torque(&name(2), Torque::n_m(load))
     }
 
-    fn run(&self, name: &dyn Fn(usize) -> String, lossless: bool, scale: f64, reverse: bool) -> Option<OperationReport> {
+    fn run(
+        &self,
+        name: &dyn Fn(usize) -> String,
+        lossless: bool,
+        scale: f64,
+        reverse: bool,
+    ) -> Option<OperationReport> {
         let terminals = [name(1), name(2)];
         let bare = self.builder(name, lossless).terminals(terminals.iter().map(String::as_str));
         // The output's direction, to make the load a resisting one.

@@ -25,10 +25,12 @@ fn analysis(builder: TrainBuilder) -> Analysis {
 /// link held.
 fn inversions(r: (i64, i64), eta: f64) -> Vec<Direction> {
     let eta = Rational::from_f64(eta).unwrap();
-    let mut builder = Train::builder("set")
-        .members(["1", "4", "2"])
-        .terminals(["1", "4", "2"])
-        .set(set("P", ["1", "4", "2"], r, eta));
+    let mut builder = Train::builder("set").members(["1", "4", "2"]).terminals(["1", "4", "2"]).set(set(
+        "P",
+        ["1", "4", "2"],
+        r,
+        eta,
+    ));
     for (held, input, output) in [("2", "1", "4"), ("4", "1", "2"), ("1", "4", "2")] {
         builder = builder
             .shift_element(ShiftElementSpec::brake(held, held))
@@ -187,11 +189,22 @@ fn val_several_solutions_exactly() {
             Train::builder("gear pairs")
                 .members(["O", "I", "X"])
                 .terminals(["I", "O"])
-                .set(SetSpec::stepped("A", "X").sun("O", z("O"), z("pA")).sun("I", z("I"), z("pA")).mesh_efficiency(eta(0)))
-                .set(SetSpec::stepped("B", "X").sun("frame", z("G"), z("pB")).sun("O", z("O2"), z("pB")).mesh_efficiency(eta(1))),
+                .set(
+                    SetSpec::stepped("A", "X")
+                        .sun("O", z("O"), z("pA"))
+                        .sun("I", z("I"), z("pA"))
+                        .mesh_efficiency(eta(0)),
+                )
+                .set(
+                    SetSpec::stepped("B", "X")
+                        .sun("frame", z("G"), z("pB"))
+                        .sun("O", z("O2"), z("pB"))
+                        .mesh_efficiency(eta(1)),
+                ),
         );
         let row = &a.ratios.0[0].1;
-        let mut forward: Vec<f64> = example["forward"].as_array().unwrap().iter().map(|v| fraction(v).to_f64()).collect();
+        let mut forward: Vec<f64> =
+            example["forward"].as_array().unwrap().iter().map(|v| fraction(v).to_f64()).collect();
         forward.sort_by(f64::total_cmp);
         assert_eq!(row.drive.verdict, Verdict::Multiple);
         assert_eq!(row.coast.verdict, Verdict::Locked);
@@ -210,16 +223,13 @@ fn val_wolfrom_locks_at_the_threshold() {
     {
         let at = |eta: f64| {
             let a = analysis(
-                Train::builder("Wolfrom")
-                    .members(["s", "r", "c"])
-                    .terminals(["s", "r"])
-                    .set(
-                        SetSpec::stepped("P", "c")
-                            .sun("s", 12, planets.0)
-                            .ring("frame", rings.0, planets.0)
-                            .ring("r", rings.1, planets.1)
-                            .mesh_efficiency(eta),
-                    ),
+                Train::builder("Wolfrom").members(["s", "r", "c"]).terminals(["s", "r"]).set(
+                    SetSpec::stepped("P", "c")
+                        .sun("s", 12, planets.0)
+                        .ring("frame", rings.0, planets.0)
+                        .ring("r", rings.1, planets.1)
+                        .mesh_efficiency(eta),
+                ),
             );
             a.ratios.0[0].1.clone()
         };
@@ -296,14 +306,64 @@ fn val_lock_exactly_on_the_threshold() {
         (Rational::new(2_550_000_001, 2_560_000_000), Verdict::Unique),
         (Rational::new(2_549_999_999, 2_560_000_000), Verdict::Locked),
     ] {
-        let a = analysis(
-            Train::builder("threshold")
-                .members(["a", "c"])
-                .terminals(["a", "c"])
-                .set(set("P", ["a", "frame", "c"], r, eta.clone())),
-        );
+        let a = analysis(Train::builder("threshold").members(["a", "c"]).terminals(["a", "c"]).set(set(
+            "P",
+            ["a", "frame", "c"],
+            r,
+            eta.clone(),
+        )));
         let row = &a.ratios.0[0].1;
         assert_eq!(row.drive.verdict, verdict, "{eta}");
         assert_eq!(row.coast.verdict, Verdict::Unique);
     }
+}
+
+/// `forward` holds when the first central gear drives, whichever gear its mesh names first.
+#[test]
+fn directed_basic_efficiency_holds_from_the_first_gear() {
+    let eta = || EfficiencySpec::directed(0.9, 0.99);
+    let sets = [
+        SetSpec::simple("P", ("a", 30), ("b", 70), "c").basic_efficiency(eta()),
+        SetSpec::double_planet("P", ("a", 30), ("b", 78), "c").basic_efficiency(eta()),
+        SetSpec::stepped("P", "c").ring("a", 70, 20).ring("b", 64, 18).basic_efficiency(eta()),
+        SetSpec::stepped("P", "c").sun("a", 30, 20).ring("b", 64, 18).basic_efficiency(eta()),
+        SetSpec::bevel("P", "c").side("a", 16, true).side("b", 18, false).planet(10, 2).basic_efficiency(eta()),
+        SetSpec::bevel("P", "c").side("a", 16, false).side("b", 18, true).planet(10, 2).basic_efficiency(eta()),
+    ];
+    for set in sets {
+        let a = analysis(
+            Train::builder("directed")
+                .members(["a", "b", "c"])
+                .terminals(["a", "b"])
+                .set(set.clone())
+                .shift_element(ShiftElementSpec::brake("C", "c"))
+                .state(StateSpec::new("on", ["C"])),
+        );
+        let row = &a.ratios.0[0].1;
+        let near = |x: Option<f64>, y: f64| assert!((x.unwrap() - y).abs() < 1e-12, "{set:?}: {x:?}");
+        near(row.drive.efficiency, 0.9);
+        near(row.coast.efficiency, 0.99);
+    }
+}
+
+/// A one-way clutch holds the carrier against turning backward: it carries drive and overruns in
+/// coast, where no efficiency exists.
+#[test]
+fn a_one_way_clutch_carries_one_direction() {
+    let a = analysis(
+        Train::builder("one-way")
+            .members(["s", "r", "c"])
+            .terminals(["s", "r"])
+            .set(SetSpec::simple("P", ("s", 30), ("r", 70), "c").mesh_efficiency(0.99))
+            // Sun forward, ring backward: the carrier is pushed backward by both.
+            .shift_element(ShiftElementSpec::one_way("F", "r", "frame"))
+            .shift_element(ShiftElementSpec::brake("B", "r"))
+            .state(StateSpec::new("free", ["F"]).between("s", "c"))
+            .state(StateSpec::new("held", ["B"]).between("s", "c")),
+    );
+    let (free, held) = (a.ratios.get("free").unwrap(), a.ratios.get("held").unwrap());
+    assert_eq!(free.drive.efficiency, held.drive.efficiency);
+    assert_eq!(held.coast.verdict, Verdict::Unique);
+    assert_eq!(free.coast.verdict, Verdict::Undetermined);
+    assert!(free.coast.reason.as_ref().unwrap().contains("overruns"), "{free:?}");
 }

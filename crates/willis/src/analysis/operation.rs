@@ -38,9 +38,8 @@ pub(super) fn report(
     };
 
     let motion = c.motion(&operation.speeds).map_err(|broken| contradiction(&c, operation, &broken))?;
-    report.speeds_rad_s = Named(
-        (1..train.members.len()).map(|m| (train.members[m].name.clone(), motion.si(MemberId(m)))).collect(),
-    );
+    report.speeds_rad_s =
+        Named((1..train.members.len()).map(|m| (train.members[m].name.clone(), motion.si(MemberId(m)))).collect());
     if c.degrees_of_freedom() == 0 {
         let text = "nothing can turn: every freedom is taken by brakes, clutches and held members".to_owned();
         diagnostics.push(
@@ -51,14 +50,9 @@ pub(super) fn report(
         return Ok(report);
     }
 
-    let problem = match Loads::new(&c, operation, &motion) {
-        Ok(loads) => loads,
-        Err(wrong) => return Err(wrong),
-    };
-    let loose: Vec<_> = (1..train.members.len())
-        .map(MemberId)
-        .filter(|m| motion.speeds[m.0].is_none() && !c.inner[m.0])
-        .collect();
+    let problem = Loads::new(&c, operation, &motion)?;
+    let loose: Vec<_> =
+        (1..train.members.len()).map(MemberId).filter(|m| motion.speeds[m.0].is_none() && !c.inner[m.0]).collect();
     let missing_speeds = c.degrees_of_freedom().saturating_sub(independent(&c, &keep));
     let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
     let undetermined = |text: String, hint: String, code: Code| {
@@ -102,13 +96,11 @@ pub(super) fn report(
         }
     };
     if !loose.is_empty() {
-        diagnostics.push(
-            Diagnostic::new(
-                Code::Undetermined,
-                place,
-                format!("{title}: {} may spin at any speed; nothing is transmitted there", names(train, loose)),
-            ),
-        );
+        diagnostics.push(Diagnostic::new(
+            Code::Undetermined,
+            place,
+            format!("{title}: {} may spin at any speed; nothing is transmitted there", names(train, loose)),
+        ));
     }
 
     let answer = equilibrium.solve(&problem.torques);
@@ -128,7 +120,10 @@ pub(super) fn report(
         let ranges: Vec<_> = solution
             .stiction
             .iter()
-            .map(|r| format!("{} between {} and {}", r.what, short(r.low), short(r.high)))
+            .map(|r| match (r.low, r.high) {
+                (Some(low), Some(high)) => format!("{} between {} and {}", r.what, short(low), short(high)),
+                _ => format!("{} open", r.what),
+            })
             .collect();
         diagnostics.push(Diagnostic::new(
             Code::Stiction,
@@ -173,16 +168,19 @@ pub(super) fn report(
                 .collect();
             let text = match answer.continuum {
                 true => "the load lies on a self-locking threshold: a whole range of torques balances it".to_owned(),
-                false => format!("{} equilibria carry the same load, with efficiencies {}", list.len(), list.join(" and ")),
+                false => {
+                    format!("{} equilibria carry the same load, with efficiencies {}", list.len(), list.join(" and "))
+                }
             };
             diagnostics.push(
-                Diagnostic::new(Code::SeveralSolutions, place, format!("{title}: {text}"))
-                    .hint("a rigid quasi-static model cannot choose between them; better mesh efficiency makes it unique"),
+                Diagnostic::new(Code::SeveralSolutions, place, format!("{title}: {text}")).hint(
+                    "a rigid quasi-static model cannot choose between them; better mesh efficiency makes it unique",
+                ),
             );
             report.reason = Some(text);
         }
         if all.iter().any(|s| s.all_dissipated) {
-            let inputs = all.iter().find(|s| s.all_dissipated).map(|s| inputs(s)).unwrap_or_default();
+            let inputs = all.iter().find(|s| s.all_dissipated).map(inputs).unwrap_or_default();
             let text = format!("{inputs} all put power in and none takes power out: everything is dissipated");
             diagnostics.push(Diagnostic::new(Code::AllDissipated, place, format!("{title}: {text}")));
             report.reason.get_or_insert(text);
@@ -217,9 +215,7 @@ fn contradiction(c: &Configuration<'_>, operation: &Operation, broken: &[Vec<Mem
     let mut all = Diagnostics::default();
     for members in broken {
         let value = |m: MemberId| {
-            operation.speeds.iter().find(|(n, _)| *n == m).map_or(0.0, |(_, q)| q.si())
-                * 30.0
-                / std::f64::consts::PI
+            operation.speeds.iter().find(|(n, _)| *n == m).map_or(0.0, |(_, q)| q.si()) * 30.0 / std::f64::consts::PI
         };
         let place = format!("{}.speeds", operation.place);
         let (last, others) = members.split_last().expect("a conflict names members");
@@ -242,10 +238,10 @@ fn contradiction(c: &Configuration<'_>, operation: &Operation, broken: &[Vec<Mem
                 short(value(*last))
             ),
         };
-        all.push(Diagnostic::new(Code::ContradictorySpeeds, place, message).hint(format!(
-            "prescribe {} independent speed(s) in this configuration",
-            c.degrees_of_freedom()
-        )));
+        all.push(
+            Diagnostic::new(Code::ContradictorySpeeds, place, message)
+                .hint(format!("prescribe {} independent speed(s) in this configuration", c.degrees_of_freedom())),
+        );
     }
     all
 }
@@ -486,6 +482,8 @@ impl Frame<'_> {
             None
         } else if let Some(e) = &exact {
             Some(e.to_f64())
+        } else if flow.loss == 0.0 {
+            Some(1.0)
         } else {
             Some((flow.output_power / flow.input_power).clamp(0.0, 1.0))
         };
@@ -553,12 +551,8 @@ impl Frame<'_> {
         let mut margin = Margin::default();
 
         // Torques: with one load all forces scale with it, so only two or more have a boundary.
-        let given: Vec<(MemberId, usize, f64)> = self
-            .problem
-            .given
-            .iter()
-            .filter_map(|(m, t)| c.node(*m).map(|n| (*m, n, t.to_f64())))
-            .collect();
+        let given: Vec<(MemberId, usize, f64)> =
+            self.problem.given.iter().filter_map(|(m, t)| c.node(*m).map(|n| (*m, n, t.to_f64()))).collect();
         let largest = given.iter().fold(0.0f64, |a, g| a.max(g.2.abs()));
         if given.len() > 1 && largest > 0.0 {
             let nodes: Vec<usize> = given.iter().map(|g| g.1).collect();
@@ -629,24 +623,23 @@ impl Frame<'_> {
                 .filter_map(|x| c.node(x.member))
                 .collect();
             let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, self.motion)).collect();
-            if let ([input], false) = (&inputs[..], outputs.iter().any(|o| inputs.contains(o))) {
-                if let Ok(resisting) = Equilibrium::new(c, &sigma, &[*input], &outputs) {
-                    if let Some(s) = resisting.same_pattern(s) {
-                        margin.lock = resisting
-                            .lock_thresholds(&s)
-                            .into_iter()
-                            .map(|(e, threshold)| LockMargin {
-                                meshes: meshes_of(e),
-                                efficiency: match s.driver[e] {
-                                    Some(false) => c.elements[e].backward.to_f64(),
-                                    _ => c.elements[e].forward.to_f64(),
-                                },
-                                threshold,
-                            })
-                            .min_by(|a, b| (a.efficiency - a.threshold).total_cmp(&(b.efficiency - b.threshold)));
-                        margin.lock_loss_factor = resisting.lock_factor(&s);
-                    }
-                }
+            if let ([input], false) = (&inputs[..], outputs.iter().any(|o| inputs.contains(o)))
+                && let Ok(resisting) = Equilibrium::new(c, &sigma, &[*input], &outputs)
+                && let Some(s) = resisting.same_pattern(s)
+            {
+                margin.lock = resisting
+                    .lock_thresholds(&s)
+                    .into_iter()
+                    .map(|(e, threshold)| LockMargin {
+                        meshes: meshes_of(e),
+                        efficiency: match s.driver[e] {
+                            Some(false) => c.elements[e].backward.to_f64(),
+                            _ => c.elements[e].forward.to_f64(),
+                        },
+                        threshold,
+                    })
+                    .min_by(|a, b| (a.efficiency - a.threshold).total_cmp(&(b.efficiency - b.threshold)));
+                margin.lock_loss_factor = resisting.lock_factor(&s);
             }
         }
         margin
@@ -662,8 +655,12 @@ impl Frame<'_> {
                 lossy && s.forces[j] != 0.0 && c.sigma(e, self.motion) == Some(0)
             })
             .collect();
-        if stuck.is_empty() || stuck.len() > 6 {
+        if stuck.is_empty() {
             return vec![];
+        }
+        if stuck.len() > MOST_STUCK {
+            let what = format!("{} loaded meshes at rest: too many to bound; any torque behind them", stuck.len());
+            return vec![StictionRange { what, low: None, high: None }];
         }
         let mut low: Vec<Option<f64>> = flow.torques.clone();
         let mut high = low.clone();
@@ -698,32 +695,29 @@ impl Frame<'_> {
         let size = flow.torques.iter().flatten().fold(0.0f64, |a, t| a.max(t.abs()));
         let mut all = Vec::new();
         if eta.1 - eta.0 > 1e-9 {
-            all.push(StictionRange { what: "the efficiency".into(), low: eta.0, high: eta.1 });
+            all.push(StictionRange { what: "the efficiency".into(), low: Some(eta.0), high: Some(eta.1) });
         }
         for m in 1..low.len() {
-            if let (Some(l), Some(h)) = (low[m], high[m]) {
-                if h - l > 1e-9 * size {
-                    let what = format!("the torque on {} in N m", c.train.members[m].name);
-                    all.push(StictionRange { what, low: l, high: h });
-                }
+            if let (Some(l), Some(h)) = (low[m], high[m])
+                && h - l > 1e-9 * size
+            {
+                let what = format!("the torque on {} in N m", c.train.members[m].name);
+                all.push(StictionRange { what, low: Some(l), high: Some(h) });
             }
         }
         all
     }
 }
 
+/// Most elements at rest whose friction is varied, two values each.
+const MOST_STUCK: usize = 8;
+
 /// External torques with other ρ in stuck elements. The mesh walk of [`Flow`] takes ρ from the
 /// driver, so the torques are summed here from the elements.
 fn stuck_flow(frame: &Frame<'_>, s: &Solution) -> Vec<Option<f64>> {
     let c = frame.c;
     let scale = frame.scale();
-    let mut demand = vec![0.0; c.train.members.len()];
-    for (j, e) in c.elements.iter().enumerate() {
-        let (a, b) = (e.a.to_f64(), e.b.to_f64() * s.rho[j]);
-        for (member, x) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
-            demand[member.0] += s.forces[j] * x * scale;
-        }
-    }
+    let demand: Vec<f64> = crate::power_flow::demand(c, s).iter().map(|x| x * scale).collect();
     let mut external = vec![0.0; demand.len()];
     for x in &frame.problem.externals {
         external[x.member.0] = match (x.torque, c.node(x.member)) {
@@ -733,11 +727,7 @@ fn stuck_flow(frame: &Frame<'_>, s: &Solution) -> Vec<Option<f64>> {
         };
     }
     let (_, reactions) = crate::power_flow::ties(c, &demand, &external);
-    reactions
-        .into_iter()
-        .zip(&external)
-        .map(|(r, x)| r.map(|r| r + x))
-        .collect()
+    reactions.into_iter().zip(&external).map(|(r, x)| r.map(|r| r + x)).collect()
 }
 
 /// A one-way clutch can only push one way.

@@ -3,6 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, Ratio};
+use crate::power_flow::{self, demand};
 use crate::statics::{Certificate, Equilibrium, Unsolvable};
 use crate::train::{FRAME, MemberId, ShiftElementId, ShiftElementKind, Train};
 
@@ -50,7 +51,7 @@ pub(super) fn row(
         );
     }
     let (drive, coast) = match &exact {
-        Some(_) if redundant.is_empty() => (direction(&c, input, output), direction(&c, output, input)),
+        Some(_) if redundant.is_empty() => (direction(&c, input, output, input), direction(&c, output, input, input)),
         Some(_) => {
             let none = || verdict(Verdict::Undetermined, "statically indeterminate");
             (none(), none())
@@ -67,13 +68,11 @@ pub(super) fn row(
         }
         let (from, to) = (train.member_name(from), train.member_name(to));
         match d.verdict {
-            Verdict::Locked => diagnostics.push(
-                Diagnostic::new(
-                    Code::SelfLocking,
-                    &place,
-                    format!("{name}: locks {way}: friction lets {from} drive no load at {to}"),
-                ),
-            ),
+            Verdict::Locked => diagnostics.push(Diagnostic::new(
+                Code::SelfLocking,
+                &place,
+                format!("{name}: locks {way}: friction lets {from} drive no load at {to}"),
+            )),
             Verdict::Multiple => {
                 let all: Vec<_> = d.efficiencies.iter().map(|e| format!("{e:.4}")).collect();
                 diagnostics.push(Diagnostic::new(
@@ -124,13 +123,12 @@ fn verdict(verdict: Verdict, reason: &str) -> Direction {
 }
 
 /// Power from `from` to a resisting load at `to`: the load is given, what drives it is found.
-fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId) -> Direction {
+/// The train's input turns forward.
+fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberId) -> Direction {
     let train = c.train;
     let transfer = c.transfer(&[from]);
-    let motion = Motion {
-        speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(),
-        pi_power: 0,
-    };
+    let motion =
+        Motion { speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(), pi_power: 0 };
     let (Some(node_from), Some(node_to)) = (c.node(from), c.node(to)) else {
         return verdict(Verdict::Locked, &format!("{} cannot turn", names(train, [from])));
     };
@@ -138,9 +136,20 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId) -> Direction {
         return verdict(Verdict::Undetermined, "the speeds are not determined");
     };
     if !transfer.conflicts.is_empty() || w_to.is_zero() || w_from.is_zero() {
-        return verdict(Verdict::Locked, &format!("{} cannot drive {}", train.member_name(from), train.member_name(to)));
+        return verdict(
+            Verdict::Locked,
+            &format!("{} cannot drive {}", train.member_name(from), train.member_name(to)),
+        );
     }
+    let forward = if from == input { f64::from(w_from.sign()) } else { f64::from(w_to.sign()) };
+    let load = -f64::from(w_to.sign());
     if node_from == node_to {
+        if let Some(name) = overrunning(c, &vec![0.0; train.members.len()], [(from, -load), (to, load)], forward) {
+            return verdict(
+                Verdict::Undetermined,
+                &format!("the one-way clutch {name} overruns: no load is carried this way"),
+            );
+        }
         return Direction {
             verdict: Verdict::Unique,
             efficiency: Some(1.0),
@@ -158,6 +167,15 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId) -> Direction {
     loads[node_to] = Rational::from(-i64::from(w_to.sign()));
     let answer = equilibrium.solve(&loads);
     let w_in = w_from.to_f64();
+    for s in &answer.solutions {
+        let ends = [(from, torque(c, s, node_from)), (to, load)];
+        if let Some(name) = overrunning(c, &demand(c, s), ends, forward) {
+            return verdict(
+                Verdict::Undetermined,
+                &format!("the one-way clutch {name} overruns: no load is carried this way"),
+            );
+        }
+    }
     let mut efficiencies: Vec<f64> = answer
         .solutions
         .iter()
@@ -165,7 +183,9 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId) -> Direction {
             let exact = s.exact.as_ref().map(|f| torque_exact(c, &equilibrium, s, f, node_from));
             let torque = exact.map_or_else(|| torque(c, s, node_from), |t| t.to_f64());
             let power = torque * w_in;
-            (power > 0.0).then(|| w_to.to_f64().abs() / power)
+            // Without a driver nothing is lost, whatever the round-off says.
+            let lossless = s.driver.iter().all(Option::is_none);
+            (power > 0.0).then(|| if lossless { 1.0 } else { w_to.to_f64().abs() / power })
         })
         .collect();
     efficiencies.sort_by(f64::total_cmp);
@@ -174,9 +194,10 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId) -> Direction {
             Verdict::Locked,
             Some(format!("friction lets {} drive no load at {}", train.member_name(from), train.member_name(to))),
         ),
-        _ if answer.continuum => {
-            (Verdict::Multiple, Some("the load lies on a self-locking threshold: a whole range of torques balances it".to_owned()))
-        }
+        _ if answer.continuum => (
+            Verdict::Multiple,
+            Some("the load lies on a self-locking threshold: a whole range of torques balances it".to_owned()),
+        ),
         [_] => (Verdict::Unique, None),
         _ => (Verdict::Multiple, Some("several equilibria carry the same load".to_owned())),
     };
@@ -190,6 +211,20 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId) -> Direction {
         certificate: Some(answer.certificate.into()),
         reason,
     }
+}
+
+/// A one-way clutch that would have to hold against its free direction, if there is one.
+fn overrunning(c: &Configuration<'_>, demand: &[f64], ends: [(MemberId, f64); 2], forward: f64) -> Option<String> {
+    let mut external = vec![0.0; demand.len()];
+    ends.iter().for_each(|(m, t)| external[m.0] += t);
+    let (ties, _) = power_flow::ties(c, demand, &external);
+    ties.iter()
+        .map(|t| (&c.train.shift_elements[t.element.0], t.torque))
+        .find(|(e, torque)| {
+            let against = torque.unwrap_or(0.0) * forward * f64::from(e.blocks);
+            e.kind == ShiftElementKind::OneWay && against > 1e-12
+        })
+        .map(|(e, _)| e.name.clone())
 }
 
 /// External torque on a node, from the forces of the elements.
@@ -275,23 +310,23 @@ fn one_way_speeds(c: &Configuration<'_>, input: MemberId, place: &str, name: &st
     for id in elements {
         let element = &train.shift_elements[id.0];
         let [a, b] = element.members.map(|m| transfer.speeds[m.0].as_ref().map(|w| w[0].clone()));
-        if let (Some(a), Some(b)) = (a, b) {
-            if (&a - &b).sign() == element.blocks {
-                diagnostics.push(
-                    Diagnostic::new(
-                        Code::OneWay,
-                        place,
-                        format!(
-                            "state {name}: {} would turn in the direction that the one-way clutch {} blocks \
+        if let (Some(a), Some(b)) = (a, b)
+            && (&a - &b).sign() == element.blocks
+        {
+            diagnostics.push(
+                Diagnostic::new(
+                    Code::OneWay,
+                    place,
+                    format!(
+                        "state {name}: {} would turn in the direction that the one-way clutch {} blocks \
                              (relative speed {:.4} of the input's, input turning forward)",
-                            train.member_name(element.members[0]),
-                            element.name,
-                            (&a - &b).to_f64()
-                        ),
-                    )
-                    .hint("engage it in this state, or check which direction it blocks"),
-                );
-            }
+                        train.member_name(element.members[0]),
+                        element.name,
+                        (&a - &b).to_f64()
+                    ),
+                )
+                .hint("engage it in this state, or check which direction it blocks"),
+            );
         }
     }
 }

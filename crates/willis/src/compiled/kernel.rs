@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::{Points, PointVerdict, ShaftDrag};
+use super::{PointVerdict, Points, ShaftDrag};
 
 /// Points per chunk: every array of a chunk stays in the first-level cache.
 pub(super) const CHUNK: usize = 256;
@@ -397,7 +397,8 @@ impl General {
                     let side = if pattern >> bit & 1 == 1 { -1.0 } else { 1.0 };
                     fit(arch, x, row, &w.sigma[bit][..n], side, &mut w.worst[..n]);
                 }
-                left = arch.dispatch(Assign { worst: &w.worst[..n], pattern: pattern as u64, which: &mut w.which[..n] });
+                left =
+                    arch.dispatch(Assign { worst: &w.worst[..n], pattern: pattern as u64, which: &mut w.which[..n] });
                 if left == 0 {
                     break;
                 }
@@ -412,16 +413,12 @@ impl General {
         for i in lanes[..found].iter().map(|i| usize::from(*i)) {
             single.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
             sigma.iter_mut().zip(&w.sigma).for_each(|(s, a)| *s = a[i]);
-            let (verdict, pattern) =
-                self.find(&single[..self.features], &sigma[..self.moving.len()], *hint);
+            let (verdict, pattern) = self.find(&single[..self.features], &sigma[..self.moving.len()], *hint);
             odd += usize::from(verdict != PointVerdict::Unique);
             lone += 1;
-            match pattern {
-                Some(p) => {
-                    *hint = p;
-                    w.which[i] = p as u64;
-                }
-                None => {}
+            if let Some(p) = pattern {
+                *hint = p;
+                w.which[i] = p as u64;
             }
         }
         if lone > n / 16 && !w.recent.contains(hint) {
@@ -458,9 +455,8 @@ impl General {
         let mut linear = [0.0; MOST_LINEAR];
         let settled = [0, 1, 2, 3].map(|k| if k < frequent && common[k].0 > 0 { common[k].1 as u64 } else { NONE - 2 });
         let [p, q, r, s] = settled;
-        let (lanes, found) = select(&w.which[..if covered < n { n } else { 0 }], |k| {
-            (k != p) & (k != q) & (k != r) & (k != s)
-        });
+        let (lanes, found) =
+            select(&w.which[..if covered < n { n } else { 0 }], |k| (k != p) & (k != q) & (k != r) & (k != s));
         for i in lanes[..found].iter().map(|i| usize::from(*i)) {
             match w.which[i] {
                 NONE => w.linear.iter_mut().for_each(|o| o[i] = f64::NAN),
@@ -724,7 +720,14 @@ fn combine(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
 
 /// `out = Σ a_k x_k` where `which` is `pattern`, `Σ b_k x_k` elsewhere.
 fn combine_two(arch: pulp::Arch, x: &[&[f64]], a: &[f64], b: &[f64], which: &[u64], pattern: u64, out: &mut [f64]) {
-    fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], rows: [&[f64]; 2], which: &[u64], pattern: u64, out: &mut [f64]) {
+    fn go<const F: usize>(
+        arch: pulp::Arch,
+        x: &[&[f64]],
+        rows: [&[f64]; 2],
+        which: &[u64],
+        pattern: u64,
+        out: &mut [f64],
+    ) {
         match (<[&[f64]; F]>::try_from(x), rows.map(<[f64; F]>::try_from)) {
             (Ok(x), [Ok(a), Ok(b)]) => arch.dispatch(CombineTwo { x, a, b, which, pattern, out }),
             _ => {
@@ -825,9 +828,7 @@ impl Single {
         let rho = [element.rho[0], element.rho[1], 1.0];
         // Certified: the coefficient has one sign, so the sign of the force is that of the torque.
         let side = force(1.0).signum();
-        let gain = [0, 1].map(|o| {
-            rho.map(|r| force(r) * (p.per_force[0][0][o] + r * p.per_force[0][1][o]))
-        });
+        let gain = [0, 1].map(|o| rho.map(|r| force(r) * (p.per_force[0][0][o] + r * p.per_force[0][1][o])));
         Some(Self {
             third: rows[2],
             drive: [element.relative[0] * side, element.relative[1] * side],
@@ -841,7 +842,8 @@ impl Single {
     /// One point. Scalars throughout: an array indexed in here would become a gather.
     #[inline(always)]
     fn point<const LOADED: usize>(&self, w0: f64, w1: f64, torque: f64) -> SinglePoint {
-        let Self { third: [t0, t1], drive: [r0, r1], gain: [[ap, aq, ar], [bp, bq, br]], drag: [d0, d1, d2], .. } = *self;
+        let Self { third: [t0, t1], drive: [r0, r1], gain: [[ap, aq, ar], [bp, bq, br]], drag: [d0, d1, d2], .. } =
+            *self;
         let w2 = t0 * w0 + t1 * w1;
         let drag = |d: ShaftDrag, w: f64| (if w == 0.0 { 0.0 } else { d.coulomb.copysign(w) }) + d.viscous * w;
         let (d0, d1, d2) = (drag(d0, w0), drag(d1, w1), drag(d2, w2));
@@ -914,7 +916,14 @@ impl Single {
     }
 
     /// A chunk into the chunk's arrays.
-    pub fn chunk(&self, arch: pulp::Arch, points: &Points<'_>, range: Range<usize>, w: &mut Chunk, only_efficiency: bool) {
+    pub fn chunk(
+        &self,
+        arch: pulp::Arch,
+        points: &Points<'_>,
+        range: Range<usize>,
+        w: &mut Chunk,
+        only_efficiency: bool,
+    ) {
         let n = range.len();
         let efficiency = Some(&mut w.efficiency[..n]);
         let out = match &mut w.linear[..] {

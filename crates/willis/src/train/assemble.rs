@@ -30,8 +30,11 @@ pub(super) struct Assembler<'a> {
 }
 
 impl Assembler<'_> {
+    /// Reports once, however many parts of a set share the fault.
     pub fn report(&mut self, diagnostic: Diagnostic) {
-        self.diagnostics.push(diagnostic);
+        if !self.diagnostics.iter().any(|d| *d == diagnostic) {
+            self.diagnostics.push(diagnostic);
+        }
     }
 
     /// The member of that name, or an error at `place`.
@@ -371,12 +374,8 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         .enumerate()
         .filter_map(|(k, e)| a.shift_element(e, &format!("shift_element[{k}]")))
         .collect();
-    let states: Vec<_> = spec
-        .states
-        .iter()
-        .enumerate()
-        .map(|(k, s)| a.state(s, &spec.shift_elements, &format!("state[{k}]")))
-        .collect();
+    let states: Vec<_> =
+        spec.states.iter().enumerate().map(|(k, s)| a.state(s, &spec.shift_elements, &format!("state[{k}]"))).collect();
     let operations: Vec<_> = spec
         .operations
         .iter()
@@ -435,7 +434,9 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
                 .hint("name every rotor: members = [\"sun\", \"ring\", \"carrier\"]"),
         );
     }
-    loose_members(&mut a, &shift_elements);
+    if a.diagnostics.len() == before || !a.diagnostics.has_errors() {
+        loose_members(&mut a, &shift_elements);
+    }
 
     let failed = a.diagnostics.iter().skip(before).any(|d| d.severity == crate::diagnostic::Severity::Error);
     let assumptions = a.assumptions();
@@ -464,7 +465,9 @@ fn loose_members(a: &mut Assembler<'_>, shift_elements: &[ShiftElement]) {
         .flat_map(|m| [m.gears[0].member, m.gears[1].member, m.carrier])
         .chain(shift_elements.iter().flat_map(|e| e.members))
         .collect();
-    let loose: Vec<_> = (1..a.members.len()).filter(|&k| !used.contains(&MemberId(k))).collect();
+    let loose: Vec<_> = (1..a.members.len())
+        .filter(|&k| a.members[k].kind == MemberKind::Shaft && !used.contains(&MemberId(k)))
+        .collect();
     for k in loose {
         let name = a.members[k].name.clone();
         let message = format!("`{name}` meshes with nothing and no shift element touches it");

@@ -5,7 +5,7 @@ use crate::exact::Rational;
 use crate::train::{Efficiency, ShiftElementKind, Train};
 use crate::units::{AngularSpeed, Power, Quantity, Torque};
 
-use super::{assemble, Load};
+use super::{Load, assemble};
 
 /// A gear of a mesh: its member, tooth count, and whether it is a ring gear.
 #[derive(Clone, Debug)]
@@ -151,11 +151,32 @@ pub(crate) struct PlanetSpec {
 /// The parts of a set, by type.
 #[derive(Clone, Debug)]
 pub(crate) enum Parts {
-    Simple { sun: GearSpec, ring: GearSpec, planet: PlanetSpec },
-    DoublePlanet { sun: GearSpec, ring: GearSpec, inner: PlanetSpec, outer: PlanetSpec },
-    Stepped { central: Vec<GearSpec>, planet: PlanetSpec },
-    Ravigneaux { small_sun: Option<GearSpec>, large_sun: Option<GearSpec>, ring: Option<GearSpec>, short: PlanetSpec, long: PlanetSpec },
-    Bevel { sides: Vec<GearSpec>, planet: PlanetSpec },
+    Simple {
+        sun: GearSpec,
+        ring: GearSpec,
+        planet: PlanetSpec,
+    },
+    DoublePlanet {
+        sun: GearSpec,
+        ring: GearSpec,
+        inner: PlanetSpec,
+        outer: PlanetSpec,
+    },
+    Stepped {
+        central: Vec<GearSpec>,
+        planet: PlanetSpec,
+    },
+    Ravigneaux {
+        small_sun: Option<GearSpec>,
+        large_sun: Option<GearSpec>,
+        ring: Option<GearSpec>,
+        short: PlanetSpec,
+        long: PlanetSpec,
+    },
+    Bevel {
+        sides: Vec<GearSpec>,
+        planet: PlanetSpec,
+    },
 }
 
 /// A planetary set.
@@ -177,11 +198,15 @@ impl SetSpec {
 
     /// Sun, planets, ring.
     pub fn simple(name: impl Into<String>, sun: (&str, i64), ring: (&str, i64), carrier: impl Into<String>) -> Self {
-        Self::new(name, carrier, Parts::Simple {
-            sun: GearSpec::external(sun.0, sun.1),
-            ring: GearSpec::internal(ring.0, ring.1),
-            planet: PlanetSpec::default(),
-        })
+        Self::new(
+            name,
+            carrier,
+            Parts::Simple {
+                sun: GearSpec::external(sun.0, sun.1),
+                ring: GearSpec::internal(ring.0, ring.1),
+                planet: PlanetSpec::default(),
+            },
+        )
     }
 
     /// Sun, inner planets, outer planets, ring: sun and ring turn in the same sense on a held
@@ -192,12 +217,16 @@ impl SetSpec {
         ring: (&str, i64),
         carrier: impl Into<String>,
     ) -> Self {
-        Self::new(name, carrier, Parts::DoublePlanet {
-            sun: GearSpec::external(sun.0, sun.1),
-            ring: GearSpec::internal(ring.0, ring.1),
-            inner: PlanetSpec::default(),
-            outer: PlanetSpec::default(),
-        })
+        Self::new(
+            name,
+            carrier,
+            Parts::DoublePlanet {
+                sun: GearSpec::external(sun.0, sun.1),
+                ring: GearSpec::internal(ring.0, ring.1),
+                inner: PlanetSpec::default(),
+                outer: PlanetSpec::default(),
+            },
+        )
     }
 
     /// One planet shaft with several steps; add central gears with [`SetSpec::sun`] and
@@ -220,13 +249,17 @@ impl SetSpec {
         ring: (&str, i64),
         carrier: impl Into<String>,
     ) -> Self {
-        Self::new(name, carrier, Parts::Ravigneaux {
-            small_sun: Some(GearSpec::external(small_sun.0, small_sun.1)),
-            large_sun: Some(GearSpec::external(large_sun.0, large_sun.1)),
-            ring: Some(GearSpec::internal(ring.0, ring.1)),
-            short: PlanetSpec::default(),
-            long: PlanetSpec::default(),
-        })
+        Self::new(
+            name,
+            carrier,
+            Parts::Ravigneaux {
+                small_sun: Some(GearSpec::external(small_sun.0, small_sun.1)),
+                large_sun: Some(GearSpec::external(large_sun.0, large_sun.1)),
+                ring: Some(GearSpec::internal(ring.0, ring.1)),
+                short: PlanetSpec::default(),
+                long: PlanetSpec::default(),
+            },
+        )
     }
 
     /// Adds a sun that meshes with the step of `planet_teeth` teeth (stepped sets).
@@ -267,7 +300,9 @@ impl SetSpec {
     pub fn planet(mut self, teeth: i64, count: i64) -> Self {
         let spec = PlanetSpec { teeth: Some(teeth), count: Some(count) };
         match &mut self.parts {
-            Parts::Simple { planet, .. } | Parts::Stepped { planet, .. } | Parts::Bevel { planet, .. } => *planet = spec,
+            Parts::Simple { planet, .. } | Parts::Stepped { planet, .. } | Parts::Bevel { planet, .. } => {
+                *planet = spec
+            }
             Parts::DoublePlanet { inner, .. } => *inner = spec,
             Parts::Ravigneaux { short, .. } => *short = spec,
         }

@@ -44,12 +44,10 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
         }
         Some((id, teeth, g.internal))
     };
-    let number = |a: &mut Assembler<'_>, p: &PlanetSpec, key: &str| {
-        p.count.map(|c| a.count(c, &format!("{place}.{key}.count")))
-    };
-    let planet_teeth = |a: &mut Assembler<'_>, p: &PlanetSpec, key: &str| {
-        p.teeth.map(|t| a.teeth(t, &format!("{place}.{key}.teeth")))
-    };
+    let number =
+        |a: &mut Assembler<'_>, p: &PlanetSpec, key: &str| p.count.map(|c| a.count(c, &format!("{place}.{key}.count")));
+    let planet_teeth =
+        |a: &mut Assembler<'_>, p: &PlanetSpec, key: &str| p.teeth.map(|t| a.teeth(t, &format!("{place}.{key}.teeth")));
     let mut pairs: Vec<Pair<'_>> = Vec::new();
     let (kind, count);
     match &set.parts {
@@ -122,7 +120,8 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 });
             }
             if gears.len() < 2 {
-                let message = format!("a stepped set has two or more central gears, `{}` has {}", clip(name), gears.len());
+                let message =
+                    format!("a stepped set has two or more central gears, `{}` has {}", clip(name), gears.len());
                 a.report(Diagnostic::new(Code::IncompleteSet, place.as_str(), message).hint("add `suns` or `rings`"));
             }
             stepped_conditions(a, set, &place, &steps, count);
@@ -275,10 +274,18 @@ fn efficiencies(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair
                             given += 1;
                         }
                     }
-                    a.assume(name, "the basic efficiency holds from each sun to the ring and is booked on the sun's mesh");
+                    a.assume(
+                        name,
+                        "the basic efficiency holds from each sun to the ring and is booked on the sun's mesh",
+                    );
                 }
                 _ if sources == 2 => {
-                    all[0] = eta;
+                    // Forward means from the first central gear, which may be the mesh's second.
+                    let planet_first = pairs[0].central.is_some_and(|c| c.internal) || pairs[0].same_sense;
+                    all[0] = match planet_first {
+                        true => Efficiency { forward: eta.backward, backward: eta.forward },
+                        false => eta,
+                    };
                     a.assume(name, "only the basic efficiency is known; its loss is booked on the set's first mesh");
                 }
                 _ => {
@@ -286,9 +293,7 @@ fn efficiencies(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair
                         "set `{}` has {sources} central gears: a basic efficiency belongs to a set with two",
                         clip(name)
                     );
-                    a.report(
-                        Diagnostic::new(Code::Conflict, place, message).hint("give `mesh_efficiency` instead"),
-                    );
+                    a.report(Diagnostic::new(Code::Conflict, place, message).hint("give `mesh_efficiency` instead"));
                 }
             }
             all
@@ -312,7 +317,8 @@ fn nominal(
     let z = Rational::new(ring.clamp(-100_000, 100_000) - sun.clamp(-100_000, 100_000), 2);
     let name = clip(&set.name);
     if z.sign() <= 0 {
-        let message = format!("set `{name}`: a ring with {ring} teeth has no room for a planet around a sun with {sun}");
+        let message =
+            format!("set `{name}`: a ring with {ring} teeth has no room for a planet around a sun with {sun}");
         a.report(
             Diagnostic::new(Code::NotCoaxial, format!("{place}.ring.teeth"), message)
                 .hint("the ring has more teeth than the sun; are the two swapped?"),
@@ -373,10 +379,8 @@ fn equal_spacing(a: &mut Assembler<'_>, set: &SetSpec, place: &str, sum: &Ration
             clip(&set.name),
             each.to_f64()
         );
-        let fits: Vec<String> = (2..=8)
-            .filter(|k| (sum / &Rational::from(*k)).is_integer())
-            .map(|k| k.to_string())
-            .collect();
+        let fits: Vec<String> =
+            (2..=8).filter(|k| (sum / &Rational::from(*k)).is_integer()).map(|k| k.to_string()).collect();
         let hint = match fits.is_empty() {
             true => "no number of planets from 2 to 8 does; change a tooth count, or space them unequally".into(),
             false => format!("{} planets would, or unequal angles", fits.join(" or ")),
@@ -432,10 +436,10 @@ fn stepped_conditions(a: &mut Assembler<'_>, set: &SetSpec, place: &str, steps: 
             equal_spacing(a, set, place, &sum, n, "(z_1 y_2 - z_2 y_1)/gcd(y_1, y_2)");
         }
     }
-    if let Some(n) = n {
-        if let Some((z, y)) = steps.iter().filter(|s| s.0 > 0).max_by(|p, q| p.1.cmp(&q.1)) {
-            clearance(a, set, place, &Rational::from(*z), y, n);
-        }
+    if let Some(n) = n
+        && let Some((z, y)) = steps.iter().filter(|s| s.0 > 0).max_by(|p, q| p.1.cmp(&q.1))
+    {
+        clearance(a, set, place, &Rational::from(*z), y, n);
     }
 }
 

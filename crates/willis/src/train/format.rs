@@ -42,10 +42,10 @@ fn locate(spans: &reader::Spans, text: &str, diagnostics: &mut Diagnostics) {
     for d in diagnostics.iter_mut().filter(|d| d.span.is_none()) {
         d.span = spans.nearest(&d.place);
         // A suggestion replaces a name; inside quotes, if that is what stands there.
-        if let (Some(span), Some(new)) = (&d.span, &mut d.replacement) {
-            if let Some(quote) = text[span.clone()].chars().next().filter(|c| matches!(c, '"' | '\'')) {
-                *new = format!("{quote}{new}{quote}");
-            }
+        if let (Some(span), Some(new)) = (&d.span, &mut d.replacement)
+            && let Some(quote) = text[span.clone()].chars().next().filter(|c| matches!(c, '"' | '\''))
+        {
+            *new = format!("{quote}{new}{quote}");
         }
     }
 }
@@ -54,9 +54,8 @@ pub(super) fn read(text: &str) -> Reading {
     let mut diagnostics = Diagnostics::default();
     if text.trim().is_empty() {
         diagnostics.push(
-            Diagnostic::new(Code::MissingKey, "", "the file is empty").hint(
-                "a train file begins with `format = 1` and names its `members`; see the examples for a start",
-            ),
+            Diagnostic::new(Code::MissingKey, "", "the file is empty")
+                .hint("a train file begins with `format = 1` and names its `members`; see the examples for a start"),
         );
         return Reading { train: None, diagnostics, spans: reader::Spans::default() };
     }

@@ -56,8 +56,16 @@ pub(super) static FILE: Table = Table {
         must("name", Kind::Text, "What the train is called."),
         may("source", Kind::Text, "Where the data come from."),
         may("notes", Kind::Text, "Anything else worth keeping with the train."),
-        must("members", Kind::Names, "Every rotor. `frame` always exists and is at rest; planets of sets need no entry."),
-        may("terminals", Kind::Names, "Members on which an external torque may act. The first is the input and the last the output, unless `input` and `output` or a state say otherwise."),
+        must(
+            "members",
+            Kind::Names,
+            "Every rotor. `frame` always exists and is at rest; planets of sets need no entry.",
+        ),
+        may(
+            "terminals",
+            Kind::Names,
+            "Members on which an external torque may act. The first is the input and the last the output, unless `input` and `output` or a state say otherwise.",
+        ),
         may("input", Kind::Name, "Where power enters when driving."),
         may("output", Kind::Name, "Where power leaves when driving."),
         may("mesh", Kind::Tables(&MESH, 0), "Gear pairs on a carrier."),
@@ -72,12 +80,28 @@ static MESH: Table = Table {
     doc: "A gear pair on a carrier.",
     keys: &[
         may("name", Kind::Text, "Default: built from its gears."),
-        must("gears", Kind::Tables(&GEAR, 2), "The two gears. They turn in opposite senses relative to the carrier unless one is internal or `sense` says otherwise."),
+        must(
+            "gears",
+            Kind::Tables(&GEAR, 2),
+            "The two gears. They turn in opposite senses relative to the carrier unless one is internal or `sense` says otherwise.",
+        ),
         may("carrier", Kind::Name, "The member that carries the axes. Default: frame."),
-        may("efficiency", Kind::Efficiency, "In the carrier frame; or { forward, backward }: forward = the first gear drives. Default: lossless, listed as an assumption."),
+        may(
+            "efficiency",
+            Kind::Efficiency,
+            "In the carrier frame; or { forward, backward }: forward = the first gear drives. Default: lossless, listed as an assumption.",
+        ),
         may("count", Kind::Integer, "Identical meshes in parallel. Default: 1."),
-        may("sense", Kind::Choice(&["opposite", "same"]), "Relative to the carrier. `same` for chains and for the second side gear of a bevel set."),
-        may("kind", Kind::Choice(&["cylindrical", "bevel"]), "On a bevel pair the planet's speed is that of the carrier plus its spin."),
+        may(
+            "sense",
+            Kind::Choice(&["opposite", "same"]),
+            "Relative to the carrier. `same` for chains and for the second side gear of a bevel set.",
+        ),
+        may(
+            "kind",
+            Kind::Choice(&["cylindrical", "bevel"]),
+            "On a bevel pair the planet's speed is that of the carrier plus its spin.",
+        ),
     ],
 };
 
@@ -113,14 +137,22 @@ static SIDE: Table = Table {
         must("member", Kind::Name, "The rotor it sits on; `frame` for a gear that is always held."),
         must("teeth", Kind::Integer, "Tooth count."),
         may("planet_teeth", Kind::Integer, "Teeth of the planet where this gear meshes, when the planet is stepped."),
-        may("side", Kind::Choice(&["left", "right"]), "Gears on different sides turn in opposite senses relative to the carrier. Default: the first left, the others right."),
+        may(
+            "side",
+            Kind::Choice(&["left", "right"]),
+            "Gears on different sides turn in opposite senses relative to the carrier. Default: the first left, the others right.",
+        ),
     ],
 };
 
 static PLANET: Table = Table {
     doc: "The planets of a set.",
     keys: &[
-        may("teeth", Kind::Integer, "Tooth count. Without it planet speeds are those of the nominal planet (z_ring - z_sun)/2."),
+        may(
+            "teeth",
+            Kind::Integer,
+            "Tooth count. Without it planet speeds are those of the nominal planet (z_ring - z_sun)/2.",
+        ),
         may("count", Kind::Integer, "Number of planets; enables the assembly checks."),
     ],
 };
@@ -133,8 +165,16 @@ static STEPPED_PLANET: Table = Table {
 const NAME: Key = must("name", Kind::Text, "Unique; its planets are called after it, `P1.planet`.");
 const TYPE: Key = may("type", Kind::Choice(SET_TYPES), "Default: simple.");
 const CARRIER: Key = must("carrier", Kind::Name, "The member that carries the planets.");
-const MESH_EFFICIENCY: Key = may("mesh_efficiency", Kind::SetEfficiency, "Of each mesh in the carrier frame: a number, { forward, backward }, or { external = …, internal = … }.");
-const BASIC_EFFICIENCY: Key = may("basic_efficiency", Kind::Efficiency, "From the first to the second central gear with the carrier held; instead of mesh_efficiency.");
+const MESH_EFFICIENCY: Key = may(
+    "mesh_efficiency",
+    Kind::SetEfficiency,
+    "Of each mesh in the carrier frame: a number, { forward, backward }, or { external = …, internal = … }.",
+);
+const BASIC_EFFICIENCY: Key = may(
+    "basic_efficiency",
+    Kind::Efficiency,
+    "From the first to the second central gear with the carrier held; instead of mesh_efficiency.",
+);
 
 const SET_TYPES: &[&str] = &["simple", "double-planet", "stepped", "ravigneaux", "bevel"];
 
@@ -223,8 +263,16 @@ static SHIFT_ELEMENT: Table = Table {
     keys: &[
         must("name", Kind::Text, "Its letter in the shift table."),
         must("kind", Kind::Choice(&["clutch", "brake", "one-way"]), "What it is."),
-        must("members", Kind::Names, "The two members a clutch joins; the one a brake holds; one (against the frame) or two for a one-way clutch."),
-        may("blocks", Kind::Choice(&["backward", "forward"]), "For a one-way clutch: the direction of the first member relative to the second that it prevents. Default: backward."),
+        must(
+            "members",
+            Kind::Names,
+            "The two members a clutch joins; the one a brake holds; one (against the frame) or two for a one-way clutch.",
+        ),
+        may(
+            "blocks",
+            Kind::Choice(&["backward", "forward"]),
+            "For a one-way clutch: the direction of the first member relative to the second that it prevents. Default: backward.",
+        ),
     ],
 };
 
@@ -243,7 +291,11 @@ static OPERATION: Table = Table {
     keys: &[
         must("name", Kind::Text, "What it is called."),
         may("state", Kind::Name, "The state of the shift table it runs in. Default: as drawn."),
-        may("speeds", Kind::Quantities(Dimension::ANGULAR_SPEED), "Prescribed speeds, positive in one axis direction for the whole train."),
+        may(
+            "speeds",
+            Kind::Quantities(Dimension::ANGULAR_SPEED),
+            "Prescribed speeds, positive in one axis direction for the whole train.",
+        ),
         may("fixed", Kind::Names, "Members held at rest from outside."),
         may("torques", Kind::Quantities(Dimension::TORQUE), "External torques ON terminals."),
         may("powers", Kind::Quantities(Dimension::POWER), "External powers INTO the train at terminals."),

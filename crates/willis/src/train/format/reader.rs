@@ -8,9 +8,9 @@ use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
+use crate::train::Efficiency;
 use crate::train::assemble::clip;
 use crate::train::describe::EfficiencySpec;
-use crate::train::Efficiency;
 use crate::units::{self, Dimension, Quantity, QuantityError};
 
 use super::keys::{Kind, Table};
@@ -232,7 +232,8 @@ impl Reader<'_> {
                 Some(text) if choices.contains(&text) => Some(Node::Text(text.to_owned())),
                 Some(text) => {
                     let message = format!("`{}` is not a known `{}`", clip(text), last(place));
-                    let mut d = Diagnostic::new(Code::UnknownName, place, message).suggest(text, choices.iter().copied());
+                    let mut d =
+                        Diagnostic::new(Code::UnknownName, place, message).suggest(text, choices.iter().copied());
                     if d.hints.is_empty() {
                         d = d.hint(format!("one of: {}", choices.join(", ")));
                     }
@@ -246,13 +247,15 @@ impl Reader<'_> {
             },
             Kind::Efficiency => self.efficiency(value, place).map(Node::Efficiency),
             Kind::SetEfficiency => {
-                let by_kind = value.get_ref().as_table().filter(|t| {
-                    t.keys().any(|k| matches!(k.get_ref().as_ref(), "external" | "internal"))
-                });
+                let by_kind = value
+                    .get_ref()
+                    .as_table()
+                    .filter(|t| t.keys().any(|k| matches!(k.get_ref().as_ref(), "external" | "internal")));
                 let Some(table) = by_kind else {
                     return self.efficiency(value, place).map(|e| Node::SetEfficiency(e.clone(), e));
                 };
-                let [external, internal] = self.two(table, place, ["external", "internal"], value.span(), Self::efficiency)?;
+                let [external, internal] =
+                    self.two(table, place, ["external", "internal"], value.span(), Self::efficiency)?;
                 Some(Node::SetEfficiency(external, internal))
             }
             Kind::Quantities(dimension) => {
@@ -415,9 +418,9 @@ impl Reader<'_> {
                     let hint = match &error {
                         QuantityError::NoUnit => format!("write \"{} {unit}\" if that is the unit meant", shown.trim()),
                         QuantityError::UnknownUnit(_, Some(near)) => format!("did you mean `{near}`?"),
-                        _ => format!("an example of {kind}: \"{example}\""),
+                        _ => format!("{kind} looks like \"{example}\""),
                     };
-                    report(format!("\"{shown}\" is no {kind}: {error}"), hint);
+                    report(format!("\"{shown}\" is not {kind}: {error}"), hint);
                 }
             },
             DeValue::Integer(_) | DeValue::Float(_) => {
@@ -427,11 +430,11 @@ impl Reader<'_> {
                     _ => unreachable!(),
                 };
                 let hint = format!("write \"{shown} {unit}\" if that is the unit meant");
-                report(format!("{shown} has no unit; a {kind} is a text with one"), hint);
+                report(format!("{shown} has no unit; {kind} is a text with one"), hint);
             }
             other => {
                 let found = describe(other);
-                report(format!("a {kind} is a text with a unit, here is {found}"), format!("an example: \"{example}\""));
+                report(format!("{kind} is a text with a unit, here is {found}"), format!("an example: \"{example}\""));
             }
         }
         None
