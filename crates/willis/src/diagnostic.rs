@@ -90,7 +90,11 @@ fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<
     known
         .into_iter()
         .map(|k| (strsim::damerau_levenshtein(&found.to_lowercase(), &k.to_lowercase()), k))
-        .filter(|(distance, k)| *distance <= (k.chars().count().max(found.chars().count()) / 3).max(1))
+        .filter(|(distance, k)| {
+            let longer = k.chars().count().max(found.chars().count());
+            // One letter for another is no misspelling of a one-letter name.
+            *distance <= (longer / 3).max(1) && *distance < longer
+        })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, k)| k)
         .filter(|k| *k != found)
@@ -134,6 +138,11 @@ impl Diagnostics {
 
     pub(crate) fn iter_mut(&mut self) -> std::slice::IterMut<'_, Diagnostic> {
         self.0.iter_mut()
+    }
+
+    /// Puts them in the order in which they stand in the text.
+    pub(crate) fn sort(&mut self) {
+        self.0.sort_by_key(|d| d.span.as_ref().map(|s| s.start));
     }
 
     /// The text for people, each place underlined in `source` where there is one. `file` is what

@@ -3,6 +3,8 @@
 //!
 //! [`STEPS`] is the whole list. Adding a step is adding an entry there.
 
+mod bench;
+
 use std::env;
 use std::ffi::OsStr;
 use std::fs;
@@ -489,7 +491,10 @@ fn fuzz(context: &Context) -> Outcome {
 
 /// `cargo xtask bench`
 fn bench(context: &Context) -> Outcome {
-    outcome(context.run("cargo bench -p willis"))
+    match bench::run(&context.root) {
+        Ok(()) => Outcome::Passed,
+        Err(why) => Outcome::Failed(why),
+    }
 }
 
 /// Times as people read them.

@@ -364,15 +364,15 @@ fn wrong_loads(c: &Configuration<'_>, operation: &Operation, loads: &Loads, miss
     let open: Vec<MemberId> = loads.externals.iter().filter(|x| x.torque.is_none()).map(|x| x.member).collect();
     let mut all = Diagnostics::default();
     let place = format!("{}.torques", operation.place);
-    let s = if freedoms == 1 { "" } else { "s" };
+    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+    let freedoms = count(freedoms, "degree") + " of freedom";
     all.push(if missing {
         Diagnostic::new(
             Code::MissingTorque,
             place,
             format!(
-                "operation `{}`: {freedoms} degree{s} of freedom balance{} {freedoms} terminal{s}, but {} have no torque or power: {}",
+                "operation `{}`: with {freedoms} as many terminals can be left without a torque or power, but {} have none: {}",
                 operation.name,
-                if freedoms == 1 { "s" } else { "" },
                 open.len(),
                 names(train, open)
             ),
@@ -383,11 +383,10 @@ fn wrong_loads(c: &Configuration<'_>, operation: &Operation, loads: &Loads, miss
             Code::TooManyTorques,
             place,
             format!(
-                "operation `{}`: {freedoms} degree{s} of freedom need {freedoms} terminal{s} without a prescribed torque \
-                 to balance the train; here {} {} open",
+                "operation `{}`: with {freedoms} as many terminals must be left without a prescribed torque to balance \
+                 the train; here {} left",
                 operation.name,
-                open.len(),
-                if open.len() == 1 { "is" } else { "are" },
+                if open.len() == 1 { "1 is".to_owned() } else { format!("{} are", open.len()) },
             ),
         )
         .hint(match train.terminals.is_empty() {

@@ -39,6 +39,11 @@ impl Reading {
 }
 
 fn locate(spans: &reader::Spans, text: &str, diagnostics: &mut Diagnostics) {
+    give_places(spans, text, diagnostics);
+    diagnostics.sort();
+}
+
+fn give_places(spans: &reader::Spans, text: &str, diagnostics: &mut Diagnostics) {
     for d in diagnostics.iter_mut().filter(|d| d.span.is_none()) {
         d.span = spans.nearest(&d.place);
         // A suggestion replaces a name; inside quotes, if that is what stands there.

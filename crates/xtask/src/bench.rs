@@ -1,0 +1,133 @@
+//! `cargo xtask bench`: the compiled train beside numpy and numba, in one run, as ratios.
+//!
+//! A ratio is printed only between programs whose checksums agree.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Task, peer, ratio asked for (`performance` goals of the project).
+const GOALS: &[(&str, &str, Option<f64>)] = &[
+    ("map-all", "numpy-whole-array", Some(10.0)),
+    ("map-all", "numpy-blocked", None),
+    ("map-all", "numba-fused", Some(0.9)),
+    ("map-efficiency", "numpy-whole-array", Some(40.0)),
+    ("map-efficiency", "numba-fused", None),
+    ("map-reduced", "numpy-whole-array", Some(40.0)),
+    ("map-reduced", "numba-fused", None),
+    ("automatic-gear-1", "numpy-batched-solve", Some(200.0)),
+    ("automatic-gear-1", "numpy-precomputed", Some(15.0)),
+    ("automatic-gear-1", "numpy-grouped", None),
+    ("automatic-gear-1", "numba-fused", None),
+    ("automatic-gear-3", "numpy-batched-solve", Some(200.0)),
+    ("automatic-gear-3", "numpy-precomputed", Some(15.0)),
+    ("automatic-gear-3", "numpy-grouped", None),
+    ("automatic-gear-3", "numba-fused", None),
+    ("automatic-gear-5", "numpy-batched-solve", Some(200.0)),
+    ("automatic-gear-5", "numpy-precomputed", Some(15.0)),
+    ("automatic-gear-5", "numpy-grouped", None),
+    ("automatic-gear-5", "numba-fused", None),
+];
+
+/// Cold starts: criterion group and task, most seconds.
+const COLD: &[(&str, f64)] = &[
+    ("eight-speed-text-to-answer", 1e-3),
+    ("nine-automatics-two-loss-levels", 50e-3),
+    ("eight-speed-compile-one-gear", 1e-3),
+];
+
+/// Runs everything and prints the table. `Err` when a program failed or checksums differ.
+pub fn run(root: &Path) -> Result<(), String> {
+    let folder = root.join("target/willis-bench");
+    fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
+    let checksums = folder.join("checksums.jsonl");
+    let _ = fs::remove_file(&checksums);
+    let venv = folder.join("venv");
+    let python = venv.join("bin/python");
+    if !python.exists() {
+        command(Command::new("python3").args(["-m", "venv"]).arg(&venv))?;
+        let requirements = root.join("benches/baselines/requirements.txt");
+        command(Command::new(&python).args(["-m", "pip", "install", "--quiet", "-r"]).arg(requirements))?;
+    }
+    println!("Willis …");
+    let criterion = ["bench", "-p", "willis", "--bench", "compiled", "--", "--noplot"];
+    command(Command::new("cargo").current_dir(root).args(criterion))?;
+    let mut peers = Vec::new();
+    for script in ["map.py", "automatic.py"] {
+        println!("{script} …");
+        let mut c = Command::new(&python);
+        c.current_dir(root.join("benches/baselines")).args([script, "--json"]);
+        c.env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1").env("PYTHONDONTWRITEBYTECODE", "1");
+        let out = c.output().map_err(|e| e.to_string())?;
+        if !out.status.success() {
+            return Err(format!("{script}: {}", String::from_utf8_lossy(&out.stderr)));
+        }
+        peers.extend(lines(&String::from_utf8_lossy(&out.stdout))?);
+    }
+    let own = lines(&fs::read_to_string(&checksums).map_err(|e| e.to_string())?)?;
+
+    println!("\n{:18} {:20} {:>12} {:>12} {:>8} {:>8}", "task", "peer", "peer Mpt/s", "Willis Mpt/s", "ratio", "goal");
+    let mut wrong = Vec::new();
+    for (task, peer, goal) in GOALS {
+        let find =
+            |all: &[Value], key: &str, name: &str| all.iter().find(|v| v["task"] == *task && v[key] == name).cloned();
+        let (Some(theirs), Some(ours)) = (find(&peers, "peer", peer), find(&own, "peer", "willis")) else {
+            wrong.push(format!("{task} {peer}: no result"));
+            continue;
+        };
+        let points = ours["points"].as_f64().unwrap_or(f64::NAN);
+        for (key, mine) in ours["checksum"].as_object().into_iter().flatten() {
+            let (mine, other) = (mine.as_f64().unwrap_or(f64::NAN), theirs["checksum"][key].as_f64());
+            // Sums that nearly cancel are compared against the number of points.
+            let near = other.is_some_and(|o| (mine - o).abs() <= 1e-9 * o.abs().max(points));
+            if other.is_some() && !near {
+                wrong.push(format!("{task} {peer}: {key} is {mine}, theirs {other:?}"));
+            }
+        }
+        let speed = points / best(root, task)?;
+        let peer_speed = theirs["points_per_s"].as_f64().unwrap_or(f64::NAN);
+        let ratio = speed / peer_speed;
+        let goal = match goal {
+            None => String::new(),
+            Some(g) if ratio >= *g => format!("{g} ok"),
+            Some(g) => format!("{g} MISS"),
+        };
+        println!("{task:18} {peer:20} {:12.2} {:12.2} {ratio:8.2} {goal:>8}", peer_speed / 1e6, speed / 1e6);
+    }
+    let one = 1.0 / best(root, "automatic-one-point")?;
+    println!("{:18} {:20} {:>12} {:12.2}", "one point", "", "", one / 1e6);
+    for (task, most) in COLD {
+        let seconds = best(root, task)?;
+        let verdict = if seconds <= *most { "ok" } else { "MISS" };
+        println!("{task:34} {:9.3} ms, at most {} ms: {verdict}", 1e3 * seconds, 1e3 * most);
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
+}
+
+/// Seconds of the best sample of a criterion task.
+fn best(root: &Path, task: &str) -> Result<f64, String> {
+    for group in ["map", "automatic", "cold"] {
+        let file = root.join(format!("target/criterion/{group}/{task}/new/sample.json"));
+        let Ok(text) = fs::read_to_string(file) else { continue };
+        let v: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
+        let numbers =
+            |key: &str| -> Vec<f64> { v[key].as_array().into_iter().flatten().filter_map(Value::as_f64).collect() };
+        let each = numbers("times").into_iter().zip(numbers("iters")).map(|(t, n)| t / n * 1e-9);
+        return each.min_by(f64::total_cmp).ok_or_else(|| format!("{task}: no samples"));
+    }
+    Err(format!("{task}: criterion left no samples"))
+}
+
+fn lines(text: &str) -> Result<Vec<Value>, String> {
+    text.lines().map(|l| serde_json::from_str(l).map_err(|e| format!("{l}: {e}"))).collect()
+}
+
+fn command(c: &mut Command) -> Result<(), String> {
+    match c.status() {
+        Ok(s) if s.success() => Ok(()),
+        Ok(s) => Err(format!("{c:?}: {s}")),
+        Err(e) => Err(format!("{c:?}: {e}")),
+    }
+}
