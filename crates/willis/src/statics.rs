@@ -124,9 +124,11 @@ pub struct Equilibrium {
 }
 
 /// Most elements (with relative motion) for which all sign patterns are tried.
-const MOST_ENUMERATED: usize = 20;
+const MOST_ENUMERATED: usize = 16;
 /// Most boxes looked at for the determinant certificate.
 const MOST_BOXES: usize = 1 << 13;
+/// Bound on the number of boxes or pivots times the cube of the number of elements.
+const WORK: usize = 1 << 31;
 
 impl Equilibrium {
     /// Sets up the problem: `sigma` by element (see [`Configuration::sigma`]), `open` the nodes
@@ -316,7 +318,7 @@ impl Equilibrium {
         let mut looked_at = 0;
         while let Some(fixed) = open.pop() {
             looked_at += 1;
-            if looked_at > MOST_BOXES {
+            if looked_at > MOST_BOXES.min(WORK / (n * n * n)) {
                 return if self.moving() <= MOST_ENUMERATED {
                     Certificate::Enumeration
                 } else {
@@ -363,33 +365,39 @@ impl Equilibrium {
         match self.certificate {
             Certificate::SpectralRadius | Certificate::Determinants | Certificate::Undecided => {
                 let found = self.pivot(&t, &t_float);
-                Answer { solutions: found.into_iter().collect(), certificate: self.certificate, continuum: false }
+                // A search that ran out of steps has proved nothing.
+                let certificate = if found.is_some() { self.certificate } else { Certificate::Undecided };
+                Answer { solutions: found.into_iter().collect(), certificate, continuum: false }
             }
             Certificate::Enumeration => self.enumerate(&t, &t_float),
         }
     }
 
-    /// Least-index pivoting from the pattern of the lossless train.
+    /// Pivoting from the pattern of the lossless train: first all wrong signs at once, which is
+    /// quick and nearly always ends, then only the one of least index, which ends for certain
+    /// under the W-property. `None` when the steps ran out.
     fn pivot(&self, t: &[Rational], t_float: &[f64]) -> Option<Solution> {
         let n = self.columns.len();
         let lossless = self.attempt(&vec![None; n], t, t_float)?;
         let mut pattern: Vec<bool> = (0..n).map(|j| lossless.signs[j] * self.columns[j].sigma >= 0).collect();
-        // 2^n steps suffice under the W-property; far fewer are met.
-        let most = 1usize << n.min(16);
-        for _ in 0..=most {
+        let at_once = 8;
+        let most = at_once + (1usize << n.min(12)).min(WORK / (n * n * n).max(1));
+        for step in 0..most {
             let choice: Vec<_> = pattern.iter().map(|p| Some(*p)).collect();
             let trial = self.attempt(&choice, t, t_float)?;
-            match self.wrong(&trial, &pattern) {
-                None => return Some(self.solution(trial, pattern)),
-                Some(j) => pattern[j] = !pattern[j],
+            let Some(first) = self.wrong(&trial, &pattern, 0) else { return Some(self.solution(trial, pattern)) };
+            let mut next = Some(first);
+            while let Some(j) = next {
+                pattern[j] = !pattern[j];
+                next = if step < at_once { self.wrong(&trial, &pattern, j + 1) } else { None };
             }
         }
         None
     }
 
-    /// The first element whose force contradicts the pattern.
-    fn wrong(&self, trial: &Trial, pattern: &[bool]) -> Option<usize> {
-        (0..pattern.len()).find(|&j| {
+    /// The first element, from `start` on, whose force contradicts the pattern.
+    fn wrong(&self, trial: &Trial, pattern: &[bool], start: usize) -> Option<usize> {
+        (start..pattern.len()).find(|&j| {
             let c = &self.columns[j];
             let drives = trial.signs[j] * c.sigma;
             c.rho[0] != c.rho[1] && if pattern[j] { drives < 0 } else { drives > 0 }
@@ -412,7 +420,7 @@ impl Equilibrium {
             };
             // An idle element fits both signs; it is counted once, as if p drove.
             let doubled = (0..n).any(|j| trial.signs[j] == 0 && !pattern[j]);
-            if !doubled && self.wrong(&trial, &pattern).is_none() {
+            if !doubled && self.wrong(&trial, &pattern, 0).is_none() {
                 let mut exact_trial = trial;
                 if exact_trial.exact.is_none() {
                     exact_trial.exact = self.exact_forces(&choice, t);

@@ -4,7 +4,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, common};
 use crate::power_flow::{External, Flow};
-use crate::statics::{Equilibrium, Solution, Unsolvable};
+use crate::statics::{Certificate, Equilibrium, Solution, Unsolvable};
 use crate::train::{FRAME, Load, MemberId, MemberKind, Operation, ShiftElementKind, Train};
 use crate::units::{Dimension, Quantity};
 
@@ -75,6 +75,13 @@ pub(super) fn report(
                     n => format!("give {n} more speeds, or hold {n} members"),
                 };
                 undetermined(text, hint, Code::Undetermined)
+            } else if why == Unsolvable::Indeterminate && redundant.is_empty() && still(&problem, &motion) {
+                let open = problem.externals.iter().filter(|x| x.torque.is_none()).map(|x| x.member);
+                let text = format!(
+                    "{} stands still in this motion and can take no power, so nothing balances the load",
+                    names(train, open)
+                );
+                undetermined(text, "leave open a terminal that turns".into(), Code::Undetermined)
             } else if why == Unsolvable::Indeterminate {
                 let meshes: Vec<String> = redundant
                     .iter()
@@ -105,11 +112,11 @@ pub(super) fn report(
 
     let answer = equilibrium.solve(&problem.torques);
     report.certificate = Some(answer.certificate.into());
-    if answer.certificate == crate::statics::Certificate::Undecided {
+    if answer.certificate == Certificate::Undecided {
         diagnostics.push(Diagnostic::new(
             Code::NotEnumerated,
             place,
-            format!("{title}: uniqueness could not be decided; the solution shown was found by pivoting"),
+            format!("{title}: too many interacting meshes to decide how many equilibria there are"),
         ));
     }
     let unloaded = problem.torques.iter().all(Rational::is_zero);
@@ -139,6 +146,13 @@ pub(super) fn report(
     if unloaded {
         report.verdict = Verdict::Unloaded;
         report.reason = Some("no torque or power acts on any terminal".into());
+        report.solutions = all;
+    } else if answer.certificate == Certificate::Undecided {
+        // Found or not, nothing is proved: neither "unique" nor "locked" may be said.
+        report.reason = Some(match all.is_empty() {
+            true => "too many interacting meshes: no equilibrium was found, and none is excluded".into(),
+            false => "too many interacting meshes: the equilibrium shown may not be the only one".into(),
+        });
         report.solutions = all;
     } else if all.is_empty() || (one_freedom && !driving) {
         report.verdict = Verdict::Locked;
@@ -192,6 +206,12 @@ pub(super) fn report(
         near_boundary(s, place, &title, diagnostics);
     }
     Ok(report)
+}
+
+/// Whether every terminal that is left to balance the train is at rest.
+fn still(loads: &Loads, motion: &Motion) -> bool {
+    let mut open = loads.externals.iter().filter(|x| x.torque.is_none());
+    open.all(|x| motion.speeds[x.member.0].as_ref().is_some_and(Rational::is_zero))
 }
 
 fn inputs(s: &SolutionReport) -> String {

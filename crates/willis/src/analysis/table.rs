@@ -189,7 +189,12 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
         })
         .collect();
     efficiencies.sort_by(f64::total_cmp);
+    let undecided = answer.certificate == Certificate::Undecided;
     let (v, reason) = match efficiencies[..] {
+        _ if undecided => (
+            Verdict::Undetermined,
+            Some("too many interacting meshes to decide how many equilibria there are".to_owned()),
+        ),
         [] => (
             Verdict::Locked,
             Some(format!("friction lets {} drive no load at {}", train.member_name(from), train.member_name(to))),
