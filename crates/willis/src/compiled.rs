@@ -19,7 +19,7 @@ use crate::kinematics::Configuration;
 use crate::power_flow;
 use crate::train::{MemberId, ShiftElementId, Train};
 
-use kernel::{CHUNK, Chunk, General, Single};
+use kernel::{CHUNK, Chunk, General, Single, Target};
 
 /// Most elements with relative motion for which all sign patterns are kept.
 const MOST_MOVING: usize = 12;
@@ -125,6 +125,8 @@ pub struct CompiledTrain {
     outputs: Vec<Column>,
     speeds: usize,
     torques: usize,
+    /// The first output column that holds each linear output.
+    column_of: Vec<Option<usize>>,
     general: General,
     single: Option<Single>,
     arch: pulp::Arch,
@@ -436,7 +438,16 @@ impl<'t> Compiler<'t> {
             certified: equilibrium.certificate().unique_for_every_load(),
         });
         let single = self.single(&general, &open, &drag_of, &columns);
-        Ok(CompiledTrain { outputs: columns, speeds: d, torques: l, general, single, arch: pulp::Arch::new() })
+        let column_of = (0..general.linear()).map(|o| columns.iter().position(|c| *c == Column::Linear(o))).collect();
+        Ok(CompiledTrain {
+            outputs: columns,
+            speeds: d,
+            torques: l,
+            column_of,
+            general,
+            single,
+            arch: pulp::Arch::new(),
+        })
     }
 
     /// The fused kernel for one set with two freedoms, if this duty is of that kind.
@@ -684,19 +695,18 @@ impl CompiledTrain {
         while start < n {
             let len = CHUNK.min(n - start);
             let range = start..start + len;
-            odd += self.general.chunk(
-                self.arch,
-                points,
-                range.clone(),
-                &mut work.chunk,
-                &mut work.hint,
-                self.needs_power(),
-            );
-            for (o, c) in out.iter_mut().zip(&self.outputs) {
-                let o = &mut o[range.clone()];
+            let to = Target { column: &self.column_of, out, powers: self.needs_power() };
+            odd += self.general.chunk(self.arch, points, range.clone(), &mut work.chunk, &mut work.hint, to);
+            for (k, c) in self.outputs.iter().enumerate() {
                 match *c {
-                    Column::Input(i) => o.copy_from_slice(&points.torques[i][range.clone()]),
-                    _ => o.copy_from_slice(self.chunk_column(c, work, len)),
+                    Column::Input(i) => out[k][range.clone()].copy_from_slice(&points.torques[i][range.clone()]),
+                    Column::Linear(i) if self.column_of[i] == Some(k) => {}
+                    Column::Linear(i) => {
+                        let first = self.column_of[i].expect("a linear column is one of the outputs");
+                        let (head, tail) = out.split_at_mut(k);
+                        tail[0][range.clone()].copy_from_slice(&head[first][range.clone()]);
+                    }
+                    _ => out[k][range.clone()].copy_from_slice(self.chunk_column(c, work, len)),
                 }
             }
             start += len;
@@ -723,14 +733,8 @@ impl CompiledTrain {
                     single.chunk(self.arch, points, range.clone(), &mut work.chunk, only_efficiency);
                 }
                 None => {
-                    odd += self.general.chunk(
-                        self.arch,
-                        points,
-                        range.clone(),
-                        &mut work.chunk,
-                        &mut work.hint,
-                        self.needs_power(),
-                    );
+                    let to = Target { column: &self.column_of, out: &mut [], powers: self.needs_power() };
+                    odd += self.general.chunk(self.arch, points, range.clone(), &mut work.chunk, &mut work.hint, to);
                 }
             }
             for (sum, c) in sums.iter_mut().zip(&self.outputs) {

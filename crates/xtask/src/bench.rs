@@ -55,10 +55,10 @@ pub fn run(root: &Path) -> Result<(), String> {
     let criterion = ["bench", "-p", "willis", "--bench", "compiled", "--", "--noplot"];
     command(Command::new("cargo").current_dir(root).args(criterion))?;
     let mut peers = Vec::new();
-    for script in ["map.py", "automatic.py"] {
+    for (script, points) in [("map.py", "10000000"), ("automatic.py", "100000")] {
         println!("{script} …");
         let mut c = Command::new(&python);
-        c.current_dir(root.join("benches/baselines")).args([script, "--json"]);
+        c.current_dir(root.join("benches/baselines")).args([script, "--json", "--points", points]);
         c.env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1").env("PYTHONDONTWRITEBYTECODE", "1");
         let out = c.output().map_err(|e| e.to_string())?;
         if !out.status.success() {

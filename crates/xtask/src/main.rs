@@ -435,6 +435,9 @@ fn bench_gate(context: &Context) -> Outcome {
     if !context.root.join("crates/willis/benches/gate.rs").exists() {
         return Outcome::Skipped("there is no crates/willis/benches/gate.rs".into());
     }
+    if !context.succeeds("valgrind --version") {
+        return Outcome::Skipped("valgrind, which counts the instructions, is not installed".into());
+    }
     outcome(context.run("cargo bench -p willis --bench gate"))
 }
 

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::{PointVerdict, Points, ShaftDrag};
 
 /// Points per chunk: every array of a chunk stays in the first-level cache.
-pub(super) const CHUNK: usize = 256;
+pub(super) const CHUNK: usize = 512;
 /// Most linear outputs.
 pub(super) const MOST_LINEAR: usize = 64;
 /// Most elements.
@@ -73,6 +73,8 @@ pub(super) struct General {
     features: usize,
     /// Columns with two values of ρ and relative motion.
     moving: Vec<usize>,
+    /// For each of them the one prescribed speed that its relative speed follows, and its factor.
+    axis: Vec<Option<(usize, f64)>>,
     /// By pattern: forces of the moving elements over the features; `None` where singular.
     forces: Vec<Option<Vec<Vec<f64>>>>,
     /// By pattern: linear outputs over the features.
@@ -137,7 +139,13 @@ impl General {
         let moving: Vec<usize> = (0..k)
             .filter(|&j| p.columns[j].rho[0] != p.columns[j].rho[1] && p.columns[j].relative.iter().any(|x| *x != 0.0))
             .collect();
-        let mut g = Self { features, moving, forces: vec![], table: vec![], p };
+        let axis = moving.iter().map(|&j| {
+            let relative = &p.columns[j].relative;
+            let mut used = (0..p.speeds).filter(|&i| relative[i] != 0.0);
+            used.next().filter(|_| used.next().is_none()).map(|i| (i, relative[i]))
+        });
+        let axis = axis.collect();
+        let mut g = Self { features, moving, axis, forces: vec![], table: vec![], p };
         for pattern in 0..1usize << g.moving.len() {
             let rho: Vec<f64> = (0..k).map(|j| g.rho(j, pattern)).collect();
             let matrix = nalgebra::DMatrix::from_fn(k, k, |r, j| {
@@ -355,7 +363,8 @@ impl General {
         true
     }
 
-    /// A chunk of points into the chunk's arrays; returns how many are not unique.
+    /// A chunk of points; returns how many are not unique. Linear outputs go where `to` says, the rest
+    /// into the chunk's arrays.
     pub fn chunk(
         &self,
         arch: pulp::Arch,
@@ -363,7 +372,7 @@ impl General {
         range: Range<usize>,
         w: &mut Chunk,
         hint: &mut usize,
-        powers: bool,
+        mut to: Target<'_, '_>,
     ) -> usize {
         let n = range.len();
         let (l, d) = (self.p.torques, self.p.speeds);
@@ -383,107 +392,131 @@ impl General {
         }
         let x = &inputs[..self.features];
 
+        // Relative speeds. Those that follow one prescribed speed need no array of their own.
         w.which[..n].fill(NONE);
-        for (out, &j) in w.sigma.iter_mut().zip(&self.moving) {
-            combine(arch, &x[l..l + d], &self.p.columns[j].relative, &mut out[..n]);
-            arch.dispatch(Rest { sigma: &out[..n], which: &mut w.which[..n] });
-        }
-        let mut left = n as u64;
-        if self.p.certified {
-            for &pattern in &w.recent {
-                let Some(forces) = &self.forces[pattern] else { continue };
-                w.worst[..n].fill(f64::INFINITY);
-                for (bit, row) in forces.iter().enumerate() {
-                    let side = if pattern >> bit & 1 == 1 { -1.0 } else { 1.0 };
-                    fit(arch, x, row, &w.sigma[bit][..n], side, &mut w.worst[..n]);
+        let mut rested = [false; super::MOST_FEATURES];
+        for (bit, &j) in self.moving.iter().enumerate() {
+            let sigma = match self.axis[bit] {
+                Some((axis, _)) if std::mem::replace(&mut rested[axis], true) => continue,
+                Some((axis, _)) => x[l + axis],
+                None => {
+                    combine(arch, &x[l..l + d], &self.p.columns[j].relative, &mut w.sigma[bit][..n]);
+                    &w.sigma[bit][..n]
                 }
-                left =
+            };
+            arch.dispatch(Rest { sigma, which: &mut w.which[..n] });
+        }
+        let sigma: [(&[f64], f64); super::MOST_MOVING] = std::array::from_fn(|bit| match self.axis.get(bit) {
+            Some(Some((axis, factor))) => (x[l + axis], *factor),
+            Some(None) => (&w.sigma[bit][..n], 1.0),
+            None => (&[][..], 0.0),
+        });
+
+        // Which pattern holds where: the recent ones by whole chunks.
+        let mut own = [0usize; RECENT];
+        let mut left = n;
+        if self.p.certified {
+            for (slot, &pattern) in own.iter_mut().zip(&w.recent) {
+                let Some(forces) = &self.forces[pattern] else { continue };
+                for (bit, row) in forces.iter().enumerate() {
+                    let (sigma, factor) = sigma[bit];
+                    let side = if pattern >> bit & 1 == 1 { -factor } else { factor };
+                    fit(arch, x, row, sigma, side, bit == 0, &mut w.worst[..n]);
+                }
+                if forces.is_empty() {
+                    w.worst[..n].fill(0.0);
+                }
+                let (taken, open) =
                     arch.dispatch(Assign { worst: &w.worst[..n], pattern: pattern as u64, which: &mut w.which[..n] });
-                if left == 0 {
+                (*slot, left) = (taken as usize, open as usize);
+                // A few points are cheaper one by one than in another pass over all.
+                if left < n / 32 {
                     break;
                 }
             }
         }
         // What no recent pattern fits goes one by one, and may bring a new pattern in.
         let mut odd = 0;
-        let mut single = [0.0; super::MOST_FEATURES];
-        let mut sigma = [0.0; super::MOST_MOVING];
-        let mut lone: usize = 0;
-        let (lanes, found) = select(&w.which[..if left == 0 { 0 } else { n }], |k| k == NONE);
-        for i in lanes[..found].iter().map(|i| usize::from(*i)) {
-            single.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
-            sigma.iter_mut().zip(&w.sigma).for_each(|(s, a)| *s = a[i]);
-            let (verdict, pattern) = self.find(&single[..self.features], &sigma[..self.moving.len()], *hint);
+        let mut one = [0.0; super::MOST_FEATURES];
+        let mut relative = [0.0; super::MOST_MOVING];
+        let (lanes, searched) = select(&w.which[..if left == 0 { 0 } else { n }], |k| k == NONE);
+        for i in lanes[..searched].iter().map(|i| usize::from(*i)) {
+            one.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
+            relative.iter_mut().zip(&sigma[..self.moving.len()]).for_each(|(s, (a, f))| *s = a[i] * f);
+            let (verdict, pattern) = self.find(&one[..self.features], &relative[..self.moving.len()], *hint);
             odd += usize::from(verdict != PointVerdict::Unique);
-            lone += 1;
             if let Some(p) = pattern {
                 *hint = p;
                 w.which[i] = p as u64;
+                if let Some(k) = w.recent.iter().position(|r| *r == p) {
+                    own[k] += 1;
+                }
             }
-        }
-        if lone > n / 16 && !w.recent.contains(hint) {
-            w.recent.rotate_right(1);
-            w.recent[0] = *hint;
         }
 
         // Outputs: the two commonest patterns in one pass over the chunk, other frequent ones where
         // they hold, what is left lane by lane.
-        let mut common: [(usize, usize); RECENT] = [(0, 0); RECENT];
-        for (k, &pattern) in w.recent.iter().enumerate() {
-            if !w.recent[..k].contains(&pattern) {
-                common[k] = (arch.dispatch(Count { which: &w.which[..n], pattern: pattern as u64 }) as usize, pattern);
-            }
-        }
+        let mut common: [(usize, usize); RECENT] = std::array::from_fn(|k| (own[k], w.recent[k]));
         common.sort_unstable_by(|a, b| b.cmp(a));
         let [(most, first), (second_most, second), ..] = common;
         let mut covered = most + second_most;
-        for (o, out) in w.linear.iter_mut().enumerate() {
+        for o in 0..self.p.linear {
             let (a, b) = (&self.table[first][o], &self.table[second][o]);
+            let out = to.slice(o, &mut w.linear, range.clone());
             if second_most == 0 {
-                combine(arch, x, a, &mut out[..n]);
+                combine(arch, x, a, out);
             } else {
-                combine_two(arch, x, a, b, &w.which[..n], first as u64, &mut out[..n]);
+                combine_two(arch, x, a, b, &w.which[..n], first as u64, out);
             }
         }
         let frequent = 2 + common[2..].iter().filter(|(own, _)| *own > n / 32).count();
         for &(own, pattern) in &common[2..frequent] {
             covered += own;
-            for (out, row) in w.linear.iter_mut().zip(&self.table[pattern]) {
-                combine_where(arch, x, row, &w.which[..n], pattern as u64, &mut out[..n]);
+            for (o, row) in self.table[pattern].iter().enumerate() {
+                let out = to.slice(o, &mut w.linear, range.clone());
+                combine_where(arch, x, row, &w.which[..n], pattern as u64, out);
             }
         }
         let mut linear = [0.0; MOST_LINEAR];
-        let settled = [0, 1, 2, 3].map(|k| if k < frequent && common[k].0 > 0 { common[k].1 as u64 } else { NONE - 2 });
-        let [p, q, r, s] = settled;
+        let linear = &mut linear[..self.p.linear];
+        let [p, q, r, s] = [0, 1, 2, 3].map(|k| match k < frequent && common[k].0 > 0 {
+            true => common[k].1 as u64,
+            false => UNUSED,
+        });
         let (lanes, found) =
             select(&w.which[..if covered < n { n } else { 0 }], |k| (k != p) & (k != q) & (k != r) & (k != s));
         for i in lanes[..found].iter().map(|i| usize::from(*i)) {
+            one.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
             match w.which[i] {
-                NONE => w.linear.iter_mut().for_each(|o| o[i] = f64::NAN),
+                NONE => linear.fill(f64::NAN),
                 AT_REST => {
-                    single.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
-                    sigma.iter_mut().zip(&w.sigma).for_each(|(s, a)| *s = a[i]);
-                    let linear = &mut linear[..self.p.linear];
-                    let verdict = self.at_rest(&single[..self.features], &sigma[..self.moving.len()], linear);
+                    relative.iter_mut().zip(&sigma[..self.moving.len()]).for_each(|(s, (a, f))| *s = a[i] * f);
+                    let verdict = self.at_rest(&one[..self.features], &relative[..self.moving.len()], linear);
                     odd += usize::from(verdict != PointVerdict::Unique);
-                    w.linear.iter_mut().zip(linear).for_each(|(o, v)| o[i] = *v);
                 }
                 pattern => {
-                    single.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
-                    for (out, row) in w.linear.iter_mut().zip(&self.table[pattern as usize]) {
-                        out[i] = dot(row, &single[..self.features]);
-                    }
+                    let table = &self.table[pattern as usize];
+                    linear.iter_mut().zip(table).for_each(|(o, row)| *o = dot(row, &one[..self.features]));
                 }
             }
+            for (o, value) in linear.iter().enumerate() {
+                to.slice(o, &mut w.linear, range.clone())[i] = *value;
+            }
         }
-        if powers {
+        // The next chunk tries the commonest patterns first; one that was often searched for comes in.
+        w.recent = common.map(|(_, pattern)| pattern);
+        if searched > n / 16 && !w.recent.contains(hint) {
+            w.recent[RECENT - 1] = *hint;
+        }
+
+        if to.powers {
             w.loss[..n].fill(0.0);
             w.power_in[..n].fill(0.0);
             for t in &self.p.terminals {
                 combine(arch, &x[l..l + d], &t.speed, &mut w.speed[..n]);
                 let torque: &[f64] = match t.torque {
                     TorqueFrom::Input(i) => x[i],
-                    TorqueFrom::Linear(i) => &w.linear[i][..n],
+                    TorqueFrom::Linear(i) => to.slice(i, &mut w.linear, range.clone()),
                 };
                 let speed = &w.speed[..n];
                 arch.dispatch(AddPower { torque, speed, loss: &mut w.loss[..n], power_in: &mut w.power_in[..n] });
@@ -495,14 +528,37 @@ impl General {
     }
 }
 
+/// A pattern number that no pattern has.
+const UNUSED: u64 = u64::MAX - 2;
+
+/// Where the results of a chunk go.
+pub(super) struct Target<'o, 'a> {
+    /// Output column of each linear output, if it has one.
+    pub column: &'a [Option<usize>],
+    /// The columns; empty when nothing is stored.
+    pub out: &'a mut [&'o mut [f64]],
+    /// Whether loss and efficiency are wanted.
+    pub powers: bool,
+}
+
+impl Target<'_, '_> {
+    /// The slice for linear output `o`: the caller's where it asked for it, else the chunk's own.
+    fn slice<'s>(&'s mut self, o: usize, own: &'s mut [[f64; CHUNK]], range: Range<usize>) -> &'s mut [f64] {
+        match self.column[o] {
+            Some(k) if !self.out.is_empty() => &mut self.out[k][range],
+            _ => &mut own[o][..range.len()],
+        }
+    }
+}
+
 /// The lanes that are wanted, and how many: looked for sixteen at a time, because they are rare.
-fn select(which: &[u64], wanted: impl Fn(u64) -> bool) -> ([u8; CHUNK], usize) {
+fn select(which: &[u64], wanted: impl Fn(u64) -> bool) -> ([u16; CHUNK], usize) {
     let mut lanes = [0; CHUNK];
     let mut found = 0;
     for (block, k) in which.chunks(16).enumerate() {
         if k.iter().fold(false, |any, k| any | wanted(*k)) {
             for (i, _) in k.iter().enumerate().filter(|(_, k)| wanted(**k)) {
-                lanes[found] = (16 * block + i) as u8;
+                lanes[found] = (16 * block + i) as u16;
                 found += 1;
             }
         }
@@ -593,16 +649,16 @@ lanes! {
             out[i] = if which[i] == pattern { value } else { out[i] };
         }
     }
-    /// `worst = min(worst, side · sigma · Σ row_k x_k)`.
+    /// `worst = min(worst, side · sigma · Σ row_k x_k)`; without the old `worst` for the first.
     Fit<'a, const F> {
-        x: [&'a [f64]; F], row: [f64; F], sigma: &'a [f64], side: f64, worst: &'a mut [f64],
+        x: [&'a [f64]; F], row: [f64; F], sigma: &'a [f64], side: f64, first: bool, worst: &'a mut [f64],
     } -> () {
         let n = worst.len();
         let x = x.map(|x| &x[..n]);
         let sigma = &sigma[..n];
         for i in 0..n {
             let g = side * sigma[i] * lane::<F>(&x, &row, i);
-            worst[i] = if g < worst[i] { g } else { worst[i] };
+            worst[i] = if first || g < worst[i] { g } else { worst[i] };
         }
     }
     /// Speeds become their signs.
@@ -617,19 +673,17 @@ lanes! {
             *k = if *s == 0.0 { AT_REST } else { *k };
         }
     }
-    /// Gives the pattern to the points that it fits; returns how many are left without one.
-    Assign<'a> { worst: &'a [f64], pattern: u64, which: &'a mut [u64] } -> u64 {
-        let mut left = 0u64;
+    /// Gives the pattern to the points that it fits; returns how many those are, and how many are
+    /// left without one.
+    Assign<'a> { worst: &'a [f64], pattern: u64, which: &'a mut [u64] } -> (u64, u64) {
+        let (mut taken, mut left) = (0u64, 0u64);
         for (k, worst) in which.iter_mut().zip(worst) {
             let fits = *k == NONE && *worst >= 0.0;
             *k = if fits { pattern } else { *k };
+            taken += u64::from(fits);
             left += u64::from(*k == NONE);
         }
-        left
-    }
-    /// How many points have the pattern.
-    Count<'a> { which: &'a [u64], pattern: u64 } -> u64 {
-        which.iter().map(|p| u64::from(*p == pattern)).sum()
+        (taken, left)
     }
     /// Adds the power of a terminal to the balance and, where positive, to the input.
     AddPower<'a> { torque: &'a [f64], speed: &'a [f64], loss: &'a mut [f64], power_in: &'a mut [f64] } -> () {
@@ -756,20 +810,24 @@ fn combine_where(arch: pulp::Arch, x: &[&[f64]], row: &[f64], which: &[u64], pat
     by_count!(x.len(), go(arch, x, row, which, pattern, out));
 }
 
-/// `worst = min(worst, side · sigma · Σ row_k x_k)`.
-fn fit(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, worst: &mut [f64]) {
-    fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, worst: &mut [f64]) {
+/// `worst = min(worst, side · sigma · Σ row_k x_k)`, or that product alone for the first.
+fn fit(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, first: bool, worst: &mut [f64]) {
+    #[rustfmt::skip]
+    fn go<const F: usize>(
+        arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, first: bool, worst: &mut [f64],
+    ) {
         match (<[&[f64]; F]>::try_from(x), <[f64; F]>::try_from(row)) {
-            (Ok(x), Ok(row)) => arch.dispatch(Fit { x, row, sigma, side, worst }),
+            (Ok(x), Ok(row)) => arch.dispatch(Fit { x, row, sigma, side, first, worst }),
             _ => {
                 for i in 0..worst.len() {
                     let force: f64 = x.iter().zip(row).map(|(x, r)| r * x[i]).sum();
-                    worst[i] = worst[i].min(side * sigma[i] * force);
+                    let g = side * sigma[i] * force;
+                    worst[i] = if first || g < worst[i] { g } else { worst[i] };
                 }
             }
         }
     }
-    by_count!(x.len(), go(arch, x, row, sigma, side, worst));
+    by_count!(x.len(), go(arch, x, row, sigma, side, first, worst));
 }
 
 /// Sum of a slice.
