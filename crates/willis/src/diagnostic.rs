@@ -151,22 +151,28 @@ impl Diagnostics {
         const MOST: usize = 50;
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let mut out = String::new();
+        let shown = |text: &str| -> String {
+            // A terminal must not obey what a file says.
+            text.chars().flat_map(|c| if c.is_control() { c.escape_debug().collect() } else { vec![c] }).collect()
+        };
         for d in self.0.iter().take(MOST) {
+            let (message, place) = (shown(&d.message), shown(&d.place));
+            let hints: Vec<String> = d.hints.iter().map(|h| shown(h)).collect();
             let level = match d.severity {
                 Severity::Error => Level::ERROR,
                 Severity::Warning => Level::WARNING,
                 Severity::Note => Level::NOTE,
             };
-            let title = level.primary_title(d.message.as_str()).id(d.code.as_str());
+            let title = level.primary_title(message.as_str()).id(d.code.as_str());
             let mut group = Group::with_title(title);
             let span = d.span.clone().filter(|s| source.get(s.clone()).is_some());
             if let Some(span) = &span {
-                let label = AnnotationKind::Primary.span(span.clone()).label(d.place.as_str());
+                let label = AnnotationKind::Primary.span(span.clone()).label(place.as_str());
                 group = group.element(Snippet::source(source).path(file).annotation(label));
             } else if !d.place.is_empty() {
-                group = group.element(Level::NOTE.message(format!("at {}", d.place)));
+                group = group.element(Level::NOTE.message(format!("at {place}")));
             }
-            for hint in &d.hints {
+            for hint in &hints {
                 group = group.element(Level::HELP.message(hint.as_str()));
             }
             let mut report = vec![group];

@@ -310,6 +310,8 @@ impl<'t> Configuration<'t> {
     pub fn motion(&self, prescribed: &[(MemberId, Quantity)]) -> Result<Motion, Vec<Vec<MemberId>>> {
         let members: Vec<_> = prescribed.iter().map(|(m, _)| *m).collect();
         let (values, pi_power) = common(prescribed.iter().map(|(_, q)| q));
+        let powers: Vec<i8> = prescribed.iter().filter(|(_, q)| !q.value.is_zero()).map(|(_, q)| q.pi_power).collect();
+        let mixed = powers.iter().any(|p| *p != powers[0]);
         let transfer = self.transfer(&members);
         let dot = |factors: &[Rational]| {
             factors.iter().zip(&values).fold(Rational::ZERO, |sum, (f, v)| if f.is_zero() { sum } else { sum + f * v })
@@ -317,7 +319,11 @@ impl<'t> Configuration<'t> {
         let broken: Vec<Vec<MemberId>> = transfer
             .conflicts
             .iter()
-            .filter(|c| !dot(c).is_zero())
+            .filter(|c| {
+                let size: f64 = c.iter().zip(&values).map(|(f, v)| (f.to_f64() * v.to_f64()).abs()).sum();
+                // rpm beside rad/s: no exact form exists, round-off is no contradiction.
+                if mixed { dot(c).to_f64().abs() > 1e-12 * size } else { !dot(c).is_zero() }
+            })
             .map(|c| (0..members.len()).filter(|&k| !c[k].is_zero()).map(|k| members[k]).collect())
             .collect();
         if !broken.is_empty() {

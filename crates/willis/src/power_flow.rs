@@ -223,6 +223,18 @@ pub(crate) fn ties(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> (
             }
         }
     }
+    // Several brakes on one member: their shares are open, their sum is not.
+    for m in (1..need.len()).filter(|&m| open[m] > 1) {
+        let grips = |members: &[MemberId; 2]| members.contains(&MemberId(m));
+        let alone =
+            edges.iter().filter(|(e, _, torque)| torque.is_none() && grips(e)).all(|(e, ..)| e.contains(&FRAME));
+        if alone {
+            let side = |e: &[MemberId; 2]| if e[0] == MemberId(m) { 1.0 } else { -1.0 };
+            let known = edges.iter().filter(|(e, ..)| grips(e) && e.contains(&FRAME));
+            let known: f64 = known.filter_map(|(e, _, torque)| torque.map(|t| side(e) * t)).sum();
+            reactions[m] = Some(known + need[m]);
+        }
+    }
     let ties =
         edges.iter().filter_map(|(_, id, torque)| id.map(|element| TieFlow { element, torque: *torque })).collect();
     (ties, reactions)

@@ -128,7 +128,7 @@ const MOST_ENUMERATED: usize = 16;
 /// Most boxes looked at for the determinant certificate.
 const MOST_BOXES: usize = 1 << 13;
 /// Bound on the number of boxes or pivots times the cube of the number of elements.
-const WORK: usize = 1 << 31;
+const WORK: usize = 1 << 28;
 
 impl Equilibrium {
     /// Sets up the problem: `sigma` by element (see [`Configuration::sigma`]), `open` the nodes
@@ -291,10 +291,23 @@ impl Equilibrium {
         if !m.iter().all(|x| x.is_finite()) {
             return false;
         }
-        let system = DMatrix::identity(n, n) - &m;
-        let Some(x) = system.lu().solve(&DVector::from_element(n, 1.0)) else { return false };
-        let y = &m * &x;
-        (0..n).all(|i| x[i] > 0.0 && x[i].is_finite() && y[i] < x[i] * (1.0 - 1e-9))
+        // (I − M)⁻¹ applied again and again turns any start into a witness, if there is one: chains
+        // of sets need several steps, because their components differ by many orders.
+        let system = (DMatrix::identity(n, n) - &m).lu();
+        let mut x = DVector::from_element(n, 1.0);
+        for _ in 0..n.min(40) + 2 {
+            let Some(z) = system.solve(&x) else { return false };
+            if !z.iter().all(|x| *x > 0.0 && x.is_finite()) {
+                return false;
+            }
+            let y = &m * &z;
+            if (0..n).all(|i| y[i] < z[i] * (1.0 - 1e-9)) {
+                return true;
+            }
+            let largest = z.max();
+            x = (z / largest).map(|x| x.max(1e-290));
+        }
+        false
     }
 
     fn certify(&self) -> Certificate {

@@ -132,6 +132,9 @@ impl std::error::Error for QuantityError {}
 /// assert!(parse("30 N", Dimension::TORQUE).is_err());
 /// ```
 pub fn parse(text: &str, expected: Dimension) -> Result<Quantity, QuantityError> {
+    if text.len() > 200 {
+        return Err(QuantityError::NoNumber);
+    }
     let text = text.trim().replace('\u{2212}', "-");
     // The number ends where a unit begins: a letter that is not an exponent, or white space.
     let bytes = text.as_bytes();
@@ -183,8 +186,11 @@ fn parse_unit(text: &str, expected: Dimension) -> Result<(Rational, i8, [i8; 4])
     let mut value = Rational::ONE;
     let (mut pi_power, mut dimension) = (0i8, [0i8; 4]);
     let mut divide = false;
+    if text.len() > 40 {
+        return Err(unknown(text));
+    }
     for (k, part) in text.split('/').enumerate() {
-        if k > 1 {
+        if k > 1 || part.trim().is_empty() {
             return Err(unknown(text));
         }
         for symbol in part.split([' ', '·', '*', '⋅', '.']).filter(|s| !s.is_empty()) {
@@ -201,9 +207,9 @@ fn parse_unit(text: &str, expected: Dimension) -> Result<(Rational, i8, [i8; 4])
                 let f = factor(unit);
                 value = if power > 0 { value * f } else { value / f };
             }
-            pi_power = pi_power.saturating_add(unit.2 * power);
+            pi_power = pi_power.saturating_add(unit.2 * power).clamp(-9, 9);
             for (d, u) in dimension.iter_mut().zip(unit.3) {
-                *d = d.saturating_add(u * power);
+                *d = d.saturating_add(u * power).clamp(-99, 99);
             }
         }
         divide = true;

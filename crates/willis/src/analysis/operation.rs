@@ -38,6 +38,11 @@ pub(super) fn report(
     };
 
     let motion = c.motion(&operation.speeds).map_err(|broken| contradiction(&c, operation, &broken))?;
+    if (1..train.members.len()).any(|m| motion.si(MemberId(m)).is_some_and(|w| !w.is_finite())) {
+        let mut wrong = Diagnostics::default();
+        wrong.push(Diagnostic::new(Code::TooLarge, place, format!("{title}: a speed is beyond 1e308 rad/s")));
+        return Err(wrong);
+    }
     report.speeds_rad_s =
         Named((1..train.members.len()).map(|m| (train.members[m].name.clone(), motion.si(MemberId(m)))).collect());
     if c.degrees_of_freedom() == 0 {
@@ -65,7 +70,7 @@ pub(super) fn report(
             let redundant = c.redundant();
             let (text, d) = if !loose.is_empty() {
                 let text = format!(
-                    "{} degrees of freedom and {} independent speed(s) prescribed: no determined speed for {}",
+                    "{} degrees of freedom, {} settled by the prescribed speeds: no determined speed for {}",
                     c.degrees_of_freedom(),
                     c.degrees_of_freedom() - missing_speeds,
                     names(train, loose)
@@ -254,14 +259,15 @@ fn contradiction(c: &Configuration<'_>, operation: &Operation, broken: &[Vec<Mem
                 operation.name,
                 names(train, members.iter().copied()),
                 train.member_name(*last),
-                follows.map_or("another speed".into(), short),
+                follows.map_or("another number of".into(), short),
                 short(value(*last))
             ),
         };
-        all.push(
-            Diagnostic::new(Code::ContradictorySpeeds, place, message)
-                .hint(format!("prescribe {} independent speed(s) in this configuration", c.degrees_of_freedom())),
-        );
+        all.push(Diagnostic::new(Code::ContradictorySpeeds, place, message).hint(match c.degrees_of_freedom() {
+            0 => "nothing can turn here: release a shift element or a held member".to_owned(),
+            1 => "prescribe one speed in this configuration".to_owned(),
+            n => format!("prescribe {n} independent speeds in this configuration"),
+        }));
     }
     all
 }

@@ -38,6 +38,8 @@ pub(super) fn row(
         let code = if ratio == Ratio::Undetermined { Code::Undetermined } else { Code::KinematicallyLocked };
         diagnostics.push(Diagnostic::new(code, &place, format!("state {name}: {text}")));
     }
+    // A ratio that floating point cannot hold stays a fraction; nothing else can be told.
+    let beyond = exact.as_ref().is_some_and(|r| !(1e-300..1e300).contains(&r.to_f64().abs()));
     let redundant = c.redundant();
     for group in &redundant {
         let meshes: Vec<_> = group.iter().map(|m| train.meshes[m.0].name.as_str()).collect();
@@ -51,6 +53,10 @@ pub(super) fn row(
         );
     }
     let (drive, coast) = match &exact {
+        Some(_) if beyond => {
+            let none = || verdict(Verdict::Undetermined, "the ratio is beyond floating point");
+            (none(), none())
+        }
         Some(_) if redundant.is_empty() => (direction(&c, input, output, input), direction(&c, output, input, input)),
         Some(_) => {
             let none = || verdict(Verdict::Undetermined, "statically indeterminate");
@@ -97,7 +103,7 @@ pub(super) fn row(
     Some(StateReport {
         input: train.member_name(input).to_owned(),
         output: train.member_name(output).to_owned(),
-        value: exact.as_ref().map(Rational::to_f64),
+        value: exact.as_ref().filter(|_| !beyond).map(Rational::to_f64),
         exact: exact.map(|r| r.to_fraction()),
         no_ratio,
         step: None,

@@ -30,17 +30,22 @@ pub(super) struct Assembler<'a> {
 }
 
 impl Assembler<'_> {
-    /// Reports once, however many parts of a set share the fault.
     pub fn report(&mut self, diagnostic: Diagnostic) {
-        if !self.diagnostics.iter().any(|d| *d == diagnostic) {
-            self.diagnostics.push(diagnostic);
-        }
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// Whether it is still worth looking for what a wrong name may have meant: the search compares
+    /// it with every known name, and nobody reads hundreds of hints.
+    fn hints_are_read(&self) -> bool {
+        self.diagnostics.len() < 100
     }
 
     /// The member of that name, or an error at `place`.
     pub fn resolve(&mut self, name: &str, place: &str) -> Option<MemberId> {
         let found = self.by_name.get(name).copied();
-        if found.is_none() {
+        if found.is_none() && !self.hints_are_read() {
+            self.report(Diagnostic::new(Code::UnknownName, place, format!("there is no member `{}`", clip(name))));
+        } else if found.is_none() {
             let known: Vec<&str> = self.members.iter().map(|m| m.name.as_str()).collect();
             let mut d = Diagnostic::new(Code::UnknownName, place, format!("there is no member `{}`", clip(name)));
             d = d.suggest(name, known.iter().copied());
@@ -108,7 +113,10 @@ impl Assembler<'_> {
                 if (1.0..=100.0).contains(&shown) {
                     d = d.hint(format!("if {shown} % is meant, write {}", shown / 100.0));
                 }
-                self.report(d);
+                // The meshes of a set share one value, and its fault is told once.
+                if !self.diagnostics.iter().rev().take(4).any(|e| *e == d) {
+                    self.report(d);
+                }
                 return Efficiency::lossless();
             }
         }
@@ -215,6 +223,10 @@ impl Assembler<'_> {
                     self.report(Diagnostic::new(Code::DuplicateName, place, message).hint("name it once"));
                 }
                 Some(id) => engaged.push(ShiftElementId(id)),
+                None if !self.hints_are_read() => {
+                    let message = format!("there is no shift element `{}`", clip(name));
+                    self.report(Diagnostic::new(Code::UnknownName, place, message));
+                }
                 None => {
                     let known: Vec<&str> = elements.iter().map(|e| e.name.as_str()).collect();
                     let message = format!("there is no shift element `{}`", clip(name));
@@ -239,8 +251,17 @@ impl Assembler<'_> {
             let found = states.iter().position(|s| s.name == *name);
             if found.is_none() {
                 let message = format!("there is no state `{}`", clip(name));
-                let d = Diagnostic::new(Code::UnknownName, format!("{place}.state"), message);
-                self.report(d.suggest(name, states.iter().map(|s| s.name.as_str())));
+                let mut d = Diagnostic::new(Code::UnknownName, format!("{place}.state"), message);
+                if self.hints_are_read() {
+                    d = d.suggest(name, states.iter().map(|s| s.name.as_str()));
+                    if d.hints.is_empty() {
+                        d = d.hint(match states.len() {
+                            0 => "add it as a [[state]]".to_owned(),
+                            _ => format!("the states are: {}", list(states.iter().map(|s| s.name.as_str()).collect())),
+                        });
+                    }
+                }
+                self.report(d);
             }
             found
         });
@@ -399,10 +420,15 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
     let input = spec.input.as_ref().and_then(|n| a.resolve(n, "input")).or(terminals.first().copied());
     let output = spec.output.as_ref().and_then(|n| a.resolve(n, "output")).or(terminals.last().copied());
     // Inputs and outputs are terminals without being listed a second time.
-    let ends = [input, output].into_iter().chain(states.iter().flat_map(|s| [s.input, s.output]));
-    for end in ends.flatten() {
+    let named = [(input, "input".to_owned()), (output, "output".to_owned())].into_iter();
+    let in_states = states
+        .iter()
+        .enumerate()
+        .flat_map(|(k, s)| [(s.input, format!("state[{k}].input")), (s.output, format!("state[{k}].output"))]);
+    for (end, place) in named.chain(in_states).filter_map(|(end, place)| Some((end?, place))) {
         if end == FRAME {
-            a.report(Diagnostic::new(Code::BadName, "", "the frame can be neither input nor output"));
+            let d = Diagnostic::new(Code::BadName, place, "the frame is at rest: it is neither input nor output");
+            a.report(d.hint("name a member that turns"));
         } else if !terminals.contains(&end) {
             terminals.push(end);
         }
@@ -505,6 +531,10 @@ fn unique<'n>(a: &mut Assembler<'_>, what: &str, path: &str, names: impl Iterato
 
 /// Text from the user, short enough for a message.
 pub(super) fn clip(text: &str) -> String {
+    // What a terminal would obey is shown instead.
+    let text: String =
+        text.chars().flat_map(|c| if c.is_control() { c.escape_debug().collect() } else { vec![c] }).collect();
+    let text = text.as_str();
     if text.chars().count() > 64 { text.chars().take(64).chain(['…']).collect() } else { text.into() }
 }
 
@@ -519,6 +549,11 @@ fn list(names: Vec<&str>) -> String {
 }
 
 impl GearSpec {
+    /// Teeth within the bounds that [`Assembler::teeth`] enforces: safe to calculate with.
+    pub(super) fn z(&self) -> i64 {
+        self.teeth.clamp(1, MOST_TEETH)
+    }
+
     /// What people call this gear's role in a set.
     pub(super) fn role(&self) -> &'static str {
         if self.internal { "ring" } else { "sun" }

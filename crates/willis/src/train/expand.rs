@@ -57,13 +57,13 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
             let given = planet_teeth(a, planet, "planet");
             let (s, r) = (central(a, sun, "sun"), central(a, ring, "ring"));
             let (Some(s), Some(r)) = (s, r) else { return None };
-            let teeth = nominal(a, set, &place, given.clone(), sun.teeth, ring.teeth, "planet");
+            let teeth = nominal(a, set, &place, given.clone(), sun.z(), ring.z(), "planet");
             if let Some(given) = given {
-                coaxial(a, set, &place, (sun.teeth, "sun"), (ring.teeth, "ring"), &given, "planet");
+                coaxial(a, set, &place, (sun.z(), "sun"), (ring.z(), "ring"), &given, "planet");
             }
             if let Some(n) = count {
-                equal_spacing(a, set, &place, &Rational::from(sun.teeth + ring.teeth), n, "z_sun + z_ring");
-                clearance(a, set, &place, &Rational::from(sun.teeth), &teeth, n);
+                equal_spacing(a, set, &place, &Rational::from(sun.z() + ring.z()), n, "z_sun + z_ring");
+                clearance(a, set, &place, &Rational::from(sun.z()), &teeth, n);
             }
             let p = (planets[0], teeth, false);
             pairs.push(pair("sun-planet", sun, s, p.clone()));
@@ -76,10 +76,10 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
             let (s, r) = (central(a, sun, "sun"), central(a, ring, "ring"));
             let (Some(s), Some(r)) = (s, r) else { return None };
             if let (Some(n), Some(z)) = (count, &z_i) {
-                clearance(a, set, &place, &Rational::from(sun.teeth), z, n);
+                clearance(a, set, &place, &Rational::from(sun.z()), z, n);
             }
             if let Some(n) = count {
-                let sum = Rational::from(ring.teeth - sun.teeth);
+                let sum = Rational::from(ring.z() - sun.z());
                 equal_spacing(a, set, &place, &sum, n, "z_ring - z_sun");
             }
             // Any planets give the same ratio; a quarter of the difference is the inline arrangement.
@@ -89,8 +89,8 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                         &format!("{name}.{which}_planet"),
                         "teeth not given, taken as (z_ring - z_sun)/4; its speed is nominal",
                     );
-                    let z = Rational::new(ring.teeth - sun.teeth, 4);
-                    if z.sign() > 0 { z } else { Rational::from(sun.teeth) }
+                    let z = Rational::new(ring.z() - sun.z(), 4);
+                    if z.sign() > 0 { z } else { Rational::from(sun.z()) }
                 })
             };
             let i = (planets[0], or_nominal(z_i, "inner"), false);
@@ -110,7 +110,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 *k += 1;
                 let step = a.teeth(g.planet_teeth.unwrap_or(1), &format!("{place}.{key}.planet_teeth"));
                 let Some(c) = central(a, g, &key) else { continue };
-                steps.push((if g.internal { -g.teeth } else { g.teeth }, step.clone()));
+                steps.push((if g.internal { -g.z() } else { g.z() }, step.clone()));
                 let p = (planets[0], step, false);
                 let many = gears.iter().filter(|o| o.internal == g.internal).count() > 1;
                 let label = if many { g.member.as_str() } else { g.role() };
@@ -136,11 +136,11 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
             }
             let z_long = match (z_long, large_sun, ring) {
                 (Some(z), Some(sun), Some(ring)) => {
-                    coaxial(a, set, &place, (sun.teeth, "large_sun"), (ring.teeth, "ring"), &z, "long_planet");
+                    coaxial(a, set, &place, (sun.z(), "large_sun"), (ring.z(), "ring"), &z, "long_planet");
                     z
                 }
                 (Some(z), ..) => z,
-                (None, Some(sun), Some(ring)) => nominal(a, set, &place, None, sun.teeth, ring.teeth, "long_planet"),
+                (None, Some(sun), Some(ring)) => nominal(a, set, &place, None, sun.z(), ring.z(), "long_planet"),
                 (None, ..) => {
                     let message = format!("the long planet of set `{}` needs its tooth number", clip(name));
                     a.report(Diagnostic::new(Code::MissingKey, format!("{place}.long_planet"), message));
@@ -187,7 +187,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                         "teeth not given, taken as those of the first side gear; its spin is nominal",
                     );
                     // All side gears on one plain planet: any planet gives the same ratios.
-                    Rational::from(sides[0].teeth.max(1))
+                    Rational::from(sides[0].z())
                 });
                 let Some(c) = central(a, g, &key) else { continue };
                 let right = g.right.unwrap_or(k > 0);

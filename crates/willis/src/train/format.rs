@@ -65,6 +65,13 @@ pub(super) fn read(text: &str) -> Reading {
         return Reading { train: None, diagnostics, spans: reader::Spans::default() };
     }
     let (root, spans) = reader::read(text, &keys::FILE, &mut diagnostics);
+    for (k, set) in root.tables("set").iter().enumerate() {
+        if set.set_efficiency("mesh_efficiency").is_some() && set.efficiency("basic_efficiency").is_some() {
+            let message = "`mesh_efficiency` and `basic_efficiency` both say what the set loses";
+            let d = Diagnostic::new(Code::Conflict, format!("set[{k}].basic_efficiency"), message);
+            diagnostics.push(d.hint("keep the one that is known"));
+        }
+    }
     let mut train = None;
     if !diagnostics.has_errors() {
         train = assemble::assemble(builder(&root), &mut diagnostics);

@@ -86,8 +86,18 @@ impl Fields {
 }
 
 pub(super) fn read(text: &str, table: &Table, diagnostics: &mut Diagnostics) -> (Fields, Spans) {
-    let (root, errors) = DeTable::parse_recoverable(text);
-    for error in &errors {
+    // Recovering from error after error takes time that grows with the square of the garbage.
+    const MOST_RECOVERED: usize = 1 << 16;
+    const MOST_ERRORS: usize = 20;
+    let (root, errors) = if text.len() <= MOST_RECOVERED {
+        DeTable::parse_recoverable(text)
+    } else {
+        match DeTable::parse(text) {
+            Ok(root) => (root, vec![]),
+            Err(error) => (Spanned::new(0..0, DeTable::new()), vec![error]),
+        }
+    };
+    for error in errors.iter().take(MOST_ERRORS) {
         let mut d = Diagnostic::new(Code::Syntax, "", error.message().trim().replace('\n', ", "));
         d.span = error.span().map(|s| s.start.min(text.len())..s.end.min(text.len()));
         diagnostics.push(d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"));

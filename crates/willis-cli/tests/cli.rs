@@ -1,0 +1,538 @@
+//! The command line as its user meets it: what it prints, and the exit status: 0 answered (also
+//! when the train locks), 1 wrong input, 2 wrong usage.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the workspace")
+}
+
+/// The binary, run in the folder of the workspace, without colours.
+fn command(arguments: &[&str]) -> Command {
+    let mut c = Command::new(env!("CARGO_BIN_EXE_willis"));
+    c.args(arguments).current_dir(root()).stdin(Stdio::null()).env("NO_COLOR", "1").env_remove("CLICOLOR_FORCE");
+    c
+}
+
+fn run(arguments: &[&str]) -> Output {
+    command(arguments).output().expect("the binary runs")
+}
+
+fn piped(arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = command(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the binary runs");
+    let mut stdin = child.stdin.take().expect("piped");
+    let input = input.to_vec();
+    // It may stop reading early; that is its right.
+    let writer = std::thread::spawn(move || drop(stdin.write_all(&input)));
+    let output = child.wait_with_output().expect("it ends");
+    writer.join().expect("no panic");
+    output
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("text")
+}
+
+/// Standard output of a run that answers, with nothing on standard error.
+fn answered(arguments: &[&str]) -> String {
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+    assert_eq!(text(&output.stderr), "", "{arguments:?}");
+    text(&output.stdout)
+}
+
+/// Standard error of a run that ends with `status`, with nothing on standard output.
+fn refused(output: &Output, status: i32) -> String {
+    assert_eq!(output.status.code(), Some(status), "{}{}", text(&output.stdout), text(&output.stderr));
+    assert_eq!(text(&output.stdout), "");
+    let message = text(&output.stderr);
+    assert!(!message.trim().is_empty(), "silence");
+    assert!(!message.contains("panicked"), "{message}");
+    message
+}
+
+/// The residual of the power balance is round-off: its digits are not ours to promise.
+fn mask_residual(text: &str) -> String {
+    const BEFORE: &str = "balance closes to ";
+    let mut parts = text.split(BEFORE);
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (number, rest) = part.split_once(" W\n").expect("a power ends the line");
+        let residual: f64 = number.parse().expect("a number");
+        assert!(residual < 1e-6, "the powers do not close: {residual} W");
+        out += &format!("{BEFORE}[residual] W\n{rest}");
+    }
+    out
+}
+
+/// Whether a word is a number that is nothing but round-off.
+fn round_off(word: &str) -> bool {
+    word.contains("e-") && word.trim_matches([',', ';', '(', ')']).parse::<f64>().is_ok_and(|x| x.abs() < 1e-9)
+}
+
+/// A text for a snapshot, without digits that another machine may round otherwise.
+fn mask(text: &str) -> String {
+    let masked = |line: &str| {
+        line.split(' ').map(|w| if round_off(w) { "[round-off]" } else { w }).collect::<Vec<_>>().join(" ")
+    };
+    mask_residual(text).lines().map(|l| masked(l) + "\n").collect()
+}
+
+/// Decimal numbers of more than twelve digits, rounded to twelve.
+fn round(text: &str) -> String {
+    let rounded = |word: &str| match word.parse::<f64>() {
+        Ok(x) if word.contains('.') && word.len() > 13 => {
+            let x: f64 = format!("{x:.11e}").parse().expect("a number");
+            format!("{x:?}")
+        }
+        _ => word.to_owned(),
+    };
+    text.lines().map(|l| l.split(',').map(rounded).collect::<Vec<_>>().join(",") + "\n").collect()
+}
+
+macro_rules! snapshot {
+    ($text:expr) => {
+        insta::with_settings!({ omit_expression => true }, { insta::assert_snapshot!($text); });
+    };
+}
+
+/// A folder for files that a test writes.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("cli-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+fn path(p: &Path) -> &str {
+    p.to_str().expect("text")
+}
+
+// ---- analyze, for eyes -----------------------------------------------------------------------
+
+#[test]
+fn regress_analyze_prius() {
+    snapshot!(mask(&answered(&["analyze", "examples/prius-p112.toml"])));
+}
+
+#[test]
+fn regress_analyze_zf_8hp70() {
+    snapshot!(mask(&answered(&["analyze", "examples/zf-8hp70.toml"])));
+}
+
+#[test]
+fn regress_analyze_wolfrom() {
+    snapshot!(mask(&answered(&["analyze", "examples/wolfrom-498-self-locking.toml"])));
+}
+
+#[test]
+fn regress_analyze_two_efficiencies() {
+    snapshot!(mask(&answered(&["analyze", "examples/two-efficiencies.toml"])));
+}
+
+#[test]
+fn regress_analyze_one_operation_of_one_state() {
+    let all = ["analyze", "examples/zf-8hp70.toml", "--state", "8", "--operation", "motorway cruise"];
+    snapshot!(mask(&answered(&all)));
+}
+
+#[test]
+fn regress_no_round_off_but_the_residual() {
+    for entry in std::fs::read_dir(root().join("examples")).expect("examples") {
+        let file = entry.expect("an entry").path();
+        let shown = mask_residual(&answered(&["analyze", path(&file)]));
+        let found = shown.split_whitespace().find(|w| round_off(w));
+        assert_eq!(found, None, "{}", file.display());
+    }
+}
+
+#[test]
+fn regress_no_blanks_at_line_ends() {
+    for file in ["prius-p112", "zf-8hp70", "two-efficiencies"] {
+        let shown = answered(&["analyze", &format!("examples/{file}.toml")]);
+        let trailing = shown.lines().find(|l| l.ends_with([' ', '\t']));
+        assert_eq!(trailing, None, "blanks at the end of a line");
+    }
+}
+
+#[test]
+fn regress_colours() {
+    let colour = |when: &str| {
+        let output =
+            command(&["analyze", "examples/textbook-reverted.toml", "--color", when]).env_remove("NO_COLOR").output();
+        text(&output.expect("the binary runs").stdout).contains('\u{1b}')
+    };
+    assert!(colour("always"));
+    assert!(!colour("never"));
+    assert!(!colour("auto"), "a pipe is no terminal");
+}
+
+// ---- analyze, for machines -----------------------------------------------------------------
+
+#[test]
+fn regress_csv_states() {
+    snapshot!(round(&answered(&["analyze", "examples/zf-8hp70.toml", "--format", "csv", "--table", "states"])));
+}
+
+#[test]
+fn regress_csv_all_tables() {
+    let all = answered(&["analyze", "examples/zf-8hp70.toml", "--format", "csv"]);
+    let headings: Vec<_> = all.lines().filter(|l| l.starts_with("# ")).collect();
+    assert_eq!(headings, ["# states", "# operations", "# members", "# meshes", "# shift-elements", "# diagnostics"]);
+    for heading in headings {
+        let name = heading.trim_start_matches("# ");
+        let one = answered(&["analyze", "examples/zf-8hp70.toml", "--format", "csv", "--table", name]);
+        assert!(all.contains(&format!("{heading}\n{one}")), "{name}");
+        // Every row has as many fields as the header; quoted fields hold commas.
+        let fields = |line: &str| line.split('"').step_by(2).map(|p| p.matches(',').count()).sum::<usize>();
+        let mut lines = one.lines();
+        let header = fields(lines.next().expect("a header"));
+        assert!(lines.all(|l| fields(l) == header), "{one}");
+    }
+}
+
+#[test]
+fn regress_csv_quotes() {
+    let train = "format = 1\nname = \"x\"\nmembers = [\"a, \\\"b\\\"\", \"c\"]\nterminals = [\"a, \\\"b\\\"\", \"c\"]\n\
+                 [[mesh]]\ngears = [ { member = \"a, \\\"b\\\"\", teeth = 20 }, { member = \"c\", teeth = 40 } ]\n";
+    let output = piped(&["analyze", "-", "--format", "csv", "--table", "states"], train.as_bytes());
+    assert!(text(&output.stdout).contains("as drawn,,\"a, \"\"b\"\"\",c,1,-2/1,-2.0"), "{}", text(&output.stdout));
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let mut all = vec!["analyze"];
+    all.extend(arguments);
+    all.extend(["--format", "json"]);
+    serde_json::from_str(&answered(&all)).expect("JSON")
+}
+
+fn has(value: &Value, keys: &[&str]) {
+    let object = value.as_object().expect("an object");
+    for key in keys {
+        assert!(object.contains_key(*key), "no `{key}` in {:?}", object.keys().collect::<Vec<_>>());
+    }
+}
+
+/// The contract of section 4 of the design: names exactly, additions allowed.
+#[test]
+fn regress_json_contract() {
+    for file in ["zf-8hp70", "prius-p112", "wolfrom-498-self-locking", "two-efficiencies", "locked-both-ways"] {
+        let a = json(&[&format!("examples/{file}.toml")]);
+        has(&a, &["format", "train", "degrees_of_freedom", "ratios", "operations", "diagnostics"]);
+        assert_eq!(a["format"], "willis-analysis-1");
+        assert!(a["train"].is_string() && a["degrees_of_freedom"].is_u64());
+        for row in a["ratios"].as_object().expect("an object").values() {
+            has(row, &["input", "output", "exact", "value"]);
+            let exact = row["exact"].as_str().expect("every state of these has a ratio");
+            let (p, q) = exact.split_once('/').expect("p/q");
+            let ratio = p.parse::<f64>().expect("an integer") / q.parse::<f64>().expect("an integer");
+            assert!((ratio - row["value"].as_f64().expect("a number")).abs() <= 1e-12 * ratio.abs());
+        }
+        for o in a["operations"].as_array().expect("a list") {
+            has(o, &["name", "state", "verdict", "certificate", "solutions"]);
+            let verdict = o["verdict"].as_str().expect("a text");
+            assert!(["unique", "multiple", "locked", "unloaded", "undetermined"].contains(&verdict), "{verdict}");
+            has(&o["certificate"], &["unique_for_every_load", "method"]);
+            assert!(o["certificate"]["unique_for_every_load"].is_boolean());
+            let method = o["certificate"]["method"].as_str().expect("a text");
+            assert!(["spectral-radius", "determinants", "enumeration", "undecided"].contains(&method), "{method}");
+            for s in o["solutions"].as_array().expect("a list") {
+                has(
+                    s,
+                    &[
+                        "efficiency",
+                        "input_power_w",
+                        "output_power_w",
+                        "loss_w",
+                        "power_residual_w",
+                        "members",
+                        "meshes",
+                        "losses_w",
+                    ],
+                );
+                has(&s["losses_w"], &["mesh", "bearing", "windage", "churning", "seal"]);
+                for m in s["members"].as_object().expect("an object").values() {
+                    has(m, &["speed_rad_s", "torque_n_m", "power_w", "role"]);
+                    let role = m["role"].as_str().expect("a text");
+                    assert!(["input", "output", "fixed", "idle"].contains(&role), "{role}");
+                }
+                for m in s["meshes"].as_object().expect("an object").values() {
+                    has(m, &["driver", "relative_speed_rad_s", "potential_power_w", "efficiency", "loss_w"]);
+                }
+            }
+        }
+        for d in a["diagnostics"].as_array().expect("a list") {
+            has(d, &["code", "severity", "place", "message", "hints"]);
+            assert!(d["hints"].is_array());
+            assert!(["error", "warning", "note"].contains(&d["severity"].as_str().expect("a text")));
+        }
+    }
+}
+
+#[test]
+fn regress_json_verdicts() {
+    let verdicts = |file: &str| -> Vec<String> {
+        let a = json(&[&format!("examples/{file}.toml")]);
+        a["operations"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .map(|o| o["verdict"].as_str().expect("a text").to_owned())
+            .collect()
+    };
+    assert_eq!(verdicts("wolfrom-498-self-locking"), ["unique", "locked"]);
+    assert_eq!(verdicts("two-efficiencies"), ["multiple"]);
+    let null = json(&["examples/two-efficiencies.toml"]);
+    assert!(null["operations"][0]["state"].is_null());
+    assert_eq!(null["ratios"]["as drawn"]["exact"], "157/120");
+}
+
+// ---- The other commands ----------------------------------------------------------------------
+
+#[test]
+fn regress_check_good() {
+    snapshot!(answered(&["check", "examples/zf-8hp70.toml"]));
+}
+
+#[test]
+fn regress_check_counts_one() {
+    let shown = answered(&["check", "examples/two-efficiencies.toml"]);
+    assert!(!shown.contains("1 operations"), "{shown}");
+}
+
+#[test]
+fn regress_check_bad() {
+    let folder = folder("check");
+    let mut train = std::fs::read_to_string(root().join("examples/prius-p112.toml")).expect("an example");
+    for (old, new) in
+        [("ring = {", "rong = {"), ("\"hold-ring\"]", "\"hold-rong\"]"), ("members = [\"mg1\"]", "members = [\"mg2\"]")]
+    {
+        assert_eq!(train.matches(old).count(), 1, "{old}");
+        train = train.replace(old, new);
+    }
+    std::fs::write(folder.join("bad.toml"), train).expect("written");
+    let output = command(&["check", "bad.toml"]).current_dir(&folder).output().expect("the binary runs");
+    snapshot!(refused(&output, 1));
+}
+
+#[test]
+fn regress_explain() {
+    snapshot!(answered(&["explain", "E106"]));
+    assert_eq!(answered(&["explain", "e106"]), answered(&["explain", "E106"]));
+}
+
+#[test]
+fn regress_explain_all() {
+    let list = answered(&["explain"]);
+    for code in willis::diagnostic::Code::ALL {
+        assert!(list.lines().any(|l| l.starts_with(code.as_str()) && l.ends_with(code.title())), "{code}");
+        let long = answered(&["explain", code.as_str()]);
+        assert!(long.len() > 80 && long.starts_with(code.as_str()), "{long}");
+    }
+}
+
+#[test]
+fn regress_explain_unknown() {
+    refused(&run(&["explain", "E999"]), 1);
+}
+
+#[test]
+fn regress_schema() {
+    let schema = answered(&["schema"]);
+    assert_eq!(schema, answered(&["schema"]));
+    let schema: Value = serde_json::from_str(&schema).expect("JSON");
+    assert_eq!(schema, willis::train::schema());
+    assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    for key in ["format", "name", "members", "terminals", "mesh", "set", "shift_element", "state", "operation"] {
+        assert!(schema["properties"][key]["description"].is_string(), "{key}");
+    }
+}
+
+#[test]
+fn regress_completions() {
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        assert!(answered(&["completions", shell]).contains("analyze"), "{shell}");
+    }
+}
+
+#[test]
+fn regress_man() {
+    let page = answered(&["man"]);
+    assert!(page.contains(".TH willis 1") && page.contains("analyze"), "{page}");
+    let folder = folder("man");
+    answered(&["man", path(&folder)]);
+    let pages = std::fs::read_dir(&folder).expect("the folder").count();
+    assert!(pages >= 6, "{pages} pages");
+    refused(&run(&["man", path(&folder.join("missing"))]), 1);
+}
+
+#[test]
+fn regress_help_and_version() {
+    assert!(answered(&["--help"]).contains("Usage: willis"));
+    assert!(answered(&["analyze", "--help"]).contains("--operation"));
+    assert_eq!(answered(&["--version"]), concat!("willis ", env!("CARGO_PKG_VERSION"), "\n"));
+}
+
+// ---- Standard input and output ---------------------------------------------------------------
+
+#[test]
+fn regress_standard_input() {
+    let file = root().join("examples/two-efficiencies.toml");
+    let train = std::fs::read(&file).expect("an example");
+    let output = piped(&["analyze", "-"], &train);
+    assert_eq!(output.status.code(), Some(0));
+    let shown = text(&output.stdout).replace("standard input", "examples/two-efficiencies.toml");
+    // The gutter of a snippet does not depend on the name.
+    assert_eq!(shown, answered(&["analyze", "examples/two-efficiencies.toml"]));
+    let wrong = refused(&piped(&["check", "-"], b"format = 2\nname = \"x\"\nmembers = [\"a\"]\n"), 1);
+    assert!(wrong.contains("--> standard input:1:10"), "{wrong}");
+    refused(&piped(&["check", "-"], b""), 1);
+}
+
+#[test]
+fn regress_standard_input_is_called_so() {
+    for input in [&b"\xff\xfe"[..], &vec![b'#'; (4 << 20) + 1]] {
+        let wrong = refused(&piped(&["check", "-"], input), 1);
+        assert!(wrong.contains("standard input"), "{wrong}");
+    }
+}
+
+#[test]
+fn regress_reader_that_leaves() {
+    let mut child = command(&["analyze", "examples/zf-8hp70.toml", "--format", "json"])
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("it runs");
+    drop(child.stdout.take());
+    assert_eq!(child.wait().expect("it ends").code(), Some(0));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn regress_full_disk() {
+    // An answer that was not written is no answer.
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
+    let output =
+        command(&["analyze", "examples/zf-8hp70.toml", "--format", "json"]).stdout(full).output().expect("it runs");
+    refused(&output, 1);
+}
+
+// ---- Exit status 1: the input is wrong -----------------------------------------------------------
+
+#[test]
+fn regress_e002_missing_file() {
+    let wrong = refused(&run(&["analyze", "no such file.toml"]), 1);
+    assert!(wrong.contains("E002") && wrong.contains("no such file.toml"), "{wrong}");
+    refused(&run(&["check", ""]), 1);
+}
+
+#[test]
+fn regress_e002_directory() {
+    snapshot!(refused(&run(&["analyze", "examples"]), 1));
+}
+
+#[test]
+fn regress_e002_binary() {
+    let folder = folder("binary");
+    std::fs::write(folder.join("train.toml"), b"\x7fELF\x02\x01\x01\0\xff\xfe").expect("written");
+    let output = command(&["check", "train.toml"]).current_dir(&folder).output().expect("the binary runs");
+    snapshot!(refused(&output, 1));
+}
+
+#[test]
+fn regress_e002_oversized() {
+    let folder = folder("oversized");
+    let file = folder.join("train.toml");
+    std::fs::write(&file, vec![b'#'; (4 << 20) + 1]).expect("written");
+    let output = command(&["check", "train.toml"]).current_dir(&folder).output().expect("the binary runs");
+    snapshot!(refused(&output, 1));
+    // As large as allowed: read, and wrong for another reason.
+    std::fs::write(&file, vec![b'#'; 4 << 20]).expect("written");
+    let wrong = refused(&run(&["check", path(&file)]), 1);
+    assert!(wrong.contains("E005") && !wrong.contains("E002"), "{wrong}");
+    assert!(wrong.len() < 10_000, "{} bytes of message", wrong.len());
+}
+
+#[cfg(unix)]
+#[test]
+fn regress_e002_no_permission() {
+    use std::os::unix::fs::PermissionsExt;
+    let file = folder("permission").join("train.toml");
+    std::fs::write(&file, "format = 1\n").expect("written");
+    std::fs::set_permissions(&file, std::fs::Permissions::from_mode(0o000)).expect("allowed");
+    if std::fs::read(&file).is_ok() {
+        return; // The superuser reads everything.
+    }
+    let wrong = refused(&run(&["check", path(&file)]), 1);
+    assert!(wrong.contains("E002"), "{wrong}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn regress_e002_endless_device() {
+    let wrong = refused(&run(&["check", "/dev/zero"]), 1);
+    assert!(wrong.contains("E002"), "{wrong}");
+}
+
+#[cfg(unix)]
+#[test]
+fn regress_e002_name_that_is_no_text() {
+    use std::os::unix::ffi::OsStrExt;
+    let output = command(&["check"]).arg(std::ffi::OsStr::from_bytes(b"\xff.toml")).output().expect("it runs");
+    assert!(matches!(output.status.code(), Some(1 | 2)), "{output:?}");
+    assert!(!text(&output.stderr).contains("panicked"));
+}
+
+#[test]
+fn regress_wrong_train() {
+    let wrong = refused(&piped(&["analyze", "-", "--format", "json"], b"format = 1\n"), 1);
+    assert!(wrong.contains("standard input: 2 errors"), "{wrong}");
+}
+
+#[test]
+fn regress_wrong_selection() {
+    snapshot!(refused(&run(&["analyze", "examples/zf-8hp70.toml", "--state", "9", "--operation", "cruise"]), 1));
+}
+
+#[test]
+fn regress_selection_that_leaves_nothing() {
+    // Each exists; the operation runs in another state.
+    let output = run(&["analyze", "examples/zf-8hp70.toml", "--state", "1", "--operation", "motorway cruise"]);
+    let shown = text(&output.stdout) + &text(&output.stderr);
+    assert!(output.status.code() == Some(1) || shown.contains("motorway cruise"), "{shown}");
+}
+
+// ---- Exit status 2: usage ------------------------------------------------------------------------
+
+#[test]
+fn regress_usage() {
+    for arguments in [
+        &[][..],
+        &["analyse", "examples/zf-8hp70.toml"],
+        &["analyze"],
+        &["analyze", "examples/zf-8hp70.toml", "examples/prius-p112.toml"],
+        &["analyze", "examples/zf-8hp70.toml", "--format", "xml"],
+        &["analyze", "examples/zf-8hp70.toml", "--format", "csv", "--table", "gears"],
+        &["analyze", "examples/zf-8hp70.toml", "--state"],
+        &["analyze", "examples/zf-8hp70.toml", "--color", "pink"],
+        &["completions", "tcsh"],
+        &["--nonsense"],
+    ] {
+        refused(&run(arguments), 2);
+    }
+}
+
+#[test]
+fn regress_table_without_csv() {
+    // An option that does nothing is not ignored in silence.
+    refused(&run(&["analyze", "examples/zf-8hp70.toml", "--table", "states"]), 2);
+}
