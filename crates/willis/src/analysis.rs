@@ -449,13 +449,13 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
     if errors.has_errors() {
         return Err(errors);
     }
-    if ratios.is_empty() {
+    if train.states.is_empty() && ratios.is_empty() {
         let text = match (train.input, train.output) {
             (Some(i), Some(o)) if i == o => format!("`{}` is both input and output: no ratio", train.member_name(i)),
-            _ => "the train has no input and output: no ratio".to_owned(),
+            _ => "no terminals are named, so there is no input and output and no ratio".to_owned(),
         };
-        diagnostics
-            .push(Diagnostic::new(Code::NothingAsked, "", text).hint("name two `terminals`, or `input` and `output`"));
+        let hint = "name two `terminals`, or `input` and `output`";
+        diagnostics.push(Diagnostic::new(Code::NothingAsked, "", text).hint(hint));
     }
     let degrees_of_freedom = Configuration::new(train, &[], &[], &[]).degrees_of_freedom();
     Ok(Analysis {

@@ -263,6 +263,9 @@ impl<'t> Configuration<'t> {
                 conflicts.push(row[self.nodes..].to_vec());
             }
         }
+        // Redundant meshes repeat a conflict; what is left are the independent ones.
+        let rank = exact::reduce(&mut conflicts, extra).len();
+        conflicts.truncate(rank);
         let mut speeds: Vec<_> = (0..self.train.members.len())
             .map(|m| match (self.inner[m], self.node_of[m]) {
                 (true, _) => None,

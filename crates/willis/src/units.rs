@@ -160,7 +160,8 @@ pub fn parse(text: &str, expected: Dimension) -> Result<Quantity, QuantityError>
     if dimension != expected.0 {
         return Err(QuantityError::WrongDimension);
     }
-    Ok(Quantity { value: value * factor, pi_power, dimension: expected })
+    let quantity = Quantity { value: value * factor, pi_power, dimension: expected };
+    if quantity.si().is_finite() { Ok(quantity) } else { Err(QuantityError::NoNumber) }
 }
 
 /// Products and quotients of known symbols: `N m`, `N·m`, `N*m`, `rad/s`, `kg m^2`.

@@ -416,6 +416,10 @@ cases! {
 
     regress_n402_torque: NearBoundary, THREE_SHAFTS;
 
+    // N403 NothingAsked
+    regress_n403_no_terminals: NothingAsked, with(REDUCER.split("[[operation]]").next().unwrap(), "terminals = [\"sun\", \"carrier\"]\n", "");
+    regress_n403_state: NothingAsked, and(TWO_SPEED, "[[state]]\nname = \"odd\"\nengaged = []\noutput = \"sun\"");
+
     // Several at once.
     regress_several_at_once: UnknownName,
         with(&with(&with(REDUCER, "teeth = 30", "teeth = 0"), "carrier = \"carrier\"", "carrier = \"carier\""), "\"1000 rpm\"", "1000");

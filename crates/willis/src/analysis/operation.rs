@@ -128,6 +128,15 @@ pub(super) fn report(
     let frame = Frame { c: &c, motion: &motion, problem: &problem, equilibrium: &equilibrium, operation };
     let mut all: Vec<SolutionReport> = answer.solutions.iter().map(|s| frame.solution(s)).collect();
     all.sort_by(|a, b| a.efficiency.partial_cmp(&b.efficiency).unwrap_or(std::cmp::Ordering::Equal));
+    let finite = |x: Option<f64>| x.is_none_or(f64::is_finite);
+    if all
+        .iter()
+        .any(|s| s.members.iter().any(|(_, m)| !finite(m.torque_n_m) || !finite(m.power_w)) || !s.loss_w.is_finite())
+    {
+        let mut wrong = Diagnostics::default();
+        wrong.push(Diagnostic::new(Code::TooLarge, place, format!("{title}: a torque or power is beyond 1e308")));
+        return Err(wrong);
+    }
     for solution in all.iter().filter(|s| !s.stiction.is_empty()) {
         let ranges: Vec<_> = solution
             .stiction
@@ -232,7 +241,8 @@ fn short(x: f64) -> String {
 
 /// Rank of the prescribed speeds.
 fn independent(c: &Configuration<'_>, prescribed: &[MemberId]) -> usize {
-    prescribed.len() - c.transfer(prescribed).conflicts.len()
+    // A redundant train lists a conflict more than once.
+    prescribed.len().saturating_sub(c.transfer(prescribed).conflicts.len())
 }
 
 fn contradiction(c: &Configuration<'_>, operation: &Operation, broken: &[Vec<MemberId>]) -> Diagnostics {

@@ -18,12 +18,22 @@ pub(super) fn row(
     diagnostics: &mut Diagnostics,
 ) -> Option<StateReport> {
     let own = state.map(|k| &train.states[k]);
-    let input = own.and_then(|s| s.input).or(train.input)?;
-    let output = own.and_then(|s| s.output).or(train.output)?;
-    if input == output {
-        return None;
-    }
+    let input = own.and_then(|s| s.input).or(train.input);
+    let output = own.and_then(|s| s.output).or(train.output);
     let place = state.map_or(String::new(), |k| format!("state[{k}]"));
+    let (input, output) = match (input, output) {
+        (Some(input), Some(output)) if input != output => (input, output),
+        _ => {
+            if state.is_some() {
+                let text = format!("state {name}: input and output are not two different members, so it has no ratio");
+                diagnostics.push(
+                    Diagnostic::new(Code::NothingAsked, &place, text)
+                        .hint("name two `terminals`, or `input` and `output`, for the train or the state"),
+                );
+            }
+            return None;
+        }
+    };
     let c = Configuration::new(train, engaged, &[], &[]);
     let ratio = c.ratio(input, output);
     let (exact, no_ratio) = match &ratio {

@@ -12,7 +12,7 @@ use super::{
 };
 
 /// Largest train that is analysed; beyond it exact elimination is no longer bounded in time.
-pub(super) const MOST_MESHES: usize = 256;
+pub(super) const MOST_MESHES: usize = 128;
 const MOST_MEMBERS: usize = 1024;
 const MOST_STATES: usize = 256;
 const MOST_OPERATIONS: usize = 4096;

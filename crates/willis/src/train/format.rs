@@ -75,7 +75,7 @@ pub(super) fn read(text: &str) -> Reading {
     let mut train = None;
     if !diagnostics.has_errors() {
         train = assemble::assemble(builder(&root), &mut diagnostics);
-    } else if !diagnostics.iter().any(|d| d.code == Code::Syntax) {
+    } else if diagnostics.len() < 100 && !diagnostics.iter().any(|d| d.code == Code::Syntax) {
         // Names can be checked too where the shape is sound; what is missing was already reported.
         let mut more = Diagnostics::default();
         assemble::assemble(builder(&root), &mut more);
