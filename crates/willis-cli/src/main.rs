@@ -99,8 +99,13 @@ fn main() -> ExitCode {
         Ok(output) => {
             // A reader that closes the pipe early (`willis … | head`) is no error.
             let mut out = anstream::stdout();
-            let _ = out.write_all(output.as_bytes()).and_then(|()| out.flush());
-            ExitCode::SUCCESS
+            match out.write_all(output.as_bytes()).and_then(|()| out.flush()) {
+                Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+                    let _ = writeln!(anstream::stderr(), "standard output: {e}");
+                    ExitCode::FAILURE
+                }
+                _ => ExitCode::SUCCESS,
+            }
         }
         Err(message) => {
             let _ = anstream::stderr().write_all(message.as_bytes());
@@ -127,15 +132,17 @@ fn run(command: &Command) -> Result<String, String> {
             let analysis = job.analyze(&Selection::default())?;
             let (train, notes) = (&job.train, job.notes(&analysis));
             let warnings = analysis.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
+            let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
+            let meshes = train.meshes().len();
             Ok(format!(
-                "{notes}{}: {} members, {} meshes, {} shift elements, {} states, {} operations: no errors, {warnings} warning{}\n",
+                "{notes}{}: {}, {meshes} mesh{}, {}, {}, {}: no errors, {}\n",
                 job.file,
-                train.members().len() - 1,
-                train.meshes().len(),
-                train.shift_elements().len(),
-                train.states().len(),
-                train.operations().len(),
-                if warnings == 1 { "" } else { "s" }
+                count(train.members().len() - 1, "member"),
+                if meshes == 1 { "" } else { "es" },
+                count(train.shift_elements().len(), "shift element"),
+                count(train.states().len(), "state"),
+                count(train.operations().len(), "operation"),
+                count(warnings, "warning")
             ))
         }
         Command::Schema => Ok(serde_json::to_string_pretty(&willis::train::schema()).expect("plain data") + "\n"),

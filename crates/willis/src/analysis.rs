@@ -411,6 +411,15 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
             errors.push(d.hint(format!("its operations are: {}", known.collect::<Vec<_>>().join(", "))));
         }
     }
+    if let (Some(state), Some(name), false) = (&selection.state, &selection.operation, errors.has_errors()) {
+        let operation = train.operations.iter().find(|o| o.name == *name);
+        let own = operation.and_then(|o| o.state).map(|k| train.states[k].name.as_str());
+        if own != Some(state) {
+            let runs = own.map_or("the train as drawn".to_owned(), |own| format!("state `{own}`"));
+            let text = format!("the operation `{name}` runs in {runs}, not in state `{state}`");
+            errors.push(Diagnostic::new(Code::UnknownSelection, "", text).hint("leave out one of the two"));
+        }
+    }
     if errors.has_errors() {
         return Err(errors);
     }

@@ -112,10 +112,11 @@ impl Flow {
         }
         for x in externals.iter().filter(|x| x.torque.is_none()) {
             let Some(node) = c.node(x.member) else { continue };
-            let total: f64 = (1..demand.len())
-                .filter(|&m| !c.inner[m] && c.node_of[m] == Some(node))
-                .map(|m| demand[m] - external[m])
-                .sum();
+            let own = || (1..demand.len()).filter(|&m| !c.inner[m] && c.node_of[m] == Some(node));
+            let total: f64 = own().map(|m| demand[m] - external[m]).sum();
+            let size: f64 = own().map(|m| demand[m].abs() + external[m].abs()).sum();
+            // Torques that cancel up to round-off are no torque.
+            let total = if total.abs() <= 1e-13 * size { 0.0 } else { total };
             external[x.member.0] = total;
         }
         let (ties, reactions) = self::ties(c, &demand, &external);

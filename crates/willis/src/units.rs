@@ -109,7 +109,7 @@ pub enum QuantityError {
 impl fmt::Display for QuantityError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoNumber => f.write_str("it does not begin with a finite number"),
+            Self::NoNumber => f.write_str("it does not begin with a finite number of sensible size"),
             Self::NoUnit => f.write_str("the unit is missing"),
             Self::UnknownUnit(unit, _) => write!(f, "`{unit}` is not a unit known here"),
             Self::WrongDimension => f.write_str("its unit measures something else"),

@@ -233,6 +233,11 @@ fn inputs(s: &SolutionReport) -> String {
     all.join(", ")
 }
 
+/// `a + b`, zero where they cancel up to round-off.
+fn sum(a: f64, b: f64) -> f64 {
+    if (a + b).abs() <= 1e-12 * a.abs() { 0.0 } else { a + b }
+}
+
 /// A number for a sentence.
 fn short(x: f64) -> String {
     let text = format!("{x:.4}");
@@ -461,7 +466,7 @@ impl Frame<'_> {
             let torque = flow.torques[m];
             let power = match (torque, speed) {
                 (Some(t), Some(w)) => Some(t * w),
-                (None, Some(0.0)) => Some(0.0),
+                (None, Some(0.0)) | (Some(0.0), None) => Some(0.0),
                 _ => None,
             };
             let real = power.is_some_and(|p| p.abs() > 1e-12 * flow.input_power.max(flow.output_power));
@@ -602,7 +607,7 @@ impl Frame<'_> {
                         let boundary = Boundary {
                             member: train.member_name(member).to_owned(),
                             value: value * self.scale(),
-                            boundary: (value + change) * self.scale(),
+                            boundary: sum(value, change) * self.scale(),
                             mesh: meshes_of(e).join(", "),
                         };
                         best = Some((change.abs(), boundary));
@@ -631,7 +636,7 @@ impl Frame<'_> {
                         let boundary = Boundary {
                             member: train.member_name(member).to_owned(),
                             value,
-                            boundary: value + change,
+                            boundary: sum(value, change),
                             mesh: meshes_of(j).join(", "),
                         };
                         best = Some((change.abs(), boundary));

@@ -155,7 +155,7 @@ codes! {
     /// operating point changes which gear drives, and with it the loss formula.
     N402 NearBoundary: "close to a change of the loss formula";
     /// The train has no input and output (or they are one member), so there is no ratio to tell, and
-    /// no operation either. Name `terminals`, or `input` and `output`, or add an [[operation]].
+    /// no operation either. Name `terminals`, or `input` and `output`, or add an operation.
     N403 NothingAsked: "nothing to analyse";
 }
 

@@ -182,7 +182,7 @@ pub(crate) enum Parts {
 /// A planetary set.
 ///
 /// Sun, ring and carrier are given as `(member, teeth)` and `member`; planets are added with
-/// [`SetSpec::planet`] or [`SetSpec::planets`].
+/// [`SetSpec::planet`] and [`SetSpec::second_planet`].
 #[derive(Clone, Debug)]
 pub struct SetSpec {
     pub(crate) name: String,
