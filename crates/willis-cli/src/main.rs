@@ -95,6 +95,12 @@ fn main() -> ExitCode {
         Color::Always => anstream::ColorChoice::Always.write_global(),
         Color::Never => anstream::ColorChoice::Never.write_global(),
     }
+    if let Command::Analyze { format, table: Some(_), .. } = &arguments.command {
+        if *format != Format::Csv {
+            let kind = clap::error::ErrorKind::ArgumentConflict;
+            Arguments::command().error(kind, "--table belongs to --format csv").exit();
+        }
+    }
     match run(&arguments.command) {
         Ok(output) => {
             // A reader that closes the pipe early (`willis … | head`) is no error.
