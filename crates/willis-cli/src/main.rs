@@ -95,11 +95,9 @@ fn main() -> ExitCode {
         Color::Always => anstream::ColorChoice::Always.write_global(),
         Color::Never => anstream::ColorChoice::Never.write_global(),
     }
-    if let Command::Analyze { format, table: Some(_), .. } = &arguments.command {
-        if *format != Format::Csv {
-            let kind = clap::error::ErrorKind::ArgumentConflict;
-            Arguments::command().error(kind, "--table belongs to --format csv").exit();
-        }
+    if let Command::Analyze { format: Format::Text | Format::Json, table: Some(_), .. } = &arguments.command {
+        let kind = clap::error::ErrorKind::ArgumentConflict;
+        Arguments::command().error(kind, "--table belongs to --format csv").exit();
     }
     match run(&arguments.command) {
         Ok(output) => {
