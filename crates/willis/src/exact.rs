@@ -103,6 +103,14 @@ impl Rational {
         if self.sign() < 0 { -self.clone() } else { self.clone() }
     }
 
+    /// The largest whole number that is not larger.
+    pub fn floor(&self) -> Self {
+        match &self.0 {
+            Repr::Small(r) => Self(Repr::Small(r.floor())),
+            Repr::Big(r) => Self::from_big(r.floor()),
+        }
+    }
+
     /// `1 / self`.
     ///
     /// # Panics

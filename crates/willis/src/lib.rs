@@ -39,6 +39,7 @@
 //! ```
 
 pub mod exact;
+pub mod symbolic;
 pub mod units;
 pub mod diagnostic;
 pub mod train;
@@ -47,6 +48,7 @@ pub mod statics;
 pub mod power_flow;
 pub mod compiled;
 pub mod analysis;
+pub mod regimes;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;

@@ -140,41 +140,7 @@ impl Equilibrium {
         loaded: &[usize],
     ) -> Result<Self, Unsolvable> {
         let c = configuration;
-        let mut row_alive: Vec<bool> = (0..c.nodes).map(|n| !open.contains(&n)).collect();
-        let mut alive = vec![true; c.elements.len()];
-        // An unloaded node that a single gear end touches carries no force: the element is idle.
-        // A carrier may balance a force at a displaced point (its coefficient can vanish inside the
-        // box), so it does not count as such an end unless its coefficient keeps its sign.
-        loop {
-            let mut touching: Vec<Vec<usize>> = vec![vec![]; c.nodes];
-            for (j, e) in c.elements.iter().enumerate().filter(|(j, _)| alive[*j]) {
-                let mut nodes: Vec<Node> = vec![c.node(e.p), c.node(e.q), c.node(e.carrier)];
-                nodes.sort_unstable();
-                nodes.dedup();
-                nodes.into_iter().flatten().for_each(|n| touching[n].push(j));
-            }
-            let mut changed = false;
-            for n in 0..c.nodes {
-                if !row_alive[n] || loaded.contains(&n) {
-                    continue;
-                }
-                match touching[n][..] {
-                    [] => {
-                        row_alive[n] = false;
-                        changed = true;
-                    }
-                    [j] if alive[j] && keeps_sign(c, j, n) => {
-                        alive[j] = false;
-                        row_alive[n] = false;
-                        changed = true;
-                    }
-                    _ => {}
-                }
-            }
-            if !changed {
-                break;
-            }
-        }
+        let (row_alive, alive) = carrying(c, open, loaded);
         let rows: Vec<usize> = (0..c.nodes).filter(|&n| row_alive[n]).collect();
         let active: Vec<usize> = (0..c.elements.len()).filter(|&j| alive[j]).collect();
         if rows.len() < active.len() {
@@ -516,6 +482,47 @@ impl Equilibrium {
         }
         s
     }
+}
+
+/// Which nodes have an equation and which elements can carry a force at all.
+///
+/// An unloaded node that a single gear end touches carries no force: the element is idle. A carrier
+/// may balance a force at a displaced point (its coefficient can vanish inside the box), so it does
+/// not count as such an end unless its coefficient keeps its sign.
+pub(crate) fn carrying(c: &Configuration<'_>, open: &[usize], loaded: &[usize]) -> (Vec<bool>, Vec<bool>) {
+    let mut row_alive: Vec<bool> = (0..c.nodes).map(|n| !open.contains(&n)).collect();
+    let mut alive = vec![true; c.elements.len()];
+    loop {
+        let mut touching: Vec<Vec<usize>> = vec![vec![]; c.nodes];
+        for (j, e) in c.elements.iter().enumerate().filter(|(j, _)| alive[*j]) {
+            let mut nodes: Vec<Node> = vec![c.node(e.p), c.node(e.q), c.node(e.carrier)];
+            nodes.sort_unstable();
+            nodes.dedup();
+            nodes.into_iter().flatten().for_each(|n| touching[n].push(j));
+        }
+        let mut changed = false;
+        for n in 0..c.nodes {
+            if !row_alive[n] || loaded.contains(&n) {
+                continue;
+            }
+            match touching[n][..] {
+                [] => {
+                    row_alive[n] = false;
+                    changed = true;
+                }
+                [j] if alive[j] && keeps_sign(c, j, n) => {
+                    alive[j] = false;
+                    row_alive[n] = false;
+                    changed = true;
+                }
+                _ => {}
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    (row_alive, alive)
 }
 
 /// Forces for one pattern.

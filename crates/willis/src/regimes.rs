@@ -1,0 +1,1158 @@
+//! Every way in which a train can run, and the closed formula for each.
+//!
+//! The speeds of a train with `d` freedoms are a `d`-dimensional space. The planes on which a
+//! terminal is at rest, or a mesh has no relative motion, cut it into *regions*; within a region no
+//! power changes its sign by speed and no relative speed does. In each region every choice of
+//! drivers leaves a space of torques in equilibrium, cut in turn by the planes on which a tooth
+//! force or a terminal torque is zero. A *regime* is one cell of both: its inputs, its outputs, its
+//! drivers and so its efficiency formula are fixed throughout. The cells are enumerated exactly.
+//!
+//! Source: the method of Esmail 2018 (two freedoms, one set, his Table 1) made general and
+//! completed by the cases between self-locking limits, where friction turns a torque round.
+
+pub(crate) mod arrangement;
+pub(crate) mod formula;
+pub(crate) mod setup;
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::analysis::{AS_DRAWN, Named, Role};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
+use crate::kinematics::Configuration;
+use crate::symbolic::{Function, Notation, Symbol};
+use crate::train::{FRAME, MemberId, Train};
+
+use arrangement::{Cell, dot};
+use formula::{Formula, Shape, SymbolKind, element_label};
+use setup::{Pattern, Setup, TorqueCell};
+
+pub use formula::{Efficiencies, Ratios};
+
+/// Which part of a train, and from which terminals.
+#[derive(Clone, Debug, Default)]
+pub struct RegimeSelection {
+    /// A state of the shift table, or `as drawn`; `None` for all that have regimes.
+    pub state: Option<String>,
+    /// Members on which torque may act; `None` for the train's terminals.
+    pub terminals: Option<Vec<String>>,
+}
+
+/// All regimes of a train.
+#[derive(Clone, Debug, Serialize)]
+pub struct Regimes {
+    /// `willis-regimes-1`.
+    pub format: &'static str,
+    /// Name of the train.
+    pub train: String,
+    /// One for each state asked for.
+    pub states: Vec<Atlas>,
+}
+
+/// The regimes of one state.
+#[derive(Clone, Debug, Serialize)]
+pub struct Atlas {
+    /// Name of the state, or `as drawn`.
+    pub state: String,
+    /// Degrees of freedom.
+    pub degrees_of_freedom: usize,
+    /// Members on which a torque acts.
+    pub terminals: Vec<String>,
+    /// Terminals that are held: they take torque, but no power.
+    pub held: Vec<String>,
+    /// Independent terminal torques.
+    pub independent_torques: usize,
+    /// Terminals whose speeds settle all others.
+    pub base_speeds: Vec<String>,
+    /// Why there is nothing to list.
+    pub reason: Option<String>,
+    /// What the formulas' symbols stand for.
+    pub symbols: Named<SymbolReport>,
+    /// The planes that cut the speed space.
+    pub planes: Vec<PlaneReport>,
+    /// The regions of speed, in order around the circle for two freedoms.
+    pub regions: Vec<RegionReport>,
+    /// The regimes.
+    pub regimes: Vec<RegimeReport>,
+    /// Their formulas, each once.
+    pub formulas: Vec<FormulaReport>,
+    /// The boundaries between neighbouring regions (two freedoms).
+    pub boundaries: Vec<BoundaryReport>,
+    /// Every assignment of inputs and outputs, and whether it can be reached.
+    pub assignments: Vec<AssignmentReport>,
+    /// What else a reader must know.
+    pub notes: Vec<String>,
+}
+
+/// A symbol of the formulas.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SymbolReport {
+    /// Value in this train, for ratios and efficiencies.
+    pub value: Option<f64>,
+    /// The same as a fraction.
+    pub exact: Option<String>,
+    /// In words.
+    pub meaning: String,
+    /// In LaTeX.
+    pub latex: String,
+}
+
+/// A plane through the origin of the speed space.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlaneReport {
+    /// What is the case on it: `sun1 at rest`.
+    pub label: String,
+    /// Terminals at rest on it.
+    pub at_rest: Vec<String>,
+    /// Elements without relative motion on it.
+    pub without_relative_motion: Vec<String>,
+    /// Coefficients of the base speeds.
+    pub form: Vec<f64>,
+    #[serde(skip)]
+    pub(crate) exact: Vec<Rational>,
+}
+
+/// A region of speeds.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RegionReport {
+    /// Its number, from 1.
+    pub number: usize,
+    /// The order of the speeds, one chain for each element: `w_4 > w_1 > 0 > w_2`.
+    pub order: Vec<String>,
+    /// The side of each plane it lies on.
+    pub signs: Vec<i8>,
+    /// Speeds inside it, by terminal.
+    pub example: Named<f64>,
+    /// Two freedoms: the two directions (in base speeds) that bound it, counterclockwise.
+    pub from: Option<[f64; 2]>,
+    /// See `from`.
+    pub to: Option<[f64; 2]>,
+    /// Two freedoms, and no sign change of the first base speed inside: bounds of second over
+    /// first base speed; absent means infinite.
+    pub ratio: Option<RatioRange>,
+    /// Planes that bound it.
+    pub bounded_by: Vec<String>,
+    /// The region of all opposite speeds.
+    pub opposite: usize,
+    /// One independent torque: which regimes answer a torque prescribed on each terminal.
+    pub prescribed: Vec<Prescribed>,
+    #[serde(skip)]
+    pub(crate) point: Vec<Rational>,
+    #[serde(skip)]
+    pub(crate) rays: Option<[Vec<Rational>; 2]>,
+}
+
+/// An interval of a speed ratio.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RatioRange {
+    /// The quotient, such as `w_ring/w_engine`.
+    pub of: String,
+    /// Sign of the denominator.
+    pub denominator_sign: i8,
+    /// Lower bound.
+    pub low: Option<f64>,
+    /// Upper bound.
+    pub high: Option<f64>,
+}
+
+/// What a torque prescribed on one terminal leads to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Prescribed {
+    /// The terminal.
+    pub terminal: String,
+    /// Regimes with a positive torque on it.
+    pub positive: Vec<String>,
+    /// Regimes with a negative torque on it.
+    pub negative: Vec<String>,
+}
+
+/// One regime.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RegimeReport {
+    /// Its name: number of the region, and the torque cell (`+` or `-` for the sign of the first
+    /// torque that is not zero, else a number).
+    pub id: String,
+    /// Number of the region of speeds.
+    pub region: usize,
+    /// Sign of each terminal's torque.
+    pub torque_signs: Named<i8>,
+    /// What each terminal does.
+    pub roles: Named<Role>,
+    /// Terminals where power enters.
+    pub inputs: Vec<String>,
+    /// Terminals where power leaves.
+    pub outputs: Vec<String>,
+    /// Which end drives each element, seen from its carrier; absent when it carries no load or has
+    /// no relative motion or loss.
+    pub drivers: Named<Option<String>>,
+    /// Name of its formula.
+    pub formula: String,
+    /// Efficiencies between which it lies: the limits on the two bounding directions (two
+    /// freedoms), or twice the same number (one freedom).
+    pub efficiency_range: Option<[f64; 2]>,
+    /// An operating point inside.
+    pub example: ExamplePoint,
+    /// The regime with all speeds and torques reversed.
+    pub mirror: String,
+    /// Without friction no torques of these signs exist here: friction has turned one round.
+    pub by_friction_only: bool,
+    /// Every loaded terminal is an input.
+    pub all_dissipated: bool,
+    /// Regimes across each bounding plane whose torques have the same signs.
+    pub neighbours: Vec<Neighbour>,
+    #[serde(skip)]
+    pub(crate) pattern: Pattern,
+    #[serde(skip)]
+    pub(crate) torques: Vec<Rational>,
+    #[serde(skip)]
+    pub(crate) power_signs: Vec<i8>,
+}
+
+/// An operating point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ExamplePoint {
+    /// Speeds by terminal, in any unit.
+    pub speeds: Named<f64>,
+    /// Torques by terminal, in any unit.
+    pub torques: Named<f64>,
+    /// Efficiency there; zero when all is dissipated.
+    pub efficiency: f64,
+    /// The same as a fraction.
+    pub efficiency_exact: String,
+}
+
+/// A regime across a plane.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Neighbour {
+    /// The plane between.
+    pub plane: String,
+    /// The regime there.
+    pub regime: String,
+}
+
+/// A closed formula.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FormulaReport {
+    /// Its name, `F1`.
+    pub id: String,
+    /// Inputs and outputs it belongs to.
+    pub roles: String,
+    /// Drivers it belongs to.
+    pub drivers: String,
+    /// Output over input power.
+    pub efficiency: String,
+    /// The same in LaTeX.
+    pub efficiency_latex: String,
+    /// Power lost, as a sum over the elements that drive.
+    pub loss: String,
+    /// Torques of the terminals.
+    pub torques: Named<String>,
+    /// Positive throughout the regimes, and nowhere else.
+    pub conditions: Vec<ConditionReport>,
+    /// Where basic ratios and efficiencies must lie for the torques to have these signs.
+    pub holds_for: Vec<Threshold>,
+    /// Regimes in which it holds.
+    pub regimes: Vec<String>,
+}
+
+/// A condition of a formula.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConditionReport {
+    /// An expression that must be positive.
+    pub positive: String,
+    /// What it ensures.
+    pub meaning: String,
+}
+
+/// The open interval of one ratio or efficiency in which the torque signs of a formula hold, all
+/// others as they are.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Threshold {
+    /// The symbol.
+    pub symbol: String,
+    /// Its value.
+    pub value: f64,
+    /// Lower bound; absent when there is none.
+    pub low: Option<f64>,
+    /// Upper bound; absent when there is none.
+    pub high: Option<f64>,
+}
+
+/// The boundary between two neighbouring regions of a train with two freedoms.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BoundaryReport {
+    /// What is the case on it.
+    pub label: String,
+    /// Direction, in base speeds.
+    pub direction: [f64; 2],
+    /// Speeds on it, by terminal.
+    pub speeds: Named<f64>,
+    /// Regions on its two sides, counterclockwise.
+    pub between: [usize; 2],
+    /// What happens to each torque cell.
+    pub crossings: Vec<Crossing>,
+}
+
+/// A regime's passage over a boundary.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Crossing {
+    /// Regime before.
+    pub from: String,
+    /// Regime after.
+    pub to: String,
+    /// Limit of the efficiency, coming from before.
+    pub efficiency_before: Option<f64>,
+    /// Limit of the efficiency, coming from after.
+    pub efficiency_after: Option<f64>,
+    /// What changes, in words.
+    pub changes: Vec<String>,
+}
+
+/// An assignment of inputs and outputs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AssignmentReport {
+    /// Terminals where power enters.
+    pub inputs: Vec<String>,
+    /// Terminals where power leaves.
+    pub outputs: Vec<String>,
+    /// Regimes that realise it; none when it cannot be reached.
+    pub regimes: Vec<String>,
+    /// In words: how it is reached, or why not.
+    pub reach: String,
+}
+
+/// Most sign patterns of drivers, over all regions, that are tried.
+const MOST_PATTERNS: u128 = 1 << 20;
+/// Most regions of speed.
+const MOST_REGIONS: u128 = 1 << 14;
+/// Most terminals for which every assignment is listed.
+const MOST_ASSIGNED: usize = 6;
+
+/// Enumerates the regimes of a train.
+///
+/// # Errors
+/// A state or terminal that the train does not have.
+///
+/// # Example
+/// ```
+/// use willis::regimes::{RegimeSelection, regimes};
+/// use willis::train::{SetSpec, Train};
+///
+/// let train = Train::builder("power split")
+///     .members(["engine", "generator", "wheels"])
+///     .terminals(["engine", "generator", "wheels"])
+///     .set(SetSpec::simple("P1", ("generator", 30), ("wheels", 78), "engine").planet(23, 4).mesh_efficiency(0.99))
+///     .build()?;
+/// let all = regimes(&train, &RegimeSelection::default())?;
+/// assert_eq!(all.states[0].regimes.len(), 16);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn regimes(train: &Train, selection: &RegimeSelection) -> Result<Regimes, Diagnostics> {
+    let mut states = Vec::new();
+    for (name, c, terminals) in selected(train, selection)? {
+        let atlas = atlas(name, c, &terminals);
+        // Unasked for, a state without regimes is no news when others have some.
+        states.push(atlas);
+    }
+    if selection.state.is_none() && states.iter().any(|a: &Atlas| a.reason.is_none()) {
+        states.retain(|a| a.reason.is_none() || a.state != AS_DRAWN);
+    }
+    Ok(Regimes { format: "willis-regimes-1", train: train.name.clone(), states })
+}
+
+/// The configurations that a selection names, each with its terminals.
+pub(crate) fn selected<'t>(
+    train: &'t Train,
+    selection: &RegimeSelection,
+) -> Result<Vec<(String, Configuration<'t>, Vec<MemberId>)>, Diagnostics> {
+    let mut errors = Diagnostics::default();
+    let named: Option<Vec<MemberId>> = selection.terminals.as_ref().map(|names| {
+        let mut all: Vec<MemberId> = Vec::new();
+        for name in names {
+            match train.member(name) {
+                Some(FRAME) => errors.push(
+                    Diagnostic::new(Code::NotATerminal, "", "the frame is at rest and no terminal")
+                        .hint("name members that turn"),
+                ),
+                Some(id) if all.contains(&id) => {
+                    errors.push(Diagnostic::new(Code::DuplicateName, "", format!("terminal `{name}` is named twice")));
+                }
+                Some(id) => all.push(id),
+                None => {
+                    let known: Vec<&str> = train.members.iter().skip(1).map(|m| m.name.as_str()).collect();
+                    let d = Diagnostic::new(Code::UnknownName, "", format!("the train has no member `{name}`"));
+                    errors.push(d.suggest(name, known.iter().copied()).hint(format!("its members are: {}", known.join(", "))));
+                }
+            }
+        }
+        all
+    });
+    let mut chosen: Vec<Option<usize>> = vec![];
+    match &selection.state {
+        None => {
+            chosen.push(None);
+            chosen.extend((0..train.states.len()).map(Some));
+        }
+        Some(name) if name == AS_DRAWN => chosen.push(None),
+        Some(name) => match train.states.iter().position(|s| s.name == *name) {
+            Some(k) => chosen.push(Some(k)),
+            None => {
+                let known: Vec<&str> = train.states.iter().map(|s| s.name.as_str()).chain([AS_DRAWN]).collect();
+                let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
+                errors.push(d.suggest(name, known.iter().copied()).hint(format!("its states are: {}", known.join(", "))));
+            }
+        },
+    }
+    if errors.has_errors() {
+        return Err(errors);
+    }
+    Ok(chosen
+        .into_iter()
+        .map(|k| {
+            let state = k.map(|k| &train.states[k]);
+            let engaged = state.map_or(&[][..], |s| &s.engaged);
+            let members = named.clone().unwrap_or_else(|| {
+                let own = state.map(|s| [s.input, s.output]).into_iter().flatten().flatten();
+                let mut all = train.terminals.clone();
+                all.extend(own.chain(train.input).chain(train.output));
+                let mut distinct: Vec<MemberId> = Vec::new();
+                all.into_iter().filter(|m| *m != FRAME).for_each(|m| {
+                    if !distinct.contains(&m) {
+                        distinct.push(m);
+                    }
+                });
+                distinct
+            });
+            let c = Configuration::new(train, engaged, &[], &members);
+            (state.map_or(AS_DRAWN.to_owned(), |s| s.name.clone()), c, members)
+        })
+        .collect())
+}
+
+fn atlas(state: String, c: Configuration<'_>, members: &[MemberId]) -> Atlas {
+    let train = c.train;
+    let name = |m: MemberId| train.member_name(m).to_owned();
+    let mut atlas = Atlas {
+        state,
+        degrees_of_freedom: c.degrees_of_freedom(),
+        terminals: members.iter().filter(|m| c.node(**m).is_some()).map(|m| name(*m)).collect(),
+        held: members.iter().filter(|m| c.node(**m).is_none()).map(|m| name(*m)).collect(),
+        independent_torques: 0,
+        base_speeds: vec![],
+        reason: None,
+        symbols: Named::default(),
+        planes: vec![],
+        regions: vec![],
+        regimes: vec![],
+        formulas: vec![],
+        boundaries: vec![],
+        assignments: vec![],
+        notes: vec![],
+    };
+    // Input and output clutched together: no gear carries the load.
+    let nodes: Vec<Option<usize>> = members.iter().map(|m| c.node(*m)).filter(Option::is_some).collect();
+    if nodes.len() > 1 && nodes.iter().all(|n| *n == nodes[0]) {
+        atlas.reason = Some("direct drive: the terminals turn as one, no mesh is loaded and the efficiency is 1".into());
+        return atlas;
+    }
+    let setup = match Setup::new(c, members) {
+        Ok(setup) => setup,
+        Err(why) => {
+            atlas.reason = Some(why);
+            return atlas;
+        }
+    };
+    if let Some(idle) = setup.idle(members) {
+        atlas.notes.push(idle);
+    }
+    fill(&mut atlas, &setup);
+    atlas
+}
+
+/// Speed and torque cells of a setup, before they are told.
+pub(crate) struct Cells {
+    pub planes: Vec<Vec<Rational>>,
+    pub regions: Vec<Cell>,
+    /// By region.
+    pub torques: Vec<Vec<TorqueCell>>,
+    pub singular: bool,
+}
+
+/// All cells, or how many there would be.
+pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
+    let planes = setup.planes();
+    let d = setup.base.len();
+    let bound = arrangement::most_cells(planes.len(), d);
+    let lossy = (0..setup.active.len()).filter(|&j| setup.lossy(j)).count();
+    let patterns = bound.saturating_mul(1u128.checked_shl(lossy as u32).unwrap_or(u128::MAX)) / 2;
+    if bound > MOST_REGIONS || patterns > MOST_PATTERNS {
+        return Err(format!(
+            "{} planes cut the {d}-dimensional speed space into up to {bound} regions, each with 2^{lossy} patterns of \
+             drivers: more than are listed (2^20 in all). Use `willis locate` for the regime of an operating point, or \
+             name fewer terminals",
+            planes.len()
+        ));
+    }
+    let regions = setup.speed_cells(&planes);
+    let index: BTreeMap<Vec<i8>, usize> = regions.iter().enumerate().map(|(k, c)| (c.signs.clone(), k)).collect();
+    let mut torques: Vec<Option<Vec<TorqueCell>>> = vec![None; regions.len()];
+    let mut singular = false;
+    for k in 0..regions.len() {
+        if torques[k].is_some() {
+            continue;
+        }
+        let (cells, odd) = setup.torque_cells(&setup.sigma_signs(&regions[k].point));
+        singular |= odd;
+        // All speeds and torques reversed: the same drivers, the same powers.
+        let opposite = index[&regions[k].signs.iter().map(|s| -s).collect::<Vec<_>>()];
+        if opposite != k {
+            let reversed = |v: &Vec<Rational>| v.iter().map(|x| -x.clone()).collect::<Vec<_>>();
+            torques[opposite] = Some(
+                cells
+                    .iter()
+                    .map(|t| TorqueCell {
+                        pattern: t.pattern.clone(),
+                        signs: t.signs.iter().map(|s| -s).collect(),
+                        torques: reversed(&t.torques),
+                        forces: reversed(&t.forces),
+                    })
+                    .collect(),
+            );
+        }
+        torques[k] = Some(cells);
+    }
+    Ok(Cells { planes, regions, torques: torques.into_iter().flatten().collect(), singular })
+}
+
+/// Signs of the terminals' powers.
+pub(crate) fn power_signs(setup: &Setup<'_>, base: &[Rational], torques: &[i8]) -> Vec<i8> {
+    (0..setup.terminals.len()).map(|t| dot(setup.terminal_speed(t), base).sign() * torques[t]).collect()
+}
+
+fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
+    let train = setup.c.train;
+    let terminal = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
+    let m = setup.terminals.len();
+    atlas.terminals = (0..m).map(terminal).collect();
+    atlas.independent_torques = setup.torques;
+    atlas.base_speeds = setup.base.iter().map(|&b| terminal(b)).collect();
+    let cells = match enumerate(setup) {
+        Ok(cells) => cells,
+        Err(why) => {
+            atlas.reason = Some(why);
+            return;
+        }
+    };
+    if cells.singular {
+        atlas.notes.push(
+            "for some drivers the train lies exactly on a self-locking threshold: there a whole range of torques balances; \
+             those cells are not listed"
+                .into(),
+        );
+    }
+    for j in (0..setup.active.len()).filter(|&j| setup.ratio(j) == Rational::ONE) {
+        let e = setup.element(j);
+        let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
+        atlas.notes.push(format!(
+            "the basic ratio of {} is 1: {p} and {q} turn alike whatever {c} does, and the torque of the teeth on {c} \
+             is friction alone, (rho - 1) times that on {p}",
+            element_label(setup, j)
+        ));
+    }
+    let lossless: Vec<String> =
+        (0..setup.active.len()).filter(|&j| !setup.lossy(j)).map(|j| element_label(setup, j)).collect();
+    if !lossless.is_empty() {
+        atlas.notes.push(format!("without loss, so it does not matter who drives: {}", lossless.join(", ")));
+    }
+    atlas.planes = cells.planes.iter().map(|f| plane(setup, f)).collect();
+    let signs: BTreeMap<&[i8], usize> = cells.regions.iter().enumerate().map(|(k, c)| (c.signs.as_slice(), k)).collect();
+    let opposite = |signs_of: &[i8]| signs[signs_of.iter().map(|s| -s).collect::<Vec<_>>().as_slice()];
+
+    for (k, cell) in cells.regions.iter().enumerate() {
+        atlas.regions.push(region(setup, atlas, &cells, k, opposite(&cell.signs)));
+        let _ = cell;
+    }
+
+    // What can happen without friction, to tell what friction makes.
+    let frictionless = without_friction(setup);
+
+    // Regimes, with one formula for each pattern of roles and drivers.
+    let shape = Shape::new(setup, &[]);
+    let mut formulas: Vec<(Pattern, Vec<i8>, Option<Formula>)> = Vec::new();
+    let mut ids: Vec<Vec<String>> = Vec::new();
+    for (k, list) in cells.torques.iter().enumerate() {
+        let own: Vec<String> = (0..list.len()).map(|n| regime_name(setup, k, list, n)).collect();
+        ids.push(own);
+    }
+    for (k, list) in cells.torques.iter().enumerate() {
+        let base = &cells.regions[k].point;
+        let other = opposite(&cells.regions[k].signs);
+        for (n, cell) in list.iter().enumerate() {
+            let powers = power_signs(setup, base, &cell.signs);
+            let at = formulas.iter().position(|(p, r, _)| *p == cell.pattern && *r == powers).unwrap_or_else(|| {
+                let own = shape
+                    .as_ref()
+                    .ok()
+                    .map(|s| s.formula(&cell.pattern, &powers, Ratios::Basic, Efficiencies::Basic));
+                formulas.push((cell.pattern.clone(), powers.clone(), own));
+                formulas.len() - 1
+            });
+            let mirror = cells.torques[other]
+                .iter()
+                .position(|t| t.pattern == cell.pattern && t.signs.iter().zip(&cell.signs).all(|(a, b)| *a == -b) && mirrored(t, cell))
+                .expect("every regime has its mirror image");
+            let exact = efficiency_at(setup, base, &cell.torques);
+            let named_signs = Named((0..m).map(|t| (terminal(t), cell.signs[t])).collect());
+            let role = |t: usize| match powers[t] {
+                1 => Role::Input,
+                -1 => Role::Output,
+                _ => Role::Idle,
+            };
+            let limits = limits(setup, &atlas.regions[k], &cell.torques);
+            atlas.regimes.push(RegimeReport {
+                id: ids[k][n].clone(),
+                region: k + 1,
+                torque_signs: named_signs,
+                roles: Named((0..m).map(|t| (terminal(t), role(t))).collect()),
+                inputs: (0..m).filter(|&t| powers[t] > 0).map(terminal).collect(),
+                outputs: (0..m).filter(|&t| powers[t] < 0).map(terminal).collect(),
+                drivers: Named(drivers(setup, &cell.pattern)),
+                formula: format!("F{}", at + 1),
+                efficiency_range: limits,
+                example: ExamplePoint {
+                    speeds: atlas.regions[k].example.clone(),
+                    torques: Named((0..m).map(|t| (terminal(t), cell.torques[t].to_f64())).collect()),
+                    efficiency: exact.to_f64(),
+                    efficiency_exact: exact.to_fraction(),
+                },
+                mirror: ids[other][mirror].clone(),
+                by_friction_only: !frictionless.contains(&(k, cell.signs.clone())),
+                all_dissipated: powers.iter().all(|p| *p >= 0),
+                neighbours: vec![],
+                pattern: cell.pattern.clone(),
+                torques: cell.torques.clone(),
+                power_signs: powers,
+            });
+        }
+    }
+    neighbours(atlas, setup);
+    if setup.torques == 1 {
+        for region in &mut atlas.regions {
+            let own: Vec<&RegimeReport> = atlas.regimes.iter().filter(|r| r.region == region.number).collect();
+            region.prescribed = (0..m)
+                .map(|t| {
+                    let of = |sign: i8| {
+                        own.iter().filter(|r| r.torque_signs.0[t].1 == sign).map(|r| r.id.clone()).collect()
+                    };
+                    Prescribed { terminal: terminal(t), positive: of(1), negative: of(-1) }
+                })
+                .collect();
+        }
+    }
+    match &shape {
+        Ok(shape) => {
+            for (n, (pattern, powers, own)) in formulas.iter().enumerate() {
+                let own = own.as_ref().expect("made with the shape");
+                let id = format!("F{}", n + 1);
+                let regimes: Vec<String> =
+                    atlas.regimes.iter().filter(|r| r.formula == id).map(|r| r.id.clone()).collect();
+                atlas.formulas.push(formula_report(shape, id, pattern, powers, own, regimes));
+            }
+            let mut symbols = Named::default();
+            for info in &shape.names.infos {
+                let hidden = info.meaning.is_empty() || info.kind == SymbolKind::Teeth;
+                if !hidden {
+                    symbols.0.push((
+                        info.name.clone(),
+                        SymbolReport {
+                            value: info.value.as_ref().map(Rational::to_f64),
+                            exact: info.value.as_ref().map(Rational::to_fraction),
+                            meaning: info.meaning.clone(),
+                            latex: info.latex.clone(),
+                        },
+                    ));
+                }
+            }
+            atlas.symbols = symbols;
+        }
+        Err(why) => atlas.notes.push(format!("no closed formulas: {why}")),
+    }
+    boundaries(atlas, setup);
+    assignments(atlas, setup);
+}
+
+fn mirrored(a: &TorqueCell, b: &TorqueCell) -> bool {
+    a.torques.iter().zip(&b.torques).all(|(a, b)| *a == -b.clone())
+}
+
+/// Label and matter of a plane.
+fn plane(setup: &Setup<'_>, form: &[Rational]) -> PlaneReport {
+    let train = setup.c.train;
+    let same = |other: &[Rational]| arrangement::normal(other).is_some_and(|(f, _)| f == form);
+    let at_rest: Vec<String> = (0..setup.terminals.len())
+        .filter(|&t| same(setup.terminal_speed(t)))
+        .map(|t| train.member_name(setup.terminals[t].member).to_owned())
+        .collect();
+    let meshes: Vec<usize> =
+        (0..setup.active.len()).filter(|&j| setup.lossy(j) && same(&setup.sigma[j])).collect();
+    let mut parts: Vec<String> = Vec::new();
+    if !at_rest.is_empty() {
+        parts.push(format!("{} at rest", at_rest.join(", ")));
+    }
+    for &j in &meshes {
+        let e = setup.element(j);
+        let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
+        if c != "frame" {
+            parts.push(format!("{p}, {q} and {c} turn as one"));
+        } else if at_rest.is_empty() {
+            parts.push(format!("{p} and {q} at rest"));
+        }
+    }
+    PlaneReport {
+        label: parts.join("; "),
+        at_rest,
+        without_relative_motion: meshes.iter().map(|&j| element_label(setup, j)).collect(),
+        form: form.iter().map(Rational::to_f64).collect(),
+        exact: form.to_vec(),
+    }
+}
+
+/// The two directions that bound a region of the plane, counterclockwise.
+fn bounding_rays(cells: &Cells, k: usize) -> Option<[Vec<Rational>; 2]> {
+    let n = cells.regions.len();
+    if n < 2 || cells.planes.first()?.len() != 2 {
+        return None;
+    }
+    let ray = |before: usize, after: usize| -> Option<Vec<Rational>> {
+        let (a, b) = (&cells.regions[before], &cells.regions[after]);
+        let flipped = (0..a.signs.len()).find(|&i| a.signs[i] != b.signs[i])?;
+        let f = &cells.planes[flipped];
+        // Along the line, on the side to which both cells are near: between them.
+        let along = vec![-f[1].clone(), f[0].clone()];
+        let cross = |u: &[Rational], v: &[Rational]| &(&u[0] * &v[1]) - &(&u[1] * &v[0]);
+        let flip = cross(&a.point, &along).sign() < 0 || cross(&along, &b.point).sign() < 0;
+        Some(if flip { along.into_iter().map(|x| -x).collect() } else { along })
+    };
+    Some([ray((k + n - 1) % n, k)?, ray(k, (k + 1) % n)?])
+}
+
+fn region(setup: &Setup<'_>, atlas: &Atlas, cells: &Cells, k: usize, opposite: usize) -> RegionReport {
+    let train = setup.c.train;
+    let cell = &cells.regions[k];
+    let rays = bounding_rays(cells, k);
+    // A point with small numbers: the sum of the bounding directions, of equal size.
+    let point: Vec<Rational> = match &rays {
+        Some([from, to]) => {
+            let unit = |v: &[Rational]| {
+                let size = v.iter().map(Rational::abs).max().unwrap_or(Rational::ONE);
+                v.iter().map(|x| x / &size).collect::<Vec<_>>()
+            };
+            let (a, b) = (unit(from), unit(to));
+            let sum: Vec<Rational> = a.iter().zip(&b).map(|(x, y)| x + y).collect();
+            let inside = cells.planes.iter().zip(&cell.signs).all(|(f, s)| dot(f, &sum).sign() == *s);
+            if inside { sum } else { cell.point.clone() }
+        }
+        None => cell.point.clone(),
+    };
+    let index: Vec<&[i8]> = cells.regions.iter().map(|c| c.signs.as_slice()).collect();
+    let bounded_by = (0..cells.planes.len())
+        .filter(|&p| {
+            let mut across = cell.signs.clone();
+            across[p] = -across[p];
+            index.contains(&across.as_slice())
+        })
+        .map(|p| atlas.planes[p].label.clone())
+        .collect();
+    let ratio = rays.as_ref().and_then(|[from, to]| {
+        let first = [&from[0], &to[0], &point[0]].map(Rational::sign);
+        let sign = first[2];
+        (sign != 0 && first.iter().all(|s| *s == sign || *s == 0)).then(|| {
+            let slope = |v: &[Rational]| (!v[0].is_zero()).then(|| (&v[1] / &v[0]).to_f64());
+            let (low, high) = (slope(from), slope(to));
+            RatioRange {
+                of: format!("w_{}/w_{}", atlas.base_speeds[1], atlas.base_speeds[0]),
+                denominator_sign: sign,
+                low,
+                high,
+            }
+        })
+    });
+    let direction = |v: &[Rational]| [v[0].to_f64(), v[1].to_f64()];
+    let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
+    RegionReport {
+        number: k + 1,
+        order: order(setup, &point),
+        signs: cell.signs.clone(),
+        example: Named(
+            (0..setup.terminals.len()).map(|t| (name(t), dot(setup.terminal_speed(t), &point).to_f64())).collect(),
+        ),
+        from: rays.as_ref().map(|r| direction(&r[0])),
+        to: rays.as_ref().map(|r| direction(&r[1])),
+        ratio,
+        bounded_by,
+        opposite: opposite + 1,
+        prescribed: vec![],
+        point,
+        rays,
+    }
+}
+
+/// Chains of speeds, from the largest down, that hold throughout a region.
+pub(crate) fn order(setup: &Setup<'_>, point: &[Rational]) -> Vec<String> {
+    let train = setup.c.train;
+    let mut chains: Vec<String> = Vec::new();
+    let mut told: Vec<MemberId> = Vec::new();
+    for j in (0..setup.active.len()).filter(|&j| setup.lossy(j)) {
+        let e = setup.element(j);
+        let is_terminal = |m: MemberId| {
+            m == FRAME || setup.c.node(m).is_none_or(|n| setup.terminals.iter().any(|t| t.node == n))
+        };
+        let mut members: Vec<(Rational, Option<MemberId>)> = Vec::new();
+        for m in [e.p, e.q, e.carrier] {
+            let Some(w) = setup.speed(m) else { continue };
+            if setup.c.node(m).is_none() {
+                continue;
+            }
+            members.push((dot(&w, point), Some(m)));
+            told.push(m);
+        }
+        // Where a member that is no terminal stands towards zero may change within the region.
+        if [e.p, e.q, e.carrier].into_iter().all(is_terminal) {
+            members.push((Rational::ZERO, None));
+        }
+        members.sort_by(|a, b| b.0.cmp(&a.0));
+        let mut text = String::new();
+        for (k, (w, m)) in members.iter().enumerate() {
+            if k > 0 {
+                text += if *w == members[k - 1].0 { " = " } else { " > " };
+            }
+            text += &m.map_or("0".to_owned(), |m| format!("w_{}", train.member_name(m)));
+        }
+        if !chains.contains(&text) {
+            chains.push(text);
+        }
+    }
+    for t in &setup.terminals {
+        if !told.iter().any(|m| setup.c.node(*m) == Some(t.node)) {
+            let w = dot(setup.node_speed[t.node].as_ref().expect("known"), point);
+            let name = train.member_name(t.member);
+            chains.push(if w.sign() > 0 { format!("w_{name} > 0") } else { format!("0 > w_{name}") });
+        }
+    }
+    chains
+}
+
+fn regime_name(setup: &Setup<'_>, region: usize, list: &[TorqueCell], n: usize) -> String {
+    if setup.torques > 1 {
+        return format!("{}.{}", region + 1, n + 1);
+    }
+    let lead = |c: &TorqueCell| c.signs.iter().copied().find(|s| *s != 0).unwrap_or(0);
+    let sign = lead(&list[n]);
+    let alike: Vec<usize> = (0..list.len()).filter(|&i| lead(&list[i]) == sign).collect();
+    let letter = match alike.len() {
+        1 => String::new(),
+        _ => char::from(b'a' + alike.iter().position(|i| *i == n).unwrap_or(0).min(25) as u8).to_string(),
+    };
+    format!("{}{}{letter}", region + 1, if sign < 0 { '-' } else { '+' })
+}
+
+fn drivers(setup: &Setup<'_>, pattern: &Pattern) -> Vec<(String, Option<String>)> {
+    (0..setup.active.len())
+        .map(|j| {
+            let e = setup.element(j);
+            let driver = pattern[j].map(|p| setup.c.train.member_name(if p { e.p } else { e.q }).to_owned());
+            (element_label(setup, j), driver)
+        })
+        .collect()
+}
+
+/// Output over input power; zero when all is dissipated, one when nothing flows.
+pub(crate) fn efficiency_at(setup: &Setup<'_>, base: &[Rational], torques: &[Rational]) -> Rational {
+    let (mut input, mut output) = (Rational::ZERO, Rational::ZERO);
+    for t in 0..setup.terminals.len() {
+        let p = &dot(setup.terminal_speed(t), base) * &torques[t];
+        match p.sign() {
+            1 => input += p,
+            _ => output -= p,
+        }
+    }
+    if input.is_zero() { Rational::ONE } else { output / input }
+}
+
+/// Efficiency on the two directions that bound a region.
+fn limits(setup: &Setup<'_>, region: &RegionReport, torques: &[Rational]) -> Option<[f64; 2]> {
+    if setup.torques > 1 {
+        return None;
+    }
+    match &region.rays {
+        Some([from, to]) => {
+            let ends = [from, to].map(|r| efficiency_at(setup, r, torques).to_f64());
+            Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
+        }
+        None if setup.base.len() == 1 => Some([efficiency_at(setup, &region.point, torques).to_f64(); 2]),
+        None => None,
+    }
+}
+
+/// Region and torque signs of every regime of the same train without losses.
+fn without_friction(setup: &Setup<'_>) -> std::collections::BTreeSet<(usize, Vec<i8>)> {
+    let planes = setup.planes();
+    let regions = setup.speed_cells(&planes);
+    let mut ideal = setup.clone();
+    for e in &mut ideal.c.elements {
+        (e.forward, e.backward) = (Rational::ONE, Rational::ONE);
+    }
+    let (cells, _) = ideal.torque_cells(&vec![1; setup.active.len()]);
+    (0..regions.len()).flat_map(|k| cells.iter().map(move |c| (k, c.signs.clone()))).collect()
+}
+
+fn neighbours(atlas: &mut Atlas, setup: &Setup<'_>) {
+    let by_signs: BTreeMap<Vec<i8>, usize> = atlas.regions.iter().map(|r| (r.signs.clone(), r.number)).collect();
+    let mut by_region: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (k, r) in atlas.regimes.iter().enumerate() {
+        by_region.entry(r.region).or_default().push(k);
+    }
+    for k in 0..atlas.regimes.len() {
+        let signs = &atlas.regions[atlas.regimes[k].region - 1].signs;
+        let mut all = Vec::new();
+        for (p, plane) in atlas.planes.iter().enumerate() {
+            let mut across = signs.clone();
+            across[p] = -across[p];
+            let Some(number) = by_signs.get(&across) else { continue };
+            for &other in by_region.get(number).into_iter().flatten() {
+                if continues(setup, &atlas.regimes[k], &atlas.regimes[other]) {
+                    all.push(Neighbour { plane: plane.label.clone(), regime: atlas.regimes[other].id.clone() });
+                }
+            }
+        }
+        atlas.regimes[k].neighbours = all;
+    }
+}
+
+/// Whether the torques of one regime go on into the other when the speeds cross a plane.
+fn continues(setup: &Setup<'_>, a: &RegimeReport, b: &RegimeReport) -> bool {
+    let same = a.torque_signs.0.iter().zip(&b.torque_signs.0).filter(|(x, y)| x.1 == y.1).count();
+    if setup.torques == 1 {
+        // Friction may turn a torque round; the first one keeps its sign.
+        let lead = |r: &RegimeReport| r.torque_signs.0.iter().map(|x| x.1).find(|s| *s != 0);
+        return lead(a) == lead(b);
+    }
+    same == a.torque_signs.0.len()
+}
+
+fn boundaries(atlas: &mut Atlas, setup: &Setup<'_>) {
+    if setup.base.len() != 2 {
+        return;
+    }
+    let n = atlas.regions.len();
+    let train = setup.c.train;
+    let mut all = Vec::new();
+    for k in 0..n {
+        let next = (k + 1) % n;
+        let (before, after) = (&atlas.regions[k], &atlas.regions[next]);
+        let Some([_, ray]) = &before.rays else { continue };
+        let Some(p) = (0..before.signs.len()).find(|&p| before.signs[p] != after.signs[p]) else { continue };
+        let of = |number: usize| atlas.regimes.iter().filter(move |r| r.region == number);
+        let mut crossings = Vec::new();
+        if setup.torques == 1 {
+            for a in of(k + 1) {
+                for b in of(next + 1).filter(|b| continues(setup, a, b)) {
+                    let limit = |r: &RegimeReport| Some(efficiency_at(setup, ray, &r.torques).to_f64());
+                    crossings.push(Crossing {
+                        from: a.id.clone(),
+                        to: b.id.clone(),
+                        efficiency_before: limit(a),
+                        efficiency_after: limit(b),
+                        changes: changes(a, b),
+                    });
+                }
+            }
+        }
+        let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
+        all.push(BoundaryReport {
+            label: atlas.planes[p].label.clone(),
+            direction: [ray[0].to_f64(), ray[1].to_f64()],
+            speeds: Named(
+                (0..setup.terminals.len()).map(|t| (name(t), dot(setup.terminal_speed(t), ray).to_f64())).collect(),
+            ),
+            between: [k + 1, next + 1],
+            crossings,
+        });
+    }
+    atlas.boundaries = all;
+}
+
+/// What is different between two regimes, in words.
+pub(crate) fn changes(a: &RegimeReport, b: &RegimeReport) -> Vec<String> {
+    let word = |r: Role| match r {
+        Role::Input => "input",
+        Role::Output => "output",
+        _ => "idle",
+    };
+    let mut all = Vec::new();
+    for ((name, before), (_, after)) in a.roles.iter().zip(b.roles.iter()) {
+        if before != after {
+            all.push(format!("{name}: {} becomes {}", word(*before), word(*after)));
+        }
+    }
+    for ((name, before), (_, after)) in a.drivers.iter().zip(b.drivers.iter()) {
+        if let (Some(before), Some(after)) = (before, after)
+            && before != after
+        {
+            all.push(format!("{name}: {after} drives instead of {before}"));
+        }
+    }
+    for ((name, before), (_, after)) in a.torque_signs.iter().zip(b.torque_signs.iter()) {
+        if before != after {
+            all.push(format!("{name}: the torque turns round"));
+        }
+    }
+    all
+}
+
+/// Inputs and outputs as people write them: `engine, mg1 -> ring`.
+pub(crate) fn arrow(inputs: &[String], outputs: &[String]) -> String {
+    match outputs.is_empty() {
+        true => format!("{} -> heat", inputs.join(", ")),
+        false => format!("{} -> {}", inputs.join(", "), outputs.join(", ")),
+    }
+}
+
+fn formula_report(
+    shape: &Shape<'_, '_>,
+    id: String,
+    pattern: &Pattern,
+    powers: &[i8],
+    own: &Formula,
+    regimes: Vec<String>,
+) -> FormulaReport {
+    let setup = shape.setup;
+    let train = setup.c.train;
+    let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
+    let of = |sign: i8| (0..powers.len()).filter(|&t| powers[t] == sign).map(name).collect::<Vec<_>>();
+    let show = |f: &Function| own.names.show(Notation::Text, f);
+    let driving: Vec<String> = drivers(setup, pattern)
+        .into_iter()
+        .filter_map(|(e, d)| d.map(|d| if setup.active.len() > 1 { format!("{d} in {e}") } else { d }))
+        .collect();
+    let loss: Vec<String> = own.losses.iter().map(|(_, f)| show(f)).collect();
+    FormulaReport {
+        id,
+        roles: arrow(&of(1), &of(-1)),
+        drivers: if driving.is_empty() { "nobody: no loss".into() } else { driving.join(", ") },
+        efficiency: show(&own.efficiency),
+        efficiency_latex: own.names.show(Notation::Latex, &own.efficiency),
+        loss: if loss.is_empty() { "0".into() } else { loss.join(" + ") },
+        torques: Named((0..powers.len()).map(|t| (name(t), show(&own.torques[t]))).collect()),
+        conditions: own
+            .conditions
+            .iter()
+            .map(|c| ConditionReport { positive: show(&c.function), meaning: c.meaning.clone() })
+            .collect(),
+        holds_for: thresholds(shape, own),
+        regimes,
+    }
+}
+
+/// For each ratio and efficiency the interval around its value in which every terminal torque keeps
+/// its sign over the reference torque (for one independent torque).
+fn thresholds(shape: &Shape<'_, '_>, own: &Formula) -> Vec<Threshold> {
+    let setup = shape.setup;
+    if setup.torques != 1 {
+        return vec![];
+    }
+    let value = |s: Symbol| own.names.info(s).value.clone().unwrap_or(Rational::ONE);
+    let mut all = Vec::new();
+    for j in 0..setup.active.len() {
+        for s in [own.names.ratio(j), own.names.efficiency(j)] {
+            let now = value(s);
+            let (mut low, mut high): (Option<Rational>, Option<Rational>) = (None, None);
+            let mut occurs = false;
+            for f in &own.torques {
+                for (p, _) in f.factors().iter().filter(|(p, _)| p.degree(s) == 1) {
+                    occurs = true;
+                    // Linear in s: at + slope s.
+                    let slope = p.derivative(s).evaluate(&value);
+                    if slope.is_zero() {
+                        continue;
+                    }
+                    let root = &now - &(&p.evaluate(&value) / &slope);
+                    if root < now && low.as_ref().is_none_or(|l| root > *l) {
+                        low = Some(root);
+                    } else if root > now && high.as_ref().is_none_or(|h| root < *h) {
+                        high = Some(root);
+                    }
+                }
+            }
+            let efficiency = own.names.info(s).kind == SymbolKind::Efficiency;
+            if efficiency {
+                // Beyond these bounds there is no efficiency.
+                low = Some(low.filter(|l| l.sign() > 0).unwrap_or(Rational::ZERO));
+                high = high.filter(|h| *h < Rational::ONE);
+            }
+            if occurs && (low.is_some() || high.is_some()) {
+                all.push(Threshold {
+                    symbol: own.names.info(s).name.clone(),
+                    value: now.to_f64(),
+                    low: low.map(|x| x.to_f64()),
+                    high: high.map(|x| x.to_f64()).or(efficiency.then_some(1.0)),
+                });
+            }
+        }
+    }
+    all
+}
+
+/// Every assignment of inputs and outputs. Three terminals stand in the order of Esmail's Table 1.
+fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
+    let m = setup.terminals.len();
+    if m > MOST_ASSIGNED {
+        atlas.notes.push(format!("{m} terminals: assignments that cannot be reached are not listed"));
+    }
+    let idle: Vec<bool> = (0..m).map(|t| atlas.regimes.iter().all(|r| r.power_signs[t] == 0)).collect();
+    let mut wanted: Vec<Vec<i8>> = Vec::new();
+    if m <= MOST_ASSIGNED && !idle.contains(&true) {
+        let sign = |mask: u32| (0..m).map(|t| if mask >> t & 1 == 1 { 1 } else { -1 }).collect::<Vec<i8>>();
+        let mut masks: Vec<u32> = (1..1 << m).collect();
+        masks.sort_by_key(|mask| (m as u32 - mask.count_ones() == 0, std::cmp::Reverse(mask.count_ones()), *mask));
+        wanted = match m {
+            3 => [0b011, 0b110, 0b101, 0b100, 0b010, 0b001, 0b111].map(sign).to_vec(),
+            _ => masks.into_iter().map(sign).collect(),
+        };
+    }
+    for r in &atlas.regimes {
+        if !wanted.contains(&r.power_signs) {
+            wanted.push(r.power_signs.clone());
+        }
+    }
+    let mut all = Vec::new();
+    for powers in wanted {
+        let own: Vec<&RegimeReport> = atlas.regimes.iter().filter(|r| r.power_signs == powers).collect();
+        let of = |sign: i8| -> Vec<String> {
+            (0..m).filter(|&t| powers[t] == sign).map(|t| atlas.terminals[t].clone()).collect()
+        };
+        let (inputs, outputs) = (of(1), of(-1));
+        let reach = match (own.is_empty(), outputs.is_empty()) {
+            (false, false) if own.iter().all(|r| r.by_friction_only) => {
+                "only because friction turns a torque round".to_owned()
+            }
+            (false, false) => "reached".to_owned(),
+            (false, true) => "reached: friction takes everything".to_owned(),
+            (true, true) => "cannot be reached: friction never takes everything".to_owned(),
+            (true, false) if possible_without_friction(atlas, setup, &powers) => {
+                "cannot be reached: friction prevents it (without losses it exists)".to_owned()
+            }
+            (true, false) => "cannot be reached: speeds and torques never have these signs together".to_owned(),
+        };
+        all.push(AssignmentReport { inputs, outputs, regimes: own.iter().map(|r| r.id.clone()).collect(), reach });
+    }
+    atlas.assignments = all;
+}
+
+fn possible_without_friction(atlas: &Atlas, setup: &Setup<'_>, powers: &[i8]) -> bool {
+    without_friction(setup)
+        .iter()
+        .any(|(k, torques)| power_signs(setup, &atlas.regions[*k].point, torques) == powers)
+}

@@ -1,0 +1,688 @@
+//! The closed formulas: torques, efficiency and loss of a regime as rational functions of basic
+//! ratios, efficiencies and, with two or more freedoms, speeds and torques.
+//!
+//! With `x_j = i_j ρ_j` every terminal torque is a quotient of determinants that are linear in each
+//! `x_j` (Cramer). The determinants do not depend on who drives, so they are computed once; a
+//! regime puts `x = i η` where end p drives, `x = i/η` where end q drives and `x = i` where nothing
+//! moves. For one degree of freedom this is the rule `η = i(x)/i` of virtual work.
+
+use std::collections::BTreeMap;
+
+use crate::exact::Rational;
+use crate::symbolic::{self, Function, Notation, Polynomial, Symbol};
+use crate::train::MeshId;
+
+use super::setup::{Pattern, Setup};
+
+/// What a symbol stands for.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SymbolInfo {
+    /// Identifier in text and code.
+    pub name: String,
+    pub latex: String,
+    /// Its value in this train; speeds and torques have none.
+    pub value: Option<Rational>,
+    pub kind: SymbolKind,
+    /// In words.
+    pub meaning: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum SymbolKind {
+    Ratio,
+    Efficiency,
+    Torque,
+    Speed,
+    Teeth,
+}
+
+/// The symbolic solution of a setup, for all of its regimes.
+#[derive(Clone, Debug)]
+pub(crate) struct Shape<'s, 't> {
+    pub setup: &'s Setup<'t>,
+    /// Terminals whose torques are free.
+    pub reference: Vec<usize>,
+    /// By terminal and reference: `T = Σ factor T_reference`, in `x`.
+    pub torque: Vec<Vec<Function>>,
+    /// By active element and reference, in `x`.
+    pub force: Vec<Vec<Function>>,
+    /// By terminal and base: `ω = Σ factor ω_base`, in `i`.
+    pub speed: Vec<Vec<Function>>,
+    /// By active element: `ω_p − ω_c` in the speeds of the terminals.
+    pub sigma: Vec<Function>,
+    pub names: Names,
+}
+
+/// Most elements and nodes for which determinants are expanded symbolically.
+const MOST_SYMBOLIC: usize = 14;
+
+/// The symbols of a setup, by number.
+#[derive(Clone, Debug)]
+pub(crate) struct Names {
+    pub infos: Vec<SymbolInfo>,
+    elements: usize,
+    terminals: usize,
+    /// What a basic ratio or efficiency is made of.
+    details: BTreeMap<Symbol, Function>,
+}
+
+impl Names {
+    pub fn ratio(&self, j: usize) -> Symbol {
+        Symbol(2 * j)
+    }
+
+    pub fn efficiency(&self, j: usize) -> Symbol {
+        Symbol(2 * j + 1)
+    }
+
+    /// Placeholder `i ρ`; never printed.
+    fn x(&self, j: usize) -> Symbol {
+        Symbol(2 * self.elements + j)
+    }
+
+    pub fn torque(&self, t: usize) -> Symbol {
+        Symbol(3 * self.elements + t)
+    }
+
+    pub fn speed(&self, t: usize) -> Symbol {
+        Symbol(3 * self.elements + self.terminals + t)
+    }
+
+    pub fn info(&self, s: Symbol) -> &SymbolInfo {
+        &self.infos[s.0]
+    }
+
+    /// How a symbol is written.
+    pub fn written(&self, notation: Notation, s: Symbol) -> String {
+        match notation {
+            Notation::Latex => self.info(s).latex.clone(),
+            _ => self.info(s).name.clone(),
+        }
+    }
+
+    pub fn show(&self, notation: Notation, f: &Function) -> String {
+        notation.function(f, &|s| self.written(notation, s))
+    }
+
+    fn new(setup: &Setup<'_>) -> Self {
+        let train = setup.c.train;
+        let k = setup.active.len();
+        let mut used: Vec<String> = Vec::new();
+        let mut unique = |wanted: String| {
+            let mut name = wanted.clone();
+            let mut n = 2;
+            while used.contains(&name) {
+                name = format!("{wanted}_{n}");
+                n += 1;
+            }
+            used.push(name.clone());
+            name
+        };
+        let mut infos: Vec<SymbolInfo> = Vec::new();
+        for j in 0..k {
+            let e = setup.element(j);
+            let label = element_label(setup, j);
+            let (suffix, index) = match k {
+                1 => ("0".to_owned(), "_{0}".to_owned()),
+                _ => (format!("_{}", identifier(&label)), format!("_{{{}}}", upright(&label))),
+            };
+            let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
+            let seen = if c == "frame" {
+                format!("w_{p} / w_{q}")
+            } else {
+                format!("(w_{p} - w_{c}) / (w_{q} - w_{c})")
+            };
+            infos.push(SymbolInfo {
+                name: unique(format!("i{suffix}")),
+                latex: format!("i{index}"),
+                value: Some(setup.ratio(j)),
+                kind: SymbolKind::Ratio,
+                meaning: format!("basic ratio {seen}"),
+            });
+            infos.push(SymbolInfo {
+                name: unique(format!("eta{suffix}")),
+                latex: format!("\\eta{index}"),
+                value: Some(e.forward.clone()),
+                kind: SymbolKind::Efficiency,
+                meaning: format!("efficiency between {p} and {q} seen from {c}"),
+            });
+        }
+        // Placeholders, so that positions and numbers agree.
+        infos.extend((0..k).map(|j| SymbolInfo {
+            name: format!("x{j}"),
+            latex: format!("x_{{{j}}}"),
+            value: None,
+            kind: SymbolKind::Ratio,
+            meaning: String::new(),
+        }));
+        for (letter, tex, kind, word) in
+            [("T", "T", SymbolKind::Torque, "torque on"), ("w", "\\omega", SymbolKind::Speed, "speed of")]
+        {
+            for t in &setup.terminals {
+                let member = train.member_name(t.member);
+                infos.push(SymbolInfo {
+                    name: unique(format!("{letter}_{}", identifier(member))),
+                    latex: format!("{tex}_{{{}}}", upright(member)),
+                    value: None,
+                    kind,
+                    meaning: format!("{word} {member}"),
+                });
+            }
+        }
+        let mut names = Self { infos, elements: k, terminals: setup.terminals.len(), details: BTreeMap::new() };
+        names.detail(setup, &mut unique);
+        names
+    }
+
+    /// Tooth numbers behind the ratios.
+    fn detail(&mut self, setup: &Setup<'_>, unique: &mut dyn FnMut(String) -> String) {
+        let train = setup.c.train;
+        let mut teeth: Vec<(usize, usize, Symbol)> = Vec::new();
+        for j in 0..self.elements {
+            let mut ratio = Function::ONE;
+            for link in &setup.element(j).links {
+                let mesh = &train.meshes[link.mesh.0];
+                let mut symbols = [0, 1].map(|g| {
+                    let gear = &mesh.gears[g];
+                    // One gear of a member may mesh with several others.
+                    let known = teeth.iter().find(|(m, g, _)| {
+                        let other = &train.meshes[*m].gears[*g];
+                        other.member == gear.member
+                            && other.teeth == gear.teeth
+                            && other.internal == gear.internal
+                            && train.meshes[*m].set == mesh.set
+                    });
+                    if let Some((_, _, s)) = known {
+                        return *s;
+                    }
+                    let member = train.member_name(gear.member);
+                    let s = Symbol(self.infos.len());
+                    self.infos.push(SymbolInfo {
+                        name: unique(format!("z_{}", identifier(member))),
+                        latex: format!("z_{{{}}}", upright(member)),
+                        value: Some(gear.teeth.clone()),
+                        kind: SymbolKind::Teeth,
+                        meaning: format!("teeth of {member} in {}", mesh.name),
+                    });
+                    teeth.push((link.mesh.0, g, s));
+                    s
+                });
+                if !link.along {
+                    symbols.reverse();
+                }
+                // (ω_1 − ω_c)/(ω_2 − ω_c) = ∓ z_2/z_1
+                let [from, to] = symbols.map(Function::symbol);
+                let own = to.over(&from);
+                ratio = ratio.times(&if mesh.same_sense { own } else { own.negated() });
+            }
+            self.details.insert(self.ratio(j), ratio);
+        }
+    }
+
+    /// The symbols of the meshes' own efficiencies, for a pattern of drivers.
+    fn mesh_efficiencies(&mut self, setup: &Setup<'_>, pattern: &Pattern) {
+        let train = setup.c.train;
+        for j in 0..self.elements {
+            let mut product = Function::ONE;
+            for link in &setup.element(j).links {
+                let MeshId(m) = link.mesh;
+                let mesh = &train.meshes[m];
+                // Forward: the first gear drives.
+                let forward = (pattern[j] == Some(true)) == link.along;
+                let value = if forward { &mesh.efficiency.forward } else { &mesh.efficiency.backward };
+                // A loss given for the whole set is booked on its first mesh.
+                if *value == Rational::ONE {
+                    continue;
+                }
+                let [a, b] = if forward { [0, 1] } else { [1, 0] }.map(|g| train.member_name(mesh.gears[g].member));
+                let s = Symbol(self.infos.len());
+                self.infos.push(SymbolInfo {
+                    name: format!("eta_{}", identifier(&mesh.name)),
+                    latex: format!("\\eta_{{{}}}", upright(&mesh.name)),
+                    value: Some(value.clone()),
+                    kind: SymbolKind::Efficiency,
+                    meaning: format!("efficiency of {}, {a} driving {b}", mesh.name),
+                });
+                product = product.times(&Function::symbol(s));
+            }
+            self.details.insert(self.efficiency(j), product);
+        }
+    }
+}
+
+/// What an element is called: its set where that says enough, else its ends.
+pub(crate) fn element_label(setup: &Setup<'_>, j: usize) -> String {
+    let train = setup.c.train;
+    let set_of = |j: usize| {
+        let mut sets = setup.element(j).links.iter().map(|l| train.meshes[l.mesh.0].set);
+        let first = sets.next().flatten();
+        sets.all(|s| s == first).then_some(first).flatten()
+    };
+    let own = set_of(j);
+    let alone = (0..setup.active.len()).filter(|&other| set_of(other) == own).count() == 1;
+    let e = setup.element(j);
+    match own {
+        Some(s) if alone => train.sets[s].name.clone(),
+        _ if e.links.len() == 1 => train.meshes[e.links[0].mesh.0].name.clone(),
+        Some(s) => format!("{}.{}-{}", train.sets[s].name, train.member_name(e.p), train.member_name(e.q)),
+        None => format!("{}-{}", train.member_name(e.p), train.member_name(e.q)),
+    }
+}
+
+/// Letters, digits and underscores only.
+pub(crate) fn identifier(name: &str) -> String {
+    let text: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if text.is_empty() { "_".to_owned() } else { text }
+}
+
+/// A name as an upright index; single letters and numbers stay as they are.
+fn upright(name: &str) -> String {
+    if name.chars().count() == 1 || name.chars().all(|c| c.is_ascii_digit()) {
+        return escape(name);
+    }
+    format!("\\mathrm{{{}}}", escape(name))
+}
+
+/// Text that LaTeX sets as it stands.
+pub(crate) fn escape(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match c {
+            '\\' => out.push_str("\\backslash "),
+            '_' | '%' | '&' | '#' | '$' | '{' | '}' => {
+                out.push('\\');
+                out.push(c);
+            }
+            '^' => out.push_str("\\hat{}"),
+            '~' => out.push_str("\\sim "),
+            _ => out.push(c),
+        }
+    }
+    out
+}
+
+/// A condition of a formula: a function that must be positive.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Condition {
+    pub function: Function,
+    /// What it ensures.
+    pub meaning: String,
+}
+
+/// How far formulas are spelt out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Ratios {
+    /// One symbol for the basic ratio of each element.
+    #[default]
+    Basic,
+    /// Tooth numbers as symbols.
+    Teeth,
+    /// The numbers of this train.
+    Numbers,
+}
+
+/// How efficiencies appear in formulas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Efficiencies {
+    /// One symbol for each element: the product over its meshes.
+    #[default]
+    Basic,
+    /// One symbol for each mesh.
+    Meshes,
+    /// The numbers of this train.
+    Numbers,
+}
+
+impl<'s, 't> Shape<'s, 't> {
+    /// `Err` when the train is too large for symbols.
+    pub fn new(setup: &'s Setup<'t>, prefer: &[usize]) -> Result<Self, String> {
+        let k = setup.active.len();
+        let nodes = setup.nodes();
+        if k.max(nodes.len()) > MOST_SYMBOLIC {
+            return Err(format!(
+                "{} elements and {} shafts are too many for closed formulas (at most {MOST_SYMBOLIC})",
+                k,
+                nodes.len()
+            ));
+        }
+        let names = Names::new(setup);
+        let x: Vec<Polynomial> = (0..k).map(|j| Polynomial::symbol(names.x(j))).collect();
+        let i: Vec<Polynomial> = (0..k).map(|j| Polynomial::symbol(names.ratio(j))).collect();
+        let row = |node: usize, x: &[Polynomial]| -> Vec<Polynomial> {
+            (0..k).map(|j| coefficient(setup, j, node, &x[j])).collect()
+        };
+
+        // Torques: the free rows and one row for each reference torque make a square matrix.
+        let order = prefer.iter().copied().chain((0..setup.terminals.len()).filter(|t| !prefer.contains(t)));
+        let mut rows: Vec<Vec<Polynomial>> = setup.free.iter().map(|&n| row(n, &x)).collect();
+        let mut reference = Vec::new();
+        for t in order {
+            if reference.len() == setup.torques {
+                break;
+            }
+            let mut trial = rows.clone();
+            trial.push(row(setup.terminals[t].node, &x));
+            if independent(&trial, setup, &names) {
+                rows = trial;
+                reference.push(t);
+            }
+        }
+        let determinant = |rows: &[Vec<Polynomial>]| {
+            let columns: Vec<Vec<Polynomial>> =
+                (0..rows.len()).map(|c| rows.iter().map(|r| r[c].clone()).collect()).collect();
+            symbolic::determinant(&columns).to_function()
+        };
+        let whole = determinant(&rows);
+        if whole.is_zero() {
+            return Err("the terminal torques are not determined by each other".to_owned());
+        }
+        let first = setup.free.len();
+        let with_row = |r: usize, own: Vec<Polynomial>| {
+            let mut changed = rows.clone();
+            changed[first + r] = own;
+            determinant(&changed).over(&whole)
+        };
+        let d = setup.torques;
+        let torque = (0..setup.terminals.len())
+            .map(|t| {
+                (0..d)
+                    .map(|r| match reference.iter().position(|&own| own == t) {
+                        Some(own) if own == r => Function::ONE,
+                        Some(_) => Function::ZERO,
+                        None => with_row(r, row(setup.terminals[t].node, &x)),
+                    })
+                    .collect()
+            })
+            .collect();
+        let force = (0..k)
+            .map(|j| {
+                (0..d)
+                    .map(|r| with_row(r, (0..k).map(|c| Polynomial::from(i64::from(c == j))).collect()))
+                    .collect()
+            })
+            .collect();
+
+        // Speeds: the elements' rows and one row for each base speed.
+        let mut columns: Vec<Vec<Polynomial>> =
+            nodes.iter().map(|&n| (0..k).map(|j| kinematic(setup, j, n, &i[j])).collect()).collect();
+        for &b in &setup.base {
+            for (n, column) in nodes.iter().zip(&mut columns) {
+                column.push(Polynomial::from(i64::from(setup.terminals[b].node == *n)));
+            }
+        }
+        let whole = symbolic::determinant(&columns).to_function();
+        let node_speed = |node: usize, b: usize| -> Function {
+            // Cramer: the node's column replaced by the unit vector of base b's row.
+            let Some(at) = nodes.iter().position(|&n| n == node) else { return Function::ZERO };
+            let mut changed = columns.clone();
+            changed[at] = (0..nodes.len()).map(|r| Polynomial::from(i64::from(r == k + b))).collect();
+            symbolic::determinant(&changed).to_function().over(&whole)
+        };
+        if whole.is_zero() {
+            return Err("the speeds are not determined by those of the terminals".to_owned());
+        }
+        let speed = (0..setup.terminals.len())
+            .map(|t| {
+                (0..setup.base.len())
+                    .map(|b| match setup.base.iter().position(|&own| own == t) {
+                        Some(own) if own == b => Function::ONE,
+                        Some(_) => Function::ZERO,
+                        None => node_speed(setup.terminals[t].node, b),
+                    })
+                    .collect::<Vec<Function>>()
+            })
+            .collect();
+        let in_terminals = |node: Option<usize>| -> Function {
+            let Some(node) = node else { return Function::ZERO };
+            match setup.terminals.iter().position(|t| t.node == node) {
+                Some(t) => Function::symbol(names.speed(t)),
+                None => (0..setup.base.len()).fold(Function::ZERO, |sum, b| {
+                    sum.plus(&node_speed(node, b).times(&Function::symbol(names.speed(setup.base[b]))))
+                }),
+            }
+        };
+        let known = |node: Option<usize>| node.is_none_or(|n| setup.terminals.iter().any(|t| t.node == n));
+        let sigma = (0..k)
+            .map(|j| {
+                let e = setup.element(j);
+                let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.c.node(m));
+                // The end that the reader sees the speed of, where there is one.
+                if known(c) && !known(p) && known(q) {
+                    return Function::symbol(names.ratio(j)).times(&in_terminals(q).minus(&in_terminals(c)));
+                }
+                in_terminals(p).minus(&in_terminals(c))
+            })
+            .collect();
+        Ok(Self { setup, reference, torque, force, speed, sigma, names })
+    }
+
+    /// The value of `x = i ρ` that a driver makes.
+    fn x_value(&self, pattern: &Pattern, s: Symbol) -> Option<Function> {
+        let k = self.setup.active.len();
+        let j = s.0.checked_sub(2 * k).filter(|j| *j < k)?;
+        let (i, eta) = (Function::symbol(self.names.ratio(j)), Function::symbol(self.names.efficiency(j)));
+        Some(match pattern[j] {
+            Some(true) => i.times(&eta),
+            Some(false) => i.over(&eta),
+            None => i,
+        })
+    }
+
+    /// The formulas of a pattern of drivers. `roles`: the sign of the power at each terminal.
+    pub fn formula(&self, pattern: &Pattern, roles: &[i8], ratios: Ratios, efficiencies: Efficiencies) -> Formula {
+        let setup = self.setup;
+        let (m, k, d) = (setup.terminals.len(), setup.active.len(), setup.torques);
+        let mut names = self.names.clone();
+        for j in 0..k {
+            let e = setup.element(j);
+            let train = setup.c.train;
+            let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
+            let s = names.efficiency(j).0;
+            if pattern[j] == Some(false) {
+                names.infos[s].value = Some(e.backward.clone());
+            }
+            let (from, to) = if pattern[j] == Some(false) { (q, p) } else { (p, q) };
+            names.infos[s].meaning = match c {
+                "frame" => format!("efficiency, {from} driving {to}"),
+                _ => format!("efficiency seen from {c}, {from} driving {to}"),
+            };
+        }
+        if efficiencies == Efficiencies::Meshes {
+            names.mesh_efficiencies(setup, pattern);
+        }
+        let here = |f: &Function| f.substituted(&|s| self.x_value(pattern, s)).expect("x has no poles of its own");
+        let spelt = |f: &Function| -> Function {
+            let value = |s: Symbol| {
+                let info = names.info(s);
+                match info.kind {
+                    SymbolKind::Ratio if ratios == Ratios::Teeth => names.details.get(&s).cloned(),
+                    SymbolKind::Ratio if ratios == Ratios::Numbers => info.value.clone().map(Function::from),
+                    SymbolKind::Efficiency if efficiencies == Efficiencies::Meshes => names.details.get(&s).cloned(),
+                    SymbolKind::Efficiency if efficiencies == Efficiencies::Numbers => {
+                        info.value.clone().map(Function::from)
+                    }
+                    _ => None,
+                }
+            };
+            // Numbers may hit a pole that symbols do not have (basic ratio one); then symbols stay.
+            f.substituted(&value).unwrap_or_else(|| f.clone())
+        };
+        let torque: Vec<Vec<Function>> = self.torque.iter().map(|r| r.iter().map(&here).collect()).collect();
+        let sum_over_references = |factors: &[Function]| {
+            (0..d).fold(Function::ZERO, |sum, r| {
+                sum.plus(&factors[r].times(&Function::symbol(names.torque(self.reference[r]))))
+            })
+        };
+        let torques: Vec<Function> = torque.iter().map(|r| sum_over_references(r)).collect();
+        // With one freedom every speed is a multiple of the reference's.
+        let one = setup.base.len() == 1 && d == 1;
+        let speeds: Vec<Function> = (0..m)
+            .map(|t| match one {
+                true => self.speed[t][0].times(&Function::symbol(names.speed(setup.base[0]))),
+                false => Function::symbol(names.speed(t)),
+            })
+            .collect();
+        let unit = |f: &Function| -> Function {
+            // Torques and, with one freedom, speeds cancel; a unit in their place shows it.
+            let torque_symbol = names.torque(self.reference[0]);
+            let speed_symbol = names.speed(setup.base[0]);
+            let value = |s: Symbol| ((d == 1 && s == torque_symbol) || (one && s == speed_symbol)).then_some(Function::ONE);
+            f.substituted(&value).expect("units are no poles")
+        };
+        let power = |t: usize| torques[t].times(&speeds[t]);
+        let total = |sign: i8| {
+            (0..m).filter(|&t| roles[t] == sign).fold(Function::ZERO, |sum, t| sum.plus(&power(t)))
+        };
+        let (input, output) = (total(1), total(-1));
+        let efficiency = if output.is_zero() || input.is_zero() {
+            Function::ZERO
+        } else {
+            unit(&output.negated().over(&input))
+        };
+
+        let mut conditions: Vec<Condition> = Vec::new();
+        let sign = |f: Function, sign: i8| if sign > 0 { f } else { f.negated() };
+        // The powers of the reference are positive by the roles.
+        let reference_sign = roles[self.reference[0]];
+        let normalised = |f: Function| if one { sign(unit(&f), reference_sign) } else { f };
+        let train = setup.c.train;
+        let mut losses: Vec<(usize, Function)> = Vec::new();
+        for j in 0..k {
+            let Some(p_drives) = pattern[j] else { continue };
+            let e = setup.element(j);
+            let force = sum_over_references(&self.force[j].iter().map(&here).collect::<Vec<_>>());
+            let sigma = match one {
+                true => self.sigma[j]
+                    .substituted(&|s| (0..m).find(|&t| names.speed(t) == s).map(|t| speeds[t].clone()))
+                    .expect("speeds have no poles of their own"),
+                false => self.sigma[j].clone(),
+            };
+            // f σ (1 − ρ)
+            let eta = Function::symbol(names.efficiency(j));
+            let rho = if p_drives { eta } else { eta.recip() };
+            let potential = force.times(&sigma);
+            losses.push((j, potential.times(&Function::ONE.minus(&rho))));
+            let driver = train.member_name(if p_drives { e.p } else { e.q });
+            conditions.push(Condition {
+                function: normalised(sign(potential, if p_drives { 1 } else { -1 })),
+                meaning: format!("{driver} drives in {}", element_label(setup, j)),
+            });
+        }
+        for t in 0..m {
+            if roles[t] == 0 {
+                continue;
+            }
+            let word = if roles[t] > 0 { "input" } else { "output" };
+            conditions.push(Condition {
+                function: normalised(sign(power(t), roles[t])),
+                meaning: format!("{} is {word}", train.member_name(setup.terminals[t].member)),
+            });
+        }
+        for c in &mut conditions {
+            c.function = bare(&spelt(&c.function), &names);
+        }
+        conditions.retain(|c| c.function.as_constant().is_none_or(|n| n.sign() <= 0));
+        let mut distinct: Vec<Condition> = Vec::new();
+        for c in conditions {
+            match distinct.iter_mut().find(|d| d.function == c.function) {
+                Some(d) => d.meaning += &format!("; {}", c.meaning),
+                None => distinct.push(c),
+            }
+        }
+        Formula {
+            efficiency: spelt(&efficiency),
+            torques: torques.iter().map(&spelt).collect(),
+            speeds: (0..m)
+                .map(|t| {
+                    let own = (0..setup.base.len()).fold(Function::ZERO, |sum, b| {
+                        sum.plus(&self.speed[t][b].times(&Function::symbol(names.speed(setup.base[b]))))
+                    });
+                    spelt(&own)
+                })
+                .collect(),
+            losses: losses.into_iter().map(|(j, f)| (j, spelt(&f))).collect(),
+            conditions: distinct,
+            one,
+            names,
+        }
+    }
+}
+
+/// A condition without what is positive anyway: efficiencies, tooth numbers and squares.
+fn bare(f: &Function, names: &Names) -> Function {
+    let positive = |p: &Polynomial| {
+        p.len() == 1
+            && p.symbols().iter().all(|s| matches!(names.info(*s).kind, SymbolKind::Efficiency | SymbolKind::Teeth))
+    };
+    let number = Function::from(Rational::from(i64::from(f.number().sign())));
+    f.factors().iter().filter(|(p, e)| e % 2 != 0 && !positive(p)).fold(number, |product, (p, _)| {
+        // A denominator has the sign of its product.
+        product.times(&p.to_function())
+    })
+}
+
+/// Whether rows of polynomials are independent, judged at primes in the place of the symbols.
+fn independent(rows: &[Vec<Polynomial>], setup: &Setup<'_>, names: &Names) -> bool {
+    const PRIMES: [i64; 14] = [101, 103, 107, 109, 113, 127, 131, 137, 139, 149, 151, 157, 163, 167];
+    let value = |s: Symbol| {
+        let k = setup.active.len();
+        let j = s.0 - names.x(0).0;
+        Rational::from(PRIMES[j % PRIMES.len()] + (j / k.max(1)) as i64)
+    };
+    let mut numbers: Vec<Vec<Rational>> = rows.iter().map(|r| r.iter().map(|p| p.evaluate(&value)).collect()).collect();
+    crate::exact::reduce(&mut numbers, setup.active.len()).len() == rows.len()
+}
+
+/// Coefficient of the force of element `j` in the balance of a node, over a polynomial ratio.
+fn coefficient(setup: &Setup<'_>, j: usize, node: usize, x: &Polynomial) -> Polynomial {
+    let e = setup.element(j);
+    let one = Polynomial::from(1);
+    let minus = x.scaled(&Rational::from(-1));
+    let carrier = x - &one;
+    let mut sum = Polynomial::from(0);
+    for (member, c) in [(e.p, &one), (e.q, &minus), (e.carrier, &carrier)] {
+        if setup.c.node(member) == Some(node) {
+            sum = &sum + c;
+        }
+    }
+    sum
+}
+
+/// Coefficient of a node's speed in Willis' equation of an element: the same numbers.
+fn kinematic(setup: &Setup<'_>, j: usize, node: usize, i: &Polynomial) -> Polynomial {
+    coefficient(setup, j, node, i)
+}
+
+/// The closed formulas of one regime.
+#[derive(Clone, Debug)]
+pub(crate) struct Formula {
+    /// Output over input power; zero when all is dissipated.
+    pub efficiency: Function,
+    /// Terminal torques over the reference torques.
+    pub torques: Vec<Function>,
+    /// Terminal speeds over the base speeds.
+    pub speeds: Vec<Function>,
+    /// Loss of each active element with a driver.
+    pub losses: Vec<(usize, Function)>,
+    /// Positive throughout the regime, and only there.
+    pub conditions: Vec<Condition>,
+    /// One freedom: speeds and torques cancel.
+    pub one: bool,
+    pub names: Names,
+}
+
+impl Setup<'_> {
+    /// Nodes that the active elements touch.
+    pub fn nodes(&self) -> Vec<usize> {
+        let ends = (0..self.active.len()).flat_map(|j| {
+            let e = self.element(j);
+            [e.p, e.q, e.carrier].map(|m| self.c.node(m))
+        });
+        let mut all: Vec<usize> = ends.flatten().collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}

@@ -1,0 +1,324 @@
+//! A train as the regimes see it: terminals, the speeds that are free, the elements that carry
+//! load, and the forms whose signs matter.
+
+use crate::exact::{self, Matrix, Rational};
+use crate::kinematics::{Configuration, Element};
+use crate::statics;
+use crate::train::MemberId;
+
+use super::arrangement::{self, Cell};
+
+/// A member on which an external torque may act.
+#[derive(Clone, Debug)]
+pub(crate) struct Terminal {
+    pub member: MemberId,
+    pub node: usize,
+}
+
+/// A configuration with its terminals, in the exact form in which regimes are enumerated.
+///
+/// An element is written with the coefficient of its end p scaled to one:
+/// `(ω_p − ω_c) − i (ω_q − ω_c) = 0`, forces `f (e_p − iρ e_q − (1 − iρ) e_c)`.
+#[derive(Clone, Debug)]
+pub(crate) struct Setup<'t> {
+    pub c: Configuration<'t>,
+    pub terminals: Vec<Terminal>,
+    /// Terminals whose speeds are independent and settle all others.
+    pub base: Vec<usize>,
+    /// Elements that can carry a force.
+    pub active: Vec<usize>,
+    /// Nodes without external torque that these elements touch.
+    pub free: Vec<usize>,
+    /// Independent terminal torques.
+    pub torques: usize,
+    /// Speed of each node over the base speeds; `None` where it is not determined.
+    pub node_speed: Vec<Option<Vec<Rational>>>,
+    /// By active element: `ω_p − ω_c` over the base speeds.
+    pub sigma: Vec<Vec<Rational>>,
+}
+
+/// The signs of the drivers, for one direction of motion: `true` when end p drives, `None` without
+/// relative motion, without loss, or without load.
+pub(crate) type Pattern = Vec<Option<bool>>;
+
+/// An open cone of terminal torques in which the same members drive and every torque keeps its
+/// sign.
+#[derive(Clone, Debug)]
+pub(crate) struct TorqueCell {
+    pub pattern: Pattern,
+    /// Sign of each terminal's torque.
+    pub signs: Vec<i8>,
+    /// A choice of terminal torques inside.
+    pub torques: Vec<Rational>,
+    /// The forces that go with them, by active element.
+    pub forces: Vec<Rational>,
+}
+
+impl<'t> Setup<'t> {
+    /// `Err` says in words why nothing can be enumerated.
+    pub fn new(c: Configuration<'t>, members: &[MemberId]) -> Result<Self, String> {
+        let name = |m: MemberId| c.train.member_name(m).to_owned();
+        if c.degrees_of_freedom() == 0 {
+            return Err("nothing can turn".to_owned());
+        }
+        if !c.redundant().is_empty() {
+            return Err("gear pairs constrain each other: statically indeterminate".to_owned());
+        }
+        let mut terminals: Vec<Terminal> = Vec::new();
+        for &member in members {
+            // Held members take a reaction without power; clutched ones are one terminal.
+            if let Some(node) = c.node(member)
+                && terminals.iter().all(|t| t.node != node)
+            {
+                terminals.push(Terminal { member, node });
+            }
+        }
+        let nodes: Vec<usize> = terminals.iter().map(|t| t.node).collect();
+        let (row_alive, alive) = statics::carrying(&c, &nodes, &[]);
+        let active: Vec<usize> = (0..c.elements.len()).filter(|&j| alive[j]).collect();
+        // A terminal that no loaded gear touches never feels a torque.
+        let touches = |n: usize| {
+            active.iter().map(|&j| &c.elements[j]).any(|e| [e.p, e.q, e.carrier].iter().any(|m| c.node(*m) == Some(n)))
+        };
+        terminals.retain(|t| touches(t.node));
+        let free: Vec<usize> = (0..c.nodes).filter(|&n| row_alive[n]).collect();
+
+        let mut base: Vec<usize> = Vec::new();
+        for (k, t) in terminals.iter().enumerate() {
+            let known: Vec<MemberId> = base.iter().map(|&b: &usize| terminals[b].member).collect();
+            if c.transfer(&known).speeds[t.member.0].is_none() {
+                base.push(k);
+            }
+        }
+        let known: Vec<MemberId> = base.iter().map(|&b| terminals[b].member).collect();
+        let transfer = c.transfer(&known);
+        let mut node_speed = vec![None; c.nodes];
+        for m in 0..c.train.members.len() {
+            if let (Some(n), Some(w)) = (c.node(MemberId(m)), &transfer.speeds[m]) {
+                node_speed[n] = Some(w.clone());
+            }
+        }
+        let mut setup = Self { c, terminals, base, active, free, torques: 0, node_speed, sigma: vec![] };
+        for &j in &setup.active {
+            let e = &setup.c.elements[j];
+            let (Some(p), Some(carrier)) = (setup.speed(e.p), setup.speed(e.carrier)) else {
+                let meshes: Vec<_> =
+                    e.links.iter().map(|l| setup.c.train.meshes[l.mesh.0].name.as_str()).collect();
+                return Err(format!(
+                    "the speeds of the terminals do not settle the relative speed in {}; name more terminals, or \
+                     engage a shift element",
+                    meshes.join(", ")
+                ));
+            };
+            setup.sigma.push(p.iter().zip(&carrier).map(|(p, c)| p - c).collect());
+        }
+        let mut rows = setup.rows(&vec![None; setup.active.len()]);
+        let rank = exact::reduce(&mut rows, setup.active.len()).len();
+        setup.torques = setup.active.len() - rank;
+        if setup.torques == 0 {
+            let named: Vec<_> = setup.terminals.iter().map(|t| name(t.member)).collect();
+            let own = match named.len() {
+                0 => "no terminal can turn".to_owned(),
+                1 => format!("{} is the only terminal that can turn", named[0]),
+                n => format!("{n} terminals can turn ({})", named.join(", ")),
+            };
+            return Err(format!(
+                "{own} and the train has {} degrees of freedom: no terminal torques other than zero are in equilibrium \
+                 through the gears",
+                setup.c.degrees_of_freedom()
+            ));
+        }
+        Ok(setup)
+    }
+
+    /// Which of the members asked for are no terminals, and why.
+    pub fn idle(&self, members: &[MemberId]) -> Option<String> {
+        let idle: Vec<&str> = members
+            .iter()
+            .filter(|m| self.c.node(**m).is_some_and(|n| self.terminals.iter().all(|t| t.node != n)))
+            .map(|m| self.c.train.member_name(*m))
+            .collect();
+        (!idle.is_empty()).then(|| format!("no loaded gear touches {}: it never carries a torque", idle.join(", ")))
+    }
+
+    /// Speed of a member over the base speeds.
+    pub fn speed(&self, member: MemberId) -> Option<Vec<Rational>> {
+        match self.c.node(member) {
+            Some(n) => self.node_speed[n].clone(),
+            None if self.c.inner[member.0] => None,
+            None => Some(vec![Rational::ZERO; self.base.len()]),
+        }
+    }
+
+    /// Speed of a terminal over the base speeds.
+    pub fn terminal_speed(&self, t: usize) -> &[Rational] {
+        self.node_speed[self.terminals[t].node].as_ref().expect("terminals settle each other")
+    }
+
+    pub fn element(&self, j: usize) -> &Element {
+        &self.c.elements[self.active[j]]
+    }
+
+    /// The basic ratio `i = (ω_p − ω_c)/(ω_q − ω_c)` of an active element.
+    pub fn ratio(&self, j: usize) -> Rational {
+        let e = self.element(j);
+        -(&e.b / &e.a)
+    }
+
+    /// Whether it matters which end of an active element drives.
+    pub fn lossy(&self, j: usize) -> bool {
+        let e = self.element(j);
+        e.forward != Rational::ONE || e.backward != Rational::ONE
+    }
+
+    fn rho(&self, j: usize, p_drives: Option<bool>) -> Rational {
+        let e = self.element(j);
+        match p_drives {
+            None => Rational::ONE,
+            Some(true) => e.forward.clone(),
+            Some(false) => e.backward.recip(),
+        }
+    }
+
+    /// Coefficient of the force of active element `j` in the balance of a node.
+    pub fn coefficient(&self, j: usize, node: usize, ratio: &Rational) -> Rational {
+        let e = self.element(j);
+        let mut sum = Rational::ZERO;
+        for (member, x) in [(e.p, Rational::ONE), (e.q, -ratio.clone()), (e.carrier, ratio - &Rational::ONE)] {
+            if self.c.node(member) == Some(node) {
+                sum += x;
+            }
+        }
+        sum
+    }
+
+    /// Balance of the free nodes: a row a node, a column an active element.
+    fn rows(&self, pattern: &Pattern) -> Matrix {
+        let ratios: Vec<Rational> =
+            (0..self.active.len()).map(|j| self.ratio(j) * self.rho(j, pattern[j])).collect();
+        self.free
+            .iter()
+            .map(|&n| ratios.iter().enumerate().map(|(j, x)| self.coefficient(j, n, x)).collect())
+            .collect()
+    }
+
+    /// The planes of the speed space, no two alike: see [`super::Plane`].
+    pub fn planes(&self) -> Vec<Vec<Rational>> {
+        let mut all: Vec<Vec<Rational>> = Vec::new();
+        let terminals = (0..self.terminals.len()).map(|t| self.terminal_speed(t).to_vec());
+        let relative = (0..self.active.len()).filter(|&j| self.lossy(j)).map(|j| self.sigma[j].clone());
+        for form in terminals.chain(relative) {
+            if let Some((form, _)) = arrangement::normal(&form)
+                && !all.contains(&form)
+            {
+                all.push(form);
+            }
+        }
+        all
+    }
+
+    /// Sectors of the speed space, in order around the circle for two freedoms.
+    pub fn speed_cells(&self, planes: &[Vec<Rational>]) -> Vec<Cell> {
+        let mut cells = arrangement::cells(planes, self.base.len());
+        match self.base.len() {
+            1 => cells.sort_by(|a, b| b.point.cmp(&a.point)),
+            2 => cells.sort_by(|a, b| arrangement::by_angle(&a.point, &b.point)),
+            _ => cells.sort_by(|a, b| b.signs.cmp(&a.signs)),
+        }
+        cells
+    }
+
+    /// Sign of `ω_p − ω_c` of each active element at given base speeds.
+    pub fn sigma_signs(&self, base: &[Rational]) -> Vec<i8> {
+        self.sigma.iter().map(|s| arrangement::dot(s, base).sign()).collect()
+    }
+
+    /// Number of driver patterns to try for each direction of motion.
+    pub fn patterns(&self, sigma: &[i8]) -> u32 {
+        (0..self.active.len()).filter(|&j| sigma[j] != 0 && self.lossy(j)).count() as u32
+    }
+
+    /// Every cone of terminal torques that is in equilibrium at the given signs of the relative
+    /// speeds. The second value tells that some pattern is singular: the train lies exactly on a
+    /// self-locking threshold.
+    pub fn torque_cells(&self, sigma: &[i8]) -> (Vec<TorqueCell>, bool) {
+        let k = self.active.len();
+        let moving: Vec<usize> = (0..k).filter(|&j| sigma[j] != 0 && self.lossy(j)).collect();
+        let mut all = Vec::new();
+        let mut singular = false;
+        for mask in 0u64..1 << moving.len() {
+            let mut pattern: Pattern = vec![None; k];
+            moving.iter().enumerate().for_each(|(bit, &j)| pattern[j] = Some(mask >> bit & 1 == 0));
+            let basis = null_space(self.rows(&pattern), k);
+            if basis.len() != self.torques {
+                singular = true;
+                continue;
+            }
+            self.cones(&pattern, &moving, sigma, &basis, &mut all);
+        }
+        (all, singular)
+    }
+
+    /// The cones within one pattern's space of equilibria.
+    fn cones(
+        &self,
+        pattern: &Pattern,
+        moving: &[usize],
+        sigma: &[i8],
+        basis: &[Vec<Rational>],
+        all: &mut Vec<TorqueCell>,
+    ) {
+        let k = self.active.len();
+        let force = |j: usize| -> Vec<Rational> { basis.iter().map(|b| b[j].clone()).collect() };
+        let torque_forms: Vec<Vec<Rational>> = self
+            .terminals
+            .iter()
+            .map(|t| {
+                let row: Vec<Rational> = (0..k)
+                    .map(|j| self.coefficient(j, t.node, &(self.ratio(j) * self.rho(j, pattern[j]))))
+                    .collect();
+                basis.iter().map(|b| arrangement::dot(&row, b)).collect()
+            })
+            .collect();
+        // An element that is idle throughout fits both drivers; it is counted once.
+        if moving.iter().any(|&j| pattern[j] == Some(false) && force(j).iter().all(Rational::is_zero)) {
+            return;
+        }
+        let mut forms: Vec<Vec<Rational>> = Vec::new();
+        for form in moving.iter().map(|&j| force(j)).chain(torque_forms.iter().cloned()) {
+            if let Some((form, _)) = arrangement::normal(&form)
+                && !forms.contains(&form)
+            {
+                forms.push(form);
+            }
+        }
+        for cell in arrangement::cells(&forms, basis.len()) {
+            let forces: Vec<Rational> = (0..k).map(|j| arrangement::dot(&force(j), &cell.point)).collect();
+            let fits = moving.iter().all(|&j| {
+                let drives = forces[j].sign() * sigma[j];
+                drives == 0 || (drives > 0) == (pattern[j] == Some(true))
+            });
+            if !fits {
+                continue;
+            }
+            let torques: Vec<Rational> = torque_forms.iter().map(|t| arrangement::dot(t, &cell.point)).collect();
+            let mut own = pattern.clone();
+            moving.iter().filter(|&&j| forces[j].is_zero()).for_each(|&j| own[j] = None);
+            all.push(TorqueCell { pattern: own, signs: torques.iter().map(Rational::sign).collect(), torques, forces });
+        }
+    }
+}
+
+/// Vectors that span the solutions of `rows · f = 0`.
+fn null_space(mut rows: Matrix, columns: usize) -> Vec<Vec<Rational>> {
+    let pivots = exact::reduce(&mut rows, columns);
+    (0..columns)
+        .filter(|c| !pivots.contains(c))
+        .map(|free| {
+            let mut v = vec![Rational::ZERO; columns];
+            v[free] = Rational::ONE;
+            pivots.iter().zip(&rows).for_each(|(&p, row)| v[p] = -row[free].clone());
+            v
+        })
+        .collect()
+}

@@ -1,0 +1,845 @@
+//! Exact rational functions of many symbols: what the closed formulas are made of.
+//!
+//! A [`Polynomial`] has rational coefficients; a [`Function`] is a product of polynomials with
+//! positive and negative powers, always in lowest terms and factored, because that is the form in
+//! which a person recognises a formula. The determinants of gear trains are *multilinear* (each
+//! element's ratio occurs in one column), and for multilinear polynomials splitting off contents
+//! finds every factor: two factors never share a symbol. Higher powers arise only in derivatives
+//! and sums; there, square factors are found and the rest is left as it is.
+
+use std::collections::BTreeMap;
+
+use crate::exact::Rational;
+
+/// A symbol's number; what it is called is the printer's affair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Symbol(pub usize);
+
+/// Exponents by symbol, without trailing zeros. Ordered as people write: by degree, then by symbol.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Monomial(Vec<u32>);
+
+impl Monomial {
+    fn new(mut exponents: Vec<u32>) -> Self {
+        while exponents.last() == Some(&0) {
+            exponents.pop();
+        }
+        Self(exponents)
+    }
+
+    fn degree(&self) -> u32 {
+        self.0.iter().sum()
+    }
+
+    fn of(&self, s: Symbol) -> u32 {
+        self.0.get(s.0).copied().unwrap_or(0)
+    }
+
+    fn with(&self, s: Symbol, exponent: u32) -> Self {
+        let mut e = self.0.clone();
+        e.resize(e.len().max(s.0 + 1), 0);
+        e[s.0] = exponent;
+        Self::new(e)
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        let n = self.0.len().max(other.0.len());
+        Self((0..n).map(|k| self.of(Symbol(k)) + other.of(Symbol(k))).collect())
+    }
+
+    fn over(&self, other: &Self) -> Option<Self> {
+        let n = self.0.len().max(other.0.len());
+        let e: Option<Vec<u32>> = (0..n).map(|k| self.of(Symbol(k)).checked_sub(other.of(Symbol(k)))).collect();
+        e.map(Self::new)
+    }
+}
+
+impl Ord for Monomial {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        let lexicographic = || {
+            let n = self.0.len().max(other.0.len());
+            (0..n).map(|k| other.of(Symbol(k)).cmp(&self.of(Symbol(k)))).find(|o| o.is_ne())
+        };
+        self.degree().cmp(&other.degree()).then_with(|| lexicographic().unwrap_or(std::cmp::Ordering::Equal))
+    }
+}
+
+impl PartialOrd for Monomial {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// A polynomial with rational coefficients.
+///
+/// # Example
+/// ```
+/// use willis::symbolic::{Polynomial, Symbol};
+/// let (x, y) = (Polynomial::symbol(Symbol(0)), Polynomial::symbol(Symbol(1)));
+/// let one = Polynomial::from(1);
+/// let p = &(&one - &x) * &(&one + &y);
+/// assert_eq!(p.to_function().factors().len(), 2);
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Polynomial(BTreeMap<Monomial, Rational>);
+
+impl From<i64> for Polynomial {
+    fn from(value: i64) -> Self {
+        Self::constant(value.into())
+    }
+}
+
+impl Polynomial {
+    /// A number.
+    pub fn constant(value: Rational) -> Self {
+        let mut p = Self(BTreeMap::new());
+        p.add_term(Monomial(vec![]), value);
+        p
+    }
+
+    /// One symbol.
+    pub fn symbol(s: Symbol) -> Self {
+        Self(BTreeMap::from([(Monomial(vec![]).with(s, 1), Rational::ONE)]))
+    }
+
+    fn add_term(&mut self, m: Monomial, c: Rational) {
+        if c.is_zero() {
+            return;
+        }
+        let sum = match self.0.remove(&m) {
+            Some(old) => old + c,
+            None => c,
+        };
+        if !sum.is_zero() {
+            self.0.insert(m, sum);
+        }
+    }
+
+    /// Whether this is zero.
+    pub fn is_zero(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Its value, when no symbol occurs in it.
+    pub fn as_constant(&self) -> Option<Rational> {
+        match self.0.iter().next() {
+            None => Some(Rational::ZERO),
+            Some((m, c)) => (self.0.len() == 1 && m.0.is_empty()).then(|| c.clone()),
+        }
+    }
+
+    /// Number of terms.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there is no term.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Terms in the order in which people write them: each a coefficient and the powers of symbols.
+    pub fn terms(&self) -> impl Iterator<Item = (&Rational, Vec<(Symbol, u32)>)> {
+        self.0.iter().map(|(m, c)| {
+            let powers = m.0.iter().enumerate().filter(|(_, e)| **e > 0).map(|(k, e)| (Symbol(k), *e));
+            (c, powers.collect())
+        })
+    }
+
+    /// Symbols that occur.
+    pub fn symbols(&self) -> Vec<Symbol> {
+        let n = self.0.keys().map(|m| m.0.len()).max().unwrap_or(0);
+        (0..n).map(Symbol).filter(|s| self.degree(*s) > 0).collect()
+    }
+
+    /// Highest power of a symbol.
+    pub fn degree(&self, s: Symbol) -> u32 {
+        self.0.keys().map(|m| m.of(s)).max().unwrap_or(0)
+    }
+
+    /// Coefficients of the powers of `s`, from the zeroth.
+    fn coefficients(&self, s: Symbol) -> Vec<Self> {
+        let mut all = vec![Self(BTreeMap::new()); self.degree(s) as usize + 1];
+        for (m, c) in &self.0 {
+            all[m.of(s) as usize].0.insert(m.with(s, 0), c.clone());
+        }
+        all
+    }
+
+    fn from_coefficients(all: &[Self], s: Symbol) -> Self {
+        let mut p = Self(BTreeMap::new());
+        for (k, part) in all.iter().enumerate() {
+            for (m, c) in &part.0 {
+                p.0.insert(m.with(s, k as u32), c.clone());
+            }
+        }
+        p
+    }
+
+    /// The product with a number.
+    pub fn scaled(&self, factor: &Rational) -> Self {
+        if factor.is_zero() {
+            return Self(BTreeMap::new());
+        }
+        Self(self.0.iter().map(|(m, c)| (m.clone(), c * factor)).collect())
+    }
+
+    /// The derivative with respect to a symbol.
+    pub fn derivative(&self, s: Symbol) -> Self {
+        let mut p = Self(BTreeMap::new());
+        for (m, c) in &self.0 {
+            let e = m.of(s);
+            if e > 0 {
+                p.add_term(m.with(s, e - 1), c * &Rational::from(i64::from(e)));
+            }
+        }
+        p
+    }
+
+    /// The value for given values of the symbols.
+    pub fn evaluate(&self, value: &dyn Fn(Symbol) -> Rational) -> Rational {
+        self.0.iter().fold(Rational::ZERO, |sum, (m, c)| {
+            let mut term = c.clone();
+            for (k, e) in m.0.iter().enumerate().filter(|(_, e)| **e > 0) {
+                let v = value(Symbol(k));
+                (0..*e).for_each(|_| term = &term * &v);
+            }
+            sum + term
+        })
+    }
+
+    /// The leading number that is split off so that coefficients are whole, without a common
+    /// divisor, and the first term is positive.
+    fn numeric_content(&self) -> Rational {
+        let Some(first) = self.0.values().next() else { return Rational::ONE };
+        let content = self.0.values().fold(None, |g: Option<Rational>, c| {
+            Some(match g {
+                None => c.abs(),
+                Some(g) => common_divisor(&g, &c.abs()),
+            })
+        });
+        let content = content.unwrap_or(Rational::ONE);
+        if first.sign() < 0 { -content } else { content }
+    }
+
+    /// Divided by its numeric content.
+    fn primitive(&self) -> Self {
+        self.scaled(&self.numeric_content().recip())
+    }
+
+    /// The quotient, when the division leaves no remainder.
+    fn divided(&self, by: &Self) -> Option<Self> {
+        let (lead, lead_c) = by.0.iter().next_back()?;
+        let mut rest = self.clone();
+        let mut quotient = Self(BTreeMap::new());
+        while let Some((m, c)) = rest.0.iter().next_back() {
+            let (m, c) = (m.over(lead)?, c / lead_c);
+            for (bm, bc) in &by.0 {
+                rest.add_term(m.times(bm), -(&c * bc));
+            }
+            quotient.add_term(m, c);
+        }
+        Some(quotient)
+    }
+
+    /// The content with respect to a symbol: the greatest common divisor of its coefficients.
+    fn content(&self, s: Symbol) -> Self {
+        let mut g = Self(BTreeMap::new());
+        for c in self.coefficients(s) {
+            g = g.gcd(&c);
+            if g.as_constant().is_some_and(|c| !c.is_zero()) {
+                break;
+            }
+        }
+        g
+    }
+
+    /// The greatest common divisor, numerically primitive, by primitive remainder sequences.
+    fn gcd(&self, other: &Self) -> Self {
+        if self.is_zero() || other.is_zero() {
+            let p = if self.is_zero() { other } else { self };
+            return if p.is_zero() { p.clone() } else { p.primitive() };
+        }
+        let Some(&s) = self.symbols().first() else { return Self::from(1) };
+        if other.degree(s) == 0 {
+            return self.content(s).gcd(other);
+        }
+        let (ca, cb) = (self.content(s), other.content(s));
+        let mut a = self.divided(&ca).expect("content divides");
+        let mut b = other.divided(&cb).expect("content divides");
+        if a.degree(s) < b.degree(s) {
+            std::mem::swap(&mut a, &mut b);
+        }
+        loop {
+            let r = a.pseudo_remainder(&b, s);
+            if r.is_zero() {
+                break;
+            }
+            if r.degree(s) == 0 {
+                b = Self::from(1);
+                break;
+            }
+            let content = r.content(s);
+            (a, b) = (b, r.divided(&content).expect("content divides"));
+        }
+        (&ca.gcd(&cb) * &b).primitive()
+    }
+
+    fn pseudo_remainder(&self, by: &Self, s: Symbol) -> Self {
+        let b = by.coefficients(s);
+        let lead = b.last().expect("not zero");
+        let mut rest = self.clone();
+        while !rest.is_zero() && rest.degree(s) as usize >= b.len() - 1 {
+            let a = rest.coefficients(s);
+            let (top, shift) = (a.last().expect("not zero").clone(), a.len() - b.len());
+            let mut shifted = vec![Self(BTreeMap::new()); shift];
+            shifted.extend(b.iter().map(|c| c * &top));
+            rest = &(&rest * lead) - &Self::from_coefficients(&shifted, s);
+        }
+        rest
+    }
+
+    /// This polynomial as a product of its factors.
+    pub fn to_function(&self) -> Function {
+        if self.is_zero() {
+            return Function::ZERO;
+        }
+        let number = self.numeric_content();
+        let mut factors = Vec::new();
+        split(self.scaled(&number.recip()), &mut factors);
+        Function::collect(number, factors.into_iter().map(|p| (p, 1)))
+    }
+}
+
+/// Splits a primitive polynomial by monomials, contents and squares.
+fn split(p: Polynomial, factors: &mut Vec<Polynomial>) {
+    if p.as_constant().is_some() {
+        return;
+    }
+    for s in p.symbols() {
+        let lowest = p.0.keys().map(|m| m.of(s)).min().unwrap_or(0);
+        if lowest > 0 {
+            let (x, one) = (Polynomial::symbol(s), p.0.iter());
+            factors.extend((0..lowest).map(|_| x.clone()));
+            let rest = one.map(|(m, c)| (m.with(s, m.of(s) - lowest), c.clone())).collect();
+            return split(Polynomial(rest), factors);
+        }
+    }
+    for s in p.symbols() {
+        let mut parts = vec![p.content(s)];
+        if p.degree(s) > 1 {
+            parts.push(p.gcd(&p.derivative(s)));
+        }
+        for part in parts {
+            if part.as_constant().is_none() {
+                let rest = p.divided(&part).expect("it divides");
+                split(part.primitive(), factors);
+                return split(rest.primitive(), factors);
+            }
+        }
+    }
+    factors.push(p.primitive());
+}
+
+/// The greatest number of which both are whole multiples.
+fn common_divisor(a: &Rational, b: &Rational) -> Rational {
+    let (mut a, mut b) = (a.clone(), b.clone());
+    while !b.is_zero() {
+        let r = &a - &(&b * &(&a / &b).floor());
+        (a, b) = (b, r);
+    }
+    a
+}
+
+macro_rules! polynomial_operator {
+    ($trait:ident, $method:ident, |$a:ident, $b:ident| $body:expr) => {
+        impl std::ops::$trait<&Polynomial> for &Polynomial {
+            type Output = Polynomial;
+            fn $method(self, other: &Polynomial) -> Polynomial {
+                let ($a, $b) = (self, other);
+                $body
+            }
+        }
+    };
+}
+polynomial_operator!(Add, add, |a, b| {
+    let mut sum = a.clone();
+    b.0.iter().for_each(|(m, c)| sum.add_term(m.clone(), c.clone()));
+    sum
+});
+polynomial_operator!(Sub, sub, |a, b| {
+    let mut sum = a.clone();
+    b.0.iter().for_each(|(m, c)| sum.add_term(m.clone(), -c.clone()));
+    sum
+});
+polynomial_operator!(Mul, mul, |a, b| {
+    let mut product = Polynomial(BTreeMap::new());
+    for (ma, ca) in &a.0 {
+        b.0.iter().for_each(|(mb, cb)| product.add_term(ma.times(mb), ca * cb));
+    }
+    product
+});
+
+/// The determinant of a square matrix of polynomials, by expansion along columns with every minor
+/// computed once.
+pub(crate) fn determinant(columns: &[Vec<Polynomial>]) -> Polynomial {
+    let mut minors: BTreeMap<u64, Polynomial> = BTreeMap::from([(0, Polynomial::from(1))]);
+    for column in columns {
+        let mut next: BTreeMap<u64, Polynomial> = BTreeMap::new();
+        for (rows, minor) in &minors {
+            for (r, entry) in column.iter().enumerate().filter(|(r, e)| rows >> r & 1 == 0 && !e.is_zero()) {
+                let above = (rows >> r).count_ones();
+                let sign = Rational::from(if above % 2 == 0 { 1 } else { -1 });
+                let term = (minor * entry).scaled(&sign);
+                let sum = next.entry(rows | 1 << r).or_insert_with(|| Polynomial::from(0));
+                *sum = &*sum + &term;
+            }
+        }
+        next.retain(|_, p| !p.is_zero());
+        minors = next;
+    }
+    minors.into_iter().next().map_or(Polynomial::from(0), |(_, p)| p)
+}
+
+/// A rational function: a number times powers of distinct, numerically primitive polynomials.
+///
+/// # Example
+/// ```
+/// use willis::symbolic::{Function, Polynomial, Symbol};
+/// let (x, one) = (Polynomial::symbol(Symbol(0)), Polynomial::from(1));
+/// let squares = &one - &(&x * &x);
+/// // (1 − x²)/(1 − x) = 1 + x
+/// let f = squares.to_function().over(&(&one - &x).to_function());
+/// assert_eq!(f, (&one + &x).to_function());
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Function {
+    number: Rational,
+    factors: Vec<(Polynomial, i32)>,
+}
+
+impl From<Rational> for Function {
+    fn from(number: Rational) -> Self {
+        Self { number, factors: vec![] }
+    }
+}
+
+impl Function {
+    /// Zero.
+    pub const ZERO: Self = Self { number: Rational::ZERO, factors: vec![] };
+    /// One.
+    pub const ONE: Self = Self { number: Rational::ONE, factors: vec![] };
+
+    /// One symbol.
+    pub fn symbol(s: Symbol) -> Self {
+        Self { number: Rational::ONE, factors: vec![(Polynomial::symbol(s), 1)] }
+    }
+
+    /// Sorts the factors, joins equal ones and cancels what is common to two that are not.
+    fn collect(number: Rational, factors: impl IntoIterator<Item = (Polynomial, i32)>) -> Self {
+        let mut all: BTreeMap<Polynomial, i32> = BTreeMap::new();
+        if !number.is_zero() {
+            factors.into_iter().for_each(|(p, e)| *all.entry(p).or_insert(0) += e);
+        }
+        all.retain(|_, e| *e != 0);
+        let mut factors: Vec<_> = all.into_iter().collect();
+        // Factors are irreducible unless a square occurs in them; only then can two share a part.
+        let coarse = |p: &Polynomial| p.symbols().into_iter().any(|s| p.degree(s) > 1);
+        let pair = (0..factors.len()).flat_map(|i| (0..i).map(move |j| (i, j))).find_map(|(i, j)| {
+            let ((p, _), (q, _)) = (&factors[i], &factors[j]);
+            if !coarse(p) && !coarse(q) {
+                return None;
+            }
+            let g = p.gcd(q);
+            g.as_constant().is_none().then_some((i, j, g))
+        });
+        if let Some((i, j, g)) = pair {
+            let mut number = number;
+            let (a, b) = (factors[i].1, factors[j].1);
+            for k in [i, j] {
+                let rest = factors[k].0.divided(&g).expect("a common divisor");
+                let content = rest.numeric_content();
+                for _ in 0..factors[k].1.unsigned_abs() {
+                    number = if factors[k].1 > 0 { &number * &content } else { &number / &content };
+                }
+                factors[k].0 = rest.primitive();
+            }
+            factors.push((g, a + b));
+            factors.retain(|(p, _)| p.as_constant().is_none());
+            return Self::collect(number, factors);
+        }
+        Self { number, factors }
+    }
+
+    /// The number in front.
+    pub fn number(&self) -> &Rational {
+        &self.number
+    }
+
+    /// The factors with their powers.
+    pub fn factors(&self) -> &[(Polynomial, i32)] {
+        &self.factors
+    }
+
+    /// Whether this is zero.
+    pub fn is_zero(&self) -> bool {
+        self.number.is_zero()
+    }
+
+    /// Its value, when no symbol occurs in it.
+    pub fn as_constant(&self) -> Option<&Rational> {
+        self.factors.is_empty().then_some(&self.number)
+    }
+
+    /// Symbols that occur.
+    pub fn symbols(&self) -> Vec<Symbol> {
+        let mut all: Vec<_> = self.factors.iter().flat_map(|(p, _)| p.symbols()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// The product.
+    pub fn times(&self, other: &Self) -> Self {
+        Self::collect(&self.number * &other.number, self.factors.iter().chain(&other.factors).cloned())
+    }
+
+    /// The quotient.
+    ///
+    /// # Panics
+    /// If `other` is zero.
+    pub fn over(&self, other: &Self) -> Self {
+        self.times(&other.recip())
+    }
+
+    /// One over this.
+    ///
+    /// # Panics
+    /// If this is zero.
+    pub fn recip(&self) -> Self {
+        let factors = self.factors.iter().map(|(p, e)| (p.clone(), -e)).collect();
+        Self { number: self.number.recip(), factors }
+    }
+
+    /// This with the other sign.
+    pub fn negated(&self) -> Self {
+        Self { number: -self.number.clone(), factors: self.factors.clone() }
+    }
+
+    /// The sum.
+    pub fn plus(&self, other: &Self) -> Self {
+        if self.is_zero() || other.is_zero() {
+            return if self.is_zero() { other.clone() } else { self.clone() };
+        }
+        // What both share stays factored; the rest is multiplied out over a common denominator.
+        let power = |f: &Self, p: &Polynomial| f.factors.iter().find(|(q, _)| q == p).map_or(0, |(_, e)| *e);
+        let shared: Vec<(Polynomial, i32)> = self
+            .factors
+            .iter()
+            .chain(&other.factors)
+            .map(|(p, _)| (p.clone(), power(self, p).min(power(other, p))))
+            .collect::<BTreeMap<_, _>>()
+            .into_iter()
+            .collect();
+        let shared = Self::collect(Rational::ONE, shared);
+        let rest = |f: &Self| {
+            let left = f.over(&shared);
+            left.factors.iter().fold(Polynomial::constant(left.number.clone()), |product, (p, e)| {
+                (0..*e).fold(product, |product, _| &product * p)
+            })
+        };
+        (&rest(self) + &rest(other)).to_function().times(&shared)
+    }
+
+    /// The difference.
+    pub fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.negated())
+    }
+
+    /// The derivative with respect to a symbol.
+    pub fn derivative(&self, s: Symbol) -> Self {
+        // (Π p^e)' = Π p^e Σ e p'/p
+        let sum = self.factors.iter().fold(Self::ZERO, |sum, (p, e)| {
+            let slope = p.derivative(s).scaled(&Rational::from(i64::from(*e))).to_function();
+            if slope.is_zero() { sum } else { sum.plus(&slope.over(&p.to_function())) }
+        });
+        if sum.is_zero() { sum } else { self.times(&sum) }
+    }
+
+    /// Other functions in the place of symbols; `None` leaves a symbol as it is. `None` when a
+    /// denominator vanishes.
+    pub fn substituted(&self, value: &dyn Fn(Symbol) -> Option<Self>) -> Option<Self> {
+        let mut product = Self::from(self.number.clone());
+        for (p, e) in &self.factors {
+            let mut sum = Self::ZERO;
+            for (c, powers) in p.terms() {
+                let mut term = Self::from(c.clone());
+                for (s, e) in powers {
+                    let v = value(s).unwrap_or_else(|| Self::symbol(s));
+                    (0..e).for_each(|_| term = term.times(&v));
+                }
+                sum = sum.plus(&term);
+            }
+            if sum.is_zero() && *e < 0 {
+                return None;
+            }
+            for _ in 0..e.unsigned_abs() {
+                product = if *e > 0 { product.times(&sum) } else { product.over(&sum) };
+            }
+        }
+        Some(product)
+    }
+
+    /// The value for given values of the symbols; `None` on a pole.
+    pub fn evaluate(&self, value: &dyn Fn(Symbol) -> Rational) -> Option<Rational> {
+        let mut product = self.number.clone();
+        for (p, e) in &self.factors {
+            let v = p.evaluate(value);
+            if v.is_zero() && *e < 0 {
+                return None;
+            }
+            for _ in 0..e.unsigned_abs() {
+                product = if *e > 0 { &product * &v } else { &product / &v };
+            }
+        }
+        Some(product)
+    }
+}
+
+/// How a formula is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Notation {
+    /// For eyes: `(1 - i0*eta0)/(1 - i0)`.
+    Text,
+    /// For typesetting.
+    Latex,
+    /// Python 3.
+    Python,
+    /// Rust, `f64`.
+    Rust,
+    /// C99, `double`.
+    C,
+    /// Modelica.
+    Modelica,
+}
+
+impl Notation {
+    fn times(self) -> &'static str {
+        match self {
+            Self::Latex => " ",
+            _ => "*",
+        }
+    }
+
+    /// A whole number.
+    fn whole(self, n: &str) -> String {
+        match self {
+            Self::Rust | Self::C => format!("{n}.0"),
+            _ => n.to_owned(),
+        }
+    }
+
+    fn power(self, base: &str, exponent: u32) -> String {
+        if exponent == 1 {
+            return base.to_owned();
+        }
+        match self {
+            Self::Text | Self::Modelica => format!("{base}^{exponent}"),
+            Self::Latex => format!("{base}^{{{exponent}}}"),
+            Self::Python => format!("{base}**{exponent}"),
+            Self::Rust => format!("{base}.powi({exponent})"),
+            Self::C => vec![base; exponent as usize].join("*"),
+        }
+    }
+
+    fn parentheses(self, inner: &str) -> String {
+        match self {
+            Self::Latex => format!("\\left({inner}\\right)"),
+            _ => format!("({inner})"),
+        }
+    }
+
+    /// A polynomial as a sum; `flipped` writes its negative.
+    pub fn polynomial(self, p: &Polynomial, name: &dyn Fn(Symbol) -> String, flipped: bool) -> String {
+        let mut terms: Vec<(Rational, Vec<(Symbol, u32)>)> =
+            p.terms().map(|(c, m)| (if flipped { -c.clone() } else { c.clone() }, m)).collect();
+        // A positive term first, where there is one.
+        if let Some(k) = terms.iter().position(|(c, _)| c.sign() > 0) {
+            terms[..=k].rotate_right(1);
+        }
+        let mut out = String::new();
+        for (k, (c, powers)) in terms.iter().enumerate() {
+            out += match (k, c.sign() < 0) {
+                (0, false) => "",
+                (0, true) => "-",
+                (_, false) => " + ",
+                (_, true) => " - ",
+            };
+            let size = c.abs();
+            let mut parts: Vec<String> = Vec::new();
+            if size != Rational::ONE || powers.is_empty() {
+                parts.push(self.rational(&size));
+            }
+            parts.extend(powers.iter().map(|(s, e)| self.power(&name(*s), *e)));
+            out += &parts.join(self.times());
+        }
+        if out.is_empty() { self.whole("0") } else { out }
+    }
+
+    /// A positive number.
+    fn rational(self, r: &Rational) -> String {
+        let text = r.to_fraction();
+        let (n, d) = text.split_once('/').expect("a fraction");
+        match (d, self) {
+            ("1", _) => self.whole(n),
+            (_, Self::Latex) => format!("\\frac{{{n}}}{{{d}}}"),
+            _ => format!("{}/{}", self.whole(n), self.whole(d)),
+        }
+    }
+
+    /// A rational function.
+    pub fn function(self, f: &Function, name: &dyn Fn(Symbol) -> String) -> String {
+        if f.is_zero() {
+            return self.whole("0");
+        }
+        let mut negative = f.number.sign() < 0;
+        let fraction = f.number.abs().to_fraction();
+        let (top, bottom) = fraction.split_once('/').expect("a fraction");
+        // A minus in front of a difference turns the difference round.
+        let turned = match negative {
+            true => f
+                .factors
+                .iter()
+                .position(|(p, e)| *e > 0 && *e % 2 != 0 && p.len() > 1 && p.terms().any(|(c, _)| c.sign() < 0)),
+            false => None,
+        };
+        negative &= turned.is_none();
+        let side = |sign: i32, number: &str| -> (String, usize) {
+            let chosen: Vec<(usize, &(Polynomial, i32))> =
+                f.factors.iter().enumerate().filter(|(_, (_, e))| e.signum() == sign).collect();
+            let mut parts: Vec<String> = Vec::new();
+            if number != "1" {
+                parts.push(self.whole(number));
+            }
+            let alone = chosen.len() + parts.len() == 1;
+            for (k, (p, e)) in chosen {
+                let text = self.polynomial(p, name, turned == Some(k));
+                let simple = p.len() == 1 || (alone && e.abs() == 1);
+                let base = if simple { text } else { self.parentheses(&text) };
+                parts.push(self.power(&base, e.unsigned_abs()));
+            }
+            let sum = alone && f.factors.iter().any(|(p, e)| *e == sign && p.len() > 1);
+            let count = if sum { 0 } else { parts.len() };
+            (parts.join(self.times()), count)
+        };
+        // `count` is 0 for a bare sum, else the number of factors.
+        let (mut above, above_count) = side(1, top);
+        let (below, below_count) = side(-1, bottom);
+        if above.is_empty() {
+            above = self.whole("1");
+        }
+        if below.is_empty() {
+            return match (negative, above_count) {
+                (false, _) => above,
+                (true, 0) => format!("-{}", self.parentheses(&above)),
+                (true, _) => format!("-{above}"),
+            };
+        }
+        let minus = if negative { "-" } else { "" };
+        if self == Self::Latex {
+            return format!("{minus}\\frac{{{above}}}{{{below}}}");
+        }
+        let above = if above_count == 0 && above != self.whole("1") { self.parentheses(&above) } else { above };
+        let single = below_count == 1 && (self != Self::C || !below.contains('*'));
+        let below = if single { below } else { self.parentheses(&below) };
+        format!("{minus}{above}/{below}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const X: Symbol = Symbol(0);
+    const Y: Symbol = Symbol(1);
+    const Z: Symbol = Symbol(2);
+
+    fn s(x: Symbol) -> Polynomial {
+        Polynomial::symbol(x)
+    }
+
+    fn n(x: i64) -> Polynomial {
+        Polynomial::from(x)
+    }
+
+    fn show(f: &Function) -> String {
+        Notation::Text.function(f, &|s| ["x", "y", "z"][s.0].to_owned())
+    }
+
+    #[test]
+    fn splits_multilinear_products_completely() {
+        let p = &(&(&n(1) - &(&s(X) * &s(Y))) * &(&n(2) + &s(Z).scaled(&4.into()))) * &n(-3);
+        let f = p.to_function();
+        assert_eq!(show(&f), "6*(1 + 2*z)*(x*y - 1)");
+        assert_eq!(f.factors().len(), 2);
+    }
+
+    #[test]
+    fn finds_squares_and_cancels() {
+        let a = &n(1) - &s(X);
+        let square = (&a * &a).to_function();
+        assert_eq!(show(&square), "(1 - x)^2");
+        assert_eq!(show(&square.over(&a.to_function())), "1 - x");
+        // 1 − x² is not split, but what it shares with 1 − x cancels.
+        let f = (&n(1) - &(&s(X) * &s(X))).to_function().over(&a.to_function());
+        assert_eq!(show(&f), "1 + x");
+        let g = a.to_function().over(&(&n(1) - &(&s(X) * &s(X))).to_function());
+        assert_eq!(show(&g), "1/(1 + x)");
+    }
+
+    #[test]
+    fn adds_over_common_denominators() {
+        let (x, y) = (Function::symbol(X), Function::symbol(Y));
+        let f = Function::ONE.over(&x).plus(&Function::ONE.over(&y));
+        assert_eq!(show(&f), "(x + y)/(x*y)");
+        assert_eq!(show(&f.minus(&f)), "0");
+        assert_eq!(show(&x.over(&y).minus(&Function::ONE)), "(x - y)/y");
+    }
+
+    #[test]
+    fn derives_as_by_hand() {
+        // ((1 − xy)/(1 − x))' by x: (1 − y)/(1 − x)²
+        let f = (&n(1) - &(&s(X) * &s(Y))).to_function().over(&(&n(1) - &s(X)).to_function());
+        assert_eq!(show(&f), "(1 - x*y)/(1 - x)");
+        assert_eq!(show(&f.derivative(X)), "(1 - y)/(1 - x)^2");
+        assert_eq!(show(&f.derivative(Y)), "-x/(1 - x)");
+    }
+
+    #[test]
+    fn substitutes() {
+        let f = (&n(1) - &(&s(X) * &s(Y))).to_function().over(&(&n(1) - &s(X)).to_function());
+        // x = −z: the planetary set with a positive tooth ratio
+        let g = f.substituted(&|s| (s == X).then(|| Function::symbol(Z).negated())).unwrap();
+        assert_eq!(show(&g), "(1 + y*z)/(1 + z)");
+        assert_eq!(f.substituted(&|s| (s == X).then(|| Function::ONE)), None, "a pole");
+    }
+
+    #[test]
+    fn determinants_of_three() {
+        let m = [[n(1), s(X), n(0)], [n(0), n(1), s(Y)], [s(Z), n(0), n(1)]].map(|c| c.to_vec());
+        assert_eq!(determinant(&m), &n(1) + &(&(&s(X) * &s(Y)) * &s(Z)));
+    }
+
+    #[test]
+    fn writes_every_language() {
+        let f = (&n(3) - &s(X).scaled(&Rational::new(2, 1))).to_function().over(&(&s(Y) * &s(Y)).to_function());
+        let show = |l: Notation| l.function(&f, &|s| ["x", "y"][s.0].to_owned());
+        assert_eq!(show(Notation::Text), "(3 - 2*x)/y^2");
+        assert_eq!(show(Notation::Latex), "\\frac{3 - 2 x}{y^{2}}");
+        assert_eq!(show(Notation::Python), "(3 - 2*x)/y**2");
+        assert_eq!(show(Notation::Rust), "(3.0 - 2.0*x)/y.powi(2)");
+        assert_eq!(show(Notation::C), "(3.0 - 2.0*x)/(y*y)");
+        assert_eq!(show(Notation::Modelica), "(3 - 2*x)/y^2");
+    }
+}
