@@ -430,12 +430,12 @@ fn dim(text: &str) -> String {
 }
 
 /// Breaks a line at 100 characters; the first line begins with `head`, the others are indented
-/// as far.
+/// as far. Control characters, which a terminal would obey, separate words and are dropped.
 fn wrap(text: &str, head: &str) -> String {
     const WIDTH: usize = 100;
     let indent = " ".repeat(head.chars().count());
     let mut lines = vec![head.to_owned()];
-    for word in text.split_whitespace() {
+    for word in text.split(|c: char| c.is_whitespace() || c.is_control()).filter(|w| !w.is_empty()) {
         let line = lines.last_mut().expect("never empty");
         let used = line.chars().count();
         let blank = used == indent.len();

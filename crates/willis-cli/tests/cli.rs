@@ -176,6 +176,16 @@ fn regress_colours() {
     assert!(!colour("auto"), "a pipe is no terminal");
 }
 
+#[test]
+fn regress_the_file_paints_nothing() {
+    // Escape sequences in the free texts of a file do not reach the terminal.
+    let train = "format = 1\nname = \"\\u001b[31mred\"\nsource = \"\\u001b[32mgreen\"\nmembers = [\"a\", \"b\"]\nterminals = [\"a\", \"b\"]\n\
+                 [[mesh]]\ngears = [ { member = \"a\", teeth = 20 }, { member = \"b\", teeth = 40 } ]\n";
+    let output = piped(&["analyze", "-", "--color", "always"], train.as_bytes());
+    let shown = text(&output.stdout) + &text(&output.stderr);
+    assert!(!shown.contains("\u{1b}[31m") && !shown.contains("\u{1b}[32m"), "{shown:?}");
+}
+
 // ---- analyze, for machines -----------------------------------------------------------------
 
 #[test]

@@ -179,10 +179,18 @@ impl FromStr for Rational {
         if text.len() > 100 {
             return Err(NotANumber);
         }
-        if let Some((n, d)) = text.split_once('/') {
-            let (n, d): (Self, Self) = (n.trim().parse()?, d.trim().parse()?);
-            return if d.is_zero() { Err(NotANumber) } else { Ok(n / d) };
+        match text.split_once('/') {
+            Some((n, d)) => {
+                let (n, d) = (Self::from_decimal(n.trim())?, Self::from_decimal(d.trim())?);
+                if d.is_zero() { Err(NotANumber) } else { Ok(n / d) }
+            }
+            None => Self::from_decimal(text),
         }
+    }
+}
+
+impl Rational {
+    fn from_decimal(text: &str) -> Result<Self, NotANumber> {
         let (mantissa, exponent) = match text.split_once(['e', 'E']) {
             Some((m, e)) => (m, e.parse::<i32>().map_err(|_| NotANumber)?),
             None => (text, 0),
@@ -364,7 +372,7 @@ mod tests {
         assert_eq!(read("-1.5e-3").unwrap(), "-3/2000");
         assert_eq!(read("2e3").unwrap(), "2000");
         assert_eq!(read("97/35").unwrap(), "97/35");
-        for bad in ["", "-", ".", "nan", "inf", "1/0", "1e400", "0x10", "1 2", "--1"] {
+        for bad in ["", "-", ".", "nan", "inf", "1/0", "1/2/3", "1e400", "0x10", "1 2", "--1"] {
             assert_eq!(read(bad), Err(NotANumber), "{bad}");
         }
         assert_eq!(Rational::from_f64(0.98).unwrap().to_string(), "49/50");

@@ -19,6 +19,8 @@
 //! lie anywhere between, which is reported, not guessed. An element with zero force is idle: it
 //! has no driver and no loss (the one deterministic rule for idle meshes).
 
+use std::collections::HashSet;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::exact::{self, Matrix, Rational};
@@ -354,14 +356,18 @@ impl Equilibrium {
 
     /// Pivoting from the pattern of the lossless train: first all wrong signs at once, which is
     /// quick and nearly always ends, then only the one of least index, which ends for certain
-    /// under the W-property. `None` when the steps ran out.
+    /// under the W-property. `None` when the steps go round in a circle, or ran out.
     fn pivot(&self, t: &[Rational], t_float: &[f64]) -> Option<Solution> {
         let n = self.columns.len();
         let lossless = self.attempt(&vec![None; n], t, t_float)?;
         let mut pattern: Vec<bool> = (0..n).map(|j| lossless.signs[j] * self.columns[j].sigma >= 0).collect();
         let at_once = 8;
         let most = at_once + (1usize << n.min(12)).min(WORK / (n * n * n).max(1));
+        let mut seen = HashSet::new();
         for step in 0..most {
+            if step >= at_once && !seen.insert(pattern.clone()) {
+                return None;
+            }
             let choice: Vec<_> = pattern.iter().map(|p| Some(*p)).collect();
             let trial = self.attempt(&choice, t, t_float)?;
             let Some(first) = self.wrong(&trial, &pattern, 0) else { return Some(self.solution(trial, pattern)) };

@@ -64,14 +64,19 @@ pub(super) fn report(
         let d = Diagnostic::new(code, place, format!("{title}: {text}"));
         (text, if hint.is_empty() { d } else { d.hint(hint) })
     };
-    let equilibrium = match Equilibrium::new(&c, &sigma, &problem.open, &problem.loaded) {
+    // Shafts that push against each other in a clutch balance at any speed, and so at any power.
+    let equilibrium = match problem.given.iter().any(|(m, t)| !t.is_zero() && loose.contains(m)) {
+        true => Err(Unsolvable::UndeterminedSpeed),
+        false => Equilibrium::new(&c, &sigma, &problem.open, &problem.loaded),
+    };
+    let equilibrium = match equilibrium {
         Ok(equilibrium) => equilibrium,
         Err(why) => {
             let redundant = c.redundant();
             let (text, d) = if !loose.is_empty() {
                 let text = format!(
-                    "{} degrees of freedom, {} settled by the prescribed speeds: no determined speed for {}",
-                    c.degrees_of_freedom(),
+                    "{}, {} settled by the prescribed speeds: no determined speed for {}",
+                    freedoms(&c),
                     c.degrees_of_freedom() - missing_speeds,
                     names(train, loose)
                 );
@@ -244,6 +249,11 @@ fn short(x: f64) -> String {
     if text.parse::<f64>() == Ok(0.0) && x != 0.0 { format!("{x:.3e}") } else { text }
 }
 
+fn freedoms(c: &Configuration<'_>) -> String {
+    let n = c.degrees_of_freedom();
+    format!("{n} degree{} of freedom", if n == 1 { "" } else { "s" })
+}
+
 /// Rank of the prescribed speeds.
 fn independent(c: &Configuration<'_>, prescribed: &[MemberId]) -> usize {
     // A redundant train lists a conflict more than once.
@@ -401,12 +411,10 @@ impl Loads {
 
 fn wrong_loads(c: &Configuration<'_>, operation: &Operation, loads: &Loads, missing: bool, n: usize) -> Diagnostics {
     let train = c.train;
-    let freedoms = c.degrees_of_freedom();
     let open: Vec<MemberId> = loads.externals.iter().filter(|x| x.torque.is_none()).map(|x| x.member).collect();
     let mut all = Diagnostics::default();
     let place = format!("{}.torques", operation.place);
-    let count = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
-    let freedoms = count(freedoms, "degree") + " of freedom";
+    let freedoms = freedoms(c);
     all.push(if missing {
         Diagnostic::new(
             Code::MissingTorque,

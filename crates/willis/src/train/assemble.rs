@@ -27,6 +27,7 @@ pub(super) struct Assembler<'a> {
     /// What it is about, and what was assumed of it.
     pub assumptions: Vec<(String, String)>,
     by_name: HashMap<String, MemberId>,
+    mesh_names: HashSet<String>,
 }
 
 impl Assembler<'_> {
@@ -78,6 +79,16 @@ impl Assembler<'_> {
         self.by_name.insert(name.clone(), id);
         self.members.push(Member { name, kind: MemberKind::Planet });
         id
+    }
+
+    /// The name of a mesh that was given none: names given by the user stay theirs, and further
+    /// meshes between the same members get a number.
+    pub fn default_mesh_name(&mut self, base: String) -> String {
+        let numbered = (2..).map(|k| format!("{base}-{k}"));
+        let mut names = std::iter::once(base.clone()).chain(numbered);
+        let name = names.find(|n| !self.mesh_names.contains(n)).expect("numbers do not end");
+        self.mesh_names.insert(name.clone());
+        name
     }
 
     /// A tooth count as a number to calculate with; out of range is reported once, here.
@@ -146,7 +157,10 @@ impl Assembler<'_> {
                 .hint("leave out `sense`, or `internal`"),
             );
         }
-        let name = spec.name.clone().unwrap_or_else(|| format!("{}-{}", spec.gears[0].member, spec.gears[1].member));
+        let name = spec
+            .name
+            .clone()
+            .unwrap_or_else(|| self.default_mesh_name(format!("{}-{}", spec.gears[0].member, spec.gears[1].member)));
         if efficiency.is_none() {
             self.assume(&name, "no efficiency given, taken as lossless");
         }
@@ -183,6 +197,13 @@ impl Assembler<'_> {
     }
 
     fn shift_element(&mut self, spec: &ShiftElementSpec, place: &str) -> Option<ShiftElement> {
+        if spec.blocks.is_some() && spec.kind != ShiftElementKind::OneWay {
+            let message = format!("a {} has no direction that it blocks", spec.kind);
+            self.report(
+                Diagnostic::new(Code::Conflict, format!("{place}.blocks"), message)
+                    .hint("leave out `blocks`, or make it a one-way clutch: kind = \"one-way\""),
+            );
+        }
         let place = format!("{place}.members");
         let ids: Vec<_> =
             spec.members.iter().enumerate().map(|(k, m)| self.resolve(m, &format!("{place}[{k}]"))).collect();
@@ -210,7 +231,7 @@ impl Assembler<'_> {
             self.report(Diagnostic::new(Code::ShiftElement, place, message).hint("name the two members it joins"));
             return None;
         }
-        Some(ShiftElement { name: spec.name.clone(), kind: spec.kind, members, blocks: spec.blocks })
+        Some(ShiftElement { name: spec.name.clone(), kind: spec.kind, members, blocks: spec.blocks.unwrap_or(-1) })
     }
 
     fn state(&mut self, spec: &StateSpec, elements: &[ShiftElementSpec], place: &str) -> State {
@@ -344,7 +365,11 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         meshes: vec![],
         assumptions: vec![],
         by_name: HashMap::from([("frame".into(), FRAME)]),
+        mesh_names: spec.meshes.iter().filter_map(|m| m.name.clone()).collect(),
     };
+    if spec.name.chars().any(char::is_control) {
+        bad_name(&mut a, &spec.name, "name", NO_CONTROLS);
+    }
     for (k, name) in spec.members.iter().enumerate() {
         let place = format!("members[{k}]");
         if name == "frame" {
@@ -372,16 +397,6 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
     let mut resolved_sets = Vec::new();
     for (k, (set, planets)) in sets.iter().enumerate() {
         resolved_sets.push(expand::expand(&mut a, set, planets, k));
-    }
-    let mut names = HashSet::new();
-    for mesh in &mut a.meshes {
-        // Two meshes between the same members get a number; names given by the user are checked below.
-        let base = mesh.name.clone();
-        let mut k = 2;
-        while !names.insert(mesh.name.clone()) {
-            mesh.name = format!("{base}-{k}");
-            k += 1;
-        }
     }
     let given = spec.meshes.iter().filter_map(|m| m.name.as_deref());
     unique(&mut a, "mesh", "mesh", given);
@@ -510,10 +525,16 @@ fn check_name(a: &mut Assembler<'_>, name: &str, place: &str, reserve: bool) {
     } else if name.contains('.') && reserve {
         "a name has no dot (it separates a set from its planet)"
     } else if name.chars().any(char::is_control) {
-        "a name has no control characters"
+        NO_CONTROLS
     } else {
         return;
     };
+    bad_name(a, name, place, why);
+}
+
+const NO_CONTROLS: &str = "a name has no control characters";
+
+fn bad_name(a: &mut Assembler<'_>, name: &str, place: &str, why: &str) {
     a.report(Diagnostic::new(Code::BadName, place, format!("`{}`: {why}", clip(&name.escape_debug().to_string()))));
 }
 

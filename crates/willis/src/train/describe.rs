@@ -354,24 +354,25 @@ pub struct ShiftElementSpec {
     pub(crate) name: String,
     pub(crate) kind: ShiftElementKind,
     pub(crate) members: Vec<String>,
-    pub(crate) blocks: i8,
+    /// For a one-way clutch, the sign of the relative speed that it prevents; backward by default.
+    pub(crate) blocks: Option<i8>,
 }
 
 impl ShiftElementSpec {
     /// Joins two members when engaged.
     pub fn clutch(name: impl Into<String>, a: &str, b: &str) -> Self {
-        Self { name: name.into(), kind: ShiftElementKind::Clutch, members: vec![a.into(), b.into()], blocks: -1 }
+        Self { name: name.into(), kind: ShiftElementKind::Clutch, members: vec![a.into(), b.into()], blocks: None }
     }
 
     /// Holds a member when engaged.
     pub fn brake(name: impl Into<String>, member: &str) -> Self {
-        Self { name: name.into(), kind: ShiftElementKind::Brake, members: vec![member.into()], blocks: -1 }
+        Self { name: name.into(), kind: ShiftElementKind::Brake, members: vec![member.into()], blocks: None }
     }
 
     /// Prevents `member` from turning backward relative to `other` (use `"frame"` for the housing).
     pub fn one_way(name: impl Into<String>, member: &str, other: &str) -> Self {
         let members = vec![member.into(), other.into()];
-        Self { name: name.into(), kind: ShiftElementKind::OneWay, members, blocks: -1 }
+        Self { name: name.into(), kind: ShiftElementKind::OneWay, members, blocks: None }
     }
 }
 

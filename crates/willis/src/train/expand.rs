@@ -46,6 +46,17 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
     };
     let number =
         |a: &mut Assembler<'_>, p: &PlanetSpec, key: &str| p.count.map(|c| a.count(c, &format!("{place}.{key}.count")));
+    let in_pairs = |a: &mut Assembler<'_>, first: (&PlanetSpec, &str), second: (&PlanetSpec, &str)| {
+        let counts = (number(a, first.0, first.1), number(a, second.0, second.1));
+        if let (Some(n), Some(other)) = counts
+            && n != other
+        {
+            let message = format!("set `{}`: its planets mesh in pairs, {n} with {other} do not", clip(name));
+            let place = format!("{place}.{}.count", second.1);
+            a.report(Diagnostic::new(Code::Conflict, place, message).hint("give one count, or twice the same"));
+        }
+        counts.0.or(counts.1)
+    };
     let planet_teeth =
         |a: &mut Assembler<'_>, p: &PlanetSpec, key: &str| p.teeth.map(|t| a.teeth(t, &format!("{place}.{key}.teeth")));
     let mut pairs: Vec<Pair<'_>> = Vec::new();
@@ -71,7 +82,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
         }
         Parts::DoublePlanet { sun, ring, inner, outer } => {
             kind = "double-planet";
-            count = number(a, inner, "inner_planet").or(number(a, outer, "outer_planet"));
+            count = in_pairs(a, (inner, "inner_planet"), (outer, "outer_planet"));
             let (z_i, z_o) = (planet_teeth(a, inner, "inner_planet"), planet_teeth(a, outer, "outer_planet"));
             let (s, r) = (central(a, sun, "sun"), central(a, ring, "ring"));
             let (Some(s), Some(r)) = (s, r) else { return None };
@@ -128,7 +139,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
         }
         Parts::Ravigneaux { small_sun, large_sun, ring, short, long } => {
             kind = "ravigneaux";
-            count = number(a, short, "short_planet").or(number(a, long, "long_planet"));
+            count = in_pairs(a, (short, "short_planet"), (long, "long_planet"));
             let (z_short, z_long) = (planet_teeth(a, short, "short_planet"), planet_teeth(a, long, "long_planet"));
             if [small_sun, large_sun, ring].iter().filter(|g| g.is_some()).count() < 2 {
                 let message = format!("set `{}` needs two of small_sun, large_sun and ring", clip(name));
@@ -212,8 +223,9 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
             let message = format!("mesh {k} of set `{}` joins a member to itself", clip(name));
             a.report(Diagnostic::new(Code::ImpossibleMesh, place.as_str(), message));
         }
+        let name = a.default_mesh_name(format!("{name}.{}", p.name));
         a.meshes.push(Mesh {
-            name: format!("{name}.{}", p.name),
+            name,
             gears: [first, second],
             carrier,
             efficiency,

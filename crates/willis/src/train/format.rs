@@ -187,7 +187,7 @@ fn shift_element(t: &Fields) -> ShiftElementSpec {
             _ => ShiftElementKind::Clutch,
         },
         members: t.names("members"),
-        blocks: if t.optional_text("blocks").is_some_and(|b| b == "forward") { 1 } else { -1 },
+        blocks: t.optional_text("blocks").map(|b| if b == "forward" { 1 } else { -1 }),
     }
 }
 
