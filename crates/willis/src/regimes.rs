@@ -11,6 +11,7 @@
 //! completed by the cases between self-locking limits, where friction turns a torque round.
 
 pub(crate) mod arrangement;
+mod closed;
 pub(crate) mod formula;
 pub(crate) mod setup;
 
@@ -29,6 +30,7 @@ use arrangement::{Cell, dot};
 use formula::{Formula, Shape, SymbolKind, element_label};
 use setup::{Pattern, Setup, TorqueCell};
 
+pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
 pub use formula::{Efficiencies, Ratios};
 
 /// Which part of a train, and from which terminals.

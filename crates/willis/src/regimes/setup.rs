@@ -233,11 +233,6 @@ impl<'t> Setup<'t> {
         self.sigma.iter().map(|s| arrangement::dot(s, base).sign()).collect()
     }
 
-    /// Number of driver patterns to try for each direction of motion.
-    pub fn patterns(&self, sigma: &[i8]) -> u32 {
-        (0..self.active.len()).filter(|&j| sigma[j] != 0 && self.lossy(j)).count() as u32
-    }
-
     /// Every cone of terminal torques that is in equilibrium at the given signs of the relative
     /// speeds. The second value tells that some pattern is singular: the train lies exactly on a
     /// self-locking threshold.

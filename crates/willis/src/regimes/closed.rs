@@ -1,0 +1,550 @@
+//! Closed formulas to take away: in words, typeset, or as code that refuses to answer outside its
+//! regime.
+
+use serde::Serialize;
+
+use crate::analysis::{AS_DRAWN, Named};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
+use crate::kinematics::Configuration;
+use crate::symbolic::{Function, Notation, Symbol};
+use crate::train::{MemberId, Train};
+
+use super::formula::{Efficiencies, Formula, Names, Ratios, Shape, SymbolKind, identifier};
+use super::setup::Setup;
+use super::{RegimeReport, RegimeSelection, arrow, drivers, enumerate, power_signs, selected};
+
+/// Which formulas.
+#[derive(Clone, Debug, Default)]
+pub struct FormulaRequest {
+    /// State of the shift table, or `as drawn`; `None` for all.
+    pub state: Option<String>,
+    /// Terminals where power enters; empty for the state's input.
+    pub from: Vec<String>,
+    /// Terminals where power leaves; empty for the state's output.
+    pub to: Vec<String>,
+    /// Members on which torque may act (two or more freedoms); `None` for the train's terminals.
+    pub terminals: Option<Vec<String>>,
+    /// Only the regime of this name.
+    pub regime: Option<String>,
+    /// How ratios are written.
+    pub ratios: Ratios,
+    /// How efficiencies are written.
+    pub efficiencies: Efficiencies,
+}
+
+/// What was asked for, state by state.
+#[derive(Clone, Debug)]
+pub struct FormulaSheet {
+    /// Name of the train.
+    pub train: String,
+    /// The formulas.
+    pub formulas: Vec<ClosedFormula>,
+    /// States (and directions) without one, and why.
+    pub without: Vec<(String, String)>,
+}
+
+/// A quantity that a formula takes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Argument {
+    /// Its identifier.
+    pub name: String,
+    /// In LaTeX.
+    pub latex: String,
+    /// In words.
+    pub meaning: String,
+    /// Its value in this train; a speed or torque inside the regime otherwise.
+    pub value: f64,
+    /// The same as a fraction.
+    pub exact: String,
+    /// Whether it is an efficiency, to be above 0 and at most 1.
+    pub efficiency: bool,
+    /// Whether the train fixes it (a ratio, a tooth number, an efficiency).
+    pub fixed: bool,
+    #[serde(skip)]
+    pub(crate) symbol: Symbol,
+    #[serde(skip)]
+    pub(crate) number: Rational,
+}
+
+/// The closed formula of one regime, or of several that share it.
+///
+/// With one degree of freedom it gives efficiency, speed ratio and torque ratio; with more, all
+/// terminal speeds and torques and the efficiency, from as many of them as are independent.
+#[derive(Clone, Debug)]
+pub struct ClosedFormula {
+    /// An identifier: train, state, direction.
+    pub name: String,
+    /// What it is, in words.
+    pub title: String,
+    /// The state.
+    pub state: String,
+    /// Regimes in which it holds (two or more freedoms).
+    pub regimes: Vec<String>,
+    /// Terminals where power enters.
+    pub inputs: Vec<String>,
+    /// Terminals where power leaves.
+    pub outputs: Vec<String>,
+    /// Which end drives each element.
+    pub drivers: Named<Option<String>>,
+    /// What it takes.
+    pub arguments: Vec<Argument>,
+    pub(crate) efficiency: Function,
+    /// One freedom: `ω_from/ω_to` and `T_to/T_from`.
+    pub(crate) ratios: Option<[Function; 2]>,
+    /// More freedoms: every terminal's (speed symbol, speed, torque symbol, torque).
+    pub(crate) terminals: Vec<TerminalFormula>,
+    pub(crate) conditions: Vec<(Function, String)>,
+    pub(crate) names: Names,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct TerminalFormula {
+    pub speed_symbol: Symbol,
+    pub speed: Function,
+    pub torque_symbol: Symbol,
+    pub torque: Function,
+    pub given_speed: bool,
+    pub given_torque: bool,
+}
+
+/// Why a formula gives no number.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Outside {
+    /// An argument has no value.
+    Missing(String),
+    /// An efficiency is not above 0 and at most 1.
+    NoEfficiency(String),
+    /// A condition of the regime does not hold.
+    Condition(String),
+    /// A denominator is zero.
+    Pole,
+}
+
+impl std::fmt::Display for Outside {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Missing(name) => write!(f, "no value for {name}"),
+            Self::NoEfficiency(name) => write!(f, "{name} is not above 0 and at most 1"),
+            Self::Condition(text) => write!(f, "outside the regime: not true that {text}"),
+            Self::Pole => f.write_str("a denominator is zero"),
+        }
+    }
+}
+
+impl std::error::Error for Outside {}
+
+/// A derivative of the efficiency.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Derivative {
+    /// The efficiency symbol.
+    pub of: String,
+    /// The derivative in text.
+    pub formula: String,
+    /// The derivative in LaTeX.
+    pub latex: String,
+    /// Its value in this train (with more freedoms: at the speeds listed as arguments).
+    pub value: f64,
+    /// How much of the whole loss this element or mesh causes, to first order:
+    /// `(1 − η_j) ∂η/∂η_j`.
+    pub share: f64,
+}
+
+impl ClosedFormula {
+    /// The efficiency in a notation.
+    pub fn efficiency(&self, notation: Notation) -> String {
+        self.names.show(notation, &self.efficiency)
+    }
+
+    /// `ω_from/ω_to` and `T_to/T_from` in a notation (one degree of freedom).
+    pub fn ratios(&self, notation: Notation) -> Option<[String; 2]> {
+        self.ratios.as_ref().map(|r| [0, 1].map(|k| self.names.show(notation, &r[k])))
+    }
+
+    /// Expressions that are positive in the regime and nowhere else, with what each ensures.
+    pub fn conditions(&self, notation: Notation) -> Vec<(String, String)> {
+        self.conditions.iter().map(|(f, text)| (self.names.show(notation, f), text.clone())).collect()
+    }
+
+    /// The efficiency for given arguments, exactly.
+    ///
+    /// # Errors
+    /// Outside the regime, and for arguments without a value.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::exact::Rational;
+    /// use willis::regimes::{FormulaRequest, formulas};
+    /// use willis::train::{SetSpec, Train};
+    ///
+    /// let train = Train::builder("reducer")
+    ///     .members(["s", "c"])
+    ///     .terminals(["s", "c"])
+    ///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).basic_efficiency(0.98))
+    ///     .build()?;
+    /// let sheet = formulas(&train, &FormulaRequest::default())?;
+    /// let formula = &sheet.formulas[0];
+    /// assert_eq!(formula.efficiency(willis::symbolic::Notation::Text), "(1 - i0*eta0)/(1 - i0)");
+    /// let at = |i0: Rational| {
+    ///     formula.evaluate(&|name| match name {
+    ///         "i0" => Some(i0.clone()),
+    ///         _ => Some(Rational::new(98, 100)),
+    ///     })
+    /// };
+    /// // (1 + 7/3 · 0.98)/(1 + 7/3)
+    /// assert_eq!(at(Rational::new(-7, 3)), Ok(Rational::new(493, 500)));
+    /// // With a basic ratio of 1/2 another end would drive: no number.
+    /// assert!(at(Rational::new(1, 2)).is_err());
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn evaluate(&self, value: &dyn Fn(&str) -> Option<Rational>) -> Result<Rational, Outside> {
+        let mut values: Vec<(Symbol, Rational)> = Vec::new();
+        for a in &self.arguments {
+            let v = value(&a.name).ok_or_else(|| Outside::Missing(a.name.clone()))?;
+            if a.efficiency && (v.sign() <= 0 || v > Rational::ONE) {
+                return Err(Outside::NoEfficiency(a.name.clone()));
+            }
+            values.push((a.symbol, v));
+        }
+        // Dependent speeds and torques from the given ones.
+        for t in &self.terminals {
+            for (symbol, function, given) in
+                [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
+            {
+                if !given {
+                    let v = function.evaluate(&lookup(&values)).ok_or(Outside::Pole)?;
+                    values.push((symbol, v));
+                }
+            }
+        }
+        let of = lookup(&values);
+        for (f, text) in &self.conditions {
+            if f.evaluate(&of).is_none_or(|v| v.sign() <= 0) {
+                return Err(Outside::Condition(text.clone()));
+            }
+        }
+        self.efficiency.evaluate(&of).ok_or(Outside::Pole)
+    }
+
+    /// Derivatives of the efficiency with respect to every efficiency in it, the one that costs
+    /// most first.
+    pub fn derivatives(&self) -> Vec<Derivative> {
+        let values: Vec<(Symbol, Rational)> = self.values();
+        let mut all: Vec<Derivative> = self
+            .arguments
+            .iter()
+            .filter(|a| a.efficiency)
+            .map(|a| {
+                let d = self.efficiency.derivative(a.symbol);
+                let value = d.evaluate(&lookup(&values)).map_or(f64::NAN, |v| v.to_f64());
+                Derivative {
+                    of: a.name.clone(),
+                    formula: self.names.show(Notation::Text, &d),
+                    latex: self.names.show(Notation::Latex, &d),
+                    value,
+                    share: (1.0 - a.value) * value,
+                }
+            })
+            .collect();
+        all.sort_by(|a, b| b.share.total_cmp(&a.share));
+        all
+    }
+
+    /// The arguments' own values and what follows from them.
+    fn values(&self) -> Vec<(Symbol, Rational)> {
+        let mut values: Vec<(Symbol, Rational)> =
+            self.arguments.iter().map(|a| (a.symbol, a.number.clone())).collect();
+        for t in &self.terminals {
+            for (symbol, function, given) in
+                [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
+            {
+                let known = function.evaluate(&lookup(&values));
+                if let (false, Some(v)) = (given, known) {
+                    values.push((symbol, v));
+                }
+            }
+        }
+        values
+    }
+
+    /// Efficiency with the arguments' own values.
+    pub fn value(&self) -> Option<Rational> {
+        self.efficiency.evaluate(&lookup(&self.values()))
+    }
+}
+
+fn lookup(values: &[(Symbol, Rational)]) -> impl Fn(Symbol) -> Rational {
+    |s| values.iter().find(|(t, _)| *t == s).map_or(Rational::ONE, |(_, v)| v.clone())
+}
+
+/// The closed formulas of a train.
+///
+/// # Errors
+/// A state, terminal or regime that the train does not have, and requests that contradict each
+/// other.
+pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet, Diagnostics> {
+    let selection = RegimeSelection { state: request.state.clone(), terminals: request.terminals.clone() };
+    let mut sheet = FormulaSheet { train: train.name.clone(), formulas: vec![], without: vec![] };
+    let mut errors = Diagnostics::default();
+    let mut ends = |names: &[String]| -> Vec<MemberId> {
+        names
+            .iter()
+            .filter_map(|name| {
+                let found = train.member(name);
+                if found.is_none() {
+                    let known: Vec<&str> = train.members.iter().skip(1).map(|m| m.name.as_str()).collect();
+                    let d = Diagnostic::new(Code::UnknownName, "", format!("the train has no member `{name}`"));
+                    errors.push(
+                        d.suggest(name, known.iter().copied()).hint(format!("its members are: {}", known.join(", "))),
+                    );
+                }
+                found
+            })
+            .collect()
+    };
+    let (from, to) = (ends(&request.from), ends(&request.to));
+    for m in from.iter().filter(|m| to.contains(m)) {
+        let text = format!("`{}` cannot be both input and output", train.member_name(*m));
+        errors.push(Diagnostic::new(Code::Conflict, "", text));
+    }
+    let states = match selected(train, &selection) {
+        Ok(states) => states,
+        Err(wrong) => {
+            errors.extend(wrong);
+            return Err(errors);
+        }
+    };
+    if errors.has_errors() {
+        return Err(errors);
+    }
+    let several = states.len() > 1;
+    for (state, c, members) in states {
+        let own = train.states.iter().find(|s| s.name == state);
+        let input = own.and_then(|s| s.input).or(train.input);
+        let output = own.and_then(|s| s.output).or(train.output);
+        // As drawn is left out when a shift table says how the train is used.
+        let unasked = several && state == AS_DRAWN;
+        let found = if c.degrees_of_freedom() == 1 {
+            let from = if from.is_empty() { input.into_iter().collect() } else { from.clone() };
+            let to = if to.is_empty() { output.into_iter().collect() } else { to.clone() };
+            one_freedom(&state, c, &from, &to, request)
+        } else {
+            several_freedoms(&state, c, &members, (&from, &to), request)
+        };
+        match found {
+            Ok(list) => sheet.formulas.extend(list),
+            Err(_) if unasked => {}
+            Err(why) => sheet.without.push((state, why)),
+        }
+    }
+    if let Some(regime) = &request.regime
+        && sheet.formulas.is_empty()
+    {
+        let text = format!("no state asked for has a regime `{regime}`");
+        errors.push(Diagnostic::new(Code::UnknownSelection, "", text).hint("`willis regimes` lists them"));
+        return Err(errors);
+    }
+    Ok(sheet)
+}
+
+/// From one terminal to another: what the numeric solver finds for driving.
+fn one_freedom(
+    state: &str,
+    c: Configuration<'_>,
+    from: &[MemberId],
+    to: &[MemberId],
+    request: &FormulaRequest,
+) -> Result<Vec<ClosedFormula>, String> {
+    let ([from], [to]) = (from, to) else {
+        return Err("with one degree of freedom a formula needs one input and one output; name them with --from and --to".into());
+    };
+    let train = c.train;
+    let (from, to) = (*from, *to);
+    let [a, b] = [from, to].map(|m| train.member_name(m).to_owned());
+    let c = Configuration::new(train, &c.engaged, &c.held, &[from, to]);
+    if c.node(from).is_some() && c.node(from) == c.node(to) {
+        return Err(format!("direct drive: {a} and {b} turn as one, no mesh is loaded and the efficiency is 1"));
+    }
+    for (m, name) in [(from, &a), (to, &b)] {
+        if c.node(m).is_none() {
+            return Err(format!("{name} is held"));
+        }
+    }
+    let setup = Setup::new(c, &[from, to])?;
+    if setup.terminals.len() < 2 {
+        return Err(format!("no load passes from {a} to {b}"));
+    }
+    let cells = enumerate(&setup)?;
+    // The input turns forward; the mirror image has the same formulas.
+    let k = (0..cells.regions.len())
+        .find(|&k| super::arrangement::dot(setup.terminal_speed(0), &cells.regions[k].point).sign() > 0)
+        .ok_or_else(|| format!("{a} cannot turn"))?;
+    let base = &cells.regions[k].point;
+    let shape = Shape::new(&setup, &[0])?;
+    let mut all = Vec::new();
+    for cell in &cells.torques[k] {
+        let powers = power_signs(&setup, base, &cell.signs);
+        if powers != [1, -1] {
+            continue;
+        }
+        let own = shape.formula(&cell.pattern, &powers, request.ratios, request.efficiencies);
+        let speed_ratio = own.speeds[0].over(&own.speeds[1]);
+        let torque_ratio = own.torques[1].over(&own.torques[0]);
+        let mut formula = closed(train, &setup, state, &own, &powers, &cell.pattern, base, &cell.torques);
+        formula.title = format!("{a} drives {b}");
+        formula.name = format!("{}_{}", formula.name, identifier(&format!("{a}_to_{b}")));
+        formula.ratios = Some([speed_ratio, torque_ratio]);
+        formula.keep_used();
+        all.push(formula);
+    }
+    if all.is_empty() {
+        return Err(format!("locked: friction lets {a} drive no load at {b}"));
+    }
+    if all.len() > 1 {
+        for (n, f) in all.iter_mut().enumerate() {
+            f.title += &format!(" (equilibrium {} of several)", n + 1);
+            f.name += &format!("_{}", n + 1);
+        }
+    }
+    Ok(all)
+}
+
+/// The formulas of all regimes with the roles asked for.
+fn several_freedoms(
+    state: &str,
+    c: Configuration<'_>,
+    members: &[MemberId],
+    (from, to): (&[MemberId], &[MemberId]),
+    request: &FormulaRequest,
+) -> Result<Vec<ClosedFormula>, String> {
+    let train = c.train;
+    let atlas = super::atlas(state.to_owned(), c.clone(), members);
+    if let Some(why) = atlas.reason {
+        return Err(why);
+    }
+    let setup = Setup::new(c, members)?;
+    let shape = Shape::new(&setup, &[])?;
+    let names = |ids: &[MemberId]| ids.iter().map(|m| train.member_name(*m).to_owned()).collect::<Vec<_>>();
+    let (from, to) = (names(from), names(to));
+    let wanted = |r: &&RegimeReport| {
+        from.iter().all(|f| r.inputs.contains(f))
+            && to.iter().all(|t| r.outputs.contains(t))
+            && request.regime.as_ref().is_none_or(|id| *id == r.id)
+    };
+    let mut all: Vec<ClosedFormula> = Vec::new();
+    let mut done: Vec<&str> = Vec::new();
+    for r in atlas.regimes.iter().filter(wanted) {
+        if done.contains(&r.formula.as_str()) {
+            continue;
+        }
+        done.push(&r.formula);
+        let own = shape.formula(&r.pattern, &r.power_signs, request.ratios, request.efficiencies);
+        let region = &atlas.regions[r.region - 1];
+        let mut f = closed(train, &setup, state, &own, &r.power_signs, &r.pattern, &region.point, &r.torques);
+        f.title = arrow(&f.inputs, &f.outputs);
+        f.name = format!("{}_{}", f.name, r.formula.to_lowercase());
+        f.regimes = atlas.regimes.iter().filter(|o| o.formula == r.formula).map(|o| o.id.clone()).collect();
+        f.terminals = (0..setup.terminals.len())
+            .map(|t| TerminalFormula {
+                speed_symbol: own.names.speed(t),
+                speed: own.speeds[t].clone(),
+                torque_symbol: own.names.torque(t),
+                torque: own.torques[t].clone(),
+                given_speed: setup.base.contains(&t),
+                given_torque: shape.reference.contains(&t),
+            })
+            .collect();
+        f.keep_used();
+        all.push(f);
+    }
+    if all.is_empty() {
+        return Err(format!("no regime has the roles {}; `willis regimes` lists those there are", arrow(&from, &to)));
+    }
+    Ok(all)
+}
+
+#[allow(clippy::too_many_arguments)]
+fn closed(
+    train: &Train,
+    setup: &Setup<'_>,
+    state: &str,
+    own: &Formula,
+    powers: &[i8],
+    pattern: &super::Pattern,
+    base: &[Rational],
+    torques: &[Rational],
+) -> ClosedFormula {
+    let of = |sign: i8| -> Vec<String> {
+        let chosen = (0..powers.len()).filter(|&t| powers[t] == sign);
+        chosen.map(|t| train.member_name(setup.terminals[t].member).to_owned()).collect()
+    };
+    let label = if state == AS_DRAWN { String::new() } else { format!("_state_{state}") };
+    let arguments = (0..own.names.infos.len())
+        .map(|k| {
+            let info = &own.names.infos[k];
+            let s = Symbol(k);
+            let terminal = (0..setup.terminals.len()).find(|&t| own.names.speed(t) == s || own.names.torque(t) == s);
+            let number = match (info.kind, terminal) {
+                (SymbolKind::Speed, Some(t)) => super::arrangement::dot(setup.terminal_speed(t), base),
+                (SymbolKind::Torque, Some(t)) => torques[t].clone(),
+                _ => info.value.clone().unwrap_or(Rational::ONE),
+            };
+            Argument {
+                name: info.name.clone(),
+                latex: info.latex.clone(),
+                meaning: info.meaning.clone(),
+                value: number.to_f64(),
+                exact: number.to_fraction(),
+                efficiency: info.kind == SymbolKind::Efficiency,
+                fixed: info.value.is_some(),
+                symbol: s,
+                number,
+            }
+        })
+        .collect();
+    ClosedFormula {
+        name: identifier(&format!("{}{label}", train.name)).trim_matches('_').to_lowercase(),
+        title: String::new(),
+        state: state.to_owned(),
+        regimes: vec![],
+        inputs: of(1),
+        outputs: of(-1),
+        drivers: Named(drivers(setup, pattern)),
+        arguments,
+        efficiency: own.efficiency.clone(),
+        ratios: None,
+        terminals: vec![],
+        conditions: own.conditions.iter().map(|c| (c.function.clone(), c.meaning.clone())).collect(),
+        names: own.names.clone(),
+    }
+}
+
+impl ClosedFormula {
+    /// Leaves only arguments that occur, and those that are given.
+    fn keep_used(&mut self) {
+        let mut used: Vec<Symbol> = self.efficiency.symbols();
+        used.extend(self.ratios.iter().flatten().flat_map(Function::symbols));
+        used.extend(self.conditions.iter().flat_map(|(f, _)| f.symbols()));
+        for t in &self.terminals {
+            used.extend(t.speed.symbols());
+            used.extend(t.torque.symbols());
+        }
+        for t in &self.terminals {
+            // Dependent quantities are results, not arguments.
+            used.retain(|s| (t.given_speed || *s != t.speed_symbol) && (t.given_torque || *s != t.torque_symbol));
+        }
+        self.arguments.retain(|a| used.contains(&a.symbol));
+        // Something the compilers of six languages accept.
+        if self.name.starts_with(|c: char| c.is_ascii_digit()) {
+            self.name.insert_str(0, "train_");
+        }
+        let mut name = String::new();
+        for c in self.name.chars() {
+            if c != '_' || !name.ends_with('_') {
+                name.push(c);
+            }
+        }
+        self.name = name;
+    }
+}
