@@ -223,10 +223,10 @@ fn number(x: Option<f64>) -> String {
 }
 
 #[derive(Default)]
-struct Writer(String);
+pub struct Writer(pub String);
 
 impl Writer {
-    fn row<S: AsRef<str>>(&mut self, fields: impl IntoIterator<Item = S>) {
+    pub fn row<S: AsRef<str>>(&mut self, fields: impl IntoIterator<Item = S>) {
         for (k, field) in fields.into_iter().enumerate() {
             if k > 0 {
                 self.0.push(',');

@@ -2,6 +2,7 @@
 
 mod csv;
 mod input;
+mod regimes;
 mod text;
 
 use std::io::Write;
@@ -10,6 +11,8 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use willis::analysis::{self, Analysis, Selection};
 use willis::diagnostic::{Code, Diagnostics, Severity};
+use willis::regimes::{Efficiencies, FormulaRequest, Ratios, RegimeSelection};
+use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
 
 /// Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that
@@ -54,6 +57,69 @@ enum Command {
         #[arg(long, value_enum)]
         table: Option<csv::Table>,
     },
+    /// List every regime of a train: who drives whom, in which speeds, with which formula.
+    ///
+    /// For two and more degrees of freedom: the regions of speed, the signs of the torques, inputs
+    /// and outputs, the driving ends, the closed formula of efficiency and loss, the boundaries and
+    /// what changes across them, and which assignments of inputs and outputs cannot be reached. For
+    /// one degree of freedom: driving and coasting of every state with its formula.
+    Regimes {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// Only this state of the shift table, or "as drawn".
+        #[arg(long)]
+        state: Option<String>,
+        /// Members on which torque may act, with commas between; else the train's terminals.
+        #[arg(long, value_delimiter = ',')]
+        terminals: Option<Vec<String>>,
+        /// Two terminals whose powers add to zero: the machines of a hybrid with an idle battery.
+        #[arg(long, value_delimiter = ',', value_name = "A,B")]
+        balance: Option<Vec<String>>,
+        /// One set with three terminals: for every basic ratio it can have (Esmail's Table 1).
+        #[arg(long, conflicts_with = "balance")]
+        family: bool,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: RegimesFormat,
+    },
+    /// Give the closed formula of efficiency, speed ratio and torque ratio, also as code.
+    ///
+    /// Emitted code checks first whether its formula holds for its arguments and refuses to answer
+    /// where it does not.
+    Formula {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// Only this state of the shift table, or "as drawn".
+        #[arg(long)]
+        state: Option<String>,
+        /// Where power enters; else the state's input. Several with commas between.
+        #[arg(long, value_delimiter = ',')]
+        from: Vec<String>,
+        /// Where power leaves; else the state's output. Several with commas between.
+        #[arg(long, value_delimiter = ',')]
+        to: Vec<String>,
+        /// Members on which torque may act, for two and more degrees of freedom.
+        #[arg(long, value_delimiter = ',')]
+        terminals: Option<Vec<String>>,
+        /// Two terminals whose powers add to zero.
+        #[arg(long, value_delimiter = ',', value_name = "A,B")]
+        balance: Option<Vec<String>>,
+        /// Only the regime of this name, as `willis regimes` lists it.
+        #[arg(long)]
+        regime: Option<String>,
+        /// How to write it.
+        #[arg(long, value_enum, default_value = "text")]
+        lang: Language,
+        /// How ratios are written.
+        #[arg(long, value_enum, default_value = "basic")]
+        ratios: RatiosArgument,
+        /// How efficiencies are written.
+        #[arg(long, value_enum, default_value = "basic")]
+        efficiencies: EfficienciesArgument,
+        /// Also the derivatives with respect to every efficiency: which mesh matters most.
+        #[arg(long)]
+        derivatives: bool,
+    },
     /// Check a train file and say everything that is wrong with it.
     Check {
         /// Train file (TOML), or - for standard input.
@@ -86,6 +152,67 @@ enum Format {
     Json,
     /// Tables.
     Csv,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum RegimesFormat {
+    /// For eyes.
+    Text,
+    /// The results contract `willis-regimes-1`.
+    Json,
+    /// One row a regime.
+    Csv,
+    /// A table for typesetting.
+    Latex,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Language {
+    /// For eyes.
+    Text,
+    /// For typesetting (amsmath).
+    Latex,
+    /// Python 3.
+    Python,
+    /// Rust.
+    Rust,
+    /// C99.
+    C,
+    /// Modelica.
+    Modelica,
+}
+
+impl From<Language> for Notation {
+    fn from(l: Language) -> Self {
+        match l {
+            Language::Text => Self::Text,
+            Language::Latex => Self::Latex,
+            Language::Python => Self::Python,
+            Language::Rust => Self::Rust,
+            Language::C => Self::C,
+            Language::Modelica => Self::Modelica,
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum RatiosArgument {
+    /// One symbol for the basic ratio of each set.
+    Basic,
+    /// Tooth numbers as symbols.
+    Teeth,
+    /// The numbers of this train.
+    Numbers,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum EfficienciesArgument {
+    /// One symbol for each set: the product over its meshes.
+    Basic,
+    /// One symbol for each mesh.
+    Meshes,
+    /// The numbers of this train.
+    Numbers,
 }
 
 fn main() -> ExitCode {
@@ -131,6 +258,65 @@ fn run(command: &Command) -> Result<String, String> {
                 Format::Csv => csv::analysis(&analysis, *table),
             })
         }
+        Command::Regimes { file, state, terminals, balance, family, format } => {
+            let job = Job::read(file)?;
+            let selection = RegimeSelection {
+                state: state.clone(),
+                terminals: terminals.clone(),
+                balance: pair(balance.as_deref())?,
+            };
+            if *family {
+                let all = willis::regimes::family(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+                return Ok(match format {
+                    RegimesFormat::Text => regimes::family(&all),
+                    RegimesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
+                    RegimesFormat::Csv => regimes::family_csv(&all),
+                    RegimesFormat::Latex => regimes::family_latex(&all),
+                });
+            }
+            let all = willis::regimes::regimes(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+            Ok(match format {
+                RegimesFormat::Text => regimes::text(&all),
+                RegimesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
+                RegimesFormat::Csv => regimes::csv(&all),
+                RegimesFormat::Latex => regimes::latex(&all),
+            })
+        }
+        Command::Formula {
+            file,
+            state,
+            from,
+            to,
+            terminals,
+            balance,
+            regime,
+            lang,
+            ratios,
+            efficiencies,
+            derivatives,
+        } => {
+            let job = Job::read(file)?;
+            let request = FormulaRequest {
+                state: state.clone(),
+                from: from.clone(),
+                to: to.clone(),
+                terminals: terminals.clone(),
+                balance: pair(balance.as_deref())?,
+                regime: regime.clone(),
+                ratios: match ratios {
+                    RatiosArgument::Basic => Ratios::Basic,
+                    RatiosArgument::Teeth => Ratios::Teeth,
+                    RatiosArgument::Numbers => Ratios::Numbers,
+                },
+                efficiencies: match efficiencies {
+                    EfficienciesArgument::Basic => Efficiencies::Basic,
+                    EfficienciesArgument::Meshes => Efficiencies::Meshes,
+                    EfficienciesArgument::Numbers => Efficiencies::Numbers,
+                },
+            };
+            let sheet = willis::regimes::formulas(&job.train, &request).map_err(|wrong| job.failure(wrong))?;
+            Ok(sheet.emit((*lang).into(), *derivatives))
+        }
         Command::Check { file } => {
             let job = Job::read(file)?;
             let analysis = job.analyze(&Selection::default())?;
@@ -175,6 +361,15 @@ fn run(command: &Command) -> Result<String, String> {
     }
 }
 
+/// The two members of `--balance`.
+fn pair(names: Option<&[String]>) -> Result<Option<[String; 2]>, String> {
+    match names {
+        None => Ok(None),
+        Some([a, b]) => Ok(Some([a.clone(), b.clone()])),
+        Some(other) => Err(format!("--balance names two terminals, as in --balance mg1,mg2; here are {}\n", other.len())),
+    }
+}
+
 /// A train read from somewhere, with what is needed to tell where things stand in its text.
 struct Job {
     file: String,
@@ -195,10 +390,12 @@ impl Job {
     }
 
     fn analyze(&self, selection: &Selection) -> Result<Analysis, String> {
-        analysis::analyze(&self.train, selection).map_err(|mut wrong| {
-            self.reading.locate(&self.text, &mut wrong);
-            failure(&wrong, &self.file, &self.text)
-        })
+        analysis::analyze(&self.train, selection).map_err(|wrong| self.failure(wrong))
+    }
+
+    fn failure(&self, mut wrong: Diagnostics) -> String {
+        self.reading.locate(&self.text, &mut wrong);
+        failure(&wrong, &self.file, &self.text)
     }
 
     /// Warnings and notes, each at its place in the file.

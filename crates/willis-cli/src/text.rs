@@ -365,14 +365,14 @@ fn rpm(rad_s: f64) -> f64 {
     rad_s * 30.0 / std::f64::consts::PI
 }
 
-fn percent(x: f64) -> String {
+pub fn percent(x: f64) -> String {
     // Two decimals, more where two would hide the loss or the efficiency.
     let p = 100.0 * x;
     if (99.995..100.0).contains(&p) || (0.0 < p && p < 0.1) { format!("{p:.4} %") } else { format!("{p:.2} %") }
 }
 
 /// A number with so many significant digits, in plain notation where that is readable.
-fn significant(x: f64, digits: i32) -> String {
+pub fn significant(x: f64, digits: i32) -> String {
     if x == 0.0 {
         return "0".into();
     }
@@ -390,23 +390,23 @@ fn dash(x: f64, text: String) -> String {
     if x == 0.0 { "-".into() } else { text }
 }
 
-fn plural(n: usize, one: &str, many: &str) -> String {
+pub fn plural(n: usize, one: &str, many: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { many })
 }
 
-fn table() -> Table {
+pub fn table() -> Table {
     let mut t = Table::new();
     t.load_style(presets::NOTHING);
     t
 }
 
-fn set_header(t: &mut Table, names: &[&str]) {
+pub fn set_header(t: &mut Table, names: &[&str]) {
     t.set_header(names.iter().copied());
     t.column_mut(0).expect("a table has a column").set_padding((2, 1));
 }
 
 /// The table with its header dimmed and no blanks at line ends.
-fn show(t: &Table) -> String {
+pub fn show(t: &Table) -> String {
     let text = t.to_string();
     let mut lines = text.lines().map(str::trim_end);
     let header = dim(lines.next().unwrap_or_default());
@@ -421,17 +421,17 @@ fn right(t: &mut Table, columns: std::ops::Range<usize>) {
     }
 }
 
-fn bold(text: &str) -> String {
+pub fn bold(text: &str) -> String {
     format!("\u{1b}[1m{text}\u{1b}[0m")
 }
 
-fn dim(text: &str) -> String {
+pub fn dim(text: &str) -> String {
     format!("\u{1b}[2m{text}\u{1b}[0m")
 }
 
 /// Breaks a line at 100 characters; the first line begins with `head`, the others are indented
 /// as far. Control characters, which a terminal would obey, separate words and are dropped.
-fn wrap(text: &str, head: &str) -> String {
+pub fn wrap(text: &str, head: &str) -> String {
     const WIDTH: usize = 100;
     let indent = " ".repeat(head.chars().count());
     let mut lines = vec![head.to_owned()];

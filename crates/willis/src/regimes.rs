@@ -12,6 +12,8 @@
 
 pub(crate) mod arrangement;
 mod closed;
+mod emit;
+mod family;
 pub(crate) mod formula;
 pub(crate) mod setup;
 
@@ -31,6 +33,7 @@ use formula::{Formula, Shape, SymbolKind, element_label};
 use setup::{Pattern, Setup, TorqueCell};
 
 pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
+pub use family::{Case, Family, FamilyRange, Group, Row, family};
 pub use formula::{Efficiencies, Ratios};
 
 /// Which part of a train, and from which terminals.
@@ -40,6 +43,9 @@ pub struct RegimeSelection {
     pub state: Option<String>,
     /// Members on which torque may act; `None` for the train's terminals.
     pub terminals: Option<Vec<String>>,
+    /// Two terminals whose powers add to zero, such as the two machines of a hybrid whose battery
+    /// neither gives nor takes.
+    pub balance: Option<[String; 2]>,
 }
 
 /// All regimes of a train.
@@ -245,7 +251,9 @@ pub struct FormulaReport {
     pub drivers: String,
     /// Output over input power.
     pub efficiency: String,
-    /// The same in LaTeX.
+    /// The same by the losses over the power of the only input or output, where there is one.
+    pub efficiency_by_loss: Option<String>,
+    /// The first in LaTeX.
     pub efficiency_latex: String,
     /// Power lost, as a sum over the elements that drive.
     pub loss: String,
@@ -353,24 +361,28 @@ const MOST_ASSIGNED: usize = 6;
 /// ```
 pub fn regimes(train: &Train, selection: &RegimeSelection) -> Result<Regimes, Diagnostics> {
     let mut states = Vec::new();
-    for (name, c, terminals) in selected(train, selection)? {
-        let atlas = atlas(name, c, &terminals);
-        // Unasked for, a state without regimes is no news when others have some.
-        states.push(atlas);
+    for Choice { state, configuration, terminals, balance } in selected(train, selection)? {
+        states.push(atlas(state, configuration, &terminals, balance));
     }
+    // Unasked for, a train as drawn without regimes is no news when its states have some.
     if selection.state.is_none() && states.iter().any(|a: &Atlas| a.reason.is_none()) {
         states.retain(|a| a.reason.is_none() || a.state != AS_DRAWN);
     }
     Ok(Regimes { format: "willis-regimes-1", train: train.name.clone(), states })
 }
 
-/// The configurations that a selection names, each with its terminals.
-pub(crate) fn selected<'t>(
-    train: &'t Train,
-    selection: &RegimeSelection,
-) -> Result<Vec<(String, Configuration<'t>, Vec<MemberId>)>, Diagnostics> {
+/// A configuration that a selection names, with its terminals.
+pub(crate) struct Choice<'t> {
+    pub state: String,
+    pub configuration: Configuration<'t>,
+    pub terminals: Vec<MemberId>,
+    pub balance: Option<[MemberId; 2]>,
+}
+
+/// The configurations that a selection names.
+pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Result<Vec<Choice<'t>>, Diagnostics> {
     let mut errors = Diagnostics::default();
-    let named: Option<Vec<MemberId>> = selection.terminals.as_ref().map(|names| {
+    let mut members = |names: &[String]| {
         let mut all: Vec<MemberId> = Vec::new();
         for name in names {
             match train.member(name) {
@@ -390,7 +402,10 @@ pub(crate) fn selected<'t>(
             }
         }
         all
-    });
+    };
+    let named: Option<Vec<MemberId>> = selection.terminals.as_ref().map(|names| members(names));
+    let balance: Option<Vec<MemberId>> = selection.balance.as_ref().map(|pair| members(pair));
+    let balance = balance.and_then(|pair| <[MemberId; 2]>::try_from(pair).ok());
     let mut chosen: Vec<Option<usize>> = vec![];
     match &selection.state {
         None => {
@@ -427,13 +442,14 @@ pub(crate) fn selected<'t>(
                 });
                 distinct
             });
-            let c = Configuration::new(train, engaged, &[], &members);
-            (state.map_or(AS_DRAWN.to_owned(), |s| s.name.clone()), c, members)
+            let configuration = Configuration::new(train, engaged, &[], &members);
+            let state = state.map_or(AS_DRAWN.to_owned(), |s| s.name.clone());
+            Choice { state, configuration, terminals: members, balance }
         })
         .collect())
 }
 
-fn atlas(state: String, c: Configuration<'_>, members: &[MemberId]) -> Atlas {
+fn atlas(state: String, c: Configuration<'_>, members: &[MemberId], balance: Option<[MemberId; 2]>) -> Atlas {
     let train = c.train;
     let name = |m: MemberId| train.member_name(m).to_owned();
     let mut atlas = Atlas {
@@ -459,7 +475,7 @@ fn atlas(state: String, c: Configuration<'_>, members: &[MemberId]) -> Atlas {
         atlas.reason = Some("direct drive: the terminals turn as one, no mesh is loaded and the efficiency is 1".into());
         return atlas;
     }
-    let setup = match Setup::new(c, members) {
+    let setup = match Setup::new(c, members, balance) {
         Ok(setup) => setup,
         Err(why) => {
             atlas.reason = Some(why);
@@ -505,7 +521,7 @@ pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
         if torques[k].is_some() {
             continue;
         }
-        let (cells, odd) = setup.torque_cells(&setup.sigma_signs(&regions[k].point));
+        let (cells, odd) = setup.torque_cells(&regions[k].point);
         singular |= odd;
         // All speeds and torques reversed: the same drivers, the same powers.
         let opposite = index[&regions[k].signs.iter().map(|s| -s).collect::<Vec<_>>()];
@@ -518,7 +534,6 @@ pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
                         pattern: t.pattern.clone(),
                         signs: t.signs.iter().map(|s| -s).collect(),
                         torques: reversed(&t.torques),
-                        forces: reversed(&t.forces),
                     })
                     .collect(),
             );
@@ -538,7 +553,7 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     let terminal = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
     let m = setup.terminals.len();
     atlas.terminals = (0..m).map(terminal).collect();
-    atlas.independent_torques = setup.torques;
+    atlas.independent_torques = setup.independent_torques();
     atlas.base_speeds = setup.base.iter().map(|&b| terminal(b)).collect();
     let cells = match enumerate(setup) {
         Ok(cells) => cells,
@@ -573,8 +588,7 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     let opposite = |signs_of: &[i8]| signs[signs_of.iter().map(|s| -s).collect::<Vec<_>>().as_slice()];
 
     for (k, cell) in cells.regions.iter().enumerate() {
-        atlas.regions.push(region(setup, atlas, &cells, k, opposite(&cell.signs)));
-        let _ = cell;
+        atlas.regions.push(region(setup, &atlas.base_speeds, &cells, k, opposite(&cell.signs)));
     }
 
     // What can happen without friction, to tell what friction makes.
@@ -605,14 +619,17 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
                 .iter()
                 .position(|t| t.pattern == cell.pattern && t.signs.iter().zip(&cell.signs).all(|(a, b)| *a == -b) && mirrored(t, cell))
                 .expect("every regime has its mirror image");
-            let exact = efficiency_at(setup, base, &cell.torques);
+            // At the example's speeds, which are rounder than those of the cell.
+            let inside = &atlas.regions[k].point;
+            let torques = setup.torques_at(&cell.pattern, base, &cell.torques, inside);
+            let exact = efficiency_at(setup, inside, &torques);
             let named_signs = Named((0..m).map(|t| (terminal(t), cell.signs[t])).collect());
             let role = |t: usize| match powers[t] {
                 1 => Role::Input,
                 -1 => Role::Output,
                 _ => Role::Idle,
             };
-            let limits = limits(setup, &atlas.regions[k], &cell.torques);
+            let limits = limits(setup, &atlas.regions[k], &cell.pattern, &torques);
             atlas.regimes.push(RegimeReport {
                 id: ids[k][n].clone(),
                 region: k + 1,
@@ -625,7 +642,7 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
                 efficiency_range: limits,
                 example: ExamplePoint {
                     speeds: atlas.regions[k].example.clone(),
-                    torques: Named((0..m).map(|t| (terminal(t), cell.torques[t].to_f64())).collect()),
+                    torques: Named((0..m).map(|t| (terminal(t), torques[t].to_f64())).collect()),
                     efficiency: exact.to_f64(),
                     efficiency_exact: exact.to_fraction(),
                 },
@@ -634,13 +651,29 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
                 all_dissipated: powers.iter().all(|p| *p >= 0),
                 neighbours: vec![],
                 pattern: cell.pattern.clone(),
-                torques: cell.torques.clone(),
+                torques,
                 power_signs: powers,
             });
         }
     }
+    label_unloading(atlas, setup);
+    let facets: Vec<Vec<String>> = atlas
+        .regions
+        .iter()
+        .map(|r| {
+            (0..atlas.planes.len())
+                .filter(|&p| {
+                    let mut across = r.signs.clone();
+                    across[p] = -across[p];
+                    signs.contains_key(across.as_slice())
+                })
+                .map(|p| atlas.planes[p].label.clone())
+                .collect()
+        })
+        .collect();
+    atlas.regions.iter_mut().zip(facets).for_each(|(r, f)| r.bounded_by = f);
     neighbours(atlas, setup);
-    if setup.torques == 1 {
+    if setup.independent_torques() == 1 {
         for region in &mut atlas.regions {
             let own: Vec<&RegimeReport> = atlas.regimes.iter().filter(|r| r.region == region.number).collect();
             region.prescribed = (0..m)
@@ -740,7 +773,7 @@ fn bounding_rays(cells: &Cells, k: usize) -> Option<[Vec<Rational>; 2]> {
     Some([ray((k + n - 1) % n, k)?, ray(k, (k + 1) % n)?])
 }
 
-fn region(setup: &Setup<'_>, atlas: &Atlas, cells: &Cells, k: usize, opposite: usize) -> RegionReport {
+fn region(setup: &Setup<'_>, base_speeds: &[String], cells: &Cells, k: usize, opposite: usize) -> RegionReport {
     let train = setup.c.train;
     let cell = &cells.regions[k];
     let rays = bounding_rays(cells, k);
@@ -758,15 +791,6 @@ fn region(setup: &Setup<'_>, atlas: &Atlas, cells: &Cells, k: usize, opposite: u
         }
         None => cell.point.clone(),
     };
-    let index: Vec<&[i8]> = cells.regions.iter().map(|c| c.signs.as_slice()).collect();
-    let bounded_by = (0..cells.planes.len())
-        .filter(|&p| {
-            let mut across = cell.signs.clone();
-            across[p] = -across[p];
-            index.contains(&across.as_slice())
-        })
-        .map(|p| atlas.planes[p].label.clone())
-        .collect();
     let ratio = rays.as_ref().and_then(|[from, to]| {
         let first = [&from[0], &to[0], &point[0]].map(Rational::sign);
         let sign = first[2];
@@ -774,7 +798,7 @@ fn region(setup: &Setup<'_>, atlas: &Atlas, cells: &Cells, k: usize, opposite: u
             let slope = |v: &[Rational]| (!v[0].is_zero()).then(|| (&v[1] / &v[0]).to_f64());
             let (low, high) = (slope(from), slope(to));
             RatioRange {
-                of: format!("w_{}/w_{}", atlas.base_speeds[1], atlas.base_speeds[0]),
+                of: format!("w_{}/w_{}", base_speeds[1], base_speeds[0]),
                 denominator_sign: sign,
                 low,
                 high,
@@ -793,7 +817,7 @@ fn region(setup: &Setup<'_>, atlas: &Atlas, cells: &Cells, k: usize, opposite: u
         from: rays.as_ref().map(|r| direction(&r[0])),
         to: rays.as_ref().map(|r| direction(&r[1])),
         ratio,
-        bounded_by,
+        bounded_by: vec![],
         opposite: opposite + 1,
         prescribed: vec![],
         point,
@@ -847,7 +871,7 @@ pub(crate) fn order(setup: &Setup<'_>, point: &[Rational]) -> Vec<String> {
 }
 
 fn regime_name(setup: &Setup<'_>, region: usize, list: &[TorqueCell], n: usize) -> String {
-    if setup.torques > 1 {
+    if setup.independent_torques() > 1 {
         return format!("{}.{}", region + 1, n + 1);
     }
     let lead = |c: &TorqueCell| c.signs.iter().copied().find(|s| *s != 0).unwrap_or(0);
@@ -884,13 +908,16 @@ pub(crate) fn efficiency_at(setup: &Setup<'_>, base: &[Rational], torques: &[Rat
 }
 
 /// Efficiency on the two directions that bound a region.
-fn limits(setup: &Setup<'_>, region: &RegionReport, torques: &[Rational]) -> Option<[f64; 2]> {
-    if setup.torques > 1 {
+fn limits(setup: &Setup<'_>, region: &RegionReport, pattern: &Pattern, torques: &[Rational]) -> Option<[f64; 2]> {
+    if setup.independent_torques() > 1 {
         return None;
     }
     match &region.rays {
         Some([from, to]) => {
-            let ends = [from, to].map(|r| efficiency_at(setup, r, torques).to_f64());
+            let ends = [from, to].map(|r| {
+                let there = setup.torques_at(pattern, &region.point, torques, r);
+                efficiency_at(setup, r, &there).to_f64()
+            });
             Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
         }
         None if setup.base.len() == 1 => Some([efficiency_at(setup, &region.point, torques).to_f64(); 2]),
@@ -906,8 +933,12 @@ fn without_friction(setup: &Setup<'_>) -> std::collections::BTreeSet<(usize, Vec
     for e in &mut ideal.c.elements {
         (e.forward, e.backward) = (Rational::ONE, Rational::ONE);
     }
-    let (cells, _) = ideal.torque_cells(&vec![1; setup.active.len()]);
-    (0..regions.len()).flat_map(|k| cells.iter().map(move |c| (k, c.signs.clone()))).collect()
+    (0..regions.len())
+        .flat_map(|k| {
+            let (cells, _) = ideal.torque_cells(&regions[k].point);
+            cells.into_iter().map(move |c| (k, c.signs))
+        })
+        .collect()
 }
 
 fn neighbours(atlas: &mut Atlas, setup: &Setup<'_>) {
@@ -917,14 +948,14 @@ fn neighbours(atlas: &mut Atlas, setup: &Setup<'_>) {
         by_region.entry(r.region).or_default().push(k);
     }
     for k in 0..atlas.regimes.len() {
-        let signs = &atlas.regions[atlas.regimes[k].region - 1].signs;
+        let own = &atlas.regions[atlas.regimes[k].region - 1];
         let mut all = Vec::new();
         for (p, plane) in atlas.planes.iter().enumerate() {
-            let mut across = signs.clone();
+            let mut across = own.signs.clone();
             across[p] = -across[p];
             let Some(number) = by_signs.get(&across) else { continue };
             for &other in by_region.get(number).into_iter().flatten() {
-                if continues(setup, &atlas.regimes[k], &atlas.regimes[other]) {
+                if continues(setup, atlas, &atlas.regimes[k], &atlas.regimes[other], p) {
                     all.push(Neighbour { plane: plane.label.clone(), regime: atlas.regimes[other].id.clone() });
                 }
             }
@@ -933,15 +964,76 @@ fn neighbours(atlas: &mut Atlas, setup: &Setup<'_>) {
     }
 }
 
-/// Whether the torques of one regime go on into the other when the speeds cross a plane.
-fn continues(setup: &Setup<'_>, a: &RegimeReport, b: &RegimeReport) -> bool {
-    let same = a.torque_signs.0.iter().zip(&b.torque_signs.0).filter(|(x, y)| x.1 == y.1).count();
-    if setup.torques == 1 {
-        // Friction may turn a torque round; the first one keeps its sign.
-        let lead = |r: &RegimeReport| r.torque_signs.0.iter().map(|x| x.1).find(|s| *s != 0);
-        return lead(a) == lead(b);
+/// The direction between two neighbouring regions of the plane.
+fn ray_between<'a>(a: &'a RegionReport, b: &RegionReport) -> Option<&'a [Rational]> {
+    let ([from, to], [other_from, other_to]) = (a.rays.as_ref()?, b.rays.as_ref()?);
+    let parallel = |u: &[Rational], v: &[Rational]| {
+        arrangement::by_angle(u, v).is_eq()
+    };
+    if parallel(to, other_from) {
+        Some(to)
+    } else if parallel(from, other_to) {
+        Some(from)
+    } else {
+        None
     }
-    same == a.torque_signs.0.len()
+}
+
+/// Whether the torques of one regime go on into the other when the speeds cross a plane.
+fn continues(setup: &Setup<'_>, atlas: &Atlas, a: &RegimeReport, b: &RegimeReport, plane: usize) -> bool {
+    let signs = |r: &RegimeReport| r.torque_signs.0.iter().map(|x| x.1).collect::<Vec<i8>>();
+    let slips = !atlas.planes[plane].without_relative_motion.is_empty();
+    let (own, other) = (&atlas.regions[a.region - 1], &atlas.regions[b.region - 1]);
+    if !slips && setup.balance.is_some() {
+        // Without friction's jump the torques on the plane itself agree.
+        if let Some(ray) = ray_between(own, other) {
+            let at = |r: &RegimeReport, region: &RegionReport| {
+                let there = setup.torques_at(&r.pattern, &region.point, &r.torques, ray);
+                let size = there.iter().map(Rational::abs).max().unwrap_or(Rational::ONE);
+                let size = if size.is_zero() { Rational::ONE } else { size };
+                there.into_iter().map(|x| x / &size).collect::<Vec<_>>()
+            };
+            return at(a, own) == at(b, other);
+        }
+    }
+    if setup.independent_torques() == 1 {
+        // Friction may turn a torque round; the first one keeps its sign.
+        let lead = |r: &RegimeReport| signs(r).into_iter().find(|s| *s != 0);
+        return lead(a) == lead(b) && (slips || a.pattern == b.pattern);
+    }
+    signs(a) == signs(b) && (slips || a.pattern == b.pattern)
+}
+
+/// Names the planes on which a torque or a tooth force vanishes, which only balanced powers make.
+fn label_unloading(atlas: &mut Atlas, setup: &Setup<'_>) {
+    let n = atlas.regions.len();
+    for p in 0..atlas.planes.len() {
+        if !atlas.planes[p].label.is_empty() {
+            continue;
+        }
+        let mut zero: Vec<String> = Vec::new();
+        for k in 0..n {
+            let (a, b) = (&atlas.regions[k], &atlas.regions[(k + 1) % n]);
+            if a.signs[p] == b.signs[p] {
+                continue;
+            }
+            let Some(ray) = ray_between(a, b) else { continue };
+            for (region, r) in [a, b].into_iter().flat_map(|x| {
+                atlas.regimes.iter().filter(move |r| r.region == x.number).map(move |r| (x, r))
+            }) {
+                let there = setup.torques_at(&r.pattern, &region.point, &r.torques, ray);
+                for (t, x) in there.iter().enumerate() {
+                    if x.is_zero() && !zero.contains(&atlas.terminals[t]) {
+                        zero.push(atlas.terminals[t].clone());
+                    }
+                }
+            }
+        }
+        atlas.planes[p].label = match zero.is_empty() {
+            true => "a mesh is unloaded".to_owned(),
+            false => format!("no torque on {}", zero.join(", ")),
+        };
+    }
 }
 
 fn boundaries(atlas: &mut Atlas, setup: &Setup<'_>) {
@@ -958,10 +1050,14 @@ fn boundaries(atlas: &mut Atlas, setup: &Setup<'_>) {
         let Some(p) = (0..before.signs.len()).find(|&p| before.signs[p] != after.signs[p]) else { continue };
         let of = |number: usize| atlas.regimes.iter().filter(move |r| r.region == number);
         let mut crossings = Vec::new();
-        if setup.torques == 1 {
+        if setup.independent_torques() == 1 {
             for a in of(k + 1) {
-                for b in of(next + 1).filter(|b| continues(setup, a, b)) {
-                    let limit = |r: &RegimeReport| Some(efficiency_at(setup, ray, &r.torques).to_f64());
+                for b in of(next + 1).filter(|b| continues(setup, atlas, a, b, p)) {
+                    let limit = |r: &RegimeReport| {
+                        let inside = &atlas.regions[r.region - 1].point;
+                        let there = setup.torques_at(&r.pattern, inside, &r.torques, ray);
+                        Some(efficiency_at(setup, ray, &there).to_f64())
+                    };
                     crossings.push(Crossing {
                         from: a.id.clone(),
                         to: b.id.clone(),
@@ -1045,6 +1141,7 @@ fn formula_report(
         roles: arrow(&of(1), &of(-1)),
         drivers: if driving.is_empty() { "nobody: no loss".into() } else { driving.join(", ") },
         efficiency: show(&own.efficiency),
+        efficiency_by_loss: own.by_loss(Notation::Text),
         efficiency_latex: own.names.show(Notation::Latex, &own.efficiency),
         loss: if loss.is_empty() { "0".into() } else { loss.join(" + ") },
         torques: Named((0..powers.len()).map(|t| (name(t), show(&own.torques[t]))).collect()),
@@ -1062,7 +1159,7 @@ fn formula_report(
 /// its sign over the reference torque (for one independent torque).
 fn thresholds(shape: &Shape<'_, '_>, own: &Formula) -> Vec<Threshold> {
     let setup = shape.setup;
-    if setup.torques != 1 {
+    if setup.torques != 1 || setup.balance.is_some() {
         return vec![];
     }
     let value = |s: Symbol| own.names.info(s).value.clone().unwrap_or(Rational::ONE);
@@ -1107,7 +1204,19 @@ fn thresholds(shape: &Shape<'_, '_>, own: &Formula) -> Vec<Threshold> {
     all
 }
 
-/// Every assignment of inputs and outputs. Three terminals stand in the order of Esmail's Table 1.
+/// Signs of power of every assignment of `m` terminals with an input. Three terminals stand in the
+/// order of Esmail's Table 1.
+pub(crate) fn assignment_order(m: usize) -> Vec<Vec<i8>> {
+    let signs = |mask: u32| (0..m).map(|t| if mask >> t & 1 == 1 { 1 } else { -1 }).collect::<Vec<i8>>();
+    if m == 3 {
+        return [0b011, 0b110, 0b101, 0b100, 0b010, 0b001, 0b111].map(signs).to_vec();
+    }
+    let mut masks: Vec<u32> = (1..1 << m).collect();
+    masks.sort_by_key(|mask| (m as u32 == mask.count_ones(), std::cmp::Reverse(mask.count_ones()), *mask));
+    masks.into_iter().map(signs).collect()
+}
+
+/// Every assignment of inputs and outputs, and whether it is reached.
 fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
     let m = setup.terminals.len();
     if m > MOST_ASSIGNED {
@@ -1116,13 +1225,7 @@ fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
     let idle: Vec<bool> = (0..m).map(|t| atlas.regimes.iter().all(|r| r.power_signs[t] == 0)).collect();
     let mut wanted: Vec<Vec<i8>> = Vec::new();
     if m <= MOST_ASSIGNED && !idle.contains(&true) {
-        let sign = |mask: u32| (0..m).map(|t| if mask >> t & 1 == 1 { 1 } else { -1 }).collect::<Vec<i8>>();
-        let mut masks: Vec<u32> = (1..1 << m).collect();
-        masks.sort_by_key(|mask| (m as u32 - mask.count_ones() == 0, std::cmp::Reverse(mask.count_ones()), *mask));
-        wanted = match m {
-            3 => [0b011, 0b110, 0b101, 0b100, 0b010, 0b001, 0b111].map(sign).to_vec(),
-            _ => masks.into_iter().map(sign).collect(),
-        };
+        wanted = assignment_order(m);
     }
     for r in &atlas.regimes {
         if !wanted.contains(&r.power_signs) {

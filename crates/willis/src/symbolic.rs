@@ -711,7 +711,7 @@ impl Notation {
             true => f
                 .factors
                 .iter()
-                .position(|(p, e)| *e > 0 && *e % 2 != 0 && p.len() > 1 && p.terms().any(|(c, _)| c.sign() < 0)),
+                .rposition(|(p, e)| *e > 0 && *e % 2 != 0 && p.len() > 1 && p.terms().any(|(c, _)| c.sign() < 0)),
             false => None,
         };
         negative &= turned.is_none();

@@ -106,6 +106,10 @@ codes! {
     E206 PowerAtRest: "a power is given on a member at rest";
     /// The state or operation asked for is not in the file.
     E207 UnknownSelection: "there is no such state or operation";
+    /// The question is for another kind of train: a table over all basic ratios needs one set with
+    /// three terminals, a wheel of regimes two degrees of freedom and one independent torque, an
+    /// operating point as many speeds and torques as are independent.
+    E208 Unfit: "the question does not fit this train";
     /// Profile shift (or another number of planet teeth) has to close a difference of one or two
     /// teeth between ring and sun plus planets. Ratios and efficiencies do not depend on it.
     W301 NearlyCoaxial: "the set closes only with profile shift";

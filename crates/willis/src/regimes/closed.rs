@@ -25,6 +25,8 @@ pub struct FormulaRequest {
     pub to: Vec<String>,
     /// Members on which torque may act (two or more freedoms); `None` for the train's terminals.
     pub terminals: Option<Vec<String>>,
+    /// Two terminals whose powers add to zero; see [`RegimeSelection::balance`].
+    pub balance: Option<[String; 2]>,
     /// Only the regime of this name.
     pub regime: Option<String>,
     /// How ratios are written.
@@ -268,6 +270,13 @@ impl ClosedFormula {
         values
     }
 
+    /// `ω_from/ω_to` and `T_to/T_from` with the arguments' own values (one degree of freedom).
+    pub fn ratio_values(&self) -> Option<[f64; 2]> {
+        let values = self.values();
+        let [speed, torque] = self.ratios.as_ref()?;
+        Some([speed.evaluate(&lookup(&values))?.to_f64(), torque.evaluate(&lookup(&values))?.to_f64()])
+    }
+
     /// Efficiency with the arguments' own values.
     pub fn value(&self) -> Option<Rational> {
         self.efficiency.evaluate(&lookup(&self.values()))
@@ -284,7 +293,11 @@ fn lookup(values: &[(Symbol, Rational)]) -> impl Fn(Symbol) -> Rational {
 /// A state, terminal or regime that the train does not have, and requests that contradict each
 /// other.
 pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet, Diagnostics> {
-    let selection = RegimeSelection { state: request.state.clone(), terminals: request.terminals.clone() };
+    let selection = RegimeSelection {
+        state: request.state.clone(),
+        terminals: request.terminals.clone(),
+        balance: request.balance.clone(),
+    };
     let mut sheet = FormulaSheet { train: train.name.clone(), formulas: vec![], without: vec![] };
     let mut errors = Diagnostics::default();
     let mut ends = |names: &[String]| -> Vec<MemberId> {
@@ -319,7 +332,7 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
         return Err(errors);
     }
     let several = states.len() > 1;
-    for (state, c, members) in states {
+    for super::Choice { state, configuration: c, terminals: members, balance } in states {
         let own = train.states.iter().find(|s| s.name == state);
         let input = own.and_then(|s| s.input).or(train.input);
         let output = own.and_then(|s| s.output).or(train.output);
@@ -330,7 +343,7 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
             let to = if to.is_empty() { output.into_iter().collect() } else { to.clone() };
             one_freedom(&state, c, &from, &to, request)
         } else {
-            several_freedoms(&state, c, &members, (&from, &to), request)
+            several_freedoms(&state, c, (&members, balance), (&from, &to), request)
         };
         match found {
             Ok(list) => sheet.formulas.extend(list),
@@ -371,7 +384,7 @@ fn one_freedom(
             return Err(format!("{name} is held"));
         }
     }
-    let setup = Setup::new(c, &[from, to])?;
+    let setup = Setup::new(c, &[from, to], None)?;
     if setup.terminals.len() < 2 {
         return Err(format!("no load passes from {a} to {b}"));
     }
@@ -414,16 +427,16 @@ fn one_freedom(
 fn several_freedoms(
     state: &str,
     c: Configuration<'_>,
-    members: &[MemberId],
+    (members, balance): (&[MemberId], Option<[MemberId; 2]>),
     (from, to): (&[MemberId], &[MemberId]),
     request: &FormulaRequest,
 ) -> Result<Vec<ClosedFormula>, String> {
     let train = c.train;
-    let atlas = super::atlas(state.to_owned(), c.clone(), members);
+    let atlas = super::atlas(state.to_owned(), c.clone(), members, balance);
     if let Some(why) = atlas.reason {
         return Err(why);
     }
-    let setup = Setup::new(c, members)?;
+    let setup = Setup::new(c, members, balance)?;
     let shape = Shape::new(&setup, &[])?;
     let names = |ids: &[MemberId]| ids.iter().map(|m| train.member_name(*m).to_owned()).collect::<Vec<_>>();
     let (from, to) = (names(from), names(to));
@@ -452,7 +465,7 @@ fn several_freedoms(
                 torque_symbol: own.names.torque(t),
                 torque: own.torques[t].clone(),
                 given_speed: setup.base.contains(&t),
-                given_torque: shape.reference.contains(&t),
+                given_torque: shape.reference[..setup.independent_torques()].contains(&t),
             })
             .collect();
         f.keep_used();

@@ -122,7 +122,7 @@ impl Names {
         for j in 0..k {
             let e = setup.element(j);
             let label = element_label(setup, j);
-            let (suffix, index) = match k {
+            let (suffix, index) = match train.sets.len().max(setup.c.elements.len()) {
                 1 => ("0".to_owned(), "_{0}".to_owned()),
                 _ => (format!("_{}", identifier(&label)), format!("_{{{}}}", upright(&label))),
             };
@@ -276,7 +276,7 @@ pub(crate) fn identifier(name: &str) -> String {
 }
 
 /// A name as an upright index; single letters and numbers stay as they are.
-fn upright(name: &str) -> String {
+pub(crate) fn upright(name: &str) -> String {
     if name.chars().count() == 1 || name.chars().all(|c| c.is_ascii_digit()) {
         return escape(name);
     }
@@ -355,7 +355,10 @@ impl<'s, 't> Shape<'s, 't> {
         };
 
         // Torques: the free rows and one row for each reference torque make a square matrix.
-        let order = prefer.iter().copied().chain((0..setup.terminals.len()).filter(|t| !prefer.contains(t)));
+        // Balanced torques last: their quotient has a pole where one of the two stands still.
+        let balanced = |t: usize| setup.balance.is_some_and(|pair| pair.contains(&t));
+        let mut order: Vec<usize> = (0..setup.terminals.len()).collect();
+        order.sort_by_key(|&t| (!prefer.contains(&t), balanced(t)));
         let mut rows: Vec<Vec<Polynomial>> = setup.free.iter().map(|&n| row(n, &x)).collect();
         let mut reference = Vec::new();
         for t in order {
@@ -473,7 +476,7 @@ impl<'s, 't> Shape<'s, 't> {
     /// The formulas of a pattern of drivers. `roles`: the sign of the power at each terminal.
     pub fn formula(&self, pattern: &Pattern, roles: &[i8], ratios: Ratios, efficiencies: Efficiencies) -> Formula {
         let setup = self.setup;
-        let (m, k, d) = (setup.terminals.len(), setup.active.len(), setup.torques);
+        let (m, k) = (setup.terminals.len(), setup.active.len());
         let mut names = self.names.clone();
         for j in 0..k {
             let e = setup.element(j);
@@ -510,10 +513,19 @@ impl<'s, 't> Shape<'s, 't> {
             f.substituted(&value).unwrap_or_else(|| f.clone())
         };
         let torque: Vec<Vec<Function>> = self.torque.iter().map(|r| r.iter().map(&here).collect()).collect();
+        let mut references: Vec<Function> =
+            self.reference.iter().map(|&t| Function::symbol(names.torque(t))).collect();
+        if let Some([a, b]) = setup.balance {
+            // T_a ω_a + T_b ω_b = 0 ties the second reference torque to the first.
+            let factor = |r: usize| {
+                let part = |t: usize| torque[t][r].times(&Function::symbol(names.speed(t)));
+                part(a).plus(&part(b))
+            };
+            references[1] = references[0].times(&factor(0)).over(&factor(1)).negated();
+        }
+        let d = setup.independent_torques();
         let sum_over_references = |factors: &[Function]| {
-            (0..d).fold(Function::ZERO, |sum, r| {
-                sum.plus(&factors[r].times(&Function::symbol(names.torque(self.reference[r]))))
-            })
+            factors.iter().zip(&references).fold(Function::ZERO, |sum, (f, t)| sum.plus(&f.times(t)))
         };
         let torques: Vec<Function> = torque.iter().map(|r| sum_over_references(r)).collect();
         // With one freedom every speed is a multiple of the reference's.
@@ -548,7 +560,7 @@ impl<'s, 't> Shape<'s, 't> {
         let reference_sign = roles[self.reference[0]];
         let normalised = |f: Function| if one { sign(unit(&f), reference_sign) } else { f };
         let train = setup.c.train;
-        let mut losses: Vec<(usize, Function)> = Vec::new();
+        let mut losses: Vec<(usize, Function, Function)> = Vec::new();
         for j in 0..k {
             let Some(p_drives) = pattern[j] else { continue };
             let e = setup.element(j);
@@ -563,7 +575,8 @@ impl<'s, 't> Shape<'s, 't> {
             let eta = Function::symbol(names.efficiency(j));
             let rho = if p_drives { eta } else { eta.recip() };
             let potential = force.times(&sigma);
-            losses.push((j, potential.times(&Function::ONE.minus(&rho))));
+            let loss = potential.times(&Function::ONE.minus(&rho));
+            losses.push((j, self.by_driver(&names, j, p_drives).filter(|_| !one && d == 1).unwrap_or(loss.clone()), loss));
             let driver = train.member_name(if p_drives { e.p } else { e.q });
             conditions.push(Condition {
                 function: normalised(sign(potential, if p_drives { 1 } else { -1 })),
@@ -591,7 +604,23 @@ impl<'s, 't> Shape<'s, 't> {
                 None => distinct.push(c),
             }
         }
+        // With a single input, or a single output, the loss over its power is the shortest form.
+        let lone = |sign: i8| {
+            let own: Vec<usize> = (0..m).filter(|&t| roles[t] == sign).collect();
+            if own.len() == 1 { Some(own[0]) } else { None }
+        };
+        let shares = |t: usize| -> Vec<Function> {
+            let p = power(t);
+            losses.iter().map(|(_, _, f)| spelt(&unit(&f.over(&p)))).collect()
+        };
+        let by_loss = match (lone(1), lone(-1)) {
+            _ if one || setup.balance.is_some() || losses.is_empty() || output.is_zero() => None,
+            (Some(t), _) => Some((true, shares(t))),
+            (None, Some(t)) => Some((false, shares(t).iter().map(Function::negated).collect())),
+            _ => None,
+        };
         Formula {
+            by_loss,
             efficiency: spelt(&efficiency),
             torques: torques.iter().map(&spelt).collect(),
             speeds: (0..m)
@@ -602,11 +631,58 @@ impl<'s, 't> Shape<'s, 't> {
                     spelt(&own)
                 })
                 .collect(),
-            losses: losses.into_iter().map(|(j, f)| (j, spelt(&f))).collect(),
+            losses: losses.iter().map(|(j, f, _)| (*j, spelt(f))).collect(),
             conditions: distinct,
-            one,
             names,
         }
+    }
+}
+
+impl Shape<'_, '_> {
+    /// `(1 − η) T_driver (ω_driver − ω_c)`, where the driver is a terminal that only this element
+    /// loads and the carrier's speed is a terminal's.
+    fn by_driver(&self, names: &Names, j: usize, p_drives: bool) -> Option<Function> {
+        let setup = self.setup;
+        let e = setup.element(j);
+        let driver = setup.c.node(if p_drives { e.p } else { e.q })?;
+        let terminal = |node: usize| setup.terminals.iter().position(|t| t.node == node);
+        let t = terminal(driver)?;
+        let touched = |j: usize| {
+            let e = setup.element(j);
+            [e.p, e.q, e.carrier].iter().any(|m| setup.c.node(*m) == Some(driver))
+        };
+        if (0..setup.active.len()).any(|other| other != j && touched(other)) || setup.c.node(e.carrier) == Some(driver) {
+            return None;
+        }
+        let carrier = match setup.c.node(e.carrier) {
+            None => Function::ZERO,
+            Some(node) => Function::symbol(names.speed(terminal(node)?)),
+        };
+        let relative = Function::symbol(names.speed(t)).minus(&carrier);
+        let share = Function::ONE.minus(&Function::symbol(names.efficiency(j)));
+        Some(share.times(&Function::symbol(names.torque(t))).times(&relative))
+    }
+}
+
+impl Formula {
+    /// The efficiency by its losses, `1 - (1 - eta0)*(w_1 - w_2)/w_1`, where there is such a form.
+    pub fn by_loss(&self, notation: Notation) -> Option<String> {
+        let (input, shares) = self.by_loss.as_ref()?;
+        let mut sum = String::new();
+        for f in shares {
+            let text = self.names.show(notation, f);
+            let (negative, text) = text.strip_prefix('-').map_or((false, text.as_str()), |rest| (true, rest));
+            // 1 − Σ for an input, 1 + Σ for an output.
+            sum += if negative == *input { " + " } else { " - " };
+            // A share that is a bare sum needs brackets behind a minus.
+            let bare = f.factors().len() == 1 && f.factors()[0].1 == 1 && f.factors()[0].0.len() > 1;
+            sum += &if bare { format!("({text})") } else { text.to_owned() };
+        }
+        Some(match (input, notation) {
+            (true, _) => format!("1{sum}"),
+            (false, Notation::Latex) => format!("\\frac{{1}}{{1{sum}}}"),
+            (false, _) => format!("1/(1{sum})"),
+        })
     }
 }
 
@@ -660,6 +736,9 @@ fn kinematic(setup: &Setup<'_>, j: usize, node: usize, i: &Polynomial) -> Polyno
 pub(crate) struct Formula {
     /// Output over input power; zero when all is dissipated.
     pub efficiency: Function,
+    /// Loss of each element over the power of the only input (`true`: `η = 1 − Σ`) or of the only
+    /// output (`false`: `η = 1/(1 + Σ)`).
+    pub by_loss: Option<(bool, Vec<Function>)>,
     /// Terminal torques over the reference torques.
     pub torques: Vec<Function>,
     /// Terminal speeds over the base speeds.
@@ -668,8 +747,6 @@ pub(crate) struct Formula {
     pub losses: Vec<(usize, Function)>,
     /// Positive throughout the regime, and only there.
     pub conditions: Vec<Condition>,
-    /// One freedom: speeds and torques cancel.
-    pub one: bool,
     pub names: Names,
 }
 

@@ -29,8 +29,10 @@ pub(crate) struct Setup<'t> {
     pub active: Vec<usize>,
     /// Nodes without external torque that these elements touch.
     pub free: Vec<usize>,
-    /// Independent terminal torques.
+    /// Independent terminal torques, were it not for `balance`.
     pub torques: usize,
+    /// Two terminals whose powers add to zero: motors on one electric bus.
+    pub balance: Option<[usize; 2]>,
     /// Speed of each node over the base speeds; `None` where it is not determined.
     pub node_speed: Vec<Option<Vec<Rational>>>,
     /// By active element: `ω_p − ω_c` over the base speeds.
@@ -50,13 +52,11 @@ pub(crate) struct TorqueCell {
     pub signs: Vec<i8>,
     /// A choice of terminal torques inside.
     pub torques: Vec<Rational>,
-    /// The forces that go with them, by active element.
-    pub forces: Vec<Rational>,
 }
 
 impl<'t> Setup<'t> {
     /// `Err` says in words why nothing can be enumerated.
-    pub fn new(c: Configuration<'t>, members: &[MemberId]) -> Result<Self, String> {
+    pub fn new(c: Configuration<'t>, members: &[MemberId], balance: Option<[MemberId; 2]>) -> Result<Self, String> {
         let name = |m: MemberId| c.train.member_name(m).to_owned();
         if c.degrees_of_freedom() == 0 {
             return Err("nothing can turn".to_owned());
@@ -98,7 +98,7 @@ impl<'t> Setup<'t> {
                 node_speed[n] = Some(w.clone());
             }
         }
-        let mut setup = Self { c, terminals, base, active, free, torques: 0, node_speed, sigma: vec![] };
+        let mut setup = Self { c, terminals, base, active, free, torques: 0, balance: None, node_speed, sigma: vec![] };
         for &j in &setup.active {
             let e = &setup.c.elements[j];
             let (Some(p), Some(carrier)) = (setup.speed(e.p), setup.speed(e.carrier)) else {
@@ -115,6 +115,25 @@ impl<'t> Setup<'t> {
         let mut rows = setup.rows(&vec![None; setup.active.len()]);
         let rank = exact::reduce(&mut rows, setup.active.len()).len();
         setup.torques = setup.active.len() - rank;
+        if let Some(pair) = balance {
+            let at = pair.map(|m| setup.terminals.iter().position(|t| setup.c.node(m) == Some(t.node)));
+            let [Some(a), Some(b)] = at else {
+                return Err(format!(
+                    "{} and {} cannot balance each other's power: one of them is held or carries no torque",
+                    name(pair[0]),
+                    name(pair[1])
+                ));
+            };
+            if a == b || setup.torques < 2 {
+                return Err(format!(
+                    "balancing {} and {} leaves no torque free: the train has {} independent terminal torque(s)",
+                    name(pair[0]),
+                    name(pair[1]),
+                    setup.torques
+                ));
+            }
+            setup.balance = Some([a, b]);
+        }
         if setup.torques == 0 {
             let named: Vec<_> = setup.terminals.iter().map(|t| name(t.member)).collect();
             let own = match named.len() {
@@ -202,7 +221,12 @@ impl<'t> Setup<'t> {
             .collect()
     }
 
-    /// The planes of the speed space, no two alike: see [`super::Plane`].
+    /// Independent terminal torques.
+    pub fn independent_torques(&self) -> usize {
+        self.torques - usize::from(self.balance.is_some())
+    }
+
+    /// The planes of the speed space, no two alike: see [`super::PlaneReport`].
     pub fn planes(&self) -> Vec<Vec<Rational>> {
         let mut all: Vec<Vec<Rational>> = Vec::new();
         let terminals = (0..self.terminals.len()).map(|t| self.terminal_speed(t).to_vec());
@@ -214,7 +238,119 @@ impl<'t> Setup<'t> {
                 all.push(form);
             }
         }
+        if self.balance.is_some() && self.torques == 2 {
+            for line in self.unloading(&all) {
+                if !all.contains(&line) {
+                    all.push(line);
+                }
+            }
+        }
         all
+    }
+
+    /// With two powers balanced the ratio of the torques follows the speeds, and a force or torque
+    /// can vanish within a region. All of them are linear in the speeds: the planes on which one
+    /// does, as far as they bound an equilibrium.
+    fn unloading(&self, planes: &[Vec<Rational>]) -> Vec<Vec<Rational>> {
+        let k = self.active.len();
+        let d = self.base.len();
+        let mut all = Vec::new();
+        for region in arrangement::cells(planes, d) {
+            let sigma = self.sigma_signs(&region.point);
+            let moving: Vec<usize> = (0..k).filter(|&j| sigma[j] != 0 && self.lossy(j)).collect();
+            for mask in 0u64..1 << moving.len() {
+                let mut pattern: Pattern = vec![None; k];
+                moving.iter().enumerate().for_each(|(bit, &j)| pattern[j] = Some(mask >> bit & 1 == 0));
+                let basis = null_space(self.rows(&pattern), k);
+                if basis.len() != self.torques {
+                    continue;
+                }
+                let torque_forms = self.torque_forms(&pattern, &basis);
+                // One coefficient of the basis for each base speed.
+                let axes: Vec<Vec<Rational>> = (0..d)
+                    .map(|b| {
+                        let axis: Vec<Rational> = (0..d).map(|x| Rational::from(i64::from(x == b))).collect();
+                        self.balanced(&torque_forms, &axis)
+                    })
+                    .collect();
+                let over_speeds = |form: &[Rational]| -> Option<Vec<Rational>> {
+                    let line: Vec<Rational> = axes.iter().map(|c| arrangement::dot(form, c)).collect();
+                    arrangement::normal(&line).map(|(line, _)| line)
+                };
+                let force = |j: usize| -> Vec<Rational> { basis.iter().map(|b| b[j].clone()).collect() };
+                let mut lines: Vec<Vec<Rational>> = planes.to_vec();
+                for line in moving.iter().map(|&j| force(j)).chain(torque_forms.iter().cloned()) {
+                    if let Some(line) = over_speeds(&line)
+                        && !lines.contains(&line)
+                    {
+                        lines.push(line);
+                    }
+                }
+                let parts: Vec<Cell> = arrangement::cells(&lines, d)
+                    .into_iter()
+                    .filter(|c| c.signs[..planes.len()] == region.signs[..])
+                    .collect();
+                for part in &parts {
+                    let c = self.balanced(&torque_forms, &part.point);
+                    // Either direction of the load may fit; a force that vanishes fits both.
+                    let fits = |way: i8| {
+                        moving.iter().all(|&j| {
+                            let drives = arrangement::dot(&force(j), &c).sign() * sigma[j] * way;
+                            drives == 0 || (drives > 0) == (pattern[j] == Some(true))
+                        })
+                    };
+                    if !fits(1) && !fits(-1) {
+                        continue;
+                    }
+                    for n in planes.len()..lines.len() {
+                        let mut across = part.signs.clone();
+                        across[n] = -across[n];
+                        if parts.iter().any(|p| p.signs == across) && !all.contains(&lines[n]) {
+                            all.push(lines[n].clone());
+                        }
+                    }
+                }
+            }
+        }
+        all
+    }
+
+    /// Terminal torques over a basis of force vectors.
+    fn torque_forms(&self, pattern: &Pattern, basis: &[Vec<Rational>]) -> Vec<Vec<Rational>> {
+        self.terminals
+            .iter()
+            .map(|t| {
+                let row: Vec<Rational> = (0..self.active.len())
+                    .map(|j| self.coefficient(j, t.node, &(self.ratio(j) * self.rho(j, pattern[j]))))
+                    .collect();
+                basis.iter().map(|b| arrangement::dot(&row, b)).collect()
+            })
+            .collect()
+    }
+
+    /// The combination of two basis vectors for which the balanced powers add to zero; linear in
+    /// the speeds.
+    fn balanced(&self, torque_forms: &[Vec<Rational>], base: &[Rational]) -> Vec<Rational> {
+        let [a, b] = self.balance.expect("a balance was asked for");
+        let [wa, wb] = [a, b].map(|t| arrangement::dot(self.terminal_speed(t), base));
+        let factor = |r: usize| &(&torque_forms[a][r] * &wa) + &(&torque_forms[b][r] * &wb);
+        vec![-factor(1), factor(0)]
+    }
+
+    /// Terminal torques of a regime at other speeds: the same, unless two powers balance.
+    pub fn torques_at(&self, pattern: &Pattern, from: &[Rational], torques: &[Rational], to: &[Rational]) -> Vec<Rational> {
+        if self.balance.is_none() {
+            return torques.to_vec();
+        }
+        let basis = null_space(self.rows(pattern), self.active.len());
+        let forms = self.torque_forms(pattern, &basis);
+        let at = |base: &[Rational]| -> Vec<Rational> {
+            let c = self.balanced(&forms, base);
+            forms.iter().map(|f| arrangement::dot(f, &c)).collect()
+        };
+        let here = at(from);
+        let same = here.iter().zip(torques).all(|(a, b)| a.sign() == b.sign());
+        at(to).into_iter().map(|x| if same { x } else { -x }).collect()
     }
 
     /// Sectors of the speed space, in order around the circle for two freedoms.
@@ -233,23 +369,32 @@ impl<'t> Setup<'t> {
         self.sigma.iter().map(|s| arrangement::dot(s, base).sign()).collect()
     }
 
-    /// Every cone of terminal torques that is in equilibrium at the given signs of the relative
-    /// speeds. The second value tells that some pattern is singular: the train lies exactly on a
-    /// self-locking threshold.
-    pub fn torque_cells(&self, sigma: &[i8]) -> (Vec<TorqueCell>, bool) {
+    /// Every cone of terminal torques that is in equilibrium at given base speeds. The second value
+    /// tells that some pattern is singular: the train lies exactly on a self-locking threshold.
+    pub fn torque_cells(&self, base: &[Rational]) -> (Vec<TorqueCell>, bool) {
         let k = self.active.len();
+        let sigma = self.sigma_signs(base);
         let moving: Vec<usize> = (0..k).filter(|&j| sigma[j] != 0 && self.lossy(j)).collect();
         let mut all = Vec::new();
         let mut singular = false;
         for mask in 0u64..1 << moving.len() {
             let mut pattern: Pattern = vec![None; k];
             moving.iter().enumerate().for_each(|(bit, &j)| pattern[j] = Some(mask >> bit & 1 == 0));
-            let basis = null_space(self.rows(&pattern), k);
+            let mut basis = null_space(self.rows(&pattern), k);
             if basis.len() != self.torques {
                 singular = true;
                 continue;
             }
-            self.cones(&pattern, &moving, sigma, &basis, &mut all);
+            if self.balance.is_some() {
+                let c = self.balanced(&self.torque_forms(&pattern, &basis), base);
+                let force = |j: usize| arrangement::dot(&basis.iter().map(|b| b[j].clone()).collect::<Vec<_>>(), &c);
+                basis = vec![(0..k).map(force).collect()];
+                if basis[0].iter().all(Rational::is_zero) {
+                    singular = true;
+                    continue;
+                }
+            }
+            self.cones(&pattern, &moving, &sigma, &basis, &mut all);
         }
         (all, singular)
     }
@@ -265,16 +410,7 @@ impl<'t> Setup<'t> {
     ) {
         let k = self.active.len();
         let force = |j: usize| -> Vec<Rational> { basis.iter().map(|b| b[j].clone()).collect() };
-        let torque_forms: Vec<Vec<Rational>> = self
-            .terminals
-            .iter()
-            .map(|t| {
-                let row: Vec<Rational> = (0..k)
-                    .map(|j| self.coefficient(j, t.node, &(self.ratio(j) * self.rho(j, pattern[j]))))
-                    .collect();
-                basis.iter().map(|b| arrangement::dot(&row, b)).collect()
-            })
-            .collect();
+        let torque_forms = self.torque_forms(pattern, basis);
         // An element that is idle throughout fits both drivers; it is counted once.
         if moving.iter().any(|&j| pattern[j] == Some(false) && force(j).iter().all(Rational::is_zero)) {
             return;
@@ -299,7 +435,7 @@ impl<'t> Setup<'t> {
             let torques: Vec<Rational> = torque_forms.iter().map(|t| arrangement::dot(t, &cell.point)).collect();
             let mut own = pattern.clone();
             moving.iter().filter(|&&j| forces[j].is_zero()).for_each(|&j| own[j] = None);
-            all.push(TorqueCell { pattern: own, signs: torques.iter().map(Rational::sign).collect(), torques, forces });
+            all.push(TorqueCell { pattern: own, signs: torques.iter().map(Rational::sign).collect(), torques });
         }
     }
 }
