@@ -11,9 +11,10 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use willis::analysis::{self, Analysis, Selection};
 use willis::diagnostic::{Code, Diagnostics, Severity};
-use willis::regimes::{Efficiencies, FormulaRequest, Ratios, RegimeSelection};
+use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
+use willis::units::{self, Dimension, Quantity};
 
 /// Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that
 /// the answer is the only one.
@@ -120,6 +121,34 @@ enum Command {
         #[arg(long)]
         derivatives: bool,
     },
+    /// Tell in which regime an operating point lies, how far each boundary is and what changes there.
+    ///
+    /// Works for trains of any size: it looks at this one point.
+    Locate {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// State of the shift table; else the train as drawn.
+        #[arg(long)]
+        state: Option<String>,
+        /// Speeds of as many members as there are degrees of freedom: engine=2000rpm,ring=1000rpm.
+        #[arg(long, value_delimiter = ',', value_name = "MEMBER=SPEED")]
+        speeds: Vec<String>,
+        /// Torques of as many terminals as are independent: 'engine=100 N m'.
+        #[arg(long, value_delimiter = ',', value_name = "MEMBER=TORQUE")]
+        torques: Vec<String>,
+        /// Take speeds and torques from this operation of the file.
+        #[arg(long)]
+        operation: Option<String>,
+        /// Members on which torque may act, with commas between; else the train's terminals.
+        #[arg(long, value_delimiter = ',')]
+        terminals: Option<Vec<String>>,
+        /// Two terminals whose powers add to zero.
+        #[arg(long, value_delimiter = ',', value_name = "A,B")]
+        balance: Option<Vec<String>>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: LocateFormat,
+    },
     /// Check a train file and say everything that is wrong with it.
     Check {
         /// Train file (TOML), or - for standard input.
@@ -164,6 +193,14 @@ enum RegimesFormat {
     Csv,
     /// A table for typesetting.
     Latex,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum LocateFormat {
+    /// For eyes.
+    Text,
+    /// The results contract `willis-location-1`.
+    Json,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -317,6 +354,22 @@ fn run(command: &Command) -> Result<String, String> {
             let sheet = willis::regimes::formulas(&job.train, &request).map_err(|wrong| job.failure(wrong))?;
             Ok(sheet.emit((*lang).into(), *derivatives))
         }
+        Command::Locate { file, state, speeds, torques, operation, terminals, balance, format } => {
+            let job = Job::read(file)?;
+            let request = LocateRequest {
+                state: state.clone(),
+                terminals: terminals.clone(),
+                balance: pair(balance.as_deref())?,
+                operation: operation.clone(),
+                speeds: quantities("--speeds", speeds, Dimension::ANGULAR_SPEED)?,
+                torques: quantities("--torques", torques, Dimension::TORQUE)?,
+            };
+            let found = willis::regimes::locate(&job.train, &request).map_err(|wrong| job.failure(wrong))?;
+            Ok(match format {
+                LocateFormat::Text => regimes::location(&found),
+                LocateFormat::Json => serde_json::to_string_pretty(&found).expect("plain data") + "\n",
+            })
+        }
         Command::Check { file } => {
             let job = Job::read(file)?;
             let analysis = job.analyze(&Selection::default())?;
@@ -359,6 +412,23 @@ fn run(command: &Command) -> Result<String, String> {
             written.map(|()| String::new()).map_err(|e| format!("{}: {e}\n", folder.display()))
         }
     }
+}
+
+/// `member=value` pairs of an option; everything that is wrong with them at once.
+fn quantities(option: &str, given: &[String], dimension: Dimension) -> Result<Vec<(String, Quantity)>, String> {
+    let (kind, example) = dimension.describe();
+    let mut wrong = String::new();
+    let mut all = Vec::new();
+    for text in given {
+        match text.split_once('=') {
+            None => wrong += &format!("{option} {text}: write member=value, as in {option} 'sun={example}'\n"),
+            Some((name, value)) => match units::parse(value, dimension) {
+                Ok(q) => all.push((name.trim().to_owned(), q)),
+                Err(why) => wrong += &format!("{option} {text}: {why}; give {kind}, as in {option} '{name}={example}'\n"),
+            },
+        }
+    }
+    if wrong.is_empty() { Ok(all) } else { Err(wrong) }
 }
 
 /// The two members of `--balance`.

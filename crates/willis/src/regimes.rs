@@ -14,6 +14,7 @@ pub(crate) mod arrangement;
 mod closed;
 mod emit;
 mod family;
+mod locate;
 pub(crate) mod formula;
 pub(crate) mod setup;
 
@@ -35,6 +36,7 @@ use setup::{Pattern, Setup, TorqueCell};
 pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
 pub use family::{Case, Family, FamilyRange, Group, Row, family};
 pub use formula::{Efficiencies, Ratios};
+pub use locate::{Edge, LocateRequest, Located, Location, Range, locate};
 
 /// Which part of a train, and from which terminals.
 #[derive(Clone, Debug, Default)]

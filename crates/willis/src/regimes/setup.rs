@@ -190,7 +190,7 @@ impl<'t> Setup<'t> {
         e.forward != Rational::ONE || e.backward != Rational::ONE
     }
 
-    fn rho(&self, j: usize, p_drives: Option<bool>) -> Rational {
+    pub fn rho(&self, j: usize, p_drives: Option<bool>) -> Rational {
         let e = self.element(j);
         match p_drives {
             None => Rational::ONE,
