@@ -2,6 +2,7 @@
 
 mod csv;
 mod input;
+mod output;
 mod regimes;
 mod text;
 
@@ -79,7 +80,10 @@ enum Command {
         /// One set with three terminals: for every basic ratio it can have (Esmail's Table 1).
         #[arg(long, conflicts_with = "balance")]
         family: bool,
-        /// What to print.
+        /// Draw the wheel of regimes (two freedoms) into this SVG file.
+        #[arg(long, value_name = "FILE.svg", conflicts_with_all = ["family", "format"])]
+        map: Option<std::path::PathBuf>,
+        /// What to print; `map-json` is the wheel as data.
         #[arg(long, value_enum, default_value = "text")]
         format: RegimesFormat,
     },
@@ -193,6 +197,8 @@ enum RegimesFormat {
     Csv,
     /// A table for typesetting.
     Latex,
+    /// The wheel of regimes as data (two freedoms).
+    MapJson,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -295,13 +301,21 @@ fn run(command: &Command) -> Result<String, String> {
                 Format::Csv => csv::analysis(&analysis, *table),
             })
         }
-        Command::Regimes { file, state, terminals, balance, family, format } => {
+        Command::Regimes { file, state, terminals, balance, family, map, format } => {
             let job = Job::read(file)?;
             let selection = RegimeSelection {
                 state: state.clone(),
                 terminals: terminals.clone(),
                 balance: pair(balance.as_deref())?,
             };
+            if map.is_some() || *format == RegimesFormat::MapJson {
+                let figure =
+                    willis::figure::regime_map(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+                return match map {
+                    None => Ok(serde_json::to_string_pretty(&figure).expect("plain data") + "\n"),
+                    Some(path) => output::write(path, willis_report::regime_map(&figure).as_bytes()).map(|()| String::new()),
+                };
+            }
             if *family {
                 let all = willis::regimes::family(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
                 return Ok(match format {
@@ -309,6 +323,7 @@ fn run(command: &Command) -> Result<String, String> {
                     RegimesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
                     RegimesFormat::Csv => regimes::family_csv(&all),
                     RegimesFormat::Latex => regimes::family_latex(&all),
+                    RegimesFormat::MapJson => unreachable!("answered above"),
                 });
             }
             let all = willis::regimes::regimes(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
@@ -317,6 +332,7 @@ fn run(command: &Command) -> Result<String, String> {
                 RegimesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
                 RegimesFormat::Csv => regimes::csv(&all),
                 RegimesFormat::Latex => regimes::latex(&all),
+                RegimesFormat::MapJson => unreachable!("answered above"),
             })
         }
         Command::Formula {

@@ -738,13 +738,28 @@ fn plane(setup: &Setup<'_>, form: &[Rational]) -> PlaneReport {
     if !at_rest.is_empty() {
         parts.push(format!("{} at rest", at_rest.join(", ")));
     }
+    // Elements that share a member turn as one piece.
+    let mut pieces: Vec<Vec<MemberId>> = Vec::new();
     for &j in &meshes {
         let e = setup.element(j);
-        let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
-        if c != "frame" {
-            parts.push(format!("{p}, {q} and {c} turn as one"));
+        let mut piece = vec![e.p, e.q, e.carrier];
+        while let Some(k) = pieces.iter().position(|p| p.iter().any(|m| piece.contains(m))) {
+            for m in pieces.remove(k) {
+                if !piece.contains(&m) {
+                    piece.push(m);
+                }
+            }
+        }
+        pieces.push(piece);
+    }
+    for mut piece in pieces {
+        piece.sort_unstable();
+        let names: Vec<&str> = piece.iter().map(|m| train.member_name(*m)).collect();
+        if piece[0] != FRAME {
+            let (last, rest) = names.split_last().expect("an element has three members");
+            parts.push(format!("{} and {last} turn as one", rest.join(", ")));
         } else if at_rest.is_empty() {
-            parts.push(format!("{p} and {q} at rest"));
+            parts.push(format!("{} at rest", names[1..].join(", ")));
         }
     }
     PlaneReport {
@@ -1262,4 +1277,32 @@ fn possible_without_friction(atlas: &Atlas, setup: &Setup<'_>, powers: &[i8]) ->
     without_friction(setup)
         .iter()
         .any(|(k, torques)| power_signs(setup, &atlas.regions[*k].point, torques) == powers)
+}
+
+/// The first state of a selection that has a wheel: two freedoms and one independent torque. `Err`
+/// with diagnostics for unknown names, with words for a train of another kind.
+pub(crate) fn choice_of_two<'t>(
+    train: &'t Train,
+    selection: &RegimeSelection,
+) -> Result<(Atlas, Setup<'t>), Result<Diagnostics, String>> {
+    let mut reason = None;
+    for Choice { state, configuration, terminals, balance } in selected(train, selection).map_err(Ok)? {
+        let label = state.clone();
+        let own = atlas(state, configuration.clone(), &terminals, balance);
+        match &own.reason {
+            Some(why) => reason = reason.or(Some(format!("{label}: {why}"))),
+            None if own.base_speeds.len() == 2 && own.independent_torques == 1 => {
+                let setup = Setup::new(configuration, &terminals, balance).map_err(Err)?;
+                return Ok((own, setup));
+            }
+            None => {
+                reason = reason.or(Some(format!(
+                    "{label} has {} independent speeds and {} independent torques",
+                    own.base_speeds.len(),
+                    own.independent_torques
+                )));
+            }
+        }
+    }
+    Err(Err(reason.unwrap_or_else(|| "the train has no state".to_owned())))
 }

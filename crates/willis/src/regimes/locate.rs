@@ -660,8 +660,8 @@ impl Finder<'_, '_> {
                 own.push(arrow(&names(&now, 1), &names(&now, -1)));
             }
             for j in 0..setup.active.len() {
-                if let (Some(a), Some(b)) = (here.pattern[j], s.pattern[j])
-                    && a != b
+                if let Some(b) = s.pattern[j]
+                    && here.pattern[j] != Some(b)
                 {
                     let e = setup.element(j);
                     let driver = train.member_name(if b { e.p } else { e.q });
