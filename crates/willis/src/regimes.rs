@@ -1297,7 +1297,7 @@ pub(crate) fn choice_of_two<'t>(
             }
             None => {
                 reason = reason.or(Some(format!(
-                    "{label} has {} independent speeds and {} independent torques",
+                    "{label}: independent speeds {}, independent torques {}",
                     own.base_speeds.len(),
                     own.independent_torques
                 )));

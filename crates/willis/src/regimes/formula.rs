@@ -689,7 +689,7 @@ impl Formula {
 /// A condition without what is positive anyway: efficiencies, tooth numbers and squares.
 fn bare(f: &Function, names: &Names) -> Function {
     let positive = |p: &Polynomial| {
-        p.len() == 1
+        p.terms().all(|(c, _)| c.sign() > 0)
             && p.symbols().iter().all(|s| matches!(names.info(*s).kind, SymbolKind::Efficiency | SymbolKind::Teeth))
     };
     let number = Function::from(Rational::from(i64::from(f.number().sign())));
