@@ -309,11 +309,12 @@ fn run(command: &Command) -> Result<String, String> {
                 balance: pair(balance.as_deref())?,
             };
             if map.is_some() || *format == RegimesFormat::MapJson {
-                let figure =
-                    willis::figure::regime_map(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+                let figure = willis::figure::regime_map(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
                 return match map {
                     None => Ok(serde_json::to_string_pretty(&figure).expect("plain data") + "\n"),
-                    Some(path) => output::write(path, willis_report::regime_map(&figure).as_bytes()).map(|()| String::new()),
+                    Some(path) => {
+                        output::write(path, willis_report::regime_map(&figure).as_bytes()).map(|()| String::new())
+                    }
                 };
             }
             if *family {
@@ -440,7 +441,9 @@ fn quantities(option: &str, given: &[String], dimension: Dimension) -> Result<Ve
             None => wrong += &format!("{option} {text}: write member=value, as in {option} 'sun={example}'\n"),
             Some((name, value)) => match units::parse(value, dimension) {
                 Ok(q) => all.push((name.trim().to_owned(), q)),
-                Err(why) => wrong += &format!("{option} {text}: {why}; give {kind}, as in {option} '{name}={example}'\n"),
+                Err(why) => {
+                    wrong += &format!("{option} {text}: {why}; give {kind}, as in {option} '{name}={example}'\n")
+                }
             },
         }
     }
@@ -452,7 +455,9 @@ fn pair(names: Option<&[String]>) -> Result<Option<[String; 2]>, String> {
     match names {
         None => Ok(None),
         Some([a, b]) => Ok(Some([a.clone(), b.clone()])),
-        Some(other) => Err(format!("--balance names two terminals, as in --balance mg1,mg2; here are {}\n", other.len())),
+        Some(other) => {
+            Err(format!("--balance names two terminals, as in --balance mg1,mg2; here are {}\n", other.len()))
+        }
     }
 }
 

@@ -78,13 +78,7 @@ fn piece(inner: f64, outer: f64, from: f64, to: f64) -> String {
     let n = |p: (f64, f64)| format!("{} {}", number(p.0), number(p.1));
     let large = i32::from(to - from > 180.0);
     let (outer, inner) = (number(outer), number(inner));
-    format!(
-        "M{} A{outer} {outer} 0 {large} 0 {} L{} A{inner} {inner} 0 {large} 1 {} Z",
-        n(a),
-        n(b),
-        n(c),
-        n(d)
-    )
+    format!("M{} A{outer} {outer} 0 {large} 0 {} L{} A{inner} {inner} 0 {large} 1 {} Z", n(a), n(b), n(c), n(d))
 }
 
 /// Radii of a regime's cell; several of one ring share it.
@@ -196,14 +190,14 @@ fn label(map: &RegimeMap, s: &MapSector, c: &MapCell) -> Group {
     };
     let thin = c.slot[1] > 1;
     let (size, gap) = if thin { (13.0, 5.0) } else { (16.0, 1.0) };
-    let g = Group::new().add(halo(
-        text(x, y + gap, size, Anchor::Middle, &map.patterns[c.pattern].letter).set("font-weight", "bold"),
-    ));
+    let g = Group::new()
+        .add(halo(text(x, y + gap, size, Anchor::Middle, &map.patterns[c.pattern].letter).set("font-weight", "bold")));
     if thin { g } else { g.add(halo(text(x, y + 14.0, 10.0, Anchor::Middle, &c.regime))) }
 }
 
 fn legend(map: &RegimeMap) -> Group {
-    let mut g = Group::new().add(text(LEGEND, 106.0, 13.0, Anchor::Start, "Inputs → outputs").set("font-weight", "bold"));
+    let mut g =
+        Group::new().add(text(LEGEND, 106.0, 13.0, Anchor::Start, "Inputs → outputs").set("font-weight", "bold"));
     let mut y = 128.0;
     for (k, p) in map.patterns.iter().enumerate() {
         g = g
@@ -253,9 +247,7 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
     let mut g = Group::new()
         .add(text(LEGEND, top - 34.0, 13.0, Anchor::Start, &head).set("font-weight", "bold"))
         .add(text(LEGEND, top - 16.0, 12.0, Anchor::Start, &key).set("fill", FAINT))
-        .add(
-            rectangle(left, top, right - left, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1),
-        );
+        .add(rectangle(left, top, right - left, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1));
     for t in ticks(floor, 1.0, 4) {
         g = g
             .add(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0))
@@ -271,10 +263,11 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
                 l = l.set("stroke-dasharray", "4 3");
             }
             let ratio = b.ratio.map_or(if a > map.half[0] + 90.0 { "∞" } else { "−∞" }.to_owned(), short_number);
-            g = g
-                .add(l)
-                .add(text(x(a), bottom + 16.0, 10.0, Anchor::Middle, &ratio).set("fill", FAINT))
-                .add(badge(x(a), bottom + 32.0, &b.letter));
+            g = g.add(l).add(text(x(a), bottom + 16.0, 10.0, Anchor::Middle, &ratio).set("fill", FAINT)).add(badge(
+                x(a),
+                bottom + 32.0,
+                &b.letter,
+            ));
         }
     }
     for c in &map.curves {

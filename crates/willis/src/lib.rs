@@ -70,6 +70,10 @@ mod prose {
     struct TheTrainFile;
     #[doc = include_str!("../../../book/src/shift-tables.md")]
     struct ShiftTables;
+    #[doc = include_str!("../../../book/src/regimes.md")]
+    struct EveryWayATrainCanRun;
+    #[doc = include_str!("../../../book/src/power-split.md")]
+    struct APowerSplit;
     #[doc = include_str!("../../../book/src/library.md")]
     struct UsingTheLibrary;
 }

@@ -707,11 +707,14 @@ impl Notation {
         let fraction = f.number.abs().to_fraction();
         let (top, bottom) = fraction.split_once('/').expect("a fraction");
         // A minus in front of a difference turns the difference round.
+        let minuses = |p: &Polynomial| p.terms().filter(|(c, _)| c.sign() < 0).count();
         let turned = match negative {
             true => f
                 .factors
                 .iter()
-                .rposition(|(p, e)| *e > 0 && *e % 2 != 0 && p.len() > 1 && p.terms().any(|(c, _)| c.sign() < 0)),
+                .rposition(|(p, e)| *e > 0 && *e % 2 != 0 && p.len() > 1 && minuses(p) > 0)
+                // Below the line only where that saves minuses.
+                .or_else(|| f.factors.iter().rposition(|(p, e)| *e < 0 && *e % 2 != 0 && 2 * minuses(p) > p.len())),
             false => None,
         };
         negative &= turned.is_none();

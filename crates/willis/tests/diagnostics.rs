@@ -148,11 +148,8 @@ fn regress_every_code_has_a_case() {
     // E002 is about files, which the library never touches: crates/willis-cli/tests/cli.rs has it.
     // E208 is about questions other than `analyze`: `regress_e208` below.
     let elsewhere = [Code::Unreadable, Code::Unfit];
-    let missing: Vec<_> = Code::ALL
-        .iter()
-        .filter(|c| !elsewhere.contains(c) && !COVERED.contains(c))
-        .map(|c| c.as_str())
-        .collect();
+    let missing: Vec<_> =
+        Code::ALL.iter().filter(|c| !elsewhere.contains(c) && !COVERED.contains(c)).map(|c| c.as_str()).collect();
     assert!(missing.is_empty(), "no case for {missing:?}");
 }
 

@@ -221,13 +221,7 @@ pub fn regime_map(train: &Train, selection: &RegimeSelection) -> Result<RegimeMa
                         points: efficiency.iter().enumerate().map(|(i, e)| [start + step * i as f64, *e]).collect(),
                     });
                 }
-                cells.push(MapCell {
-                    regime: r.id.clone(),
-                    ring,
-                    slot: [slot, alike.len()],
-                    pattern,
-                    efficiency,
-                });
+                cells.push(MapCell { regime: r.id.clone(), ring, slot: [slot, alike.len()], pattern, efficiency });
             }
         }
         sectors.push(MapSector {
@@ -310,7 +304,8 @@ fn boundaries(atlas: &Atlas, rays: &[[[f64; 2]; 2]], from: &[f64]) -> Vec<MapBou
         let after = &atlas.regions[k];
         let Some(p) = (0..before.signs.len()).find(|&p| before.signs[p] != after.signs[p]) else { continue };
         let plane = &atlas.planes[p];
-        if let Some(b) = all.iter_mut().find(|b| b.label == plane.label && (b.angles[0] + 180.0 - from[k]).abs() < 1e-6) {
+        if let Some(b) = all.iter_mut().find(|b| b.label == plane.label && (b.angles[0] + 180.0 - from[k]).abs() < 1e-6)
+        {
             b.angles[1] = from[k];
             continue;
         }

@@ -255,8 +255,7 @@ impl ClosedFormula {
 
     /// The arguments' own values and what follows from them.
     fn values(&self) -> Vec<(Symbol, Rational)> {
-        let mut values: Vec<(Symbol, Rational)> =
-            self.arguments.iter().map(|a| (a.symbol, a.number.clone())).collect();
+        let mut values: Vec<(Symbol, Rational)> = self.arguments.iter().map(|a| (a.symbol, a.number.clone())).collect();
         for t in &self.terminals {
             for (symbol, function, given) in
                 [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
@@ -372,7 +371,10 @@ fn one_freedom(
     request: &FormulaRequest,
 ) -> Result<Vec<ClosedFormula>, String> {
     let ([from], [to]) = (from, to) else {
-        return Err("with one degree of freedom a formula needs one input and one output; name them with --from and --to".into());
+        return Err(
+            "with one degree of freedom a formula needs one input and one output; name them with --from and --to"
+                .into(),
+        );
     };
     let train = c.train;
     let (from, to) = (*from, *to);

@@ -179,7 +179,9 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
             None => {
                 let known: Vec<&str> = train.operations.iter().map(|o| o.name.as_str()).collect();
                 let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
-                errors.push(d.suggest(name, known.iter().copied()).hint(format!("its operations are: {}", known.join(", "))));
+                errors.push(
+                    d.suggest(name, known.iter().copied()).hint(format!("its operations are: {}", known.join(", "))),
+                );
             }
         }
     }
@@ -194,7 +196,9 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
                 None => {
                     let known: Vec<&str> = train.members.iter().skip(1).map(|m| m.name.as_str()).collect();
                     let d = Diagnostic::new(Code::UnknownName, "", format!("the train has no member `{name}`"));
-                    errors.push(d.suggest(name, known.iter().copied()).hint(format!("its members are: {}", known.join(", "))));
+                    errors.push(
+                        d.suggest(name, known.iter().copied()).hint(format!("its members are: {}", known.join(", "))),
+                    );
                 }
             }
         }
@@ -232,8 +236,9 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
         }
         all
     })?;
-    let setup = Setup::new(c.clone(), &terminals, balance)
-        .map_err(|why| refuse(Code::Unfit, format!("{state}: {why}"), "name other terminals with --terminals".into()))?;
+    let setup = Setup::new(c.clone(), &terminals, balance).map_err(|why| {
+        refuse(Code::Unfit, format!("{state}: {why}"), "name other terminals with --terminals".into())
+    })?;
     let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
     let base: Option<Vec<Rational>> =
         setup.base.iter().map(|&b| motion.speeds[setup.terminals[b].member.0].clone()).collect();
@@ -247,7 +252,11 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
         return Err(refuse(Code::Unfit, text, "name them as in --speeds engine=2000rpm,ring=1000rpm".into()));
     };
     if base.iter().all(Rational::is_zero) {
-        return Err(refuse(Code::Unfit, "everything stands still: no regime".into(), "give a speed other than zero".into()));
+        return Err(refuse(
+            Code::Unfit,
+            "everything stands still: no regime".into(),
+            "give a speed other than zero".into(),
+        ));
     }
 
     // Torques: as many as are independent, on terminals that determine the others.
@@ -263,7 +272,8 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
                 let own: Vec<String> = (0..setup.terminals.len()).map(name).collect();
                 let text = format!("{} carries no torque through the gears of {state}", train.member_name(m));
                 errors.push(
-                    Diagnostic::new(Code::NotATerminal, "", text).hint(format!("its terminals are: {}", own.join(", "))),
+                    Diagnostic::new(Code::NotATerminal, "", text)
+                        .hint(format!("its terminals are: {}", own.join(", "))),
                 );
             }
         }
@@ -337,7 +347,16 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
         if independent {
             for (k, direction) in &directions {
                 let value = motion.speeds[members[*k].0].clone().unwrap_or(Rational::ZERO);
-                ranges.push(finder.speed_range(&base, s, &planes, &labels, direction, &value, speed_unit, train.member_name(members[*k])));
+                ranges.push(finder.speed_range(
+                    &base,
+                    s,
+                    &planes,
+                    &labels,
+                    direction,
+                    &value,
+                    speed_unit,
+                    train.member_name(members[*k]),
+                ));
             }
         }
         for (n, (t, _)) in loads.iter().enumerate() {
@@ -345,7 +364,9 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
         }
         regimes.push(Located {
             regime: own.map(|x| x.id.clone()),
-            torques_n_m: Named((0..setup.terminals.len()).map(|t| (name(t), s.torques[t].to_f64() * torque_unit)).collect()),
+            torques_n_m: Named(
+                (0..setup.terminals.len()).map(|t| (name(t), s.torques[t].to_f64() * torque_unit)).collect(),
+            ),
             powers_w: Named(
                 (0..setup.terminals.len()).map(|t| (name(t), powers[t].to_f64() * torque_unit * speed_unit)).collect(),
             ),
@@ -458,7 +479,9 @@ impl Finder<'_, '_> {
             .collect();
         let reason = match (states.is_empty(), complete) {
             (true, true) => Some("no equilibrium: friction locks the train at these speeds and torques".to_owned()),
-            (true, false) => Some("too many interacting meshes: no equilibrium was found, and none is excluded".to_owned()),
+            (true, false) => {
+                Some("too many interacting meshes: no equilibrium was found, and none is excluded".to_owned())
+            }
             (false, false) => {
                 Some("too many interacting meshes: the equilibrium shown may not be the only one".to_owned())
             }
@@ -509,7 +532,8 @@ impl Finder<'_, '_> {
             })
             .collect();
         steps.sort();
-        let at = |step: &Rational| -> Vec<Rational> { base.iter().zip(direction).map(|(b, d)| b + &(d * step)).collect() };
+        let at =
+            |step: &Rational| -> Vec<Rational> { base.iter().zip(direction).map(|(b, d)| b + &(d * step)).collect() };
         let edge = |up: bool| -> Option<Edge> {
             // On a plane already, every change leaves it.
             let beyond = |s: &Rational| if up { s.sign() >= 0 } else { s.sign() <= 0 };
@@ -538,7 +562,13 @@ impl Finder<'_, '_> {
                     .collect(),
             })
         };
-        Range { quantity: "speed", member: member.to_owned(), value: value.to_f64() * unit, below: edge(false), above: edge(true) }
+        Range {
+            quantity: "speed",
+            member: member.to_owned(),
+            value: value.to_f64() * unit,
+            below: edge(false),
+            above: edge(true),
+        }
     }
 
     /// Torques scaled to the load, where balanced powers change their proportion.
@@ -604,7 +634,13 @@ impl Finder<'_, '_> {
                 efficiency_after: after.iter().map(|s| efficiency_at(setup, base, &s.torques).to_f64()).collect(),
             })
         };
-        Range { quantity: "torque", member: member.to_owned(), value: value.to_f64() * unit, below: edge(false), above: edge(true) }
+        Range {
+            quantity: "torque",
+            member: member.to_owned(),
+            value: value.to_f64() * unit,
+            below: edge(false),
+            above: edge(true),
+        }
     }
 
     /// Values whose sign the regime needs, under given loads.

@@ -102,8 +102,7 @@ impl<'t> Setup<'t> {
         for &j in &setup.active {
             let e = &setup.c.elements[j];
             let (Some(p), Some(carrier)) = (setup.speed(e.p), setup.speed(e.carrier)) else {
-                let meshes: Vec<_> =
-                    e.links.iter().map(|l| setup.c.train.meshes[l.mesh.0].name.as_str()).collect();
+                let meshes: Vec<_> = e.links.iter().map(|l| setup.c.train.meshes[l.mesh.0].name.as_str()).collect();
                 return Err(format!(
                     "the speeds of the terminals do not settle the relative speed in {}; name more terminals, or \
                      engage a shift element",
@@ -248,12 +247,8 @@ impl<'t> Setup<'t> {
 
     /// Balance of the free nodes: a row a node, a column an active element.
     fn rows(&self, pattern: &Pattern) -> Matrix {
-        let ratios: Vec<Rational> =
-            (0..self.active.len()).map(|j| self.ratio(j) * self.rho(j, pattern[j])).collect();
-        self.free
-            .iter()
-            .map(|&n| ratios.iter().enumerate().map(|(j, x)| self.coefficient(j, n, x)).collect())
-            .collect()
+        let ratios: Vec<Rational> = (0..self.active.len()).map(|j| self.ratio(j) * self.rho(j, pattern[j])).collect();
+        self.free.iter().map(|&n| ratios.iter().enumerate().map(|(j, x)| self.coefficient(j, n, x)).collect()).collect()
     }
 
     /// Independent terminal torques.
@@ -373,7 +368,13 @@ impl<'t> Setup<'t> {
     }
 
     /// Terminal torques of a regime at other speeds: the same, unless two powers balance.
-    pub fn torques_at(&self, pattern: &Pattern, from: &[Rational], torques: &[Rational], to: &[Rational]) -> Vec<Rational> {
+    pub fn torques_at(
+        &self,
+        pattern: &Pattern,
+        from: &[Rational],
+        torques: &[Rational],
+        to: &[Rational],
+    ) -> Vec<Rational> {
         if self.balance.is_none() {
             return torques.to_vec();
         }
