@@ -324,7 +324,7 @@ fn boundaries(atlas: &Atlas, rays: &[[[f64; 2]; 2]], from: &[f64]) -> Vec<MapBou
     for b in all {
         let same = |o: &MapBoundary| {
             let gap = (o.angles[0] - b.angles[0]).rem_euclid(180.0);
-            gap < 1e-6 || gap > 180.0 - 1e-6
+            !(1e-6..=180.0 - 1e-6).contains(&gap)
         };
         if !kept.iter().any(same) {
             kept.push(b);
