@@ -31,7 +31,7 @@ use crate::train::{FRAME, MemberId, Train};
 
 use arrangement::{Cell, dot};
 use formula::{Formula, Shape, SymbolKind, element_label};
-use setup::{Pattern, Setup, TorqueCell};
+use setup::{MOST_TRIED, Pattern, Setup, TorqueCell};
 
 pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
 pub use family::{Case, Family, FamilyRange, Group, Row, family};
@@ -335,8 +335,6 @@ pub struct AssignmentReport {
     pub reach: String,
 }
 
-/// Most sign patterns of drivers, over all regions, that are tried.
-const MOST_PATTERNS: u128 = 1 << 20;
 /// Most regions of speed.
 const MOST_REGIONS: u128 = 1 << 14;
 /// Most terminals for which every assignment is listed.
@@ -509,15 +507,15 @@ pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
     let planes = setup.planes();
     let d = setup.base.len();
     let bound = arrangement::most_cells(planes.len(), d);
-    let lossy = (0..setup.active.len()).filter(|&j| setup.lossy(j)).count();
-    let patterns = bound.saturating_mul(1u128.checked_shl(lossy as u32).unwrap_or(u128::MAX)) / 2;
-    if bound > MOST_REGIONS || patterns > MOST_PATTERNS {
-        return Err(format!(
-            "{} planes cut the {d}-dimensional speed space into up to {bound} regions, each with 2^{lossy} patterns of \
-             drivers: more than are listed (2^20 in all). Use `willis locate` for the regime of an operating point, or \
-             name fewer terminals",
+    let too_large = |what: String| {
+        format!("{what}. Use `willis locate` for the regime of an operating point, or name fewer terminals")
+    };
+    if bound > MOST_REGIONS {
+        return Err(too_large(format!(
+            "{} planes cut the {d}-dimensional speed space into up to {bound} regions, more than the {MOST_REGIONS} that \
+             are listed",
             planes.len()
-        ));
+        )));
     }
     let regions = setup.speed_cells(&planes);
     let index: BTreeMap<Vec<i8>, usize> = regions.iter().enumerate().map(|(k, c)| (c.signs.clone(), k)).collect();
@@ -527,8 +525,15 @@ pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
         if torques[k].is_some() {
             continue;
         }
-        let (cells, odd) = setup.torque_cells(&regions[k].point);
+        let (mut cells, odd) = setup.torque_cells(&regions[k].point).map_err(|n| {
+            too_large(format!(
+                "up to {} regions of speed, and in some of them 2^{n} patterns of drivers would have to be tried (at most \
+                 2^{MOST_TRIED})",
+                regions.len()
+            ))
+        })?;
         singular |= odd;
+        cells.sort_by(|a, b| b.signs.cmp(&a.signs));
         // All speeds and torques reversed: the same drivers, the same powers.
         let opposite = index[&regions[k].signs.iter().map(|s| -s).collect::<Vec<_>>()];
         if opposite != k {
@@ -951,7 +956,7 @@ fn without_friction(setup: &Setup<'_>) -> std::collections::BTreeSet<(usize, Vec
     }
     (0..regions.len())
         .flat_map(|k| {
-            let (cells, _) = ideal.torque_cells(&regions[k].point);
+            let cells = ideal.torque_cells(&regions[k].point).map_or(vec![], |(cells, _)| cells);
             cells.into_iter().map(move |c| (k, c.signs))
         })
         .collect()

@@ -4,9 +4,9 @@ use serde::Serialize;
 
 use crate::analysis::{Named, Role};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::exact::{self, Rational};
+use crate::exact::Rational;
 use crate::kinematics::{Configuration, common};
-use crate::statics::{Certificate, Equilibrium};
+use crate::statics::Certificate;
 use crate::symbolic::Notation;
 use crate::train::{Load, MemberId, Train};
 use crate::units::Quantity;
@@ -433,7 +433,9 @@ impl Finder<'_, '_> {
         if setup.balance.is_some() {
             // One torque is given; each ray of equilibria is scaled to it.
             let (t, load) = &loads[0];
-            let (cells, _) = setup.torque_cells(base);
+            let Ok((cells, _)) = setup.torque_cells(base) else {
+                return (vec![], false, Some("too many interacting meshes to try every pattern of drivers".to_owned()));
+            };
             let states: Vec<State> = cells
                 .into_iter()
                 .filter(|c| c.signs[*t] == load.sign() && load.sign() != 0)
@@ -445,15 +447,8 @@ impl Finder<'_, '_> {
             let reason = states.is_empty().then(|| "no equilibrium: friction locks the train here".to_owned());
             return (states, true, reason);
         }
-        let signs = setup.sigma_signs(base);
-        let mut sigma: Vec<Option<i8>> = vec![Some(0); setup.c.elements.len()];
-        for (j, &element) in setup.active.iter().enumerate() {
-            sigma[element] = Some(signs[j] * setup.c.elements[element].a.sign());
-        }
-        let node = |t: usize| setup.terminals[t].node;
-        let loaded: Vec<usize> = loads.iter().map(|(t, _)| node(*t)).collect();
-        let open: Vec<usize> = setup.terminals.iter().map(|t| t.node).filter(|n| !loaded.contains(n)).collect();
-        let equilibrium = match Equilibrium::new(&setup.c, &sigma, &open, &loaded) {
+        let loaded: Vec<usize> = loads.iter().map(|(t, _)| *t).collect();
+        let equilibrium = match setup.equilibrium(base, &loaded) {
             Ok(e) => e,
             Err(_) => {
                 let names: Vec<&str> =
@@ -463,17 +458,15 @@ impl Finder<'_, '_> {
             }
         };
         let mut right = vec![Rational::ZERO; setup.c.nodes];
-        loads.iter().for_each(|(t, x)| right[node(*t)] = x.clone());
+        loads.iter().for_each(|(t, x)| right[setup.terminals[*t].node] = x.clone());
         let answer = equilibrium.solve(&right);
         let complete = answer.certificate != Certificate::Undecided;
         let states: Vec<State> = answer
             .solutions
             .iter()
             .filter_map(|s| {
-                let pattern: Pattern = (0..setup.active.len())
-                    .map(|j| s.driver[setup.active[j]].filter(|_| signs[j] != 0 && setup.lossy(j)))
-                    .collect();
-                let torques = self.torques(&pattern, loads)?;
+                let pattern = setup.pattern_of(base, s);
+                let torques = setup.torques_for(&pattern, loads)?;
                 Some(State { pattern, torques })
             })
             .collect();
@@ -491,22 +484,6 @@ impl Finder<'_, '_> {
             _ => None,
         };
         (states, complete, reason)
-    }
-
-    /// Terminal torques of a pattern under given loads, exactly.
-    fn torques(&self, pattern: &Pattern, loads: &[(usize, Rational)]) -> Option<Vec<Rational>> {
-        let setup = self.setup;
-        let k = setup.active.len();
-        let ratios: Vec<Rational> = (0..k).map(|j| setup.ratio(j) * setup.rho(j, pattern[j])).collect();
-        let row = |n: usize| -> Vec<Rational> { (0..k).map(|j| setup.coefficient(j, n, &ratios[j])).collect() };
-        let mut rows: Vec<Vec<Rational>> = setup.free.iter().map(|&n| row(n)).collect();
-        let mut right = vec![Rational::ZERO; rows.len()];
-        for (t, x) in loads {
-            rows.push(row(setup.terminals[*t].node));
-            right.push(x.clone());
-        }
-        let forces = exact::solve(&rows, &right)?;
-        Some(setup.terminals.iter().map(|t| dot(&row(t.node), &forces)).collect())
     }
 
     /// How far a speed can go, and what lies behind.
@@ -624,7 +601,7 @@ impl Finder<'_, '_> {
             let none = loads.iter().all(|(_, x)| x.is_zero());
             let before = match none || setup.balance.is_some() {
                 true => here.torques.clone(),
-                false => self.torques(&here.pattern, &loads).unwrap_or_else(|| here.torques.clone()),
+                false => setup.torques_for(&here.pattern, &loads).unwrap_or_else(|| here.torques.clone()),
             };
             Some(Edge {
                 at: (&value + step).to_f64() * unit,
@@ -647,16 +624,8 @@ impl Finder<'_, '_> {
     fn lines(&self, pattern: &Pattern, loads: &[(usize, Rational)]) -> Option<Vec<(String, Rational)>> {
         let setup = self.setup;
         let k = setup.active.len();
-        let torques = self.torques(pattern, loads)?;
-        let ratios: Vec<Rational> = (0..k).map(|j| setup.ratio(j) * setup.rho(j, pattern[j])).collect();
-        let row = |n: usize| -> Vec<Rational> { (0..k).map(|j| setup.coefficient(j, n, &ratios[j])).collect() };
-        let mut rows: Vec<Vec<Rational>> = setup.free.iter().map(|&n| row(n)).collect();
-        let mut right = vec![Rational::ZERO; rows.len()];
-        for (t, x) in loads {
-            rows.push(row(setup.terminals[*t].node));
-            right.push(x.clone());
-        }
-        let forces = exact::solve(&rows, &right)?;
+        let torques = setup.torques_for(pattern, loads)?;
+        let forces = setup.forces_for(pattern, loads)?;
         let mut all: Vec<(String, Rational)> = (0..setup.terminals.len())
             .map(|t| {
                 let name = setup.c.train.member_name(setup.terminals[t].member);

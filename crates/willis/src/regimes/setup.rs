@@ -3,7 +3,7 @@
 
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Element};
-use crate::statics;
+use crate::statics::{self, Equilibrium, Unsolvable};
 use crate::train::MemberId;
 
 use super::arrangement::{self, Cell};
@@ -347,12 +347,9 @@ impl<'t> Setup<'t> {
 
     /// Terminal torques over a basis of force vectors.
     fn torque_forms(&self, pattern: &Pattern, basis: &[Vec<Rational>]) -> Vec<Vec<Rational>> {
-        self.terminals
-            .iter()
+        (0..self.terminals.len())
             .map(|t| {
-                let row: Vec<Rational> = (0..self.active.len())
-                    .map(|j| self.coefficient(j, t.node, &(self.ratio(j) * self.rho(j, pattern[j]))))
-                    .collect();
+                let row = self.torque_row(pattern, t);
                 basis.iter().map(|b| arrangement::dot(&row, b)).collect()
             })
             .collect()
@@ -405,12 +402,89 @@ impl<'t> Setup<'t> {
         self.sigma.iter().map(|s| arrangement::dot(s, base).sign()).collect()
     }
 
-    /// Every cone of terminal torques that is in equilibrium at given base speeds. The second value
-    /// tells that some pattern is singular: the train lies exactly on a self-locking threshold.
-    pub fn torque_cells(&self, base: &[Rational]) -> (Vec<TorqueCell>, bool) {
+    /// The equilibrium problem at given base speeds, with these terminals loaded and the others open.
+    pub fn equilibrium(&self, base: &[Rational], loaded: &[usize]) -> Result<Equilibrium, Unsolvable> {
+        let signs = self.sigma_signs(base);
+        let mut sigma: Vec<Option<i8>> = vec![Some(0); self.c.elements.len()];
+        for (j, &element) in self.active.iter().enumerate() {
+            sigma[element] = Some(signs[j] * self.c.elements[element].a.sign());
+        }
+        let node = |t: usize| self.terminals[t].node;
+        let loaded: Vec<usize> = loaded.iter().map(|&t| node(t)).collect();
+        let open: Vec<usize> = self.terminals.iter().map(|t| t.node).filter(|n| !loaded.contains(n)).collect();
+        Equilibrium::new(&self.c, &sigma, &open, &loaded)
+    }
+
+    /// Forces of a pattern under given terminal torques, by active element.
+    pub fn forces_for(&self, pattern: &Pattern, loads: &[(usize, Rational)]) -> Option<Vec<Rational>> {
+        let mut rows = self.rows(pattern);
+        let mut right = vec![Rational::ZERO; rows.len()];
+        for (t, x) in loads {
+            rows.push(self.torque_row(pattern, *t));
+            right.push(x.clone());
+        }
+        exact::solve(&rows, &right)
+    }
+
+    /// All terminal torques of a pattern under given ones.
+    pub fn torques_for(&self, pattern: &Pattern, loads: &[(usize, Rational)]) -> Option<Vec<Rational>> {
+        let forces = self.forces_for(pattern, loads)?;
+        Some((0..self.terminals.len()).map(|t| arrangement::dot(&self.torque_row(pattern, t), &forces)).collect())
+    }
+
+    /// Coefficients of the forces in a terminal's torque.
+    fn torque_row(&self, pattern: &Pattern, t: usize) -> Vec<Rational> {
+        (0..self.active.len())
+            .map(|j| self.coefficient(j, self.terminals[t].node, &(self.ratio(j) * self.rho(j, pattern[j]))))
+            .collect()
+    }
+
+    /// The drivers of a solution of [`Self::equilibrium`].
+    pub fn pattern_of(&self, base: &[Rational], solution: &statics::Solution) -> Pattern {
+        let signs = self.sigma_signs(base);
+        (0..self.active.len())
+            .map(|j| solution.driver[self.active[j]].filter(|_| signs[j] != 0 && self.lossy(j)))
+            .collect()
+    }
+
+    /// With one independent torque: if some terminal's torque certainly settles everything, there are
+    /// two cells, one for each of its signs, and no pattern needs to be tried.
+    fn certified_cells(&self, base: &[Rational]) -> Option<Vec<TorqueCell>> {
+        if self.torques != 1 {
+            return None;
+        }
+        (0..self.terminals.len()).find_map(|t| {
+            let problem = self.equilibrium(base, &[t]).ok()?;
+            if !problem.certificate().unique_for_every_load() {
+                return None;
+            }
+            [1, -1]
+                .into_iter()
+                .map(|sign| {
+                    let mut loads = vec![Rational::ZERO; self.c.nodes];
+                    loads[self.terminals[t].node] = Rational::from(sign);
+                    let answer = problem.solve(&loads);
+                    let pattern = self.pattern_of(base, answer.solutions.first()?);
+                    let torques = self.torques_for(&pattern, &[(t, Rational::from(sign))])?;
+                    Some(TorqueCell { pattern, signs: torques.iter().map(Rational::sign).collect(), torques })
+                })
+                .collect()
+        })
+    }
+
+    /// Every cone of terminal torques that is in equilibrium at given base speeds, or how many
+    /// patterns of drivers would have to be tried. The second value tells that some pattern is
+    /// singular: the train lies exactly on a self-locking threshold.
+    pub fn torque_cells(&self, base: &[Rational]) -> Result<(Vec<TorqueCell>, bool), u32> {
+        if let Some(cells) = self.certified_cells(base) {
+            return Ok((cells, false));
+        }
         let k = self.active.len();
         let sigma = self.sigma_signs(base);
         let moving: Vec<usize> = (0..k).filter(|&j| sigma[j] != 0 && self.lossy(j)).collect();
+        if moving.len() as u32 > MOST_TRIED {
+            return Err(moving.len() as u32);
+        }
         let mut all = Vec::new();
         let mut singular = false;
         for mask in 0u64..1 << moving.len() {
@@ -432,7 +506,7 @@ impl<'t> Setup<'t> {
             }
             self.cones(&pattern, &moving, &sigma, &basis, &mut all);
         }
-        (all, singular)
+        Ok((all, singular))
     }
 
     /// The cones within one pattern's space of equilibria.
@@ -475,6 +549,9 @@ impl<'t> Setup<'t> {
         }
     }
 }
+
+/// Most elements with relative motion and loss for which every pattern of drivers is tried.
+pub(crate) const MOST_TRIED: u32 = 12;
 
 /// Vectors that span the solutions of `rows · f = 0`.
 fn null_space(mut rows: Matrix, columns: usize) -> Vec<Vec<Rational>> {
