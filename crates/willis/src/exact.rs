@@ -111,6 +111,20 @@ impl Rational {
         }
     }
 
+    /// A whole number modulo `modulus`; `None` for a fraction.
+    pub(crate) fn residue(&self, modulus: u64) -> Option<u64> {
+        if !self.is_integer() {
+            return None;
+        }
+        match &self.0 {
+            Repr::Small(r) => u64::try_from(r.numer().rem_euclid(i128::from(modulus))).ok(),
+            Repr::Big(r) => {
+                let m = BigInt::from(modulus);
+                ((r.numer() % &m + &m) % &m).to_u64()
+            }
+        }
+    }
+
     /// `1 / self`.
     ///
     /// # Panics

@@ -299,6 +299,48 @@ impl Polynomial {
         rest
     }
 
+    /// Products of powers in the place of symbols; `None` when a value is a sum.
+    fn with_monomials(&self, values: &BTreeMap<Symbol, Function>) -> Option<Function> {
+        let sum = |f: &Function| f.factors.iter().any(|(p, _)| p.len() > 1);
+        if values.values().any(sum) {
+            return None;
+        }
+        let mut terms: Vec<(Rational, BTreeMap<Symbol, i32>)> = Vec::new();
+        for (c, powers) in self.terms() {
+            let (mut c, mut exponents) = (c.clone(), BTreeMap::new());
+            for (s, e) in powers {
+                let value = &values[&s];
+                (0..e).for_each(|_| c = &c * &value.number);
+                for (p, own) in &value.factors {
+                    let symbol = p.symbols()[0];
+                    *exponents.entry(symbol).or_insert(0) += own * e as i32;
+                }
+            }
+            if !c.is_zero() {
+                terms.push((c, exponents));
+            }
+        }
+        // Negative powers go below the line.
+        let mut lowest: BTreeMap<Symbol, i32> = BTreeMap::new();
+        for (_, exponents) in &terms {
+            for (s, e) in exponents.iter().filter(|(_, e)| **e < 0) {
+                let low = lowest.entry(*s).or_insert(0);
+                *low = (*low).min(*e);
+            }
+        }
+        let mut p = Self(BTreeMap::new());
+        for (c, exponents) in terms {
+            let mut m = Monomial(vec![]);
+            for s in exponents.keys().chain(lowest.keys()) {
+                let e = exponents.get(s).copied().unwrap_or(0) - lowest.get(s).copied().unwrap_or(0);
+                m = m.with(*s, e as u32);
+            }
+            p.add_term(m, c);
+        }
+        let below = lowest.into_iter().map(|(s, e)| (Self::symbol(s), e));
+        Some(p.to_function().times(&Function::collect(Rational::ONE, below)))
+    }
+
     /// This polynomial as a product of its factors.
     pub fn to_function(&self) -> Function {
         if self.is_zero() {
@@ -325,6 +367,10 @@ fn split(p: Polynomial, factors: &mut Vec<Polynomial>) {
             return split(Polynomial(rest), factors);
         }
     }
+    if let Some(all) = multilinear_factors(&p) {
+        factors.extend(all);
+        return;
+    }
     for s in p.symbols() {
         let mut parts = vec![p.content(s)];
         if p.degree(s) > 1 {
@@ -339,6 +385,95 @@ fn split(p: Polynomial, factors: &mut Vec<Polynomial>) {
         }
     }
     factors.push(p.primitive());
+}
+
+/// A prime below 2^61; arithmetic modulo it decides most questions at once.
+const MODULUS: u64 = (1 << 61) - 1;
+
+/// An arbitrary but fixed value for a symbol.
+fn probe(s: Symbol) -> u64 {
+    (s.0 as u64 * 7919 + 104_729) % 9973 + 2
+}
+
+/// The irreducible factors of a primitive polynomial that is linear in every symbol; `None` when it
+/// is not, or when the probe met an unlucky point.
+///
+/// Two symbols are in one factor exactly when `p p_xy ≠ p_x p_y`. At the probe point an inequality
+/// is certain, and an equality is confirmed by multiplying the factors that it leads to.
+fn multilinear_factors(p: &Polynomial) -> Option<Vec<Polynomial>> {
+    let symbols = p.symbols();
+    if symbols.iter().any(|s| p.degree(*s) > 1) {
+        return None;
+    }
+    let n = symbols.len();
+    let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(MODULUS)) as u64;
+    let plus = |a: u64, b: u64| (a + b) % MODULUS;
+    // Values of p, its first and its mixed second derivatives.
+    let (mut value, mut first, mut second) = (0u64, vec![0u64; n], vec![0u64; n * n]);
+    let inverse: Vec<u64> = symbols.iter().map(|s| inverse_of(probe(*s))).collect();
+    for (m, c) in &p.0 {
+        let mut term = c.residue(MODULUS)?;
+        let present: Vec<usize> = (0..n).filter(|&k| m.of(symbols[k]) == 1).collect();
+        for &k in &present {
+            term = times(term, probe(symbols[k]));
+        }
+        value = plus(value, term);
+        for (at, &x) in present.iter().enumerate() {
+            let without = times(term, inverse[x]);
+            first[x] = plus(first[x], without);
+            for &y in &present[..at] {
+                let slot = &mut second[y * n + x];
+                *slot = plus(*slot, times(without, inverse[y]));
+            }
+        }
+    }
+    let mut group: Vec<usize> = (0..n).collect();
+    for x in 0..n {
+        for y in 0..x {
+            if group[x] != group[y] && times(value, second[y * n + x]) != times(first[x], first[y]) {
+                let (keep, drop) = (group[x].min(group[y]), group[x].max(group[y]));
+                group.iter_mut().filter(|g| **g == drop).for_each(|g| *g = keep);
+            }
+        }
+    }
+    let mut parts: Vec<usize> = group.clone();
+    parts.sort_unstable();
+    parts.dedup();
+    if parts.len() == 1 {
+        return Some(vec![p.clone()]);
+    }
+    // A factor is what remains when the symbols of the others are numbers.
+    let factors: Vec<Polynomial> = parts
+        .iter()
+        .map(|part| {
+            let mut factor = Polynomial(BTreeMap::new());
+            for (m, c) in &p.0 {
+                let (mut rest, mut c) = (m.clone(), c.clone());
+                for k in (0..n).filter(|&k| group[k] != *part && m.of(symbols[k]) == 1) {
+                    rest = rest.with(symbols[k], 0);
+                    c = c * Rational::from(probe(symbols[k]) as i64);
+                }
+                factor.add_term(rest, c);
+            }
+            if factor.is_zero() { factor } else { factor.primitive() }
+        })
+        .collect();
+    let product = factors.iter().fold(Polynomial::from(1), |product, f| &product * f);
+    (product == *p).then_some(factors)
+}
+
+/// The inverse modulo the prime, by Fermat.
+fn inverse_of(x: u64) -> u64 {
+    let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(MODULUS)) as u64;
+    let (mut base, mut power, mut result) = (x, MODULUS - 2, 1u64);
+    while power > 0 {
+        if power & 1 == 1 {
+            result = times(result, base);
+        }
+        base = times(base, base);
+        power >>= 1;
+    }
+    result
 }
 
 /// The greatest number of which both are whole multiples.
@@ -381,8 +516,8 @@ polynomial_operator!(Mul, mul, |a, b| {
 });
 
 /// The determinant of a square matrix of polynomials, by expansion along columns with every minor
-/// computed once.
-pub(crate) fn determinant(columns: &[Vec<Polynomial>]) -> Polynomial {
+/// computed once; `None` when a minor has more than `most` terms.
+pub(crate) fn determinant(columns: &[Vec<Polynomial>], most: usize) -> Option<Polynomial> {
     let mut minors: BTreeMap<u64, Polynomial> = BTreeMap::from([(0, Polynomial::from(1))]);
     for column in columns {
         let mut next: BTreeMap<u64, Polynomial> = BTreeMap::new();
@@ -396,9 +531,12 @@ pub(crate) fn determinant(columns: &[Vec<Polynomial>]) -> Polynomial {
             }
         }
         next.retain(|_, p| !p.is_zero());
+        if next.len() > 64 * most || next.values().any(|p| p.len() > most) {
+            return None;
+        }
         minors = next;
     }
-    minors.into_iter().next().map_or(Polynomial::from(0), |(_, p)| p)
+    Some(minors.into_iter().next().map_or(Polynomial::from(0), |(_, p)| p))
 }
 
 /// A rational function: a number times powers of distinct, numerically primitive polynomials.
@@ -571,15 +709,17 @@ impl Function {
     pub fn substituted(&self, value: &dyn Fn(Symbol) -> Option<Self>) -> Option<Self> {
         let mut product = Self::from(self.number.clone());
         for (p, e) in &self.factors {
-            let mut sum = Self::ZERO;
-            for (c, powers) in p.terms() {
-                let mut term = Self::from(c.clone());
-                for (s, e) in powers {
-                    let v = value(s).unwrap_or_else(|| Self::symbol(s));
-                    (0..e).for_each(|_| term = term.times(&v));
-                }
-                sum = sum.plus(&term);
-            }
+            let values: BTreeMap<Symbol, Self> =
+                p.symbols().into_iter().map(|s| (s, value(s).unwrap_or_else(|| Self::symbol(s)))).collect();
+            let sum = p.with_monomials(&values).unwrap_or_else(|| {
+                p.terms().fold(Self::ZERO, |sum, (c, powers)| {
+                    let mut term = Self::from(c.clone());
+                    for (s, e) in powers {
+                        (0..e).for_each(|_| term = term.times(&values[&s]));
+                    }
+                    sum.plus(&term)
+                })
+            });
             if sum.is_zero() && *e < 0 {
                 return None;
             }
@@ -831,7 +971,8 @@ mod tests {
     #[test]
     fn determinants_of_three() {
         let m = [[n(1), s(X), n(0)], [n(0), n(1), s(Y)], [s(Z), n(0), n(1)]].map(|c| c.to_vec());
-        assert_eq!(determinant(&m), &n(1) + &(&(&s(X) * &s(Y)) * &s(Z)));
+        assert_eq!(determinant(&m, 1), None);
+        assert_eq!(determinant(&m, 9).unwrap(), &n(1) + &(&(&s(X) * &s(Y)) * &s(Z)));
     }
 
     #[test]

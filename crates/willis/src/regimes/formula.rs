@@ -53,8 +53,8 @@ pub(crate) struct Shape<'s, 't> {
     pub names: Names,
 }
 
-/// Most elements and nodes for which determinants are expanded symbolically.
-const MOST_SYMBOLIC: usize = 14;
+/// Most terms of a determinant: longer formulas help nobody.
+const MOST_TERMS: usize = 600;
 
 /// The symbols of a setup, by number.
 #[derive(Clone, Debug)]
@@ -337,12 +337,10 @@ impl<'s, 't> Shape<'s, 't> {
     pub fn new(setup: &'s Setup<'t>, prefer: &[usize]) -> Result<Self, String> {
         let k = setup.active.len();
         let nodes = setup.nodes();
-        if k.max(nodes.len()) > MOST_SYMBOLIC {
-            return Err(format!(
-                "{} elements and {} shafts are too many for closed formulas (at most {MOST_SYMBOLIC})",
-                k,
-                nodes.len()
-            ));
+        let too_long =
+            || format!("with {k} elements and {} shafts they would have more than {MOST_TERMS} terms", nodes.len());
+        if nodes.len() > 60 {
+            return Err(too_long());
         }
         let names = Names::new(setup);
         let x: Vec<Polynomial> = (0..k).map(|j| Polynomial::symbol(names.x(j))).collect();
@@ -372,9 +370,9 @@ impl<'s, 't> Shape<'s, 't> {
         let determinant = |rows: &[Vec<Polynomial>]| {
             let columns: Vec<Vec<Polynomial>> =
                 (0..rows.len()).map(|c| rows.iter().map(|r| r[c].clone()).collect()).collect();
-            symbolic::determinant(&columns).to_function()
+            symbolic::determinant(&columns, MOST_TERMS).map(|d| d.to_function()).ok_or_else(too_long)
         };
-        let whole = determinant(&rows);
+        let whole = determinant(&rows)?;
         if whole.is_zero() {
             return Err("the terminal torques are not determined by each other".to_owned());
         }
@@ -382,25 +380,25 @@ impl<'s, 't> Shape<'s, 't> {
         let with_row = |r: usize, own: Vec<Polynomial>| {
             let mut changed = rows.clone();
             changed[first + r] = own;
-            determinant(&changed).over(&whole)
+            determinant(&changed).map(|d| d.over(&whole))
         };
         let d = setup.torques;
         let torque = (0..setup.terminals.len())
-            .map(|t| {
+            .map(|t| -> Result<Vec<Function>, String> {
                 (0..d)
                     .map(|r| match reference.iter().position(|&own| own == t) {
-                        Some(own) if own == r => Function::ONE,
-                        Some(_) => Function::ZERO,
+                        Some(own) if own == r => Ok(Function::ONE),
+                        Some(_) => Ok(Function::ZERO),
                         None => with_row(r, row(setup.terminals[t].node, &x)),
                     })
                     .collect()
             })
-            .collect();
+            .collect::<Result<_, _>>()?;
         let force = (0..k)
-            .map(|j| {
+            .map(|j| -> Result<Vec<Function>, String> {
                 (0..d).map(|r| with_row(r, (0..k).map(|c| Polynomial::from(i64::from(c == j))).collect())).collect()
             })
-            .collect();
+            .collect::<Result<_, _>>()?;
 
         // Speeds: the elements' rows and one row for each base speed.
         let mut columns: Vec<Vec<Polynomial>> =
@@ -410,17 +408,27 @@ impl<'s, 't> Shape<'s, 't> {
                 column.push(Polynomial::from(i64::from(setup.terminals[b].node == *n)));
             }
         }
-        let whole = symbolic::determinant(&columns).to_function();
-        let node_speed = |node: usize, b: usize| -> Function {
-            // Cramer: the node's column replaced by the unit vector of base b's row.
-            let Some(at) = nodes.iter().position(|&n| n == node) else { return Function::ZERO };
-            let mut changed = columns.clone();
-            changed[at] = (0..nodes.len()).map(|r| Polynomial::from(i64::from(r == k + b))).collect();
-            symbolic::determinant(&changed).to_function().over(&whole)
-        };
+        let whole = symbolic::determinant(&columns, MOST_TERMS).map(|d| d.to_function()).ok_or_else(too_long)?;
         if whole.is_zero() {
             return Err("the speeds are not determined by those of the terminals".to_owned());
         }
+        let node_speeds: Vec<Vec<Function>> = (0..nodes.len())
+            .map(|at| {
+                (0..setup.base.len())
+                    .map(|b| {
+                        // Cramer: the node's column replaced by the unit vector of base b's row.
+                        let mut changed = columns.clone();
+                        changed[at] = (0..nodes.len()).map(|r| Polynomial::from(i64::from(r == k + b))).collect();
+                        symbolic::determinant(&changed, MOST_TERMS)
+                            .map(|d| d.to_function().over(&whole))
+                            .ok_or_else(too_long)
+                    })
+                    .collect()
+            })
+            .collect::<Result<_, String>>()?;
+        let node_speed = |node: usize, b: usize| -> Function {
+            nodes.iter().position(|&n| n == node).map_or(Function::ZERO, |at| node_speeds[at][b].clone())
+        };
         let speed = (0..setup.terminals.len())
             .map(|t| {
                 (0..setup.base.len())
