@@ -316,8 +316,33 @@ impl Tests {
 }
 
 /// Files that are generated, and committed.
-const GENERATED: &[&str] =
-    &["schema/willis-1.schema.json", "validation/README.md", "validation/esmail-2018-table-1/README.md"];
+const GENERATED: &[&str] = &[
+    "schema/willis-1.schema.json",
+    "validation/README.md",
+    "validation/esmail-2018-table-1/README.md",
+    FIGURES[0].0,
+    FIGURES[1].0,
+];
+
+/// Figures of the book, and what draws them.
+const FIGURES: &[(&str, &[&str])] = &[
+    (
+        "book/src/figures/prius-regimes.svg",
+        &["regimes", "examples/prius-p112.toml", "--terminals", "engine,ring,mg1", "--map"],
+    ),
+    (
+        "book/src/figures/compound-regimes.svg",
+        &[
+            "regimes",
+            "examples/compound-split.toml",
+            "--terminals",
+            "engine,wheels,mg_a,mg_b",
+            "--balance",
+            "mg_a,mg_b",
+            "--map",
+        ],
+    ),
+];
 
 /// Writes every generated file. Needs the optimised program.
 fn write_generated(context: &Context) -> Result<(), String> {
@@ -325,6 +350,11 @@ fn write_generated(context: &Context) -> Result<(), String> {
     let file = context.root.join(GENERATED[0]);
     fs::create_dir_all(file.parent().expect("a folder")).map_err(|e| format!("the folder schema: {e}"))?;
     fs::write(&file, schema).map_err(|e| format!("{}: {e}", GENERATED[0]))?;
+    for (file, arguments) in FIGURES {
+        let path = context.root.join(file);
+        fs::create_dir_all(path.parent().expect("a folder")).map_err(|e| format!("{file}: {e}"))?;
+        context.output(context.willis().args(*arguments).arg(&path))?;
+    }
     write_pages(context)
 }
 
@@ -400,7 +430,16 @@ fn examples(context: &Context) -> Outcome {
         let mut wrong = Vec::new();
         let files = example_files(context)?;
         for file in &files {
-            for arguments in [&["check"][..], &["analyze"], &["analyze", "--format", "json"]] {
+            let json = ["--format", "json"];
+            let questions = [
+                &["check"][..],
+                &["analyze"],
+                &["analyze", json[0], json[1]],
+                &["regimes"],
+                &["regimes", json[0], json[1]],
+                &["formula", "--derivatives"],
+            ];
+            for arguments in questions {
                 let mut command = context.willis();
                 match context.output(command.args(arguments).arg(file)) {
                     Err(e) => wrong.push(e),
@@ -415,7 +454,7 @@ fn examples(context: &Context) -> Outcome {
     };
     match all() {
         Ok(count) => {
-            println!("{count} example trains: check, analyze, analyze --format json");
+            println!("{count} example trains: check, analyze, regimes, formula, and as JSON");
             Outcome::Passed
         }
         Err(e) => Outcome::Failed(e),
