@@ -129,7 +129,7 @@ fn wheel(map: &RegimeMap) -> Group {
         for a in b.angles {
             let (colour, width) = if b.locked_up { (INK, 2.4) } else { (INK, 1.1) };
             let mut l = line(at(RADII[0], a), at(RADII[2] + 10.0, a), colour, width);
-            if !b.mechanical_point && !b.locked_up {
+            if !b.at_rest && !b.locked_up {
                 l = l.set("stroke-dasharray", "4 3");
             }
             let (x, y) = at(RADII[2] + 20.0, a);
@@ -259,7 +259,7 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
                 continue;
             }
             let mut l = line((x(a), top), (x(a), bottom), if b.locked_up { INK } else { LINE }, 1.0);
-            if !b.mechanical_point && !b.locked_up {
+            if !b.at_rest && !b.locked_up {
                 l = l.set("stroke-dasharray", "4 3");
             }
             let ratio = b.ratio.map_or(if a > map.half[0] + 90.0 { "∞" } else { "−∞" }.to_owned(), short_number);

@@ -93,8 +93,9 @@ pub struct MapBoundary {
     pub angles: [f64; 2],
     /// Second over first base speed; absent when that is infinite.
     pub ratio: Option<f64>,
-    /// A terminal stands still: its power passes zero.
-    pub mechanical_point: bool,
+    /// A terminal stands still: its power passes zero. In a power split whose machines balance each
+    /// other, a machine at rest is a mechanical point, and the label says so.
+    pub at_rest: bool,
     /// A set turns as one: no loss there.
     pub locked_up: bool,
 }
@@ -238,7 +239,7 @@ pub fn regime_map(train: &Train, selection: &RegimeSelection) -> Result<RegimeMa
         .filter(|r| !r.all_dissipated)
         .filter_map(|r| r.efficiency_range.map(|e| e[0]))
         .fold(1.0, f64::min);
-    let boundaries = boundaries(&atlas, &rays, &from);
+    let boundaries = boundaries(&atlas, &rays, &from, selection.balance.as_ref());
     Ok(RegimeMap {
         title: match atlas.state == crate::analysis::AS_DRAWN {
             true => train.name().to_owned(),
@@ -296,7 +297,12 @@ fn spread(widths: &[f64]) -> (Vec<f64>, bool) {
     }
 }
 
-fn boundaries(atlas: &Atlas, rays: &[[[f64; 2]; 2]], from: &[f64]) -> Vec<MapBoundary> {
+fn boundaries(
+    atlas: &Atlas,
+    rays: &[[[f64; 2]; 2]],
+    from: &[f64],
+    balance: Option<&[String; 2]>,
+) -> Vec<MapBoundary> {
     let n = from.len();
     let mut all: Vec<MapBoundary> = Vec::new();
     for k in 0..n {
@@ -304,7 +310,10 @@ fn boundaries(atlas: &Atlas, rays: &[[[f64; 2]; 2]], from: &[f64]) -> Vec<MapBou
         let after = &atlas.regions[k];
         let Some(p) = (0..before.signs.len()).find(|&p| before.signs[p] != after.signs[p]) else { continue };
         let plane = &atlas.planes[p];
-        if let Some(b) = all.iter_mut().find(|b| b.label == plane.label && (b.angles[0] + 180.0 - from[k]).abs() < 1e-6)
+        // Where one of two balanced machines stands still, no power passes the electric path.
+        let mechanical = balance.is_some_and(|pair| pair.iter().any(|name| plane.at_rest.contains(name)));
+        let label = if mechanical { format!("{}: mechanical point", plane.label) } else { plane.label.clone() };
+        if let Some(b) = all.iter_mut().find(|b| b.label == label && (b.angles[0] + 180.0 - from[k]).abs() < 1e-6)
         {
             b.angles[1] = from[k];
             continue;
@@ -312,10 +321,10 @@ fn boundaries(atlas: &Atlas, rays: &[[[f64; 2]; 2]], from: &[f64]) -> Vec<MapBou
         let direction = rays[k][0];
         all.push(MapBoundary {
             letter: String::new(),
-            label: plane.label.clone(),
+            label,
             angles: [from[k], (from[k] + 180.0).rem_euclid(360.0)],
             ratio: (direction[0].abs() > 1e-12).then(|| direction[1] / direction[0]),
-            mechanical_point: !plane.at_rest.is_empty(),
+            at_rest: !plane.at_rest.is_empty(),
             locked_up: !plane.without_relative_motion.is_empty(),
         });
     }
