@@ -90,7 +90,8 @@ fn flow(r: &RegimeReport) -> String {
 
 fn driving(a: &Atlas, r: &RegimeReport) -> String {
     let one = r.drivers.0.len() == 1;
-    let all = r.drivers.iter().filter_map(|(e, d)| d.as_ref().map(|d| if one { d.clone() } else { format!("{d} in {e}") }));
+    let all =
+        r.drivers.iter().filter_map(|(e, d)| d.as_ref().map(|d| if one { d.clone() } else { format!("{d} in {e}") }));
     let text = all.collect::<Vec<_>>().join(", ");
     let _ = a;
     if text.is_empty() { "-".into() } else { text }
@@ -217,7 +218,10 @@ fn atlas(a: &Atlas) -> String {
         out += "\n";
     }
     for f in &a.formulas {
-        out += &wrap(&format!("{}, drives: {}   (regimes {})", f.roles, f.drivers, f.regimes.join(", ")), &format!("  {:<4} ", f.id));
+        out += &wrap(
+            &format!("{}, drives: {}   (regimes {})", f.roles, f.drivers, f.regimes.join(", ")),
+            &format!("  {:<4} ", f.id),
+        );
         out += "\n";
         let line = |label: &str, text: &str| wrap(text, &format!("       {label:<3} = ")) + "\n";
         let long = f.efficiency.len() > 400;
@@ -269,7 +273,13 @@ fn atlas(a: &Atlas) -> String {
         for b in a.boundaries.iter().take(half) {
             let speeds: Vec<String> = b.speeds.iter().map(|(n, w)| format!("{n} {}", significant(*w, 5))).collect();
             out += &wrap(
-                &format!("{} | {}: {}   (speeds in proportion: {})", b.between[0], b.between[1], b.label, speeds.join(", ")),
+                &format!(
+                    "{} | {}: {}   (speeds in proportion: {})",
+                    b.between[0],
+                    b.between[1],
+                    b.label,
+                    speeds.join(", ")
+                ),
                 "  ",
             );
             out += "\n";
@@ -383,24 +393,25 @@ pub fn csv(all: &Regimes) -> String {
 
 /// The regimes as a LaTeX table, and their formulas.
 pub fn latex(all: &Regimes) -> String {
-    let mut out = format!("% Regimes of {}. Needs amsmath and longtable.\n", all.train);
+    let mut out = format!("% Regimes of {}. Needs amsmath, array and longtable.\n", all.train);
     for a in &all.states {
         if let Some(why) = &a.reason {
             out += &format!("% {}: {why}\n", a.state);
             continue;
         }
-        out += "\\begin{longtable}{lllll}\n";
-        out += "regime & speeds & torques & inputs $\\to$ outputs & formula \\\\ \\hline\n";
+        // Columns that break their lines, for trains with many terminals.
+        let column = |width: &str| format!(">{{\\raggedright\\arraybackslash}}p{{{width}\\linewidth}}");
+        let (speeds, torques, roles) = (column("0.34"), column("0.21"), column("0.2"));
+        out += &format!("{{\\footnotesize\n\\begin{{longtable}}{{l{speeds}{torques}{roles}l}}\n");
+        out += "regime & speeds & torques & inputs $\\to$ outputs & formula \\\\ \\hline \\endhead\n";
         for r in &a.regimes {
             let chain = |text: &str| {
-                let mut t = String::new();
-                for word in text.split(' ') {
-                    match word.strip_prefix("w_") {
-                        Some(name) => t += &format!("\\omega_{{{}}}", index(name)),
-                        None => t += &format!(" {word} "),
-                    }
-                }
-                format!("${t}$")
+                let speed = |name: &str| match name.strip_prefix("w_") {
+                    Some(name) => format!("\\omega_{{{}}}", index(name)),
+                    None => name.to_owned(),
+                };
+                let same = |part: &str| part.split(" = ").map(speed).collect::<Vec<_>>().join(" = ");
+                format!("${}$", text.split(" > ").map(same).collect::<Vec<_>>().join(" > "))
             };
             let speeds: Vec<String> = a.regions[r.region - 1].order.iter().map(|c| chain(c)).collect();
             let torques: Vec<String> = r
@@ -416,7 +427,7 @@ pub fn latex(all: &Regimes) -> String {
             let to = if r.outputs.is_empty() { "heat".to_owned() } else { names(&r.outputs) };
             let mark = if r.by_friction_only { "$^{*}$" } else { "" };
             out += &format!(
-                "{}{mark} & {} & {} & {} $\\to$ {to} & {} \\\\\n",
+                "{}{mark} & {} & {} & {} $\\to$ {to} & {} \\\\[2pt]\n",
                 r.id.replace('-', "$-$").replace('+', "$+$"),
                 speeds.join("; "),
                 torques.join(", "),
@@ -424,27 +435,25 @@ pub fn latex(all: &Regimes) -> String {
                 r.formula
             );
         }
-        out += "\\end{longtable}\n";
+        out += "\\end{longtable}}\n";
         if a.regimes.iter().any(|r| r.by_friction_only) {
             out += "$^{*}$ torque signs that exist only because of friction.\n";
         }
-        out += "\\begin{align*}\n";
-        let lines: Vec<String> = a
-            .formulas
-            .iter()
-            .map(|f| format!("\\text{{{}}}\\quad \\eta &= {}", f.id, f.efficiency_latex))
-            .collect();
+        out += "{\\allowdisplaybreaks\n\\begin{align*}\n";
+        let lines: Vec<String> =
+            a.formulas.iter().map(|f| format!("\\text{{{}}}\\quad \\eta &= {}", f.id, f.efficiency_latex)).collect();
         out += &lines.join(" \\\\\n");
-        out += "\n\\end{align*}\n";
+        out += "\n\\end{align*}}\n";
     }
     out
 }
 
+/// A name as an index in a formula.
 fn index(name: &str) -> String {
-    match name.chars().count() {
-        1 => escape(name),
-        _ => format!("\\mathrm{{{}}}", escape(name)),
+    if name.chars().count() == 1 || name.chars().all(|c| c.is_ascii_digit()) {
+        return escape(name);
     }
+    format!("\\mathrm{{{}}}", escape(name).replace('-', "\\text{-}").replace(' ', "\\ "))
 }
 
 fn escape(text: &str) -> String {
@@ -462,14 +471,22 @@ fn escape(text: &str) -> String {
 /// A set over all basic ratios, for eyes.
 pub fn family(f: &Family) -> String {
     let mut out = bold(&f.train) + "\n";
-    out += &format!("  {} = {} = {}\n", f.ratio, f.exact.strip_suffix("/1").unwrap_or(&f.exact), significant(f.value, 6));
+    out +=
+        &format!("  {} = {} = {}\n", f.ratio, f.exact.strip_suffix("/1").unwrap_or(&f.exact), significant(f.value, 6));
     let etas = if f.efficiencies[0] == f.efficiencies[1] {
         format!("eta = {}", f.efficiencies[0])
     } else {
-        format!("eta_f = {} ({} drives), eta_b = {} ({} drives)", f.efficiencies[0], f.ends[0], f.efficiencies[1], f.ends[1])
+        format!(
+            "eta_f = {} ({} drives), eta_b = {} ({} drives)",
+            f.efficiencies[0], f.ends[0], f.efficiencies[1], f.ends[1]
+        )
     };
     out += &format!("  {etas} seen from {}\n", f.carrier);
-    out += &format!("  {} regimes in {} ranges of R; one line holds a regime and its mirror image\n", f.regimes, f.cases.len());
+    out += &format!(
+        "  {} regimes in {} ranges of R; one line holds a regime and its mirror image\n",
+        f.regimes,
+        f.cases.len()
+    );
     for (k, case) in f.cases.iter().enumerate() {
         out += "\n";
         out += &bold(&case.label);
@@ -496,11 +513,14 @@ pub fn family(f: &Family) -> String {
                     let mirror: Vec<String> = range.order.iter().rev().cloned().collect();
                     done.extend(group.ranges.iter().position(|r| r.order == mirror));
                     let speeds = |order: &[String]| {
-                        order.iter().map(|n| if n == "0" { n.clone() } else { format!("w{n}") }).collect::<Vec<_>>().join(" > ")
+                        order
+                            .iter()
+                            .map(|n| if n == "0" { n.clone() } else { format!("w{n}") })
+                            .collect::<Vec<_>>()
+                            .join(" > ")
                     };
-                    let signs = |flip: i8| {
-                        range.torque_signs.iter().map(|(_, s)| sign(s * flip)).collect::<Vec<_>>().join(" ")
-                    };
+                    let signs =
+                        |flip: i8| range.torque_signs.iter().map(|(_, s)| sign(s * flip)).collect::<Vec<_>>().join(" ");
                     t.add_row([
                         std::mem::take(&mut label),
                         std::mem::take(&mut driver),
@@ -518,7 +538,17 @@ pub fn family(f: &Family) -> String {
 
 pub fn family_csv(f: &Family) -> String {
     let mut out = Writer::default();
-    out.row(["ratio_range", "in_the_paper", "inputs", "outputs", "driver", "torque_signs", "speeds", "loss", "efficiency_example"]);
+    out.row([
+        "ratio_range",
+        "in_the_paper",
+        "inputs",
+        "outputs",
+        "driver",
+        "torque_signs",
+        "speeds",
+        "loss",
+        "efficiency_example",
+    ]);
     for (k, case) in f.cases.iter().enumerate() {
         for row in &f.rows {
             for group in &row.cells[k] {
@@ -544,18 +574,21 @@ pub fn family_csv(f: &Family) -> String {
 
 /// Esmail's Table 1 with his columns, and the ranges of R that it lacks beside them.
 pub fn family_latex(f: &Family) -> String {
-    let mut out = format!("% {}: tooth friction loss for every operating condition, after Esmail 2018, Table 1.\n", f.train);
-    out += "% Needs amsmath, longtable and pdflscape. Columns marked * lie between 1 and a self-locking limit.\n";
+    let mut out =
+        format!("% {}: tooth friction loss for every operating condition, after Esmail 2018, Table 1.\n", f.train);
+    out += "% Needs amsmath and longtable. Ranges marked * lie between 1 and a self-locking limit.\n";
     // A line and a mirror image: T_4 > 0, ... : omega_4 > omega_1 > 0 > omega_2.
     let sub = |name: &str| index(name);
     for (k, case) in f.cases.iter().enumerate() {
         let star = if case.band { "$^{*}$" } else { "" };
-        out += &format!("\n\\begin{{longtable}}{{lllll}}\n\\multicolumn{{5}}{{l}}{{${}${star}}} \\\\ \\hline\n", case.latex);
+        out += &format!(
+            "\n\\begin{{longtable}}{{lllll}}\n\\multicolumn{{5}}{{l}}{{${}${star}}} \\\\ \\hline\n",
+            case.latex
+        );
         out += "input & output & torques & speeds & loss \\\\ \\hline\n";
         for row in &f.rows {
             for group in &row.cells[k] {
-                let mut first = true;
-                for range in &group.ranges {
+                for (n, range) in group.ranges.iter().enumerate() {
                     let torques: Vec<String> = range
                         .torque_signs
                         .iter()
@@ -567,16 +600,26 @@ pub fn family_latex(f: &Family) -> String {
                         .map(|n| if n == "0" { n.clone() } else { format!("\\omega_{{{}}}", sub(n)) })
                         .collect();
                     let names = |l: &[String]| l.iter().map(|n| escape(n)).collect::<Vec<_>>().join(",");
-                    let (inputs, outputs, loss) = match first {
-                        true => (
+                    let links = |l: &[String]| l.iter().map(|n| sub(n)).collect::<Vec<_>>().join(",");
+                    let (inputs, outputs, loss) = match n {
+                        0 => (
                             names(&row.inputs),
                             if row.outputs.is_empty() { "heat".to_owned() } else { names(&row.outputs) },
-                            format!("$l_{{({}-{})}} = {}$", names(&row.inputs), names(&row.outputs), group.loss_latex),
+                            format!(
+                                "$\\displaystyle l_{{({}-{})}} = {}$",
+                                links(&row.inputs),
+                                links(&row.outputs),
+                                group.loss_latex
+                            ),
                         ),
-                        false => Default::default(),
+                        _ => Default::default(),
                     };
-                    first = false;
-                    out += &format!("{inputs} & {outputs} & ${}$ & ${}$ & {loss} \\\\\n", torques.join(", "), speeds.join(" > "));
+                    let end = if n + 1 == group.ranges.len() { "[6pt]" } else { "" };
+                    out += &format!(
+                        "{inputs} & {outputs} & ${}$ & ${}$ & {loss} \\\\{end}\n",
+                        torques.join(", "),
+                        speeds.join(" > ")
+                    );
                 }
             }
         }

@@ -25,6 +25,8 @@ pub(crate) struct SymbolInfo {
     pub kind: SymbolKind,
     /// In words.
     pub meaning: String,
+    /// The same in LaTeX, where it has formulas in it.
+    pub meaning_latex: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,10 +129,10 @@ impl Names {
                 _ => (format!("_{}", identifier(&label)), format!("_{{{}}}", upright(&label))),
             };
             let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
-            let seen = if c == "frame" {
-                format!("w_{p} / w_{q}")
-            } else {
-                format!("(w_{p} - w_{c}) / (w_{q} - w_{c})")
+            let [wp, wq, wc] = [p, q, c].map(|m| format!("\\omega_{{{}}}", upright(m)));
+            let (seen, seen_latex) = match c {
+                "frame" => (format!("w_{p} / w_{q}"), format!("{wp}/{wq}")),
+                _ => (format!("(w_{p} - w_{c}) / (w_{q} - w_{c})"), format!("({wp} - {wc})/({wq} - {wc})")),
             };
             infos.push(SymbolInfo {
                 name: unique(format!("i{suffix}")),
@@ -138,6 +140,7 @@ impl Names {
                 value: Some(setup.ratio(j)),
                 kind: SymbolKind::Ratio,
                 meaning: format!("basic ratio {seen}"),
+                meaning_latex: Some(format!("basic ratio \\({seen_latex}\\)")),
             });
             infos.push(SymbolInfo {
                 name: unique(format!("eta{suffix}")),
@@ -145,6 +148,7 @@ impl Names {
                 value: Some(e.forward.clone()),
                 kind: SymbolKind::Efficiency,
                 meaning: format!("efficiency between {p} and {q} seen from {c}"),
+                meaning_latex: None,
             });
         }
         // Placeholders, so that positions and numbers agree.
@@ -154,6 +158,7 @@ impl Names {
             value: None,
             kind: SymbolKind::Ratio,
             meaning: String::new(),
+            meaning_latex: None,
         }));
         for (letter, tex, kind, word) in
             [("T", "T", SymbolKind::Torque, "torque on"), ("w", "\\omega", SymbolKind::Speed, "speed of")]
@@ -166,6 +171,7 @@ impl Names {
                     value: None,
                     kind,
                     meaning: format!("{word} {member}"),
+                    meaning_latex: None,
                 });
             }
         }
@@ -203,6 +209,7 @@ impl Names {
                         value: Some(gear.teeth.clone()),
                         kind: SymbolKind::Teeth,
                         meaning: format!("teeth of {member} in {}", mesh.name),
+                        meaning_latex: None,
                     });
                     teeth.push((link.mesh.0, g, s));
                     s
@@ -236,12 +243,16 @@ impl Names {
                 }
                 let [a, b] = if forward { [0, 1] } else { [1, 0] }.map(|g| train.member_name(mesh.gears[g].member));
                 let s = Symbol(self.infos.len());
+                let wanted = format!("eta_{}", identifier(&mesh.name));
+                let free = |name: &String| self.infos.iter().all(|info| info.name != *name);
+                let name = std::iter::once(wanted.clone()).chain((2..).map(|n| format!("{wanted}_{n}"))).find(free);
                 self.infos.push(SymbolInfo {
-                    name: format!("eta_{}", identifier(&mesh.name)),
+                    name: name.expect("numbers do not end"),
                     latex: format!("\\eta_{{{}}}", upright(&mesh.name)),
                     value: Some(value.clone()),
                     kind: SymbolKind::Efficiency,
                     meaning: format!("efficiency of {}, {a} driving {b}", mesh.name),
+                    meaning_latex: None,
                 });
                 product = product.times(&Function::symbol(s));
             }
@@ -280,7 +291,7 @@ pub(crate) fn upright(name: &str) -> String {
     if name.chars().count() == 1 || name.chars().all(|c| c.is_ascii_digit()) {
         return escape(name);
     }
-    format!("\\mathrm{{{}}}", escape(name))
+    format!("\\mathrm{{{}}}", escape(name).replace('-', "\\text{-}").replace(' ', "\\ "))
 }
 
 /// Text that LaTeX sets as it stands.
@@ -288,13 +299,13 @@ pub(crate) fn escape(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
         match c {
-            '\\' => out.push_str("\\backslash "),
+            '\\' => out.push_str("\\backslash{}"),
             '_' | '%' | '&' | '#' | '$' | '{' | '}' => {
                 out.push('\\');
                 out.push(c);
             }
             '^' => out.push_str("\\hat{}"),
-            '~' => out.push_str("\\sim "),
+            '~' => out.push_str("\\sim{}"),
             _ => out.push(c),
         }
     }
@@ -401,9 +412,7 @@ impl<'s, 't> Shape<'s, 't> {
             .collect();
         let force = (0..k)
             .map(|j| {
-                (0..d)
-                    .map(|r| with_row(r, (0..k).map(|c| Polynomial::from(i64::from(c == j))).collect()))
-                    .collect()
+                (0..d).map(|r| with_row(r, (0..k).map(|c| Polynomial::from(i64::from(c == j))).collect())).collect()
             })
             .collect();
 
@@ -513,8 +522,7 @@ impl<'s, 't> Shape<'s, 't> {
             f.substituted(&value).unwrap_or_else(|| f.clone())
         };
         let torque: Vec<Vec<Function>> = self.torque.iter().map(|r| r.iter().map(&here).collect()).collect();
-        let mut references: Vec<Function> =
-            self.reference.iter().map(|&t| Function::symbol(names.torque(t))).collect();
+        let mut references: Vec<Function> = self.reference.iter().map(|&t| Function::symbol(names.torque(t))).collect();
         if let Some([a, b]) = setup.balance {
             // T_a ω_a + T_b ω_b = 0 ties the second reference torque to the first.
             let factor = |r: usize| {
@@ -540,19 +548,15 @@ impl<'s, 't> Shape<'s, 't> {
             // Torques and, with one freedom, speeds cancel; a unit in their place shows it.
             let torque_symbol = names.torque(self.reference[0]);
             let speed_symbol = names.speed(setup.base[0]);
-            let value = |s: Symbol| ((d == 1 && s == torque_symbol) || (one && s == speed_symbol)).then_some(Function::ONE);
+            let value =
+                |s: Symbol| ((d == 1 && s == torque_symbol) || (one && s == speed_symbol)).then_some(Function::ONE);
             f.substituted(&value).expect("units are no poles")
         };
         let power = |t: usize| torques[t].times(&speeds[t]);
-        let total = |sign: i8| {
-            (0..m).filter(|&t| roles[t] == sign).fold(Function::ZERO, |sum, t| sum.plus(&power(t)))
-        };
+        let total = |sign: i8| (0..m).filter(|&t| roles[t] == sign).fold(Function::ZERO, |sum, t| sum.plus(&power(t)));
         let (input, output) = (total(1), total(-1));
-        let efficiency = if output.is_zero() || input.is_zero() {
-            Function::ZERO
-        } else {
-            unit(&output.negated().over(&input))
-        };
+        let efficiency =
+            if output.is_zero() || input.is_zero() { Function::ZERO } else { unit(&output.negated().over(&input)) };
 
         let mut conditions: Vec<Condition> = Vec::new();
         let sign = |f: Function, sign: i8| if sign > 0 { f } else { f.negated() };
@@ -576,7 +580,11 @@ impl<'s, 't> Shape<'s, 't> {
             let rho = if p_drives { eta } else { eta.recip() };
             let potential = force.times(&sigma);
             let loss = potential.times(&Function::ONE.minus(&rho));
-            losses.push((j, self.by_driver(&names, j, p_drives).filter(|_| !one && d == 1).unwrap_or(loss.clone()), loss));
+            losses.push((
+                j,
+                self.by_driver(&names, j, p_drives).filter(|_| !one && d == 1).unwrap_or(loss.clone()),
+                loss,
+            ));
             let driver = train.member_name(if p_drives { e.p } else { e.q });
             conditions.push(Condition {
                 function: normalised(sign(potential, if p_drives { 1 } else { -1 })),
@@ -596,6 +604,7 @@ impl<'s, 't> Shape<'s, 't> {
         for c in &mut conditions {
             c.function = bare(&spelt(&c.function), &names);
         }
+        without_squares(&mut conditions);
         conditions.retain(|c| c.function.as_constant().is_none_or(|n| n.sign() <= 0));
         let mut distinct: Vec<Condition> = Vec::new();
         for c in conditions {
@@ -651,7 +660,8 @@ impl Shape<'_, '_> {
             let e = setup.element(j);
             [e.p, e.q, e.carrier].iter().any(|m| setup.c.node(*m) == Some(driver))
         };
-        if (0..setup.active.len()).any(|other| other != j && touched(other)) || setup.c.node(e.carrier) == Some(driver) {
+        if (0..setup.active.len()).any(|other| other != j && touched(other)) || setup.c.node(e.carrier) == Some(driver)
+        {
             return None;
         }
         let carrier = match setup.c.node(e.carrier) {
@@ -686,17 +696,39 @@ impl Formula {
     }
 }
 
-/// A condition without what is positive anyway: efficiencies, tooth numbers and squares.
+/// A condition without what is positive anyway: efficiencies, tooth numbers and squares of what is
+/// not zero.
 fn bare(f: &Function, names: &Names) -> Function {
-    let positive = |p: &Polynomial| {
-        p.len() == 1
-            && p.symbols().iter().all(|s| matches!(names.info(*s).kind, SymbolKind::Efficiency | SymbolKind::Teeth))
+    let only = |p: &Polynomial, kinds: &[SymbolKind]| {
+        p.len() == 1 && p.symbols().iter().all(|s| kinds.contains(&names.info(*s).kind))
     };
     let number = Function::from(Rational::from(i64::from(f.number().sign())));
-    f.factors().iter().filter(|(p, e)| e % 2 != 0 && !positive(p)).fold(number, |product, (p, _)| {
+    f.factors().iter().fold(number, |product, (p, e)| {
+        let own = p.to_function();
         // A denominator has the sign of its product.
-        product.times(&p.to_function())
+        match e % 2 {
+            0 if only(p, &[SymbolKind::Efficiency, SymbolKind::Teeth, SymbolKind::Ratio]) => product,
+            0 => product.times(&own).times(&own),
+            _ if only(p, &[SymbolKind::Efficiency, SymbolKind::Teeth]) => product,
+            _ => product.times(&own),
+        }
     })
+}
+
+/// Conditions without squares of what other conditions keep from being zero.
+fn without_squares(conditions: &mut [Condition]) {
+    let nonzero: Vec<Polynomial> = conditions
+        .iter()
+        .flat_map(|c| c.function.factors().iter().filter(|(_, e)| *e == 1).map(|(p, _)| p.clone()))
+        .collect();
+    for c in conditions {
+        for (p, e) in c.function.clone().factors() {
+            if *e == 2 && nonzero.contains(p) {
+                let own = p.to_function();
+                c.function = c.function.over(&own).over(&own);
+            }
+        }
+    }
 }
 
 /// Whether rows of polynomials are independent, judged at primes in the place of the symbols.
