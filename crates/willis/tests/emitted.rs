@@ -218,7 +218,7 @@ impl Exact<'_> {
         let (mut sum, mut size) = (Rational::ZERO, Rational::ZERO);
         loop {
             let term = self.term()?;
-            size = size + term.abs();
+            size += term.abs();
             sum = if negative { sum - term } else { sum + term };
             negative = match self.next() {
                 b'+' => false,
@@ -405,10 +405,12 @@ impl Function {
     }
 }
 
+/// Points near the own values of each formula, all inside its regime.
+const INSIDE: usize = 12;
+
 /// Points of all kinds for a formula. Sums that all but cancel are left out: there floating point
 /// has neither the digits nor the sign.
 fn points(k: usize, f: &Function, noise: &mut Noise) -> Vec<Point> {
-    const INSIDE: usize = 16;
     let n = f.arguments.len();
     let mut all: Vec<Point> = Vec::new();
     let floats = |at: &[Rational]| at.iter().map(Rational::to_f64).collect::<Vec<f64>>();
@@ -445,22 +447,22 @@ fn points(k: usize, f: &Function, noise: &mut Noise) -> Vec<Point> {
     }
     assert_eq!(inside.len(), INSIDE, "{}: too few points inside", f.formula.name);
     // Anywhere.
-    for _ in 0..25 {
+    for _ in 0..20 {
         let at: Vec<Rational> = (0..n)
             .map(|a| short(if f.is(a, "eta") { 0.55 + 0.5 * noise.unit() } else { 8.0 * noise.unit() }))
             .collect();
         add(&mut all, &at);
     }
     // On boundaries and poles: numbers so short that sums are exactly zero.
-    for _ in 0..40 {
-        let near = noise.next() % 2 == 0;
+    for _ in 0..30 {
+        let near = noise.of(&[true, false]);
         let at: Vec<Rational> = (0..n)
             .map(|a| {
                 let value = match f.is(a, "eta") {
                     true => noise.of(&[0.5, 0.5, 1.0, 1.0, 1.0, 0.25, 0.0, 1.5, -0.5]),
                     false => noise.of(&[0.0, 0.5, 1.0, 2.0, 4.0, -0.5, -1.0, -2.0]),
                 };
-                if near && noise.next() % 3 > 0 { inside[0][a].clone() } else { short(value) }
+                if near && noise.of(&[true, true, false]) { inside[0][a].clone() } else { short(value) }
             })
             .collect();
         add(&mut all, &at);
@@ -775,7 +777,7 @@ fn code_answers_inside_and_refuses_outside() {
         let own = || points.iter().filter(|p| p.formula == k && !matches!(p.kind, Kind::Large));
         let inside = own().filter(|p| p.expected().is_some()).count();
         let outside = own().count() - inside;
-        assert!(inside > 16 && outside > 3, "{}: {inside} points inside, {outside} outside", f.formula.name);
+        assert!(inside > INSIDE && outside > 3, "{}: {inside} points inside, {outside} outside", f.formula.name);
     }
     let folder = Folder::new();
     for (language, [inside, outside]) in [

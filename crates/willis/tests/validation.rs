@@ -211,6 +211,8 @@ fn write_page() {
     let differs: usize = all.iter().flat_map(|(_, (_, l))| l).filter(|l| l.mismatch.is_some()).count();
     writeln!(page, "{} cases, {total} values, {} agree, {differs} known mismatches.\n", all.len(), total - differs)
         .unwrap();
+    page += "Beside these cases, a table of formulas: [Esmail 2018, Table 1, cell by cell]\
+             (esmail-2018-table-1/README.md).\n\n";
     for (case, (t, lines)) in &all {
         let key = case.parent().unwrap().file_name().unwrap().to_str().unwrap();
         writeln!(page, "## {key}\n\nSource: {}\n", text(t, "source").unwrap().trim()).unwrap();

@@ -316,7 +316,8 @@ impl Tests {
 }
 
 /// Files that are generated, and committed.
-const GENERATED: &[&str] = &["schema/willis-1.schema.json", "validation/README.md"];
+const GENERATED: &[&str] =
+    &["schema/willis-1.schema.json", "validation/README.md", "validation/esmail-2018-table-1/README.md"];
 
 /// Writes every generated file. Needs the optimised program.
 fn write_generated(context: &Context) -> Result<(), String> {
@@ -324,12 +325,21 @@ fn write_generated(context: &Context) -> Result<(), String> {
     let file = context.root.join(GENERATED[0]);
     fs::create_dir_all(file.parent().expect("a folder")).map_err(|e| format!("the folder schema: {e}"))?;
     fs::write(&file, schema).map_err(|e| format!("{}: {e}", GENERATED[0]))?;
-    if !context.root.join("crates/willis/tests/validation.rs").exists() {
-        println!("{}: no validation test yet", GENERATED[1]);
-        return Ok(());
-    }
-    let words = "cargo test -p willis --test validation -- --nocapture write_page";
+    write_pages(context)
+}
+
+/// Writes the pages of `validation`.
+fn write_pages(context: &Context) -> Result<(), String> {
+    let words = "cargo test -p willis --test validation --test esmail_table -- --nocapture write_page";
     context.output(context.words(words).env("WILLIS_WRITE", "1")).map(drop)
+}
+
+/// `cargo xtask validate`
+fn validate(context: &Context) -> Outcome {
+    match write_pages(context) {
+        Ok(()) => test(context, "cargo test --workspace --tests --no-fail-fast -- val_"),
+        Err(e) => Outcome::Failed(e),
+    }
 }
 
 /// `cargo xtask generate`
@@ -563,6 +573,7 @@ fn usage() -> String {
          ci          every step below, in order, up to the first that fails\n\
          check       those marked *: no optimised build\n\
          generate    write the generated files\n\
+         validate    write the validation pages, then compare every number of others with ours\n\
          bench       benchmarks of the library\n\n",
     );
     for step in STEPS {
@@ -586,7 +597,7 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
-    // `generate` and `bench` are no steps of `ci`, but are shown like steps.
+    // `generate`, `validate` and `bench` are no steps of `ci`, but are shown like steps.
     let lone = |name, about, call| Step {
         name,
         about,
@@ -599,6 +610,7 @@ fn main() -> ExitCode {
         "ci" => run(&STEPS.iter().collect::<Vec<_>>(), &context),
         "check" => run(&STEPS.iter().filter(|s| s.in_check).collect::<Vec<_>>(), &context),
         "generate" => run(&[&lone("generate", "", generate)], &context),
+        "validate" => run(&[&lone("validate", "", validate)], &context),
         "bench" => run(&[&lone("bench", "", bench)], &context),
         "help" | "--help" | "-h" => {
             print!("{}", usage());

@@ -364,7 +364,9 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
         let output = own.and_then(|s| s.output).or(train.output);
         // As drawn is left out when a shift table says how the train is used.
         let unasked = several && state == AS_DRAWN;
-        let found = if c.degrees_of_freedom() == 1 {
+        let found = if c.degrees_of_freedom() == 1 && request.regime.is_some() {
+            Err("one degree of freedom: name the direction with --from and --to, not a regime".to_owned())
+        } else if c.degrees_of_freedom() == 1 {
             let from = if from.is_empty() { input.into_iter().collect() } else { from.clone() };
             let to = if to.is_empty() { output.into_iter().collect() } else { to.clone() };
             one_freedom(&state, c, &from, &to, request)

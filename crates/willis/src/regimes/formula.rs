@@ -226,6 +226,18 @@ impl Names {
         }
     }
 
+    /// A name that no symbol has, with a number if need be. The efficiency of an element gives way
+    /// to that of its mesh.
+    fn free(&mut self, wanted: String) -> String {
+        let elements = 2 * self.elements;
+        for info in self.infos[..elements].iter_mut().filter(|info| info.name == wanted) {
+            info.name += "_basic";
+        }
+        let taken = |name: &String| self.infos.iter().any(|info| info.name == *name);
+        let numbered = (2..).map(|n| format!("{wanted}_{n}"));
+        std::iter::once(wanted.clone()).chain(numbered).find(|name| !taken(name)).expect("numbers do not end")
+    }
+
     /// The symbols of the meshes' own efficiencies, for a pattern of drivers.
     fn mesh_efficiencies(&mut self, setup: &Setup<'_>, pattern: &Pattern) {
         let train = setup.c.train;
@@ -243,11 +255,9 @@ impl Names {
                 }
                 let [a, b] = if forward { [0, 1] } else { [1, 0] }.map(|g| train.member_name(mesh.gears[g].member));
                 let s = Symbol(self.infos.len());
-                let wanted = format!("eta_{}", identifier(&mesh.name));
-                let free = |name: &String| self.infos.iter().all(|info| info.name != *name);
-                let name = std::iter::once(wanted.clone()).chain((2..).map(|n| format!("{wanted}_{n}"))).find(free);
+                let name = self.free(format!("eta_{}", identifier(&mesh.name)));
                 self.infos.push(SymbolInfo {
-                    name: name.expect("numbers do not end"),
+                    name,
                     latex: format!("\\eta_{{{}}}", upright(&mesh.name)),
                     value: Some(value.clone()),
                     kind: SymbolKind::Efficiency,
@@ -699,17 +709,18 @@ impl Formula {
 /// A condition without what is positive anyway: efficiencies, tooth numbers and squares of what is
 /// not zero.
 fn bare(f: &Function, names: &Names) -> Function {
-    let only = |p: &Polynomial, kinds: &[SymbolKind]| {
-        p.len() == 1 && p.symbols().iter().all(|s| kinds.contains(&names.info(*s).kind))
-    };
+    let only = |p: &Polynomial, kinds: &[SymbolKind]| p.symbols().iter().all(|s| kinds.contains(&names.info(*s).kind));
+    let positive =
+        |p: &Polynomial| p.terms().all(|(c, _)| c.sign() > 0) && only(p, &[SymbolKind::Efficiency, SymbolKind::Teeth]);
+    let product_of_ratios = |p: &Polynomial| p.len() == 1 && only(p, &[SymbolKind::Ratio]);
     let number = Function::from(Rational::from(i64::from(f.number().sign())));
     f.factors().iter().fold(number, |product, (p, e)| {
         let own = p.to_function();
         // A denominator has the sign of its product.
         match e % 2 {
-            0 if only(p, &[SymbolKind::Efficiency, SymbolKind::Teeth, SymbolKind::Ratio]) => product,
+            _ if positive(p) => product,
+            0 if product_of_ratios(p) => product,
             0 => product.times(&own).times(&own),
-            _ if only(p, &[SymbolKind::Efficiency, SymbolKind::Teeth]) => product,
             _ => product.times(&own),
         }
     })

@@ -3,7 +3,7 @@
 
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Element};
-use crate::statics;
+use crate::statics::{self, Equilibrium, Unsolvable};
 use crate::train::MemberId;
 
 use super::arrangement::{self, Cell};
@@ -102,8 +102,7 @@ impl<'t> Setup<'t> {
         for &j in &setup.active {
             let e = &setup.c.elements[j];
             let (Some(p), Some(carrier)) = (setup.speed(e.p), setup.speed(e.carrier)) else {
-                let meshes: Vec<_> =
-                    e.links.iter().map(|l| setup.c.train.meshes[l.mesh.0].name.as_str()).collect();
+                let meshes: Vec<_> = e.links.iter().map(|l| setup.c.train.meshes[l.mesh.0].name.as_str()).collect();
                 return Err(format!(
                     "the speeds of the terminals do not settle the relative speed in {}; name more terminals, or \
                      engage a shift element",
@@ -126,10 +125,45 @@ impl<'t> Setup<'t> {
             };
             if a == b || setup.torques < 2 {
                 return Err(format!(
-                    "balancing {} and {} leaves no torque free: the train has {} independent terminal torque(s)",
+                    "balancing {} and {} leaves no torque free: only {} of the terminal torques is independent",
                     name(pair[0]),
                     name(pair[1]),
-                    setup.torques
+                    if setup.torques == 1 { "one" } else { "none" }
+                ));
+            }
+            setup.balance = Some([a, b]);
+        }
+        if setup.torques == 0 {
+            let named: Vec<_> = members.iter().filter(|m| setup.c.node(**m).is_some()).map(|m| name(*m)).collect();
+            let own = match named.len() {
+                0 => "no terminal can turn".to_owned(),
+                1 => format!("{} is the only terminal that can turn", named[0]),
+                n => format!("{n} terminals can turn ({})", named.join(", ")),
+            };
+            let freedoms = match setup.c.degrees_of_freedom() {
+                1 => "one degree of freedom".to_owned(),
+                n => format!("{n} degrees of freedom"),
+            };
+            return Err(format!(
+                "{own} and the train has {freedoms}: no terminal torques other than zero are in equilibrium through \
+                 the gears"
+            ));
+        }
+        if let Some(pair) = balance {
+            let at = pair.map(|m| setup.terminals.iter().position(|t| setup.c.node(m) == Some(t.node)));
+            let [Some(a), Some(b)] = at else {
+                return Err(format!(
+                    "{} and {} cannot balance each other's power: one of them is held or carries no torque",
+                    name(pair[0]),
+                    name(pair[1])
+                ));
+            };
+            if a == b || setup.torques < 2 {
+                return Err(format!(
+                    "balancing {} and {} leaves no torque free: only {} of the terminal torques is independent",
+                    name(pair[0]),
+                    name(pair[1]),
+                    if setup.torques == 1 { "one" } else { "none" }
                 ));
             }
             setup.balance = Some([a, b]);
@@ -190,7 +224,7 @@ impl<'t> Setup<'t> {
         e.forward != Rational::ONE || e.backward != Rational::ONE
     }
 
-    fn rho(&self, j: usize, p_drives: Option<bool>) -> Rational {
+    pub fn rho(&self, j: usize, p_drives: Option<bool>) -> Rational {
         let e = self.element(j);
         match p_drives {
             None => Rational::ONE,
@@ -213,12 +247,8 @@ impl<'t> Setup<'t> {
 
     /// Balance of the free nodes: a row a node, a column an active element.
     fn rows(&self, pattern: &Pattern) -> Matrix {
-        let ratios: Vec<Rational> =
-            (0..self.active.len()).map(|j| self.ratio(j) * self.rho(j, pattern[j])).collect();
-        self.free
-            .iter()
-            .map(|&n| ratios.iter().enumerate().map(|(j, x)| self.coefficient(j, n, x)).collect())
-            .collect()
+        let ratios: Vec<Rational> = (0..self.active.len()).map(|j| self.ratio(j) * self.rho(j, pattern[j])).collect();
+        self.free.iter().map(|&n| ratios.iter().enumerate().map(|(j, x)| self.coefficient(j, n, x)).collect()).collect()
     }
 
     /// Independent terminal torques.
@@ -317,12 +347,9 @@ impl<'t> Setup<'t> {
 
     /// Terminal torques over a basis of force vectors.
     fn torque_forms(&self, pattern: &Pattern, basis: &[Vec<Rational>]) -> Vec<Vec<Rational>> {
-        self.terminals
-            .iter()
+        (0..self.terminals.len())
             .map(|t| {
-                let row: Vec<Rational> = (0..self.active.len())
-                    .map(|j| self.coefficient(j, t.node, &(self.ratio(j) * self.rho(j, pattern[j]))))
-                    .collect();
+                let row = self.torque_row(pattern, t);
                 basis.iter().map(|b| arrangement::dot(&row, b)).collect()
             })
             .collect()
@@ -338,7 +365,13 @@ impl<'t> Setup<'t> {
     }
 
     /// Terminal torques of a regime at other speeds: the same, unless two powers balance.
-    pub fn torques_at(&self, pattern: &Pattern, from: &[Rational], torques: &[Rational], to: &[Rational]) -> Vec<Rational> {
+    pub fn torques_at(
+        &self,
+        pattern: &Pattern,
+        from: &[Rational],
+        torques: &[Rational],
+        to: &[Rational],
+    ) -> Vec<Rational> {
         if self.balance.is_none() {
             return torques.to_vec();
         }
@@ -369,12 +402,89 @@ impl<'t> Setup<'t> {
         self.sigma.iter().map(|s| arrangement::dot(s, base).sign()).collect()
     }
 
-    /// Every cone of terminal torques that is in equilibrium at given base speeds. The second value
-    /// tells that some pattern is singular: the train lies exactly on a self-locking threshold.
-    pub fn torque_cells(&self, base: &[Rational]) -> (Vec<TorqueCell>, bool) {
+    /// The equilibrium problem at given base speeds, with these terminals loaded and the others open.
+    pub fn equilibrium(&self, base: &[Rational], loaded: &[usize]) -> Result<Equilibrium, Unsolvable> {
+        let signs = self.sigma_signs(base);
+        let mut sigma: Vec<Option<i8>> = vec![Some(0); self.c.elements.len()];
+        for (j, &element) in self.active.iter().enumerate() {
+            sigma[element] = Some(signs[j] * self.c.elements[element].a.sign());
+        }
+        let node = |t: usize| self.terminals[t].node;
+        let loaded: Vec<usize> = loaded.iter().map(|&t| node(t)).collect();
+        let open: Vec<usize> = self.terminals.iter().map(|t| t.node).filter(|n| !loaded.contains(n)).collect();
+        Equilibrium::new(&self.c, &sigma, &open, &loaded)
+    }
+
+    /// Forces of a pattern under given terminal torques, by active element.
+    pub fn forces_for(&self, pattern: &Pattern, loads: &[(usize, Rational)]) -> Option<Vec<Rational>> {
+        let mut rows = self.rows(pattern);
+        let mut right = vec![Rational::ZERO; rows.len()];
+        for (t, x) in loads {
+            rows.push(self.torque_row(pattern, *t));
+            right.push(x.clone());
+        }
+        exact::solve(&rows, &right)
+    }
+
+    /// All terminal torques of a pattern under given ones.
+    pub fn torques_for(&self, pattern: &Pattern, loads: &[(usize, Rational)]) -> Option<Vec<Rational>> {
+        let forces = self.forces_for(pattern, loads)?;
+        Some((0..self.terminals.len()).map(|t| arrangement::dot(&self.torque_row(pattern, t), &forces)).collect())
+    }
+
+    /// Coefficients of the forces in a terminal's torque.
+    fn torque_row(&self, pattern: &Pattern, t: usize) -> Vec<Rational> {
+        (0..self.active.len())
+            .map(|j| self.coefficient(j, self.terminals[t].node, &(self.ratio(j) * self.rho(j, pattern[j]))))
+            .collect()
+    }
+
+    /// The drivers of a solution of [`Self::equilibrium`].
+    pub fn pattern_of(&self, base: &[Rational], solution: &statics::Solution) -> Pattern {
+        let signs = self.sigma_signs(base);
+        (0..self.active.len())
+            .map(|j| solution.driver[self.active[j]].filter(|_| signs[j] != 0 && self.lossy(j)))
+            .collect()
+    }
+
+    /// With one independent torque: if some terminal's torque certainly settles everything, there are
+    /// two cells, one for each of its signs, and no pattern needs to be tried.
+    fn certified_cells(&self, base: &[Rational]) -> Option<Vec<TorqueCell>> {
+        if self.torques != 1 {
+            return None;
+        }
+        (0..self.terminals.len()).find_map(|t| {
+            let problem = self.equilibrium(base, &[t]).ok()?;
+            if !problem.certificate().unique_for_every_load() {
+                return None;
+            }
+            [1, -1]
+                .into_iter()
+                .map(|sign| {
+                    let mut loads = vec![Rational::ZERO; self.c.nodes];
+                    loads[self.terminals[t].node] = Rational::from(sign);
+                    let answer = problem.solve(&loads);
+                    let pattern = self.pattern_of(base, answer.solutions.first()?);
+                    let torques = self.torques_for(&pattern, &[(t, Rational::from(sign))])?;
+                    Some(TorqueCell { pattern, signs: torques.iter().map(Rational::sign).collect(), torques })
+                })
+                .collect()
+        })
+    }
+
+    /// Every cone of terminal torques that is in equilibrium at given base speeds, or how many
+    /// patterns of drivers would have to be tried. The second value tells that some pattern is
+    /// singular: the train lies exactly on a self-locking threshold.
+    pub fn torque_cells(&self, base: &[Rational]) -> Result<(Vec<TorqueCell>, bool), u32> {
+        if let Some(cells) = self.certified_cells(base) {
+            return Ok((cells, false));
+        }
         let k = self.active.len();
         let sigma = self.sigma_signs(base);
         let moving: Vec<usize> = (0..k).filter(|&j| sigma[j] != 0 && self.lossy(j)).collect();
+        if moving.len() as u32 > MOST_TRIED {
+            return Err(moving.len() as u32);
+        }
         let mut all = Vec::new();
         let mut singular = false;
         for mask in 0u64..1 << moving.len() {
@@ -396,7 +506,7 @@ impl<'t> Setup<'t> {
             }
             self.cones(&pattern, &moving, &sigma, &basis, &mut all);
         }
-        (all, singular)
+        Ok((all, singular))
     }
 
     /// The cones within one pattern's space of equilibria.
@@ -439,6 +549,9 @@ impl<'t> Setup<'t> {
         }
     }
 }
+
+/// Most elements with relative motion and loss for which every pattern of drivers is tried.
+pub(crate) const MOST_TRIED: u32 = 12;
 
 /// Vectors that span the solutions of `rows · f = 0`.
 fn null_space(mut rows: Matrix, columns: usize) -> Vec<Vec<Rational>> {
