@@ -776,6 +776,8 @@ impl Notation {
     fn whole(self, n: &str) -> String {
         match self {
             Self::Rust | Self::C => format!("{n}.0"),
+            // Whole numbers may have only 32 bits there.
+            Self::Modelica if n.len() > 9 => format!("{n}.0"),
             _ => n.to_owned(),
         }
     }
@@ -808,13 +810,13 @@ impl Notation {
         if let Some(k) = terms.iter().position(|(c, _)| c.sign() > 0) {
             terms[..=k].rotate_right(1);
         }
-        let mut out = String::new();
+        let mut written: Vec<String> = Vec::new();
         for (k, (c, powers)) in terms.iter().enumerate() {
-            out += match (k, c.sign() < 0) {
+            let sign = match (k, c.sign() < 0) {
                 (0, false) => "",
                 (0, true) => "-",
-                (_, false) => " + ",
-                (_, true) => " - ",
+                (_, false) => "+ ",
+                (_, true) => "- ",
             };
             let size = c.abs();
             let mut parts: Vec<String> = Vec::new();
@@ -822,9 +824,35 @@ impl Notation {
                 parts.push(self.rational(&size));
             }
             parts.extend(powers.iter().map(|(s, e)| self.power(&name(*s), *e)));
-            out += &parts.join(self.times());
+            written.push(sign.to_owned() + &parts.join(self.times()));
         }
-        if out.is_empty() { self.whole("0") } else { out }
+        if written.is_empty() { self.whole("0") } else { self.filled(&written, " ", "") }
+    }
+
+    /// Terms or factors one after the other; in LaTeX on several lines where one is too short, each
+    /// new line with a mark.
+    fn filled(self, parts: &[String], between: &str, mark: &str) -> String {
+        // Fits a text 16 cm wide, 10 pt, with a left-hand side and a number.
+        const LINE: f64 = 54.0;
+        if self != Self::Latex || width(&parts.join(between)) <= LINE {
+            return parts.join(between);
+        }
+        let mut lines: Vec<String> = Vec::new();
+        let mut parts = parts.to_vec();
+        if !mark.is_empty() {
+            // Factors: short ones share a line.
+            parts.sort_by(|a, b| width(a).total_cmp(&width(b)));
+        }
+        for part in &parts {
+            match lines.last_mut() {
+                Some(line) if width(line) + width(part) <= LINE => *line += &format!("{between}{part}"),
+                _ => lines.push(part.clone()),
+            }
+        }
+        match &lines[..] {
+            [line] => line.clone(),
+            _ => format!("\\begin{{aligned}}&{}\\end{{aligned}}", lines.join(&format!(" \\\\ &{{}}{mark}"))),
+        }
     }
 
     /// A positive number.
@@ -874,7 +902,7 @@ impl Notation {
             }
             let sum = alone && f.factors.iter().any(|(p, e)| *e == sign && p.len() > 1);
             let count = if sum { 0 } else { parts.len() };
-            (parts.join(self.times()), count)
+            (self.filled(&parts, self.times(), "\\times "), count)
         };
         // `count` is 0 for a bare sum, else the number of factors.
         let (mut above, above_count) = side(1, top);
@@ -898,6 +926,51 @@ impl Notation {
         let below = if single { below } else { self.parentheses(&below) };
         format!("{minus}{above}/{below}")
     }
+}
+
+/// About how wide LaTeX sets a formula, in letters; of several lines the widest.
+fn width(latex: &str) -> f64 {
+    latex.replace("{aligned}", "").split("\\\\").map(width_of_line).fold(0.0, f64::max)
+}
+
+fn width_of_line(line: &str) -> f64 {
+    let mut sum = 0.0;
+    let (mut depth, mut small) = (0, None);
+    let mut rest = line.chars().peekable();
+    while let Some(c) = rest.next() {
+        let own = match c {
+            '\\' => {
+                let mut word = String::new();
+                while let Some(letter) = rest.next_if(char::is_ascii_alphabetic) {
+                    word.push(letter);
+                }
+                match word.as_str() {
+                    "left" | "right" | "mathrm" | "text" | "begin" | "end" => 0.0,
+                    _ => 1.0,
+                }
+            }
+            '{' => {
+                depth += 1;
+                0.0
+            }
+            '}' => {
+                depth -= 1;
+                if small == Some(depth) {
+                    small = None;
+                }
+                0.0
+            }
+            '_' | '^' => {
+                small = small.or(Some(depth));
+                0.0
+            }
+            ' ' | '&' => 0.0,
+            '+' | '-' => 2.0,
+            _ => 1.0,
+        };
+        sum += if small.is_some() { 0.65 * own } else { own };
+    }
+    sum
 }
 
 #[cfg(test)]
@@ -973,6 +1046,18 @@ mod tests {
         let m = [[n(1), s(X), n(0)], [n(0), n(1), s(Y)], [s(Z), n(0), n(1)]].map(|c| c.to_vec());
         assert_eq!(determinant(&m, 1), None);
         assert_eq!(determinant(&m, 9).unwrap(), &n(1) + &(&(&s(X) * &s(Y)) * &s(Z)));
+    }
+
+    #[test]
+    fn long_sums_take_several_lines_in_latex() {
+        let name = |s: Symbol| format!("\\omega_{{\\mathrm{{{}}}}}", ["carrier", "planet", "ring"][s.0]);
+        let sum = &(&s(X) + &s(Y)) - &s(Z);
+        assert!(width(&Notation::Latex.polynomial(&sum, &name, false)) < 20.0);
+        let square = &(&sum * &sum) * &(&n(1) - &(&s(X) * &s(Y)));
+        let text = Notation::Latex.polynomial(&square, &name, false);
+        assert!(text.starts_with("\\begin{aligned}&\\omega") && text.ends_with("\\end{aligned}"), "{text}");
+        assert!(text.contains(" \\\\ &{}+ ") || text.contains(" \\\\ &{}- "), "{text}");
+        assert!(width(&text) < 56.0);
     }
 
     #[test]

@@ -64,9 +64,34 @@ pub struct Argument {
     /// Whether the train fixes it (a ratio, a tooth number, an efficiency).
     pub fixed: bool,
     #[serde(skip)]
+    pub(crate) meaning_latex: Option<String>,
+    #[serde(skip)]
+    pub(crate) kind: SymbolKind,
+    #[serde(skip)]
     pub(crate) symbol: Symbol,
     #[serde(skip)]
     pub(crate) number: Rational,
+}
+
+impl Argument {
+    /// What is wrong with a value that it can never have; `None` if it can have every value.
+    pub(crate) fn range(&self) -> Option<Outside> {
+        match self.kind {
+            SymbolKind::Efficiency => Some(Outside::NoEfficiency(self.name.clone())),
+            SymbolKind::Teeth => Some(Outside::NoTeeth(self.name.clone())),
+            SymbolKind::Ratio => Some(Outside::NoRatio(self.name.clone())),
+            SymbolKind::Torque | SymbolKind::Speed => None,
+        }
+    }
+
+    fn allows(&self, value: &Rational) -> bool {
+        match self.kind {
+            SymbolKind::Efficiency => value.sign() > 0 && *value <= Rational::ONE,
+            SymbolKind::Teeth => value.sign() > 0,
+            SymbolKind::Ratio => !value.is_zero(),
+            SymbolKind::Torque | SymbolKind::Speed => true,
+        }
+    }
 }
 
 /// The closed formula of one regime, or of several that share it.
@@ -118,6 +143,10 @@ pub enum Outside {
     Missing(String),
     /// An efficiency is not above 0 and at most 1.
     NoEfficiency(String),
+    /// A number of teeth is not above 0.
+    NoTeeth(String),
+    /// A basic ratio is 0.
+    NoRatio(String),
     /// A condition of the regime does not hold.
     Condition(String),
     /// A denominator is zero.
@@ -129,6 +158,8 @@ impl std::fmt::Display for Outside {
         match self {
             Self::Missing(name) => write!(f, "no value for {name}"),
             Self::NoEfficiency(name) => write!(f, "{name} is not above 0 and at most 1"),
+            Self::NoTeeth(name) => write!(f, "{name} is not above 0"),
+            Self::NoRatio(name) => write!(f, "{name} is 0"),
             Self::Condition(text) => write!(f, "outside the regime: not true that {text}"),
             Self::Pole => f.write_str("a denominator is zero"),
         }
@@ -204,21 +235,15 @@ impl ClosedFormula {
         let mut values: Vec<(Symbol, Rational)> = Vec::new();
         for a in &self.arguments {
             let v = value(&a.name).ok_or_else(|| Outside::Missing(a.name.clone()))?;
-            if a.efficiency && (v.sign() <= 0 || v > Rational::ONE) {
-                return Err(Outside::NoEfficiency(a.name.clone()));
+            if let (false, Some(outside)) = (a.allows(&v), a.range()) {
+                return Err(outside);
             }
             values.push((a.symbol, v));
         }
         // Dependent speeds and torques from the given ones.
-        for t in &self.terminals {
-            for (symbol, function, given) in
-                [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
-            {
-                if !given {
-                    let v = function.evaluate(&lookup(&values)).ok_or(Outside::Pole)?;
-                    values.push((symbol, v));
-                }
-            }
+        for (symbol, function) in self.dependent() {
+            let v = function.evaluate(&lookup(&values)).ok_or(Outside::Pole)?;
+            values.push((symbol, v));
         }
         let of = lookup(&values);
         for (f, text) in &self.conditions {
@@ -256,17 +281,19 @@ impl ClosedFormula {
     /// The arguments' own values and what follows from them.
     fn values(&self) -> Vec<(Symbol, Rational)> {
         let mut values: Vec<(Symbol, Rational)> = self.arguments.iter().map(|a| (a.symbol, a.number.clone())).collect();
-        for t in &self.terminals {
-            for (symbol, function, given) in
-                [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
-            {
-                let known = function.evaluate(&lookup(&values));
-                if let (false, Some(v)) = (given, known) {
-                    values.push((symbol, v));
-                }
-            }
+        for (symbol, function) in self.dependent() {
+            let known = function.evaluate(&lookup(&values));
+            values.extend(known.map(|v| (symbol, v)));
         }
         values
+    }
+
+    /// Speeds and then torques that follow from those given, in an order in which they can be
+    /// evaluated: with balanced powers a torque depends on dependent speeds.
+    pub(crate) fn dependent(&self) -> impl Iterator<Item = (Symbol, &Function)> {
+        let speeds = self.terminals.iter().filter(|t| !t.given_speed).map(|t| (t.speed_symbol, &t.speed));
+        let torques = self.terminals.iter().filter(|t| !t.given_torque).map(|t| (t.torque_symbol, &t.torque));
+        speeds.chain(torques)
     }
 
     /// `ω_from/ω_to` and `T_to/T_from` with the arguments' own values (one degree of freedom).
@@ -352,6 +379,7 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
             Err(why) => sheet.without.push((state, why)),
         }
     }
+    number_names(&mut sheet.formulas);
     if let Some(regime) = &request.regime
         && sheet.formulas.is_empty()
     {
@@ -410,7 +438,7 @@ fn one_freedom(
         let torque_ratio = own.torques[1].over(&own.torques[0]);
         let mut formula = closed(train, &setup, state, &own, &powers, &cell.pattern, base, &cell.torques);
         formula.title = format!("{a} drives {b}");
-        formula.name = format!("{}_{}", formula.name, identifier(&format!("{a}_to_{b}")));
+        formula.name = format!("{}_{}_to_{}", formula.name, short(&a), short(&b));
         formula.ratios = Some([speed_ratio, torque_ratio]);
         formula.keep_used();
         all.push(formula);
@@ -496,7 +524,7 @@ fn closed(
         let chosen = (0..powers.len()).filter(|&t| powers[t] == sign);
         chosen.map(|t| train.member_name(setup.terminals[t].member).to_owned()).collect()
     };
-    let label = if state == AS_DRAWN { String::new() } else { format!("_state_{state}") };
+    let label = if state == AS_DRAWN { String::new() } else { format!("_state_{}", short(state)) };
     let arguments = (0..own.names.infos.len())
         .map(|k| {
             let info = &own.names.infos[k];
@@ -511,17 +539,19 @@ fn closed(
                 name: info.name.clone(),
                 latex: info.latex.clone(),
                 meaning: info.meaning.clone(),
+                meaning_latex: info.meaning_latex.clone(),
                 value: number.to_f64(),
                 exact: number.to_fraction(),
                 efficiency: info.kind == SymbolKind::Efficiency,
                 fixed: info.value.is_some(),
+                kind: info.kind,
                 symbol: s,
                 number,
             }
         })
         .collect();
     ClosedFormula {
-        name: identifier(&format!("{}{label}", train.name)).trim_matches('_').to_lowercase(),
+        name: short(&train.name) + &label,
         title: String::new(),
         state: state.to_owned(),
         regimes: vec![],
@@ -552,16 +582,39 @@ impl ClosedFormula {
             used.retain(|s| (t.given_speed || *s != t.speed_symbol) && (t.given_torque || *s != t.torque_symbol));
         }
         self.arguments.retain(|a| used.contains(&a.symbol));
-        // Something the compilers of six languages accept.
+        // Something compilers accept.
         if self.name.starts_with(|c: char| c.is_ascii_digit()) {
             self.name.insert_str(0, "train_");
         }
-        let mut name = String::new();
-        for c in self.name.chars() {
-            if c != '_' || !name.ends_with('_') {
-                name.push(c);
-            }
+    }
+}
+
+/// A name as a part of a function's name: words of small letters and digits, cut after a word.
+fn short(name: &str) -> String {
+    const LONGEST: usize = 24;
+    let text = identifier(name).to_lowercase();
+    let words: Vec<&str> = text.split('_').filter(|word| !word.is_empty()).collect();
+    let Some(first) = words.first() else { return "x".to_owned() };
+    let mut all = first[..first.len().min(LONGEST)].to_owned();
+    for word in &words[1..] {
+        if all.len() + 1 + word.len() > LONGEST {
+            break;
         }
-        self.name = name;
+        all = format!("{all}_{word}");
+    }
+    all
+}
+
+/// Numbers the names that would be the same in a language, be it without underlines.
+fn number_names(formulas: &mut [ClosedFormula]) {
+    let mut used: Vec<String> = Vec::new();
+    for f in formulas {
+        let plain = f.name.clone();
+        let mut n = 2;
+        while used.contains(&f.name.replace('_', "")) {
+            f.name = format!("{plain}_{n}");
+            n += 1;
+        }
+        used.push(f.name.replace('_', ""));
     }
 }

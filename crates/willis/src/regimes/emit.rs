@@ -5,68 +5,23 @@
 
 use std::fmt::Write;
 
-use crate::symbolic::Notation;
+use crate::symbolic::{Function, Notation};
 
-use super::closed::{ClosedFormula, FormulaSheet};
-use super::formula::escape;
+use super::closed::{Argument, ClosedFormula, FormulaSheet};
+use super::formula::{SymbolKind, escape, upright};
 
 impl FormulaSheet {
     /// All formulas in a notation: a page of text, a piece of LaTeX, or a source file. With
     /// `derivatives`, also the derivatives of each efficiency.
     pub fn emit(&self, notation: Notation, derivatives: bool) -> String {
-        let mut out = String::new();
-        match notation {
-            Notation::Text => {}
-            Notation::Latex => {
-                let _ = writeln!(out, "% Closed formulas of {}. Needs amsmath.", self.train.replace('\n', " "));
-            }
-            _ => {
-                let (open, close) = match notation {
-                    Notation::Python => ("# ", ""),
-                    Notation::C => ("/* ", " */"),
-                    _ => ("// ", ""),
-                };
-                let _ = writeln!(
-                    out,
-                    "{open}Closed formulas of {}, written by Willis. Speeds in rad/s, torques in N m, both on the \
-                     member.{close}",
-                    comment(&self.train)
-                );
-            }
-        }
+        let mut out = self.head(notation);
         for (state, why) in &self.without {
-            match notation {
-                Notation::Text => {
-                    let _ = writeln!(out, "{}: no formula: {why}\n", self.heading(state));
-                }
-                Notation::Latex => {
-                    let _ = writeln!(out, "% {state}: no formula: {why}");
-                }
-                Notation::Python => {
-                    let _ = writeln!(out, "# {}: no formula: {}", comment(state), comment(why));
-                }
-                Notation::C => {
-                    let _ = writeln!(out, "/* {}: no formula: {} */", comment(state), comment(why));
-                }
-                _ => {
-                    let _ = writeln!(out, "// {}: no formula: {}", comment(state), comment(why));
-                }
-            }
+            let state = if notation == Notation::Text { &self.heading(state) } else { state };
+            out += &remark(notation, &format!("{state}: no formula: {why}"));
+            out += if notation == Notation::Text { "\n\n" } else { "\n" };
         }
-        match notation {
-            Notation::Python if !self.formulas.is_empty() => {
-                out += "\n\nclass OutsideRegime(ValueError):\n    \"\"\"The arguments lie outside the regime in which a \
-                        formula holds.\"\"\"\n";
-            }
-            Notation::Rust if !self.formulas.is_empty() => {
-                out += "\n/// The arguments lie outside the regime in which a formula holds; the text says what is not \
-                        the case.\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct OutsideRegime(pub &'static str);\n";
-            }
-            Notation::C if !self.formulas.is_empty() => {
-                out += "/* Every function returns 0, or the number of the first condition that does not hold; the \
-                        result is then untouched. */\n";
-            }
-            _ => {}
+        if !self.formulas.is_empty() {
+            out += prelude(notation);
         }
         for f in &self.formulas {
             let heading = self.heading(&f.state);
@@ -82,6 +37,21 @@ impl FormulaSheet {
         out
     }
 
+    /// What a file begins with.
+    fn head(&self, notation: Notation) -> String {
+        let what = format!("Closed formulas of {}", self.train);
+        let units = "Speeds in rad/s, torques in N m, both on the member.";
+        match notation {
+            Notation::Text => String::new(),
+            Notation::Latex => remark(notation, &format!("{what}. Needs amsmath; fits a text 16 cm wide.")) + "\n",
+            // No comment: Python would obey one that names an encoding.
+            Notation::Python => {
+                format!("\"\"\"{}, written by Willis.\n\n{units}\n\"\"\"\n", comment(&what))
+            }
+            _ => remark(notation, &format!("{what}, written by Willis. {units}")) + "\n",
+        }
+    }
+
     fn heading(&self, state: &str) -> String {
         match state == crate::analysis::AS_DRAWN {
             true => self.train.clone(),
@@ -90,11 +60,50 @@ impl FormulaSheet {
     }
 }
 
-/// Text that ends no comment or string and begins no line.
+/// What the functions of a file share.
+fn prelude(notation: Notation) -> &'static str {
+    match notation {
+        Notation::Python => {
+            "\nimport math\n\n\nclass OutsideRegime(ValueError):\n    \
+             \"\"\"The arguments lie outside the regime in which a formula holds.\"\"\"\n"
+        }
+        Notation::Rust => {
+            "\n/// The arguments lie outside the regime in which a formula holds; the text says what is not the \
+             case.\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct OutsideRegime(pub &'static str);\n"
+        }
+        Notation::C => {
+            "/* Every function returns 0, or the number of the first condition that does not hold; the result is \
+             then untouched. */\n\n#include <math.h>\n"
+        }
+        _ => "",
+    }
+}
+
+/// A comment of one line.
+fn remark(notation: Notation, text: &str) -> String {
+    match notation {
+        Notation::Text => text.to_owned(),
+        Notation::Latex => format!("% {}", comment(text)),
+        Notation::Python => format!("# {}", comment(text)),
+        Notation::C => format!("/* {} */", comment(text)),
+        Notation::Rust | Notation::Modelica => format!("// {}", comment(text)),
+    }
+}
+
+/// Text that ends no comment or string, begins no line and hides nothing.
 fn comment(text: &str) -> String {
-    let mut clean: String = text.chars().map(|c| if c.is_control() || c == '\\' { ' ' } else { c }).collect();
-    while clean.contains("*/") || clean.contains("/*") || clean.contains("\"\"\"") {
-        clean = clean.replace("*/", "* ").replace("/*", " *").replace("\"\"\"", "'''");
+    let harmless = |c: char| match c {
+        // Line ends and marks of the writing direction, which compilers refuse.
+        '\\' | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => ' ',
+        c if c.is_control() => ' ',
+        c => c,
+    };
+    let mut clean: String = text.chars().map(harmless).collect();
+    // The last is how C once wrote a backslash.
+    for (bad, good) in [("\"\"\"", "'''"), ("/*", "/ *"), ("*/", "* /"), ("??", "? ?")] {
+        while clean.contains(bad) {
+            clean = clean.replace(bad, good);
+        }
     }
     clean
 }
@@ -104,36 +113,30 @@ fn quoted(text: &str) -> String {
     comment(text).replace('"', "'")
 }
 
-/// Names and expressions of all results, in order.
-fn results(f: &ClosedFormula, notation: Notation, derivatives: bool) -> Vec<(String, String, String)> {
-    let mut all = vec![("efficiency".to_owned(), f.efficiency(notation), "output over input power".to_owned())];
-    if let Some([speed, torque]) = f.ratios(notation) {
-        let (a, b) = (&f.inputs[0], &f.outputs[0]);
-        all.push(("speed_ratio".to_owned(), speed, format!("speed of {a} over that of {b}")));
-        all.push(("torque_ratio".to_owned(), torque, format!("torque on {b} over that on {a}")));
-    }
-    for t in &f.terminals {
-        for (symbol, function, given) in
-            [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
-        {
-            if !given {
-                let info = f.names.info(symbol);
-                all.push((info.name.clone(), f.names.show(notation, function), info.meaning.clone()));
+impl ClosedFormula {
+    /// What emitted code returns: name, expression in a notation and meaning of the efficiency, of
+    /// the ratios or the dependent speeds and torques, and, with `derivatives`, of the derivatives
+    /// of the efficiency.
+    pub fn results(&self, notation: Notation, derivatives: bool) -> Vec<(String, String, String)> {
+        let mut all = vec![("efficiency".to_owned(), self.efficiency(notation), "output over input power".to_owned())];
+        if let Some([speed, torque]) = self.ratios(notation) {
+            let (a, b) = (&self.inputs[0], &self.outputs[0]);
+            all.push(("speed_ratio".to_owned(), speed, format!("speed of {a} over that of {b}")));
+            all.push(("torque_ratio".to_owned(), torque, format!("torque on {b} over that on {a}")));
+        }
+        for (symbol, function) in self.dependent() {
+            let info = self.names.info(symbol);
+            all.push((info.name.clone(), self.names.show(notation, function), info.meaning.clone()));
+        }
+        if derivatives {
+            for a in self.arguments.iter().filter(|a| a.efficiency) {
+                let d = self.names.show(notation, &self.efficiency.derivative(a.symbol));
+                let meaning = format!("derivative of the efficiency by {}", a.name);
+                all.push((format!("d_efficiency_d_{}", a.name), d, meaning));
             }
         }
+        all
     }
-    if derivatives {
-        for a in f.arguments.iter().filter(|a| a.efficiency) {
-            let d = f.names.show(notation, &f.efficiency.derivative(a.symbol));
-            all.push((format!("d_efficiency_d_{}", a.name), d, format!("derivative of the efficiency by {}", a.name)));
-        }
-    }
-    all
-}
-
-/// Expression and refusal of every guard.
-fn guards(f: &ClosedFormula, notation: Notation) -> Vec<(String, String)> {
-    f.conditions(notation)
 }
 
 fn number(value: f64) -> String {
@@ -188,23 +191,13 @@ fn text(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
         lines.push(vec![format!("w_{a}/w_{b}"), speed, shown(0)]);
         lines.push(vec![format!("T_{b}/T_{a}"), torque, shown(1)]);
     }
-    for t in &f.terminals {
-        for (symbol, function, given) in
-            [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
-        {
-            if !given {
-                lines.push(vec![
-                    f.names.info(symbol).name.clone(),
-                    f.names.show(Notation::Text, function),
-                    String::new(),
-                ]);
-            }
-        }
+    for (symbol, function) in f.dependent() {
+        lines.push(vec![f.names.info(symbol).name.clone(), f.names.show(Notation::Text, function), String::new()]);
     }
     for line in columns(lines) {
         let _ = writeln!(out, "  {line}");
     }
-    let conditions = guards(f, Notation::Text).into_iter().map(|(c, text)| vec![format!("{c} > 0"), text]).collect();
+    let conditions = f.conditions(Notation::Text).into_iter().map(|(c, text)| vec![format!("{c} > 0"), text]).collect();
     rows(out, "holds where", columns(conditions));
     let arguments = f.arguments.iter().map(|a| {
         let value =
@@ -230,23 +223,16 @@ fn text(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
 
 fn latex(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
     let n = Notation::Latex;
-    let _ = writeln!(out, "\n% {}: {}", comment(heading), comment(&f.title));
+    let _ = writeln!(out, "\n\\paragraph{{{}: {}.}}", plain(heading), plain(&f.title).replace("->", "\\(\\to\\)"));
     let _ = writeln!(out, "\\begin{{align}}");
     let mut lines = vec![format!("\\eta &= {}", f.efficiency(n))];
-    let index = |name: &str| format!("\\mathrm{{{}}}", escape(name));
     if let Some([speed, torque]) = f.ratios(n) {
-        let (a, b) = (index(&f.inputs[0]), index(&f.outputs[0]));
+        let (a, b) = (upright(&f.inputs[0]), upright(&f.outputs[0]));
         lines.push(format!("\\frac{{\\omega_{{{a}}}}}{{\\omega_{{{b}}}}} &= {speed}"));
         lines.push(format!("\\frac{{T_{{{b}}}}}{{T_{{{a}}}}} &= {torque}"));
     }
-    for t in &f.terminals {
-        for (symbol, function, given) in
-            [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
-        {
-            if !given {
-                lines.push(format!("{} &= {}", f.names.info(symbol).latex, f.names.show(n, function)));
-            }
-        }
+    for (symbol, function) in f.dependent() {
+        lines.push(format!("{} &= {}", f.names.info(symbol).latex, f.names.show(n, function)));
     }
     if derivatives {
         for a in f.arguments.iter().filter(|a| a.efficiency) {
@@ -256,201 +242,252 @@ fn latex(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) 
     }
     let _ = writeln!(out, "{}", lines.join(" \\\\\n"));
     let _ = writeln!(out, "\\end{{align}}");
-    let conditions: Vec<String> = guards(f, n).into_iter().map(|(c, _)| format!("\\({c} > 0\\)")).collect();
+    let conditions: Vec<String> = f.conditions(n).into_iter().map(|(c, _)| format!("{c} > 0")).collect();
     if !conditions.is_empty() {
-        let _ = writeln!(out, "valid where {};", conditions.join(", "));
+        let _ = writeln!(out, "valid where\n\\begin{{gather*}}\n{}\n\\end{{gather*}}", conditions.join(", \\\\\n"));
     }
     let arguments: Vec<String> = f
         .arguments
         .iter()
-        .map(|a| match a.fixed {
-            true => format!("\\({} = {}\\) ({})", a.latex, number(a.value), plain(&a.meaning)),
-            false => format!("\\({}\\) ({})", a.latex, plain(&a.meaning)),
+        .map(|a| {
+            let value = if a.fixed { format!(" = {}", number(a.value)) } else { String::new() };
+            let meaning = a.meaning_latex.clone().unwrap_or_else(|| plain(&a.meaning));
+            format!("\\({}{value}\\) ({meaning})", a.latex)
         })
         .collect();
-    let _ = writeln!(out, "with {}.", arguments.join(", "));
+    if !arguments.is_empty() {
+        let _ = writeln!(out, "with {}.", arguments.join(", "));
+    }
 }
 
 /// Words within LaTeX text.
 fn plain(text: &str) -> String {
-    escape(text)
-        .replace("\\backslash ", "\\textbackslash{}")
+    escape(&comment(text))
+        .replace("\\backslash{}", "\\textbackslash{}")
         .replace("\\hat{}", "\\textasciicircum{}")
-        .replace("\\sim ", "\\textasciitilde{}")
+        .replace("\\sim{}", "\\textasciitilde{}")
 }
 
-/// Those that must be given first, then those that the train fixes.
-fn ordered(f: &ClosedFormula) -> Vec<&super::Argument> {
-    f.arguments.iter().filter(|a| !a.fixed).chain(f.arguments.iter().filter(|a| a.fixed)).collect()
+/// The parts of a function, in the order in which code needs them.
+struct Code<'f> {
+    notation: Notation,
+    /// Those that must be given come first.
+    arguments: Vec<&'f Argument>,
+    /// Arguments that are no efficiencies: they must be finite.
+    numbers: Vec<&'f str>,
+    /// Condition and refusal of arguments that cannot have every value.
+    ranges: Vec<(String, String)>,
+    /// Name and expression of what the conditions need beside the arguments.
+    dependent: Vec<(String, String)>,
+    /// Expression that must be positive, and what that ensures.
+    conditions: Vec<(String, String)>,
+    /// Name and expression of the other results.
+    others: Vec<(String, String)>,
+    /// Name and meaning of all results.
+    results: Vec<(String, String)>,
 }
 
-fn fraction(a: &super::Argument) -> String {
-    a.exact.strip_suffix("/1").unwrap_or(&a.exact).to_owned()
+impl<'f> Code<'f> {
+    fn new(f: &'f ClosedFormula, notation: Notation, derivatives: bool) -> Self {
+        let mut arguments: Vec<&Argument> = f.arguments.iter().collect();
+        arguments.sort_by_key(|a| a.fixed);
+        let numbers = arguments.iter().filter(|a| !a.efficiency).map(|a| a.name.as_str()).collect();
+        let ranges = arguments.iter().filter_map(|a| range(notation, a)).collect();
+        let before: Vec<&str> = f.dependent().map(|(s, _)| f.names.info(s).name.as_str()).collect();
+        let (mut dependent, mut others, mut results) = (vec![], vec![], vec![]);
+        for (name, expression, meaning) in f.results(notation, derivatives) {
+            results.push((name.clone(), meaning));
+            let list = if before.contains(&name.as_str()) { &mut dependent } else { &mut others };
+            list.push((name, expression));
+        }
+        Self { notation, arguments, numbers, ranges, dependent, conditions: f.conditions(notation), others, results }
+    }
+
+    /// The value that the train gives an argument, where it does, within a pattern such as `=@`.
+    fn value(&self, a: &Argument, pattern: &str) -> String {
+        let value = || self.notation.function(&Function::from(a.number.clone()), &|_| String::new());
+        if a.fixed { pattern.replace('@', &value()) } else { String::new() }
+    }
+
+    /// The same for readers.
+    fn remark(&self, a: &Argument) -> String {
+        let value = if a.fixed { format!(" ({} in this train)", fraction(a)) } else { String::new() };
+        comment(&a.meaning) + &value
+    }
+
+    fn arguments(&self, entry: impl Fn(&Argument) -> String) -> String {
+        self.arguments.iter().map(|a| entry(a)).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The names of all results, each within a pattern such as `isfinite(@)`.
+    fn each(&self, pattern: &str, separator: &str) -> String {
+        each(self.results.iter().map(|(name, _)| name.as_str()), pattern, separator)
+    }
 }
 
-/// Quantities that conditions need and that follow from the arguments.
-fn derived(f: &ClosedFormula, notation: Notation) -> Vec<(String, String)> {
-    f.terminals
-        .iter()
-        .flat_map(|t| [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)])
-        .filter(|(_, _, given)| !given)
-        .map(|(s, function, _)| (f.names.info(s).name.clone(), f.names.show(notation, function)))
-        .collect()
+/// The condition that an argument makes sense at all, and its refusal.
+fn range(notation: Notation, a: &Argument) -> Option<(String, String)> {
+    let (name, outside) = (&a.name, a.range()?);
+    let condition = match (a.kind, notation) {
+        (SymbolKind::Efficiency, Notation::Python) => format!("0 < {name} <= 1"),
+        (SymbolKind::Efficiency, Notation::Modelica) => format!("{name} > 0 and {name} <= 1"),
+        (SymbolKind::Efficiency, _) => format!("{name} > 0.0 && {name} <= 1.0"),
+        (SymbolKind::Teeth, Notation::Python | Notation::Modelica) => format!("{name} > 0"),
+        (SymbolKind::Teeth, _) => format!("{name} > 0.0"),
+        // Comparing for equality is what some compilers warn of.
+        (_, Notation::Python | Notation::Modelica) => format!("abs({name}) > 0"),
+        (_, Notation::Rust) => format!("{name}.abs() > 0.0"),
+        (_, _) => format!("fabs({name}) > 0.0"),
+    };
+    Some((condition, outside.to_string()))
 }
 
-/// Results that are not derived before the guards.
-fn remaining(f: &ClosedFormula, notation: Notation, derivatives: bool) -> Vec<(String, String, String)> {
-    let before: Vec<String> = derived(f, notation).into_iter().map(|(n, _)| n).collect();
-    results(f, notation, derivatives).into_iter().filter(|(n, _, _)| !before.contains(n)).collect()
+fn fraction(a: &Argument) -> &str {
+    a.exact.strip_suffix("/1").unwrap_or(&a.exact)
+}
+
+fn each<'n>(names: impl IntoIterator<Item = &'n str>, pattern: &str, separator: &str) -> String {
+    names.into_iter().map(|name| pattern.replace('@', name)).collect::<Vec<_>>().join(separator)
 }
 
 fn python(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
-    let n = Notation::Python;
-    let arguments: Vec<String> = ordered(f)
-        .iter()
-        .map(|a| if a.fixed { format!("{}={}", a.name, fraction(a)) } else { a.name.clone() })
-        .collect();
-    let _ = writeln!(out, "\n\ndef {}({}):", f.name, arguments.join(", "));
+    let code = Code::new(f, Notation::Python, derivatives);
+    let arguments = code.arguments(|a| a.name.clone() + &code.value(a, "=@"));
+    let _ = writeln!(out, "\n\ndef {}({arguments}):", f.name);
     let _ = writeln!(out, "    \"\"\"{}: {}.\n", comment(heading), comment(&f.title));
-    for a in ordered(f) {
+    for a in &code.arguments {
         let _ = writeln!(out, "    {}: {}", a.name, comment(&a.meaning));
     }
-    let _ = writeln!(out, "\n    Raises OutsideRegime where the formula does not hold.\n    \"\"\"");
-    for a in f.arguments.iter().filter(|a| a.efficiency) {
-        let _ = writeln!(out, "    if not 0 < {0} <= 1:", a.name);
-        let _ = writeln!(out, "        raise OutsideRegime(f\"{0} = {{{0}}} is not above 0 and at most 1\")", a.name);
+    let _ = writeln!(out, "\n    Raises OutsideRegime where the formula does not hold.\n    \"\"\"\n    try:");
+    let refuse =
+        |condition: &str, why: &str| format!("        if not {condition}:\n            raise OutsideRegime({why})\n");
+    if !code.numbers.is_empty() {
+        let condition = format!("all(map(math.isfinite, [{}]))", code.numbers.join(", "));
+        *out += &refuse(&condition, "\"an argument is not finite\"");
     }
-    for (name, expression) in derived(f, n) {
-        let _ = writeln!(out, "    {name} = {expression}");
+    for (condition, why) in &code.ranges {
+        *out += &refuse(condition, &format!("\"{why}\""));
     }
-    for (expression, meaning) in guards(f, n) {
-        let _ = writeln!(out, "    if not {expression} > 0:");
-        let _ = writeln!(out, "        raise OutsideRegime(\"not true that {}\")", quoted(&meaning));
+    for (name, expression) in &code.dependent {
+        let _ = writeln!(out, "        {name} = {expression}");
     }
-    let _ = writeln!(out, "    return {{");
-    for (name, _) in derived(f, n) {
-        let _ = writeln!(out, "        \"{name}\": {name},");
+    for (expression, meaning) in &code.conditions {
+        *out += &refuse(&format!("{expression} > 0"), &format!("\"not true that {}\"", quoted(meaning)));
     }
-    for (name, expression, _) in remaining(f, n, derivatives) {
-        let _ = writeln!(out, "        \"{name}\": {expression},");
+    for (name, expression) in &code.others {
+        let _ = writeln!(out, "        {name} = {expression}");
     }
-    let _ = writeln!(out, "    }}");
+    let condition = format!("all(map(math.isfinite, [{}]))", code.each("@", ", "));
+    *out += &refuse(&condition, "\"a result is not finite\"");
+    let _ = writeln!(out, "    except ArithmeticError:");
+    let _ = writeln!(out, "        raise OutsideRegime(\"a denominator is zero or a number too large\") from None");
+    let _ = writeln!(out, "    return {{\n        {},\n    }}", code.each("\"@\": @", ",\n        "));
 }
 
+/// The name of a Rust type.
 fn camel(name: &str) -> String {
-    name.split('_')
-        .map(|w| {
-            let mut c = w.chars();
-            c.next().map_or(String::new(), |first| first.to_ascii_uppercase().to_string() + c.as_str())
-        })
-        .collect()
+    let capital = |word: &str| word[..1].to_ascii_uppercase() + &word[1..];
+    name.split('_').filter(|word| !word.is_empty()).map(capital).collect()
 }
 
 fn rust(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
-    let n = Notation::Rust;
+    let code = Code::new(f, Notation::Rust, derivatives);
     let kind = camel(&f.name);
     let _ = writeln!(out, "\n/// What [`{}`] answers.", f.name);
     let _ = writeln!(out, "#[allow(non_snake_case)]\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct {kind} {{");
-    for (name, _, meaning) in results(f, n, derivatives) {
-        let _ = writeln!(out, "    /// {}\n    pub {name}: f64,", comment(&meaning));
+    for (name, meaning) in &code.results {
+        let _ = writeln!(out, "    /// {}\n    pub {name}: f64,", comment(meaning));
     }
     let _ = writeln!(out, "}}\n\n/// {}: {}.\n///", comment(heading), comment(&f.title));
-    for a in ordered(f) {
-        let value = if a.fixed { format!(" ({} in this train)", fraction(a)) } else { String::new() };
-        let _ = writeln!(out, "/// * `{}`: {}{value}", a.name, comment(&a.meaning));
+    for a in &code.arguments {
+        let _ = writeln!(out, "/// * `{}`: {}", a.name, code.remark(a));
     }
-    let arguments: Vec<String> = ordered(f).iter().map(|a| format!("{}: f64", a.name)).collect();
+    let arguments = code.arguments(|a| format!("{}: f64", a.name));
     let _ = writeln!(out, "#[allow(non_snake_case, clippy::all)]");
-    let _ = writeln!(out, "pub fn {}({}) -> Result<{kind}, OutsideRegime> {{", f.name, arguments.join(", "));
-    for a in f.arguments.iter().filter(|a| a.efficiency) {
-        let _ = writeln!(out, "    if !({0} > 0.0 && {0} <= 1.0) {{", a.name);
-        let _ =
-            writeln!(out, "        return Err(OutsideRegime(\"{} is not above 0 and at most 1\"));\n    }}", a.name);
+    let _ = writeln!(out, "pub fn {}({arguments}) -> Result<{kind}, OutsideRegime> {{", f.name);
+    let refuse = |condition: &str, why: &str| {
+        format!("    if !({condition}) {{\n        return Err(OutsideRegime(\"{why}\"));\n    }}\n")
+    };
+    if !code.numbers.is_empty() {
+        *out += &refuse(&each(code.numbers.iter().copied(), "@.is_finite()", " && "), "an argument is not finite");
     }
-    for (name, expression) in derived(f, n) {
-        let _ = writeln!(out, "    let {name} = {expression};");
+    for (condition, why) in &code.ranges {
+        *out += &refuse(condition, why);
     }
-    for (expression, meaning) in guards(f, n) {
-        let _ = writeln!(out, "    if !({expression} > 0.0) {{");
-        let _ = writeln!(out, "        return Err(OutsideRegime(\"not true that {}\"));\n    }}", quoted(&meaning));
+    for (name, expression) in &code.dependent {
+        let _ = writeln!(out, "    let {name}: f64 = {expression};");
     }
-    let _ = writeln!(out, "    Ok({kind} {{");
-    for (name, _) in derived(f, n) {
-        let _ = writeln!(out, "        {name},");
+    for (expression, meaning) in &code.conditions {
+        *out += &refuse(&format!("{expression} > 0.0"), &format!("not true that {}", quoted(meaning)));
     }
-    for (name, expression, _) in remaining(f, n, derivatives) {
-        let _ = writeln!(out, "        {name}: {expression},");
+    for (name, expression) in &code.others {
+        let _ = writeln!(out, "    let {name}: f64 = {expression};");
     }
-    let _ = writeln!(out, "    }})\n}}");
+    *out += &refuse(&code.each("@.is_finite()", " && "), "a result is not finite");
+    let _ = writeln!(out, "    Ok({kind} {{ {} }})\n}}", code.each("@", ", "));
 }
 
 fn c(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
-    let n = Notation::C;
-    let _ = writeln!(out, "\ntypedef struct {{");
-    for (name, _, meaning) in results(f, n, derivatives) {
-        let _ = writeln!(out, "    double {name}; /* {} */", comment(&meaning));
+    let code = Code::new(f, Notation::C, derivatives);
+    let _ = writeln!(out, "\nstruct {} {{", f.name);
+    for (name, meaning) in &code.results {
+        let _ = writeln!(out, "    double {name}; /* {} */", comment(meaning));
     }
-    let _ = writeln!(out, "}} {}_result;\n\n/* {}: {}.", f.name, comment(heading), comment(&f.title));
-    for a in ordered(f) {
-        let value = if a.fixed { format!(" ({} in this train)", fraction(a)) } else { String::new() };
-        let _ = writeln!(out, "   {}: {}{value}", a.name, comment(&a.meaning));
+    let _ = writeln!(out, "}};\n\n/* {}: {}.", comment(heading), comment(&f.title));
+    for a in &code.arguments {
+        let _ = writeln!(out, "   {}: {}", a.name, code.remark(a));
     }
-    let mut number = 0;
-    for a in f.arguments.iter().filter(|a| a.efficiency) {
-        number += 1;
-        let _ = writeln!(out, "   returns {number}: {} is not above 0 and at most 1", a.name);
+    let conditions =
+        code.conditions.iter().map(|(e, meaning)| (format!("{e} > 0.0"), format!("not true that {meaning}")));
+    // By the status that the function returns.
+    let checks: Vec<(usize, (String, String))> = (2..).zip(code.ranges.iter().cloned().chain(conditions)).collect();
+    let _ = writeln!(out, "   returns 1: an argument or a result is not finite");
+    for (status, (_, meaning)) in &checks {
+        let _ = writeln!(out, "   returns {status}: {}", comment(meaning));
     }
-    for (_, meaning) in guards(f, n) {
-        number += 1;
-        let _ = writeln!(out, "   returns {number}: not true that {}", comment(&meaning));
+    let arguments: String = code.arguments.iter().map(|a| format!("double {}, ", a.name)).collect();
+    let _ = writeln!(out, "*/\nstatic inline int {0}({arguments}struct {0} *result)\n{{", f.name);
+    if !code.numbers.is_empty() {
+        let finite = each(code.numbers.iter().copied(), "isfinite(@)", " && ");
+        let _ = writeln!(out, "    if (!({finite})) return 1;");
     }
-    let arguments: Vec<String> = ordered(f).iter().map(|a| format!("double {}", a.name)).collect();
-    let separator = if arguments.is_empty() { "" } else { ", " };
-    let _ = writeln!(out, "*/\nstatic int {0}({1}{separator}{0}_result *result)\n{{", f.name, arguments.join(", "));
-    let mut number = 0;
-    // C89 compilers want declarations first.
-    for (name, expression) in derived(f, n) {
+    for (name, expression) in &code.dependent {
         let _ = writeln!(out, "    const double {name} = {expression};");
     }
-    for a in f.arguments.iter().filter(|a| a.efficiency) {
-        number += 1;
-        let _ = writeln!(out, "    if (!({0} > 0.0 && {0} <= 1.0)) return {number};", a.name);
+    for (status, (condition, _)) in &checks {
+        let _ = writeln!(out, "    if (!({condition})) return {status};");
     }
-    for (expression, _) in guards(f, n) {
-        number += 1;
-        let _ = writeln!(out, "    if (!({expression} > 0.0)) return {number};");
+    for (name, expression) in &code.others {
+        let _ = writeln!(out, "    const double {name} = {expression};");
     }
-    for (name, _) in derived(f, n) {
-        let _ = writeln!(out, "    result->{name} = {name};");
-    }
-    for (name, expression, _) in remaining(f, n, derivatives) {
-        let _ = writeln!(out, "    result->{name} = {expression};");
-    }
+    let _ = writeln!(out, "    if (!({})) return 1;", code.each("isfinite(@)", " && "));
+    let _ = writeln!(out, "    {}", code.each("result->@ = @;", "\n    "));
     let _ = writeln!(out, "    return 0;\n}}");
 }
 
 fn modelica(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
-    let n = Notation::Modelica;
+    let code = Code::new(f, Notation::Modelica, derivatives);
     let _ = writeln!(out, "\nfunction {} \"{}: {}\"", f.name, quoted(heading), quoted(&f.title));
-    for a in ordered(f) {
-        let value = if a.fixed { format!(" = {}", fraction(a)) } else { String::new() };
-        let _ = writeln!(out, "  input Real {}{value} \"{}\";", a.name, quoted(&a.meaning));
+    for a in &code.arguments {
+        let _ = writeln!(out, "  input Real {}{} \"{}\";", a.name, code.value(a, " = @"), quoted(&a.meaning));
     }
-    for (name, _, meaning) in results(f, n, derivatives) {
-        let _ = writeln!(out, "  output Real {name} \"{}\";", quoted(&meaning));
+    for (name, meaning) in &code.results {
+        let _ = writeln!(out, "  output Real {name} \"{}\";", quoted(meaning));
     }
     let _ = writeln!(out, "algorithm");
-    for a in f.arguments.iter().filter(|a| a.efficiency) {
-        let _ = writeln!(out, "  assert({0} > 0 and {0} <= 1, \"{0} is not above 0 and at most 1\");", a.name);
+    for name in &code.numbers {
+        let _ = writeln!(out, "  assert(abs({name}) < 1e300, \"{name} is not finite\");");
     }
-    for (name, expression) in derived(f, n) {
+    for (condition, why) in &code.ranges {
+        let _ = writeln!(out, "  assert({condition}, \"{why}\");");
+    }
+    for (name, expression) in &code.dependent {
         let _ = writeln!(out, "  {name} := {expression};");
     }
-    for (expression, meaning) in guards(f, n) {
-        let _ =
-            writeln!(out, "  assert({expression} > 0, \"outside the regime: not true that {}\");", quoted(&meaning));
+    for (expression, meaning) in &code.conditions {
+        let _ = writeln!(out, "  assert({expression} > 0, \"outside the regime: not true that {}\");", quoted(meaning));
     }
-    for (name, expression, _) in remaining(f, n, derivatives) {
+    for (name, expression) in &code.others {
         let _ = writeln!(out, "  {name} := {expression};");
     }
     let _ = writeln!(out, "end {};", f.name);

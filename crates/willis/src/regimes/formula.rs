@@ -25,6 +25,8 @@ pub(crate) struct SymbolInfo {
     pub kind: SymbolKind,
     /// In words.
     pub meaning: String,
+    /// The same in LaTeX, where it has formulas in it.
+    pub meaning_latex: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -127,14 +129,18 @@ impl Names {
                 _ => (format!("_{}", identifier(&label)), format!("_{{{}}}", upright(&label))),
             };
             let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
-            let seen =
-                if c == "frame" { format!("w_{p} / w_{q}") } else { format!("(w_{p} - w_{c}) / (w_{q} - w_{c})") };
+            let [wp, wq, wc] = [p, q, c].map(|m| format!("\\omega_{{{}}}", upright(m)));
+            let (seen, seen_latex) = match c {
+                "frame" => (format!("w_{p} / w_{q}"), format!("{wp}/{wq}")),
+                _ => (format!("(w_{p} - w_{c}) / (w_{q} - w_{c})"), format!("({wp} - {wc})/({wq} - {wc})")),
+            };
             infos.push(SymbolInfo {
                 name: unique(format!("i{suffix}")),
                 latex: format!("i{index}"),
                 value: Some(setup.ratio(j)),
                 kind: SymbolKind::Ratio,
                 meaning: format!("basic ratio {seen}"),
+                meaning_latex: Some(format!("basic ratio \\({seen_latex}\\)")),
             });
             infos.push(SymbolInfo {
                 name: unique(format!("eta{suffix}")),
@@ -142,6 +148,7 @@ impl Names {
                 value: Some(e.forward.clone()),
                 kind: SymbolKind::Efficiency,
                 meaning: format!("efficiency between {p} and {q} seen from {c}"),
+                meaning_latex: None,
             });
         }
         // Placeholders, so that positions and numbers agree.
@@ -151,6 +158,7 @@ impl Names {
             value: None,
             kind: SymbolKind::Ratio,
             meaning: String::new(),
+            meaning_latex: None,
         }));
         for (letter, tex, kind, word) in
             [("T", "T", SymbolKind::Torque, "torque on"), ("w", "\\omega", SymbolKind::Speed, "speed of")]
@@ -163,6 +171,7 @@ impl Names {
                     value: None,
                     kind,
                     meaning: format!("{word} {member}"),
+                    meaning_latex: None,
                 });
             }
         }
@@ -200,6 +209,7 @@ impl Names {
                         value: Some(gear.teeth.clone()),
                         kind: SymbolKind::Teeth,
                         meaning: format!("teeth of {member} in {}", mesh.name),
+                        meaning_latex: None,
                     });
                     teeth.push((link.mesh.0, g, s));
                     s
@@ -214,6 +224,18 @@ impl Names {
             }
             self.details.insert(self.ratio(j), ratio);
         }
+    }
+
+    /// A name that no symbol has, with a number if need be. The efficiency of an element gives way
+    /// to that of its mesh.
+    fn free(&mut self, wanted: String) -> String {
+        let elements = 2 * self.elements;
+        for info in self.infos[..elements].iter_mut().filter(|info| info.name == wanted) {
+            info.name += "_basic";
+        }
+        let taken = |name: &String| self.infos.iter().any(|info| info.name == *name);
+        let numbered = (2..).map(|n| format!("{wanted}_{n}"));
+        std::iter::once(wanted.clone()).chain(numbered).find(|name| !taken(name)).expect("numbers do not end")
     }
 
     /// The symbols of the meshes' own efficiencies, for a pattern of drivers.
@@ -233,12 +255,14 @@ impl Names {
                 }
                 let [a, b] = if forward { [0, 1] } else { [1, 0] }.map(|g| train.member_name(mesh.gears[g].member));
                 let s = Symbol(self.infos.len());
+                let name = self.free(format!("eta_{}", identifier(&mesh.name)));
                 self.infos.push(SymbolInfo {
-                    name: format!("eta_{}", identifier(&mesh.name)),
+                    name,
                     latex: format!("\\eta_{{{}}}", upright(&mesh.name)),
                     value: Some(value.clone()),
                     kind: SymbolKind::Efficiency,
                     meaning: format!("efficiency of {}, {a} driving {b}", mesh.name),
+                    meaning_latex: None,
                 });
                 product = product.times(&Function::symbol(s));
             }
@@ -277,7 +301,7 @@ pub(crate) fn upright(name: &str) -> String {
     if name.chars().count() == 1 || name.chars().all(|c| c.is_ascii_digit()) {
         return escape(name);
     }
-    format!("\\mathrm{{{}}}", escape(name))
+    format!("\\mathrm{{{}}}", escape(name).replace('-', "\\text{-}").replace(' ', "\\ "))
 }
 
 /// Text that LaTeX sets as it stands.
@@ -285,13 +309,13 @@ pub(crate) fn escape(text: &str) -> String {
     let mut out = String::new();
     for c in text.chars() {
         match c {
-            '\\' => out.push_str("\\backslash "),
+            '\\' => out.push_str("\\backslash{}"),
             '_' | '%' | '&' | '#' | '$' | '{' | '}' => {
                 out.push('\\');
                 out.push(c);
             }
             '^' => out.push_str("\\hat{}"),
-            '~' => out.push_str("\\sim "),
+            '~' => out.push_str("\\sim{}"),
             _ => out.push(c),
         }
     }
@@ -598,6 +622,7 @@ impl<'s, 't> Shape<'s, 't> {
         for c in &mut conditions {
             c.function = bare(&spelt(&c.function), &names);
         }
+        without_squares(&mut conditions);
         conditions.retain(|c| c.function.as_constant().is_none_or(|n| n.sign() <= 0));
         let mut distinct: Vec<Condition> = Vec::new();
         for c in conditions {
@@ -689,17 +714,40 @@ impl Formula {
     }
 }
 
-/// A condition without what is positive anyway: efficiencies, tooth numbers and squares.
+/// A condition without what is positive anyway: efficiencies, tooth numbers and squares of what is
+/// not zero.
 fn bare(f: &Function, names: &Names) -> Function {
-    let positive = |p: &Polynomial| {
-        p.terms().all(|(c, _)| c.sign() > 0)
-            && p.symbols().iter().all(|s| matches!(names.info(*s).kind, SymbolKind::Efficiency | SymbolKind::Teeth))
-    };
+    let only = |p: &Polynomial, kinds: &[SymbolKind]| p.symbols().iter().all(|s| kinds.contains(&names.info(*s).kind));
+    let positive =
+        |p: &Polynomial| p.terms().all(|(c, _)| c.sign() > 0) && only(p, &[SymbolKind::Efficiency, SymbolKind::Teeth]);
+    let product_of_ratios = |p: &Polynomial| p.len() == 1 && only(p, &[SymbolKind::Ratio]);
     let number = Function::from(Rational::from(i64::from(f.number().sign())));
-    f.factors().iter().filter(|(p, e)| e % 2 != 0 && !positive(p)).fold(number, |product, (p, _)| {
+    f.factors().iter().fold(number, |product, (p, e)| {
+        let own = p.to_function();
         // A denominator has the sign of its product.
-        product.times(&p.to_function())
+        match e % 2 {
+            _ if positive(p) => product,
+            0 if product_of_ratios(p) => product,
+            0 => product.times(&own).times(&own),
+            _ => product.times(&own),
+        }
     })
+}
+
+/// Conditions without squares of what other conditions keep from being zero.
+fn without_squares(conditions: &mut [Condition]) {
+    let nonzero: Vec<Polynomial> = conditions
+        .iter()
+        .flat_map(|c| c.function.factors().iter().filter(|(_, e)| *e == 1).map(|(p, _)| p.clone()))
+        .collect();
+    for c in conditions {
+        for (p, e) in c.function.clone().factors() {
+            if *e == 2 && nonzero.contains(p) {
+                let own = p.to_function();
+                c.function = c.function.over(&own).over(&own);
+            }
+        }
+    }
 }
 
 /// Whether rows of polynomials are independent, judged at primes in the place of the symbols.
