@@ -734,10 +734,10 @@ impl Notation {
             (parts.join(self.times()), count)
         };
         // `count` is 0 for a bare sum, else the number of factors.
-        let (mut above, above_count) = side(1, top);
+        let (mut above, mut above_count) = side(1, top);
         let (below, below_count) = side(-1, bottom);
         if above.is_empty() {
-            above = self.whole("1");
+            (above, above_count) = (self.whole("1"), 1);
         }
         if below.is_empty() {
             return match (negative, above_count) {
@@ -805,6 +805,7 @@ mod tests {
         assert_eq!(show(&f), "(x + y)/(x*y)");
         assert_eq!(show(&f.minus(&f)), "0");
         assert_eq!(show(&x.over(&y).minus(&Function::ONE)), "(x - y)/y");
+        assert_eq!(show(&Function::ONE.negated()), "-1");
     }
 
     #[test]
