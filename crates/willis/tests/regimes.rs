@@ -8,14 +8,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value;
-use willis::analysis::Role;
+use willis::analysis::{Role, Selection, Verdict, analyze};
+use willis::compiled::{Duty, Output, PointVerdict};
 use willis::exact::Rational;
 use willis::regimes::{
     Atlas, ClosedFormula, Efficiencies, FormulaRequest, Outside, Ratios, RegimeReport, RegimeSelection, RegionReport,
     formulas, regimes,
 };
 use willis::symbolic::Notation;
-use willis::train::{EfficiencySpec, SetSpec, ShiftElementSpec, StateSpec, Train, TrainBuilder};
+use willis::train::{EfficiencySpec, OperationSpec, SetSpec, ShiftElementSpec, StateSpec, Train, TrainBuilder};
+use willis::units::{AngularSpeed, Torque};
 
 fn q(numerator: i64, denominator: i64) -> Rational {
     Rational::new(numerator, denominator)
@@ -904,4 +906,826 @@ fn val_basic_ratio_one_is_pure_friction() {
             "{atlas:?}"
         );
     }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Every example, against the solver
+
+/// Name, text, train.
+fn examples() -> Vec<(String, String, Train)> {
+    let folder = format!("{}/../../examples", env!("CARGO_MANIFEST_DIR"));
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|f| f.unwrap().path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "toml"));
+    files.sort();
+    let all: Vec<_> = files
+        .iter()
+        .map(|f| {
+            let text = std::fs::read_to_string(f).unwrap();
+            let train = Train::from_toml(&text).unwrap();
+            (f.file_stem().unwrap().to_str().unwrap().to_owned(), text, train)
+        })
+        .collect();
+    assert!(all.len() >= 29);
+    all
+}
+
+/// All states that have regimes, as drawn included.
+fn atlases(train: &Train) -> Vec<Atlas> {
+    let mut names: Vec<&str> = train.states().iter().map(|s| s.name.as_str()).collect();
+    names.push("as drawn");
+    names.into_iter().map(|name| state(train, name)).filter(|a| a.reason.is_none()).collect()
+}
+
+fn request_of(state: &str) -> FormulaRequest {
+    FormulaRequest { state: Some(state.into()), ..Default::default() }
+}
+
+fn from_to(state: &str, from: &str, to: &str) -> FormulaRequest {
+    FormulaRequest { from: vec![from.into()], to: vec![to.into()], ..request_of(state) }
+}
+
+/// Whole numbers inside a region of two freedoms, for the base speeds.
+fn inside(region: &RegionReport, random: &mut Random) -> [i64; 2] {
+    let (from, to) = (region.from.unwrap(), region.to.unwrap());
+    let unit = |v: [f64; 2]| {
+        let size = v[0].abs().max(v[1].abs());
+        v.map(|x| x / size)
+    };
+    let (from, to) = (unit(from), unit(to));
+    let x = random.fraction().to_f64();
+    let y = random.fraction().to_f64();
+    let v = unit([0, 1].map(|k| x * from[k] + y * to[k]));
+    let size = 10f64.powi(random.whole(6, 9) as i32);
+    v.map(|x| (x * size).round() as i64)
+}
+
+/// The terminals whose torques the formulas take.
+fn given_torques(formulas: &[(&ClosedFormula, Vec<(String, Source)>)]) -> Vec<String> {
+    let torques = formulas.iter().flat_map(|(_, s)| s).filter_map(|(_, s)| match s {
+        Source::Torque(t) => Some(t.clone()),
+        _ => None,
+    });
+    let mut all: Vec<String> = Vec::new();
+    torques.for_each(|t| {
+        if !all.contains(&t) {
+            all.push(t);
+        }
+    });
+    all
+}
+
+fn duty_of(atlas: &Atlas, speeds: &[String], torques: &[String]) -> Duty {
+    let duty = Duty::new(speeds.iter().map(String::as_str), torques.iter().map(String::as_str));
+    let duty = if atlas.state == "as drawn" { duty } else { duty.state(&atlas.state) };
+    let duty = duty.output(Output::Efficiency);
+    atlas.terminals.iter().fold(duty, |d, t| d.output(Output::Torque(t.clone())))
+}
+
+fn sign(x: f64) -> i8 {
+    if x > 0.0 { 1 } else { -i8::from(x < 0.0) }
+}
+
+/// A thousand points in every regime of two freedoms; the number of points.
+fn compare_two_freedoms(name: &str, train: &Train, atlas: &Atlas, random: &mut Random) -> usize {
+    let sheet = formulas(train, &request_of(&atlas.state)).unwrap();
+    assert!(sheet.without.is_empty(), "{name}: {:?}", sheet.without);
+    let all: Vec<_> = sheet.formulas.iter().map(|f| (f, sources(f))).collect();
+    let given = given_torques(&all);
+    assert_eq!(given.len(), atlas.independent_torques, "{name}: {given:?}");
+    let compiled = train.compile(&duty_of(atlas, &atlas.base_speeds, &given)).unwrap();
+    let mut work = compiled.workspace();
+    let mut out = vec![0.0; compiled.outputs()];
+    let mut points = 0;
+    for regime in &atlas.regimes {
+        let own = all.iter().position(|(f, _)| f.regimes.contains(&regime.id)).unwrap();
+        let what = format!("{name}, {}, {}", atlas.state, regime.id);
+        let mut accepted = 0;
+        for n in 0..4000 {
+            if accepted == 1000 {
+                break;
+            }
+            let w = inside(&atlas.regions[regime.region - 1], random);
+            let t: Vec<i64> = given
+                .iter()
+                .map(|g| {
+                    let x = *regime.example.torques.get(g).unwrap();
+                    let size = if given.len() == 1 { 1.0 } else { x.abs() };
+                    let scale = 1000.0 * 2f64.powf(random.whole(-1000, 1000) as f64 / 500.0);
+                    (x.signum() * size * scale).round() as i64
+                })
+                .collect();
+            let at = |names: &[String], values: &[i64], member: &str| {
+                Rational::from(values[names.iter().position(|n| n == member).unwrap()])
+            };
+            let ask = |k: usize| {
+                let (f, sources) = &all[k];
+                evaluate(f, sources, &|m| at(&atlas.base_speeds, &w, m), &|m| at(&given, &t, m))
+            };
+            let found = ask(own);
+            let verdict = compiled.evaluate(
+                &w.map(|x| x as f64),
+                &t.iter().map(|x| *x as f64).collect::<Vec<_>>(),
+                &mut work,
+                &mut out,
+            );
+            assert_eq!(verdict, PointVerdict::Unique, "{what}");
+            let signs: Vec<i8> = out[1..].iter().map(|x| sign(*x)).collect();
+            let wanted: Vec<i8> = regime.torque_signs.iter().map(|x| x.1).collect();
+            match &found {
+                Ok(efficiency) => {
+                    accepted += 1;
+                    let e = efficiency.to_f64();
+                    assert!((out[0] - e).abs() <= 1e-12 * e.max(1e-3), "{what}: {} and {e} at {w:?} {t:?}", out[0]);
+                    assert_eq!(signs, wanted, "{what} at {w:?} {t:?}");
+                    assert_eq!(regime.all_dissipated, efficiency.is_zero(), "{what}");
+                }
+                // With several torques the point may have left the cone.
+                Err(_) => assert!(given.len() > 1, "{what} at {w:?} {t:?}: {found:?}"),
+            }
+            if n % 10 == 0 {
+                // Exactly one formula answers.
+                let answers: Vec<usize> = (0..all.len()).filter(|&k| ask(k).is_ok()).collect();
+                assert_eq!(answers.len(), 1, "{what}: {answers:?} at {w:?} {t:?}");
+                assert_eq!(answers[0] == own, found.is_ok());
+            }
+        }
+        assert_eq!(accepted, 1000, "{what}");
+        points += accepted;
+    }
+    points
+}
+
+fn signed(random: &mut Random) -> f64 {
+    let size = random.fraction().to_f64();
+    if random.below(2) == 0 { size } else { -size }
+}
+
+/// Both directions of a state with one freedom; the number of points.
+fn compare_one_freedom(name: &str, train: &Train, atlas: &Atlas, random: &mut Random) -> usize {
+    let [a, b] = &atlas.terminals[..] else { panic!("{name}, {}: {:?}", atlas.state, atlas.terminals) };
+    let mut points = 0;
+    for (from, to) in [(a, b), (b, a)] {
+        let what = format!("{name}, {}, {from} to {to}", atlas.state);
+        let sheet = formulas(train, &from_to(&atlas.state, from, to)).unwrap();
+        let forward: Vec<&RegimeReport> =
+            atlas.regimes.iter().filter(|r| r.inputs == [from.as_str()] && r.outputs == [to.as_str()]).collect();
+        assert_eq!(forward.len(), 2 * sheet.formulas.len(), "{what}");
+        assert_eq!(sheet.formulas.is_empty(), sheet.without.iter().any(|(_, why)| why.contains("locked")), "{what}");
+        for r in &forward {
+            let own = sheet.formulas.iter().filter(|f| f.value() == Some(exact(&r.example.efficiency_exact)));
+            assert_eq!(own.count(), 1, "{what}");
+        }
+        // Prescribed: the speed of the input and a load at the output, which only driving answers.
+        let duty =
+            duty_of(atlas, std::slice::from_ref(from), std::slice::from_ref(to)).output(Output::Speed(to.clone()));
+        let compiled = train.compile(&duty).unwrap();
+        let mut work = compiled.workspace();
+        let mut out = vec![0.0; compiled.outputs()];
+        let values: Vec<(f64, [f64; 2])> =
+            sheet.formulas.iter().map(|f| (f.value().unwrap().to_f64(), f.ratio_values().unwrap())).collect();
+        let (speed_of, torque_of) = (out.len() - 1, 1 + atlas.terminals.iter().position(|x| x == from).unwrap());
+        for _ in 0..1000 {
+            let (w, t) = (signed(random), random.fraction().to_f64());
+            // The output's direction, to make the load a resisting one.
+            compiled.evaluate(&[w], &[t], &mut work, &mut out);
+            let load = -t * out[speed_of].signum();
+            let verdict = compiled.evaluate(&[w], &[load], &mut work, &mut out);
+            let expected = match values.len() {
+                0 => PointVerdict::Locked,
+                1 => PointVerdict::Unique,
+                _ => PointVerdict::Multiple,
+            };
+            assert_eq!(verdict, expected, "{what} at {w} {load}");
+            if verdict != PointVerdict::Locked {
+                points += 1;
+                let fits = values.iter().any(|(e, [speed, torque])| {
+                    let close = |x: f64, y: f64| (x - y).abs() <= 1e-12 * y.abs();
+                    close(out[0], *e) && close(w / out[speed_of], *speed) && close(load / out[torque_of], *torque)
+                });
+                assert!(fits, "{what}: {out:?} {values:?} at {w} {load}");
+            }
+        }
+        for f in &sheet.formulas {
+            let sources = sources(f);
+            let fixed = |name: &str| match &sources.iter().find(|(n, _)| n == name)?.1 {
+                Source::Fixed(value) => Some(value.clone()),
+                _ => None,
+            };
+            assert_eq!(f.evaluate(&fixed).ok(), f.value(), "{what}");
+        }
+    }
+    points
+}
+
+#[test]
+fn val_every_formula_of_every_example_equals_the_solver() {
+    let mut random = Random(5);
+    let (mut one, mut two, mut locked) = (0, 0, 0);
+    for (name, _, train) in examples() {
+        for atlas in atlases(&train) {
+            match atlas.degrees_of_freedom {
+                1 => one += compare_one_freedom(&name, &train, &atlas, &mut random),
+                2 => two += compare_two_freedoms(&name, &train, &atlas, &mut random),
+                other => panic!("{name}, {}: {other} freedoms", atlas.state),
+            }
+        }
+        // Locked both ways: no regimes, and it is said.
+        if name == "locked-both-ways" {
+            let atlas = as_drawn(&train);
+            assert!(atlas.regimes.is_empty() && atlas.reason.unwrap().contains("locks"));
+            let sheet = formulas(&train, &FormulaRequest::default()).unwrap();
+            assert!(sheet.without[0].1.contains("locked"));
+            locked += 1;
+        }
+    }
+    assert!(one >= 200_000 && two >= 150_000 && locked == 1, "{one} {two}");
+}
+
+/// A few points of every regime by the exact path of the analysis, as fractions.
+#[test]
+fn val_every_formula_of_every_example_equals_the_analysis_exactly() {
+    let mut random = Random(6);
+    let (mut compared, mut as_fraction) = (0, 0);
+    for (name, mut text, train) in examples() {
+        let mut expected: Vec<(String, Rational, Vec<(String, i8)>)> = Vec::new();
+        let mut number = 0;
+        let mut operation = |atlas: &Atlas, w: &[(String, Rational)], t: &[(String, Rational)]| {
+            number += 1;
+            let title = format!("checked {number}");
+            let list = |all: &[(String, Rational)], unit: &str| {
+                all.iter().map(|(m, x)| format!("\"{m}\" = \"{x} {unit}\"")).collect::<Vec<_>>().join(", ")
+            };
+            text += &format!("\n[[operation]]\nname = \"{title}\"\n");
+            if atlas.state != "as drawn" {
+                text += &format!("state = \"{}\"\n", atlas.state);
+            }
+            text += &format!("speeds = {{ {} }}\ntorques = {{ {} }}\n", list(w, "rad/s"), list(t, "N m"));
+            title
+        };
+        for atlas in atlases(&train) {
+            if atlas.degrees_of_freedom == 1 {
+                for (from, to) in [(0, 1), (1, 0)].map(|(a, b)| (&atlas.terminals[a], &atlas.terminals[b])) {
+                    let sheet = formulas(&train, &from_to(&atlas.state, from, to)).unwrap();
+                    for f in &sheet.formulas {
+                        // A load at the output, which only driving answers.
+                        let [speed, _] = f.ratio_values().unwrap();
+                        for _ in 0..2 {
+                            let w = Rational::from_f64(signed(&mut random)).unwrap();
+                            let way = i64::from(-w.sign() * sign(speed));
+                            let load = random.fraction() * Rational::from(way);
+                            let title = operation(&atlas, &[(from.clone(), w)], &[(to.clone(), load)]);
+                            expected.push((title, f.value().unwrap(), vec![(to.clone(), way as i8)]));
+                        }
+                    }
+                }
+                continue;
+            }
+            let sheet = formulas(&train, &request_of(&atlas.state)).unwrap();
+            let all: Vec<_> = sheet.formulas.iter().map(|f| (f, sources(f))).collect();
+            let given = given_torques(&all);
+            for regime in &atlas.regimes {
+                let (f, sources) = all.iter().find(|(f, _)| f.regimes.contains(&regime.id)).unwrap();
+                let points = if given.len() == 1 { 20 } else { 3 };
+                for _ in 0..points {
+                    let w = inside(&atlas.regions[regime.region - 1], &mut random).map(Rational::from);
+                    let size = random.fraction();
+                    let t: Vec<Rational> = given
+                        .iter()
+                        .map(|g| &size * &Rational::from_f64(*regime.example.torques.get(g).unwrap()).unwrap())
+                        .collect();
+                    let at = |names: &[String], values: &[Rational], member: &str| {
+                        values[names.iter().position(|n| n == member).unwrap()].clone()
+                    };
+                    let value =
+                        evaluate(f, sources, &|m| at(&atlas.base_speeds, &w, m), &|m| at(&given, &t, m)).unwrap();
+                    let pair = |names: &[String], values: &[Rational]| {
+                        names.iter().cloned().zip(values.iter().cloned()).collect::<Vec<_>>()
+                    };
+                    let title = operation(&atlas, &pair(&atlas.base_speeds, &w), &pair(&given, &t));
+                    expected.push((title, value, regime.torque_signs.0.clone()));
+                }
+            }
+        }
+        let analysis = analyze(&Train::from_toml(&text).unwrap(), &Selection::default()).unwrap();
+        for (title, value, signs) in expected {
+            let o = analysis.operations.iter().find(|o| o.name == title).unwrap();
+            // Among several answers to the same torque, the one with these signs and value.
+            let own: Vec<_> = o
+                .solutions
+                .iter()
+                .filter(|s| {
+                    let torque = |m: &str| s.members.get(m).unwrap().torque_n_m.unwrap_or(0.0);
+                    signs.iter().all(|(m, x)| sign(torque(m)) == *x)
+                        && (s.efficiency.unwrap() - value.to_f64()).abs() <= 1e-12 * value.to_f64()
+                })
+                .collect();
+            assert_eq!(own.len(), 1, "{name}, {title}: {value} {signs:?}, {:?}", o.solutions);
+            assert_eq!(own[0].all_dissipated, value.is_zero());
+            if let Some(fraction) = &own[0].efficiency_exact {
+                assert_eq!(exact(fraction), value, "{name}, {title}");
+                as_fraction += 1;
+            }
+            compared += 1;
+        }
+    }
+    // The analysis gives fractions where it has to decide exactly, beside self-locking.
+    assert!(compared > 2500 && as_fraction > 4, "{compared}, {as_fraction} of them as fractions");
+}
+
+// ---------------------------------------------------------------------------------------------
+// Random coupled trains, against exact elimination over every choice of drivers
+
+/// `ω_q − ω_c = R (ω_p − ω_c)`, torques `f (1, −ρ/R, ρ/R − 1)` on p, q, c.
+#[derive(Clone, Debug)]
+struct Coupled {
+    /// p, q, c.
+    members: [usize; 3],
+    /// Teeth of p's gear and its planets, of q's and its planets.
+    teeth: [i64; 4],
+    ring: bool,
+    /// Thousandths, p driving and q driving.
+    eta: [i64; 2],
+}
+
+impl Coupled {
+    fn random(members: usize, low: i64, random: &mut Random) -> Self {
+        let p = random.whole(0, members as i64 - 1) as usize;
+        let mut other = |taken: &[usize]| loop {
+            let m = random.whole(0, members as i64 - 1) as usize;
+            if !taken.contains(&m) {
+                return m;
+            }
+        };
+        let q = other(&[p]);
+        let c = other(&[p, q]);
+        let ring = random.below(3) == 0;
+        let planet = random.whole(12, 40);
+        let first = random.whole(15, 60);
+        // Often near R = 1, where friction turns torques round.
+        let near = random.below(2) == 0;
+        let second = if near { (first + random.whole(-6, 6)).max(12) } else { random.whole(15, 60) };
+        let eta = [random.whole(low, 999), random.whole(low, 999)];
+        let eta = if random.below(3) == 0 { [eta[0], eta[0]] } else { eta };
+        let teeth = [first, planet, if ring { second + planet } else { second }, planet];
+        Self { members: [p, q, c], teeth, ring, eta }
+    }
+
+    fn ratio(&self) -> Rational {
+        let [zp, np, zq, nq] = self.teeth;
+        let r = q(zp * nq, np * zq);
+        if self.ring { -r } else { r }
+    }
+
+    fn spec(&self, name: &str, members: &[String]) -> SetSpec {
+        let [p, q, c] = self.members.map(|m| members[m].as_str());
+        let [zp, np, zq, nq] = self.teeth;
+        let set = SetSpec::stepped(name, c).sun(p, zp, np);
+        let set = if self.ring { set.ring(q, zq, nq) } else { set.sun(q, zq, nq) };
+        let [a, b] = self.eta.map(|e| e as f64 / 1000.0);
+        set.basic_efficiency(EfficiencySpec::directed(a, b))
+    }
+}
+
+/// Solves `rows · x = last column`; `None` when singular or contradictory.
+fn solve(mut rows: Vec<Vec<Rational>>, n: usize) -> Option<Vec<Rational>> {
+    for c in 0..n {
+        let pivot = (c..rows.len()).find(|&r| !rows[r][c].is_zero())?;
+        rows.swap(c, pivot);
+        let own: Vec<Rational> = rows[c].iter().map(|x| x / &rows[c][c]).collect();
+        for r in (0..rows.len()).filter(|&r| r != c) {
+            let factor = rows[r][c].clone();
+            if !factor.is_zero() {
+                rows[r].iter_mut().zip(&own).for_each(|(x, y)| *x = &*x - &(&factor * y));
+            }
+        }
+        rows[c] = own;
+    }
+    let clash = rows[n..].iter().any(|r| !r[n].is_zero());
+    (!clash).then(|| rows[..n].iter().map(|r| r[n].clone()).collect())
+}
+
+#[derive(Clone, Debug)]
+struct Net {
+    members: usize,
+    sets: Vec<Coupled>,
+    terminals: Vec<usize>,
+}
+
+/// An equilibrium by the independent elimination.
+#[derive(Clone, Debug, PartialEq)]
+struct Balance {
+    /// By terminal.
+    torques: Vec<Rational>,
+    /// By set: whether p drives; `None` when it carries no load.
+    drivers: Vec<Option<bool>>,
+    loss: Rational,
+    efficiency: Rational,
+}
+
+impl Net {
+    fn random(sets: usize, freedoms: usize, torques: usize, low: i64, random: &mut Random) -> Self {
+        let members = sets + freedoms;
+        let mut all: Vec<usize> = (0..members).collect();
+        for k in (1..members).rev() {
+            all.swap(k, random.below(k as u64 + 1) as usize);
+        }
+        all.truncate(freedoms + torques);
+        Self { members, sets: (0..sets).map(|_| Coupled::random(members, low, random)).collect(), terminals: all }
+    }
+
+    fn names(&self) -> Vec<String> {
+        (0..self.members).map(|m| format!("m{m}")).collect()
+    }
+
+    fn builder(&self) -> TrainBuilder {
+        let names = self.names();
+        let terminals: Vec<&str> = self.terminals.iter().map(|&t| names[t].as_str()).collect();
+        let mut builder =
+            Train::builder("random").members(names.iter().map(String::as_str)).terminals(terminals.iter().copied());
+        for (k, s) in self.sets.iter().enumerate() {
+            builder = builder.set(s.spec(&format!("P{k}"), &names));
+        }
+        builder
+    }
+
+    /// All speeds from some.
+    fn speeds(&self, given: &[(usize, Rational)]) -> Option<Vec<Rational>> {
+        let mut rows: Vec<Vec<Rational>> = Vec::new();
+        for s in &self.sets {
+            let mut row = vec![Rational::ZERO; self.members + 1];
+            let r = s.ratio();
+            let [p, q, c] = s.members;
+            row[q] = Rational::ONE;
+            row[p] = -r.clone();
+            row[c] = &r - &Rational::ONE;
+            rows.push(row);
+        }
+        for (m, w) in given {
+            let mut row = vec![Rational::ZERO; self.members + 1];
+            row[*m] = Rational::ONE;
+            row[self.members] = w.clone();
+            rows.push(row);
+        }
+        if rows.len() != self.members {
+            return None;
+        }
+        solve(rows, self.members)
+    }
+
+    /// Every equilibrium; `None` when some choice of drivers is singular or a set does not slip.
+    fn balances(&self, w: &[Rational], given: &[(usize, Rational)], lossless: bool) -> Option<Vec<Balance>> {
+        let k = self.sets.len();
+        let sigma: Vec<i8> = self.sets.iter().map(|s| (&w[s.members[0]] - &w[s.members[2]]).sign()).collect();
+        if sigma.contains(&0) {
+            return None;
+        }
+        let mut all: Vec<Balance> = Vec::new();
+        for mask in 0..(if lossless { 1 } else { 1u32 << k }) {
+            let p_drives = |j: usize| mask >> j & 1 == 0;
+            let on: Vec<[(usize, Rational); 3]> = self
+                .sets
+                .iter()
+                .enumerate()
+                .map(|(j, s)| {
+                    let [a, b] = s.eta.map(|e| if lossless { Rational::ONE } else { q(e, 1000) });
+                    let x = if p_drives(j) { a } else { b.recip() } / s.ratio();
+                    let [p, q, c] = s.members;
+                    [(p, Rational::ONE), (q, -x.clone()), (c, x - Rational::ONE)]
+                })
+                .collect();
+            let row = |m: usize| -> Vec<Rational> {
+                let own = |j: usize| on[j].iter().find(|(n, _)| *n == m).map_or(Rational::ZERO, |(_, x)| x.clone());
+                (0..k).map(own).collect()
+            };
+            let mut rows: Vec<Vec<Rational>> = Vec::new();
+            for m in (0..self.members).filter(|m| !self.terminals.contains(m)) {
+                rows.push(row(m).into_iter().chain([Rational::ZERO]).collect());
+            }
+            for (m, t) in given {
+                rows.push(row(*m).into_iter().chain([t.clone()]).collect());
+            }
+            if rows.len() != k {
+                return None;
+            }
+            let f = solve(rows, k)?;
+            let fits = lossless
+                || (0..k).all(|j| {
+                    f[j].is_zero() && p_drives(j) || f[j].sign() * sigma[j] == if p_drives(j) { 1 } else { -1 }
+                });
+            if !fits {
+                continue;
+            }
+            let torque = |m: usize| (0..k).fold(Rational::ZERO, |sum, j| sum + &row(m)[j] * &f[j]);
+            let torques: Vec<Rational> = self.terminals.iter().map(|&t| torque(t)).collect();
+            let (mut input, mut output) = (Rational::ZERO, Rational::ZERO);
+            for (t, x) in self.terminals.iter().zip(&torques) {
+                let power = &w[*t] * x;
+                if power.sign() > 0 { input += power } else { output -= power }
+            }
+            if input.is_zero() {
+                return None;
+            }
+            all.push(Balance {
+                drivers: (0..k).map(|j| (!f[j].is_zero()).then(|| p_drives(j))).collect(),
+                loss: &input - &output,
+                efficiency: &output / &input,
+                torques,
+            });
+        }
+        Some(all)
+    }
+
+    /// The first set of a row of sets on one carrier that leads from one member to another over
+    /// members that are no terminals.
+    fn first_in_row(&self, from: usize, to: usize) -> Option<usize> {
+        fn leads(net: &Net, at: usize, to: usize, carrier: usize, used: &mut Vec<usize>) -> bool {
+            if at == to {
+                return true;
+            }
+            if !used.is_empty() && net.terminals.contains(&at) {
+                return false;
+            }
+            for (j, s) in net.sets.iter().enumerate() {
+                let [p, q, c] = s.members;
+                if c == carrier && !used.contains(&j) && (p == at || q == at) {
+                    used.push(j);
+                    if leads(net, if p == at { q } else { p }, to, carrier, used) {
+                        return true;
+                    }
+                    used.pop();
+                }
+            }
+            false
+        }
+        (0..self.members).find_map(|carrier| {
+            let mut used = Vec::new();
+            (leads(self, from, to, carrier, &mut used) && used.len() > 1).then(|| used[0])
+        })
+    }
+
+    fn signs(b: &Balance) -> Vec<i8> {
+        b.torques.iter().map(Rational::sign).collect()
+    }
+}
+
+/// A random train with what the library says of it.
+struct Case {
+    net: Net,
+    names: Vec<String>,
+    train: Train,
+    atlas: Atlas,
+}
+
+impl Case {
+    fn at(&self, name: &str) -> usize {
+        self.names.iter().position(|n| n == name).unwrap()
+    }
+
+    /// `None` without the freedoms wanted, or terminals that do not suffice.
+    fn new(net: Net, freedoms: usize) -> Option<Self> {
+        let names = net.names();
+        let train = net.builder().build().ok()?;
+        let atlas = as_drawn(&train);
+        let base: Vec<(usize, Rational)> = atlas
+            .base_speeds
+            .iter()
+            .enumerate()
+            .map(|(k, b)| (names.iter().position(|n| n == b).unwrap(), Rational::from(k as i64 + 1)))
+            .collect();
+        let usable = atlas.terminals.len() == net.terminals.len() && atlas.degrees_of_freedom == freedoms;
+        if atlas.reason.is_some() || !usable || net.speeds(&base).is_none() {
+            return None;
+        }
+        Some(Self { net, names, train, atlas })
+    }
+
+    fn base(&self, values: &[Rational]) -> Vec<(usize, Rational)> {
+        self.atlas.base_speeds.iter().map(|b| self.at(b)).zip(values.iter().cloned()).collect()
+    }
+
+    /// The region by the planes; `None` too near to one.
+    fn region(&self, base: &[Rational]) -> Option<&RegionReport> {
+        let size = base.iter().fold(0.0f64, |a, x| a.max(x.to_f64().abs()));
+        let mut signs = Vec::new();
+        for plane in &self.atlas.planes {
+            let value: f64 = plane.form.iter().zip(base).map(|(f, x)| f * x.to_f64()).sum();
+            let largest = plane.form.iter().fold(0.0f64, |a, f| a.max(f.abs()));
+            if value.abs() < 1e-12 * size * largest {
+                return None;
+            }
+            signs.push(sign(value));
+        }
+        let mut own = self.atlas.regions.iter().filter(|r| r.signs == signs);
+        let found = own.next().unwrap_or_else(|| panic!("no region for {base:?}: {signs:?}\n{:?}", self.net));
+        assert!(own.next().is_none());
+        Some(found)
+    }
+
+    /// The regimes of a region with these torque signs and drivers.
+    fn regimes(&self, region: usize, b: &Balance) -> Vec<&RegimeReport> {
+        let signs = Net::signs(b);
+        // Sets on one carrier in a row are one element, called after its two ends.
+        let drives = |label: &str| -> Option<String> {
+            let (set, ends) = match label.split_once('-') {
+                None => {
+                    let set: usize = label[1..].parse().unwrap();
+                    (set, [0, 1].map(|k| self.net.sets[set].members[k]))
+                }
+                Some((a, z)) => {
+                    let [a, z] = [self.at(a), self.at(z)];
+                    (self.net.first_in_row(a, z).unwrap_or_else(|| panic!("{label}: {:?}", self.net)), [a, z])
+                }
+            };
+            let p_end = usize::from(self.net.sets[set].members[0] != ends[0]);
+            b.drivers[set].map(|p| self.names[ends[if p { p_end } else { 1 - p_end }]].clone())
+        };
+        let fits = |r: &&RegimeReport| {
+            r.region == region
+                && r.torque_signs.iter().map(|x| x.1).eq(signs.iter().copied())
+                && r.drivers.iter().all(|(label, driver)| *driver == drives(label))
+        };
+        self.atlas.regimes.iter().filter(fits).collect()
+    }
+}
+
+#[derive(Default, Debug)]
+struct Seen {
+    trains: usize,
+    points: usize,
+    several: usize,
+    none: usize,
+    turned: usize,
+    heaters: usize,
+    unsaid: usize,
+}
+
+/// Random points of a random train: each equilibrium lies in exactly one regime, whose formula
+/// gives its efficiency; and the solver finds the same equilibria.
+fn compare_random(case: &Case, points: usize, random: &mut Random, seen: &mut Seen) {
+    let Case { net, atlas, train, .. } = case;
+    seen.trains += 1;
+    let ids: BTreeSet<&str> = atlas.regimes.iter().map(|r| r.id.as_str()).collect();
+    assert_eq!(ids.len(), atlas.regimes.len(), "{net:?}");
+    for r in &atlas.regimes {
+        let mirror = atlas.regimes.iter().find(|m| m.id == r.mirror).unwrap();
+        assert_eq!((&mirror.mirror, &mirror.formula), (&r.id, &r.formula), "{net:?}");
+        assert_eq!((mirror.region, &mirror.roles), (atlas.regions[r.region - 1].opposite, &r.roles), "{net:?}");
+        assert!(mirror.torque_signs.iter().zip(r.torque_signs.iter()).all(|(x, y)| x.1 == -y.1), "{net:?}");
+    }
+    let sheet = formulas(train, &request_as_drawn()).unwrap();
+    assert!(sheet.without.is_empty(), "{:?}\n{net:?}", sheet.without);
+    let all: Vec<_> = sheet.formulas.iter().map(|f| (f, sources(f))).collect();
+    let references: Vec<usize> = given_torques(&all).iter().map(|m| case.at(m)).collect();
+    let d = atlas.independent_torques;
+    assert_eq!(references.len(), d, "{:?} {:?}\n{net:?}", sheet.formulas.len(), atlas);
+    assert_eq!(net.terminals.len() - atlas.base_speeds.len(), d, "{net:?}");
+
+    for n in 0..points {
+        let base: Vec<Rational> = atlas.base_speeds.iter().map(|_| Rational::from(random.whole(-1000, 1000))).collect();
+        let w = net.speeds(&case.base(&base)).unwrap();
+        let Some(region) = case.region(&base) else { continue };
+        for (t, speed) in region.example.iter() {
+            assert_eq!(sign(*speed), w[case.at(t)].sign(), "{t} in region {}: {net:?}", region.number);
+        }
+        // Prescribed: torques on some of the terminals.
+        let mut chosen = net.terminals.clone();
+        while chosen.len() > d {
+            chosen.remove(random.below(chosen.len() as u64) as usize);
+        }
+        let given: Vec<(usize, Rational)> =
+            chosen.iter().map(|&t| (t, Rational::from_f64(signed(random)).unwrap())).collect();
+        let Some(found) = net.balances(&w, &given, false) else { continue };
+        seen.points += 1;
+        seen.several += usize::from(found.len() > 1);
+        seen.none += usize::from(found.is_empty());
+        if d == 1 {
+            let prescribed = region.prescribed.iter().find(|p| case.at(&p.terminal) == chosen[0]).unwrap();
+            let listed = if given[0].1.sign() > 0 { &prescribed.positive } else { &prescribed.negative };
+            assert_eq!(listed.len(), found.len(), "{listed:?} {found:?}\n{net:?}");
+        }
+        let mut distinct: BTreeSet<&str> = BTreeSet::new();
+        for b in &found {
+            let own = case.regimes(region.number, b);
+            let [regime] = own[..] else { panic!("{} regimes for {b:?} at {base:?}\n{net:?}", own.len()) };
+            distinct.insert(&regime.id);
+            let powers: Vec<(String, i8)> = net
+                .terminals
+                .iter()
+                .zip(&b.torques)
+                .map(|(&t, x)| (case.names[t].clone(), w[t].sign() * x.sign()))
+                .collect();
+            for (t, power) in &powers {
+                let role = *regime.roles.get(t).unwrap();
+                let expected = [Role::Output, Role::Idle, Role::Input][(power + 1) as usize];
+                assert_eq!(role, expected, "{t}: {net:?}");
+            }
+            assert_eq!(regime.all_dissipated, b.efficiency.is_zero(), "{net:?}");
+            if let Some([low, high]) = regime.efficiency_range {
+                let e = b.efficiency.to_f64();
+                assert!(low - 1e-12 <= e && e <= high + 1e-12, "{low} {e} {high}\n{net:?}");
+            }
+            seen.turned += usize::from(regime.by_friction_only);
+            seen.heaters += usize::from(regime.all_dissipated);
+            if d == 1
+                && let Some(ideal) = net.balances(&w, &given, true)
+            {
+                let way =
+                    if b.torques.iter().zip(&ideal[0].torques).all(|(x, y)| x.sign() == y.sign()) { 1 } else { -1 };
+                let same = b.torques.iter().zip(&ideal[0].torques).all(|(x, y)| x.sign() == way * y.sign());
+                assert_eq!(regime.by_friction_only, !same, "{net:?}");
+            }
+            // Its formula, as a fraction, also scaled and reversed; no other one answers unless
+            // another equilibrium has the same reference torques.
+            let torque = |m: usize| b.torques[net.terminals.iter().position(|&t| t == m).unwrap()].clone();
+            let ask = |k: usize, x: &Rational, y: &Rational| {
+                let (f, sources) = &all[k];
+                evaluate(f, sources, &|m| &w[case.at(m)] * x, &|m| torque(case.at(m)) * y.clone())
+            };
+            let k = all.iter().position(|(f, _)| f.regimes.contains(&regime.id)).unwrap();
+            let one = Rational::ONE;
+            assert_eq!(ask(k, &one, &one), Ok(b.efficiency.clone()), "{}\n{net:?}", regime.id);
+            assert_eq!(ask(k, &q(7, 3), &q(2, 11)), Ok(b.efficiency.clone()));
+            assert_eq!(ask(k, &q(-3, 1), &q(-5, 2)), Ok(b.efficiency.clone()));
+            let reference: Vec<(usize, Rational)> = references.iter().map(|&m| (m, torque(m))).collect();
+            if n % 4 == 0
+                && let Some(alike) = net.balances(&w, &reference, false)
+            {
+                let mut wanted: Vec<Rational> = alike.iter().map(|b| b.efficiency.clone()).collect();
+                let mut answers: Vec<Rational> = (0..all.len()).filter_map(|k| ask(k, &one, &one).ok()).collect();
+                wanted.sort();
+                answers.sort();
+                assert_eq!(answers, wanted, "at {base:?}, {reference:?}\n{net:?}");
+            }
+        }
+        assert_eq!(distinct.len(), found.len(), "{net:?}");
+        if n % 10 == 0 {
+            let mut operation = OperationSpec::new("point");
+            for (name, x) in atlas.base_speeds.iter().zip(&base) {
+                operation = operation.speed(name, AngularSpeed::rad_s(x.to_f64()));
+            }
+            for (t, x) in &given {
+                operation = operation.torque(&case.names[*t], Torque::n_m(x.to_f64()));
+            }
+            let train = net.builder().operation(operation).build().unwrap();
+            let analysis = analyze(&train, &Selection::default()).unwrap();
+            let o = &analysis.operations[0];
+            // Where the torques prescribed do not settle the others without losses (R = 1, a torque
+            // on the carrier) the analysis does not say.
+            if o.verdict == Verdict::Undetermined {
+                assert!(net.balances(&w, &given, true).is_none(), "{given:?} {base:?}\n{net:?}");
+                seen.unsaid += 1;
+                continue;
+            }
+            let solved: Vec<_> = o.solutions.iter().chain(&o.dissipative_solutions).collect();
+            assert_eq!(solved.len(), found.len(), "{:?} {given:?} {base:?}\n{net:?}", o.verdict);
+            for b in &found {
+                let same = solved.iter().filter(|s| {
+                    let close = |(&t, x): (&usize, &Rational)| {
+                        let y = s.members.get(&case.names[t]).unwrap().torque_n_m.unwrap();
+                        let size = b.torques.iter().fold(0.0f64, |a, x| a.max(x.to_f64().abs()));
+                        (x.to_f64() - y).abs() <= 1e-9 * size
+                    };
+                    net.terminals.iter().zip(&b.torques).all(close)
+                });
+                assert_eq!(same.count(), 1, "{net:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn val_random_trains_with_two_freedoms_and_three_terminals() {
+    let mut random = Random(7);
+    let mut seen = Seen::default();
+    let mut tried = 0;
+    while seen.trains < 120 {
+        tried += 1;
+        let sets = random.whole(1, 3) as usize;
+        let net = Net::random(sets, 2, 1, 700, &mut random);
+        let Some(case) = Case::new(net, 2) else { continue };
+        compare_random(&case, 40, &mut random, &mut seen);
+    }
+    println!("{seen:?} {tried}");
+    assert!(
+        seen.points > 3000 && seen.several > 20 && seen.none > 20 && seen.turned > 200 && seen.heaters > 20,
+        "{seen:?}"
+    );
+}
+
+#[test]
+fn val_random_trains_with_more_torques_or_freedoms() {
+    let mut random = Random(8);
+    let mut seen = [Seen::default(), Seen::default(), Seen::default()];
+    for (k, (freedoms, torques, trains, sets)) in
+        [(2, 2, 4, [2, 3]), (3, 1, 6, [2, 3]), (3, 2, 1, [2, 3])].into_iter().enumerate()
+    {
+        while seen[k].trains < trains {
+            let sets = random.whole(sets[0], sets[1]) as usize;
+            let net = Net::random(sets, freedoms, torques, 700, &mut random);
+            let Some(case) = Case::new(net, freedoms) else { continue };
+            compare_random(&case, 100, &mut random, &mut seen[k]);
+        }
+    }
+    println!("{seen:?}");
+    assert!(seen.iter().all(|s| s.points >= 80), "{seen:?}");
 }
