@@ -571,6 +571,10 @@ impl Function {
     pub fn substituted(&self, value: &dyn Fn(Symbol) -> Option<Self>) -> Option<Self> {
         let mut product = Self::from(self.number.clone());
         for (p, e) in &self.factors {
+            if p.symbols().into_iter().all(|s| value(s).is_none()) {
+                product = product.times(&Self { number: Rational::ONE, factors: vec![(p.clone(), *e)] });
+                continue;
+            }
             let mut sum = Self::ZERO;
             for (c, powers) in p.terms() {
                 let mut term = Self::from(c.clone());
