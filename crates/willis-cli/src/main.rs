@@ -2,6 +2,7 @@
 
 mod csv;
 mod input;
+mod output;
 mod regimes;
 mod text;
 
@@ -11,9 +12,10 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use willis::analysis::{self, Analysis, Selection};
 use willis::diagnostic::{Code, Diagnostics, Severity};
-use willis::regimes::{Efficiencies, FormulaRequest, Ratios, RegimeSelection};
+use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
+use willis::units::{self, Dimension, Quantity};
 
 /// Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that
 /// the answer is the only one.
@@ -78,7 +80,10 @@ enum Command {
         /// One set with three terminals: for every basic ratio it can have (Esmail's Table 1).
         #[arg(long, conflicts_with = "balance")]
         family: bool,
-        /// What to print.
+        /// Draw the wheel of regimes (two freedoms) into this SVG file.
+        #[arg(long, value_name = "FILE.svg", conflicts_with_all = ["family", "format"])]
+        map: Option<std::path::PathBuf>,
+        /// What to print; `map-json` is the wheel as data.
         #[arg(long, value_enum, default_value = "text")]
         format: RegimesFormat,
     },
@@ -119,6 +124,34 @@ enum Command {
         /// Also the derivatives with respect to every efficiency: which mesh matters most.
         #[arg(long)]
         derivatives: bool,
+    },
+    /// Tell in which regime an operating point lies, how far each boundary is and what changes there.
+    ///
+    /// Works for trains of any size: it looks at this one point.
+    Locate {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// State of the shift table; else the train as drawn.
+        #[arg(long)]
+        state: Option<String>,
+        /// Speeds of as many members as there are degrees of freedom: engine=2000rpm,ring=1000rpm.
+        #[arg(long, value_delimiter = ',', value_name = "MEMBER=SPEED")]
+        speeds: Vec<String>,
+        /// Torques of as many terminals as are independent: 'engine=100 N m'.
+        #[arg(long, value_delimiter = ',', value_name = "MEMBER=TORQUE")]
+        torques: Vec<String>,
+        /// Take speeds and torques from this operation of the file.
+        #[arg(long)]
+        operation: Option<String>,
+        /// Members on which torque may act, with commas between; else the train's terminals.
+        #[arg(long, value_delimiter = ',')]
+        terminals: Option<Vec<String>>,
+        /// Two terminals whose powers add to zero.
+        #[arg(long, value_delimiter = ',', value_name = "A,B")]
+        balance: Option<Vec<String>>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: LocateFormat,
     },
     /// Check a train file and say everything that is wrong with it.
     Check {
@@ -164,6 +197,16 @@ enum RegimesFormat {
     Csv,
     /// A table for typesetting.
     Latex,
+    /// The wheel of regimes as data (two freedoms).
+    MapJson,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum LocateFormat {
+    /// For eyes.
+    Text,
+    /// The results contract `willis-location-1`.
+    Json,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -258,13 +301,22 @@ fn run(command: &Command) -> Result<String, String> {
                 Format::Csv => csv::analysis(&analysis, *table),
             })
         }
-        Command::Regimes { file, state, terminals, balance, family, format } => {
+        Command::Regimes { file, state, terminals, balance, family, map, format } => {
             let job = Job::read(file)?;
             let selection = RegimeSelection {
                 state: state.clone(),
                 terminals: terminals.clone(),
                 balance: pair(balance.as_deref())?,
             };
+            if map.is_some() || *format == RegimesFormat::MapJson {
+                let figure = willis::figure::regime_map(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+                return match map {
+                    None => Ok(serde_json::to_string_pretty(&figure).expect("plain data") + "\n"),
+                    Some(path) => {
+                        output::write(path, willis_report::regime_map(&figure).as_bytes()).map(|()| String::new())
+                    }
+                };
+            }
             if *family {
                 let all = willis::regimes::family(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
                 return Ok(match format {
@@ -272,6 +324,7 @@ fn run(command: &Command) -> Result<String, String> {
                     RegimesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
                     RegimesFormat::Csv => regimes::family_csv(&all),
                     RegimesFormat::Latex => regimes::family_latex(&all),
+                    RegimesFormat::MapJson => unreachable!("answered above"),
                 });
             }
             let all = willis::regimes::regimes(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
@@ -280,6 +333,7 @@ fn run(command: &Command) -> Result<String, String> {
                 RegimesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
                 RegimesFormat::Csv => regimes::csv(&all),
                 RegimesFormat::Latex => regimes::latex(&all),
+                RegimesFormat::MapJson => unreachable!("answered above"),
             })
         }
         Command::Formula {
@@ -316,6 +370,22 @@ fn run(command: &Command) -> Result<String, String> {
             };
             let sheet = willis::regimes::formulas(&job.train, &request).map_err(|wrong| job.failure(wrong))?;
             Ok(sheet.emit((*lang).into(), *derivatives))
+        }
+        Command::Locate { file, state, speeds, torques, operation, terminals, balance, format } => {
+            let job = Job::read(file)?;
+            let request = LocateRequest {
+                state: state.clone(),
+                terminals: terminals.clone(),
+                balance: pair(balance.as_deref())?,
+                operation: operation.clone(),
+                speeds: quantities("--speeds", speeds, Dimension::ANGULAR_SPEED)?,
+                torques: quantities("--torques", torques, Dimension::TORQUE)?,
+            };
+            let found = willis::regimes::locate(&job.train, &request).map_err(|wrong| job.failure(wrong))?;
+            Ok(match format {
+                LocateFormat::Text => regimes::location(&found),
+                LocateFormat::Json => serde_json::to_string_pretty(&found).expect("plain data") + "\n",
+            })
         }
         Command::Check { file } => {
             let job = Job::read(file)?;
@@ -361,12 +431,33 @@ fn run(command: &Command) -> Result<String, String> {
     }
 }
 
+/// `member=value` pairs of an option; everything that is wrong with them at once.
+fn quantities(option: &str, given: &[String], dimension: Dimension) -> Result<Vec<(String, Quantity)>, String> {
+    let (kind, example) = dimension.describe();
+    let mut wrong = String::new();
+    let mut all = Vec::new();
+    for text in given {
+        match text.split_once('=') {
+            None => wrong += &format!("{option} {text}: write member=value, as in {option} 'sun={example}'\n"),
+            Some((name, value)) => match units::parse(value, dimension) {
+                Ok(q) => all.push((name.trim().to_owned(), q)),
+                Err(why) => {
+                    wrong += &format!("{option} {text}: {why}; give {kind}, as in {option} '{name}={example}'\n")
+                }
+            },
+        }
+    }
+    if wrong.is_empty() { Ok(all) } else { Err(wrong) }
+}
+
 /// The two members of `--balance`.
 fn pair(names: Option<&[String]>) -> Result<Option<[String; 2]>, String> {
     match names {
         None => Ok(None),
         Some([a, b]) => Ok(Some([a.clone(), b.clone()])),
-        Some(other) => Err(format!("--balance names two terminals, as in --balance mg1,mg2; here are {}\n", other.len())),
+        Some(other) => {
+            Err(format!("--balance names two terminals, as in --balance mg1,mg2; here are {}\n", other.len()))
+        }
     }
 }
 

@@ -1,10 +1,11 @@
 //! Regimes for eyes, for tables and for typesetting.
 
 use comfy_table::CellAlignment;
-use willis::regimes::{Atlas, Family, RegimeReport, Regimes};
+use willis::analysis::Role;
+use willis::regimes::{Atlas, Edge, Family, Located, Location, RegimeReport, Regimes};
 
 use crate::csv::Writer;
-use crate::text::{bold, dim, percent, plural, set_header, show, significant, table, wrap};
+use crate::text::{bold, dim, percent, plural, rpm, set_header, show, significant, table, wrap};
 
 pub fn text(all: &Regimes) -> String {
     let mut out = bold(&all.train) + "\n";
@@ -90,7 +91,8 @@ fn flow(r: &RegimeReport) -> String {
 
 fn driving(a: &Atlas, r: &RegimeReport) -> String {
     let one = r.drivers.0.len() == 1;
-    let all = r.drivers.iter().filter_map(|(e, d)| d.as_ref().map(|d| if one { d.clone() } else { format!("{d} in {e}") }));
+    let all =
+        r.drivers.iter().filter_map(|(e, d)| d.as_ref().map(|d| if one { d.clone() } else { format!("{d} in {e}") }));
     let text = all.collect::<Vec<_>>().join(", ");
     let _ = a;
     if text.is_empty() { "-".into() } else { text }
@@ -217,7 +219,10 @@ fn atlas(a: &Atlas) -> String {
         out += "\n";
     }
     for f in &a.formulas {
-        out += &wrap(&format!("{}, drives: {}   (regimes {})", f.roles, f.drivers, f.regimes.join(", ")), &format!("  {:<4} ", f.id));
+        out += &wrap(
+            &format!("{}, drives: {}   (regimes {})", f.roles, f.drivers, f.regimes.join(", ")),
+            &format!("  {:<4} ", f.id),
+        );
         out += "\n";
         let line = |label: &str, text: &str| wrap(text, &format!("       {label:<3} = ")) + "\n";
         let long = f.efficiency.len() > 400;
@@ -269,7 +274,13 @@ fn atlas(a: &Atlas) -> String {
         for b in a.boundaries.iter().take(half) {
             let speeds: Vec<String> = b.speeds.iter().map(|(n, w)| format!("{n} {}", significant(*w, 5))).collect();
             out += &wrap(
-                &format!("{} | {}: {}   (speeds in proportion: {})", b.between[0], b.between[1], b.label, speeds.join(", ")),
+                &format!(
+                    "{} | {}: {}   (speeds in proportion: {})",
+                    b.between[0],
+                    b.between[1],
+                    b.label,
+                    speeds.join(", ")
+                ),
                 "  ",
             );
             out += "\n";
@@ -429,11 +440,8 @@ pub fn latex(all: &Regimes) -> String {
             out += "$^{*}$ torque signs that exist only because of friction.\n";
         }
         out += "\\begin{align*}\n";
-        let lines: Vec<String> = a
-            .formulas
-            .iter()
-            .map(|f| format!("\\text{{{}}}\\quad \\eta &= {}", f.id, f.efficiency_latex))
-            .collect();
+        let lines: Vec<String> =
+            a.formulas.iter().map(|f| format!("\\text{{{}}}\\quad \\eta &= {}", f.id, f.efficiency_latex)).collect();
         out += &lines.join(" \\\\\n");
         out += "\n\\end{align*}\n";
     }
@@ -462,14 +470,22 @@ fn escape(text: &str) -> String {
 /// A set over all basic ratios, for eyes.
 pub fn family(f: &Family) -> String {
     let mut out = bold(&f.train) + "\n";
-    out += &format!("  {} = {} = {}\n", f.ratio, f.exact.strip_suffix("/1").unwrap_or(&f.exact), significant(f.value, 6));
+    out +=
+        &format!("  {} = {} = {}\n", f.ratio, f.exact.strip_suffix("/1").unwrap_or(&f.exact), significant(f.value, 6));
     let etas = if f.efficiencies[0] == f.efficiencies[1] {
         format!("eta = {}", f.efficiencies[0])
     } else {
-        format!("eta_f = {} ({} drives), eta_b = {} ({} drives)", f.efficiencies[0], f.ends[0], f.efficiencies[1], f.ends[1])
+        format!(
+            "eta_f = {} ({} drives), eta_b = {} ({} drives)",
+            f.efficiencies[0], f.ends[0], f.efficiencies[1], f.ends[1]
+        )
     };
     out += &format!("  {etas} seen from {}\n", f.carrier);
-    out += &format!("  {} regimes in {} ranges of R; one line holds a regime and its mirror image\n", f.regimes, f.cases.len());
+    out += &format!(
+        "  {} regimes in {} ranges of R; one line holds a regime and its mirror image\n",
+        f.regimes,
+        f.cases.len()
+    );
     for (k, case) in f.cases.iter().enumerate() {
         out += "\n";
         out += &bold(&case.label);
@@ -496,11 +512,14 @@ pub fn family(f: &Family) -> String {
                     let mirror: Vec<String> = range.order.iter().rev().cloned().collect();
                     done.extend(group.ranges.iter().position(|r| r.order == mirror));
                     let speeds = |order: &[String]| {
-                        order.iter().map(|n| if n == "0" { n.clone() } else { format!("w{n}") }).collect::<Vec<_>>().join(" > ")
+                        order
+                            .iter()
+                            .map(|n| if n == "0" { n.clone() } else { format!("w{n}") })
+                            .collect::<Vec<_>>()
+                            .join(" > ")
                     };
-                    let signs = |flip: i8| {
-                        range.torque_signs.iter().map(|(_, s)| sign(s * flip)).collect::<Vec<_>>().join(" ")
-                    };
+                    let signs =
+                        |flip: i8| range.torque_signs.iter().map(|(_, s)| sign(s * flip)).collect::<Vec<_>>().join(" ");
                     t.add_row([
                         std::mem::take(&mut label),
                         std::mem::take(&mut driver),
@@ -518,7 +537,17 @@ pub fn family(f: &Family) -> String {
 
 pub fn family_csv(f: &Family) -> String {
     let mut out = Writer::default();
-    out.row(["ratio_range", "in_the_paper", "inputs", "outputs", "driver", "torque_signs", "speeds", "loss", "efficiency_example"]);
+    out.row([
+        "ratio_range",
+        "in_the_paper",
+        "inputs",
+        "outputs",
+        "driver",
+        "torque_signs",
+        "speeds",
+        "loss",
+        "efficiency_example",
+    ]);
     for (k, case) in f.cases.iter().enumerate() {
         for row in &f.rows {
             for group in &row.cells[k] {
@@ -544,13 +573,17 @@ pub fn family_csv(f: &Family) -> String {
 
 /// Esmail's Table 1 with his columns, and the ranges of R that it lacks beside them.
 pub fn family_latex(f: &Family) -> String {
-    let mut out = format!("% {}: tooth friction loss for every operating condition, after Esmail 2018, Table 1.\n", f.train);
+    let mut out =
+        format!("% {}: tooth friction loss for every operating condition, after Esmail 2018, Table 1.\n", f.train);
     out += "% Needs amsmath, longtable and pdflscape. Columns marked * lie between 1 and a self-locking limit.\n";
     // A line and a mirror image: T_4 > 0, ... : omega_4 > omega_1 > 0 > omega_2.
     let sub = |name: &str| index(name);
     for (k, case) in f.cases.iter().enumerate() {
         let star = if case.band { "$^{*}$" } else { "" };
-        out += &format!("\n\\begin{{longtable}}{{lllll}}\n\\multicolumn{{5}}{{l}}{{${}${star}}} \\\\ \\hline\n", case.latex);
+        out += &format!(
+            "\n\\begin{{longtable}}{{lllll}}\n\\multicolumn{{5}}{{l}}{{${}${star}}} \\\\ \\hline\n",
+            case.latex
+        );
         out += "input & output & torques & speeds & loss \\\\ \\hline\n";
         for row in &f.rows {
             for group in &row.cells[k] {
@@ -576,11 +609,113 @@ pub fn family_latex(f: &Family) -> String {
                         false => Default::default(),
                     };
                     first = false;
-                    out += &format!("{inputs} & {outputs} & ${}$ & ${}$ & {loss} \\\\\n", torques.join(", "), speeds.join(" > "));
+                    out += &format!(
+                        "{inputs} & {outputs} & ${}$ & ${}$ & {loss} \\\\\n",
+                        torques.join(", "),
+                        speeds.join(" > ")
+                    );
                 }
             }
         }
         out += "\\end{longtable}\n";
     }
     out
+}
+
+/// Where an operating point lies, for eyes.
+pub fn location(l: &Location) -> String {
+    let mut out = bold(&l.train);
+    if l.state != willis::analysis::AS_DRAWN {
+        out += &format!("   state {}", l.state);
+    }
+    out += "\n";
+    let speeds: Vec<String> =
+        l.speeds_rad_s.iter().map(|(n, w)| format!("{n} {} rpm", significant(rpm(*w), 6))).collect();
+    out += &wrap(&speeds.join(", "), "  speeds     ");
+    out += "\n";
+    out += &wrap(&l.order.join("; "), "  order      ");
+    out += "\n";
+    if !l.on.is_empty() {
+        out += &wrap(&format!("on the boundary: {}", l.on.join("; ")), "  place      ");
+        out += "\n";
+    } else if let Some(region) = l.region {
+        out += &format!("  place      inside region {region}\n");
+    }
+    if let Some(why) = &l.reason {
+        out += &wrap(why, "  note       ");
+        out += "\n";
+    }
+    if l.regimes.len() > 1 {
+        out += &format!("  {} equilibria carry this load\n", l.regimes.len());
+    }
+    for r in &l.regimes {
+        out += "\n";
+        out += &located(r);
+    }
+    out
+}
+
+fn located(r: &Located) -> String {
+    let mut out = match &r.regime {
+        Some(id) => bold(&format!("Regime {id}")),
+        None => bold("Equilibrium"),
+    };
+    let of =
+        |role: Role| r.roles.iter().filter(|(_, x)| *x == role).map(|(n, _)| n.clone()).collect::<Vec<_>>().join(", ");
+    let outputs = of(Role::Output);
+    out += &format!("   {} → {}", of(Role::Input), if outputs.is_empty() { "heat" } else { &outputs });
+    let driving: Vec<String> =
+        r.drivers.iter().filter_map(|(e, d)| d.as_ref().map(|d| format!("{d} in {e}"))).collect();
+    if !driving.is_empty() {
+        out += &format!("   drives: {}", driving.join(", "));
+    }
+    out += "\n";
+    let torques: Vec<String> = r.torques_n_m.iter().map(|(n, t)| format!("{n} {} N m", significant(*t, 6))).collect();
+    out += &wrap(&torques.join(", "), "  torques    ");
+    out += "\n";
+    let powers: Vec<String> = r.powers_w.iter().map(|(n, p)| format!("{n} {} W", significant(*p, 6))).collect();
+    out += &wrap(&powers.join(", "), "  powers     ");
+    out += "\n";
+    out += &format!("  efficiency {}\n", percent(r.efficiency));
+    if let Some(formula) = r.formula.as_ref().filter(|f| f.len() < 400) {
+        out += &wrap(&format!("η = {formula}"), "             ");
+        out += "\n";
+    }
+    out += "\n";
+    let mut t = table();
+    set_header(&mut t, &["one value changes", "now", "regime lasts", "what is there", "what changes behind it"]);
+    for range in &r.ranges {
+        let show_value = |x: f64| match range.quantity {
+            "speed" => format!("{} rpm", significant(rpm(x), 6)),
+            _ => format!("{} N m", significant(x, 6)),
+        };
+        let edges: [(&str, &Option<Edge>); 2] = [("down to", &range.below), ("up to", &range.above)];
+        for (k, (word, edge)) in edges.into_iter().enumerate() {
+            let (label, now) = match k {
+                0 => (format!("{} of {}", range.quantity, range.member), show_value(range.value)),
+                _ => Default::default(),
+            };
+            match edge {
+                Some(e) => t.add_row([label, now, format!("{word} {}", show_value(e.at)), e.label.clone(), behind(e)]),
+                None => t.add_row([label, now, format!("{word} any value"), String::new(), String::new()]),
+            };
+        }
+    }
+    out += &show(&t);
+    out
+}
+
+fn behind(e: &Edge) -> String {
+    let mut parts = e.changes.clone();
+    match e.efficiency_after[..] {
+        [after] if (after - e.efficiency_before).abs() < 1e-4 => {
+            parts.push(format!("η {}", percent(e.efficiency_before)))
+        }
+        [] => {}
+        _ => {
+            let after: Vec<String> = e.efficiency_after.iter().map(|x| percent(*x)).collect();
+            parts.push(format!("η {} jumps to {}", percent(e.efficiency_before), after.join(" or ")));
+        }
+    }
+    parts.join("; ")
 }

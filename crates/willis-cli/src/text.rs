@@ -361,7 +361,7 @@ fn power_unit(s: &SolutionReport) -> (&'static str, f64) {
     }
 }
 
-fn rpm(rad_s: f64) -> f64 {
+pub fn rpm(rad_s: f64) -> f64 {
     rad_s * 30.0 / std::f64::consts::PI
 }
 

@@ -186,6 +186,134 @@ fn regress_the_file_paints_nothing() {
     assert!(!shown.contains("\u{1b}[31m") && !shown.contains("\u{1b}[32m"), "{shown:?}");
 }
 
+// ---- regimes, formulas, places ----------------------------------------------------------------
+
+#[test]
+fn regress_regimes_prius() {
+    snapshot!(answered(&["regimes", "examples/prius-p112.toml"]));
+}
+
+#[test]
+fn regress_regimes_band() {
+    snapshot!(answered(&["regimes", "examples/esmail-fig1-band.toml", "--state", "as drawn"]));
+}
+
+#[test]
+fn regress_regimes_automatic() {
+    snapshot!(answered(&["regimes", "examples/zf-4hp22.toml"]));
+}
+
+#[test]
+fn regress_regimes_family() {
+    snapshot!(answered(&["regimes", "examples/esmail-table-1.toml", "--family"]));
+}
+
+#[test]
+fn regress_regimes_balance() {
+    snapshot!(answered(&["regimes", "examples/compound-split.toml", "--balance", "mg_a,mg_b"]));
+}
+
+#[test]
+fn regress_regimes_for_machines() {
+    for extra in [&["--format", "json"][..], &["--family", "--format", "json"], &["--format", "map-json"]] {
+        let arguments = [&["regimes", "examples/esmail-table-1.toml"][..], extra].concat();
+        let value: Value = serde_json::from_str(&answered(&arguments)).expect("JSON");
+        assert!(value.is_object());
+    }
+    let json: Value =
+        serde_json::from_str(&answered(&["regimes", "examples/esmail-fig1.toml", "--format", "json"])).expect("JSON");
+    assert_eq!(json["format"], "willis-regimes-1");
+    assert_eq!(json["states"][0]["regimes"].as_array().map(Vec::len), Some(16));
+    let csv = answered(&["regimes", "examples/esmail-fig1.toml", "--state", "as drawn", "--format", "csv"]);
+    assert_eq!(csv.lines().count(), 17);
+    let width = csv.lines().next().map(|l| l.split(',').count());
+    assert!(csv.lines().all(|l| !l.contains('"') || l.len() > 20), "{csv}");
+    assert_eq!(width, Some(17));
+}
+
+#[test]
+fn regress_formula_text() {
+    snapshot!(answered(&["formula", "examples/zf-8hp70.toml", "--state", "2", "--derivatives"]));
+}
+
+#[test]
+fn regress_formula_teeth() {
+    let text = answered(&["formula", "examples/wolfrom-236.toml", "--ratios", "teeth", "--efficiencies", "meshes"]);
+    snapshot!(text);
+}
+
+#[test]
+fn regress_formula_locked() {
+    let text = answered(&[
+        "formula",
+        "examples/esmail-fig1-band.toml",
+        "--state",
+        "link 4 held",
+        "--from",
+        "sun1",
+        "--to",
+        "carrier2",
+    ]);
+    assert!(text.contains("locked: friction lets sun1 drive no load at carrier2"), "{text}");
+}
+
+#[test]
+fn regress_locate() {
+    let point = ["--speeds", "engine=2000rpm,ring=1000 rpm", "--torques", "engine=100 N m"];
+    snapshot!(answered(&[&["locate", "examples/prius-p112.toml"][..], &point].concat()));
+}
+
+#[test]
+fn regress_locate_several() {
+    let point = ["--speeds", "sun1=100rpm,sun4=98rpm", "--torques", "carrier2=1Nm"];
+    snapshot!(answered(&[&["locate", "examples/esmail-fig1-band.toml"][..], &point].concat()));
+}
+
+#[test]
+fn regress_locate_on_a_boundary() {
+    snapshot!(answered(&["locate", "examples/prius-p112.toml", "--operation", "block rotation at 1500 rpm"]));
+}
+
+#[test]
+fn regress_wrong_questions() {
+    let prius = "examples/prius-p112.toml";
+    let questions: [&[&str]; 12] = [
+        &["regimes", prius, "--state", "mg1 hold"],
+        &["regimes", prius, "--terminals", "mg1,mg1,engin,frame"],
+        &["regimes", prius, "--balance", "mg1"],
+        &["regimes", "examples/zf-8hp70.toml", "--map", "nowhere.svg"],
+        &["regimes", "examples/zf-8hp70.toml", "--family"],
+        &["formula", prius, "--from", "wheel"],
+        &["formula", prius, "--regime", "99+"],
+        &["locate", prius],
+        &["locate", prius, "--speeds", "engine=1000rpm,mg1=0rpm,ring=0rpm", "--torques", "engine=1Nm"],
+        &["locate", prius, "--speeds", "engine=1000,mg1:2rpm", "--torques", "engine=1Nm"],
+        &["locate", prius, "--speeds", "engine=1000rpm,mg1=5rpm"],
+        &["locate", prius, "--operation", "acceleration, mg1 generates", "--torques", "ring=5Nm"],
+    ];
+    let mut all = String::new();
+    for question in questions {
+        let message = refused(&run(question), 1);
+        all += &format!("willis {}\n{message}\n", question.join(" "));
+    }
+    snapshot!(all);
+}
+
+#[test]
+fn regress_map_is_whole_or_not_there() {
+    let folder = folder("map");
+    let file = folder.join("wheel.svg");
+    let map = ["regimes", "examples/prius-p112.toml", "--map", path(&file)];
+    assert_eq!(answered(&map), "");
+    let svg = std::fs::read_to_string(&file).expect("written");
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    let missing = folder.join("missing").join("wheel.svg");
+    refused(&run(&["regimes", "examples/prius-p112.toml", "--map", path(&missing)]), 1);
+    refused(&run(&["regimes", "examples/prius-p112.toml", "--map", path(&folder)]), 1);
+    let left: Vec<_> = std::fs::read_dir(&folder).expect("the folder").collect();
+    assert_eq!(left.len(), 1, "{left:?}");
+}
+
 // ---- analyze, for machines -----------------------------------------------------------------
 
 #[test]

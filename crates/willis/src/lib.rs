@@ -3,14 +3,16 @@
 //!
 //! The modules are listed in the order of the pipeline, and a module uses only those above it:
 //!
-//! 1. [`exact`] numbers and [`units`];
+//! 1. [`exact`] numbers, [`symbolic`] functions and [`units`];
 //! 2. [`diagnostic`]: what is wrong, where, and what to do;
 //! 3. [`train`]: what a gear train is, and the train file;
 //! 4. [`kinematics`]: exact speeds, what is locked, free or redundant;
 //! 5. [`statics`]: torques with losses, the certificate, the verdict;
 //! 6. [`power_flow`]: torque and power everywhere, recirculation;
 //! 7. [`compiled`]: a train made ready for many points;
-//! 8. [`analysis`]: the whole answer, as every front end shows it.
+//! 8. [`analysis`]: the whole answer, as every front end shows it;
+//! 9. [`regimes`]: every way a train can run, with closed formulas;
+//! 10. [`figure`]: charts and diagrams as data.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
@@ -49,6 +51,7 @@ pub mod power_flow;
 pub mod compiled;
 pub mod analysis;
 pub mod regimes;
+pub mod figure;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;
@@ -67,6 +70,10 @@ mod prose {
     struct TheTrainFile;
     #[doc = include_str!("../../../book/src/shift-tables.md")]
     struct ShiftTables;
+    #[doc = include_str!("../../../book/src/regimes.md")]
+    struct EveryWayATrainCanRun;
+    #[doc = include_str!("../../../book/src/power-split.md")]
+    struct APowerSplit;
     #[doc = include_str!("../../../book/src/library.md")]
     struct UsingTheLibrary;
 }

@@ -14,6 +14,7 @@ pub(crate) mod arrangement;
 mod closed;
 mod emit;
 mod family;
+mod locate;
 pub(crate) mod formula;
 pub(crate) mod setup;
 
@@ -35,6 +36,7 @@ use setup::{Pattern, Setup, TorqueCell};
 pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
 pub use family::{Case, Family, FamilyRange, Group, Row, family};
 pub use formula::{Efficiencies, Ratios};
+pub use locate::{Edge, LocateRequest, Located, Location, Range, locate};
 
 /// Which part of a train, and from which terminals.
 #[derive(Clone, Debug, Default)]
@@ -397,7 +399,9 @@ pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Res
                 None => {
                     let known: Vec<&str> = train.members.iter().skip(1).map(|m| m.name.as_str()).collect();
                     let d = Diagnostic::new(Code::UnknownName, "", format!("the train has no member `{name}`"));
-                    errors.push(d.suggest(name, known.iter().copied()).hint(format!("its members are: {}", known.join(", "))));
+                    errors.push(
+                        d.suggest(name, known.iter().copied()).hint(format!("its members are: {}", known.join(", "))),
+                    );
                 }
             }
         }
@@ -418,7 +422,8 @@ pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Res
             None => {
                 let known: Vec<&str> = train.states.iter().map(|s| s.name.as_str()).chain([AS_DRAWN]).collect();
                 let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
-                errors.push(d.suggest(name, known.iter().copied()).hint(format!("its states are: {}", known.join(", "))));
+                errors
+                    .push(d.suggest(name, known.iter().copied()).hint(format!("its states are: {}", known.join(", "))));
             }
         },
     }
@@ -472,7 +477,8 @@ fn atlas(state: String, c: Configuration<'_>, members: &[MemberId], balance: Opt
     // Input and output clutched together: no gear carries the load.
     let nodes: Vec<Option<usize>> = members.iter().map(|m| c.node(*m)).filter(Option::is_some).collect();
     if nodes.len() > 1 && nodes.iter().all(|n| *n == nodes[0]) {
-        atlas.reason = Some("direct drive: the terminals turn as one, no mesh is loaded and the efficiency is 1".into());
+        atlas.reason =
+            Some("direct drive: the terminals turn as one, no mesh is loaded and the efficiency is 1".into());
         return atlas;
     }
     let setup = match Setup::new(c, members, balance) {
@@ -590,7 +596,8 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
         atlas.notes.push(format!("without loss, so it does not matter who drives: {}", lossless.join(", ")));
     }
     atlas.planes = cells.planes.iter().map(|f| plane(setup, f)).collect();
-    let signs: BTreeMap<&[i8], usize> = cells.regions.iter().enumerate().map(|(k, c)| (c.signs.as_slice(), k)).collect();
+    let signs: BTreeMap<&[i8], usize> =
+        cells.regions.iter().enumerate().map(|(k, c)| (c.signs.as_slice(), k)).collect();
     let opposite = |signs_of: &[i8]| signs[signs_of.iter().map(|s| -s).collect::<Vec<_>>().as_slice()];
 
     for (k, cell) in cells.regions.iter().enumerate() {
@@ -614,16 +621,18 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
         for (n, cell) in list.iter().enumerate() {
             let powers = power_signs(setup, base, &cell.signs);
             let at = formulas.iter().position(|(p, r, _)| *p == cell.pattern && *r == powers).unwrap_or_else(|| {
-                let own = shape
-                    .as_ref()
-                    .ok()
-                    .map(|s| s.formula(&cell.pattern, &powers, Ratios::Basic, Efficiencies::Basic));
+                let own =
+                    shape.as_ref().ok().map(|s| s.formula(&cell.pattern, &powers, Ratios::Basic, Efficiencies::Basic));
                 formulas.push((cell.pattern.clone(), powers.clone(), own));
                 formulas.len() - 1
             });
             let mirror = cells.torques[other]
                 .iter()
-                .position(|t| t.pattern == cell.pattern && t.signs.iter().zip(&cell.signs).all(|(a, b)| *a == -b) && mirrored(t, cell))
+                .position(|t| {
+                    t.pattern == cell.pattern
+                        && t.signs.iter().zip(&cell.signs).all(|(a, b)| *a == -b)
+                        && mirrored(t, cell)
+                })
                 .expect("every regime has its mirror image");
             // At the example's speeds, which are rounder than those of the cell.
             let inside = &atlas.regions[k].point;
@@ -684,9 +693,8 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
             let own: Vec<&RegimeReport> = atlas.regimes.iter().filter(|r| r.region == region.number).collect();
             region.prescribed = (0..m)
                 .map(|t| {
-                    let of = |sign: i8| {
-                        own.iter().filter(|r| r.torque_signs.0[t].1 == sign).map(|r| r.id.clone()).collect()
-                    };
+                    let of =
+                        |sign: i8| own.iter().filter(|r| r.torque_signs.0[t].1 == sign).map(|r| r.id.clone()).collect();
                     Prescribed { terminal: terminal(t), positive: of(1), negative: of(-1) }
                 })
                 .collect();
@@ -736,19 +744,33 @@ fn plane(setup: &Setup<'_>, form: &[Rational]) -> PlaneReport {
         .filter(|&t| same(setup.terminal_speed(t)))
         .map(|t| train.member_name(setup.terminals[t].member).to_owned())
         .collect();
-    let meshes: Vec<usize> =
-        (0..setup.active.len()).filter(|&j| setup.lossy(j) && same(&setup.sigma[j])).collect();
+    let meshes: Vec<usize> = (0..setup.active.len()).filter(|&j| setup.lossy(j) && same(&setup.sigma[j])).collect();
     let mut parts: Vec<String> = Vec::new();
     if !at_rest.is_empty() {
         parts.push(format!("{} at rest", at_rest.join(", ")));
     }
+    // Elements that share a member turn as one piece.
+    let mut pieces: Vec<Vec<MemberId>> = Vec::new();
     for &j in &meshes {
         let e = setup.element(j);
-        let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
-        if c != "frame" {
-            parts.push(format!("{p}, {q} and {c} turn as one"));
+        let mut piece = vec![e.p, e.q, e.carrier];
+        while let Some(k) = pieces.iter().position(|p| p.iter().any(|m| piece.contains(m))) {
+            for m in pieces.remove(k) {
+                if !piece.contains(&m) {
+                    piece.push(m);
+                }
+            }
+        }
+        pieces.push(piece);
+    }
+    for mut piece in pieces {
+        piece.sort_unstable();
+        let names: Vec<&str> = piece.iter().map(|m| train.member_name(*m)).collect();
+        if piece[0] != FRAME {
+            let (last, rest) = names.split_last().expect("an element has three members");
+            parts.push(format!("{} and {last} turn as one", rest.join(", ")));
         } else if at_rest.is_empty() {
-            parts.push(format!("{p} and {q} at rest"));
+            parts.push(format!("{} at rest", names[1..].join(", ")));
         }
     }
     PlaneReport {
@@ -803,12 +825,7 @@ fn region(setup: &Setup<'_>, base_speeds: &[String], cells: &Cells, k: usize, op
         (sign != 0 && first.iter().all(|s| *s == sign || *s == 0)).then(|| {
             let slope = |v: &[Rational]| (!v[0].is_zero()).then(|| (&v[1] / &v[0]).to_f64());
             let (low, high) = (slope(from), slope(to));
-            RatioRange {
-                of: format!("w_{}/w_{}", base_speeds[1], base_speeds[0]),
-                denominator_sign: sign,
-                low,
-                high,
-            }
+            RatioRange { of: format!("w_{}/w_{}", base_speeds[1], base_speeds[0]), denominator_sign: sign, low, high }
         })
     });
     let direction = |v: &[Rational]| [v[0].to_f64(), v[1].to_f64()];
@@ -838,9 +855,8 @@ pub(crate) fn order(setup: &Setup<'_>, point: &[Rational]) -> Vec<String> {
     let mut told: Vec<MemberId> = Vec::new();
     for j in (0..setup.active.len()).filter(|&j| setup.lossy(j)) {
         let e = setup.element(j);
-        let is_terminal = |m: MemberId| {
-            m == FRAME || setup.c.node(m).is_none_or(|n| setup.terminals.iter().any(|t| t.node == n))
-        };
+        let is_terminal =
+            |m: MemberId| m == FRAME || setup.c.node(m).is_none_or(|n| setup.terminals.iter().any(|t| t.node == n));
         let mut members: Vec<(Rational, Option<MemberId>)> = Vec::new();
         for m in [e.p, e.q, e.carrier] {
             let Some(w) = setup.speed(m) else { continue };
@@ -973,9 +989,7 @@ fn neighbours(atlas: &mut Atlas, setup: &Setup<'_>) {
 /// The direction between two neighbouring regions of the plane.
 fn ray_between<'a>(a: &'a RegionReport, b: &RegionReport) -> Option<&'a [Rational]> {
     let ([from, to], [other_from, other_to]) = (a.rays.as_ref()?, b.rays.as_ref()?);
-    let parallel = |u: &[Rational], v: &[Rational]| {
-        arrangement::by_angle(u, v).is_eq()
-    };
+    let parallel = |u: &[Rational], v: &[Rational]| arrangement::by_angle(u, v).is_eq();
     if parallel(to, other_from) {
         Some(to)
     } else if parallel(from, other_to) {
@@ -1024,9 +1038,10 @@ fn label_unloading(atlas: &mut Atlas, setup: &Setup<'_>) {
                 continue;
             }
             let Some(ray) = ray_between(a, b) else { continue };
-            for (region, r) in [a, b].into_iter().flat_map(|x| {
-                atlas.regimes.iter().filter(move |r| r.region == x.number).map(move |r| (x, r))
-            }) {
+            for (region, r) in [a, b]
+                .into_iter()
+                .flat_map(|x| atlas.regimes.iter().filter(move |r| r.region == x.number).map(move |r| (x, r)))
+            {
                 let there = setup.torques_at(&r.pattern, &region.point, &r.torques, ray);
                 for (t, x) in there.iter().enumerate() {
                     if x.is_zero() && !zero.contains(&atlas.terminals[t]) {
@@ -1266,7 +1281,33 @@ fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
 }
 
 fn possible_without_friction(atlas: &Atlas, setup: &Setup<'_>, powers: &[i8]) -> bool {
-    without_friction(setup)
-        .iter()
-        .any(|(k, torques)| power_signs(setup, &atlas.regions[*k].point, torques) == powers)
+    without_friction(setup).iter().any(|(k, torques)| power_signs(setup, &atlas.regions[*k].point, torques) == powers)
+}
+
+/// The first state of a selection that has a wheel: two freedoms and one independent torque. `Err`
+/// with diagnostics for unknown names, with words for a train of another kind.
+pub(crate) fn choice_of_two<'t>(
+    train: &'t Train,
+    selection: &RegimeSelection,
+) -> Result<(Atlas, Setup<'t>), Result<Diagnostics, String>> {
+    let mut reason = None;
+    for Choice { state, configuration, terminals, balance } in selected(train, selection).map_err(Ok)? {
+        let label = state.clone();
+        let own = atlas(state, configuration.clone(), &terminals, balance);
+        match &own.reason {
+            Some(why) => reason = reason.or(Some(format!("{label}: {why}"))),
+            None if own.base_speeds.len() == 2 && own.independent_torques == 1 => {
+                let setup = Setup::new(configuration, &terminals, balance).map_err(Err)?;
+                return Ok((own, setup));
+            }
+            None => {
+                reason = reason.or(Some(format!(
+                    "{label}: independent speeds {}, independent torques {}",
+                    own.base_speeds.len(),
+                    own.independent_torques
+                )));
+            }
+        }
+    }
+    Err(Err(reason.unwrap_or_else(|| "the train has no state".to_owned())))
 }

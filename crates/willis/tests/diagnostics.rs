@@ -6,6 +6,8 @@
 
 use willis::analysis::{Selection, analyze};
 use willis::diagnostic::{Code, Diagnostics};
+use willis::figure::regime_map;
+use willis::regimes::{LocateRequest, RegimeSelection, family, locate};
 use willis::train::Train;
 
 /// A good train; the cases below spoil it.
@@ -144,9 +146,30 @@ macro_rules! cases {
 #[test]
 fn regress_every_code_has_a_case() {
     // E002 is about files, which the library never touches: crates/willis-cli/tests/cli.rs has it.
+    // E208 is about questions other than `analyze`: `regress_e208` below.
+    let elsewhere = [Code::Unreadable, Code::Unfit];
     let missing: Vec<_> =
-        Code::ALL.iter().filter(|c| **c != Code::Unreadable && !COVERED.contains(c)).map(|c| c.as_str()).collect();
+        Code::ALL.iter().filter(|c| !elsewhere.contains(c) && !COVERED.contains(c)).map(|c| c.as_str()).collect();
     assert!(missing.is_empty(), "no case for {missing:?}");
+}
+
+#[test]
+fn regress_e208() {
+    let train = Train::from_toml(REDUCER).unwrap();
+    let all = RegimeSelection::default();
+    let wrong = [
+        ("a table over all ratios", family(&train, &all).unwrap_err()),
+        ("a wheel", regime_map(&train, &all).unwrap_err()),
+        ("a place without speeds", locate(&train, &LocateRequest::default()).unwrap_err()),
+    ];
+    let mut text = String::new();
+    for (what, wrong) in wrong {
+        assert!(wrong.iter().all(|d| d.code == Code::Unfit), "{what}: {wrong}");
+        text += &format!("{what}\n{}\n", wrong.render("train.toml", REDUCER, false));
+    }
+    insta::with_settings!({ omit_expression => true }, {
+        insta::assert_snapshot!(text);
+    });
 }
 
 #[test]

@@ -62,7 +62,8 @@ pub(crate) fn cells(forms: &[Vec<Rational>], dimension: usize) -> Vec<Cell> {
                     step = step.min(v.abs() / slope.abs() * Rational::new(1, 2));
                 }
             }
-            let moved = |way: Rational| -> Vec<Rational> { on.iter().zip(form).map(|(x, n)| x + &(n * &way)).collect() };
+            let moved =
+                |way: Rational| -> Vec<Rational> { on.iter().zip(form).map(|(x, n)| x + &(n * &way)).collect() };
             let mut with = |n: usize, sign: i8| {
                 let way = if sign > 0 { step.clone() } else { -step.clone() };
                 let mut signs = signs.clone();

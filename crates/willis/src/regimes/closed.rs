@@ -255,8 +255,7 @@ impl ClosedFormula {
 
     /// The arguments' own values and what follows from them.
     fn values(&self) -> Vec<(Symbol, Rational)> {
-        let mut values: Vec<(Symbol, Rational)> =
-            self.arguments.iter().map(|a| (a.symbol, a.number.clone())).collect();
+        let mut values: Vec<(Symbol, Rational)> = self.arguments.iter().map(|a| (a.symbol, a.number.clone())).collect();
         for t in &self.terminals {
             for (symbol, function, given) in
                 [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
@@ -338,7 +337,9 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
         let output = own.and_then(|s| s.output).or(train.output);
         // As drawn is left out when a shift table says how the train is used.
         let unasked = several && state == AS_DRAWN;
-        let found = if c.degrees_of_freedom() == 1 {
+        let found = if c.degrees_of_freedom() == 1 && request.regime.is_some() {
+            Err("one degree of freedom: name the direction with --from and --to, not a regime".to_owned())
+        } else if c.degrees_of_freedom() == 1 {
             let from = if from.is_empty() { input.into_iter().collect() } else { from.clone() };
             let to = if to.is_empty() { output.into_iter().collect() } else { to.clone() };
             one_freedom(&state, c, &from, &to, request)
@@ -370,7 +371,10 @@ fn one_freedom(
     request: &FormulaRequest,
 ) -> Result<Vec<ClosedFormula>, String> {
     let ([from], [to]) = (from, to) else {
-        return Err("with one degree of freedom a formula needs one input and one output; name them with --from and --to".into());
+        return Err(
+            "with one degree of freedom a formula needs one input and one output; name them with --from and --to"
+                .into(),
+        );
     };
     let train = c.train;
     let (from, to) = (*from, *to);

@@ -106,11 +106,7 @@ fn quoted(text: &str) -> String {
 
 /// Names and expressions of all results, in order.
 fn results(f: &ClosedFormula, notation: Notation, derivatives: bool) -> Vec<(String, String, String)> {
-    let mut all = vec![(
-        "efficiency".to_owned(),
-        f.efficiency(notation),
-        "output over input power".to_owned(),
-    )];
+    let mut all = vec![("efficiency".to_owned(), f.efficiency(notation), "output over input power".to_owned())];
     if let Some([speed, torque]) = f.ratios(notation) {
         let (a, b) = (&f.inputs[0], &f.outputs[0]);
         all.push(("speed_ratio".to_owned(), speed, format!("speed of {a} over that of {b}")));
@@ -197,7 +193,11 @@ fn text(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
             [(t.speed_symbol, &t.speed, t.given_speed), (t.torque_symbol, &t.torque, t.given_torque)]
         {
             if !given {
-                lines.push(vec![f.names.info(symbol).name.clone(), f.names.show(Notation::Text, function), String::new()]);
+                lines.push(vec![
+                    f.names.info(symbol).name.clone(),
+                    f.names.show(Notation::Text, function),
+                    String::new(),
+                ]);
             }
         }
     }
@@ -207,7 +207,8 @@ fn text(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
     let conditions = guards(f, Notation::Text).into_iter().map(|(c, text)| vec![format!("{c} > 0"), text]).collect();
     rows(out, "holds where", columns(conditions));
     let arguments = f.arguments.iter().map(|a| {
-        let value = if a.exact.ends_with("/1") { number(a.value) } else { format!("{} = {}", a.exact, number(a.value)) };
+        let value =
+            if a.exact.ends_with("/1") { number(a.value) } else { format!("{} = {}", a.exact, number(a.value)) };
         let value = if a.fixed { format!("= {value}") } else { "given".to_owned() };
         vec![a.name.clone(), value, a.meaning.clone()]
     });
@@ -272,7 +273,10 @@ fn latex(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) 
 
 /// Words within LaTeX text.
 fn plain(text: &str) -> String {
-    escape(text).replace("\\backslash ", "\\textbackslash{}").replace("\\hat{}", "\\textasciicircum{}").replace("\\sim ", "\\textasciitilde{}")
+    escape(text)
+        .replace("\\backslash ", "\\textbackslash{}")
+        .replace("\\hat{}", "\\textasciicircum{}")
+        .replace("\\sim ", "\\textasciitilde{}")
 }
 
 /// Those that must be given first, then those that the train fixes.
@@ -360,7 +364,8 @@ fn rust(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
     let _ = writeln!(out, "pub fn {}({}) -> Result<{kind}, OutsideRegime> {{", f.name, arguments.join(", "));
     for a in f.arguments.iter().filter(|a| a.efficiency) {
         let _ = writeln!(out, "    if !({0} > 0.0 && {0} <= 1.0) {{", a.name);
-        let _ = writeln!(out, "        return Err(OutsideRegime(\"{} is not above 0 and at most 1\"));\n    }}", a.name);
+        let _ =
+            writeln!(out, "        return Err(OutsideRegime(\"{} is not above 0 and at most 1\"));\n    }}", a.name);
     }
     for (name, expression) in derived(f, n) {
         let _ = writeln!(out, "    let {name} = {expression};");
@@ -442,7 +447,8 @@ fn modelica(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: boo
         let _ = writeln!(out, "  {name} := {expression};");
     }
     for (expression, meaning) in guards(f, n) {
-        let _ = writeln!(out, "  assert({expression} > 0, \"outside the regime: not true that {}\");", quoted(&meaning));
+        let _ =
+            writeln!(out, "  assert({expression} > 0, \"outside the regime: not true that {}\");", quoted(&meaning));
     }
     for (name, expression, _) in remaining(f, n, derivatives) {
         let _ = writeln!(out, "  {name} := {expression};");

@@ -137,7 +137,7 @@ pub fn family(train: &Train, selection: &RegimeSelection) -> Result<Family, Diag
         };
         if setup.active.len() != 1 || setup.terminals.len() != 3 || setup.base.len() != 2 {
             reason = format!(
-                "{state} has {} loaded elements, {} terminals and {} degrees of freedom",
+                "{state}: loaded elements {}, terminals {}, degrees of freedom {}",
                 setup.active.len(),
                 setup.terminals.len(),
                 setup.base.len()

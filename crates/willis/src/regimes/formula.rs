@@ -127,11 +127,8 @@ impl Names {
                 _ => (format!("_{}", identifier(&label)), format!("_{{{}}}", upright(&label))),
             };
             let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
-            let seen = if c == "frame" {
-                format!("w_{p} / w_{q}")
-            } else {
-                format!("(w_{p} - w_{c}) / (w_{q} - w_{c})")
-            };
+            let seen =
+                if c == "frame" { format!("w_{p} / w_{q}") } else { format!("(w_{p} - w_{c}) / (w_{q} - w_{c})") };
             infos.push(SymbolInfo {
                 name: unique(format!("i{suffix}")),
                 latex: format!("i{index}"),
@@ -401,9 +398,7 @@ impl<'s, 't> Shape<'s, 't> {
             .collect();
         let force = (0..k)
             .map(|j| {
-                (0..d)
-                    .map(|r| with_row(r, (0..k).map(|c| Polynomial::from(i64::from(c == j))).collect()))
-                    .collect()
+                (0..d).map(|r| with_row(r, (0..k).map(|c| Polynomial::from(i64::from(c == j))).collect())).collect()
             })
             .collect();
 
@@ -513,8 +508,7 @@ impl<'s, 't> Shape<'s, 't> {
             f.substituted(&value).unwrap_or_else(|| f.clone())
         };
         let torque: Vec<Vec<Function>> = self.torque.iter().map(|r| r.iter().map(&here).collect()).collect();
-        let mut references: Vec<Function> =
-            self.reference.iter().map(|&t| Function::symbol(names.torque(t))).collect();
+        let mut references: Vec<Function> = self.reference.iter().map(|&t| Function::symbol(names.torque(t))).collect();
         if let Some([a, b]) = setup.balance {
             // T_a ω_a + T_b ω_b = 0 ties the second reference torque to the first.
             let factor = |r: usize| {
@@ -540,19 +534,15 @@ impl<'s, 't> Shape<'s, 't> {
             // Torques and, with one freedom, speeds cancel; a unit in their place shows it.
             let torque_symbol = names.torque(self.reference[0]);
             let speed_symbol = names.speed(setup.base[0]);
-            let value = |s: Symbol| ((d == 1 && s == torque_symbol) || (one && s == speed_symbol)).then_some(Function::ONE);
+            let value =
+                |s: Symbol| ((d == 1 && s == torque_symbol) || (one && s == speed_symbol)).then_some(Function::ONE);
             f.substituted(&value).expect("units are no poles")
         };
         let power = |t: usize| torques[t].times(&speeds[t]);
-        let total = |sign: i8| {
-            (0..m).filter(|&t| roles[t] == sign).fold(Function::ZERO, |sum, t| sum.plus(&power(t)))
-        };
+        let total = |sign: i8| (0..m).filter(|&t| roles[t] == sign).fold(Function::ZERO, |sum, t| sum.plus(&power(t)));
         let (input, output) = (total(1), total(-1));
-        let efficiency = if output.is_zero() || input.is_zero() {
-            Function::ZERO
-        } else {
-            unit(&output.negated().over(&input))
-        };
+        let efficiency =
+            if output.is_zero() || input.is_zero() { Function::ZERO } else { unit(&output.negated().over(&input)) };
 
         let mut conditions: Vec<Condition> = Vec::new();
         let sign = |f: Function, sign: i8| if sign > 0 { f } else { f.negated() };
@@ -576,7 +566,11 @@ impl<'s, 't> Shape<'s, 't> {
             let rho = if p_drives { eta } else { eta.recip() };
             let potential = force.times(&sigma);
             let loss = potential.times(&Function::ONE.minus(&rho));
-            losses.push((j, self.by_driver(&names, j, p_drives).filter(|_| !one && d == 1).unwrap_or(loss.clone()), loss));
+            losses.push((
+                j,
+                self.by_driver(&names, j, p_drives).filter(|_| !one && d == 1).unwrap_or(loss.clone()),
+                loss,
+            ));
             let driver = train.member_name(if p_drives { e.p } else { e.q });
             conditions.push(Condition {
                 function: normalised(sign(potential, if p_drives { 1 } else { -1 })),
@@ -651,7 +645,8 @@ impl Shape<'_, '_> {
             let e = setup.element(j);
             [e.p, e.q, e.carrier].iter().any(|m| setup.c.node(*m) == Some(driver))
         };
-        if (0..setup.active.len()).any(|other| other != j && touched(other)) || setup.c.node(e.carrier) == Some(driver) {
+        if (0..setup.active.len()).any(|other| other != j && touched(other)) || setup.c.node(e.carrier) == Some(driver)
+        {
             return None;
         }
         let carrier = match setup.c.node(e.carrier) {
@@ -689,7 +684,7 @@ impl Formula {
 /// A condition without what is positive anyway: efficiencies, tooth numbers and squares.
 fn bare(f: &Function, names: &Names) -> Function {
     let positive = |p: &Polynomial| {
-        p.len() == 1
+        p.terms().all(|(c, _)| c.sign() > 0)
             && p.symbols().iter().all(|s| matches!(names.info(*s).kind, SymbolKind::Efficiency | SymbolKind::Teeth))
     };
     let number = Function::from(Rational::from(i64::from(f.number().sign())));

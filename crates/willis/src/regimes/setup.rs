@@ -102,8 +102,7 @@ impl<'t> Setup<'t> {
         for &j in &setup.active {
             let e = &setup.c.elements[j];
             let (Some(p), Some(carrier)) = (setup.speed(e.p), setup.speed(e.carrier)) else {
-                let meshes: Vec<_> =
-                    e.links.iter().map(|l| setup.c.train.meshes[l.mesh.0].name.as_str()).collect();
+                let meshes: Vec<_> = e.links.iter().map(|l| setup.c.train.meshes[l.mesh.0].name.as_str()).collect();
                 return Err(format!(
                     "the speeds of the terminals do not settle the relative speed in {}; name more terminals, or \
                      engage a shift element",
@@ -126,10 +125,45 @@ impl<'t> Setup<'t> {
             };
             if a == b || setup.torques < 2 {
                 return Err(format!(
-                    "balancing {} and {} leaves no torque free: the train has {} independent terminal torque(s)",
+                    "balancing {} and {} leaves no torque free: only {} of the terminal torques is independent",
                     name(pair[0]),
                     name(pair[1]),
-                    setup.torques
+                    if setup.torques == 1 { "one" } else { "none" }
+                ));
+            }
+            setup.balance = Some([a, b]);
+        }
+        if setup.torques == 0 {
+            let named: Vec<_> = members.iter().filter(|m| setup.c.node(**m).is_some()).map(|m| name(*m)).collect();
+            let own = match named.len() {
+                0 => "no terminal can turn".to_owned(),
+                1 => format!("{} is the only terminal that can turn", named[0]),
+                n => format!("{n} terminals can turn ({})", named.join(", ")),
+            };
+            let freedoms = match setup.c.degrees_of_freedom() {
+                1 => "one degree of freedom".to_owned(),
+                n => format!("{n} degrees of freedom"),
+            };
+            return Err(format!(
+                "{own} and the train has {freedoms}: no terminal torques other than zero are in equilibrium through \
+                 the gears"
+            ));
+        }
+        if let Some(pair) = balance {
+            let at = pair.map(|m| setup.terminals.iter().position(|t| setup.c.node(m) == Some(t.node)));
+            let [Some(a), Some(b)] = at else {
+                return Err(format!(
+                    "{} and {} cannot balance each other's power: one of them is held or carries no torque",
+                    name(pair[0]),
+                    name(pair[1])
+                ));
+            };
+            if a == b || setup.torques < 2 {
+                return Err(format!(
+                    "balancing {} and {} leaves no torque free: only {} of the terminal torques is independent",
+                    name(pair[0]),
+                    name(pair[1]),
+                    if setup.torques == 1 { "one" } else { "none" }
                 ));
             }
             setup.balance = Some([a, b]);
@@ -190,7 +224,7 @@ impl<'t> Setup<'t> {
         e.forward != Rational::ONE || e.backward != Rational::ONE
     }
 
-    fn rho(&self, j: usize, p_drives: Option<bool>) -> Rational {
+    pub fn rho(&self, j: usize, p_drives: Option<bool>) -> Rational {
         let e = self.element(j);
         match p_drives {
             None => Rational::ONE,
@@ -213,12 +247,8 @@ impl<'t> Setup<'t> {
 
     /// Balance of the free nodes: a row a node, a column an active element.
     fn rows(&self, pattern: &Pattern) -> Matrix {
-        let ratios: Vec<Rational> =
-            (0..self.active.len()).map(|j| self.ratio(j) * self.rho(j, pattern[j])).collect();
-        self.free
-            .iter()
-            .map(|&n| ratios.iter().enumerate().map(|(j, x)| self.coefficient(j, n, x)).collect())
-            .collect()
+        let ratios: Vec<Rational> = (0..self.active.len()).map(|j| self.ratio(j) * self.rho(j, pattern[j])).collect();
+        self.free.iter().map(|&n| ratios.iter().enumerate().map(|(j, x)| self.coefficient(j, n, x)).collect()).collect()
     }
 
     /// Independent terminal torques.
@@ -338,7 +368,13 @@ impl<'t> Setup<'t> {
     }
 
     /// Terminal torques of a regime at other speeds: the same, unless two powers balance.
-    pub fn torques_at(&self, pattern: &Pattern, from: &[Rational], torques: &[Rational], to: &[Rational]) -> Vec<Rational> {
+    pub fn torques_at(
+        &self,
+        pattern: &Pattern,
+        from: &[Rational],
+        torques: &[Rational],
+        to: &[Rational],
+    ) -> Vec<Rational> {
         if self.balance.is_none() {
             return torques.to_vec();
         }

@@ -1,0 +1,6 @@
+//! Charts and diagrams as data: what stands where, in which role, with which words. No pixels, no
+//! fonts; front ends draw.
+
+mod regime_map;
+
+pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
