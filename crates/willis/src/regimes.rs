@@ -573,6 +573,12 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
             return;
         }
     };
+    if !cells.singular && cells.torques.iter().all(Vec::is_empty) {
+        atlas.reason = Some(
+            "friction locks the train in every motion: no torques on its terminals but zero are in equilibrium".into(),
+        );
+        return;
+    }
     if cells.singular {
         atlas.notes.push(
             "for some drivers the train lies exactly on a self-locking threshold: there a whole range of torques balances; \
@@ -1261,7 +1267,10 @@ fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
         let (inputs, outputs) = (of(1), of(-1));
         let reach = match (own.is_empty(), outputs.is_empty()) {
             (false, false) if own.iter().all(|r| r.by_friction_only) => {
-                "only because friction turns a torque round".to_owned()
+                match possible_without_friction(atlas, setup, &powers) {
+                    true => "reached where friction turns a torque round, and nowhere else".to_owned(),
+                    false => "only because friction turns a torque round".to_owned(),
+                }
             }
             (false, false) => "reached".to_owned(),
             (false, true) => "reached: friction takes everything".to_owned(),

@@ -709,6 +709,10 @@ impl Function {
     pub fn substituted(&self, value: &dyn Fn(Symbol) -> Option<Self>) -> Option<Self> {
         let mut product = Self::from(self.number.clone());
         for (p, e) in &self.factors {
+            if p.symbols().into_iter().all(|s| value(s).is_none()) {
+                product = product.times(&Self { number: Rational::ONE, factors: vec![(p.clone(), *e)] });
+                continue;
+            }
             let values: BTreeMap<Symbol, Self> =
                 p.symbols().into_iter().map(|s| (s, value(s).unwrap_or_else(|| Self::symbol(s)))).collect();
             let sum = p.with_monomials(&values).unwrap_or_else(|| {
@@ -905,10 +909,10 @@ impl Notation {
             (self.filled(&parts, self.times(), "\\times "), count)
         };
         // `count` is 0 for a bare sum, else the number of factors.
-        let (mut above, above_count) = side(1, top);
+        let (mut above, mut above_count) = side(1, top);
         let (below, below_count) = side(-1, bottom);
         if above.is_empty() {
-            above = self.whole("1");
+            (above, above_count) = (self.whole("1"), 1);
         }
         if below.is_empty() {
             return match (negative, above_count) {
@@ -1021,6 +1025,7 @@ mod tests {
         assert_eq!(show(&f), "(x + y)/(x*y)");
         assert_eq!(show(&f.minus(&f)), "0");
         assert_eq!(show(&x.over(&y).minus(&Function::ONE)), "(x - y)/y");
+        assert_eq!(show(&Function::ONE.negated()), "-1");
     }
 
     #[test]

@@ -6,7 +6,9 @@
 //! regime puts `x = i η` where end p drives, `x = i/η` where end q drives and `x = i` where nothing
 //! moves. For one degree of freedom this is the rule `η = i(x)/i` of virtual work.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use crate::exact::Rational;
 use crate::symbolic::{self, Function, Notation, Polynomial, Symbol};
@@ -53,6 +55,15 @@ pub(crate) struct Shape<'s, 't> {
     /// By active element: `ω_p − ω_c` in the speeds of the terminals.
     pub sigma: Vec<Function>,
     pub names: Names,
+    /// `torque` and `force` for drivers, once worked out.
+    driven: RefCell<BTreeMap<Pattern, Rc<Driven>>>,
+}
+
+/// Torques and forces over the references when it is known who drives.
+#[derive(Clone, Debug)]
+struct Driven {
+    torque: Vec<Vec<Function>>,
+    force: Vec<Vec<Function>>,
 }
 
 /// Most terms of a determinant: longer formulas help nobody.
@@ -485,7 +496,7 @@ impl<'s, 't> Shape<'s, 't> {
                 in_terminals(p).minus(&in_terminals(c))
             })
             .collect();
-        Ok(Self { setup, reference, torque, force, speed, sigma, names })
+        Ok(Self { setup, reference, torque, force, speed, sigma, names, driven: RefCell::default() })
     }
 
     /// The value of `x = i ρ` that a driver makes.
@@ -497,6 +508,17 @@ impl<'s, 't> Shape<'s, 't> {
             Some(true) => i.times(&eta),
             Some(false) => i.over(&eta),
             None => i,
+        })
+    }
+
+    fn driven(&self, pattern: &Pattern) -> Rc<Driven> {
+        let known = self.driven.borrow().get(pattern).cloned();
+        known.unwrap_or_else(|| {
+            let here = |f: &Function| f.substituted(&|s| self.x_value(pattern, s)).expect("x has no poles of its own");
+            let all = |rows: &[Vec<Function>]| rows.iter().map(|r| r.iter().map(here).collect()).collect();
+            let own = Rc::new(Driven { torque: all(&self.torque), force: all(&self.force) });
+            self.driven.borrow_mut().insert(pattern.clone(), own.clone());
+            own
         })
     }
 
@@ -522,7 +544,6 @@ impl<'s, 't> Shape<'s, 't> {
         if efficiencies == Efficiencies::Meshes {
             names.mesh_efficiencies(setup, pattern);
         }
-        let here = |f: &Function| f.substituted(&|s| self.x_value(pattern, s)).expect("x has no poles of its own");
         let spelt = |f: &Function| -> Function {
             let value = |s: Symbol| {
                 let info = names.info(s);
@@ -539,7 +560,8 @@ impl<'s, 't> Shape<'s, 't> {
             // Numbers may hit a pole that symbols do not have (basic ratio one); then symbols stay.
             f.substituted(&value).unwrap_or_else(|| f.clone())
         };
-        let torque: Vec<Vec<Function>> = self.torque.iter().map(|r| r.iter().map(&here).collect()).collect();
+        let driven = self.driven(pattern);
+        let torque = &driven.torque;
         let mut references: Vec<Function> = self.reference.iter().map(|&t| Function::symbol(names.torque(t))).collect();
         if let Some([a, b]) = setup.balance {
             // T_a ω_a + T_b ω_b = 0 ties the second reference torque to the first.
@@ -586,7 +608,7 @@ impl<'s, 't> Shape<'s, 't> {
         for j in 0..k {
             let Some(p_drives) = pattern[j] else { continue };
             let e = setup.element(j);
-            let force = sum_over_references(&self.force[j].iter().map(&here).collect::<Vec<_>>());
+            let force = sum_over_references(&driven.force[j]);
             let sigma = match one {
                 true => self.sigma[j]
                     .substituted(&|s| (0..m).find(|&t| names.speed(t) == s).map(|t| speeds[t].clone()))

@@ -114,25 +114,6 @@ impl<'t> Setup<'t> {
         let mut rows = setup.rows(&vec![None; setup.active.len()]);
         let rank = exact::reduce(&mut rows, setup.active.len()).len();
         setup.torques = setup.active.len() - rank;
-        if let Some(pair) = balance {
-            let at = pair.map(|m| setup.terminals.iter().position(|t| setup.c.node(m) == Some(t.node)));
-            let [Some(a), Some(b)] = at else {
-                return Err(format!(
-                    "{} and {} cannot balance each other's power: one of them is held or carries no torque",
-                    name(pair[0]),
-                    name(pair[1])
-                ));
-            };
-            if a == b || setup.torques < 2 {
-                return Err(format!(
-                    "balancing {} and {} leaves no torque free: only {} of the terminal torques is independent",
-                    name(pair[0]),
-                    name(pair[1]),
-                    if setup.torques == 1 { "one" } else { "none" }
-                ));
-            }
-            setup.balance = Some([a, b]);
-        }
         if setup.torques == 0 {
             let named: Vec<_> = members.iter().filter(|m| setup.c.node(**m).is_some()).map(|m| name(*m)).collect();
             let own = match named.len() {
@@ -167,19 +148,6 @@ impl<'t> Setup<'t> {
                 ));
             }
             setup.balance = Some([a, b]);
-        }
-        if setup.torques == 0 {
-            let named: Vec<_> = setup.terminals.iter().map(|t| name(t.member)).collect();
-            let own = match named.len() {
-                0 => "no terminal can turn".to_owned(),
-                1 => format!("{} is the only terminal that can turn", named[0]),
-                n => format!("{n} terminals can turn ({})", named.join(", ")),
-            };
-            return Err(format!(
-                "{own} and the train has {} degrees of freedom: no terminal torques other than zero are in equilibrium \
-                 through the gears",
-                setup.c.degrees_of_freedom()
-            ));
         }
         Ok(setup)
     }
