@@ -18,7 +18,7 @@ mod locate;
 pub(crate) mod formula;
 pub(crate) mod setup;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
@@ -335,8 +335,12 @@ pub struct AssignmentReport {
     pub reach: String,
 }
 
+/// Most patterns of drivers times cones of torques, over all regions, that are tried.
+const MOST_CELLS: u128 = 1 << 18;
 /// Most regions of speed.
 const MOST_REGIONS: u128 = 1 << 14;
+/// Most closed formulas that are worked out for one state.
+const MOST_FORMULAS: usize = 128;
 /// Most terminals for which every assignment is listed.
 const MOST_ASSIGNED: usize = 6;
 
@@ -517,6 +521,17 @@ pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
             planes.len()
         )));
     }
+    // With several independent torques nothing is certified, and each pattern has its cones; one of
+    // them and its mirror image count as one.
+    let lossy = (0..setup.active.len()).filter(|&j| setup.lossy(j)).count();
+    let cones = arrangement::most_cells(lossy + setup.terminals.len(), setup.independent_torques()) / 2;
+    let patterns = 1u128.checked_shl(lossy as u32).unwrap_or(u128::MAX);
+    if setup.torques > 1 && bound.saturating_mul(patterns).saturating_mul(cones) / 2 > MOST_CELLS {
+        return Err(too_large(format!(
+            "up to {bound} regions of speed, each with 2^{lossy} patterns of drivers and up to {cones} signs of the \
+             torques: more than are listed"
+        )));
+    }
     let regions = setup.speed_cells(&planes);
     let index: BTreeMap<Vec<i8>, usize> = regions.iter().enumerate().map(|(k, c)| (c.signs.clone(), k)).collect();
     let mut torques: Vec<Option<Vec<TorqueCell>>> = vec![None; regions.len()];
@@ -613,7 +628,17 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     let frictionless = without_friction(setup);
 
     // Regimes, with one formula for each pattern of roles and drivers.
-    let shape = Shape::new(setup, &[]);
+    let mut distinct: BTreeSet<(&Pattern, Vec<i8>)> = BTreeSet::new();
+    for (region, list) in cells.regions.iter().zip(&cells.torques) {
+        distinct.extend(list.iter().map(|t| (&t.pattern, power_signs(setup, &region.point, &t.signs))));
+    }
+    let shape = match distinct.len() {
+        n if n > MOST_FORMULAS => Err(format!(
+            "there are {n} of them (at most {MOST_FORMULAS} are listed); ask for certain inputs and outputs, or name \
+             fewer terminals"
+        )),
+        _ => Shape::new(setup, &[]),
+    };
     let mut formulas: Vec<(Pattern, Vec<i8>, Option<Formula>)> = Vec::new();
     let mut ids: Vec<Vec<String>> = Vec::new();
     for (k, list) in cells.torques.iter().enumerate() {
@@ -953,7 +978,7 @@ fn limits(setup: &Setup<'_>, region: &RegionReport, pattern: &Pattern, torques: 
 }
 
 /// Region and torque signs of every regime of the same train without losses.
-fn without_friction(setup: &Setup<'_>) -> std::collections::BTreeSet<(usize, Vec<i8>)> {
+fn without_friction(setup: &Setup<'_>) -> BTreeSet<(usize, Vec<i8>)> {
     let planes = setup.planes();
     let regions = setup.speed_cells(&planes);
     let mut ideal = setup.clone();

@@ -297,12 +297,7 @@ fn spread(widths: &[f64]) -> (Vec<f64>, bool) {
     }
 }
 
-fn boundaries(
-    atlas: &Atlas,
-    rays: &[[[f64; 2]; 2]],
-    from: &[f64],
-    balance: Option<&[String; 2]>,
-) -> Vec<MapBoundary> {
+fn boundaries(atlas: &Atlas, rays: &[[[f64; 2]; 2]], from: &[f64], balance: Option<&[String; 2]>) -> Vec<MapBoundary> {
     let n = from.len();
     let mut all: Vec<MapBoundary> = Vec::new();
     for k in 0..n {
@@ -313,8 +308,7 @@ fn boundaries(
         // Where one of two balanced machines stands still, no power passes the electric path.
         let mechanical = balance.is_some_and(|pair| pair.iter().any(|name| plane.at_rest.contains(name)));
         let label = if mechanical { format!("{}: mechanical point", plane.label) } else { plane.label.clone() };
-        if let Some(b) = all.iter_mut().find(|b| b.label == label && (b.angles[0] + 180.0 - from[k]).abs() < 1e-6)
-        {
+        if let Some(b) = all.iter_mut().find(|b| b.label == label && (b.angles[0] + 180.0 - from[k]).abs() < 1e-6) {
             b.angles[1] = from[k];
             continue;
         }

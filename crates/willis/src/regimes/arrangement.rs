@@ -43,6 +43,11 @@ pub(crate) fn most_cells(n: usize, dimension: usize) -> u128 {
 
 /// The cells of `forms` in a space of `dimension`. The forms are non-zero and no two proportional.
 pub(crate) fn cells(forms: &[Vec<Rational>], dimension: usize) -> Vec<Cell> {
+    cells_where(forms, &vec![0; forms.len()], dimension)
+}
+
+/// Those cells in which every form has the sign that is wanted of it; 0 for either.
+pub(crate) fn cells_where(forms: &[Vec<Rational>], wanted: &[i8], dimension: usize) -> Vec<Cell> {
     let mut all = vec![Cell { signs: vec![], point: vec![Rational::ZERO; dimension] }];
     for (k, form) in forms.iter().enumerate() {
         let earlier = &forms[..k];
@@ -51,7 +56,7 @@ pub(crate) fn cells(forms: &[Vec<Rational>], dimension: usize) -> Vec<Cell> {
             index.insert(cell.signs.clone(), n);
             cell.signs.push(dot(form, &cell.point).sign());
         }
-        for on in traces(earlier, form, dimension) {
+        for on in traces(earlier, &wanted[..k], form, dimension) {
             let values: Vec<Rational> = earlier.iter().map(|g| dot(g, &on)).collect();
             let signs: Vec<i8> = values.iter().map(Rational::sign).collect();
             // Half of the way to the next plane along the normal.
@@ -74,26 +79,36 @@ pub(crate) fn cells(forms: &[Vec<Rational>], dimension: usize) -> Vec<Cell> {
             with(index[&signs], 1);
             with(usize::MAX, -1);
         }
+        if wanted[k] != 0 {
+            all.retain(|cell| cell.signs[k] == wanted[k]);
+        }
     }
     all
 }
 
-/// A point in every cell that the other planes cut a plane into.
-fn traces(others: &[Vec<Rational>], plane: &[Rational], dimension: usize) -> Vec<Vec<Rational>> {
+/// A point in every cell that the other planes cut a plane into, as far as it is wanted.
+fn traces(others: &[Vec<Rational>], wanted: &[i8], plane: &[Rational], dimension: usize) -> Vec<Vec<Rational>> {
     let pivot = plane.iter().position(|x| !x.is_zero()).expect("not zero");
     let mut reduced: Vec<Vec<Rational>> = Vec::new();
-    for g in others {
+    let mut signs: Vec<i8> = Vec::new();
+    for (g, sign) in others.iter().zip(wanted) {
         // On the plane the pivot's coordinate follows from the others.
         let factor = &g[pivot] / &plane[pivot];
         let row: Vec<Rational> =
             (0..dimension).filter(|&c| c != pivot).map(|c| &g[c] - &(&factor * &plane[c])).collect();
-        if let Some((row, _)) = normal(&row)
-            && !reduced.contains(&row)
-        {
-            reduced.push(row);
+        let Some((row, way)) = normal(&row) else { continue };
+        let sign = sign * way;
+        match reduced.iter().position(|r| *r == row) {
+            // Two of which opposite signs are wanted leave nothing.
+            Some(n) if signs[n] * sign < 0 => return vec![],
+            Some(n) => signs[n] = if sign == 0 { signs[n] } else { sign },
+            None => {
+                reduced.push(row);
+                signs.push(sign);
+            }
         }
     }
-    cells(&reduced, dimension - 1)
+    cells_where(&reduced, &signs, dimension - 1)
         .into_iter()
         .map(|cell| {
             let mut point = cell.point;
@@ -156,6 +171,24 @@ mod tests {
     fn general_position_reaches_the_bound() {
         let f = forms(&[&[1, 0, 0], &[0, 1, 0], &[0, 0, 1], &[1, 1, 1], &[1, 2, 4], &[1, -3, 9]]);
         assert_eq!(cells(&f, 3).len() as u128, most_cells(6, 3));
+    }
+
+    #[test]
+    fn wanted_signs_select_cells() {
+        let f = forms(&[&[1, 0, 0], &[0, 1, 0], &[0, 0, 1], &[1, 1, 1], &[1, 2, 4], &[1, -3, 9]]);
+        let all = cells(&f, 3);
+        for wanted in [[1, 0, 0, -1, 0, 0], [-1, 1, 1, 0, 0, -1], [1, 1, 1, -1, 0, 0], [0, 0, 0, 0, 1, 1]] {
+            let fits = |c: &&Cell| c.signs.iter().zip(wanted).all(|(s, w)| w == 0 || *s == w);
+            let mut expected: Vec<Vec<i8>> = all.iter().filter(fits).map(|c| c.signs.clone()).collect();
+            let found = cells_where(&f, &wanted, 3);
+            for c in &found {
+                assert_eq!(c.signs, f.iter().map(|g| dot(g, &c.point).sign()).collect::<Vec<_>>());
+            }
+            let mut found: Vec<Vec<i8>> = found.into_iter().map(|c| c.signs).collect();
+            expected.sort();
+            found.sort();
+            assert_eq!(found, expected);
+        }
     }
 
     #[test]

@@ -493,23 +493,24 @@ impl<'t> Setup<'t> {
         if moving.iter().any(|&j| pattern[j] == Some(false) && force(j).iter().all(Rational::is_zero)) {
             return;
         }
+        // The force of each element that moves has the sign of its driver; torques have any.
         let mut forms: Vec<Vec<Rational>> = Vec::new();
-        for form in moving.iter().map(|&j| force(j)).chain(torque_forms.iter().cloned()) {
-            if let Some((form, _)) = arrangement::normal(&form)
-                && !forms.contains(&form)
-            {
-                forms.push(form);
+        let mut wanted: Vec<i8> = Vec::new();
+        let forces = moving.iter().map(|&j| (force(j), if pattern[j] == Some(true) { sigma[j] } else { -sigma[j] }));
+        for (form, sign) in forces.chain(torque_forms.iter().map(|t| (t.clone(), 0))) {
+            let Some((form, way)) = arrangement::normal(&form) else { continue };
+            let sign = sign * way;
+            match forms.iter().position(|f| *f == form) {
+                Some(n) if wanted[n] * sign < 0 => return,
+                Some(_) => {}
+                None => {
+                    forms.push(form);
+                    wanted.push(sign);
+                }
             }
         }
-        for cell in arrangement::cells(&forms, basis.len()) {
+        for cell in arrangement::cells_where(&forms, &wanted, basis.len()) {
             let forces: Vec<Rational> = (0..k).map(|j| arrangement::dot(&force(j), &cell.point)).collect();
-            let fits = moving.iter().all(|&j| {
-                let drives = forces[j].sign() * sigma[j];
-                drives == 0 || (drives > 0) == (pattern[j] == Some(true))
-            });
-            if !fits {
-                continue;
-            }
             let torques: Vec<Rational> = torque_forms.iter().map(|t| arrangement::dot(t, &cell.point)).collect();
             let mut own = pattern.clone();
             moving.iter().filter(|&&j| forces[j].is_zero()).for_each(|&j| own[j] = None);
