@@ -237,7 +237,7 @@ fn region_of<'a>(atlas: &'a Atlas, w: &[Rational; 3]) -> &'a RegionReport {
     found
 }
 
-fn regime_of<'a>(atlas: &'a Atlas, region: usize, t1: i8) -> &'a RegimeReport {
+fn regime_of(atlas: &Atlas, region: usize, t1: i8) -> &RegimeReport {
     let mut fits = atlas.regimes.iter().filter(|r| r.region == region && *r.torque_signs.get("1").unwrap() == t1);
     let found = fits.next().unwrap_or_else(|| panic!("no regime in region {region} with T1 of sign {t1}"));
     assert!(fits.next().is_none(), "two regimes in region {region} with T1 of sign {t1}");
@@ -1147,7 +1147,9 @@ fn val_every_formula_of_every_example_equals_the_analysis_exactly() {
     let mut random = Random(6);
     let (mut compared, mut as_fraction) = (0, 0);
     for (name, mut text, train) in examples() {
-        let mut expected: Vec<(String, Rational, Vec<(String, i8)>)> = Vec::new();
+        // Inputs and outputs, efficiency, torque signs.
+        type Expected = (String, Rational, Vec<(String, i8)>);
+        let mut expected: Vec<Expected> = Vec::new();
         let mut number = 0;
         let mut operation = |atlas: &Atlas, w: &[(String, Rational)], t: &[(String, Rational)]| {
             number += 1;
