@@ -10,9 +10,10 @@ use crate::kinematics::Configuration;
 use crate::symbolic::{Function, Notation, Symbol};
 use crate::train::{MemberId, Train};
 
+use super::atlas::{arrow, atlas, drivers, enumerate, power_signs};
 use super::formula::{Efficiencies, Formula, Names, Ratios, Shape, SymbolKind, identifier};
 use super::setup::Setup;
-use super::{RegimeReport, RegimeSelection, arrow, drivers, enumerate, power_signs, selected};
+use super::{RegimeReport, RegimeSelection, selected};
 
 /// Which formulas.
 #[derive(Clone, Debug, Default)]
@@ -464,7 +465,7 @@ fn several_freedoms(
     request: &FormulaRequest,
 ) -> Result<Vec<ClosedFormula>, String> {
     let train = c.train;
-    let atlas = super::atlas(state.to_owned(), c.clone(), members, balance);
+    let atlas = atlas(state.to_owned(), c.clone(), members, balance);
     if let Some(why) = atlas.reason {
         return Err(why);
     }

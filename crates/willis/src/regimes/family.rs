@@ -13,8 +13,9 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::train::Train;
 
+use super::atlas::{assignment_order, atlas};
 use super::setup::Setup;
-use super::{Choice, RegimeSelection, assignment_order, atlas, selected};
+use super::{Choice, RegimeSelection, selected};
 
 /// Every regime of a set with three terminals, over all basic ratios.
 #[derive(Clone, Debug, Serialize)]

@@ -12,9 +12,10 @@ use crate::train::{Load, MemberId, Train};
 use crate::units::Quantity;
 
 use super::arrangement::dot;
+use super::atlas::{arrow, atlas, drivers, efficiency_at, order, plane};
 use super::formula::{Efficiencies, Ratios, Shape, element_label};
 use super::setup::{Pattern, Setup};
-use super::{Choice, RegimeSelection, arrow, drivers, efficiency_at, order, plane, selected};
+use super::{Choice, RegimeSelection, selected};
 
 /// An operating point to place.
 #[derive(Clone, Debug, Default)]
@@ -307,7 +308,7 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
     let labels: Vec<String> = planes.iter().map(|f| plane(&setup, f).label).collect();
     let labels: Vec<String> =
         labels.into_iter().map(|l| if l.is_empty() { "a torque vanishes".to_owned() } else { l }).collect();
-    let atlas = super::atlas(state.clone(), c, &terminals, balance);
+    let atlas = atlas(state.clone(), c, &terminals, balance);
     let region = atlas.regions.iter().find(|r| r.signs == signs);
     let shape = Shape::new(&setup, &[]).ok();
     // Prescribed speeds that matter, each with the change of the base speeds that it makes.

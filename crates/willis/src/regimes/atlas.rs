@@ -1,0 +1,890 @@
+//! Builds the list of regimes of one configuration.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::analysis::{Named, Role};
+use crate::exact::Rational;
+use crate::kinematics::Configuration;
+use crate::symbolic::{Function, Notation, Symbol};
+use crate::train::{FRAME, MemberId};
+
+use super::arrangement::{self, Cell, dot};
+use super::formula::{Efficiencies, Formula, Ratios, Shape, SymbolKind, element_label};
+use super::setup::{MOST_TRIED, Pattern, Setup, TorqueCell};
+use super::{
+    AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, Neighbour,
+    PlaneReport, Prescribed, RatioRange, RegimeReport, RegionReport, SymbolReport, Threshold,
+};
+
+/// Most patterns of drivers times cones of torques, over all regions, that are tried.
+const MOST_CELLS: u128 = 1 << 18;
+/// Most regions of speed.
+const MOST_REGIONS: u128 = 1 << 14;
+/// Most closed formulas that are worked out for one state.
+const MOST_FORMULAS: usize = 128;
+/// Most terminals for which every assignment is listed.
+const MOST_ASSIGNED: usize = 6;
+
+/// The regimes of one configuration.
+pub(crate) fn atlas(
+    state: String,
+    c: Configuration<'_>,
+    members: &[MemberId],
+    balance: Option<[MemberId; 2]>,
+) -> Atlas {
+    let train = c.train;
+    let name = |m: MemberId| train.member_name(m).to_owned();
+    let mut atlas = Atlas {
+        state,
+        degrees_of_freedom: c.degrees_of_freedom(),
+        terminals: members.iter().filter(|m| c.node(**m).is_some()).map(|m| name(*m)).collect(),
+        held: members.iter().filter(|m| c.node(**m).is_none()).map(|m| name(*m)).collect(),
+        independent_torques: 0,
+        base_speeds: vec![],
+        reason: None,
+        symbols: Named::default(),
+        planes: vec![],
+        regions: vec![],
+        regimes: vec![],
+        formulas: vec![],
+        boundaries: vec![],
+        assignments: vec![],
+        notes: vec![],
+    };
+    // Input and output clutched together: no gear carries the load.
+    let nodes: Vec<Option<usize>> = members.iter().map(|m| c.node(*m)).filter(Option::is_some).collect();
+    if nodes.len() > 1 && nodes.iter().all(|n| *n == nodes[0]) {
+        atlas.reason =
+            Some("direct drive: the terminals turn as one, no mesh is loaded and the efficiency is 1".into());
+        return atlas;
+    }
+    let setup = match Setup::new(c, members, balance) {
+        Ok(setup) => setup,
+        Err(why) => {
+            atlas.reason = Some(why);
+            return atlas;
+        }
+    };
+    if let Some(idle) = setup.idle(members) {
+        atlas.notes.push(idle);
+    }
+    fill(&mut atlas, &setup);
+    atlas
+}
+
+/// Speed and torque cells of a setup, before they are told.
+pub(crate) struct Cells {
+    pub planes: Vec<Vec<Rational>>,
+    pub regions: Vec<Cell>,
+    /// By region.
+    pub torques: Vec<Vec<TorqueCell>>,
+    pub singular: bool,
+}
+
+/// All cells, or how many there would be.
+pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
+    let planes = setup.planes();
+    let d = setup.base.len();
+    let bound = arrangement::most_cells(planes.len(), d);
+    let too_large = |what: String| {
+        format!("{what}. Use `willis locate` for the regime of an operating point, or name fewer terminals")
+    };
+    if bound > MOST_REGIONS {
+        return Err(too_large(format!(
+            "{} planes cut the {d}-dimensional speed space into up to {bound} regions, more than the {MOST_REGIONS} that \
+             are listed",
+            planes.len()
+        )));
+    }
+    // With several independent torques nothing is certified, and each pattern has its cones; one of
+    // them and its mirror image count as one.
+    let lossy = (0..setup.active.len()).filter(|&j| setup.lossy(j)).count();
+    let cones = arrangement::most_cells(lossy + setup.terminals.len(), setup.independent_torques()) / 2;
+    let patterns = 1u128.checked_shl(lossy as u32).unwrap_or(u128::MAX);
+    if setup.torques > 1 && bound.saturating_mul(patterns).saturating_mul(cones) / 2 > MOST_CELLS {
+        return Err(too_large(format!(
+            "up to {bound} regions of speed, each with 2^{lossy} patterns of drivers and up to {cones} signs of the \
+             torques: more than are listed"
+        )));
+    }
+    let regions = setup.speed_cells(&planes);
+    let index: BTreeMap<Vec<i8>, usize> = regions.iter().enumerate().map(|(k, c)| (c.signs.clone(), k)).collect();
+    let mut torques: Vec<Option<Vec<TorqueCell>>> = vec![None; regions.len()];
+    let mut singular = false;
+    for k in 0..regions.len() {
+        if torques[k].is_some() {
+            continue;
+        }
+        let (mut cells, odd) = setup.torque_cells(&regions[k].point).map_err(|n| {
+            too_large(format!(
+                "up to {} regions of speed, and in some of them 2^{n} patterns of drivers would have to be tried (at most \
+                 2^{MOST_TRIED})",
+                regions.len()
+            ))
+        })?;
+        singular |= odd;
+        cells.sort_by(|a, b| b.signs.cmp(&a.signs));
+        // All speeds and torques reversed: the same drivers, the same powers.
+        let opposite = index[&regions[k].signs.iter().map(|s| -s).collect::<Vec<_>>()];
+        if opposite != k {
+            let reversed = |v: &Vec<Rational>| v.iter().map(|x| -x.clone()).collect::<Vec<_>>();
+            torques[opposite] = Some(
+                cells
+                    .iter()
+                    .map(|t| TorqueCell {
+                        pattern: t.pattern.clone(),
+                        signs: t.signs.iter().map(|s| -s).collect(),
+                        torques: reversed(&t.torques),
+                    })
+                    .collect(),
+            );
+        }
+        torques[k] = Some(cells);
+    }
+    Ok(Cells { planes, regions, torques: torques.into_iter().flatten().collect(), singular })
+}
+
+/// Signs of the terminals' powers.
+pub(crate) fn power_signs(setup: &Setup<'_>, base: &[Rational], torques: &[i8]) -> Vec<i8> {
+    (0..setup.terminals.len()).map(|t| dot(setup.terminal_speed(t), base).sign() * torques[t]).collect()
+}
+
+fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
+    let train = setup.c.train;
+    let terminal = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
+    let m = setup.terminals.len();
+    atlas.terminals = (0..m).map(terminal).collect();
+    atlas.independent_torques = setup.independent_torques();
+    atlas.base_speeds = setup.base.iter().map(|&b| terminal(b)).collect();
+    let cells = match enumerate(setup) {
+        Ok(cells) => cells,
+        Err(why) => {
+            atlas.reason = Some(why);
+            return;
+        }
+    };
+    if !cells.singular && cells.torques.iter().all(Vec::is_empty) {
+        atlas.reason = Some(
+            "friction locks the train in every motion: no torques on its terminals but zero are in equilibrium".into(),
+        );
+        return;
+    }
+    if cells.singular {
+        atlas.notes.push(
+            "for some drivers the train lies exactly on a self-locking threshold: there a whole range of torques balances; \
+             those cells are not listed"
+                .into(),
+        );
+    }
+    for j in (0..setup.active.len()).filter(|&j| setup.ratio(j) == Rational::ONE) {
+        let e = setup.element(j);
+        let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
+        atlas.notes.push(format!(
+            "the basic ratio of {} is 1: {p} and {q} turn alike whatever {c} does, and the torque of the teeth on {c} \
+             is friction alone, (rho - 1) times that on {p}",
+            element_label(setup, j)
+        ));
+    }
+    let lossless: Vec<String> =
+        (0..setup.active.len()).filter(|&j| !setup.lossy(j)).map(|j| element_label(setup, j)).collect();
+    if !lossless.is_empty() {
+        atlas.notes.push(format!("without loss, so it does not matter who drives: {}", lossless.join(", ")));
+    }
+    atlas.planes = cells.planes.iter().map(|f| plane(setup, f)).collect();
+    let signs: BTreeMap<&[i8], usize> =
+        cells.regions.iter().enumerate().map(|(k, c)| (c.signs.as_slice(), k)).collect();
+    let opposite = |signs_of: &[i8]| signs[signs_of.iter().map(|s| -s).collect::<Vec<_>>().as_slice()];
+
+    for (k, cell) in cells.regions.iter().enumerate() {
+        atlas.regions.push(region(setup, &atlas.base_speeds, &cells, k, opposite(&cell.signs)));
+    }
+
+    // What can happen without friction, to tell what friction makes.
+    let frictionless = without_friction(setup);
+
+    // Regimes, with one formula for each pattern of roles and drivers.
+    let mut distinct: BTreeSet<(&Pattern, Vec<i8>)> = BTreeSet::new();
+    for (region, list) in cells.regions.iter().zip(&cells.torques) {
+        distinct.extend(list.iter().map(|t| (&t.pattern, power_signs(setup, &region.point, &t.signs))));
+    }
+    let shape = match distinct.len() {
+        n if n > MOST_FORMULAS => Err(format!(
+            "there are {n} of them (at most {MOST_FORMULAS} are listed); ask for certain inputs and outputs, or name \
+             fewer terminals"
+        )),
+        _ => Shape::new(setup, &[]),
+    };
+    let mut formulas: Vec<(Pattern, Vec<i8>, Option<Formula>)> = Vec::new();
+    let mut ids: Vec<Vec<String>> = Vec::new();
+    for (k, list) in cells.torques.iter().enumerate() {
+        let own: Vec<String> = (0..list.len()).map(|n| regime_name(setup, k, list, n)).collect();
+        ids.push(own);
+    }
+    for (k, list) in cells.torques.iter().enumerate() {
+        let base = &cells.regions[k].point;
+        let other = opposite(&cells.regions[k].signs);
+        for (n, cell) in list.iter().enumerate() {
+            let powers = power_signs(setup, base, &cell.signs);
+            let at = formulas.iter().position(|(p, r, _)| *p == cell.pattern && *r == powers).unwrap_or_else(|| {
+                let own =
+                    shape.as_ref().ok().map(|s| s.formula(&cell.pattern, &powers, Ratios::Basic, Efficiencies::Basic));
+                formulas.push((cell.pattern.clone(), powers.clone(), own));
+                formulas.len() - 1
+            });
+            let mirror = cells.torques[other]
+                .iter()
+                .position(|t| {
+                    t.pattern == cell.pattern
+                        && t.signs.iter().zip(&cell.signs).all(|(a, b)| *a == -b)
+                        && mirrored(t, cell)
+                })
+                .expect("every regime has its mirror image");
+            // At the example's speeds, which are rounder than those of the cell.
+            let inside = &atlas.regions[k].point;
+            let torques = setup.torques_at(&cell.pattern, base, &cell.torques, inside);
+            let exact = efficiency_at(setup, inside, &torques);
+            let named_signs = Named((0..m).map(|t| (terminal(t), cell.signs[t])).collect());
+            let role = |t: usize| match powers[t] {
+                1 => Role::Input,
+                -1 => Role::Output,
+                _ => Role::Idle,
+            };
+            let limits = limits(setup, &atlas.regions[k], &cell.pattern, &torques);
+            atlas.regimes.push(RegimeReport {
+                id: ids[k][n].clone(),
+                region: k + 1,
+                torque_signs: named_signs,
+                roles: Named((0..m).map(|t| (terminal(t), role(t))).collect()),
+                inputs: (0..m).filter(|&t| powers[t] > 0).map(terminal).collect(),
+                outputs: (0..m).filter(|&t| powers[t] < 0).map(terminal).collect(),
+                drivers: Named(drivers(setup, &cell.pattern)),
+                formula: format!("F{}", at + 1),
+                efficiency_range: limits,
+                example: ExamplePoint {
+                    speeds: atlas.regions[k].example.clone(),
+                    torques: Named((0..m).map(|t| (terminal(t), torques[t].to_f64())).collect()),
+                    efficiency: exact.to_f64(),
+                    efficiency_exact: exact.to_fraction(),
+                },
+                mirror: ids[other][mirror].clone(),
+                by_friction_only: !frictionless.contains(&(k, cell.signs.clone())),
+                all_dissipated: powers.iter().all(|p| *p >= 0),
+                neighbours: vec![],
+                pattern: cell.pattern.clone(),
+                torques,
+                power_signs: powers,
+            });
+        }
+    }
+    label_unloading(atlas, setup);
+    let facets: Vec<Vec<String>> = atlas
+        .regions
+        .iter()
+        .map(|r| {
+            (0..atlas.planes.len())
+                .filter(|&p| {
+                    let mut across = r.signs.clone();
+                    across[p] = -across[p];
+                    signs.contains_key(across.as_slice())
+                })
+                .map(|p| atlas.planes[p].label.clone())
+                .collect()
+        })
+        .collect();
+    atlas.regions.iter_mut().zip(facets).for_each(|(r, f)| r.bounded_by = f);
+    neighbours(atlas, setup);
+    if setup.independent_torques() == 1 {
+        for region in &mut atlas.regions {
+            let own: Vec<&RegimeReport> = atlas.regimes.iter().filter(|r| r.region == region.number).collect();
+            region.prescribed = (0..m)
+                .map(|t| {
+                    let of =
+                        |sign: i8| own.iter().filter(|r| r.torque_signs.0[t].1 == sign).map(|r| r.id.clone()).collect();
+                    Prescribed { terminal: terminal(t), positive: of(1), negative: of(-1) }
+                })
+                .collect();
+        }
+    }
+    match &shape {
+        Ok(shape) => {
+            for (n, (pattern, powers, own)) in formulas.iter().enumerate() {
+                let own = own.as_ref().expect("made with the shape");
+                let id = format!("F{}", n + 1);
+                let regimes: Vec<String> =
+                    atlas.regimes.iter().filter(|r| r.formula == id).map(|r| r.id.clone()).collect();
+                atlas.formulas.push(formula_report(shape, id, pattern, powers, own, regimes));
+            }
+            let mut symbols = Named::default();
+            for info in &shape.names.infos {
+                let hidden = info.meaning.is_empty() || info.kind == SymbolKind::Teeth;
+                if !hidden {
+                    symbols.0.push((
+                        info.name.clone(),
+                        SymbolReport {
+                            value: info.value.as_ref().map(Rational::to_f64),
+                            exact: info.value.as_ref().map(Rational::to_fraction),
+                            meaning: info.meaning.clone(),
+                            latex: info.latex.clone(),
+                        },
+                    ));
+                }
+            }
+            atlas.symbols = symbols;
+        }
+        Err(why) => atlas.notes.push(format!("no closed formulas: {why}")),
+    }
+    boundaries(atlas, setup);
+    assignments(atlas, setup);
+}
+
+fn mirrored(a: &TorqueCell, b: &TorqueCell) -> bool {
+    a.torques.iter().zip(&b.torques).all(|(a, b)| *a == -b.clone())
+}
+
+/// Label and matter of a plane.
+pub(crate) fn plane(setup: &Setup<'_>, form: &[Rational]) -> PlaneReport {
+    let train = setup.c.train;
+    let same = |other: &[Rational]| arrangement::normal(other).is_some_and(|(f, _)| f == form);
+    let at_rest: Vec<String> = (0..setup.terminals.len())
+        .filter(|&t| same(setup.terminal_speed(t)))
+        .map(|t| train.member_name(setup.terminals[t].member).to_owned())
+        .collect();
+    let meshes: Vec<usize> = (0..setup.active.len()).filter(|&j| setup.lossy(j) && same(&setup.sigma[j])).collect();
+    let mut parts: Vec<String> = Vec::new();
+    if !at_rest.is_empty() {
+        parts.push(format!("{} at rest", at_rest.join(", ")));
+    }
+    // Elements that share a member turn as one piece.
+    let mut pieces: Vec<Vec<MemberId>> = Vec::new();
+    for &j in &meshes {
+        let e = setup.element(j);
+        let mut piece = vec![e.p, e.q, e.carrier];
+        while let Some(k) = pieces.iter().position(|p| p.iter().any(|m| piece.contains(m))) {
+            for m in pieces.remove(k) {
+                if !piece.contains(&m) {
+                    piece.push(m);
+                }
+            }
+        }
+        pieces.push(piece);
+    }
+    for mut piece in pieces {
+        piece.sort_unstable();
+        let names: Vec<&str> = piece.iter().map(|m| train.member_name(*m)).collect();
+        if piece[0] != FRAME {
+            let (last, rest) = names.split_last().expect("an element has three members");
+            parts.push(format!("{} and {last} turn as one", rest.join(", ")));
+        } else if at_rest.is_empty() {
+            parts.push(format!("{} at rest", names[1..].join(", ")));
+        }
+    }
+    PlaneReport {
+        label: parts.join("; "),
+        at_rest,
+        without_relative_motion: meshes.iter().map(|&j| element_label(setup, j)).collect(),
+        form: form.iter().map(Rational::to_f64).collect(),
+        exact: form.to_vec(),
+    }
+}
+
+/// The two directions that bound a region of the plane, counterclockwise.
+fn bounding_rays(cells: &Cells, k: usize) -> Option<[Vec<Rational>; 2]> {
+    let n = cells.regions.len();
+    if n < 2 || cells.planes.first()?.len() != 2 {
+        return None;
+    }
+    let ray = |before: usize, after: usize| -> Option<Vec<Rational>> {
+        let (a, b) = (&cells.regions[before], &cells.regions[after]);
+        let flipped = (0..a.signs.len()).find(|&i| a.signs[i] != b.signs[i])?;
+        let f = &cells.planes[flipped];
+        // Along the line, on the side to which both cells are near: between them.
+        let along = vec![-f[1].clone(), f[0].clone()];
+        let cross = |u: &[Rational], v: &[Rational]| &(&u[0] * &v[1]) - &(&u[1] * &v[0]);
+        let flip = cross(&a.point, &along).sign() < 0 || cross(&along, &b.point).sign() < 0;
+        Some(if flip { along.into_iter().map(|x| -x).collect() } else { along })
+    };
+    Some([ray((k + n - 1) % n, k)?, ray(k, (k + 1) % n)?])
+}
+
+fn region(setup: &Setup<'_>, base_speeds: &[String], cells: &Cells, k: usize, opposite: usize) -> RegionReport {
+    let train = setup.c.train;
+    let cell = &cells.regions[k];
+    let rays = bounding_rays(cells, k);
+    // A point with small numbers: the sum of the bounding directions, of equal size.
+    let point: Vec<Rational> = match &rays {
+        Some([from, to]) => {
+            let unit = |v: &[Rational]| {
+                let size = v.iter().map(Rational::abs).max().unwrap_or(Rational::ONE);
+                v.iter().map(|x| x / &size).collect::<Vec<_>>()
+            };
+            let (a, b) = (unit(from), unit(to));
+            let sum: Vec<Rational> = a.iter().zip(&b).map(|(x, y)| x + y).collect();
+            let inside = cells.planes.iter().zip(&cell.signs).all(|(f, s)| dot(f, &sum).sign() == *s);
+            if inside { sum } else { cell.point.clone() }
+        }
+        None => cell.point.clone(),
+    };
+    let ratio = rays.as_ref().and_then(|[from, to]| {
+        let first = [&from[0], &to[0], &point[0]].map(Rational::sign);
+        let sign = first[2];
+        (sign != 0 && first.iter().all(|s| *s == sign || *s == 0)).then(|| {
+            let slope = |v: &[Rational]| (!v[0].is_zero()).then(|| (&v[1] / &v[0]).to_f64());
+            let (low, high) = (slope(from), slope(to));
+            RatioRange { of: format!("w_{}/w_{}", base_speeds[1], base_speeds[0]), denominator_sign: sign, low, high }
+        })
+    });
+    let direction = |v: &[Rational]| [v[0].to_f64(), v[1].to_f64()];
+    let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
+    RegionReport {
+        number: k + 1,
+        order: order(setup, &point),
+        signs: cell.signs.clone(),
+        example: Named(
+            (0..setup.terminals.len()).map(|t| (name(t), dot(setup.terminal_speed(t), &point).to_f64())).collect(),
+        ),
+        from: rays.as_ref().map(|r| direction(&r[0])),
+        to: rays.as_ref().map(|r| direction(&r[1])),
+        ratio,
+        bounded_by: vec![],
+        opposite: opposite + 1,
+        prescribed: vec![],
+        point,
+        rays,
+    }
+}
+
+/// Chains of speeds, from the largest down, that hold throughout a region.
+pub(crate) fn order(setup: &Setup<'_>, point: &[Rational]) -> Vec<String> {
+    let train = setup.c.train;
+    let mut chains: Vec<String> = Vec::new();
+    let mut told: Vec<MemberId> = Vec::new();
+    for j in (0..setup.active.len()).filter(|&j| setup.lossy(j)) {
+        let e = setup.element(j);
+        let is_terminal =
+            |m: MemberId| m == FRAME || setup.c.node(m).is_none_or(|n| setup.terminals.iter().any(|t| t.node == n));
+        let mut members: Vec<(Rational, Option<MemberId>)> = Vec::new();
+        for m in [e.p, e.q, e.carrier] {
+            let Some(w) = setup.speed(m) else { continue };
+            if setup.c.node(m).is_none() {
+                continue;
+            }
+            members.push((dot(&w, point), Some(m)));
+            told.push(m);
+        }
+        // Where a member that is no terminal stands towards zero may change within the region.
+        if [e.p, e.q, e.carrier].into_iter().all(is_terminal) {
+            members.push((Rational::ZERO, None));
+        }
+        members.sort_by(|a, b| b.0.cmp(&a.0));
+        let mut text = String::new();
+        for (k, (w, m)) in members.iter().enumerate() {
+            if k > 0 {
+                text += if *w == members[k - 1].0 { " = " } else { " > " };
+            }
+            text += &m.map_or("0".to_owned(), |m| format!("w_{}", train.member_name(m)));
+        }
+        if !chains.contains(&text) {
+            chains.push(text);
+        }
+    }
+    for t in &setup.terminals {
+        if !told.iter().any(|m| setup.c.node(*m) == Some(t.node)) {
+            let w = dot(setup.node_speed[t.node].as_ref().expect("known"), point);
+            let name = train.member_name(t.member);
+            chains.push(if w.sign() > 0 { format!("w_{name} > 0") } else { format!("0 > w_{name}") });
+        }
+    }
+    chains
+}
+
+fn regime_name(setup: &Setup<'_>, region: usize, list: &[TorqueCell], n: usize) -> String {
+    if setup.independent_torques() > 1 {
+        return format!("{}.{}", region + 1, n + 1);
+    }
+    let lead = |c: &TorqueCell| c.signs.iter().copied().find(|s| *s != 0).unwrap_or(0);
+    let sign = lead(&list[n]);
+    let alike: Vec<usize> = (0..list.len()).filter(|&i| lead(&list[i]) == sign).collect();
+    let letter = match alike.len() {
+        1 => String::new(),
+        _ => char::from(b'a' + alike.iter().position(|i| *i == n).unwrap_or(0).min(25) as u8).to_string(),
+    };
+    format!("{}{}{letter}", region + 1, if sign < 0 { '-' } else { '+' })
+}
+
+pub(crate) fn drivers(setup: &Setup<'_>, pattern: &Pattern) -> Vec<(String, Option<String>)> {
+    (0..setup.active.len())
+        .map(|j| {
+            let e = setup.element(j);
+            let driver = pattern[j].map(|p| setup.c.train.member_name(if p { e.p } else { e.q }).to_owned());
+            (element_label(setup, j), driver)
+        })
+        .collect()
+}
+
+/// Output over input power; zero when all is dissipated, one when nothing flows.
+pub(crate) fn efficiency_at(setup: &Setup<'_>, base: &[Rational], torques: &[Rational]) -> Rational {
+    let (mut input, mut output) = (Rational::ZERO, Rational::ZERO);
+    for t in 0..setup.terminals.len() {
+        let p = &dot(setup.terminal_speed(t), base) * &torques[t];
+        match p.sign() {
+            1 => input += p,
+            _ => output -= p,
+        }
+    }
+    if input.is_zero() { Rational::ONE } else { output / input }
+}
+
+/// Efficiency on the two directions that bound a region.
+fn limits(setup: &Setup<'_>, region: &RegionReport, pattern: &Pattern, torques: &[Rational]) -> Option<[f64; 2]> {
+    if setup.independent_torques() > 1 {
+        return None;
+    }
+    match &region.rays {
+        Some([from, to]) => {
+            let ends = [from, to].map(|r| {
+                let there = setup.torques_at(pattern, &region.point, torques, r);
+                efficiency_at(setup, r, &there).to_f64()
+            });
+            Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
+        }
+        None if setup.base.len() == 1 => Some([efficiency_at(setup, &region.point, torques).to_f64(); 2]),
+        None => None,
+    }
+}
+
+/// Region and torque signs of every regime of the same train without losses.
+fn without_friction(setup: &Setup<'_>) -> BTreeSet<(usize, Vec<i8>)> {
+    let planes = setup.planes();
+    let regions = setup.speed_cells(&planes);
+    let mut ideal = setup.clone();
+    for e in &mut ideal.c.elements {
+        (e.forward, e.backward) = (Rational::ONE, Rational::ONE);
+    }
+    (0..regions.len())
+        .flat_map(|k| {
+            let cells = ideal.torque_cells(&regions[k].point).map_or(vec![], |(cells, _)| cells);
+            cells.into_iter().map(move |c| (k, c.signs))
+        })
+        .collect()
+}
+
+fn neighbours(atlas: &mut Atlas, setup: &Setup<'_>) {
+    let by_signs: BTreeMap<Vec<i8>, usize> = atlas.regions.iter().map(|r| (r.signs.clone(), r.number)).collect();
+    let mut by_region: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (k, r) in atlas.regimes.iter().enumerate() {
+        by_region.entry(r.region).or_default().push(k);
+    }
+    for k in 0..atlas.regimes.len() {
+        let own = &atlas.regions[atlas.regimes[k].region - 1];
+        let mut all = Vec::new();
+        for (p, plane) in atlas.planes.iter().enumerate() {
+            let mut across = own.signs.clone();
+            across[p] = -across[p];
+            let Some(number) = by_signs.get(&across) else { continue };
+            for &other in by_region.get(number).into_iter().flatten() {
+                if continues(setup, atlas, &atlas.regimes[k], &atlas.regimes[other], p) {
+                    all.push(Neighbour { plane: plane.label.clone(), regime: atlas.regimes[other].id.clone() });
+                }
+            }
+        }
+        atlas.regimes[k].neighbours = all;
+    }
+}
+
+/// The direction between two neighbouring regions of the plane.
+fn ray_between<'a>(a: &'a RegionReport, b: &RegionReport) -> Option<&'a [Rational]> {
+    let ([from, to], [other_from, other_to]) = (a.rays.as_ref()?, b.rays.as_ref()?);
+    let parallel = |u: &[Rational], v: &[Rational]| arrangement::by_angle(u, v).is_eq();
+    if parallel(to, other_from) {
+        Some(to)
+    } else if parallel(from, other_to) {
+        Some(from)
+    } else {
+        None
+    }
+}
+
+/// Whether the torques of one regime go on into the other when the speeds cross a plane.
+fn continues(setup: &Setup<'_>, atlas: &Atlas, a: &RegimeReport, b: &RegimeReport, plane: usize) -> bool {
+    let signs = |r: &RegimeReport| r.torque_signs.0.iter().map(|x| x.1).collect::<Vec<i8>>();
+    let slips = !atlas.planes[plane].without_relative_motion.is_empty();
+    let (own, other) = (&atlas.regions[a.region - 1], &atlas.regions[b.region - 1]);
+    if !slips && setup.balance.is_some() {
+        // Without friction's jump the torques on the plane itself agree.
+        if let Some(ray) = ray_between(own, other) {
+            let at = |r: &RegimeReport, region: &RegionReport| {
+                let there = setup.torques_at(&r.pattern, &region.point, &r.torques, ray);
+                let size = there.iter().map(Rational::abs).max().unwrap_or(Rational::ONE);
+                let size = if size.is_zero() { Rational::ONE } else { size };
+                there.into_iter().map(|x| x / &size).collect::<Vec<_>>()
+            };
+            return at(a, own) == at(b, other);
+        }
+    }
+    if setup.independent_torques() == 1 {
+        // Friction may turn a torque round; the first one keeps its sign.
+        let lead = |r: &RegimeReport| signs(r).into_iter().find(|s| *s != 0);
+        return lead(a) == lead(b) && (slips || a.pattern == b.pattern);
+    }
+    signs(a) == signs(b) && (slips || a.pattern == b.pattern)
+}
+
+/// Names the planes on which a torque or a tooth force vanishes, which only balanced powers make.
+fn label_unloading(atlas: &mut Atlas, setup: &Setup<'_>) {
+    let n = atlas.regions.len();
+    for p in 0..atlas.planes.len() {
+        if !atlas.planes[p].label.is_empty() {
+            continue;
+        }
+        let mut zero: Vec<String> = Vec::new();
+        for k in 0..n {
+            let (a, b) = (&atlas.regions[k], &atlas.regions[(k + 1) % n]);
+            if a.signs[p] == b.signs[p] {
+                continue;
+            }
+            let Some(ray) = ray_between(a, b) else { continue };
+            for (region, r) in [a, b]
+                .into_iter()
+                .flat_map(|x| atlas.regimes.iter().filter(move |r| r.region == x.number).map(move |r| (x, r)))
+            {
+                let there = setup.torques_at(&r.pattern, &region.point, &r.torques, ray);
+                for (t, x) in there.iter().enumerate() {
+                    if x.is_zero() && !zero.contains(&atlas.terminals[t]) {
+                        zero.push(atlas.terminals[t].clone());
+                    }
+                }
+            }
+        }
+        atlas.planes[p].label = match zero.is_empty() {
+            true => "a mesh is unloaded".to_owned(),
+            false => format!("no torque on {}", zero.join(", ")),
+        };
+    }
+}
+
+fn boundaries(atlas: &mut Atlas, setup: &Setup<'_>) {
+    if setup.base.len() != 2 {
+        return;
+    }
+    let n = atlas.regions.len();
+    let train = setup.c.train;
+    let mut all = Vec::new();
+    for k in 0..n {
+        let next = (k + 1) % n;
+        let (before, after) = (&atlas.regions[k], &atlas.regions[next]);
+        let Some([_, ray]) = &before.rays else { continue };
+        let Some(p) = (0..before.signs.len()).find(|&p| before.signs[p] != after.signs[p]) else { continue };
+        let of = |number: usize| atlas.regimes.iter().filter(move |r| r.region == number);
+        let mut crossings = Vec::new();
+        if setup.independent_torques() == 1 {
+            for a in of(k + 1) {
+                for b in of(next + 1).filter(|b| continues(setup, atlas, a, b, p)) {
+                    let limit = |r: &RegimeReport| {
+                        let inside = &atlas.regions[r.region - 1].point;
+                        let there = setup.torques_at(&r.pattern, inside, &r.torques, ray);
+                        Some(efficiency_at(setup, ray, &there).to_f64())
+                    };
+                    crossings.push(Crossing {
+                        from: a.id.clone(),
+                        to: b.id.clone(),
+                        efficiency_before: limit(a),
+                        efficiency_after: limit(b),
+                        changes: changes(a, b),
+                    });
+                }
+            }
+        }
+        let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
+        all.push(BoundaryReport {
+            label: atlas.planes[p].label.clone(),
+            direction: [ray[0].to_f64(), ray[1].to_f64()],
+            speeds: Named(
+                (0..setup.terminals.len()).map(|t| (name(t), dot(setup.terminal_speed(t), ray).to_f64())).collect(),
+            ),
+            between: [k + 1, next + 1],
+            crossings,
+        });
+    }
+    atlas.boundaries = all;
+}
+
+/// What is different between two regimes, in words.
+pub(crate) fn changes(a: &RegimeReport, b: &RegimeReport) -> Vec<String> {
+    let word = |r: Role| match r {
+        Role::Input => "input",
+        Role::Output => "output",
+        _ => "idle",
+    };
+    let mut all = Vec::new();
+    for ((name, before), (_, after)) in a.roles.iter().zip(b.roles.iter()) {
+        if before != after {
+            all.push(format!("{name}: {} becomes {}", word(*before), word(*after)));
+        }
+    }
+    for ((name, before), (_, after)) in a.drivers.iter().zip(b.drivers.iter()) {
+        if let (Some(before), Some(after)) = (before, after)
+            && before != after
+        {
+            all.push(format!("{name}: {after} drives instead of {before}"));
+        }
+    }
+    for ((name, before), (_, after)) in a.torque_signs.iter().zip(b.torque_signs.iter()) {
+        if before != after {
+            all.push(format!("{name}: the torque turns round"));
+        }
+    }
+    all
+}
+
+/// Inputs and outputs as people write them: `engine, mg1 -> ring`.
+pub(crate) fn arrow(inputs: &[String], outputs: &[String]) -> String {
+    match outputs.is_empty() {
+        true => format!("{} -> heat", inputs.join(", ")),
+        false => format!("{} -> {}", inputs.join(", "), outputs.join(", ")),
+    }
+}
+
+fn formula_report(
+    shape: &Shape<'_, '_>,
+    id: String,
+    pattern: &Pattern,
+    powers: &[i8],
+    own: &Formula,
+    regimes: Vec<String>,
+) -> FormulaReport {
+    let setup = shape.setup;
+    let train = setup.c.train;
+    let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
+    let of = |sign: i8| (0..powers.len()).filter(|&t| powers[t] == sign).map(name).collect::<Vec<_>>();
+    let show = |f: &Function| own.names.show(Notation::Text, f);
+    let driving: Vec<String> = drivers(setup, pattern)
+        .into_iter()
+        .filter_map(|(e, d)| d.map(|d| if setup.active.len() > 1 { format!("{d} in {e}") } else { d }))
+        .collect();
+    let loss: Vec<String> = own.losses.iter().map(|(_, f)| show(f)).collect();
+    FormulaReport {
+        id,
+        roles: arrow(&of(1), &of(-1)),
+        drivers: if driving.is_empty() { "nobody: no loss".into() } else { driving.join(", ") },
+        efficiency: show(&own.efficiency),
+        efficiency_by_loss: own.by_loss(Notation::Text),
+        efficiency_latex: own.names.show(Notation::Latex, &own.efficiency),
+        loss: if loss.is_empty() { "0".into() } else { loss.join(" + ") },
+        torques: Named((0..powers.len()).map(|t| (name(t), show(&own.torques[t]))).collect()),
+        conditions: own
+            .conditions
+            .iter()
+            .map(|c| ConditionReport { positive: show(&c.function), meaning: c.meaning.clone() })
+            .collect(),
+        holds_for: thresholds(shape, own),
+        regimes,
+    }
+}
+
+/// For each ratio and efficiency the interval around its value in which every terminal torque keeps
+/// its sign over the reference torque (for one independent torque).
+fn thresholds(shape: &Shape<'_, '_>, own: &Formula) -> Vec<Threshold> {
+    let setup = shape.setup;
+    if setup.torques != 1 || setup.balance.is_some() {
+        return vec![];
+    }
+    let value = |s: Symbol| own.names.info(s).value.clone().unwrap_or(Rational::ONE);
+    let mut all = Vec::new();
+    for j in 0..setup.active.len() {
+        for s in [own.names.ratio(j), own.names.efficiency(j)] {
+            let now = value(s);
+            let (mut low, mut high): (Option<Rational>, Option<Rational>) = (None, None);
+            let mut occurs = false;
+            for f in &own.torques {
+                for (p, _) in f.factors().iter().filter(|(p, _)| p.degree(s) == 1) {
+                    occurs = true;
+                    // Linear in s: at + slope s.
+                    let slope = p.derivative(s).evaluate(&value);
+                    if slope.is_zero() {
+                        continue;
+                    }
+                    let root = &now - &(&p.evaluate(&value) / &slope);
+                    if root < now && low.as_ref().is_none_or(|l| root > *l) {
+                        low = Some(root);
+                    } else if root > now && high.as_ref().is_none_or(|h| root < *h) {
+                        high = Some(root);
+                    }
+                }
+            }
+            let efficiency = own.names.info(s).kind == SymbolKind::Efficiency;
+            if efficiency {
+                // Beyond these bounds there is no efficiency.
+                low = Some(low.filter(|l| l.sign() > 0).unwrap_or(Rational::ZERO));
+                high = high.filter(|h| *h < Rational::ONE);
+            }
+            if occurs && (low.is_some() || high.is_some()) {
+                all.push(Threshold {
+                    symbol: own.names.info(s).name.clone(),
+                    value: now.to_f64(),
+                    low: low.map(|x| x.to_f64()),
+                    high: high.map(|x| x.to_f64()).or(efficiency.then_some(1.0)),
+                });
+            }
+        }
+    }
+    all
+}
+
+/// Signs of power of every assignment of `m` terminals with an input. Three terminals stand in the
+/// order of Esmail's Table 1.
+pub(crate) fn assignment_order(m: usize) -> Vec<Vec<i8>> {
+    let signs = |mask: u32| (0..m).map(|t| if mask >> t & 1 == 1 { 1 } else { -1 }).collect::<Vec<i8>>();
+    if m == 3 {
+        return [0b011, 0b110, 0b101, 0b100, 0b010, 0b001, 0b111].map(signs).to_vec();
+    }
+    let mut masks: Vec<u32> = (1..1 << m).collect();
+    masks.sort_by_key(|mask| (m as u32 == mask.count_ones(), std::cmp::Reverse(mask.count_ones()), *mask));
+    masks.into_iter().map(signs).collect()
+}
+
+/// Every assignment of inputs and outputs, and whether it is reached.
+fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
+    let m = setup.terminals.len();
+    if m > MOST_ASSIGNED {
+        atlas.notes.push(format!("{m} terminals: assignments that cannot be reached are not listed"));
+    }
+    let idle: Vec<bool> = (0..m).map(|t| atlas.regimes.iter().all(|r| r.power_signs[t] == 0)).collect();
+    let mut wanted: Vec<Vec<i8>> = Vec::new();
+    if m <= MOST_ASSIGNED && !idle.contains(&true) {
+        wanted = assignment_order(m);
+    }
+    for r in &atlas.regimes {
+        if !wanted.contains(&r.power_signs) {
+            wanted.push(r.power_signs.clone());
+        }
+    }
+    let mut all = Vec::new();
+    for powers in wanted {
+        let own: Vec<&RegimeReport> = atlas.regimes.iter().filter(|r| r.power_signs == powers).collect();
+        let of = |sign: i8| -> Vec<String> {
+            (0..m).filter(|&t| powers[t] == sign).map(|t| atlas.terminals[t].clone()).collect()
+        };
+        let (inputs, outputs) = (of(1), of(-1));
+        let reach = match (own.is_empty(), outputs.is_empty()) {
+            (false, false) if own.iter().all(|r| r.by_friction_only) => {
+                match possible_without_friction(atlas, setup, &powers) {
+                    true => "reached where friction turns a torque round, and nowhere else".to_owned(),
+                    false => "only because friction turns a torque round".to_owned(),
+                }
+            }
+            (false, false) => "reached".to_owned(),
+            (false, true) => "reached: friction takes everything".to_owned(),
+            (true, true) => "cannot be reached: friction never takes everything".to_owned(),
+            (true, false) if possible_without_friction(atlas, setup, &powers) => {
+                "cannot be reached: friction prevents it (without losses it exists)".to_owned()
+            }
+            (true, false) => "cannot be reached: speeds and torques never have these signs together".to_owned(),
+        };
+        all.push(AssignmentReport { inputs, outputs, regimes: own.iter().map(|r| r.id.clone()).collect(), reach });
+    }
+    atlas.assignments = all;
+}
+
+fn possible_without_friction(atlas: &Atlas, setup: &Setup<'_>, powers: &[i8]) -> bool {
+    without_friction(setup).iter().any(|(k, torques)| power_signs(setup, &atlas.regions[*k].point, torques) == powers)
+}
