@@ -497,7 +497,7 @@ pub(crate) fn order(setup: &Setup<'_>, point: &[Rational]) -> Vec<String> {
     chains
 }
 
-fn regime_name(setup: &Setup<'_>, region: usize, list: &[TorqueCell], n: usize) -> String {
+pub(crate) fn regime_name(setup: &Setup<'_>, region: usize, list: &[TorqueCell], n: usize) -> String {
     if setup.independent_torques() > 1 {
         return format!("{}.{}", region + 1, n + 1);
     }

@@ -12,7 +12,7 @@ use crate::train::{Load, MemberId, Train};
 use crate::units::Quantity;
 
 use super::arrangement::dot;
-use super::atlas::{arrow, atlas, drivers, efficiency_at, order, plane};
+use super::atlas::{arrow, drivers, efficiency_at, enumerate, order, plane, regime_name};
 use super::formula::{Efficiencies, Ratios, Shape, element_label};
 use super::setup::{Pattern, Setup};
 use super::{Choice, RegimeSelection, selected};
@@ -245,8 +245,12 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
         setup.base.iter().map(|&b| motion.speeds[setup.terminals[b].member.0].clone()).collect();
     let Some(base) = base else {
         let text = format!(
-            "{} speeds are given; {state} needs {} to settle {}",
-            speeds.len(),
+            "{} given; {state} needs {} to settle {}",
+            match speeds.len() {
+                0 => "no speed is".to_owned(),
+                1 => "one speed is".to_owned(),
+                n => format!("{n} speeds are"),
+            },
             setup.base.len(),
             (0..setup.terminals.len()).map(name).collect::<Vec<_>>().join(", ")
         );
@@ -308,8 +312,8 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
     let labels: Vec<String> = planes.iter().map(|f| plane(&setup, f).label).collect();
     let labels: Vec<String> =
         labels.into_iter().map(|l| if l.is_empty() { "a torque vanishes".to_owned() } else { l }).collect();
-    let atlas = atlas(state.clone(), c, &terminals, balance);
-    let region = atlas.regions.iter().find(|r| r.signs == signs);
+    let cells = enumerate(&setup);
+    let region = cells.as_ref().ok().and_then(|cells| cells.regions.iter().position(|r| r.signs == signs));
     let shape = Shape::new(&setup, &[]).ok();
     // Prescribed speeds that matter, each with the change of the base speeds that it makes.
     let members: Vec<MemberId> = speeds.iter().map(|(m, _)| *m).collect();
@@ -331,13 +335,11 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
         let powers: Vec<Rational> =
             (0..setup.terminals.len()).map(|t| &s.torques[t] * &dot(setup.terminal_speed(t), &base)).collect();
         let power_signs: Vec<i8> = powers.iter().map(Rational::sign).collect();
-        let own = region.and_then(|r| {
-            let torque_signs: Vec<i8> = s.torques.iter().map(Rational::sign).collect();
-            atlas.regimes.iter().find(|x| {
-                x.region == r.number
-                    && x.pattern == s.pattern
-                    && x.torque_signs.0.iter().map(|(_, s)| *s).eq(torque_signs.iter().copied())
-            })
+        let torque_signs: Vec<i8> = s.torques.iter().map(Rational::sign).collect();
+        let own = cells.as_ref().ok().zip(region).and_then(|(cells, k)| {
+            let list = &cells.torques[k];
+            let n = list.iter().position(|x| x.pattern == s.pattern && x.signs == torque_signs)?;
+            Some(regime_name(&setup, k, list, n))
         });
         let efficiency = efficiency_at(&setup, &base, &s.torques);
         let formula = shape.as_ref().map(|shape| {
@@ -364,7 +366,7 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
             ranges.push(finder.torque_range(&base, s, n, torque_unit, &name(*t)));
         }
         regimes.push(Located {
-            regime: own.map(|x| x.id.clone()),
+            regime: own,
             torques_n_m: Named(
                 (0..setup.terminals.len()).map(|t| (name(t), s.torques[t].to_f64() * torque_unit)).collect(),
             ),
@@ -390,9 +392,9 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
         ),
         order: order(&setup, &base),
         on: planes.iter().zip(&labels).filter(|(f, _)| dot(f, &base).is_zero()).map(|(_, l)| l.clone()).collect(),
-        region: region.map(|r| r.number),
+        region: region.map(|k| k + 1),
         complete,
-        reason: reason.or(atlas.reason.filter(|_| region.is_none())),
+        reason: reason.or(cells.err()),
         regimes,
     })
 }
