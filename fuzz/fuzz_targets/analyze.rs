@@ -1,10 +1,13 @@
-//! Text → train → analysis. Whatever the text, nothing panics and no number is undefined.
+//! Text → train → analysis, regimes and formulas. Whatever the text, nothing panics and no number is
+//! undefined.
 
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use serde_json::Value;
 use willis::analysis::{Direction, SolutionReport, Verdict, analyze};
+use willis::regimes::{FormulaRequest, RegimeSelection, formulas, regimes};
+use willis::symbolic::Notation;
 use willis::train::Train;
 
 fuzz_target!(|bytes: &[u8]| {
@@ -14,6 +17,17 @@ fuzz_target!(|bytes: &[u8]| {
     let _ = reading.diagnostics.to_string();
     assert!(reading.train.is_some() != reading.diagnostics.has_errors(), "a train, or else an error");
     let Some(train) = &reading.train else { return };
+    // Larger trains take longer than a fuzzer waits; their limits have tests of their own.
+    if train.meshes().len() <= 6 && train.states().len() <= 4 {
+        if let Ok(all) = regimes(train, &RegimeSelection::default()) {
+            for r in all.states.iter().flat_map(|a| &a.regimes) {
+                assert!(is_efficiency(r.example.efficiency), "efficiency {} in {}", r.example.efficiency, r.id);
+            }
+        }
+        if let Ok(sheet) = formulas(train, &FormulaRequest::default()) {
+            sheet.emit(Notation::Python, true);
+        }
+    }
     match analyze(train, &Default::default()) {
         Err(mut diagnostics) => {
             assert!(diagnostics.has_errors(), "refused without a reason");
