@@ -1308,6 +1308,8 @@ fn solve(mut rows: Vec<Vec<Rational>>, n: usize) -> Option<Vec<Rational>> {
 
 #[derive(Clone, Debug)]
 struct Net {
+    /// Member 0 is the frame.
+    frame: bool,
     members: usize,
     sets: Vec<Coupled>,
     terminals: Vec<usize>,
@@ -1326,24 +1328,27 @@ struct Balance {
 
 impl Net {
     fn random(sets: usize, freedoms: usize, torques: usize, low: i64, random: &mut Random) -> Self {
-        let members = sets + freedoms;
-        let mut all: Vec<usize> = (0..members).collect();
-        for k in (1..members).rev() {
+        let frame = random.below(2) == 0;
+        let members = sets + freedoms + usize::from(frame);
+        let mut all: Vec<usize> = (usize::from(frame)..members).collect();
+        for k in (1..all.len()).rev() {
             all.swap(k, random.below(k as u64 + 1) as usize);
         }
         all.truncate(freedoms + torques);
-        Self { members, sets: (0..sets).map(|_| Coupled::random(members, low, random)).collect(), terminals: all }
+        let sets = (0..sets).map(|_| Coupled::random(members, low, random)).collect();
+        Self { frame, members, sets, terminals: all }
     }
 
     fn names(&self) -> Vec<String> {
-        (0..self.members).map(|m| format!("m{m}")).collect()
+        (0..self.members).map(|m| if self.frame && m == 0 { "frame".into() } else { format!("m{m}") }).collect()
     }
 
     fn builder(&self) -> TrainBuilder {
         let names = self.names();
         let terminals: Vec<&str> = self.terminals.iter().map(|&t| names[t].as_str()).collect();
-        let mut builder =
-            Train::builder("random").members(names.iter().map(String::as_str)).terminals(terminals.iter().copied());
+        let mut builder = Train::builder("random")
+            .members(names.iter().map(String::as_str).filter(|n| *n != "frame"))
+            .terminals(terminals.iter().copied());
         for (k, s) in self.sets.iter().enumerate() {
             builder = builder.set(s.spec(&format!("P{k}"), &names));
         }
@@ -1362,7 +1367,8 @@ impl Net {
             row[c] = &r - &Rational::ONE;
             rows.push(row);
         }
-        for (m, w) in given {
+        let still = self.frame.then_some((0, Rational::ZERO));
+        for (m, w) in given.iter().chain(&still) {
             let mut row = vec![Rational::ZERO; self.members + 1];
             row[*m] = Rational::ONE;
             row[self.members] = w.clone();
@@ -1400,7 +1406,7 @@ impl Net {
                 (0..k).map(own).collect()
             };
             let mut rows: Vec<Vec<Rational>> = Vec::new();
-            for m in (0..self.members).filter(|m| !self.terminals.contains(m)) {
+            for m in (usize::from(self.frame)..self.members).filter(|m| !self.terminals.contains(m)) {
                 rows.push(row(m).into_iter().chain([Rational::ZERO]).collect());
             }
             for (m, t) in given {
@@ -1730,4 +1736,158 @@ fn val_random_trains_with_more_torques_or_freedoms() {
     }
     println!("{seen:?}");
     assert!(seen.iter().all(|s| s.points >= 80), "{seen:?}");
+}
+
+// ---------------------------------------------------------------------------------------------
+// Boundaries
+
+#[derive(Default, Debug)]
+struct Crossed {
+    rest: usize,
+    slip: usize,
+}
+
+/// A tiny exact step to both sides of every boundary.
+fn compare_boundaries(case: &Case, seen: &mut Crossed) {
+    let Case { net, atlas, .. } = case;
+    assert_eq!(atlas.boundaries.len(), atlas.regions.len(), "{net:?}");
+    let lead = case.at(&atlas.terminals[0]);
+    for b in &atlas.boundaries {
+        let mut planes = atlas.planes.iter().filter(|p| p.label == b.label);
+        let plane = planes.next().unwrap();
+        assert!(planes.next().is_none(), "two planes are called {}", b.label);
+        let slips = !plane.without_relative_motion.is_empty();
+        let size = b.direction[0].abs().max(b.direction[1].abs());
+        let d = b.direction.map(|x| Rational::from_f64(x / size).unwrap());
+        let beside = |way: i64| {
+            let step = q(way, 1_000_000_000);
+            [&d[0] - &(&step * &d[1]), &d[1] + &(&step * &d[0])]
+        };
+        let (before, after) = (beside(-1), beside(1));
+        assert_eq!(case.region(&before).unwrap().number, b.between[0], "{}: {net:?}", b.label);
+        assert_eq!(case.region(&after).unwrap().number, b.between[1], "{}: {net:?}", b.label);
+        for sign in [1, -1] {
+            let found = [&before, &after].map(|base| {
+                let w = net.speeds(&case.base(base)).unwrap();
+                net.balances(&w, &[(lead, Rational::from(sign))], false)
+            });
+            let [Some(before), Some(after)] = found else { continue };
+            let id = |region: usize, balance: &Balance| case.regimes(region, balance)[0].id.clone();
+            let near = |x: Option<f64>, y: &Rational| (x.unwrap() - y.to_f64()).abs() < 1e-6;
+            for x in &before {
+                let from = id(b.between[0], x);
+                let own: Vec<_> = b.crossings.iter().filter(|c| c.from == from).collect();
+                assert!(own.iter().all(|c| near(c.efficiency_before, &x.efficiency)), "{own:?} {x:?}\n{net:?}");
+                if slips {
+                    seen.slip += 1;
+                    continue;
+                }
+                // The same drivers, the same torques; the loss and the efficiency go on.
+                seen.rest += 1;
+                let on: Vec<&Balance> = after.iter().filter(|y| y.drivers == x.drivers).collect();
+                let [y] = on[..] else { panic!("{} {x:?} {after:?}\n{net:?}", b.label) };
+                assert_eq!(x.torques, y.torques, "{net:?}");
+                let step = (&x.loss - &y.loss).to_f64().abs();
+                assert!(step <= 1e-6 * x.loss.to_f64(), "{} {x:?} {y:?}\n{net:?}", b.label);
+                let [crossing] = own[..] else { panic!("{own:?} from {from}\n{net:?}") };
+                assert_eq!(crossing.to, id(b.between[1], y), "{net:?}");
+                let (u, v) = (crossing.efficiency_before.unwrap(), crossing.efficiency_after.unwrap());
+                assert!((u - v).abs() <= 1e-12, "{crossing:?}\n{net:?}");
+            }
+            for y in &after {
+                let to = id(b.between[1], y);
+                let own = b.crossings.iter().filter(|c| c.to == to);
+                assert!(own.into_iter().all(|c| near(c.efficiency_after, &y.efficiency)), "{y:?}\n{net:?}");
+            }
+            assert!(slips || before.len() == after.len(), "{net:?}");
+        }
+    }
+    // What is told of a crossing is what differs between the two regimes.
+    let regime = |id: &str| atlas.regimes.iter().find(|r| r.id == id).unwrap();
+    for c in atlas.boundaries.iter().flat_map(|b| &b.crossings) {
+        let (a, b) = (regime(&c.from), regime(&c.to));
+        let roles = a.roles.iter().zip(b.roles.iter()).filter(|(x, y)| x.1 != y.1).count();
+        let turns = a.torque_signs.iter().zip(b.torque_signs.iter()).filter(|(x, y)| x.1 != y.1).count();
+        let told = |what: &str| c.changes.iter().filter(|t| t.contains(what)).count();
+        assert_eq!((told("becomes"), told("turns round")), (roles, turns), "{c:?}");
+    }
+}
+
+#[test]
+fn val_losses_go_on_over_every_boundary_but_those_without_relative_motion() {
+    let mut random = Random(9);
+    let mut seen = Crossed::default();
+    let mut trains = 0;
+    while trains < 150 {
+        let sets = random.whole(1, 3) as usize;
+        let net = Net::random(sets, 2, 1, 700, &mut random);
+        let Some(case) = Case::new(net, 2) else { continue };
+        trains += 1;
+        compare_boundaries(&case, &mut seen);
+    }
+    assert!(seen.rest > 1000 && seen.slip > 300, "{seen:?}");
+}
+
+/// The same by the solver, in the examples.
+#[test]
+fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
+    let mut compared = 0;
+    for (name, mut text, train) in examples() {
+        for atlas in atlases(&train) {
+            if atlas.degrees_of_freedom != 2 || atlas.independent_torques != 1 {
+                continue;
+            }
+            let [a, b] = &atlas.base_speeds[..] else { panic!() };
+            let lead = &atlas.terminals[0];
+            let mut pairs = Vec::new();
+            for (k, boundary) in atlas.boundaries.iter().enumerate() {
+                let size = boundary.direction[0].abs().max(boundary.direction[1].abs());
+                let d = boundary.direction.map(|x| Rational::from_f64(x / size).unwrap());
+                for torque in [1, -1] {
+                    for way in [-1, 1] {
+                        let step = q(way, 1_000_000_000);
+                        let (x, y) = (&d[0] - &(&step * &d[1]), &d[1] + &(&step * &d[0]));
+                        text += &format!(
+                            "\n[[operation]]\nname = \"beside {k} {torque} {way}\"\nspeeds = {{ \"{a}\" = \"{x} rad/s\", \
+                             \"{b}\" = \"{y} rad/s\" }}\ntorques = {{ \"{lead}\" = \"{torque} N m\" }}\n"
+                        );
+                    }
+                    pairs.push((k, torque));
+                }
+            }
+            let analysis = analyze(&Train::from_toml(&text).unwrap(), &Selection::default()).unwrap();
+            for (k, torque) in pairs {
+                let [x, y] = [-1, 1].map(|way| {
+                    let title = format!("beside {k} {torque} {way}");
+                    let o = analysis.operations.iter().find(|o| o.name == title).unwrap();
+                    assert_eq!(o.solutions.len(), 1, "{name}, {title}");
+                    &o.solutions[0]
+                });
+                let boundary = &atlas.boundaries[k];
+                let plane = atlas.planes.iter().find(|p| p.label == boundary.label).unwrap();
+                let size = x.input_power_w.max(y.input_power_w);
+                // A single set loses nothing where its members turn as one, so this goes on as well.
+                assert!((x.loss_w - y.loss_w).abs() < 1e-7 * size, "{name}, {}: {x:?}", boundary.label);
+                let region = |n: usize| boundary.between[n];
+                let own = |s: &willis::analysis::SolutionReport, region: usize| {
+                    let torque = |m: &str| sign(s.members.get(m).unwrap().torque_n_m.unwrap());
+                    atlas
+                        .regimes
+                        .iter()
+                        .find(|r| r.region == region && r.torque_signs.iter().all(|(m, x)| torque(m) == *x))
+                        .unwrap()
+                };
+                let (from, to) = (own(x, region(0)), own(y, region(1)));
+                let crossing = boundary.crossings.iter().find(|c| c.from == from.id && c.to == to.id).unwrap();
+                let close = |a: Option<f64>, b: Option<f64>| (a.unwrap() - b.unwrap()).abs() < 1e-6;
+                assert!(close(crossing.efficiency_before, x.efficiency), "{name}: {crossing:?} {:?}", x.efficiency);
+                assert!(close(crossing.efficiency_after, y.efficiency), "{name}: {crossing:?} {:?}", y.efficiency);
+                if plane.without_relative_motion.is_empty() {
+                    assert!(close(crossing.efficiency_before, crossing.efficiency_after), "{name}: {crossing:?}");
+                }
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 80, "{compared}");
 }

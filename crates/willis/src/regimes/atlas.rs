@@ -534,6 +534,20 @@ pub(crate) fn efficiency_at(setup: &Setup<'_>, base: &[Rational], torques: &[Rat
     if input.is_zero() { Rational::ONE } else { output / input }
 }
 
+/// Its limit on a direction that bounds a region, coming from a point inside.
+pub(crate) fn efficiency_towards(
+    setup: &Setup<'_>,
+    ray: &[Rational],
+    inside: &[Rational],
+    pattern: &Pattern,
+    torques: &[Rational],
+) -> Rational {
+    let there = setup.torques_at(pattern, inside, torques, ray);
+    // With everything at rest that is loaded, all powers vanish alike.
+    let still = (0..there.len()).all(|t| there[t].is_zero() || dot(setup.terminal_speed(t), ray).is_zero());
+    if still { efficiency_at(setup, inside, torques) } else { efficiency_at(setup, ray, &there) }
+}
+
 /// Efficiency on the two directions that bound a region.
 fn limits(setup: &Setup<'_>, region: &RegionReport, pattern: &Pattern, torques: &[Rational]) -> Option<[f64; 2]> {
     if setup.independent_torques() > 1 {
@@ -541,10 +555,7 @@ fn limits(setup: &Setup<'_>, region: &RegionReport, pattern: &Pattern, torques: 
     }
     match &region.rays {
         Some([from, to]) => {
-            let ends = [from, to].map(|r| {
-                let there = setup.torques_at(pattern, &region.point, torques, r);
-                efficiency_at(setup, r, &there).to_f64()
-            });
+            let ends = [from, to].map(|r| efficiency_towards(setup, r, &region.point, pattern, torques).to_f64());
             Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
         }
         None if setup.base.len() == 1 => Some([efficiency_at(setup, &region.point, torques).to_f64(); 2]),
@@ -681,8 +692,7 @@ fn boundaries(atlas: &mut Atlas, setup: &Setup<'_>) {
                 for b in of(next + 1).filter(|b| continues(setup, atlas, a, b, p)) {
                     let limit = |r: &RegimeReport| {
                         let inside = &atlas.regions[r.region - 1].point;
-                        let there = setup.torques_at(&r.pattern, inside, &r.torques, ray);
-                        Some(efficiency_at(setup, ray, &there).to_f64())
+                        Some(efficiency_towards(setup, ray, inside, &r.pattern, &r.torques).to_f64())
                     };
                     crossings.push(Crossing {
                         from: a.id.clone(),

@@ -12,7 +12,7 @@ use crate::train::{Load, MemberId, Train};
 use crate::units::Quantity;
 
 use super::arrangement::dot;
-use super::atlas::{arrow, drivers, efficiency_at, enumerate, order, plane, regime_name};
+use super::atlas::{arrow, drivers, efficiency_at, efficiency_towards, enumerate, order, plane, regime_name};
 use super::formula::{Efficiencies, Ratios, Shape, element_label};
 use super::setup::{Pattern, Setup};
 use super::{Choice, RegimeSelection, selected};
@@ -528,14 +528,12 @@ impl Finder<'_, '_> {
             let boundary = at(step);
             let (after, _, _) = self.states(&behind, self.loads);
             let still = boundary.iter().all(Rational::is_zero);
-            let there = self.setup.torques_at(&here.pattern, base, &here.torques, &boundary);
-            let scaled = self.scaled(&there);
-            let boundary = if still { base.to_vec() } else { boundary };
             Some(Edge {
                 at: (value + step).to_f64() * unit,
                 label: if still { "everything stands still".to_owned() } else { met.join("; ") },
                 changes: self.changes(base, here, &behind, &after),
-                efficiency_before: efficiency_at(self.setup, &boundary, &scaled).to_f64(),
+                efficiency_before: efficiency_towards(self.setup, &boundary, base, &here.pattern, &here.torques)
+                    .to_f64(),
                 efficiency_after: after
                     .iter()
                     .map(|s| efficiency_at(self.setup, &behind, &s.torques).to_f64())
@@ -549,16 +547,6 @@ impl Finder<'_, '_> {
             below: edge(false),
             above: edge(true),
         }
-    }
-
-    /// Torques scaled to the load, where balanced powers change their proportion.
-    fn scaled(&self, torques: &[Rational]) -> Vec<Rational> {
-        let (t, load) = &self.loads[0];
-        if self.setup.balance.is_none() || torques[*t].is_zero() {
-            return torques.to_vec();
-        }
-        let factor = load / &torques[*t];
-        torques.iter().map(|x| x * &factor).collect()
     }
 
     /// How far a torque can go: a force or a terminal torque vanishes at the end.
