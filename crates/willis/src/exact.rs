@@ -111,16 +111,13 @@ impl Rational {
         }
     }
 
-    /// A whole number modulo `modulus`; `None` for a fraction.
-    pub(crate) fn residue(&self, modulus: u64) -> Option<u64> {
-        if !self.is_integer() {
-            return None;
-        }
+    /// Numerator and denominator modulo `modulus`.
+    pub(crate) fn residues(&self, modulus: u64) -> [u64; 2] {
         match &self.0 {
-            Repr::Small(r) => u64::try_from(r.numer().rem_euclid(i128::from(modulus))).ok(),
+            Repr::Small(r) => [r.numer(), r.denom()].map(|x| x.rem_euclid(i128::from(modulus)) as u64),
             Repr::Big(r) => {
                 let m = BigInt::from(modulus);
-                ((r.numer() % &m + &m) % &m).to_u64()
+                [r.numer(), r.denom()].map(|x| ((x % &m + &m) % &m).to_u64().expect("below the modulus"))
             }
         }
     }

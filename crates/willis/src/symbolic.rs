@@ -254,16 +254,27 @@ impl Polynomial {
         g
     }
 
-    /// The greatest common divisor, numerically primitive, by primitive remainder sequences.
+    /// The greatest common divisor, numerically primitive, by primitive remainder sequences; one when
+    /// it is out of reach.
     fn gcd(&self, other: &Self) -> Self {
         if self.is_zero() || other.is_zero() {
             let p = if self.is_zero() { other } else { self };
             return if p.is_zero() { p.clone() } else { p.primitive() };
         }
         let Some(&s) = self.symbols().first() else { return Self::from(1) };
+        if seem_coprime(self, other) {
+            return Self::from(1);
+        }
         if other.degree(s) == 0 {
             return self.content(s).gcd(other);
         }
+        let found = self.remainder_sequence(other, s);
+        // A divisor that was not found in full may have left what does not divide.
+        let divides = |p: &Self| p.divided(&found).is_some();
+        if divides(self) && divides(other) { found } else { Self::from(1) }
+    }
+
+    fn remainder_sequence(&self, other: &Self, s: Symbol) -> Self {
         let (ca, cb) = (self.content(s), other.content(s));
         let mut a = self.divided(&ca).expect("content divides");
         let mut b = other.divided(&cb).expect("content divides");
@@ -271,6 +282,9 @@ impl Polynomial {
             std::mem::swap(&mut a, &mut b);
         }
         loop {
+            if a.len() * b.len() > MOST_PRODUCTS {
+                return Self::from(1);
+            }
             let r = a.pseudo_remainder(&b, s);
             if r.is_zero() {
                 break;
@@ -387,6 +401,9 @@ fn split(p: Polynomial, factors: &mut Vec<Polynomial>) {
     factors.push(p.primitive());
 }
 
+/// Products of terms in a step towards a common divisor beyond which it is not looked for.
+const MOST_PRODUCTS: usize = 20_000;
+
 /// A prime below 2^61; arithmetic modulo it decides most questions at once.
 const MODULUS: u64 = (1 << 61) - 1;
 
@@ -406,13 +423,12 @@ fn multilinear_factors(p: &Polynomial) -> Option<Vec<Polynomial>> {
         return None;
     }
     let n = symbols.len();
-    let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(MODULUS)) as u64;
     let plus = |a: u64, b: u64| (a + b) % MODULUS;
     // Values of p, its first and its mixed second derivatives.
     let (mut value, mut first, mut second) = (0u64, vec![0u64; n], vec![0u64; n * n]);
     let inverse: Vec<u64> = symbols.iter().map(|s| inverse_of(probe(*s))).collect();
     for (m, c) in &p.0 {
-        let mut term = c.residue(MODULUS)?;
+        let mut term = residue(c);
         let present: Vec<usize> = (0..n).filter(|&k| m.of(symbols[k]) == 1).collect();
         for &k in &present {
             term = times(term, probe(symbols[k]));
@@ -462,9 +478,60 @@ fn multilinear_factors(p: &Polynomial) -> Option<Vec<Polynomial>> {
     (product == *p).then_some(factors)
 }
 
+fn times(a: u64, b: u64) -> u64 {
+    (u128::from(a) * u128::from(b) % u128::from(MODULUS)) as u64
+}
+
+/// A number modulo the prime.
+fn residue(c: &Rational) -> u64 {
+    let [n, d] = c.residues(MODULUS);
+    if d == 1 { n } else { times(n, inverse_of(d)) }
+}
+
+/// The coefficients of the powers of `s`, all other symbols at the probe point.
+fn image(p: &Polynomial, s: Symbol) -> Vec<u64> {
+    let mut all = vec![0u64; p.degree(s) as usize + 1];
+    for (m, c) in &p.0 {
+        let mut term = residue(c);
+        for (k, e) in m.0.iter().enumerate().filter(|(k, _)| *k != s.0) {
+            (0..*e).for_each(|_| term = times(term, probe(Symbol(k))));
+        }
+        let slot = &mut all[m.of(s) as usize];
+        *slot = (*slot + term) % MODULUS;
+    }
+    while all.last() == Some(&0) {
+        all.pop();
+    }
+    all
+}
+
+/// Whether no symbol occurs in a common divisor, as far as the probe point tells. A wrong yes, for
+/// which the point would have to be most unlucky, leaves a formula longer than need be, not wrong.
+fn seem_coprime(a: &Polynomial, b: &Polynomial) -> bool {
+    let other = b.symbols();
+    a.symbols().into_iter().filter(|s| other.contains(s)).all(|s| {
+        let (mut a, mut b) = (image(a, s), image(b, s));
+        while !b.is_empty() {
+            // a modulo b
+            let lead = inverse_of(*b.last().expect("not empty"));
+            while a.len() >= b.len() {
+                let factor = times(*a.last().expect("longer than b"), lead);
+                let shift = a.len() - b.len();
+                for (k, c) in b.iter().enumerate() {
+                    a[shift + k] = (a[shift + k] + MODULUS - times(factor, *c)) % MODULUS;
+                }
+                while a.last() == Some(&0) {
+                    a.pop();
+                }
+            }
+            std::mem::swap(&mut a, &mut b);
+        }
+        a.len() <= 1
+    })
+}
+
 /// The inverse modulo the prime, by Fermat.
 fn inverse_of(x: u64) -> u64 {
-    let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(MODULUS)) as u64;
     let (mut base, mut power, mut result) = (x, MODULUS - 2, 1u64);
     while power > 0 {
         if power & 1 == 1 {

@@ -6,6 +6,7 @@
 //! everything about it follows in a few exact multiplications, without any of the library's code.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
 use willis::analysis::{Role, Selection, Verdict, analyze};
@@ -16,7 +17,9 @@ use willis::regimes::{
     formulas, regimes,
 };
 use willis::symbolic::Notation;
-use willis::train::{EfficiencySpec, OperationSpec, SetSpec, ShiftElementSpec, StateSpec, Train, TrainBuilder};
+use willis::train::{
+    EfficiencySpec, GearSpec, MeshSpec, OperationSpec, SetSpec, ShiftElementSpec, StateSpec, Train, TrainBuilder,
+};
 use willis::units::{AngularSpeed, Torque};
 
 fn q(numerator: i64, denominator: i64) -> Rational {
@@ -1890,4 +1893,337 @@ fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
         }
     }
     assert!(compared >= 80, "{compared}");
+}
+
+// ---------------------------------------------------------------------------------------------
+// Large, odd and wrong questions
+
+#[test]
+fn regress_five_coupled_sets_take_seconds() {
+    let mut random = Random(10);
+    let mut trains = 0;
+    while trains < 8 {
+        let net = Net::random(5, 2, 1 + trains / 6, 900, &mut random);
+        let Ok(train) = net.builder().build() else { continue };
+        let start = Instant::now();
+        let atlas = as_drawn(&train);
+        let sheet = formulas(&train, &request_as_drawn()).unwrap();
+        let time = start.elapsed();
+        let coupled = atlas.regimes.first().map_or(0, |r| r.drivers.iter().filter(|d| d.1.is_some()).count());
+        if coupled < 4 {
+            continue;
+        }
+        trains += 1;
+        assert!(!sheet.formulas.is_empty() && time < Duration::from_secs(5), "{time:?} {net:?}");
+    }
+}
+
+#[test]
+fn regress_a_train_too_large_is_told_at_once() {
+    let mut random = Random(11);
+    let mut seen = 0;
+    for _ in 0..200 {
+        let net = Net::random(16, 4, 8, 900, &mut random);
+        let Ok(train) = net.builder().build() else { continue };
+        let start = Instant::now();
+        let atlas = as_drawn(&train);
+        let sheet = formulas(&train, &request_as_drawn()).unwrap();
+        if atlas.reason.is_some_and(|why| why.contains("willis locate")) {
+            assert!(sheet.without[0].1.contains("willis locate"));
+            assert!(start.elapsed() < Duration::from_secs(2), "{:?}", start.elapsed());
+            seen += 1;
+        }
+        if seen == 10 {
+            return;
+        }
+    }
+    panic!("{seen}");
+}
+
+#[test]
+fn regress_wrong_names_are_refused_with_a_suggestion() {
+    let train = fig1(&SHAPES[0], ETAS[0], LINKS).build().unwrap();
+    let names = |all: &[&str]| Some(all.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>());
+    let base = RegimeSelection::default;
+    let pair = |a: &str, b: &str| Some([a.to_owned(), b.to_owned()]);
+    for (selection, words) in [
+        (RegimeSelection { state: Some("2 hold".into()), ..base() }, vec!["no state `2 hold`", "2 held"]),
+        (RegimeSelection { terminals: names(&["1", "P.plonet"]), ..base() }, vec!["no member `P.plonet`", "P.planet"]),
+        (RegimeSelection { terminals: names(&["1", "2", "1"]), ..base() }, vec!["terminal `1`", "twice"]),
+        (RegimeSelection { terminals: names(&["frame", "2"]), ..base() }, vec!["frame"]),
+        (RegimeSelection { balance: pair("1", "3x"), ..base() }, vec!["no member `3x`"]),
+        (RegimeSelection { balance: pair("1", "1"), ..base() }, vec!["twice"]),
+    ] {
+        let told = regimes(&train, &selection).unwrap_err().to_string();
+        assert!(words.iter().all(|w| told.contains(w)), "{told}");
+        let RegimeSelection { state, terminals, balance } = selection;
+        let request = FormulaRequest { state, terminals, balance, ..Default::default() };
+        let told = formulas(&train, &request).unwrap_err().to_string();
+        assert!(words.iter().all(|w| told.contains(w)), "{told}");
+    }
+    let ends = |from: &[&str], to: &[&str]| FormulaRequest {
+        from: names(from).unwrap(),
+        to: names(to).unwrap(),
+        ..request_as_drawn()
+    };
+    for (request, words) in [
+        (ends(&["7"], &["2"]), "no member `7`"),
+        (ends(&["1"], &["2", "1"]), "both input and output"),
+        (FormulaRequest { regime: Some("99+".into()), ..request_as_drawn() }, "99+"),
+        (FormulaRequest { regime: Some("1+".into()), ..request_of("2 held") }, "1+"),
+    ] {
+        let told = formulas(&train, &request).unwrap_err().to_string();
+        assert!(told.contains(words), "{told}");
+    }
+    for (request, words) in [
+        // Never both: one of them is always an input.
+        (ends(&[], &["1", "2", "4"]), "no regime"),
+        (ends(&["frame"], &[]), "no regime"),
+        (FormulaRequest { from: vec!["1".into(), "4".into()], ..request_of("2 held") }, "one input and one output"),
+        (from_to("2 held", "1", "2"), "held"),
+        (from_to("2 held", "frame", "1"), "held"),
+    ] {
+        let sheet = formulas(&train, &request).unwrap();
+        assert!(sheet.formulas.is_empty() && sheet.without[0].1.contains(words), "{words}: {:?}", sheet.without);
+    }
+}
+
+#[test]
+fn regress_states_without_regimes_say_why() {
+    let set = SetSpec::simple("P", ("s", 30), ("r", 70), "c").mesh_efficiency(0.98);
+    let train = Train::builder("clutches")
+        .members(["s", "r", "c", "x"])
+        .terminals(["s", "r", "c", "x"])
+        .set(set)
+        .shift_element(ShiftElementSpec::clutch("K", "s", "c"))
+        .shift_element(ShiftElementSpec::clutch("X", "s", "x"))
+        .shift_element(ShiftElementSpec::brake("B", "r"))
+        .shift_element(ShiftElementSpec::brake("C", "c"))
+        .state(StateSpec::new("locked", ["B", "C"]).between("s", "c"))
+        .state(StateSpec::new("as one", ["K"]).between("s", "r"))
+        .state(StateSpec::new("joined", ["X"]).between("x", "c"))
+        .state(StateSpec::new("low", ["X", "B"]).between("x", "c"))
+        .build()
+        .unwrap();
+    assert!(state(&train, "locked").reason.unwrap().contains("nothing can turn"));
+    // The teeth carry the load and do not slide.
+    let one = state(&train, "as one");
+    assert!(one.regimes.len() == 4 && one.regimes.iter().all(|r| r.example.efficiency == 1.0), "{one:?}");
+    // Two terminals on one shaft are one terminal.
+    let joined = state(&train, "joined");
+    assert_eq!((joined.terminals.len(), joined.regimes.len()), (3, 16));
+    let low = state(&train, "low");
+    assert_eq!((low.terminals.len(), low.held.len(), low.regimes.len()), (2, 1, 4));
+    // Either name will do for the drive.
+    for input in ["s", "x"] {
+        let sheet = formulas(&train, &from_to("low", input, "c")).unwrap();
+        assert_eq!(sheet.formulas[0].value(), Some(q(3, 10) + q(7, 10) * q(98 * 98, 10000)));
+    }
+    // As drawn x turns on its own.
+    assert_eq!(as_drawn(&train).notes.iter().filter(|n| n.contains("x")).count(), 1);
+    let two = RegimeSelection {
+        state: Some("as drawn".into()),
+        terminals: Some(vec!["s".into(), "c".into()]),
+        ..Default::default()
+    };
+    let atlas = &regimes(&train, &two).unwrap().states[0];
+    assert!(atlas.reason.is_some(), "{atlas:?}");
+}
+
+/// Names that differ only in what no programming language allows are still different arguments.
+#[test]
+fn regress_arguments_have_names_of_their_own() {
+    let train = Train::builder("names")
+        .members(["a b", "a_b", "w"])
+        .terminals(["a b", "a_b", "w"])
+        .mesh(
+            MeshSpec::new(GearSpec::external("a b", 20), GearSpec::external("p-1", 30))
+                .named("m 1")
+                .carrier("w")
+                .efficiency(0.97),
+        )
+        .mesh(
+            MeshSpec::new(GearSpec::external("p-1", 30), GearSpec::internal("a_b", 80))
+                .named("m_1")
+                .carrier("w")
+                .efficiency(0.91),
+        )
+        .members(["p-1"])
+        .build();
+    let train = match train {
+        Ok(train) => train,
+        Err(wrong) => panic!("{wrong}"),
+    };
+    let set = Set { r: q(-20, 80), eta: [q(97 * 91, 10000), q(97 * 91, 10000)] };
+    let of = |link: usize| ["a b", "w", "a_b"][link];
+    let mut random = Random(12);
+    for ratios in [Ratios::Basic, Ratios::Teeth, Ratios::Numbers] {
+        for efficiencies in [Efficiencies::Basic, Efficiencies::Meshes, Efficiencies::Numbers] {
+            let request = FormulaRequest { ratios, efficiencies, ..request_as_drawn() };
+            let sheet = formulas(&train, &request).unwrap();
+            assert!(!sheet.formulas.is_empty());
+            for f in &sheet.formulas {
+                let names: BTreeSet<&str> = f.arguments.iter().map(|a| a.name.as_str()).collect();
+                assert_eq!(names.len(), f.arguments.len(), "{:?}", f.arguments);
+                let sources = sources(f);
+                let mut answers = 0;
+                for _ in 0..400 {
+                    let [w1, w2, t1] = [0; 3].map(|_| Rational::from_f64(signed(&mut random)).unwrap());
+                    let p = set.at(&w1, &w2, &t1);
+                    let at = |v: &[Rational; 3], m: &str| v[(0..3).find(|&k| of(k) == m).unwrap()].clone();
+                    let found = evaluate(f, &sources, &|m| at(&p.w, m), &|m| at(&p.t, m));
+                    let inputs: Vec<&str> = [0, 2, 1].into_iter().filter(|&k| p.powers[k] > 0).map(of).collect();
+                    let own = f.inputs == inputs
+                        && f.drivers.0[0].1.as_deref() == Some(of(if p.driver == "1" { 0 } else { 2 }));
+                    assert_eq!(found.ok(), own.then(|| p.efficiency.clone()), "{ratios:?} {efficiencies:?} {p:?}");
+                    answers += usize::from(own);
+                }
+                assert!(answers > 5);
+            }
+        }
+    }
+}
+
+/// Trains put together at random from everything there is: any answer will do, a panic will not.
+#[test]
+fn prop_no_question_about_any_train_panics() {
+    let mut random = Random(13);
+    let (mut built, mut with_regimes, mut with_formulas) = (0, 0, 0);
+    for n in 0..160 {
+        let Some(train) = anything(&mut random) else { continue };
+        built += 1;
+        let text = format!("train {n}: {:?} {:?} {:?}", train.members(), train.meshes(), train.states());
+        let asked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            let mut some = Vec::new();
+            let members: Vec<String> = train.members().iter().skip(1).map(|m| m.name.clone()).collect();
+            let chosen = members.iter().filter(|m| m.len() % 2 == n % 2).cloned().collect::<Vec<_>>();
+            let balance = (members.len() > 1).then(|| [members[0].clone(), members[members.len() - 1].clone()]);
+            for (terminals, balance) in
+                [(None, None), (Some(chosen), None), (Some(members.clone()), None), (None, balance)]
+            {
+                let selection = RegimeSelection { state: None, terminals, balance };
+                let start = Instant::now();
+                if let Ok(all) = regimes(&train, &selection) {
+                    for a in &all.states {
+                        // Something is listed, or it is said why not.
+                        assert_eq!(
+                            a.regimes.is_empty(),
+                            a.reason.is_some() || a.notes.iter().any(|n| n.contains("threshold")),
+                            "{a:?}"
+                        );
+                    }
+                    some.extend(all.states.into_iter().map(|a| a.regimes.len()));
+                }
+                assert!(start.elapsed() < Duration::from_secs(5), "{:?}", start.elapsed());
+            }
+            let mut sheets = 0;
+            for (ratios, efficiencies) in [
+                (Ratios::Basic, Efficiencies::Basic),
+                (Ratios::Teeth, Efficiencies::Meshes),
+                (Ratios::Numbers, Efficiencies::Numbers),
+            ] {
+                let request = FormulaRequest { ratios, efficiencies, ..Default::default() };
+                if let Ok(sheet) = formulas(&train, &request) {
+                    sheets += sheet.formulas.len();
+                    // Points of many-dimensional regions can have longer fractions than a text may.
+                    for f in sheet.formulas.iter().filter(|f| f.arguments.iter().all(|a| a.exact.len() <= 100)) {
+                        let own =
+                            f.arguments.iter().map(|a| (a.name.clone(), exact(&a.exact))).collect::<BTreeMap<_, _>>();
+                        assert_eq!(own.len(), f.arguments.len(), "{:?}", f.arguments);
+                        // Its own example is accepted, and nonsense refused or answered.
+                        assert_eq!(f.evaluate(&|name| own.get(name).cloned()).ok(), f.value(), "{f:?}");
+                        for value in [0, 1, -1] {
+                            let _ = f.evaluate(&|_| Some(Rational::from(value)));
+                        }
+                        f.derivatives();
+                    }
+                }
+            }
+            (some.iter().any(|n| *n > 0), sheets > 0)
+        }));
+        match asked {
+            Ok((regimes, formulas)) => {
+                with_regimes += usize::from(regimes);
+                with_formulas += usize::from(formulas);
+            }
+            Err(_) => panic!("{text}"),
+        }
+    }
+    println!("{built} {with_regimes} {with_formulas}");
+    assert!(built > 20 && with_regimes > 15 && with_formulas > 8, "{built} {with_regimes} {with_formulas}");
+}
+
+/// A train of random parts: sets of every type, ordinary pairs, clutches, brakes; `None` when the
+/// parts make no train.
+fn anything(random: &mut Random) -> Option<Train> {
+    let count = random.whole(2, 6) as usize;
+    let names: Vec<String> = (0..count).map(|m| format!("{}{m}", "m".repeat(1 + m % 2))).collect();
+    let mut pool: Vec<String> = names.clone();
+    pool.push("frame".into());
+    let any = |random: &mut Random, n: usize, from: &[String]| -> Vec<String> {
+        let mut all = from.to_vec();
+        while all.len() > n {
+            all.remove(random.below(all.len() as u64) as usize);
+        }
+        for k in (1..all.len()).rev() {
+            all.swap(k, random.below(k as u64 + 1) as usize);
+        }
+        all
+    };
+    let mut builder = Train::builder("anything").members(names.iter().map(String::as_str));
+    let wanted = random.whole(0, count as i64) as usize;
+    builder = builder.terminals(any(random, wanted, &names).iter().map(String::as_str));
+    let efficiency = |random: &mut Random| match random.below(4) {
+        0 => EfficiencySpec::from(1.0),
+        1 => EfficiencySpec::directed(random.whole(600, 1000) as f64 / 1000.0, random.whole(600, 1000) as f64 / 1000.0),
+        _ => EfficiencySpec::from(random.whole(900, 999) as f64 / 1000.0),
+    };
+    let mut planets = Vec::new();
+    for k in 0..random.whole(1, 4) {
+        let name = format!("P{k}");
+        let m = any(random, 4, &pool);
+        let at = |k: usize| m[k % m.len()].as_str();
+        let teeth = |random: &mut Random| random.whole(12, 40);
+        let (z, p) = (teeth(random), teeth(random));
+        let set = match random.below(8) {
+            0 => SetSpec::double_planet(name, (at(0), z), (at(1), z + 3 * p), at(2)),
+            1 => SetSpec::stepped(name, at(2)).sun(at(0), z, p).sun(at(1), teeth(random), teeth(random)),
+            2 => SetSpec::stepped(name, at(2)).sun(at(0), z, p).ring(at(1), z + 2 * p, p).sun(at(3), z + 2, p - 2),
+            3 => SetSpec::bevel(name, at(2)).side(at(0), z, false).side(at(1), z, true).planet(p, 2),
+            4 => SetSpec::ravigneaux(name, (at(0), z), (at(1), z + 7), (at(3), z + 50), at(2)),
+            5 => {
+                let pair = MeshSpec::new(GearSpec::external(at(0), z), GearSpec::external(at(1), p))
+                    .efficiency(efficiency(random));
+                let pair = if random.below(2) == 0 { pair.carrier(at(2)) } else { pair };
+                builder = builder.mesh(pair.named(format!("pair{k}")));
+                continue;
+            }
+            6 => SetSpec::simple(name, (at(0), z), (at(1), z + 2 * p), at(2)).planet(p, 3),
+            _ => SetSpec::simple(name, (at(0), z), (at(1), z + 2 * p), at(2)),
+        };
+        planets.push(k);
+        builder = builder.set(match random.below(5) {
+            0 => set,
+            1 => set.basic_efficiency(efficiency(random)),
+            _ => set.mesh_efficiency(efficiency(random)),
+        });
+    }
+    let mut elements = Vec::new();
+    for k in 0..random.whole(0, 3) {
+        let m = any(random, 2, &names);
+        let name = format!("E{k}");
+        builder = builder.shift_element(match random.below(3) {
+            0 if m.len() > 1 => ShiftElementSpec::clutch(&name, &m[0], &m[1]),
+            1 => ShiftElementSpec::one_way(&name, &m[0], "frame"),
+            _ => ShiftElementSpec::brake(&name, &m[0]),
+        });
+        elements.push(name);
+    }
+    for k in 0..random.whole(0, 2) {
+        let engaged: Vec<&str> = elements.iter().filter(|_| random.below(2) == 0).map(String::as_str).collect();
+        let ends = any(random, 2, &names);
+        let state = StateSpec::new(format!("S{k}"), engaged);
+        builder = builder.state(if ends.len() > 1 { state.between(&ends[0], &ends[1]) } else { state });
+    }
+    builder.build().ok()
 }

@@ -17,7 +17,7 @@ use super::{
 };
 
 /// Most patterns of drivers times cones of torques, over all regions, that are tried.
-const MOST_CELLS: u128 = 1 << 18;
+const MOST_CELLS: u128 = 1 << 13;
 /// Most regions of speed.
 const MOST_REGIONS: u128 = 1 << 14;
 /// Most closed formulas that are worked out for one state.
@@ -268,7 +268,7 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
                 },
                 mirror: ids[other][mirror].clone(),
                 by_friction_only: !frictionless.contains(&(k, cell.signs.clone())),
-                all_dissipated: powers.iter().all(|p| *p >= 0),
+                all_dissipated: powers.contains(&1) && !powers.contains(&-1),
                 neighbours: vec![],
                 pattern: cell.pattern.clone(),
                 torques,

@@ -391,13 +391,14 @@ impl<'s, 't> Shape<'s, 't> {
         order.sort_by_key(|&t| (!prefer.contains(&t), balanced(t)));
         let mut rows: Vec<Vec<Polynomial>> = setup.free.iter().map(|&n| row(n, &x)).collect();
         let mut reference = Vec::new();
-        for t in order {
+        // First those that are independent with the ratios of this train, then in general.
+        for (actual, t) in [true, false].into_iter().flat_map(|actual| order.iter().map(move |t| (actual, *t))) {
             if reference.len() == setup.torques {
                 break;
             }
             let mut trial = rows.clone();
             trial.push(row(setup.terminals[t].node, &x));
-            if independent(&trial, setup, &names) {
+            if !reference.contains(&t) && independent(&trial, setup, &names, actual) {
                 rows = trial;
                 reference.push(t);
             }
@@ -772,13 +773,14 @@ fn without_squares(conditions: &mut [Condition]) {
     }
 }
 
-/// Whether rows of polynomials are independent, judged at primes in the place of the symbols.
-fn independent(rows: &[Vec<Polynomial>], setup: &Setup<'_>, names: &Names) -> bool {
+/// Whether rows of polynomials are independent: with the ratios of this train and without losses, or
+/// judged at primes in the place of the symbols.
+fn independent(rows: &[Vec<Polynomial>], setup: &Setup<'_>, names: &Names, actual: bool) -> bool {
     const PRIMES: [i64; 14] = [101, 103, 107, 109, 113, 127, 131, 137, 139, 149, 151, 157, 163, 167];
     let value = |s: Symbol| {
         let k = setup.active.len();
         let j = s.0 - names.x(0).0;
-        Rational::from(PRIMES[j % PRIMES.len()] + (j / k.max(1)) as i64)
+        if actual { setup.ratio(j) } else { Rational::from(PRIMES[j % PRIMES.len()] + (j / k.max(1)) as i64) }
     };
     let mut numbers: Vec<Vec<Rational>> = rows.iter().map(|r| r.iter().map(|p| p.evaluate(&value)).collect()).collect();
     crate::exact::reduce(&mut numbers, setup.active.len()).len() == rows.len()

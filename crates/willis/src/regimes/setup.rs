@@ -90,6 +90,9 @@ impl<'t> Setup<'t> {
                 base.push(k);
             }
         }
+        if base.is_empty() && !terminals.is_empty() {
+            return Err("nothing can turn that carries a load".to_owned());
+        }
         let known: Vec<MemberId> = base.iter().map(|&b| terminals[b].member).collect();
         let transfer = c.transfer(&known);
         let mut node_speed = vec![None; c.nodes];
