@@ -3,8 +3,9 @@
 //!
 //! The modules are listed in the order of the pipeline, and a module uses only those above it:
 //!
-//! 1. [`exact`] numbers, [`symbolic`] functions and [`units`];
+//! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions and [`units`];
 //! 2. [`diagnostic`]: what is wrong, where, and what to do;
+//! 3. [`geometry`] of involute teeth, [`catalogue`] of oils and bearings, [`losses`]: laws;
 //! 3. [`train`]: what a gear train is, and the train file;
 //! 4. [`kinematics`]: exact speeds, what is locked, free or redundant;
 //! 5. [`statics`]: torques with losses, the certificate, the verdict;
@@ -42,8 +43,11 @@
 
 pub mod exact;
 pub mod symbolic;
+pub mod real;
 pub mod units;
 pub mod diagnostic;
+pub mod catalogue;
+pub mod losses;
 pub mod train;
 pub mod kinematics;
 pub mod statics;
@@ -55,6 +59,7 @@ pub mod figure;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;
+pub use real::Real;
 pub use train::Train;
 
 /// The Rust code of the README and of the book runs as doctests.

@@ -1,0 +1,22 @@
+//! Power lost by rolling (pumping oil through the contact) in one tooth contact line.
+
+/// State of a rolling tooth contact.
+#[derive(Clone, Copy, Debug)]
+pub struct RollingContact<D> {
+    /// Sum of the surface speeds `u_1 + u_2`, m/s.
+    pub sum_speed: D,
+    /// Reduced radius of curvature in the normal section, m.
+    pub radius: D,
+    /// Normal force on the contact line, N.
+    pub normal_force: D,
+    /// Length of the contact line, m.
+    pub length: D,
+    /// Dynamic viscosity, Pa s.
+    pub dynamic_viscosity: D,
+    /// Pressure-viscosity coefficient, 1/Pa.
+    pub pressure_viscosity: D,
+    /// Reduced modulus `E'`, Pa.
+    pub reduced_modulus: f64,
+    /// Factor of the thermal reduction of the film, 0 to 1.
+    pub film_reduction: D,
+}
