@@ -9,17 +9,39 @@ use std::fmt;
 
 use crate::exact::Rational;
 
-/// Exponents of metre, kilogram, second and radian.
+/// Exponents of metre, kilogram, second, radian and kelvin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Dimension([i8; 4]);
+pub struct Dimension([i8; 5]);
 
 impl Dimension {
     /// rad/s
-    pub const ANGULAR_SPEED: Self = Self([0, 0, -1, 1]);
+    pub const ANGULAR_SPEED: Self = Self([0, 0, -1, 1, 0]);
     /// N m
-    pub const TORQUE: Self = Self([2, 1, -2, 0]);
+    pub const TORQUE: Self = Self([2, 1, -2, 0, 0]);
     /// W
-    pub const POWER: Self = Self([2, 1, -3, 0]);
+    pub const POWER: Self = Self([2, 1, -3, 0, 0]);
+    /// m
+    pub const LENGTH: Self = Self([1, 0, 0, 0, 0]);
+    /// rad
+    pub const ANGLE: Self = Self([0, 0, 0, 1, 0]);
+    /// K; on the scale of a thermometer, `"60 degC"` is 333.15 K
+    pub const TEMPERATURE: Self = Self([0, 0, 0, 0, 1]);
+    /// N
+    pub const FORCE: Self = Self([1, 1, -2, 0, 0]);
+    /// kg
+    pub const MASS: Self = Self([0, 1, 0, 0, 0]);
+    /// m³
+    pub const VOLUME: Self = Self([3, 0, 0, 0, 0]);
+    /// kg/m³
+    pub const DENSITY: Self = Self([-3, 1, 0, 0, 0]);
+    /// Pa
+    pub const PRESSURE: Self = Self([-1, 1, -2, 0, 0]);
+    /// 1/Pa
+    pub const PRESSURE_COEFFICIENT: Self = Self([1, -1, 2, 0, 0]);
+    /// m²/s
+    pub const KINEMATIC_VISCOSITY: Self = Self([2, 0, -1, 0, 0]);
+    /// Pa s
+    pub const DYNAMIC_VISCOSITY: Self = Self([-1, 1, -1, 0, 0]);
 
     /// What a person calls it, and an example that the reader accepts.
     pub fn describe(self) -> (&'static str, &'static str) {
@@ -27,6 +49,17 @@ impl Dimension {
             Self::ANGULAR_SPEED => ("an angular speed", "1450 rpm"),
             Self::TORQUE => ("a torque", "350 N m"),
             Self::POWER => ("a power", "75 kW"),
+            Self::LENGTH => ("a length", "12.5 mm"),
+            Self::ANGLE => ("an angle", "20 deg"),
+            Self::TEMPERATURE => ("a temperature", "60 degC"),
+            Self::FORCE => ("a force", "5 kN"),
+            Self::MASS => ("a mass", "2.5 kg"),
+            Self::VOLUME => ("a volume", "5 l"),
+            Self::DENSITY => ("a density", "890 kg/m^3"),
+            Self::PRESSURE => ("a pressure", "206 GPa"),
+            Self::PRESSURE_COEFFICIENT => ("a pressure coefficient", "16.5 1/GPa"),
+            Self::KINEMATIC_VISCOSITY => ("a kinematic viscosity", "220 mm^2/s"),
+            Self::DYNAMIC_VISCOSITY => ("a dynamic viscosity", "80 mPa s"),
             _ => ("a quantity of another kind", ""),
         }
     }
@@ -50,47 +83,69 @@ impl Quantity {
     }
 }
 
-/// Symbol, factor (exact), power of π, exponents of m, kg, s, rad.
-type Unit = (&'static str, &'static str, i8, [i8; 4]);
+/// Symbol, factor (exact), power of π, exponents of m, kg, s, rad, K.
+type Unit = (&'static str, &'static str, i8, [i8; 5]);
 
 /// Every unit the reader knows. The first of a kind is the one suggested in messages.
 #[rustfmt::skip]
 const UNITS: &[Unit] = &[
     // BIPM, The International System of Units, 9th ed.; 1 rev = 2π rad.
-    ("rpm",   "1/30",  1, [0, 0, -1, 1]),
-    ("1/min", "1/30",  1, [0, 0, -1, 1]),
-    ("min^-1","1/30",  1, [0, 0, -1, 1]),
-    ("rad",   "1",     0, [0, 0, 0, 1]),
-    ("deg",   "1/180", 1, [0, 0, 0, 1]),
-    ("°",     "1/180", 1, [0, 0, 0, 1]),
-    ("rev",   "2",     1, [0, 0, 0, 1]),
-    ("s",     "1",     0, [0, 0, 1, 0]),
-    ("ms",    "1/1000",0, [0, 0, 1, 0]),
-    ("min",   "60",    0, [0, 0, 1, 0]),
-    ("h",     "3600",  0, [0, 0, 1, 0]),
-    ("N",     "1",     0, [1, 1, -2, 0]),
-    ("kN",    "1000",  0, [1, 1, -2, 0]),
-    ("MN",    "1e6",   0, [1, 1, -2, 0]),
-    ("m",     "1",     0, [1, 0, 0, 0]),
-    ("mm",    "1/1000",0, [1, 0, 0, 0]),
-    ("cm",    "1/100", 0, [1, 0, 0, 0]),
-    ("Nm",    "1",     0, [2, 1, -2, 0]),
-    ("kNm",   "1000",  0, [2, 1, -2, 0]),
-    ("MNm",   "1e6",   0, [2, 1, -2, 0]),
-    ("mNm",   "1/1000",0, [2, 1, -2, 0]),
-    ("Nmm",   "1/1000",0, [2, 1, -2, 0]),
-    ("J",     "1",     0, [2, 1, -2, 0]),
-    ("W",     "1",     0, [2, 1, -3, 0]),
-    ("mW",    "1/1000",0, [2, 1, -3, 0]),
-    ("kW",    "1000",  0, [2, 1, -3, 0]),
-    ("MW",    "1e6",   0, [2, 1, -3, 0]),
+    ("rpm",   "1/30",  1, [0, 0, -1, 1, 0]),
+    ("1/min", "1/30",  1, [0, 0, -1, 1, 0]),
+    ("min^-1","1/30",  1, [0, 0, -1, 1, 0]),
+    ("rad",   "1",     0, [0, 0, 0, 1, 0]),
+    ("deg",   "1/180", 1, [0, 0, 0, 1, 0]),
+    ("°",     "1/180", 1, [0, 0, 0, 1, 0]),
+    ("rev",   "2",     1, [0, 0, 0, 1, 0]),
+    ("s",     "1",     0, [0, 0, 1, 0, 0]),
+    ("ms",    "1/1000",0, [0, 0, 1, 0, 0]),
+    ("min",   "60",    0, [0, 0, 1, 0, 0]),
+    ("h",     "3600",  0, [0, 0, 1, 0, 0]),
+    ("N",     "1",     0, [1, 1, -2, 0, 0]),
+    ("kN",    "1000",  0, [1, 1, -2, 0, 0]),
+    ("MN",    "1e6",   0, [1, 1, -2, 0, 0]),
+    ("m",     "1",     0, [1, 0, 0, 0, 0]),
+    ("mm",    "1/1000",0, [1, 0, 0, 0, 0]),
+    ("cm",    "1/100", 0, [1, 0, 0, 0, 0]),
+    ("Nm",    "1",     0, [2, 1, -2, 0, 0]),
+    ("kNm",   "1000",  0, [2, 1, -2, 0, 0]),
+    ("MNm",   "1e6",   0, [2, 1, -2, 0, 0]),
+    ("mNm",   "1/1000",0, [2, 1, -2, 0, 0]),
+    ("Nmm",   "1/1000",0, [2, 1, -2, 0, 0]),
+    ("J",     "1",     0, [2, 1, -2, 0, 0]),
+    ("W",     "1",     0, [2, 1, -3, 0, 0]),
+    ("mW",    "1/1000",0, [2, 1, -3, 0, 0]),
+    ("kW",    "1000",  0, [2, 1, -3, 0, 0]),
+    ("MW",    "1e6",   0, [2, 1, -3, 0, 0]),
     // NIST SP 811, appendix B: kgf = 9.80665 N and lbf, ft, in exact by definition; hp = 550 ft lbf/s.
-    ("kgf",   "9.80665",           0, [1, 1, -2, 0]),
-    ("lbf",   "4.4482216152605",   0, [1, 1, -2, 0]),
-    ("ft",    "0.3048",            0, [1, 0, 0, 0]),
-    ("in",    "0.0254",            0, [1, 0, 0, 0]),
-    ("hp",    "745.69987158227022",0, [2, 1, -3, 0]),
-    ("PS",    "735.49875",         0, [2, 1, -3, 0]),
+    ("kgf",   "9.80665",           0, [1, 1, -2, 0, 0]),
+    ("lbf",   "4.4482216152605",   0, [1, 1, -2, 0, 0]),
+    ("ft",    "0.3048",            0, [1, 0, 0, 0, 0]),
+    ("in",    "0.0254",            0, [1, 0, 0, 0, 0]),
+    ("hp",    "745.69987158227022",0, [2, 1, -3, 0, 0]),
+    ("PS",    "735.49875",         0, [2, 1, -3, 0, 0]),
+    ("um",    "1e-6",  0, [1, 0, 0, 0, 0]),
+    ("µm",    "1e-6",  0, [1, 0, 0, 0, 0]),
+    ("μm",    "1e-6",  0, [1, 0, 0, 0, 0]),
+    ("kg",    "1",     0, [0, 1, 0, 0, 0]),
+    ("g",     "1/1000",0, [0, 1, 0, 0, 0]),
+    ("t",     "1000",  0, [0, 1, 0, 0, 0]),
+    ("l",     "1/1000",0, [3, 0, 0, 0, 0]),
+    ("L",     "1/1000",0, [3, 0, 0, 0, 0]),
+    ("ml",    "1e-6",  0, [3, 0, 0, 0, 0]),
+    ("dm",    "1/10",  0, [1, 0, 0, 0, 0]),
+    ("Pa",    "1",     0, [-1, 1, -2, 0, 0]),
+    ("kPa",   "1000",  0, [-1, 1, -2, 0, 0]),
+    ("MPa",   "1e6",   0, [-1, 1, -2, 0, 0]),
+    ("GPa",   "1e9",   0, [-1, 1, -2, 0, 0]),
+    ("bar",   "1e5",   0, [-1, 1, -2, 0, 0]),
+    ("mPa",   "1/1000",0, [-1, 1, -2, 0, 0]),
+    ("cP",    "1/1000",0, [-1, 1, -1, 0, 0]),
+    ("St",    "1e-4",  0, [2, 0, -1, 0, 0]),
+    ("cSt",   "1e-6",  0, [2, 0, -1, 0, 0]),
+    ("K",     "1",     0, [0, 0, 0, 0, 1]),
+    ("degC",  "1",     0, [0, 0, 0, 0, 1]),
+    ("°C",    "1",     0, [0, 0, 0, 0, 1]),
 ];
 
 /// Why a quantity string was refused; the text says what to write instead.
@@ -160,12 +215,17 @@ pub fn parse(text: &str, expected: Dimension) -> Result<Quantity, QuantityError>
     if dimension != expected.0 {
         return Err(QuantityError::WrongDimension);
     }
-    let quantity = Quantity { value: value * factor, pi_power, dimension: expected };
+    // A thermometer's zero: as a temperature, degrees Celsius count from 273.15 K.
+    let zero = match (expected, unit) {
+        (Dimension::TEMPERATURE, "degC" | "°C") => Rational::new(27315, 100),
+        _ => Rational::ZERO,
+    };
+    let quantity = Quantity { value: value * factor + zero, pi_power, dimension: expected };
     if quantity.si().is_finite() { Ok(quantity) } else { Err(QuantityError::NoNumber) }
 }
 
 /// Products and quotients of known symbols: `N m`, `N·m`, `N*m`, `rad/s`, `kg m^2`.
-fn parse_unit(text: &str, expected: Dimension) -> Result<(Rational, i8, [i8; 4]), QuantityError> {
+fn parse_unit(text: &str, expected: Dimension) -> Result<(Rational, i8, [i8; 5]), QuantityError> {
     let one = |symbol: &str| UNITS.iter().find(|u| u.0 == symbol);
     let factor = |u: &Unit| u.1.parse::<Rational>().expect("the table holds numbers");
     if let Some(u) = one(text) {
@@ -185,7 +245,7 @@ fn parse_unit(text: &str, expected: Dimension) -> Result<(Rational, i8, [i8; 4])
         QuantityError::UnknownUnit(symbol.chars().take(40).collect(), near)
     };
     let mut value = Rational::ONE;
-    let (mut pi_power, mut dimension) = (0i8, [0i8; 4]);
+    let (mut pi_power, mut dimension) = (0i8, [0i8; 5]);
     let mut divide = false;
     if text.len() > 40 {
         return Err(unknown(text));
@@ -195,10 +255,18 @@ fn parse_unit(text: &str, expected: Dimension) -> Result<(Rational, i8, [i8; 4])
             return Err(unknown(text));
         }
         for symbol in part.split([' ', '·', '*', '⋅', '.']).filter(|s| !s.is_empty()) {
+            // m^2, m2, m²
             let (name, power) = match symbol.split_once('^') {
                 Some((name, power)) => (name, power.parse::<i8>().map_err(|_| unknown(symbol))?),
-                None => (symbol, 1),
+                None => match symbol.char_indices().next_back() {
+                    Some((at, '2' | '²')) if at > 0 => (&symbol[..at], 2),
+                    Some((at, '3' | '³')) if at > 0 => (&symbol[..at], 3),
+                    _ => (symbol, 1),
+                },
             };
+            if name == "1" && !divide {
+                continue;
+            }
             let unit = one(name).ok_or_else(|| unknown(name))?;
             if !(-4..=4).contains(&power) {
                 return Err(unknown(symbol));
@@ -298,6 +366,21 @@ mod tests {
         close(si("100 lbf ft", Dimension::TORQUE), 135.581_794_833_140_04);
         close(si("424 kW", Dimension::POWER), 424e3);
         close(si("1 hp", Dimension::POWER), 745.699_871_582_270_2);
+        close(si("0.4 µm", Dimension::LENGTH), 0.4e-6);
+        close(si("20 deg", Dimension::ANGLE), std::f64::consts::PI / 9.0);
+        close(si("60 degC", Dimension::TEMPERATURE), 333.15);
+        close(si("-10 °C", Dimension::TEMPERATURE), 263.15);
+        close(si("300 K", Dimension::TEMPERATURE), 300.0);
+        for nu in ["220 mm2/s", "220 mm^2/s", "220 mm²/s", "220 cSt"] {
+            close(si(nu, Dimension::KINEMATIC_VISCOSITY), 220e-6);
+        }
+        close(si("80 mPa s", Dimension::DYNAMIC_VISCOSITY), 0.08);
+        close(si("80 cP", Dimension::DYNAMIC_VISCOSITY), 0.08);
+        close(si("0.89 kg/dm3", Dimension::DENSITY), 890.0);
+        close(si("16.5 1/GPa", Dimension::PRESSURE_COEFFICIENT), 16.5e-9);
+        close(si("206 GPa", Dimension::PRESSURE), 206e9);
+        close(si("5 l", Dimension::VOLUME), 5e-3);
+        close(si("2 t", Dimension::MASS), 2000.0);
     }
 
     #[test]

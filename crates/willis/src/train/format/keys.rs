@@ -18,6 +18,10 @@ pub(super) enum Kind {
     Efficiency,
     /// A number, `{ forward, backward }`, or `{ external, internal }` with either of those.
     SetEfficiency,
+    /// A plain number.
+    Number,
+    /// A number with a unit.
+    Quantity(Dimension),
     /// Member name to quantity.
     Quantities(Dimension),
     Table(&'static Table),
@@ -73,8 +77,215 @@ pub(super) static FILE: Table = Table {
         may("shift_element", Kind::Tables(&SHIFT_ELEMENT, 0), "Clutches, brakes and one-way clutches."),
         may("state", Kind::Tables(&STATE, 0), "The shift table. Without it the train is as drawn."),
         may("operation", Kind::Tables(&OPERATION, 0), "Operating points to analyse."),
+        may("oil", Kind::Table(&OIL), "The lubricant: from the catalogue, or by its data."),
+        may("laws", Kind::Table(&LAWS), "Which law of each family is used; `willis laws` lists them."),
+        may("housing", Kind::Table(&HOUSING), "What surrounds the gears."),
+        may("bearing", Kind::Tables(&BEARING, 0), "Rolling bearings."),
+        may("seal", Kind::Tables(&SEAL, 0), "Radial lip seals."),
+        may("rotor", Kind::Tables(&ROTOR, 0), "Carriers and drums that drag the fluid around them."),
     ],
 };
+
+/// The keys of one gear's teeth, after those given.
+macro_rules! with_teeth {
+    ($($key:expr),* $(,)?) => {
+        &[
+            $($key,)*
+            may("shift", Kind::Number, "Profile shift coefficient x; positive moves the teeth outward, also on a ring (DIN gives the opposite sign for rings). Default: 0."),
+            may("addendum", Kind::Number, "Addendum coefficient of the basic rack. Default: that of the geometry, 1."),
+            may("dedendum", Kind::Number, "Dedendum coefficient of the basic rack. Default: that of the geometry, 1.25."),
+            may("tip_alteration", Kind::Quantity(Dimension::LENGTH), "Tip alteration k m_n; negative shortens the teeth."),
+            may("tip_diameter", Kind::Quantity(Dimension::LENGTH), "Tip diameter, instead of addendum and alteration."),
+            may("roughness", Kind::Quantity(Dimension::LENGTH), "Arithmetic mean roughness Ra of the flanks. Default: that of the geometry."),
+            may("immersion", Kind::Quantity(Dimension::LENGTH), "How deep the pitch circle dips into the oil at rest."),
+        ]
+    };
+}
+
+static GEOMETRY: Table = Table {
+    doc: "Involute teeth of a cylindrical pair, or of all pairs of a set.",
+    keys: &[
+        must("module", Kind::Quantity(Dimension::LENGTH), "Normal module."),
+        must("width", Kind::Quantity(Dimension::LENGTH), "Common face width; of one helix when double helical."),
+        may("pressure_angle", Kind::Quantity(Dimension::ANGLE), "Normal pressure angle. Default: 20 deg."),
+        may("helix", Kind::Quantity(Dimension::ANGLE), "Helix angle at the reference circle. Default: 0 deg."),
+        may("double_helical", Kind::Flag, "true for herringbone gears: two helices whose axial forces cancel."),
+        may(
+            "centre_distance",
+            Kind::Quantity(Dimension::LENGTH),
+            "Operating centre distance. Default: the one that follows from the profile shifts.",
+        ),
+        may("addendum", Kind::Number, "Addendum coefficient of the basic rack. Default: 1."),
+        may("dedendum", Kind::Number, "Dedendum coefficient of the basic rack. Default: 1.25."),
+        may("roughness", Kind::Quantity(Dimension::LENGTH), "Arithmetic mean roughness Ra of the flanks."),
+        may("youngs_modulus", Kind::Quantity(Dimension::PRESSURE), "Of the gear material. Default: steel, 206 GPa."),
+        may("poisson_ratio", Kind::Number, "Of the gear material. Default: 0.3."),
+    ],
+};
+
+const GEAR_GEOMETRY: Key =
+    may("geometry", Kind::Table(&GEOMETRY), "The teeth: module, width, angles. With an oil, losses are computed.");
+
+static OIL: Table = Table {
+    doc: "The lubricant. Either a name of the catalogue (`willis laws --oils`), or its data.",
+    keys: &[
+        may("name", Kind::Text, "A designation of the catalogue, `ISO VG 220`; or any name beside own data."),
+        may(
+            "base",
+            Kind::Choice(&["mineral", "pao", "ester", "pag", "phosphate-ester", "traction"]),
+            "Base of the oil. Default: mineral.",
+        ),
+        may(
+            "viscosity_40",
+            Kind::Quantity(Dimension::KINEMATIC_VISCOSITY),
+            "Kinematic viscosity at 40 degrees Celsius.",
+        ),
+        may(
+            "viscosity_100",
+            Kind::Quantity(Dimension::KINEMATIC_VISCOSITY),
+            "Kinematic viscosity at 100 degrees Celsius.",
+        ),
+        may(
+            "viscosity",
+            Kind::Quantity(Dimension::DYNAMIC_VISCOSITY),
+            "Dynamic viscosity at the operating temperature, instead of the two others.",
+        ),
+        may("density_15", Kind::Quantity(Dimension::DENSITY), "Density at 15 degrees Celsius. Default: by base."),
+        may(
+            "pressure_viscosity",
+            Kind::Quantity(Dimension::PRESSURE_COEFFICIENT),
+            "Pressure-viscosity coefficient. Default: by base and viscosity.",
+        ),
+        may(
+            "lubricant_factor",
+            Kind::Number,
+            "Factor X_L of the oil in tooth friction, where measured. Default: by base.",
+        ),
+        may("temperature", Kind::Quantity(Dimension::TEMPERATURE), "Operating temperature. Default: 60 degC."),
+        may(
+            "supply",
+            Kind::Choice(&["bath", "jet", "mist", "grease"]),
+            "How the oil gets to gears and bearings: `bath` churns where gears are immersed, `jet` and `mist` turn the gears in air and oil mist.",
+        ),
+        may("volume", Kind::Quantity(Dimension::VOLUME), "Volume of oil in the sump; needed for churning."),
+        may("mist", Kind::Number, "Volumes of air to one volume of oil in the mist. Default: 34.25."),
+    ],
+};
+
+static LAWS: Table = Table {
+    doc: "Which law of each family is used; `willis laws` lists them with range and source.",
+    keys: &[
+        may("mesh_friction", Kind::Text, "Friction of the teeth. Default: schlenk, or constant without an oil."),
+        may("friction_coefficient", Kind::Number, "The coefficient of the law `constant`. Default: 0.05."),
+        may("loss_factor", Kind::Text, "Loss factor of a mesh."),
+        may("load_sharing", Kind::Text, "Sharing of the load between tooth pairs."),
+        may("film", Kind::Text, "Thickness of the oil film."),
+        may("film_reduction", Kind::Text, "Reduction of the film by heating at the inlet."),
+        may("rolling", Kind::Text, "Rolling losses. Default: with friction laws that lack them."),
+        may("bearing", Kind::Text, "Friction of rolling bearings."),
+        may("windage", Kind::Text, "Gears in air."),
+        may("churning", Kind::Text, "Gears in the sump."),
+        may("seal", Kind::Text, "Lip seals."),
+        may("rotor_drag", Kind::Text, "Carriers and drums."),
+    ],
+};
+
+static HOUSING: Table = Table {
+    doc: "What surrounds the gears.",
+    keys: &[
+        may(
+            "enclosure",
+            Kind::Number,
+            "Factor on windage: 1 free, 0.6 to 0.7 large case, 0.5 fitting case. Default: 1.",
+        ),
+        may(
+            "axial_gap",
+            Kind::Quantity(Dimension::LENGTH),
+            "Axial distance from the gear faces to the wall. Default: free.",
+        ),
+    ],
+};
+
+static BEARING: Table = Table {
+    doc: "Rolling bearings between two members: `count` of them; on planets, at every planet.",
+    keys: &[
+        must("name", Kind::Text, "What it is called."),
+        must("members", Kind::Names, "The two members it joins, or one that turns against the frame."),
+        may("designation", Kind::Text, "`NU 1022`, `6205-2RS1`, `32216`: kind, size and constants from the catalogue."),
+        may("kind", Kind::Choice(BEARING_KINDS), "Kind, where the catalogue does not have it."),
+        may("series", Kind::Text, "Series of its constants, `10`, `62`, `322`."),
+        may("bore", Kind::Quantity(Dimension::LENGTH), "Bore."),
+        may("outside_diameter", Kind::Quantity(Dimension::LENGTH), "Outside diameter."),
+        may("width", Kind::Quantity(Dimension::LENGTH), "Width."),
+        may("static_rating", Kind::Quantity(Dimension::FORCE), "Static load rating C0."),
+        may("axial_factor", Kind::Number, "Axial factor Y of a tapered bearing."),
+        may("count", Kind::Integer, "How many sit side by side and share the load. Default: 1."),
+        may("shaft_diameter", Kind::Quantity(Dimension::LENGTH), "Of the seat; checked against the bore."),
+        may(
+            "span",
+            Kind::Quantity(Dimension::LENGTH),
+            "Distance between the outermost of them; takes the tilting moment of helical planets. Default: the face width.",
+        ),
+        may(
+            "radial_load",
+            Kind::Quantity(Dimension::FORCE),
+            "A constant radial load beside those of the gears, on all of them together. Default: none.",
+        ),
+        may(
+            "axial_load",
+            Kind::Quantity(Dimension::FORCE),
+            "A constant axial load beside those of the gears. Default: none.",
+        ),
+        may("supply", Kind::Choice(&["bath", "jet", "mist", "grease"]), "How it gets its oil. Default: as the train."),
+        may(
+            "level",
+            Kind::Quantity(Dimension::LENGTH),
+            "Oil level above the lowest rolling element's contact, for a bath.",
+        ),
+    ],
+};
+
+static SEAL: Table = Table {
+    doc: "A radial lip seal.",
+    keys: &[
+        must("name", Kind::Text, "What it is called."),
+        must(
+            "members",
+            Kind::Names,
+            "The shaft, or the shaft and the member that holds the seal (default: the frame).",
+        ),
+        must("diameter", Kind::Quantity(Dimension::LENGTH), "Shaft diameter."),
+        may("material", Kind::Choice(&["fkm", "nbr"]), "Of the lip. Default: fkm."),
+        may("count", Kind::Integer, "How many lips. Default: 1."),
+    ],
+};
+
+static ROTOR: Table = Table {
+    doc: "A smooth body of revolution, a carrier or a drum, that drags the fluid around it.",
+    keys: &[
+        must("name", Kind::Text, "What it is called."),
+        must("member", Kind::Name, "The member it belongs to."),
+        must("radius", Kind::Quantity(Dimension::LENGTH), "Outer radius."),
+        must("length", Kind::Quantity(Dimension::LENGTH), "Axial length of the rim."),
+        must("radial_gap", Kind::Quantity(Dimension::LENGTH), "Gap between rim and wall."),
+        may(
+            "axial_gap",
+            Kind::Quantity(Dimension::LENGTH),
+            "Gap between each face and the wall. Default: the radial gap.",
+        ),
+        may("fluid", Kind::Choice(&["oil", "mist", "air"]), "What it turns in. Default: mist."),
+    ],
+};
+
+const BEARING_KINDS: &[&str] = &[
+    "deep-groove-ball",
+    "angular-contact-ball",
+    "cylindrical-roller",
+    "full-complement-cylindrical-roller",
+    "needle-roller",
+    "tapered-roller",
+    "spherical-roller",
+];
 
 static MESH: Table = Table {
     doc: "A gear pair on a carrier.",
@@ -92,6 +303,7 @@ static MESH: Table = Table {
             "In the carrier frame; or { forward, backward }: forward = the first gear drives. Default: lossless, listed as an assumption.",
         ),
         may("count", Kind::Integer, "Identical meshes in parallel. Default: 1."),
+        GEAR_GEOMETRY,
         may(
             "sense",
             Kind::Choice(&["opposite", "same"]),
@@ -107,7 +319,7 @@ static MESH: Table = Table {
 
 static GEAR: Table = Table {
     doc: "A gear of a mesh.",
-    keys: &[
+    keys: with_teeth![
         must("member", Kind::Name, "The rotor it sits on."),
         must("teeth", Kind::Integer, "Tooth count."),
         may("internal", Kind::Flag, "true for a ring gear."),
@@ -116,7 +328,7 @@ static GEAR: Table = Table {
 
 static CENTRAL: Table = Table {
     doc: "A sun or ring gear.",
-    keys: &[
+    keys: with_teeth![
         must("member", Kind::Name, "The rotor it sits on; `frame` for a gear that is always held."),
         must("teeth", Kind::Integer, "Tooth count."),
     ],
@@ -124,12 +336,16 @@ static CENTRAL: Table = Table {
 
 static STEP: Table = Table {
     doc: "A sun or ring gear and the step of the planet it meshes with.",
-    keys: &[
+    keys: with_teeth![
         must("member", Kind::Name, "The rotor it sits on; `frame` for a gear that is always held."),
         must("teeth", Kind::Integer, "Tooth count."),
         must("planet_teeth", Kind::Integer, "Teeth of the step of the planet that it meshes with."),
+        may("planet", Kind::Table(&PLANET_STEP), "The teeth of that step."),
+        GEAR_GEOMETRY,
     ],
 };
+
+static PLANET_STEP: Table = Table { doc: "The teeth of a step of the planet.", keys: with_teeth![] };
 
 static SIDE: Table = Table {
     doc: "A side gear of a bevel set.",
@@ -147,19 +363,31 @@ static SIDE: Table = Table {
 
 static PLANET: Table = Table {
     doc: "The planets of a set.",
-    keys: &[
+    keys: with_teeth![
         may(
             "teeth",
             Kind::Integer,
             "Tooth count. Without it planet speeds are those of the nominal planet (z_ring - z_sun)/2.",
         ),
         may("count", Kind::Integer, "Number of planets; enables the assembly checks."),
+        may(
+            "mass",
+            Kind::Quantity(Dimension::MASS),
+            "Mass of one planet; its centrifugal force loads the planet bearings."
+        ),
     ],
 };
 
 static STEPPED_PLANET: Table = Table {
     doc: "The stepped planets of a set; their teeth stand with the gears they mesh with.",
-    keys: &[may("count", Kind::Integer, "Number of planets; enables the assembly checks.")],
+    keys: &[
+        may("count", Kind::Integer, "Number of planets; enables the assembly checks."),
+        may(
+            "mass",
+            Kind::Quantity(Dimension::MASS),
+            "Mass of one planet; its centrifugal force loads the planet bearings.",
+        ),
+    ],
 };
 
 const NAME: Key = must("name", Kind::Text, "Unique; its planets are called after it, `P1.planet`.");
@@ -195,6 +423,7 @@ static SIMPLE: Table = Table {
         may("planet", Kind::Table(&PLANET), "The planets."),
         must("ring", Kind::Table(&CENTRAL), "The ring gear."),
         CARRIER,
+        GEAR_GEOMETRY,
         MESH_EFFICIENCY,
         BASIC_EFFICIENCY,
     ],
@@ -210,6 +439,7 @@ static DOUBLE_PLANET: Table = Table {
         may("outer_planet", Kind::Table(&PLANET), "The planets on the ring, in mesh with the inner ones."),
         must("ring", Kind::Table(&CENTRAL), "The ring gear."),
         CARRIER,
+        GEAR_GEOMETRY,
         MESH_EFFICIENCY,
         BASIC_EFFICIENCY,
     ],
@@ -224,6 +454,7 @@ static STEPPED: Table = Table {
         may("rings", Kind::Tables(&STEP, 0), "Ring gears."),
         may("planet", Kind::Table(&STEPPED_PLANET), "The planets."),
         CARRIER,
+        GEAR_GEOMETRY,
         MESH_EFFICIENCY,
         BASIC_EFFICIENCY,
     ],
@@ -240,6 +471,7 @@ static RAVIGNEAUX: Table = Table {
         may("short_planet", Kind::Table(&PLANET), "Short planets."),
         may("long_planet", Kind::Table(&PLANET), "Long planets."),
         CARRIER,
+        GEAR_GEOMETRY,
         MESH_EFFICIENCY,
         BASIC_EFFICIENCY,
     ],
@@ -299,5 +531,10 @@ static OPERATION: Table = Table {
         may("fixed", Kind::Names, "Members held at rest from outside."),
         may("torques", Kind::Quantities(Dimension::TORQUE), "External torques ON terminals."),
         may("powers", Kind::Quantities(Dimension::POWER), "External powers INTO the train at terminals."),
+        may(
+            "temperature",
+            Kind::Quantity(Dimension::TEMPERATURE),
+            "Oil temperature in this operating point. Default: that of the oil.",
+        ),
     ],
 };

@@ -41,6 +41,8 @@ enum Node {
     Efficiency(EfficiencySpec),
     SetEfficiency(EfficiencySpec, EfficiencySpec),
     Quantities(Vec<(String, Quantity)>),
+    Quantity(Quantity),
+    Number(f64),
     Table(Fields),
     Tables(Vec<Fields>),
 }
@@ -69,6 +71,22 @@ impl Fields {
     getter!(efficiency, Node::Efficiency(e) => e.clone(), Option<EfficiencySpec>);
     getter!(set_efficiency, Node::SetEfficiency(e, i) => (e.clone(), i.clone()), Option<(EfficiencySpec, EfficiencySpec)>);
     getter!(quantities, Node::Quantities(q) => q.clone(), Vec<(String, Quantity)>);
+
+    /// A quantity in SI.
+    pub fn si(&self, key: &str) -> Option<f64> {
+        match self.0.get(key) {
+            Some(Node::Quantity(q)) => Some(q.si()),
+            _ => None,
+        }
+    }
+
+    /// A plain number.
+    pub fn real(&self, key: &str) -> Option<f64> {
+        match self.0.get(key) {
+            Some(Node::Number(x)) => Some(*x),
+            _ => None,
+        }
+    }
 
     pub fn table(&self, key: &str) -> Option<&Fields> {
         match self.0.get(key) {
@@ -285,6 +303,8 @@ impl Reader<'_> {
                 }
                 Some(Node::Quantities(all))
             }
+            Kind::Quantity(dimension) => self.quantity(value, *dimension, place).map(Node::Quantity),
+            Kind::Number => self.number(value, place, "").map(|x| Node::Number(x.to_f64())),
             Kind::Table(table) => match value.get_ref().as_table() {
                 Some(map) => Some(Node::Table(self.table(map, table, place, value.span()))),
                 None => {
@@ -380,24 +400,35 @@ impl Reader<'_> {
         match value.get_ref() {
             DeValue::Table(table) => {
                 let [forward, backward] =
-                    self.two(table, place, ["forward", "backward"], value.span(), Self::number)?;
+                    self.two(table, place, ["forward", "backward"], value.span(), Self::fraction)?;
                 Some(EfficiencySpec(Efficiency { forward, backward }))
             }
-            _ => self.number(value, place).map(EfficiencySpec::from),
+            DeValue::Integer(_) | DeValue::Float(_) | DeValue::String(_) => {
+                self.fraction(value, place).map(EfficiencySpec::from)
+            }
+            _ => {
+                self.wrong_type(place, value, "a number such as 0.98, or { forward = 0.98, backward = 0.97 }");
+                None
+            }
         }
     }
 
-    fn number(&mut self, value: &Value<'_>, place: &str) -> Option<Rational> {
+    /// One efficiency.
+    fn fraction(&mut self, value: &Value<'_>, place: &str) -> Option<Rational> {
+        self.number(value, place, "write 0.98 for 98 %")
+    }
+
+    fn number(&mut self, value: &Value<'_>, place: &str, hint: &str) -> Option<Rational> {
         let text = match value.get_ref() {
             DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
             DeValue::Float(x) => x.as_str(),
             DeValue::String(s) => {
                 let message = format!("`{}` is a number without quotes, here is \"{}\"", last(place), clip(s));
-                self.report(Code::WrongType, place, message, "write 0.98 for 98 %");
+                self.report(Code::WrongType, place, message, hint);
                 return None;
             }
             _ => {
-                self.wrong_type(place, value, "a number such as 0.98, or { forward = 0.98, backward = 0.97 }");
+                self.wrong_type(place, value, "a number");
                 return None;
             }
         };

@@ -64,6 +64,11 @@ fn kind(k: &Kind) -> Value {
         Kind::SetEfficiency => {
             json!({ "anyOf": [efficiency.clone(), pair(["external", "internal"], &efficiency)] })
         }
+        Kind::Number => json!({ "type": "number" }),
+        Kind::Quantity(dimension) => {
+            let (what, example) = dimension.describe();
+            json!({ "type": "string", "description": format!("{what} with its unit"), "examples": [example] })
+        }
         Kind::Quantities(dimension) => {
             let (what, example) = dimension.describe();
             json!({
