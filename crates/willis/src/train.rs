@@ -9,6 +9,7 @@ mod assemble;
 mod describe;
 mod expand;
 mod format;
+mod physical;
 
 use std::fmt;
 
@@ -16,13 +17,18 @@ use serde::Serialize;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::exact::Rational;
+use crate::losses::Laws;
 use crate::units::Quantity;
 
+pub use describe::physical::{
+    BearingSpec, Fluid, GeometrySpec, HousingSpec, OilSpec, OilSupply, RotorSpec, SealSpec, ToothSpec,
+};
 pub use describe::{
     EfficiencySpec, GearSpec, MeshSpec, OperationSpec, SetEfficiencySpec, SetSpec, ShiftElementSpec, StateSpec,
     TrainBuilder,
 };
 pub use format::{Reading, schema};
+pub use physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
 
 /// A member's number within its train. The frame is number 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -126,6 +132,11 @@ pub struct Mesh {
     pub count: u32,
     /// The set that it belongs to.
     pub set: Option<usize>,
+    /// Whether [`Mesh::efficiency`] is a nominal one: at operating points the loss is computed from
+    /// the teeth.
+    pub computed: bool,
+    /// Its teeth, where the geometry is given.
+    pub teeth: Option<Box<Teeth>>,
 }
 
 /// A set as its writer named it; its gears are among the train's meshes.
@@ -209,6 +220,8 @@ pub struct Operation {
     pub fixed: Vec<MemberId>,
     /// Prescribed torques and powers.
     pub loads: Vec<(MemberId, Load)>,
+    /// Oil temperature, K, where it differs from that of the oil.
+    pub temperature: Option<f64>,
     pub(crate) place: String,
 }
 
@@ -243,6 +256,13 @@ pub struct Train {
     pub(crate) output: Option<MemberId>,
     pub(crate) warnings: Vec<Diagnostic>,
     pub(crate) assumptions: Vec<String>,
+    pub(crate) lubrication: Option<Lubrication>,
+    pub(crate) laws: Laws,
+    pub(crate) housing: HousingSpec,
+    pub(crate) bearings: Vec<BearingMount>,
+    pub(crate) seals: Vec<SealMount>,
+    pub(crate) rotors: Vec<Rotor>,
+    pub(crate) planets: Vec<PlanetBody>,
 }
 
 impl Train {
@@ -334,6 +354,60 @@ impl Train {
     /// What stands in for data that were not given.
     pub fn assumptions(&self) -> &[String] {
         &self.assumptions
+    }
+
+    /// The oil and how it gets around.
+    pub fn lubrication(&self) -> Option<&Lubrication> {
+        self.lubrication.as_ref()
+    }
+
+    /// The laws in force.
+    pub fn laws(&self) -> &Laws {
+        &self.laws
+    }
+
+    /// What surrounds the gears.
+    pub fn housing(&self) -> HousingSpec {
+        self.housing
+    }
+
+    /// Every rolling bearing.
+    pub fn bearings(&self) -> &[BearingMount] {
+        &self.bearings
+    }
+
+    /// Every lip seal.
+    pub fn seals(&self) -> &[SealMount] {
+        &self.seals
+    }
+
+    /// Every carrier or drum that drags the fluid around it.
+    pub fn rotors(&self) -> &[Rotor] {
+        &self.rotors
+    }
+
+    /// Planets whose orbit is known.
+    pub fn planets(&self) -> &[PlanetBody] {
+        &self.planets
+    }
+
+    /// Whether losses are computed at operating points, beside given mesh efficiencies.
+    pub fn is_physical(&self) -> bool {
+        self.meshes.iter().any(|m| m.computed)
+            || !(self.bearings.is_empty() && self.seals.is_empty() && self.rotors.is_empty())
+            || self.lubrication.as_ref().is_some_and(|l| l.supply.is_some())
+                && self.meshes.iter().any(|m| m.teeth.is_some())
+    }
+
+    /// The same train with another law in one family.
+    ///
+    /// # Errors
+    /// If there is no such family or law.
+    pub fn with_law(mut self, family: &str, law: &str) -> Result<Self, Diagnostics> {
+        match self.laws.choose(family, law) {
+            Ok(()) => Ok(self),
+            Err(d) => Err([*d].into_iter().collect()),
+        }
     }
 
     /// The member of that name.

@@ -87,6 +87,12 @@ codes! {
     E108 TooLarge: "the train is too large";
     /// Two keys say the same thing in two ways, or exclude each other.
     E109 Conflict: "these keys exclude each other";
+    /// The teeth described cannot exist: the tip lies inside the base circle, the tooth is pointed,
+    /// the centre distance leaves no contact, the planets of one set would need axes on different
+    /// circles. The message has the numbers.
+    E110 ImpossibleGeometry: "these teeth cannot exist";
+    /// The dimensions of a bearing exclude each other or do not fit its shaft.
+    E111 ImpossibleBearing: "the bearing cannot be built or does not fit";
     /// The prescribed speeds cannot all hold: the gears already tie some of them together. Give
     /// as many independent speeds as the train has degrees of freedom.
     E201 ContradictorySpeeds: "the prescribed speeds contradict each other";
@@ -151,6 +157,18 @@ codes! {
     /// The certificate failed and the train has too many interacting meshes to try every sign
     /// pattern; a solution that was found may not be the only one.
     W313 NotEnumerated: "uniqueness could not be decided";
+    /// The teeth can exist, but something about them is unusual and makes results doubtful:
+    /// undercut, a thin tip, a contact ratio close to one, a path of contact cut short.
+    W314 DoubtfulGeometry: "unusual teeth";
+    /// The dimensions of a bearing do not belong to its designation or series, or no constants are
+    /// known for it. Its losses are computed with what was given.
+    W315 DoubtfulBearing: "bearing data do not agree";
+    /// A formula was used outside the range in which its source claims validity. The result is an
+    /// extrapolation; `willis losses --compare FAMILY` shows what other laws of the family say.
+    W316 OutsideLaw: "outside the range of a law";
+    /// Losses and loads depend on each other and were not brought into agreement to 1e-9 of the
+    /// loss. What is shown is the last step; treat it as a hint only.
+    W317 NotConverged: "the operating point did not converge";
     /// A loaded mesh without relative motion: its friction may act in either direction, up to the
     /// sliding value, so torques behind it are known only within a range. Shown: the value
     /// without friction.
@@ -161,6 +179,9 @@ codes! {
     /// The train has no input and output (or they are one member), so there is no ratio to tell, and
     /// no operation either. Name `terminals`, or `input` and `output`, or add an operation.
     N403 NothingAsked: "nothing to analyse";
+    /// The file gives teeth and an efficiency for one mesh: the efficiency is used, and the teeth
+    /// only for speeds, pressures and film. Leave out the efficiency to have the loss computed.
+    N404 GivenEfficiency: "a given efficiency is used instead of the teeth";
 }
 
 impl Code {

@@ -1,9 +1,12 @@
 //! From names and numbers to a checked [`Train`]: everything that is wrong is found in one pass.
 
+mod physical;
+
 use std::collections::{HashMap, HashSet};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
+use crate::losses::Laws;
 
 use super::describe::{EfficiencySpec, GearSpec, MeshSpec, OperationSpec, ShiftElementSpec, StateSpec, TrainBuilder};
 use super::{
@@ -26,6 +29,9 @@ pub(super) struct Assembler<'a> {
     pub meshes: Vec<Mesh>,
     /// What it is about, and what was assumed of it.
     pub assumptions: Vec<(String, String)>,
+    pub laws: Laws,
+    /// The coefficient of friction where nothing better is known.
+    pub friction_coefficient: f64,
     by_name: HashMap<String, MemberId>,
     mesh_names: HashSet<String>,
 }
@@ -161,6 +167,17 @@ impl Assembler<'_> {
             .name
             .clone()
             .unwrap_or_else(|| self.default_mesh_name(format!("{}-{}", spec.gears[0].member, spec.gears[1].member)));
+        let gears_of_pair = [0, 1].map(|k| {
+            let g = &spec.gears[k];
+            (g.z() as f64, g.internal, g.tooth)
+        });
+        let geometry = spec.geometry.as_ref().filter(|_| !spec.bevel);
+        let teeth = geometry.and_then(|g| self.tooth_pair(g, gears_of_pair, &name, place));
+        let computed = efficiency.is_none() && teeth.is_some();
+        let efficiency = match (efficiency, &teeth) {
+            (None, Some(teeth)) => Some(self.nominal_efficiency(teeth)),
+            (given, _) => given,
+        };
         if efficiency.is_none() {
             self.assume(&name, "no efficiency given, taken as lossless");
         }
@@ -193,6 +210,8 @@ impl Assembler<'_> {
             bevel: spec.bevel,
             count,
             set: None,
+            computed,
+            teeth: teeth.map(Box::new),
         });
     }
 
@@ -293,6 +312,7 @@ impl Assembler<'_> {
             speeds: vec![],
             fixed: vec![],
             loads: vec![],
+            temperature: spec.temperature,
             place: place.clone(),
         };
         for (k, name) in spec.fixed.iter().enumerate() {
@@ -348,6 +368,7 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         ("shift elements", spec.shift_elements.len(), MOST_MEMBERS),
         ("states", spec.states.len(), MOST_STATES),
         ("operations", spec.operations.len(), MOST_OPERATIONS),
+        ("bearings, seals and rotors", spec.bearings.len() + spec.seals.len() + spec.rotors.len(), MOST_MEMBERS),
     ] {
         if is > most {
             let message = format!("{is} {what}: at most {most} are analysed");
@@ -364,6 +385,8 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         members: vec![frame],
         meshes: vec![],
         assumptions: vec![],
+        laws: Laws::default(),
+        friction_coefficient: crate::losses::mesh_friction::Constant::DEFAULT.coefficient,
         by_name: HashMap::from([("frame".into(), FRAME)]),
         mesh_names: spec.meshes.iter().filter_map(|m| m.name.clone()).collect(),
     };
@@ -388,6 +411,8 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         a.members.push(Member { name: name.clone(), kind: MemberKind::Shaft });
     }
 
+    a.choose_laws(&spec.laws, spec.friction_coefficient);
+    let lubrication = spec.oil.as_ref().and_then(|o| a.oil(o));
     unique(&mut a, "set", "set", spec.sets.iter().map(|s| s.name.as_str()));
     // Planets exist before anything can refer to them.
     let sets: Vec<_> = spec.sets.iter().map(|s| (s, expand::planets(&mut a, s))).collect();
@@ -418,6 +443,29 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         .enumerate()
         .map(|(k, o)| a.operation(o, &spec.states, format!("operation[{k}]")))
         .collect();
+
+    unique(&mut a, "bearing", "bearing", spec.bearings.iter().map(|b| b.name.as_str()));
+    unique(&mut a, "seal", "seal", spec.seals.iter().map(|s| s.name.as_str()));
+    unique(&mut a, "rotor", "rotor", spec.rotors.iter().map(|r| r.name.as_str()));
+    let mut bearings: Vec<_> = (spec.bearings.iter().enumerate())
+        .filter_map(|(k, b)| a.bearing(b, &format!("bearing[{k}]")))
+        .collect();
+    let seals: Vec<_> =
+        spec.seals.iter().enumerate().filter_map(|(k, s)| a.seal(s, &format!("seal[{k}]"))).collect();
+    let rotors: Vec<_> =
+        spec.rotors.iter().enumerate().filter_map(|(k, r)| a.rotor(r, &format!("rotor[{k}]"))).collect();
+    let masses: Vec<(MemberId, f64)> = (sets.iter())
+        .flat_map(|(set, planets)| planets.iter().copied().zip(set.planet_masses()))
+        .filter_map(|(planet, mass)| Some((planet, mass?)))
+        .collect();
+    let planets = a.planet_bodies(&masses, &mut bearings);
+    a.housing(&spec.housing);
+    for (k, o) in spec.operations.iter().enumerate() {
+        if let (Some(t), Some(l)) = (o.temperature, &lubrication) {
+            a.temperature(&l.oil, t, &format!("operation[{k}].temperature"));
+        }
+    }
+    a.missing_for_losses(&lubrication, &bearings, &rotors);
 
     let mut terminals: Vec<MemberId> = Vec::new();
     for (k, name) in spec.terminals.iter().enumerate() {
@@ -481,7 +529,7 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
 
     let failed = a.diagnostics.iter().skip(before).any(|d| d.severity == crate::diagnostic::Severity::Error);
     let assumptions = a.assumptions();
-    let Assembler { diagnostics, members, meshes, .. } = a;
+    let Assembler { diagnostics, members, meshes, laws, .. } = a;
     (!failed).then(|| Train {
         name: spec.name,
         source: spec.source,
@@ -496,6 +544,13 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         output,
         warnings: diagnostics.iter().skip(before).cloned().collect(),
         assumptions,
+        lubrication,
+        laws,
+        housing: spec.housing,
+        bearings,
+        seals,
+        rotors,
+        planets,
     })
 }
 

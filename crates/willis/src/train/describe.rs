@@ -7,6 +7,10 @@ use crate::units::{AngularSpeed, Power, Quantity, Torque};
 
 use super::{Load, assemble};
 
+pub(super) mod physical;
+
+use physical::{BearingSpec, GeometrySpec, HousingSpec, OilSpec, RotorSpec, SealSpec, ToothSpec};
+
 /// A gear of a mesh: its member, tooth count, and whether it is a ring gear.
 #[derive(Clone, Debug)]
 pub struct GearSpec {
@@ -17,12 +21,33 @@ pub struct GearSpec {
     pub(crate) planet_teeth: Option<i64>,
     /// Right side of the planet's apex, in a bevel set.
     pub(crate) right: Option<bool>,
+    pub(crate) tooth: ToothSpec,
+    /// Teeth of the step of the planet, in a stepped set.
+    pub(crate) planet_tooth: ToothSpec,
+    /// Geometry of this gear's mesh, in a stepped set.
+    pub(crate) geometry: Option<GeometrySpec>,
 }
 
 impl GearSpec {
     /// An external gear.
     pub fn external(member: impl Into<String>, teeth: i64) -> Self {
-        Self { member: member.into(), teeth, internal: false, planet_teeth: None, right: None }
+        Self {
+            member: member.into(),
+            teeth,
+            internal: false,
+            planet_teeth: None,
+            right: None,
+            tooth: ToothSpec::default(),
+            planet_tooth: ToothSpec::default(),
+            geometry: None,
+        }
+    }
+
+    /// Gives profile shift, tip and roughness.
+    #[must_use]
+    pub fn tooth(mut self, tooth: ToothSpec) -> Self {
+        self.tooth = tooth;
+        self
     }
 
     /// A ring gear.
@@ -82,6 +107,7 @@ pub struct MeshSpec {
     pub(crate) same_sense: Option<bool>,
     pub(crate) bevel: bool,
     pub(crate) count: i64,
+    pub(crate) geometry: Option<GeometrySpec>,
 }
 
 impl MeshSpec {
@@ -95,6 +121,7 @@ impl MeshSpec {
             same_sense: None,
             bevel: false,
             count: 1,
+            geometry: None,
         }
     }
 
@@ -116,6 +143,13 @@ impl MeshSpec {
     #[must_use]
     pub fn efficiency(mut self, efficiency: impl Into<EfficiencySpec>) -> Self {
         self.efficiency = Some(efficiency.into());
+        self
+    }
+
+    /// Gives its teeth, from which the loss is computed when no efficiency is given.
+    #[must_use]
+    pub fn geometry(mut self, geometry: GeometrySpec) -> Self {
+        self.geometry = Some(geometry);
         self
     }
 
@@ -146,6 +180,8 @@ impl MeshSpec {
 pub(crate) struct PlanetSpec {
     pub teeth: Option<i64>,
     pub count: Option<i64>,
+    pub tooth: ToothSpec,
+    pub mass: Option<f64>,
 }
 
 /// The parts of a set, by type.
@@ -189,11 +225,12 @@ pub struct SetSpec {
     pub(crate) carrier: String,
     pub(crate) parts: Parts,
     pub(crate) efficiency: Option<SetEfficiencySpec>,
+    pub(crate) geometry: Option<GeometrySpec>,
 }
 
 impl SetSpec {
     pub(crate) fn new(name: impl Into<String>, carrier: impl Into<String>, parts: Parts) -> Self {
-        Self { name: name.into(), carrier: carrier.into(), parts, efficiency: None }
+        Self { name: name.into(), carrier: carrier.into(), parts, efficiency: None, geometry: None }
     }
 
     /// Sun, planets, ring.
@@ -298,7 +335,7 @@ impl SetSpec {
     /// Teeth and number of the planets (the first kind, where there are two).
     #[must_use]
     pub fn planet(mut self, teeth: i64, count: i64) -> Self {
-        let spec = PlanetSpec { teeth: Some(teeth), count: Some(count) };
+        let spec = PlanetSpec { teeth: Some(teeth), count: Some(count), ..PlanetSpec::default() };
         match &mut self.parts {
             Parts::Simple { planet, .. } | Parts::Stepped { planet, .. } | Parts::Bevel { planet, .. } => {
                 *planet = spec
@@ -318,11 +355,30 @@ impl SetSpec {
         match &mut self.parts {
             Parts::DoublePlanet { inner: first, outer: second, .. }
             | Parts::Ravigneaux { short: first, long: second, .. } => {
-                *second = PlanetSpec { teeth: Some(teeth), count: first.count };
+                *second = PlanetSpec { teeth: Some(teeth), count: first.count, ..PlanetSpec::default() };
             }
             _ => panic!("this set has one kind of planet"),
         }
         self
+    }
+
+    /// Gives the teeth of all its meshes, from which losses are computed when no efficiency is
+    /// given.
+    #[must_use]
+    pub fn geometry(mut self, geometry: GeometrySpec) -> Self {
+        self.geometry = Some(geometry);
+        self
+    }
+
+    /// Mass of each kind of planet, in the order in which their members are added.
+    pub(crate) fn planet_masses(&self) -> Vec<Option<f64>> {
+        match &self.parts {
+            Parts::Simple { planet, .. } | Parts::Stepped { planet, .. } | Parts::Bevel { planet, .. } => {
+                vec![planet.mass]
+            }
+            Parts::DoublePlanet { inner, outer, .. } => vec![inner.mass, outer.mass],
+            Parts::Ravigneaux { short, long, .. } => vec![short.mass, long.mass],
+        }
     }
 
     /// The efficiency of every mesh.
@@ -408,12 +464,14 @@ pub struct OperationSpec {
     pub(crate) speeds: Vec<(String, Quantity)>,
     pub(crate) fixed: Vec<String>,
     pub(crate) loads: Vec<(String, Load)>,
+    /// Oil temperature, K.
+    pub(crate) temperature: Option<f64>,
 }
 
 impl OperationSpec {
     /// An operating point of the train as drawn.
     pub fn new(name: impl Into<String>) -> Self {
-        Self { name: name.into(), state: None, speeds: vec![], fixed: vec![], loads: vec![] }
+        Self { name: name.into(), state: None, speeds: vec![], fixed: vec![], loads: vec![], temperature: None }
     }
 
     /// In a state of the shift table.
@@ -434,6 +492,13 @@ impl OperationSpec {
     #[must_use]
     pub fn fixed(mut self, member: &str) -> Self {
         self.fixed.push(member.into());
+        self
+    }
+
+    /// Prescribes the oil temperature, K.
+    #[must_use]
+    pub fn temperature(mut self, kelvin: f64) -> Self {
+        self.temperature = Some(kelvin);
         self
     }
 
@@ -466,6 +531,13 @@ pub struct TrainBuilder {
     pub(crate) shift_elements: Vec<ShiftElementSpec>,
     pub(crate) states: Vec<StateSpec>,
     pub(crate) operations: Vec<OperationSpec>,
+    pub(crate) oil: Option<OilSpec>,
+    pub(crate) laws: Vec<(String, String)>,
+    pub(crate) friction_coefficient: Option<f64>,
+    pub(crate) housing: HousingSpec,
+    pub(crate) bearings: Vec<BearingSpec>,
+    pub(crate) seals: Vec<SealSpec>,
+    pub(crate) rotors: Vec<RotorSpec>,
 }
 
 impl TrainBuilder {
@@ -482,7 +554,63 @@ impl TrainBuilder {
             shift_elements: vec![],
             states: vec![],
             operations: vec![],
+            oil: None,
+            laws: vec![],
+            friction_coefficient: None,
+            housing: HousingSpec::default(),
+            bearings: vec![],
+            seals: vec![],
+            rotors: vec![],
         }
+    }
+
+    /// Gives the lubricant.
+    #[must_use]
+    pub fn oil(mut self, oil: OilSpec) -> Self {
+        self.oil = Some(oil);
+        self
+    }
+
+    /// Chooses a law of a family by name.
+    #[must_use]
+    pub fn law(mut self, family: &str, law: &str) -> Self {
+        self.laws.push((family.into(), law.into()));
+        self
+    }
+
+    /// Gives the coefficient of the friction law `constant`.
+    #[must_use]
+    pub fn friction_coefficient(mut self, value: f64) -> Self {
+        self.friction_coefficient = Some(value);
+        self
+    }
+
+    /// Says what surrounds the gears.
+    #[must_use]
+    pub fn housing(mut self, housing: HousingSpec) -> Self {
+        self.housing = housing;
+        self
+    }
+
+    /// Adds rolling bearings between two members.
+    #[must_use]
+    pub fn bearing(mut self, bearing: BearingSpec) -> Self {
+        self.bearings.push(bearing);
+        self
+    }
+
+    /// Adds a lip seal.
+    #[must_use]
+    pub fn seal(mut self, seal: SealSpec) -> Self {
+        self.seals.push(seal);
+        self
+    }
+
+    /// Adds a carrier or drum that drags the fluid around it.
+    #[must_use]
+    pub fn rotor(mut self, rotor: RotorSpec) -> Self {
+        self.rotors.push(rotor);
+        self
     }
 
     /// Names the rotors (the frame and the planets of sets exist without being named).

@@ -4,7 +4,9 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
 
 use super::assemble::{Assembler, clip};
+use super::describe::physical::ToothSpec;
 use super::describe::{GearSpec, Parts, PlanetSpec, SetEfficiencySpec, SetSpec};
+use super::physical::Teeth;
 use super::{Efficiency, Gear, MemberId, Mesh, Set};
 
 /// Adds the planet rotors of a set, in the order in which [`expand`] uses them.
@@ -21,8 +23,8 @@ pub(super) fn planets(a: &mut Assembler<'_>, set: &SetSpec) -> Vec<MemberId> {
 struct Pair<'a> {
     name: String,
     central: Option<&'a GearSpec>,
-    /// Members and teeth, first gear first.
-    gears: [(MemberId, Rational, bool); 2],
+    /// Members, tooth counts and teeth, first gear first.
+    gears: [(MemberId, Rational, bool, ToothSpec); 2],
     same_sense: bool,
     bevel: bool,
 }
@@ -42,7 +44,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                     .hint("a locked set is made with a clutch, not by naming one member twice"),
             );
         }
-        Some((id, teeth, g.internal))
+        Some((id, teeth, g.internal, g.tooth))
     };
     let number =
         |a: &mut Assembler<'_>, p: &PlanetSpec, key: &str| p.count.map(|c| a.count(c, &format!("{place}.{key}.count")));
@@ -76,7 +78,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 equal_spacing(a, set, &place, &Rational::from(sun.z() + ring.z()), n, "z_sun + z_ring");
                 clearance(a, set, &place, &Rational::from(sun.z()), &teeth, n);
             }
-            let p = (planets[0], teeth, false);
+            let p = (planets[0], teeth, false, planet.tooth);
             pairs.push(pair("sun-planet", sun, s, p.clone()));
             pairs.push(Pair { central: Some(ring), ..pair("planet-ring", ring, p, r) });
         }
@@ -104,8 +106,8 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                     if z.sign() > 0 { z } else { Rational::from(sun.z()) }
                 })
             };
-            let i = (planets[0], or_nominal(z_i, "inner"), false);
-            let o = (planets[1], or_nominal(z_o, "outer"), false);
+            let i = (planets[0], or_nominal(z_i, "inner"), false, inner.tooth);
+            let o = (planets[1], or_nominal(z_o, "outer"), false, outer.tooth);
             pairs.push(pair("sun-inner_planet", sun, s, i.clone()));
             pairs.push(Pair { central: None, ..pair("inner_planet-outer_planet", sun, i, o.clone()) });
             pairs.push(pair("outer_planet-ring", ring, o, r));
@@ -122,7 +124,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 let step = a.teeth(g.planet_teeth.unwrap_or(1), &format!("{place}.{key}.planet_teeth"));
                 let Some(c) = central(a, g, &key) else { continue };
                 steps.push((if g.internal { -g.z() } else { g.z() }, step.clone()));
-                let p = (planets[0], step, false);
+                let p = (planets[0], step, false, g.planet_tooth);
                 let many = gears.iter().filter(|o| o.internal == g.internal).count() > 1;
                 let label = if many { g.member.as_str() } else { g.role() };
                 pairs.push(match g.internal {
@@ -165,7 +167,8 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 );
                 z_long.clone()
             });
-            let (short, long) = ((planets[0], z_short, false), (planets[1], z_long, false));
+            let (short, long) =
+                ((planets[0], z_short, false, short.tooth), (planets[1], z_long, false, long.tooth));
             if let Some(g) = small_sun {
                 let c = central(a, g, "small_sun")?;
                 pairs.push(pair("small_sun-short_planet", g, c, short.clone()));
@@ -202,7 +205,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 });
                 let Some(c) = central(a, g, &key) else { continue };
                 let right = g.right.unwrap_or(k > 0);
-                let p = (planets[0], step, false);
+                let p = (planets[0], step, false, ToothSpec::default());
                 let mut new = pair(&format!("{}-planet", g.member), g, c, p);
                 if right {
                     // Written planet first, as the mesh of a ring is.
@@ -216,9 +219,14 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
         }
     }
     let carrier = carrier?;
-    let efficiencies = efficiencies(a, set, &place, &pairs);
-    for (k, (p, efficiency)) in pairs.into_iter().zip(efficiencies).enumerate() {
-        let [first, second] = p.gears.map(|(member, teeth, internal)| Gear { member, teeth, internal });
+    let teeth = teeth(a, set, &place, &pairs);
+    let computed = set.efficiency.is_none() && teeth.iter().all(Option::is_some);
+    let efficiencies = match computed {
+        true => teeth.iter().flatten().map(|t| a.nominal_efficiency(t)).collect(),
+        false => efficiencies(a, set, &place, &pairs),
+    };
+    for (k, ((p, efficiency), teeth)) in pairs.into_iter().zip(efficiencies).zip(teeth).enumerate() {
+        let [first, second] = p.gears.map(|(member, teeth, internal, _)| Gear { member, teeth, internal });
         if first.member == second.member {
             let message = format!("mesh {k} of set `{}` joins a member to itself", clip(name));
             a.report(Diagnostic::new(Code::ImpossibleMesh, place.as_str(), message));
@@ -233,6 +241,8 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
             bevel: p.bevel,
             count: count.unwrap_or(1),
             set: Some(index),
+            computed,
+            teeth: teeth.map(Box::new),
         });
     }
     if count.is_none() {
@@ -244,11 +254,58 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
 fn pair<'a>(
     name: &str,
     central: &'a GearSpec,
-    first: (MemberId, Rational, bool),
-    second: (MemberId, Rational, bool),
+    first: (MemberId, Rational, bool, ToothSpec),
+    second: (MemberId, Rational, bool, ToothSpec),
 ) -> Pair<'a> {
     let same_sense = first.2 || second.2;
     Pair { name: name.into(), central: Some(central), gears: [first, second], same_sense, bevel: false }
+}
+
+/// The teeth of each mesh of the set, where its geometry is given, on one centre distance.
+fn teeth(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair<'_>]) -> Vec<Option<Teeth>> {
+    let mut all = Vec::with_capacity(pairs.len());
+    for p in pairs {
+        let own = p.central.and_then(|c| c.geometry);
+        let geometry = if p.bevel { None } else { own.or(set.geometry) };
+        let gears = [&p.gears[0], &p.gears[1]].map(|g| (g.1.to_f64(), g.2, g.3));
+        let title = format!("{}.{}", set.name, p.name);
+        all.push(geometry.and_then(|g| a.tooth_pair(&g, gears, &title, place)));
+    }
+    // Every central gear meshes with planets whose axes run on one circle.
+    let central: Vec<(&Pair<'_>, &Teeth)> =
+        pairs.iter().zip(&all).filter(|(p, _)| p.central.is_some()).filter_map(|(p, t)| Some((p, t.as_ref()?))).collect();
+    // In a set with two kinds of planets the circles differ.
+    let on_planet = |p: &Pair<'_>| p.gears.iter().find(|g| Some(g.0) != a_central(p)).map(|g| g.0);
+    for (k, (p, t)) in central.iter().enumerate() {
+        for (q, u) in central.iter().take(k).filter(|(q, _)| on_planet(p) == on_planet(q)) {
+            let (here, there) = (t.pair.centre_distance, u.pair.centre_distance);
+            if (here - there).abs() > CONCENTRIC * t.pair.data.module {
+                let message = format!(
+                    "set `{}`: the planets' axes lie on one circle, but {} needs a centre distance of {:.4} mm and {} \
+                     of {:.4} mm",
+                    clip(&set.name),
+                    q.name,
+                    there * 1e3,
+                    p.name,
+                    here * 1e3
+                );
+                a.diagnostics.push(Diagnostic::new(Code::ImpossibleGeometry, format!("{place}.geometry"), message).hint(
+                    "give `centre_distance` (profile shift or backlash make up the rest), or shifts that agree",
+                ));
+            }
+        }
+    }
+    all
+}
+
+/// How far two centre distances of one set may differ, in modules: the last digit of printed shifts.
+const CONCENTRIC: f64 = 5e-3;
+
+/// The member of the central gear: the one that is not the planet of a pair.
+fn a_central(p: &Pair<'_>) -> Option<MemberId> {
+    let internal = p.central?.internal;
+    // A sun is written first, a ring second.
+    Some(p.gears[usize::from(internal)].0)
 }
 
 /// The efficiency of each mesh of the set.

@@ -6,6 +6,7 @@
 //! its place, and the little that is left is to pour checked values into a [`TrainBuilder`].
 
 mod keys;
+mod physical;
 mod reader;
 mod schema;
 
@@ -106,6 +107,13 @@ fn builder(root: &Fields) -> TrainBuilder {
     b.shift_elements = root.tables("shift_element").iter().map(shift_element).collect();
     b.states = root.tables("state").iter().map(state).collect();
     b.operations = root.tables("operation").iter().map(operation).collect();
+    b.oil = root.table("oil").map(physical::oil);
+    b.laws = root.table("laws").map(physical::laws).unwrap_or_default();
+    b.friction_coefficient = root.table("laws").and_then(|t| t.real("friction_coefficient"));
+    b.housing = root.table("housing").map(physical::housing).unwrap_or_default();
+    b.bearings = root.tables("bearing").iter().map(physical::bearing).collect();
+    b.seals = root.tables("seal").iter().map(physical::seal).collect();
+    b.rotors = root.tables("rotor").iter().map(physical::rotor).collect();
     b
 }
 
@@ -116,6 +124,9 @@ fn gear(t: &Fields) -> GearSpec {
         internal: t.flag("internal"),
         planet_teeth: t.integer("planet_teeth"),
         right: t.optional_text("side").map(|s| s == "right"),
+        tooth: physical::tooth(t),
+        planet_tooth: t.table("planet").map(physical::tooth).unwrap_or_default(),
+        geometry: physical::geometry(t),
     }
 }
 
@@ -131,12 +142,18 @@ fn mesh(t: &Fields) -> MeshSpec {
         same_sense: t.optional_text("sense").map(|s| s == "same"),
         bevel: t.optional_text("kind").is_some_and(|k| k == "bevel"),
         count: t.integer("count").unwrap_or(1),
+        geometry: physical::geometry(t),
         ..MeshSpec::new(first, second)
     }
 }
 
 fn planet(t: &Fields, key: &str) -> PlanetSpec {
-    t.table(key).map_or(PlanetSpec::default(), |p| PlanetSpec { teeth: p.integer("teeth"), count: p.integer("count") })
+    t.table(key).map_or(PlanetSpec::default(), |p| PlanetSpec {
+        teeth: p.integer("teeth"),
+        count: p.integer("count"),
+        tooth: physical::tooth(p),
+        mass: p.si("mass"),
+    })
 }
 
 fn set(t: &Fields) -> SetSpec {
@@ -175,6 +192,7 @@ fn set(t: &Fields) -> SetSpec {
         .set_efficiency("mesh_efficiency")
         .map(|(external, internal)| SetEfficiencySpec::Meshes { external, internal })
         .or(t.efficiency("basic_efficiency").map(SetEfficiencySpec::Basic));
+    set.geometry = physical::geometry(t);
     set
 }
 
@@ -209,5 +227,6 @@ fn operation(t: &Fields) -> OperationSpec {
         speeds: t.quantities("speeds"),
         fixed: t.names("fixed"),
         loads: loads.chain(powers).collect(),
+        temperature: t.si("temperature"),
     }
 }

@@ -1,0 +1,511 @@
+//! Checks the physical layer: teeth that exist, an oil with a viscosity, bearings that fit.
+
+use crate::catalogue::bearing::{self, Bearing};
+use crate::catalogue::oil::{self, Base, Oil};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::exact::Rational;
+use crate::geometry::{Pair, PairData, Tip, Wheel};
+use crate::losses::Laws;
+use crate::losses::loss_factor::Path;
+use crate::train::describe::physical::{
+    BearingSpec, Fluid, GeometrySpec, HousingSpec, OilSpec, RotorSpec, SealSpec, ToothSpec,
+};
+use crate::train::physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
+use crate::train::{Efficiency, FRAME, MemberId, MemberKind};
+
+use super::{Assembler, clip, list};
+
+/// Assumed roughness `Ra` of ground flanks, m.
+const ROUGHNESS: f64 = 0.4e-6;
+/// Assumed operating temperature, K.
+const TEMPERATURE: f64 = 333.15;
+/// Density of steel, kg/m³.
+const STEEL: f64 = 7850.0;
+
+impl Assembler<'_> {
+    /// A number that must be finite and above (or at) zero; reported and replaced where it is not.
+    fn positive(&mut self, value: f64, zero_too: bool, what: &str, unit: &str, place: &str) -> bool {
+        let good = value.is_finite() && (value > 0.0 || zero_too && value == 0.0);
+        if !good {
+            let bound = if zero_too { "not negative" } else { "above zero" };
+            let message = format!("{what} of {value} {unit}: it is a finite number, {bound}");
+            self.report(Diagnostic::new(Code::OutOfRange, place, message));
+        }
+        good
+    }
+
+    /// The involute pair of two gears, each with tooth count, whether internal, and teeth.
+    pub fn tooth_pair(
+        &mut self,
+        g: &GeometrySpec,
+        gears: [(f64, bool, ToothSpec); 2],
+        title: &str,
+        place: &str,
+    ) -> Option<Teeth> {
+        let at = format!("{place}.geometry");
+        let mut good = true;
+        for (value, zero, what, unit, key) in [
+            (g.module * 1e3, false, "a module", "mm", "module"),
+            (g.width * 1e3, false, "a face width", "mm", "width"),
+            (g.youngs_modulus / 1e9, false, "a modulus", "GPa", "youngs_modulus"),
+            (g.roughness.unwrap_or(0.0) * 1e6, true, "a roughness", "µm", "roughness"),
+        ] {
+            good &= self.positive(value, zero, what, unit, &format!("{at}.{key}"));
+        }
+        if !(0.0..0.5).contains(&g.poisson_ratio) {
+            let message = format!("a Poisson's ratio of {}: it lies from 0 to below 0.5", g.poisson_ratio);
+            self.report(Diagnostic::new(Code::OutOfRange, format!("{at}.poisson_ratio"), message));
+            good = false;
+        }
+        for (_, _, t) in &gears {
+            good &= self.positive(t.roughness.unwrap_or(0.0) * 1e6, true, "a roughness", "µm", place);
+            good &= self.positive(t.immersion.unwrap_or(0.0) * 1e3, true, "an immersion", "mm", place);
+        }
+        if !good {
+            return None;
+        }
+        let wheel = |(teeth, internal, t): &(f64, bool, ToothSpec)| Wheel {
+            teeth: *teeth,
+            internal: *internal,
+            shift: t.shift.unwrap_or(0.0),
+            tip: match t.tip_diameter {
+                Some(d) => Tip::Radius(d / 2.0),
+                None => Tip::Addendum {
+                    coefficient: t.addendum.unwrap_or(g.addendum),
+                    alteration: t.tip_alteration.unwrap_or(0.0),
+                },
+            },
+            dedendum: t.dedendum.unwrap_or(g.dedendum),
+        };
+        let data = PairData {
+            module: g.module,
+            pressure_angle: g.pressure_angle,
+            helix: g.helix,
+            double_helical: g.double_helical,
+            width: g.width,
+            centre_distance: g.centre_distance,
+            wheels: [wheel(&gears[0]), wheel(&gears[1])],
+        };
+        let pair = match Pair::new(&data) {
+            Ok(pair) => pair,
+            Err(faults) => {
+                for fault in faults {
+                    let message = format!("{}: {fault}", clip(title));
+                    self.report(Diagnostic::new(Code::ImpossibleGeometry, at.as_str(), message));
+                }
+                return None;
+            }
+        };
+        for remark in pair.remarks() {
+            let message = format!("{}: {remark}", clip(title));
+            self.report(Diagnostic::new(Code::DoubtfulGeometry, at.as_str(), message));
+        }
+        let roughness = gears.map(|(_, _, t)| t.roughness.or(g.roughness));
+        if roughness.iter().any(Option::is_none) {
+            self.assume(title, "roughness not given, taken as Ra 0.4 µm (ground)");
+        }
+        Some(Teeth {
+            pair,
+            roughness: roughness.map(|r| r.unwrap_or(ROUGHNESS)),
+            immersion: gears.map(|(_, _, t)| t.immersion),
+            youngs_modulus: g.youngs_modulus,
+            poisson_ratio: g.poisson_ratio,
+        })
+    }
+
+    /// The efficiency of a mesh under the nominal coefficient of friction, to six decimals, so that
+    /// exact results stay readable.
+    pub fn nominal_efficiency(&mut self, teeth: &Teeth) -> Efficiency {
+        let loss = self.friction_coefficient * self.laws.loss_factor.eval(&Path::of(&teeth.pair));
+        let eta = Rational::new(((1.0 - loss).clamp(0.01, 1.0) * 1e6).round() as i64, 1_000_000);
+        Efficiency { forward: eta.clone(), backward: eta }
+    }
+
+    pub fn choose_laws(&mut self, choices: &[(String, String)], friction_coefficient: Option<f64>) {
+        for (family, law) in choices {
+            if let Err(mut d) = self.laws.choose(family, law) {
+                d.place = format!("laws.{family}");
+                self.report(*d);
+            }
+        }
+        if let Some(mu) = friction_coefficient {
+            if self.positive(mu, true, "a coefficient of friction", "", "laws.friction_coefficient") {
+                if mu > 0.5 {
+                    let message = format!("a coefficient of friction of {mu}: oiled teeth have 0.005 to 0.15");
+                    self.report(Diagnostic::new(Code::OutOfRange, "laws.friction_coefficient", message));
+                } else {
+                    self.friction_coefficient = mu;
+                    self.laws.set_friction_coefficient(mu);
+                }
+            }
+        }
+    }
+
+    pub fn oil(&mut self, spec: &OilSpec) -> Option<Lubrication> {
+        let mut good = true;
+        for (value, what, unit, key) in [
+            (spec.viscosity_40.map(|v| v * 1e6), "a viscosity", "mm²/s", "viscosity_40"),
+            (spec.viscosity_100.map(|v| v * 1e6), "a viscosity", "mm²/s", "viscosity_100"),
+            (spec.viscosity.map(|v| v * 1e3), "a viscosity", "mPa s", "viscosity"),
+            (spec.density_15, "a density", "kg/m³", "density_15"),
+            (spec.pressure_viscosity.map(|v| v * 1e9), "a pressure coefficient", "1/GPa", "pressure_viscosity"),
+            (spec.lubricant_factor, "a lubricant factor", "", "lubricant_factor"),
+            (spec.temperature, "an absolute temperature", "K", "temperature"),
+            (spec.volume.map(|v| v * 1e3), "a volume", "l", "volume"),
+            (spec.mist, "an air-oil ratio", "", "mist"),
+        ] {
+            if let Some(value) = value {
+                good &= self.positive(value, false, what, unit, &format!("oil.{key}"));
+            }
+        }
+        let base = spec.base.unwrap_or(Base::Mineral);
+        let density = spec.density_15.unwrap_or(match base {
+            Base::Pao => 845.0,
+            Base::Ester => 915.0,
+            Base::Pag => 1050.0,
+            Base::PhosphateEster => 1130.0,
+            Base::Mineral | Base::Traction => 885.0,
+        });
+        let name = spec.name.clone().unwrap_or_else(|| "oil".into());
+        let own = match (spec.viscosity_40, spec.viscosity_100, spec.viscosity) {
+            (Some(cold), Some(hot), None) => {
+                if hot >= cold {
+                    let message = format!(
+                        "a viscosity of {} mm²/s at 100 °C is not below the {} mm²/s at 40 °C",
+                        hot * 1e6,
+                        cold * 1e6
+                    );
+                    let d = Diagnostic::new(Code::OutOfRange, "oil.viscosity_100", message);
+                    self.report(d.hint("are the two swapped?"));
+                    return None;
+                }
+                good.then(|| Oil::from_two_points(&name, base, cold, hot, density))
+            }
+            (None, None, Some(eta)) => good.then(|| Oil::fixed(&name, base, eta, density)),
+            (None, None, None) => {
+                let Some(name) = &spec.name else {
+                    let d = Diagnostic::new(Code::MissingKey, "oil", "the oil has neither a name nor a viscosity");
+                    self.report(d.hint("name one of the catalogue, `name = \"ISO VG 220\"`, or give viscosity_40 and viscosity_100"));
+                    return None;
+                };
+                let found = oil::find(name).cloned();
+                if found.is_none() {
+                    let known: Vec<&str> = oil::all().iter().map(|o| o.name.as_str()).collect();
+                    let message = format!("there is no oil `{}` in the catalogue", clip(name));
+                    let mut d = Diagnostic::new(Code::UnknownName, "oil.name", message).suggest(name, known.iter().copied());
+                    d = d.hint(format!(
+                        "give its viscosity_40 and viscosity_100, or use one of: {}",
+                        list(known)
+                    ));
+                    self.report(d);
+                }
+                found
+            }
+            _ => {
+                let message = "the viscosity is given half, or twice";
+                let d = Diagnostic::new(Code::Conflict, "oil", message);
+                self.report(d.hint("give viscosity_40 and viscosity_100, or viscosity at the operating temperature"));
+                None
+            }
+        };
+        let mut oil = own?;
+        if !good {
+            return None;
+        }
+        if let Some(x) = spec.lubricant_factor {
+            oil.lubricant_factor = Some(x);
+        }
+        if let Some(alpha) = spec.pressure_viscosity {
+            oil.measured_pressure_viscosity = Some(alpha);
+        }
+        if spec.density_15.is_none() && (spec.viscosity_40.is_some() || spec.viscosity.is_some()) {
+            self.assume(&name, format!("density not given, taken as {density} kg/m³"));
+        }
+        let temperature = spec.temperature.unwrap_or_else(|| {
+            self.assume(&oil.name, "temperature not given, taken as 60 °C");
+            TEMPERATURE
+        });
+        self.temperature(&oil, temperature, "oil.temperature");
+        let mist = spec.mist.unwrap_or(crate::losses::windage::AIR_TO_OIL);
+        Some(Lubrication { oil, temperature, supply: spec.supply, volume: spec.volume, mist })
+    }
+
+    /// Says when a temperature lies outside what is known of the oil.
+    pub fn temperature(&mut self, oil: &Oil, temperature: f64, place: &str) {
+        let [low, high] = oil.temperature_range();
+        if !(200.0..=600.0).contains(&temperature) {
+            let message = format!("an oil temperature of {:.1} °C is none that a gearbox has", temperature - 273.15);
+            self.report(Diagnostic::new(Code::OutOfRange, place, message).hint("from -73 to 327 °C is computed"));
+        } else if !oil.covers(temperature) {
+            let message = format!(
+                "{} at {:.0} °C: its data reach from {:.0} to {:.0} °C",
+                oil.name,
+                temperature - 273.15,
+                low - 273.15,
+                high - 273.15
+            );
+            self.report(Diagnostic::new(Code::OutsideLaw, place, message).hint("the viscosity is extrapolated"));
+        }
+    }
+
+    /// One or two members; one means against the frame.
+    fn two_members(&mut self, names: &[String], what: &str, place: &str) -> Option<[MemberId; 2]> {
+        let place = format!("{place}.members");
+        let ids: Vec<_> = names.iter().enumerate().map(|(k, m)| self.resolve(m, &format!("{place}[{k}]"))).collect();
+        if !(1..=2).contains(&ids.len()) {
+            let message = format!("a {what} joins two members (or one and the frame), here are {}", ids.len());
+            self.report(Diagnostic::new(Code::ShiftElement, place, message));
+            return None;
+        }
+        let members = [ids[0]?, ids.get(1).copied().unwrap_or(Some(FRAME))?];
+        if members[0] == members[1] {
+            let message = format!("this {what} joins `{}` to itself", clip(&names[0]));
+            self.report(Diagnostic::new(Code::ShiftElement, place, message).hint("name the two members it joins"));
+            return None;
+        }
+        Some(members)
+    }
+
+    pub fn bearing(&mut self, spec: &BearingSpec, place: &str) -> Option<BearingMount> {
+        let members = self.two_members(&spec.members, "bearing", place);
+        let mut good = true;
+        for (value, zero, what, unit, key) in [
+            (spec.bore.map(|v| v * 1e3), false, "a bore", "mm", "bore"),
+            (spec.outside_diameter.map(|v| v * 1e3), false, "an outside diameter", "mm", "outside_diameter"),
+            (spec.width.map(|v| v * 1e3), false, "a width", "mm", "width"),
+            (spec.static_rating, false, "a load rating", "N", "static_rating"),
+            (spec.axial_factor, false, "an axial factor", "", "axial_factor"),
+            (spec.shaft_diameter.map(|v| v * 1e3), false, "a shaft diameter", "mm", "shaft_diameter"),
+            (spec.span.map(|v| v * 1e3), false, "a span", "mm", "span"),
+            (spec.radial_load, true, "a load", "N", "radial_load"),
+            (spec.axial_load, true, "a load", "N", "axial_load"),
+            (spec.level.map(|v| v * 1e3), true, "an oil level", "mm", "level"),
+        ] {
+            if let Some(value) = value {
+                good &= self.positive(value, zero, what, unit, &format!("{place}.{key}"));
+            }
+        }
+        let found = spec.designation.as_ref().and_then(|d| bearing::find(d));
+        let bearing = match (found, spec.kind, spec.bore, spec.outside_diameter, spec.width) {
+            (Some(found), kind, bore, outside, width) => {
+                // What the user gives wins, and is checked against the designation below.
+                let mut b = found;
+                if let Some(kind) = kind.filter(|k| *k != b.kind) {
+                    let message = format!("`{}` is a {}, not a {}", b.designation, b.kind, kind);
+                    self.report(Diagnostic::new(Code::Conflict, format!("{place}.kind"), message));
+                }
+                b.bore = bore.unwrap_or(b.bore);
+                b.outside_diameter = outside.unwrap_or(b.outside_diameter);
+                b.width = width.unwrap_or(b.width);
+                if let Some(series) = &spec.series {
+                    b.series = series.clone();
+                    b.skf = bearing::skf_constants(b.kind, series);
+                }
+                b
+            }
+            (None, Some(kind), Some(bore), Some(outside), Some(width)) => {
+                let name = spec.designation.as_deref().unwrap_or(&spec.name);
+                Bearing::new(name, kind, spec.series.as_deref().unwrap_or(""), bore, outside, width)
+            }
+            (None, ..) => {
+                let hint = "give kind, series, bore, outside_diameter and width";
+                let d = match &spec.designation {
+                    Some(name) => {
+                        let known = bearing::all().iter().map(|b| b.designation.as_str());
+                        let message = format!("there is no bearing `{}` in the catalogue", clip(name));
+                        let d = Diagnostic::new(Code::UnknownName, format!("{place}.designation"), message);
+                        d.suggest(name, known)
+                    }
+                    None => {
+                        let message = format!("bearing `{}` has no designation and no dimensions", clip(&spec.name));
+                        Diagnostic::new(Code::MissingKey, format!("{place}.designation"), message)
+                    }
+                };
+                self.report(d.hint(hint));
+                return None;
+            }
+        };
+        if !good {
+            return None;
+        }
+        let mut bearing = bearing;
+        bearing.static_rating = spec.static_rating.or(bearing.static_rating);
+        bearing.axial_factor = spec.axial_factor.or(bearing.axial_factor);
+        for mismatch in bearing.check() {
+            let code = match mismatch.is_impossible() {
+                true => Code::ImpossibleBearing,
+                false => Code::DoubtfulBearing,
+            };
+            let message = format!("bearing `{}`: {mismatch}", clip(&spec.name));
+            self.report(Diagnostic::new(code, place, message));
+        }
+        if let Some(shaft) = spec.shaft_diameter
+            && (shaft - bearing.bore).abs() > 0.1e-3
+        {
+            let message = format!(
+                "bearing `{}`: a bore of {:.1} mm does not fit a shaft of {:.1} mm",
+                clip(&spec.name),
+                bearing.bore * 1e3,
+                shaft * 1e3
+            );
+            self.report(
+                Diagnostic::new(Code::ImpossibleBearing, format!("{place}.shaft_diameter"), message)
+                    .hint("choose a bearing with that bore, or give the diameter of its own seat"),
+            );
+        }
+        let count = self.count(spec.count.unwrap_or(1), &format!("{place}.count"));
+        Some(BearingMount {
+            name: spec.name.clone(),
+            members: members?,
+            bearing,
+            count,
+            places: 1,
+            span: spec.span,
+            radial_load: spec.radial_load.unwrap_or(0.0),
+            axial_load: spec.axial_load.unwrap_or(0.0),
+            supply: spec.supply,
+            level: spec.level,
+        })
+    }
+
+    pub fn seal(&mut self, spec: &SealSpec, place: &str) -> Option<SealMount> {
+        let members = self.two_members(&spec.members, "seal", place);
+        let good = self.positive(spec.diameter * 1e3, false, "a diameter", "mm", &format!("{place}.diameter"));
+        let count = self.count(spec.count, &format!("{place}.count"));
+        let members = members.filter(|_| good)?;
+        Some(SealMount { name: spec.name.clone(), members, diameter: spec.diameter, material: spec.material, count })
+    }
+
+    pub fn rotor(&mut self, spec: &RotorSpec, place: &str) -> Option<Rotor> {
+        let member = self.resolve(&spec.member, &format!("{place}.member"));
+        let axial_gap = spec.axial_gap.unwrap_or(spec.radial_gap);
+        let mut good = true;
+        for (value, what, key) in [
+            (spec.radius, "a radius", "radius"),
+            (spec.length, "a length", "length"),
+            (spec.radial_gap, "a gap", "radial_gap"),
+            (axial_gap, "a gap", "axial_gap"),
+        ] {
+            good &= self.positive(value * 1e3, false, what, "mm", &format!("{place}.{key}"));
+        }
+        if member == Some(FRAME) {
+            let message = "the frame does not turn and drags nothing";
+            self.report(Diagnostic::new(Code::BadName, format!("{place}.member"), message));
+            good = false;
+        }
+        let member = member.filter(|_| good)?;
+        let RotorSpec { name, radius, length, radial_gap, fluid, .. } = spec.clone();
+        Some(Rotor { name, member, radius, length, radial_gap, axial_gap, fluid })
+    }
+
+    /// Planets that revolve, with their orbit and mass, where the geometry tells them; and the
+    /// number of places of the bearings on them.
+    pub fn planet_bodies(
+        &mut self,
+        masses: &[(MemberId, f64)],
+        bearings: &mut [BearingMount],
+    ) -> Vec<PlanetBody> {
+        let mut all: Vec<PlanetBody> = Vec::new();
+        for mesh in &self.meshes {
+            for k in 0..2 {
+                let member = mesh.gears[k].member;
+                let other = mesh.gears[1 - k].member;
+                let revolves = mesh.carrier != FRAME
+                    && self.members[member.0].kind == MemberKind::Planet
+                    && self.members[other.0].kind != MemberKind::Planet;
+                let Some(teeth) = mesh.teeth.as_ref().filter(|_| revolves) else { continue };
+                if all.iter().any(|p| p.member == member) {
+                    continue;
+                }
+                all.push(PlanetBody {
+                    member,
+                    carrier: mesh.carrier,
+                    count: mesh.count,
+                    orbit_radius: teeth.pair.centre_distance,
+                    mass: 0.0,
+                });
+            }
+        }
+        for body in &mut all {
+            let bearing = bearings.iter().find(|b| b.members.contains(&body.member));
+            // A steel cylinder of each gear's pitch circle and width around its bearing.
+            let estimate = || {
+                let hole = bearing.map_or(0.0, |b| b.bearing.outside_diameter / 2.0);
+                let mut seen: Vec<(Rational, f64)> = Vec::new();
+                for mesh in &self.meshes {
+                    for (k, g) in mesh.gears.iter().enumerate().filter(|(_, g)| g.member == body.member) {
+                        if let Some(t) = mesh.teeth.as_ref().filter(|_| seen.iter().all(|s| s.0 != g.teeth)) {
+                            let r = t.pair.gears[k].reference_radius;
+                            let area = std::f64::consts::PI * (r * r - hole * hole).max(0.0);
+                            seen.push((g.teeth.clone(), STEEL * area * t.pair.total_width()));
+                        }
+                    }
+                }
+                seen.iter().map(|s| s.1).sum::<f64>()
+            };
+            let given = masses.iter().find(|(m, _)| *m == body.member).map(|(_, mass)| *mass);
+            body.mass = given.unwrap_or_else(estimate);
+            if given.is_none() && bearing.is_some() {
+                let name = self.members[body.member.0].name.clone();
+                let text = format!(
+                    "mass not given, taken as {:.3} kg (steel cylinder of the pitch circle around the bearing)",
+                    body.mass
+                );
+                self.assumptions.push((name, text));
+            }
+        }
+        for b in bearings {
+            let planets = |m: MemberId| {
+                let of = |x: &&crate::train::Mesh| x.gears.iter().any(|g| g.member == m);
+                (self.members[m.0].kind == MemberKind::Planet)
+                    .then(|| self.meshes.iter().find(of).map_or(1, |x| x.count))
+            };
+            b.places = b.members.iter().find_map(|m| planets(*m)).unwrap_or(1);
+        }
+        all
+    }
+
+    pub fn housing(&mut self, spec: &HousingSpec) {
+        if let Some(x) = spec.enclosure
+            && self.positive(x, false, "an enclosure factor", "", "housing.enclosure")
+            && x > 1.0
+        {
+            let message = format!("an enclosure factor of {x}: free is 1, a case makes it smaller");
+            self.report(Diagnostic::new(Code::OutOfRange, "housing.enclosure", message));
+        }
+        if let Some(x) = spec.axial_gap {
+            self.positive(x * 1e3, false, "a gap", "mm", "housing.axial_gap");
+        }
+    }
+
+    /// What cannot be computed without more data: an error where it was asked for, an assumption
+    /// where it follows from what is there.
+    pub fn missing_for_losses(
+        &mut self,
+        lubrication: &Option<Lubrication>,
+        bearings: &[BearingMount],
+        rotors: &[Rotor],
+    ) {
+        let needs_oil = [
+            ("bearing", bearings.first().map(|b| b.name.as_str())),
+            ("rotor", rotors.iter().find(|r| r.fluid != Fluid::Air).map(|r| r.name.as_str())),
+        ];
+        for (what, name) in needs_oil {
+            if let (Some(name), None) = (name, lubrication) {
+                let message = format!("the friction of {what} `{}` depends on an oil, and none is given", clip(name));
+                let d = Diagnostic::new(Code::MissingKey, "oil", message);
+                self.report(d.hint("add [oil] with a name of the catalogue, or its viscosities"));
+            }
+        }
+        let dips: Vec<String> = (self.meshes.iter())
+            .filter(|m| m.teeth.as_ref().is_some_and(|t| t.immersion.iter().any(Option::is_some)))
+            .map(|m| m.name.clone())
+            .collect();
+        if let Some(first) = dips.first()
+            && lubrication.as_ref().is_none_or(|l| l.volume.is_none())
+        {
+            let message = format!("a gear of {} is immersed; churning needs the volume of oil", clip(first));
+            self.report(Diagnostic::new(Code::MissingKey, "oil.volume", message).hint("give `volume` in [oil]"));
+        }
+    }
+}

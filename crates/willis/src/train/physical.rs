@@ -1,0 +1,120 @@
+//! The physical layer of a train: teeth, oil, bearings, seals, bodies that drag.
+
+use crate::catalogue::bearing::Bearing;
+use crate::catalogue::oil::Oil;
+use crate::geometry::Pair;
+use crate::losses::seal::Material;
+
+use super::MemberId;
+use super::describe::physical::{Fluid, OilSupply};
+
+/// Teeth of a mesh.
+#[derive(Clone, Debug)]
+pub struct Teeth {
+    /// The involute pair; its wheels stand in the order of the mesh's gears.
+    pub pair: Pair,
+    /// Arithmetic mean roughness of both flanks, m.
+    pub roughness: [f64; 2],
+    /// Depth of immersion of both gears at rest, m.
+    pub immersion: [Option<f64>; 2],
+    /// Young's modulus, Pa.
+    pub youngs_modulus: f64,
+    /// Poisson's ratio.
+    pub poisson_ratio: f64,
+}
+
+impl Teeth {
+    /// Reduced modulus `E' = E/(1 − ν²)` of two equal materials, Pa.
+    pub fn reduced_modulus(&self) -> f64 {
+        self.youngs_modulus / (1.0 - self.poisson_ratio * self.poisson_ratio)
+    }
+}
+
+/// The oil of a train and how it gets around.
+#[derive(Clone, Debug)]
+pub struct Lubrication {
+    /// The oil.
+    pub oil: Oil,
+    /// Operating temperature, K.
+    pub temperature: f64,
+    /// How the oil gets to gears and bearings, when given.
+    pub supply: Option<OilSupply>,
+    /// Volume in the sump, m³.
+    pub volume: Option<f64>,
+    /// Volumes of air to one of oil in the mist.
+    pub mist: f64,
+}
+
+/// Rolling bearings between two members.
+#[derive(Clone, Debug)]
+pub struct BearingMount {
+    /// What it is called.
+    pub name: String,
+    /// The members it joins.
+    pub members: [MemberId; 2],
+    /// The bearing.
+    pub bearing: Bearing,
+    /// How many share the load (at each planet, on planets).
+    pub count: u32,
+    /// Identical places: the number of planets, else one.
+    pub places: u32,
+    /// Distance between the outermost, m.
+    pub span: Option<f64>,
+    /// Constant radial load beside those of the gears, N.
+    pub radial_load: f64,
+    /// Constant axial load beside those of the gears, N.
+    pub axial_load: f64,
+    /// How it gets its oil, where that differs from the train.
+    pub supply: Option<OilSupply>,
+    /// Oil level above the lowest rolling element's contact, m.
+    pub level: Option<f64>,
+}
+
+/// Radial lip seals between two members.
+#[derive(Clone, Debug)]
+pub struct SealMount {
+    /// What it is called.
+    pub name: String,
+    /// Shaft and seat.
+    pub members: [MemberId; 2],
+    /// Shaft diameter, m.
+    pub diameter: f64,
+    /// Material of the lip.
+    pub material: Material,
+    /// How many lips.
+    pub count: u32,
+}
+
+/// A smooth body of revolution that drags the fluid around it.
+#[derive(Clone, Debug)]
+pub struct Rotor {
+    /// What it is called.
+    pub name: String,
+    /// The member it belongs to.
+    pub member: MemberId,
+    /// Outer radius, m.
+    pub radius: f64,
+    /// Axial length of the rim, m.
+    pub length: f64,
+    /// Gap between rim and wall, m.
+    pub radial_gap: f64,
+    /// Gap between each face and the wall, m.
+    pub axial_gap: f64,
+    /// What it turns in.
+    pub fluid: Fluid,
+}
+
+/// A planet that revolves: what its bearings feel beside the gears.
+#[derive(Clone, Copy, Debug)]
+pub struct PlanetBody {
+    /// The planets.
+    pub member: MemberId,
+    /// Their carrier.
+    pub carrier: MemberId,
+    /// How many.
+    pub count: u32,
+    /// Distance of their axes from that of the carrier, m.
+    pub orbit_radius: f64,
+    /// Mass of one, kg.
+    pub mass: f64,
+}
