@@ -5,7 +5,7 @@
 //!
 //! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions and [`units`];
 //! 2. [`diagnostic`]: what is wrong, where, and what to do;
-//! 3. [`geometry`] of involute teeth, [`catalogue`] of oils and bearings, [`losses`]: laws;
+//! 3. [`catalogue`] of oils and bearings, [`geometry`] of involute teeth, [`losses`]: laws;
 //! 3. [`train`]: what a gear train is, and the train file;
 //! 4. [`kinematics`]: exact speeds, what is locked, free or redundant;
 //! 5. [`statics`]: torques with losses, the certificate, the verdict;
@@ -47,6 +47,7 @@ pub mod real;
 pub mod units;
 pub mod diagnostic;
 pub mod catalogue;
+pub mod geometry;
 pub mod losses;
 pub mod train;
 pub mod kinematics;

@@ -182,6 +182,8 @@ pub mod bearing;
 pub mod churning;
 pub mod film;
 pub mod film_reduction;
+pub mod load_sharing;
+pub mod loss_factor;
 pub mod mesh_friction;
 pub mod rolling;
 pub mod rotor_drag;

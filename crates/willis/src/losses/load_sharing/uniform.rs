@@ -1,0 +1,55 @@
+use super::{Law, ToothLoad};
+use crate::Real;
+use crate::losses::{Meta, Range, Trust};
+
+/// The same load at every place of the path: what the face of a helical gear sees on average.
+///
+/// # Formula
+/// ```text
+/// share = 1/ε_α
+/// ```
+///
+/// # Symbols
+/// | there | here            | unit there | meaning                  |
+/// |-------|-----------------|------------|--------------------------|
+/// | ε_α   | `contact_ratio` | −          | transverse contact ratio |
+///
+/// # Valid for
+/// Helical gears with a whole overlap ratio, rigid and unmodified, where it is exact: the total
+/// length of contact lines is then constant. For spur gears it carries the force only in the mean.
+///
+/// # Departs from the source
+/// Nothing.
+///
+/// # Source
+/// `[niemann_winter2003]`, mean losses of helical gears; derived.
+///
+/// # Example
+/// ε_α = 1.6: 1/1.6 = 0.625 everywhere.
+/// ```
+/// # use willis::losses::load_sharing::{Law, ToothLoad, Uniform};
+/// let place = ToothLoad { position: 0.3, contact_ratio: 1.6, overlap_ratio: 1.0 };
+/// assert_eq!(Uniform::DEFAULT.eval(&place), 0.625);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uniform;
+
+impl Uniform {
+    /// As derived.
+    pub const DEFAULT: Self = Self;
+}
+
+impl Law for Uniform {
+    const META: Meta<ToothLoad<f64>> = Meta {
+        id: "uniform",
+        title: "Uniform along the path",
+        source: ("niemann_winter2003", "helical gears"),
+        trust: Trust::Derived,
+        tags: &[],
+        valid: &[Range { symbol: "e_b", unit: "-", min: 1.0, max: f64::INFINITY, get: |s| s.overlap_ratio }],
+    };
+
+    fn eval<D: Real>(&self, s: &ToothLoad<D>) -> D {
+        if s.on_path() && s.contact_ratio.re() > 0.0 { s.contact_ratio.recip() } else { D::zero() }
+    }
+}
