@@ -189,3 +189,13 @@ pub mod rolling;
 pub mod rotor_drag;
 pub mod seal;
 pub mod windage;
+
+/// All laws of all families, families in the order of the pipeline.
+pub fn entries() -> Vec<Entry> {
+    let mut all = Vec::new();
+    all.extend(film::Film::entries());
+    all.extend(film_reduction::FilmReduction::entries());
+    all.extend(mesh_friction::MeshFriction::entries());
+    all.extend(rolling::Rolling::entries());
+    all
+}

@@ -16,3 +16,32 @@ pub struct FilmContact<D> {
     /// Reduced modulus `E' = 2/((1 - ν1²)/E1 + (1 - ν2²)/E2)`, Pa.
     pub reduced_modulus: f64,
 }
+
+family! {
+    /// Thickness of the oil film.
+    Film ("film"): FilmContact => "h" ["m"];
+    dowson_higginson::DowsonHigginson,
+    dowson_toyoda::DowsonToyoda,
+    grubin::Grubin,
+    dowson_higginson_1966::DowsonHigginson1966,
+}
+
+/// Groups of Dowson and Higginson: speed `U`, material `G`, load `W`.
+fn groups<D: crate::Real>(s: &FilmContact<D>) -> (D, D, D) {
+    let stiffness = s.radius * s.reduced_modulus;
+    (s.dynamic_viscosity * s.mean_speed / stiffness, s.pressure_viscosity * s.reduced_modulus, s.line_load / stiffness)
+}
+
+impl FilmContact<f64> {
+    /// The pitch point of [`MeshContact::typical`](super::mesh_friction::MeshContact::typical).
+    pub fn typical() -> Self {
+        Self {
+            radius: 8.38e-3,
+            mean_speed: 3.05,
+            line_load: 390e3,
+            dynamic_viscosity: 33e-3,
+            pressure_viscosity: 16.5e-9,
+            reduced_modulus: 226.4e9,
+        }
+    }
+}

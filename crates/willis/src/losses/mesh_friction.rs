@@ -79,6 +79,18 @@ family! {
     /// Coefficient of friction of a mesh.
     MeshFriction ("mesh_friction"): MeshContact => "mu" ["-"];
     schlenk::Schlenk,
+    niemann::Niemann,
+    niemann_winter::NiemannWinter,
+    iso_14179_1::Iso14179Part1,
+    fernandes::Fernandes,
+    matsumoto::Matsumoto,
+    xu_kahraman::XuKahraman,
+    benedict_kelley::BenedictKelley,
+    anderson_loewenthal::AndersonLoewenthal,
+    coulomb_by_regime::CoulombByRegime,
+    constant::Constant,
+    agma_6011::Agma6011,
+    agma_6011_per_planet::Agma6011PerPlanet,
 }
 
 impl MeshContact<f64> {
