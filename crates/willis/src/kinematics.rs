@@ -6,7 +6,7 @@
 //! fraction and a zero is a zero. Source: Willis 1841; `R^v_{w,u}` relations in Esmail 2018.
 
 use crate::exact::{self, Matrix, Rational};
-use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train};
+use crate::train::{Efficiency, FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train};
 use crate::units::Quantity;
 
 /// A chain of meshes that behaves as one: it ends at two members, and the rotors between them
@@ -86,6 +86,8 @@ pub struct Configuration<'t> {
     pub(crate) nodes: usize,
     /// Rotors inside a chain, that is, planets that touch nothing else.
     pub(crate) inner: Vec<bool>,
+    /// Efficiency in force in each mesh: the given ones, unless the operating point computes them.
+    pub(crate) efficiencies: Vec<Efficiency>,
     rank: usize,
 }
 
@@ -171,9 +173,26 @@ impl<'t> Configuration<'t> {
             }
         }
         let (engaged, held) = (engaged.to_vec(), held.to_vec());
-        let mut c = Self { train, engaged, held, elements, node_of, nodes, inner, rank: 0 };
+        let efficiencies = train.meshes.iter().map(|m| m.efficiency.clone()).collect();
+        let mut c = Self { train, engaged, held, elements, node_of, nodes, inner, efficiencies, rank: 0 };
         let mut rows = c.rows(0);
         c.rank = exact::reduce(&mut rows, nodes).len();
+        c
+    }
+
+    /// The same configuration with other efficiencies of the meshes.
+    pub(crate) fn with_efficiencies(&self, efficiencies: Vec<Efficiency>) -> Self {
+        let mut c = Self { efficiencies, ..self.clone() };
+        for e in &mut c.elements {
+            (e.forward, e.backward) = (Rational::ONE, Rational::ONE);
+            for link in &e.links {
+                let own = &c.efficiencies[link.mesh.0];
+                let (along, against) =
+                    if link.along { (&own.forward, &own.backward) } else { (&own.backward, &own.forward) };
+                e.forward = &e.forward * along;
+                e.backward = &e.backward * against;
+            }
+        }
         c
     }
 

@@ -63,6 +63,8 @@ pub struct Flow {
     pub output_power: f64,
     /// Sum of all losses, W.
     pub loss: f64,
+    /// Loss of each drag, W, in the order in which they were given.
+    pub drag_losses: Vec<f64>,
     /// Input less output less losses, W: zero up to round-off.
     pub residual: f64,
     /// Recirculating powers, largest first.
@@ -77,6 +79,16 @@ pub(crate) struct External {
     pub torque: Option<f64>,
 }
 
+/// A torque that two members exert on each other against their relative motion: a bearing, a seal,
+/// a gear in oil.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drag {
+    /// The two members.
+    pub members: [MemberId; 2],
+    /// Torque on the first, N m; the second feels the opposite.
+    pub torque: f64,
+}
+
 impl Flow {
     /// Works out the flow of a solution. `scale` turns its forces into SI.
     pub(crate) fn new(
@@ -85,6 +97,7 @@ impl Flow {
         solution: &Solution,
         scale: f64,
         externals: &[External],
+        drags: &[Drag],
     ) -> Self {
         let train = c.train;
         // Idle parts may have no determined speed; nothing flows there.
@@ -92,7 +105,7 @@ impl Flow {
         let mut meshes = Vec::with_capacity(train.meshes.len());
         let mut demand = vec![0.0; train.members.len()];
         for (j, e) in c.elements.iter().enumerate() {
-            walk(train, e, solution.forces[j] * scale, solution.driver[j], &speeds, &mut meshes);
+            walk(c, e, solution.forces[j] * scale, solution.driver[j], &speeds, &mut meshes);
         }
         meshes.sort_by_key(|m: &MeshFlow| m.mesh);
         for m in &meshes {
@@ -104,6 +117,11 @@ impl Flow {
             }
         }
 
+        let mut dragged = vec![0.0; train.members.len()];
+        for d in drags {
+            dragged[d.members[0].0] += d.torque;
+            dragged[d.members[1].0] -= d.torque;
+        }
         let mut external: Vec<f64> = vec![0.0; train.members.len()];
         for x in externals {
             if let Some(t) = x.torque {
@@ -113,13 +131,14 @@ impl Flow {
         for x in externals.iter().filter(|x| x.torque.is_none()) {
             let Some(node) = c.node(x.member) else { continue };
             let own = || (1..demand.len()).filter(|&m| !c.inner[m] && c.node_of[m] == Some(node));
-            let total: f64 = own().map(|m| demand[m] - external[m]).sum();
-            let size: f64 = own().map(|m| demand[m].abs() + external[m].abs()).sum();
+            let total: f64 = own().map(|m| demand[m] - external[m] - dragged[m]).sum();
+            let size: f64 = own().map(|m| demand[m].abs() + external[m].abs() + dragged[m].abs()).sum();
             // Torques that cancel up to round-off are no torque.
             let total = if total.abs() <= 1e-13 * size { 0.0 } else { total };
             external[x.member.0] = total;
         }
-        let (ties, reactions) = self::ties(c, &demand, &external);
+        let applied: Vec<f64> = external.iter().zip(&dragged).map(|(x, d)| x + d).collect();
+        let (ties, reactions) = self::ties(c, &demand, &applied);
         let torques: Vec<Option<f64>> = (0..external.len()).map(|m| reactions[m].map(|r| external[m] + r)).collect();
 
         let powers: Vec<f64> = (0..external.len()).map(|m| external[m] * speeds[m]).collect();
@@ -128,10 +147,12 @@ impl Flow {
         let real = |p: &&f64| p.abs() > 1e-12 * largest;
         let input_power: f64 = powers.iter().filter(real).filter(|p| **p > 0.0).sum();
         let output_power: f64 = -powers.iter().filter(real).filter(|p| **p < 0.0).sum::<f64>();
-        let loss: f64 = meshes.iter().map(|m| m.loss).sum();
+        let drag_losses: Vec<f64> =
+            drags.iter().map(|d| d.torque * (speeds[d.members[1].0] - speeds[d.members[0].0])).collect();
+        let loss = meshes.iter().map(|m| m.loss).chain(drag_losses.iter().copied()).sum::<f64>();
         let residual = powers.iter().sum::<f64>() - loss;
         let circulations = circulations(c, &meshes, &speeds, input_power);
-        Self { torques, speeds, meshes, ties, input_power, output_power, loss, residual, circulations }
+        Self { torques, speeds, meshes, ties, input_power, output_power, loss, drag_losses, residual, circulations }
     }
 }
 
@@ -148,18 +169,20 @@ pub(crate) fn demand(c: &Configuration<'_>, s: &Solution) -> Vec<f64> {
 }
 
 /// Follows the force through a chain, mesh by mesh.
-fn walk(train: &Train, e: &Element, force: f64, p_drives: Option<bool>, speeds: &[f64], out: &mut Vec<MeshFlow>) {
+fn walk(c: &Configuration<'_>, e: &Element, force: f64, p_drives: Option<bool>, speeds: &[f64], out: &mut Vec<MeshFlow>) {
+    let train = c.train;
     let mut torque = force * e.a.to_f64();
     for link in &e.links {
         let mesh = &train.meshes[link.mesh.0];
+        let own = &c.efficiencies[link.mesh.0];
         let (enter, leave) = if link.along { (0, 1) } else { (1, 0) };
         let efficiency = match p_drives {
             None => 1.0,
             // Power runs along the chain, or against it.
-            Some(true) if link.along => mesh.efficiency.forward.to_f64(),
-            Some(true) => mesh.efficiency.backward.to_f64(),
-            Some(false) if link.along => mesh.efficiency.backward.to_f64(),
-            Some(false) => mesh.efficiency.forward.to_f64(),
+            Some(true) if link.along => own.forward.to_f64(),
+            Some(true) => own.backward.to_f64(),
+            Some(false) if link.along => own.backward.to_f64(),
+            Some(false) => own.forward.to_f64(),
         };
         let rho = if p_drives == Some(false) { 1.0 / efficiency } else { efficiency };
         let ratio = mesh.gears[leave].teeth.to_f64() / mesh.gears[enter].teeth.to_f64();

@@ -1,0 +1,439 @@
+//! The operating point: torques depend on losses, and losses on torques; both are brought into
+//! agreement.
+//!
+//! For given torques the [laws](crate::losses) give every loss. Losses in proportion to a mesh's
+//! load (sliding of the teeth, the part of bearing friction that grows with the load) become that
+//! mesh's efficiency and so enter the complementarity problem of the [statics](crate::statics)
+//! itself: they can change which way power runs, and lock a train. The rest (rolling, the part of
+//! bearing friction that is there without load, seals, gears in oil and air) become drag torques.
+//! The statics solved with them gives new torques, and so on: a contraction, because a loss of a
+//! few percent shifts torques by a few percent, and friction depends on them with a power of about
+//! 0.2. It ends when the bound on the remaining error, `q/(1 − q)` times the last change with the
+//! measured contraction `q`, is below 1e-9 of the loss.
+
+mod bearing;
+mod body;
+mod contact;
+
+use serde::Serialize;
+
+use crate::exact::Rational;
+use crate::kinematics::{Configuration, Motion};
+use crate::losses::{Outside, mesh_friction::MeshFriction, rolling::Rolling};
+use crate::power_flow::{Drag, Flow};
+use crate::train::{Efficiency, Lubrication, MemberId, MemberKind, Operation, Train};
+
+pub use bearing::BearingReport;
+pub use contact::{ContactReport, Regime};
+
+/// The error that is left, over the loss.
+const ACCURACY: f64 = 1e-9;
+/// Most rounds of statics and laws.
+const MOST_ROUNDS: usize = 200;
+
+/// What kind of loss it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum LossKind {
+    /// Tooth friction: sliding.
+    Sliding,
+    /// Tooth friction: rolling.
+    Rolling,
+    /// Rolling bearings.
+    Bearing,
+    /// Gears and rotors in air and mist.
+    Windage,
+    /// Gears and rotors in oil.
+    Churning,
+    /// Lip seals.
+    Seal,
+}
+
+/// One place where power is lost.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LossSource {
+    /// What loses it.
+    pub name: String,
+    /// What kind of loss it is.
+    pub kind: LossKind,
+    /// Its name in the list of laws; `given` for a given efficiency.
+    pub law: &'static str,
+    /// The power, W.
+    pub loss_w: f64,
+    /// The part of all losses.
+    pub share: f64,
+}
+
+/// How the agreement of losses and torques was reached.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Convergence {
+    /// Whether it was reached.
+    pub converged: bool,
+    /// Rounds of statics and laws.
+    pub rounds: usize,
+    /// Bound on the error that is left, over the loss.
+    pub error: f64,
+    /// The factor by which the last rounds reduced it.
+    pub contraction: f64,
+}
+
+/// A quantity outside the range of the law that used it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extrapolation {
+    /// Family of the law.
+    pub family: &'static str,
+    /// Name of the law.
+    pub law: &'static str,
+    /// Where it was used.
+    pub at: String,
+    /// The quantity.
+    pub outside: Outside,
+}
+
+/// Where a drag comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Source {
+    Rolling(usize),
+    Bearing(usize),
+    Seal(usize),
+    Body(usize),
+    Rotor(usize),
+}
+
+/// State of the oil at the operating temperature.
+#[derive(Clone, Copy, Debug)]
+struct OilState {
+    temperature: f64,
+    dynamic_viscosity: f64,
+    kinematic_viscosity: f64,
+    density: f64,
+    pressure_viscosity: f64,
+    viscosity_slope: f64,
+    conductivity: f64,
+}
+
+/// All losses of a train that an operating point can compute.
+#[derive(Debug)]
+pub(crate) struct Physics<'t> {
+    train: &'t Train,
+    oil: Option<(&'t Lubrication, OilState)>,
+    friction: MeshFriction,
+    rolling: Option<Rolling>,
+    bodies: Vec<body::Body>,
+}
+
+/// Losses of one mesh as parts of its potential power.
+#[derive(Clone, Debug, Default)]
+struct MeshLoss {
+    sliding: f64,
+    /// Bearing, and its part.
+    bearings: Vec<(usize, f64)>,
+    contact: Option<ContactReport>,
+}
+
+impl MeshLoss {
+    fn total(&self) -> f64 {
+        self.sliding + self.bearings.iter().map(|b| b.1).sum::<f64>()
+    }
+}
+
+/// The losses of one round, in the form that the statics takes.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    meshes: Vec<MeshLoss>,
+    sources: Vec<Source>,
+    pub drags: Vec<Drag>,
+    bearings: Vec<BearingReport>,
+}
+
+impl Step {
+    /// The efficiencies of a train without any loss, and no drag.
+    pub fn lossless(train: &Train) -> Self {
+        let meshes = vec![MeshLoss::default(); train.meshes.len()];
+        Self { meshes, sources: vec![], drags: vec![], bearings: vec![] }
+    }
+
+    /// The configuration with the efficiencies of this round.
+    pub fn configure<'t>(&self, c: &Configuration<'t>) -> Configuration<'t> {
+        let efficiency = |loss: f64| Rational::from_f64(1.0 - loss).unwrap_or(Rational::ONE);
+        let all = self.meshes.iter().zip(&c.train.meshes).map(|(own, mesh)| {
+            let mut given = if mesh.computed { Efficiency::lossless() } else { mesh.efficiency.clone() };
+            if own.total() > 0.0 {
+                let own = efficiency(own.total());
+                given = Efficiency { forward: given.forward * own.clone(), backward: given.backward * own };
+            }
+            given
+        });
+        c.with_efficiencies(all.collect())
+    }
+}
+
+impl<'t> Physics<'t> {
+    /// Everything that does not depend on the load.
+    pub fn new(train: &'t Train, operation: &Operation) -> Self {
+        let oil = train.lubrication.as_ref().map(|l| {
+            let temperature = operation.temperature.unwrap_or(l.temperature);
+            let state = OilState {
+                temperature,
+                dynamic_viscosity: l.oil.dynamic_viscosity(temperature),
+                kinematic_viscosity: l.oil.kinematic_viscosity(temperature),
+                density: l.oil.density(temperature),
+                pressure_viscosity: l.oil.pressure_viscosity(temperature),
+                viscosity_slope: l.oil.viscosity_slope(temperature),
+                conductivity: l.oil.conductivity(temperature),
+            };
+            (l, state)
+        });
+        let friction = train.laws.mesh_friction(oil.is_some());
+        let rolling = train.laws.rolling(&friction).filter(|_| oil.is_some());
+        Self { train, oil, friction, rolling, bodies: body::bodies(train) }
+    }
+
+    /// Planets on which a drag acts: they must be seen by the statics.
+    pub fn visible(&self) -> Vec<MemberId> {
+        let planet = |m: &MemberId| self.train.members[m.0].kind == MemberKind::Planet;
+        let mut all: Vec<MemberId> = Vec::new();
+        all.extend(self.train.bearings.iter().flat_map(|b| b.members));
+        all.extend(self.train.seals.iter().flat_map(|b| b.members));
+        all.extend(self.train.rotors.iter().map(|r| r.member));
+        all.extend(self.bodies.iter().map(|b| b.member));
+        if self.rolling.is_some() {
+            let rolling = self.train.meshes.iter().filter(|m| m.computed);
+            all.extend(rolling.flat_map(|m| m.gears.iter().map(|g| g.member)));
+        }
+        all.retain(planet);
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// The losses that the laws give for the torques and speeds of a flow.
+    pub fn step(&self, flow: &Flow, motion: &Motion) -> Step {
+        self.evaluate(flow, motion, &mut None)
+    }
+
+    /// Where the laws were used outside their ranges.
+    pub fn extrapolations(&self, flow: &Flow, motion: &Motion) -> Vec<Extrapolation> {
+        let mut found = Some(vec![]);
+        self.evaluate(flow, motion, &mut found);
+        found.unwrap_or_default()
+    }
+
+    fn evaluate(&self, flow: &Flow, motion: &Motion, beyond: &mut Option<Vec<Extrapolation>>) -> Step {
+        let mut step = Step::lossless(self.train);
+        let known = |m: MemberId| motion.speeds[m.0].is_some();
+        let mut drag = |source: Source, members: [MemberId; 2], torque: f64| {
+            let relative = flow.speeds[members[0].0] - flow.speeds[members[1].0];
+            if torque > 0.0 && relative != 0.0 && members.iter().all(|m| known(*m)) {
+                step.sources.push(source);
+                step.drags.push(Drag { members, torque: -torque * relative.signum() });
+            }
+        };
+        let mut losses: Vec<MeshLoss> = Vec::with_capacity(flow.meshes.len());
+        for m in &flow.meshes {
+            let mesh = &self.train.meshes[m.mesh.0];
+            let Some(teeth) = &mesh.teeth else {
+                losses.push(MeshLoss::default());
+                continue;
+            };
+            let (contact, rolling) = self.contact(mesh, teeth, m, beyond);
+            // Rolling resists on both gears; each takes half of its power.
+            for k in 0..2 {
+                let speed = m.relative_speeds[k].abs();
+                if speed > 0.0 && mesh.computed {
+                    drag(
+                        Source::Rolling(m.mesh.0),
+                        [mesh.gears[k].member, mesh.carrier],
+                        0.5 * rolling / speed,
+                    );
+                }
+            }
+            let sliding = match (&contact.friction, mesh.computed, m.driver) {
+                (Some(mu), true, Some(_)) => (mu * contact.loss_factor).clamp(0.0, 0.95),
+                // Idle or at rest: nothing is lost, but friction may hold; the nominal value.
+                (_, true, _) => 1.0 - mesh.efficiency.forward.to_f64(),
+                _ => 0.0,
+            };
+            losses.push(MeshLoss { sliding, bearings: vec![], contact: Some(contact) });
+        }
+        let mut reports = Vec::with_capacity(self.train.bearings.len());
+        for (k, mount) in self.train.bearings.iter().enumerate() {
+            let Some((_, oil)) = &self.oil else { break };
+            let (report, mut torque, mut proportional, loading) = self.bearing(mount, flow, oil, beyond);
+            let speed = report.speed_rad_s;
+            // The part that grows with the load belongs to the meshes that make the load.
+            let weight: f64 = loading.iter().map(|l| l.1).sum();
+            for (mesh, w) in loading {
+                let power = flow.meshes[mesh].potential_power;
+                if weight > 0.0 && power > 0.0 {
+                    let most = 0.5 * power / speed.max(1e-300);
+                    let part = (proportional * w / weight).min(most).min(torque);
+                    if part > 0.0 && speed > 0.0 {
+                        losses[mesh].bearings.push((k, part * speed / power));
+                        torque -= part;
+                        proportional -= 0.0;
+                    }
+                }
+            }
+            drag(Source::Bearing(k), mount.members, torque);
+            reports.push(report);
+        }
+        for (k, seal) in self.train.seals.iter().enumerate() {
+            drag(Source::Seal(k), seal.members, self.seal(seal, flow, beyond));
+        }
+        for (k, body) in self.bodies.iter().enumerate() {
+            drag(Source::Body(k), [body.member, body.against], self.body(body, flow, beyond));
+        }
+        for (k, rotor) in self.train.rotors.iter().enumerate() {
+            drag(Source::Rotor(k), [rotor.member, crate::train::FRAME], self.rotor(rotor, flow, beyond));
+        }
+        step.meshes = losses;
+        step.bearings = reports;
+        step
+    }
+
+    /// How far two rounds differ, in watts of this flow, and the loss.
+    fn change(&self, flow: &Flow, old: &Step, new: &Step) -> (f64, f64) {
+        let mut change = 0.0;
+        for (m, (a, b)) in flow.meshes.iter().zip(old.meshes.iter().zip(&new.meshes)) {
+            change += m.potential_power * (a.total() - b.total()).abs();
+        }
+        let relative = |d: &Drag| flow.speeds[d.members[0].0] - flow.speeds[d.members[1].0];
+        let mut theirs = new.drags.iter().zip(&new.sources).map(|(d, s)| (d, s, false)).collect::<Vec<_>>();
+        for (d, s) in old.drags.iter().zip(&old.sources) {
+            let same = theirs.iter_mut().find(|t| !t.2 && t.1 == s && t.0.members == d.members);
+            let torque = same.map_or(0.0, |t| {
+                t.2 = true;
+                t.0.torque
+            });
+            change += ((d.torque - torque) * relative(d)).abs();
+        }
+        change += theirs.iter().filter(|t| !t.2).map(|t| (t.0.torque * relative(t.0)).abs()).sum::<f64>();
+        let computed: f64 = flow.meshes.iter().map(|m| m.loss).sum::<f64>() + flow.drag_losses.iter().sum::<f64>();
+        (change, computed)
+    }
+
+    /// Repeats statics and laws from `start` until they agree. `solve` gives the flow for the losses
+    /// of a step, or nothing where friction locks the train. Returns the last step that was solved,
+    /// its flow, and how well it agrees.
+    pub fn agree<F>(
+        &self,
+        motion: &Motion,
+        start: Step,
+        mut solve: impl FnMut(&Step) -> Option<(F, Flow)>,
+    ) -> Option<(Step, F, Flow, Convergence)> {
+        let mut step = start;
+        let (mut last, mut contraction) = (f64::INFINITY, 0.0f64);
+        let mut rounds = 0;
+        loop {
+            rounds += 1;
+            let (own, flow) = solve(&step)?;
+            let next = self.step(&flow, motion);
+            let (change, loss) = self.change(&flow, &step, &next);
+            let change = if change == 0.0 { 0.0 } else { change / loss.max(f64::MIN_POSITIVE) };
+            // The first rounds leave the start behind; they say nothing of the contraction.
+            let q = if last.is_finite() && last > 0.0 { (change / last).min(2.0) } else { 0.5 };
+            contraction = if rounds > 2 { q.max(0.2 * contraction) } else { q };
+            let error = if contraction < 1.0 { contraction / (1.0 - contraction) * change } else { f64::INFINITY };
+            let converged = error <= ACCURACY && change <= 1e3 * ACCURACY || change <= 1e-15;
+            if converged || rounds == MOST_ROUNDS {
+                return Some((step, own, flow, Convergence { converged, rounds, error: error.min(change.max(0.0)), contraction }));
+            }
+            step = next;
+            last = change;
+        }
+    }
+
+    /// Every loss of a solved step by its source, largest first; their sum is the flow's loss.
+    pub fn sources(&self, step: &Step, flow: &Flow) -> Vec<LossSource> {
+        let train = self.train;
+        let mut all: Vec<LossSource> = Vec::new();
+        let mut add = |name: &str, kind: LossKind, law: &'static str, loss_w: f64| {
+            match all.iter_mut().find(|s| s.name == name && s.kind == kind) {
+                Some(s) => s.loss_w += loss_w,
+                None => all.push(LossSource { name: name.to_owned(), kind, law, loss_w, share: 0.0 }),
+            }
+        };
+        for (m, own) in flow.meshes.iter().zip(&step.meshes) {
+            let mesh = &train.meshes[m.mesh.0];
+            let mut teeth = m.loss;
+            for (bearing, part) in &own.bearings {
+                let loss = m.potential_power * part;
+                teeth -= loss;
+                add(&train.bearings[*bearing].name, LossKind::Bearing, step.bearings[*bearing].law, loss);
+            }
+            let law = if mesh.computed { self.friction.meta().id } else { "given" };
+            add(&mesh.name, LossKind::Sliding, law, teeth);
+        }
+        for (source, loss) in step.sources.iter().zip(&flow.drag_losses) {
+            match *source {
+                Source::Rolling(k) => {
+                    let law = self.rolling.map_or("none", |r| r.meta().id);
+                    add(&train.meshes[k].name, LossKind::Rolling, law, *loss);
+                }
+                Source::Bearing(k) => {
+                    add(&train.bearings[k].name, LossKind::Bearing, step.bearings[k].law, *loss);
+                }
+                Source::Seal(k) => add(&train.seals[k].name, LossKind::Seal, train.laws.seal.meta().id, *loss),
+                Source::Body(k) => {
+                    let (kind, law) = self.bodies[k].kind(train);
+                    add(&self.bodies[k].name, kind, law, *loss);
+                }
+                Source::Rotor(k) => {
+                    let kind = match train.rotors[k].fluid {
+                        crate::train::Fluid::Oil => LossKind::Churning,
+                        _ => LossKind::Windage,
+                    };
+                    add(&train.rotors[k].name, kind, train.laws.rotor_drag.meta().id, *loss);
+                }
+            }
+        }
+        let total: f64 = all.iter().map(|s| s.loss_w).sum();
+        for s in &mut all {
+            s.loss_w += 0.0;
+            s.share = if total > 0.0 { s.loss_w / total } else { 0.0 };
+        }
+        all.sort_by(|a, b| b.loss_w.total_cmp(&a.loss_w));
+        all
+    }
+
+    /// The contact of each mesh with teeth, with its losses in this flow.
+    pub fn contacts(&self, step: &Step, flow: &Flow) -> Vec<(String, ContactReport)> {
+        let mut all = Vec::new();
+        for (m, own) in flow.meshes.iter().zip(&step.meshes) {
+            let Some(contact) = &own.contact else { continue };
+            let mut contact = contact.clone();
+            let bearings: f64 = own.bearings.iter().map(|b| b.1).sum();
+            contact.sliding_loss_w = (m.loss - m.potential_power * bearings).max(0.0);
+            let rolling = step.sources.iter().zip(&flow.drag_losses);
+            contact.rolling_loss_w =
+                rolling.filter(|(s, _)| **s == Source::Rolling(m.mesh.0)).map(|(_, loss)| *loss).sum::<f64>() + 0.0;
+            all.push((self.train.meshes[m.mesh.0].name.clone(), contact));
+        }
+        all
+    }
+
+    /// The bearings of a solved step, with their losses.
+    pub fn bearings(&self, step: &Step, flow: &Flow) -> Vec<(String, BearingReport)> {
+        let mut all = Vec::new();
+        for (k, report) in step.bearings.iter().enumerate() {
+            let mut report = report.clone();
+            let by_load = flow.meshes.iter().zip(&step.meshes).flat_map(|(m, own)| {
+                own.bearings.iter().filter(|b| b.0 == k).map(|b| b.1 * m.potential_power).collect::<Vec<_>>()
+            });
+            let drags = step.sources.iter().zip(&flow.drag_losses);
+            let rest = drags.filter(|(s, _)| **s == Source::Bearing(k)).map(|(_, loss)| *loss);
+            report.loss_w = by_load.chain(rest).sum::<f64>() + 0.0;
+            all.push((self.train.bearings[k].name.clone(), report));
+        }
+        all
+    }
+
+    /// Part of the potential power of each mesh that its teeth lose.
+    pub fn tooth_loss(&self, step: &Step, mesh: usize, flow: &Flow) -> f64 {
+        let m = &flow.meshes[mesh];
+        let bearings: f64 = step.meshes[mesh].bearings.iter().map(|b| b.1).sum();
+        (m.loss - m.potential_power * bearings).max(0.0)
+    }
+}
