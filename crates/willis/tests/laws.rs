@@ -8,12 +8,12 @@ use std::sync::{Mutex, MutexGuard};
 use num_dual::Dual64;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use willis::catalogue::oil::Base;
-use willis::losses::film::{self, DowsonHigginson, DowsonHigginson1966, FilmContact};
-use willis::losses::film_reduction::{self, GuptaCheng, Inlet, MurchWilson};
-use willis::losses::mesh_friction::{self, Agma6011, Agma6011PerPlanet, Law as _, MeshContact};
+use willis::losses::film::{DowsonHigginson, DowsonHigginson1966, Film, FilmContact};
+use willis::losses::film_reduction::{FilmReduction, GuptaCheng, Inlet, MurchWilson};
+use willis::losses::mesh_friction::{Agma6011, Agma6011PerPlanet, Law as _, MeshContact, MeshFriction};
 use willis::losses::mesh_friction::{BenedictKelley, Fernandes, Matsumoto, Niemann, Schlenk, XuKahraman};
-use willis::losses::rolling::{self, RollingContact};
-use willis::losses::{Entry, Tag, Trust, entries};
+use willis::losses::rolling::{Rolling, RollingContact};
+use willis::losses::{self, Entry, Tag, Trust, entries};
 
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
@@ -41,7 +41,6 @@ macro_rules! every_law {
     ($family:ident: $laws:ident, $state:ident { $($field:ident),* ; $($plain:ident),* }) => {
         mod $family {
             use super::*;
-            use willis::losses::$family::{$laws, $state};
 
             type State = $state<f64>;
             const FIELDS: &[(&str, fn(&mut State) -> &mut f64)] = &[$((stringify!($field), |s| &mut s.$field)),*];
@@ -89,11 +88,9 @@ macro_rules! every_law {
                             }
                         }
                     }
-                    if law.outside(&state).is_empty() {
-                        all.push(state);
-                    } else {
-                        assert!(!ranges.is_empty());
-                    }
+                    let outside = law.outside(&state);
+                    assert!(outside.is_empty(), "{}: {outside:?}", law.meta().id);
+                    all.push(state);
                 }
                 all.push(State::typical());
                 all
@@ -104,9 +101,7 @@ macro_rules! every_law {
                 let _turn = turn();
                 for &law in $laws::ALL {
                     let id = law.meta().id;
-                    let states = states(law);
-                    assert!(states.len() > 100, "{id}: only {} states in range", states.len());
-                    for state in states {
+                    for state in states(law) {
                         let value = law.eval(&state);
                         assert!(value.is_finite() && value >= 0.0, "{id}: {value} at {state:?}");
                     }
@@ -159,9 +154,6 @@ macro_rules! every_law {
             fn every_law_reports_the_ends_of_its_range() {
                 let _turn = turn();
                 for &law in $laws::ALL {
-                    for state in states(law) {
-                        assert!(law.outside(&state).is_empty() || state.eq_typical());
-                    }
                     for range in law.meta().valid {
                         assert!(range.min < range.max, "{} {}", law.meta().id, range.symbol);
                         let far = if range.max.is_finite() { 1e9 } else { 1e-9 };
@@ -208,15 +200,6 @@ macro_rules! every_law {
                 assert_eq!($laws::ALL.len(), $laws::SOURCES.len());
                 for (name, text) in $laws::SOURCES {
                     documented(name, text);
-                }
-            }
-
-            trait EqTypical { fn eq_typical(&self) -> bool; }
-            impl EqTypical for State {
-                fn eq_typical(&self) -> bool {
-                    let mut typical = State::typical();
-                    let mut own = *self;
-                    FIELDS.iter().all(|(_, f)| *f(&mut own) == *f(&mut typical))
                 }
             }
         }
@@ -297,12 +280,7 @@ fn every_law_has_a_name_a_source_and_a_default() {
 fn every_key_named_in_the_docs_is_in_the_references() {
     let _turn = turn();
     let references = references();
-    let sources = [
-        film::Film::SOURCES,
-        film_reduction::FilmReduction::SOURCES,
-        mesh_friction::MeshFriction::SOURCES,
-        rolling::Rolling::SOURCES,
-    ];
+    let sources = [Film::SOURCES, FilmReduction::SOURCES, MeshFriction::SOURCES, Rolling::SOURCES];
     for (name, text) in sources.concat() {
         let keys = text.lines().filter(|l| l.starts_with("///")).flat_map(|l| l.split("`[").skip(1));
         for key in keys.filter_map(|k| k.split_once("]`")).map(|k| k.0) {
@@ -353,7 +331,7 @@ fn val_spot_values_of_another_implementation() {
         hertz_pressure: 1e9,
         reduced_modulus: 226.3736e9,
     };
-    use film_reduction::Law as _;
+    use losses::film_reduction::Law as _;
     close(MurchWilson.eval(&inlet), 0.6079603, 1e-6, "murch-wilson");
     close(GuptaCheng.eval(&inlet), 0.678518, 1e-6, "gupta-cheng");
 
@@ -369,8 +347,8 @@ fn val_spot_values_of_another_implementation() {
 #[test]
 fn val_wang_2020_formulas() {
     let _turn = turn();
-    use film::Law as _;
-    use film_reduction::Law as _;
+    use losses::film::Law as _;
+    use losses::film_reduction::Law as _;
     let contact = FilmContact {
         radius: 24.2e-3,
         mean_speed: 22.7,
@@ -421,7 +399,7 @@ fn benedict_kelley_is_cut_and_flagged_where_its_logarithm_is_negative() {
     let uncut = 0.0127 * 50.0 / (50.0 - 3.937) * (29.66 * 26.0 / (0.08 * 8.0 * 45.4 * 45.4_f64)).log10();
     close(uncut, -0.003214042995401304, 1e-9, "uncut");
     close(BenedictKelley.eval(&contact), 0.0127 * 50.0 / (50.0 - 3.937), 1e-12, "cut");
-    let outside = mesh_friction::MeshFriction::BenedictKelley(BenedictKelley).outside(&contact);
+    let outside = MeshFriction::BenedictKelley(BenedictKelley).outside(&contact);
     assert_eq!(outside.len(), 1);
     close(outside[0].value, 0.58463, 1e-4, "argument of the logarithm");
     // At the pitch point the coefficient is finite, and the loss vanishes.
@@ -559,12 +537,12 @@ fn val_petry_johnson_2008() {
 fn regress_recalled_laws() {
     let _turn = turn();
     let typical = MeshContact::typical();
-    let of = |id: &str| format!("{:.6}", mesh_friction::MeshFriction::named(id).unwrap().eval(&typical));
+    let of = |id: &str| format!("{:.6}", MeshFriction::named(id).unwrap().eval(&typical));
     let expected = [
-        ("niemann-winter", "0.060812"),
+        ("niemann-winter", "0.058851"),
         ("iso-14179-1", "0.013848"),
-        ("benedict-kelley", "0.191826"),
-        ("anderson-loewenthal", "0.078559"),
+        ("benedict-kelley", "0.110211"),
+        ("anderson-loewenthal", "0.049465"),
         ("coulomb-by-regime", "0.100000"),
         ("agma-6011", "0.032895"),
     ];
@@ -572,8 +550,8 @@ fn regress_recalled_laws() {
     let expected: Vec<_> = expected.iter().map(|(id, v)| (*id, (*v).to_owned())).collect();
     assert_eq!(ours, expected);
 
-    let film = |id: &str| format!("{:.4e}", film::Film::named(id).unwrap().eval(&FilmContact::typical()));
-    let roll = |id: &str| format!("{:.4}", rolling::Rolling::named(id).unwrap().eval(&RollingContact::typical()));
+    let film = |id: &str| format!("{:.4e}", Film::named(id).unwrap().eval(&FilmContact::typical()));
+    let roll = |id: &str| format!("{:.4}", Rolling::named(id).unwrap().eval(&RollingContact::typical()));
     let ours = [film("dowson-toyoda"), roll("anderson-loewenthal"), roll("goksem-hargreaves")];
-    assert_eq!(ours, ["x", "x", "x"].map(str::to_owned));
+    assert_eq!(ours, ["4.8779e-7", "3.0302", "5.8850"].map(str::to_owned));
 }
