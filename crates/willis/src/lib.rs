@@ -54,6 +54,7 @@ pub mod kinematics;
 pub mod statics;
 pub mod power_flow;
 pub mod compiled;
+pub mod operating_point;
 pub mod analysis;
 pub mod regimes;
 pub mod figure;

@@ -9,6 +9,8 @@
 //! All quantities are SI; a law that is written in other units converts inside its own function.
 //! Laws are generic over [`Real`](crate::Real), so that derivatives come with the value.
 
+use crate::diagnostic::{Code, Diagnostic};
+
 /// What every law says about itself. The list of laws, the documentation, the range warnings and
 /// the choice by name read this and nothing else.
 #[derive(Debug)]
@@ -190,12 +192,125 @@ pub mod rotor_drag;
 pub mod seal;
 pub mod windage;
 
-/// All laws of all families, families in the order of the pipeline.
-pub fn entries() -> Vec<Entry> {
-    let mut all = Vec::new();
-    all.extend(film::Film::entries());
-    all.extend(film_reduction::FilmReduction::entries());
-    all.extend(mesh_friction::MeshFriction::entries());
-    all.extend(rolling::Rolling::entries());
-    all
+/// The laws in force, one of each family.
+macro_rules! laws {
+    ($($(#[$doc:meta])* $name:ident: $family:ty;)+) => {
+        /// The laws in force, one of each family.
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct Laws {
+            /// Tooth friction; `None`: the default with an oil, `constant` without.
+            pub mesh_friction: Option<mesh_friction::MeshFriction>,
+            /// The coefficient of the law `constant`, where given.
+            pub friction_coefficient: Option<f64>,
+            /// Rolling losses; `None`: the default with friction laws that lack them.
+            pub rolling: Option<rolling::Rolling>,
+            $($(#[$doc])* pub $name: $family,)+
+        }
+
+        /// Every family, in the order of the pipeline.
+        pub const FAMILIES: &[&str] = &["mesh_friction", "rolling", $(stringify!($name)),+];
+
+        /// All laws of all families, in that order.
+        pub fn entries() -> Vec<Entry> {
+            let mut all = mesh_friction::MeshFriction::entries();
+            all.extend(rolling::Rolling::entries());
+            $(all.extend(<$family>::entries());)+
+            all
+        }
+
+        impl Laws {
+            /// Puts a law into force by name.
+            ///
+            /// # Errors
+            /// If there is no such family or law; with what there is.
+            ///
+            /// # Example
+            /// ```
+            /// let mut laws = willis::losses::Laws::default();
+            /// assert!(laws.choose("bearing", "palmgren").is_ok());
+            /// assert!(laws.choose("bearing", "plamgren").unwrap_err().to_string().contains("palmgren"));
+            /// ```
+            pub fn choose(&mut self, family: &str, law: &str) -> Result<(), Box<Diagnostic>> {
+                let unknown = |known: Vec<&str>, what: String, name: &str, list: &str| {
+                    let mut d = Diagnostic::new(Code::UnknownName, "laws", what).suggest(name, known.iter().copied());
+                    d = d.hint(format!("{list}: {}", known.join(", ")));
+                    Box::new(d)
+                };
+                let no_law = |family: &str, entries: Vec<Entry>| {
+                    let known = entries.iter().map(|e| e.id).collect();
+                    let what = format!("the family `{family}` has no law `{}`", short(law));
+                    unknown(known, what, law, "its laws are")
+                };
+                match family {
+                    "mesh_friction" => {
+                        let found = mesh_friction::MeshFriction::named(law);
+                        let none = || no_law(family, mesh_friction::MeshFriction::entries());
+                        self.mesh_friction = Some(found.ok_or_else(none)?);
+                    }
+                    "rolling" => {
+                        let found = rolling::Rolling::named(law);
+                        self.rolling = Some(found.ok_or_else(|| no_law(family, rolling::Rolling::entries()))?);
+                    }
+                    $(stringify!($name) => {
+                        self.$name = <$family>::named(law).ok_or_else(|| no_law(family, <$family>::entries()))?;
+                    })+
+                    _ => {
+                        let what = format!("there is no family of laws `{}`", short(family));
+                        return Err(unknown(FAMILIES.to_vec(), what, family, "the families are"));
+                    }
+                }
+                // The sharing that is chosen is the one that is integrated.
+                if let loss_factor::LossFactor::Integrated(integrated) = &mut self.loss_factor {
+                    integrated.sharing = self.load_sharing;
+                }
+                Ok(())
+            }
+        }
+    };
+}
+
+/// A name for a message.
+fn short(name: &str) -> String {
+    name.chars().filter(|c| !c.is_control()).take(64).collect()
+}
+
+laws! {
+    /// Loss factor of a mesh.
+    loss_factor: loss_factor::LossFactor;
+    /// Sharing of the load between tooth pairs.
+    load_sharing: load_sharing::LoadSharing;
+    /// Thickness of the oil film.
+    film: film::Film;
+    /// Thermal reduction of the film.
+    film_reduction: film_reduction::FilmReduction;
+    /// Friction of rolling bearings.
+    bearing: bearing::BearingTorque;
+    /// Gears in air.
+    windage: windage::Windage;
+    /// Gears in the sump.
+    churning: churning::Churning;
+    /// Lip seals.
+    seal: seal::SealLoss;
+    /// Carriers and drums.
+    rotor_drag: rotor_drag::RotorDrag;
+}
+
+impl Laws {
+    /// The friction law in force, with an oil or without.
+    pub fn mesh_friction(&self, oil: bool) -> mesh_friction::MeshFriction {
+        use mesh_friction::{Constant, MeshFriction};
+        let constant = || Constant { mu: self.friction_coefficient.unwrap_or(Constant::DEFAULT.mu) };
+        match self.mesh_friction {
+            Some(MeshFriction::Constant(_)) => MeshFriction::Constant(constant()),
+            Some(law) => law,
+            None if oil => MeshFriction::default(),
+            None => MeshFriction::Constant(constant()),
+        }
+    }
+
+    /// The rolling law in force beside a friction law; `None` where that contains the rolling loss.
+    pub fn rolling(&self, friction: &mesh_friction::MeshFriction) -> Option<rolling::Rolling> {
+        let lacks_it = friction.meta().tags.contains(&Tag::SlidingOnly);
+        self.rolling.or(lacks_it.then(rolling::Rolling::default))
+    }
 }

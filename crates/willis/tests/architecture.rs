@@ -36,7 +36,8 @@ fn a_module_uses_only_those_above_it() {
     let lib = fs::read_to_string(src().join("lib.rs")).unwrap();
     let order: Vec<_> = lib.lines().filter_map(|l| l.strip_prefix("pub mod ")?.strip_suffix(';')).collect();
     assert!(order.len() > 5);
-    let rank = |m: &str| order.iter().position(|o| *o == m);
+    // The root exports `Real` under its own name.
+    let rank = |m: &str| order.iter().position(|o| *o == if m == "Real" { "real" } else { m });
     for file in rust_files(&src()) {
         let path = file.strip_prefix(src()).unwrap().to_str().unwrap().to_owned();
         let own = path.split(['/', '.']).next().unwrap();

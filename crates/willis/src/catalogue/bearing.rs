@@ -62,6 +62,28 @@ impl Kind {
         )
     }
 
+    /// The kind of that name in a train file.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::NAMES.iter().find(|n| n.0 == name).map(|n| n.1)
+    }
+
+    /// Names in a train file.
+    pub const NAMES: &'static [(&'static str, Self)] = &[
+        ("deep-groove-ball", Self::DeepGrooveBall),
+        ("angular-contact-ball", Self::AngularContactBall),
+        ("double-row-angular-contact-ball", Self::DoubleRowAngularContactBall),
+        ("four-point-contact-ball", Self::FourPointContactBall),
+        ("self-aligning-ball", Self::SelfAligningBall),
+        ("cylindrical-roller", Self::CylindricalRoller),
+        ("full-complement-cylindrical-roller", Self::FullComplementCylindricalRoller),
+        ("needle-roller", Self::NeedleRoller),
+        ("tapered-roller", Self::TaperedRoller),
+        ("spherical-roller", Self::SphericalRoller),
+        ("toroidal-roller", Self::ToroidalRoller),
+        ("axial-ball", Self::AxialBall),
+        ("axial-cylindrical-roller", Self::AxialCylindricalRoller),
+    ];
+
     /// Rows of rolling elements.
     pub fn rows(self) -> u8 {
         match self {
@@ -279,6 +301,13 @@ pub enum Mismatch {
         /// Series, as given.
         series: String,
     },
+}
+
+impl Mismatch {
+    /// Whether no such bearing can exist, so that nothing can be computed.
+    pub fn is_impossible(&self) -> bool {
+        matches!(self, Self::NotABearing { .. })
+    }
 }
 
 impl fmt::Display for Mismatch {

@@ -386,7 +386,7 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         meshes: vec![],
         assumptions: vec![],
         laws: Laws::default(),
-        friction_coefficient: crate::losses::mesh_friction::Constant::DEFAULT.coefficient,
+        friction_coefficient: crate::losses::mesh_friction::Constant::DEFAULT.mu,
         by_name: HashMap::from([("frame".into(), FRAME)]),
         mesh_names: spec.meshes.iter().filter_map(|m| m.name.clone()).collect(),
     };

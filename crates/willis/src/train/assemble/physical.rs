@@ -135,7 +135,7 @@ impl Assembler<'_> {
                     self.report(Diagnostic::new(Code::OutOfRange, "laws.friction_coefficient", message));
                 } else {
                     self.friction_coefficient = mu;
-                    self.laws.set_friction_coefficient(mu);
+                    self.laws.friction_coefficient = Some(mu);
                 }
             }
         }
@@ -226,7 +226,7 @@ impl Assembler<'_> {
             TEMPERATURE
         });
         self.temperature(&oil, temperature, "oil.temperature");
-        let mist = spec.mist.unwrap_or(crate::losses::windage::AIR_TO_OIL);
+        let mist = spec.mist.unwrap_or(crate::losses::windage::AIR_PER_OIL);
         Some(Lubrication { oil, temperature, supply: spec.supply, volume: spec.volume, mist })
     }
 

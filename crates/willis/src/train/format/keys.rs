@@ -280,11 +280,17 @@ static ROTOR: Table = Table {
 const BEARING_KINDS: &[&str] = &[
     "deep-groove-ball",
     "angular-contact-ball",
+    "double-row-angular-contact-ball",
+    "four-point-contact-ball",
+    "self-aligning-ball",
     "cylindrical-roller",
     "full-complement-cylindrical-roller",
     "needle-roller",
     "tapered-roller",
     "spherical-roller",
+    "toroidal-roller",
+    "axial-ball",
+    "axial-cylindrical-roller",
 ];
 
 static MESH: Table = Table {

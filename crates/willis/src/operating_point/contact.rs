@@ -1,0 +1,364 @@
+//! A tooth contact under load: speeds, pressure, film, friction.
+
+use serde::Serialize;
+
+use crate::losses::film::FilmContact;
+use crate::losses::film_reduction::Inlet;
+use crate::losses::load_sharing::ToothLoad;
+use crate::losses::loss_factor::Path;
+use crate::losses::mesh_friction::MeshContact;
+use crate::losses::rolling::RollingContact;
+use crate::losses::{Outside, Tag};
+use crate::power_flow::MeshFlow;
+use crate::train::{Mesh, Teeth};
+
+use super::{Extrapolation, OilState, Physics};
+
+/// Lubrication of a contact by its film thickness ratio λ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Regime {
+    /// λ < 1: the load is carried by asperities.
+    Boundary,
+    /// 1 ≤ λ < 3: asperities and film share it.
+    Mixed,
+    /// λ ≥ 3: the film carries it.
+    Full,
+}
+
+impl Regime {
+    /// The regime of a film thickness ratio.
+    pub fn of(film_ratio: f64) -> Self {
+        match film_ratio {
+            x if x < 1.0 => Self::Boundary,
+            x if x < 3.0 => Self::Mixed,
+            _ => Self::Full,
+        }
+    }
+}
+
+/// A tooth contact in an operating point. Loads are those of one of the pairs in parallel.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContactReport {
+    /// Mean coefficient of friction; absent when the efficiency is given, or nothing is loaded.
+    pub friction: Option<f64>,
+    /// Loss factor `H_V`.
+    pub loss_factor: f64,
+    /// Transverse contact ratio `ε_α`.
+    pub contact_ratio: f64,
+    /// Overlap ratio `ε_β` of one helix.
+    pub overlap_ratio: f64,
+    /// Operating pressure angle in the transverse section, rad.
+    pub operating_pressure_angle_rad: f64,
+    /// Tangential force at the operating pitch circle, N.
+    pub tangential_force_n: f64,
+    /// Load at the base circle over the face width, N/m.
+    pub line_load_n_per_m: f64,
+    /// Pitch line speed relative to the carrier, m/s.
+    pub pitch_line_speed_m_s: f64,
+    /// Sum of the surface speeds at the pitch point, m/s.
+    pub sum_speed_m_s: f64,
+    /// Largest sliding speed, m/s.
+    pub sliding_speed_m_s: f64,
+    /// Hertzian pressure at the pitch point, Pa.
+    pub pitch_pressure_pa: f64,
+    /// Largest Hertzian pressure on the path of contact, Pa.
+    pub pressure_pa: f64,
+    /// Film thickness at the pitch point, thermal reduction included, m; absent without an oil.
+    pub pitch_film_m: Option<f64>,
+    /// Smallest film thickness on the path of contact, m.
+    pub film_m: Option<f64>,
+    /// Smallest film thickness over the composite rms roughness, `λ`.
+    pub film_ratio: Option<f64>,
+    /// Lubrication by `λ`.
+    pub regime: Option<Regime>,
+    /// Loss by sliding, all pairs in parallel, W.
+    pub sliding_loss_w: f64,
+    /// Loss by rolling where it is computed apart, all pairs in parallel, W.
+    pub rolling_loss_w: f64,
+}
+
+/// Nodes and weights of Gauss and Legendre, 8 points on −1 to 1, one half.
+const GAUSS: [(f64, f64); 4] = [
+    (0.183_434_642_495_649_8, 0.362_683_783_378_362),
+    (0.525_532_409_916_329, 0.313_706_645_877_887_3),
+    (0.796_666_477_413_626_7, 0.222_381_034_453_374_48),
+    (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
+];
+
+/// rms over arithmetic mean roughness of a ground flank.
+const RMS: f64 = 1.25;
+/// Peak-to-valley height over arithmetic mean roughness of a ground flank.
+const PEAK: f64 = 6.0;
+
+/// One point of the path of contact.
+#[derive(Clone, Copy)]
+struct Point {
+    line_load: f64,
+    sliding: f64,
+    sum: f64,
+    radius: f64,
+    pressure: f64,
+    film: f64,
+}
+
+/// One mesh at one load.
+struct Loaded<'a> {
+    physics: &'a Physics<'a>,
+    teeth: &'a Teeth,
+    /// Normal force of one pair in parallel, N.
+    normal_force: f64,
+    /// Speed of the first gear relative to the carrier, ≥ 0, rad/s.
+    speed: f64,
+}
+
+impl Loaded<'_> {
+    fn point(&self, s: f64) -> Point {
+        let pair = &self.teeth.pair;
+        let place = ToothLoad {
+            position: pair.position(s),
+            contact_ratio: pair.contact_ratio,
+            overlap_ratio: pair.overlap_ratio,
+        };
+        let share = self.physics.train.laws.load_sharing.eval(&place);
+        let line_load = share * self.normal_force * pair.base_helix.cos() / pair.total_width();
+        let radius = pair.reduced_radius(s).max(1e-9);
+        let sliding = pair.sliding_per_speed(s) * self.speed;
+        let sum = pair.sum_speed_per_speed(s) * self.speed;
+        let modulus = self.teeth.reduced_modulus();
+        let pressure = (line_load * modulus / (std::f64::consts::TAU * radius)).sqrt();
+        let film = self.physics.oil.map_or(0.0, |(_, oil)| {
+            self.film(&oil, line_load, radius, sliding, sum, pressure)
+        });
+        Point { line_load, sliding, sum, radius, pressure, film }
+    }
+
+    fn inlet(&self, oil: &OilState, sliding: f64, sum: f64, pressure: f64) -> Inlet<f64> {
+        Inlet {
+            dynamic_viscosity: oil.dynamic_viscosity,
+            viscosity_slope: oil.viscosity_slope,
+            mean_speed: sum / 2.0,
+            slide_ratio: if sum > 0.0 { 2.0 * sliding / sum } else { 0.0 },
+            conductivity: oil.conductivity,
+            hertz_pressure: pressure,
+            reduced_modulus: self.teeth.reduced_modulus(),
+        }
+    }
+
+    fn film_contact(&self, oil: &OilState, line_load: f64, radius: f64, sum: f64) -> FilmContact<f64> {
+        FilmContact {
+            radius,
+            mean_speed: sum / 2.0,
+            line_load,
+            dynamic_viscosity: oil.dynamic_viscosity,
+            pressure_viscosity: oil.pressure_viscosity,
+            reduced_modulus: self.teeth.reduced_modulus(),
+        }
+    }
+
+    fn film(&self, oil: &OilState, line_load: f64, radius: f64, sliding: f64, sum: f64, pressure: f64) -> f64 {
+        if line_load <= 0.0 || sum <= 0.0 {
+            return 0.0;
+        }
+        let laws = &self.physics.train.laws;
+        let h = laws.film.eval(&self.film_contact(oil, line_load, radius, sum));
+        h * laws.film_reduction.eval(&self.inlet(oil, sliding, sum, pressure))
+    }
+}
+
+impl Physics<'_> {
+    /// The contact of a mesh, and the rolling loss of all its pairs, W.
+    pub(super) fn contact(
+        &self,
+        mesh: &Mesh,
+        teeth: &Teeth,
+        flow: &MeshFlow,
+        beyond: &mut Option<Vec<Extrapolation>>,
+    ) -> (ContactReport, f64) {
+        let pair = &teeth.pair;
+        let laws = &self.train.laws;
+        let path = Path::of(pair);
+        let loss_factor = laws.loss_factor.eval(&path);
+        let parallel = f64::from(mesh.count);
+        let driver = flow.driver.unwrap_or(0);
+        let torque = if flow.driver.is_some() { flow.torques[driver].abs() / parallel } else { 0.0 };
+        let base_force = torque / pair.gears[driver].base_radius;
+        let normal_force = base_force / pair.base_helix.cos();
+        let pitch_line_speed = flow.relative_speeds[driver].abs() * pair.gears[driver].operating_radius;
+        let loaded = Loaded { physics: self, teeth, normal_force, speed: flow.relative_speeds[0].abs() };
+        let pitch = loaded.point(0.0);
+        let [start, end] = pair.path();
+        let mut breaks = pair.breakpoints();
+        breaks.sort_by(f64::total_cmp);
+
+        // Extremes: at the ends of each part of the path, just inside.
+        let mut worst = Point { film: f64::INFINITY, ..pitch };
+        for k in 0..4 {
+            let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
+            for s in [from + 1e-9 * (to - from), to - 1e-9 * (to - from)] {
+                if to <= from {
+                    continue;
+                }
+                let p = loaded.point(s);
+                worst.pressure = worst.pressure.max(p.pressure);
+                worst.sliding = worst.sliding.max(p.sliding);
+                worst.film = worst.film.min(p.film);
+            }
+        }
+        let film = self.oil.is_some().then_some(if worst.film.is_finite() { worst.film } else { pitch.film });
+        let composite = RMS * (teeth.roughness[0].powi(2) + teeth.roughness[1].powi(2)).sqrt();
+        let film_ratio = film.filter(|_| composite > 0.0 && base_force > 0.0).map(|h| h / composite);
+
+        let mut report = ContactReport {
+            friction: None,
+            loss_factor,
+            contact_ratio: pair.contact_ratio,
+            overlap_ratio: pair.overlap_ratio,
+            operating_pressure_angle_rad: pair.operating_pressure_angle,
+            tangential_force_n: torque / pair.gears[driver].operating_radius,
+            line_load_n_per_m: base_force / pair.total_width(),
+            pitch_line_speed_m_s: pitch_line_speed,
+            sum_speed_m_s: pitch.sum,
+            sliding_speed_m_s: worst.sliding,
+            pitch_pressure_pa: pitch.pressure,
+            pressure_pa: worst.pressure,
+            pitch_film_m: film.map(|_| pitch.film),
+            film_m: film,
+            film_ratio,
+            regime: film_ratio.map(Regime::of),
+            sliding_loss_w: 0.0,
+            rolling_loss_w: 0.0,
+        };
+        let note = |beyond: &mut Option<Vec<Extrapolation>>, family, law, outside: Vec<Outside>| {
+            if let Some(all) = beyond {
+                for o in outside {
+                    all.push(Extrapolation { family, law, at: mesh.name.clone(), outside: o });
+                }
+            }
+        };
+        if mesh.computed && beyond.is_some() {
+            note(beyond, "loss_factor", laws.loss_factor.meta().id, laws.loss_factor.outside(&path));
+        }
+        if base_force <= 0.0 || pitch_line_speed <= 0.0 {
+            return (report, 0.0);
+        }
+        if let (true, Some((_, oil)), true) = (beyond.is_some(), &self.oil, mesh.computed) {
+            let contact = loaded.film_contact(oil, pitch.line_load, pitch.radius, pitch.sum);
+            note(beyond, "film", laws.film.meta().id, laws.film.outside(&contact));
+        }
+        if !mesh.computed {
+            return (report, 0.0);
+        }
+
+        let state = |p: &Point| self.state(mesh, teeth, p, base_force, pitch_line_speed, loss_factor, composite);
+        let mu = if self.friction.meta().tags.contains(&Tag::Local) {
+            let (mut friction, mut weight) = (0.0, 0.0);
+            for k in 0..4 {
+                let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
+                let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
+                if half <= 0.0 {
+                    continue;
+                }
+                for (node, w) in GAUSS.into_iter().flat_map(|(node, w)| [(node, w), (-node, w)]) {
+                    let p = loaded.point(middle + half * node);
+                    let own = w * half * p.line_load * p.sliding;
+                    weight += own;
+                    friction += own * self.friction.eval(&state(&p));
+                }
+            }
+            if weight > 0.0 { friction / weight } else { 0.0 }
+        } else {
+            self.friction.eval(&state(&pitch))
+        };
+        if beyond.is_some() {
+            let id = self.friction.meta().id;
+            let mut outside = self.friction.outside(&state(&pitch));
+            if self.friction.meta().tags.contains(&Tag::Local) {
+                // Away from the pitch point, where it slides.
+                outside = self.friction.outside(&state(&loaded.point(0.7 * end)));
+                outside.extend(self.friction.outside(&state(&loaded.point(0.7 * start))));
+                outside.dedup_by_key(|o| o.symbol);
+                outside.sort_by_key(|o| o.symbol);
+                outside.dedup_by_key(|o| o.symbol);
+            }
+            note(beyond, "mesh_friction", id, outside);
+        }
+        if mu.is_finite() {
+            report.friction = Some(mu.max(0.0));
+        }
+
+        let mut rolling = 0.0;
+        if let (Some(law), Some((_, oil))) = (&self.rolling, &self.oil) {
+            let inlet = loaded.inlet(oil, pitch.sliding, pitch.sum, pitch.pressure);
+            let contact = RollingContact {
+                sum_speed: pitch.sum,
+                radius: pitch.radius,
+                normal_force: normal_force / pair.contact_ratio,
+                length: pair.total_width() / pair.base_helix.cos(),
+                dynamic_viscosity: oil.dynamic_viscosity,
+                pressure_viscosity: oil.pressure_viscosity,
+                reduced_modulus: teeth.reduced_modulus(),
+                film_reduction: laws.film_reduction.eval(&inlet),
+            };
+            note(beyond, "rolling", law.meta().id, law.outside(&contact));
+            rolling = law.eval(&contact) * pair.contact_ratio * parallel;
+        }
+        (report, if rolling.is_finite() { rolling.max(0.0) } else { 0.0 })
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn state(
+        &self,
+        mesh: &Mesh,
+        teeth: &Teeth,
+        p: &Point,
+        base_force: f64,
+        pitch_line_speed: f64,
+        loss_factor: f64,
+        composite: f64,
+    ) -> MeshContact<f64> {
+        let pair = &teeth.pair;
+        // The smaller wheel first.
+        let small = usize::from(pair.data.wheels[1].teeth < pair.data.wheels[0].teeth);
+        let teeth_of = |k: usize| pair.data.wheels[k].teeth;
+        let (z_1, z_2) = (teeth_of(small), teeth_of(1 - small));
+        let sum = if pair.internal() { z_2 - z_1 } else { z_2 + z_1 };
+        let pinion = &pair.gears[small];
+        let tangential = base_force * pinion.base_radius / pinion.operating_radius;
+        let width = pair.total_width();
+        let oil = self.oil.map(|o| o.1);
+        MeshContact {
+            line_load: base_force / width,
+            normal_force: base_force / pair.base_helix.cos(),
+            pitch_sum_speed: 2.0 * pitch_line_speed * pair.operating_pressure_angle.sin(),
+            pitch_line_speed,
+            pitch_radius_transverse: pair.reduced_radius_transverse(0.0),
+            pitch_radius: pair.reduced_radius(0.0),
+            local_line_load: p.line_load,
+            sliding_speed: p.sliding,
+            sum_speed: p.sum,
+            radius: p.radius,
+            hertz_pressure: p.pressure,
+            film: p.film,
+            film_ratio: if composite > 0.0 { p.film / composite } else { f64::INFINITY },
+            dynamic_viscosity: oil.map_or(0.05, |o| o.dynamic_viscosity),
+            kinematic_viscosity: oil.map_or(55e-6, |o| o.kinematic_viscosity),
+            pressure_viscosity: oil.map_or(16e-9, |o| o.pressure_viscosity),
+            roughness: (teeth.roughness[0] + teeth.roughness[1]) / 2.0,
+            composite_roughness: composite,
+            peak_roughness: PEAK * (teeth.roughness[0] + teeth.roughness[1]),
+            base: self.oil.map_or(crate::catalogue::oil::Base::Mineral, |o| o.0.oil.base),
+            lubricant_factor: self.oil.and_then(|o| o.0.oil.lubricant_factor),
+            k_factor: tangential / (width * 2.0 * pinion.operating_radius) * sum / z_2,
+            teeth: [z_1, z_2],
+            internal: pair.internal(),
+            normal_pressure_angle: pair.data.pressure_angle,
+            helix: pair.operating_helix,
+            pinion_diameter: 2.0 * pinion.reference_radius,
+            width,
+            contact_length_ratio: pair.shortest_contact_length_ratio(),
+            loss_factor,
+            parallel: f64::from(mesh.count),
+        }
+    }
+}
