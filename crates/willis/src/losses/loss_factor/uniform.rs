@@ -20,8 +20,7 @@ use crate::real::abs;
 ///
 /// # Valid for
 /// Helical gears with an overlap ratio of 1 or more, exact for a whole one; 0.6 % too high at an
-/// overlap ratio of 1.36. For spur gears it is the first order of what rating programs of American
-/// origin use, and too high by about a fifth against 50/50.
+/// overlap ratio of 1.36. For spur gears it is too high by about a fifth against 50/50.
 ///
 /// # Departs from the source
 /// Written with e|e|, so that it also holds when a tip does not reach the pitch point.
