@@ -1,6 +1,11 @@
 //! Frictional torque of a rolling bearing.
+//!
+//! A law reads the numbers of a bearing from [`Data`], looked up beforehand
+//! ([`Bearing::data`](crate::catalogue::bearing::Bearing::data)).
 
-use crate::catalogue::bearing::Bearing;
+use crate::catalogue::bearing::Data;
+use crate::catalogue::oil::Base;
+use crate::real::Real;
 
 /// How a bearing gets its oil.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,9 +25,9 @@ pub enum Supply {
 
 /// State of a rolling bearing.
 #[derive(Clone, Copy, Debug)]
-pub struct BearingDuty<'b, D> {
-    /// The bearing.
-    pub bearing: &'b Bearing,
+pub struct BearingDuty<D> {
+    /// The numbers of the bearing.
+    pub bearing: Data,
     /// Speed of one ring relative to the other, ≥ 0, rad/s.
     pub speed: D,
     /// Radial load, N.
@@ -32,10 +37,45 @@ pub struct BearingDuty<'b, D> {
     /// Kinematic viscosity at the operating temperature, m²/s.
     pub kinematic_viscosity: D,
     /// Base of the oil.
-    pub base: crate::catalogue::oil::Base,
+    pub base: Base,
     /// Boundary and full-film coefficient of friction of the sliding part, where they were
     /// measured for the oil.
     pub sliding_friction: Option<[f64; 2]>,
     /// How it gets its oil.
     pub supply: Supply,
+}
+
+family! {
+    /// Frictional torque of a rolling bearing.
+    BearingTorque ("bearing"): BearingDuty => "M" ["N m"];
+    skf::Skf,
+    skf_6000::Skf6000,
+    palmgren::Palmgren,
+    harris::Harris,
+}
+
+pub use skf::Parts;
+
+impl BearingDuty<f64> {
+    /// A cylindrical roller bearing NU 308 (40 × 90 × 23 mm) under 5 kN at 1500 r/min in an oil bath
+    /// of 40 mm²/s up to the middle of its lowest roller, for examples and tests.
+    pub fn typical() -> Self {
+        use crate::catalogue::bearing::{Bearing, Kind};
+        let nu308 = Bearing::new("NU 308", Kind::CylindricalRoller, "3", 40e-3, 90e-3, 23e-3);
+        Self {
+            bearing: nu308.data(),
+            speed: 50.0 * std::f64::consts::PI,
+            radial_load: 5000.0,
+            axial_load: 0.0,
+            kinematic_viscosity: 40e-6,
+            base: Base::Mineral,
+            sliding_friction: None,
+            supply: Supply::Bath { level: 6.5e-3 },
+        }
+    }
+}
+
+/// `x^p` for `p > 0`, with 0 and no slope at and below 0.
+fn pow<D: Real>(x: D, p: f64) -> D {
+    if x.re() > 0.0 { x.powf(p) } else { D::from(0.0) }
 }

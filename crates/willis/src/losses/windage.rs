@@ -25,3 +25,45 @@ pub struct Disc<D> {
     /// Factor of the enclosure: 1 free, 0.6 to 0.7 in a large case, 0.5 in a fitting case.
     pub enclosure: f64,
 }
+
+family! {
+    /// Power lost by a gear in air or mist.
+    Windage ("windage"): Disc => "P" ["W"];
+    diab::Diab,
+    dawson_1984::Dawson1984,
+    anderson_loewenthal::AndersonLoewenthal,
+}
+
+/// Parts of air to one part of oil, by volume, in the mist around jet-lubricated gears (NASA TP-1622).
+pub const AIR_PER_OIL: f64 = 34.25;
+
+/// Density or dynamic viscosity of a mist, from that of oil and of air: `(oil + r air)/(1 + r)` with r
+/// parts of air to one of oil by volume ([`AIR_PER_OIL`]).
+///
+/// ```
+/// use willis::losses::windage::{AIR_PER_OIL, mist};
+///
+/// assert_eq!(format!("{:.4}", mist(870.0, 1.2, AIR_PER_OIL)), "25.8468");
+/// ```
+pub fn mist<D: crate::real::Real>(oil: D, air: f64, air_per_oil: f64) -> D {
+    (oil + air * air_per_oil) / (1.0 + air_per_oil)
+}
+
+impl Disc<f64> {
+    /// A gear of module 5 mm, 200 mm in diameter and 50 mm wide, at 10 000 r/min free in air at
+    /// 20 °C, for examples and tests.
+    pub fn typical() -> Self {
+        Self {
+            speed: 10_000.0 * std::f64::consts::PI / 30.0,
+            radius: 0.1,
+            root_radius: 0.09375,
+            width: 0.05,
+            module: 5e-3,
+            teeth: 40.0,
+            density: 1.2,
+            viscosity: 18e-6,
+            axial_gaps: [0.08, 0.08],
+            enclosure: 1.0,
+        }
+    }
+}

@@ -1,0 +1,80 @@
+use super::{Dip, Law};
+use crate::losses::{Meta, Trust};
+use crate::real::Real;
+
+/// Churning of one gear in an oil sump after ISO/TR 14179-1.
+///
+/// # Formula
+/// ```text
+/// P = 1.474 f_g ν n³ D^5.7/(A_g 1e26) + 7.37 f_g ν n³ D^4.7 F R_f/(A_g 1e26 √tan β)
+/// R_f = 7.93 − 4.648/m_t
+/// ```
+/// The first part is that of the sides, the second that of the teeth.
+///
+/// # Symbols
+/// | there | here                  | unit there | meaning                                           |
+/// |-------|-----------------------|------------|---------------------------------------------------|
+/// | P     | result                | kW         | power lost                                        |
+/// | f_g   | `immersion`           | −          | dip factor, 0 dry to 1 fully dipped               |
+/// | ν     | `kinematic_viscosity` | mm²/s      | oil                                               |
+/// | n     | `speed`               | r/min      | absolute speed                                    |
+/// | D     | `tip_radius`          | mm         | outside diameter                                  |
+/// | F     | `width`               | mm         | face width                                        |
+/// | m_t   | `module`, `helix`     | mm         | transverse module                                 |
+/// | β     | `helix`               | deg        | helix angle, 10° at least                         |
+/// | A_g   | `arrangement`         | −          | arrangement constant, 0.2                         |
+///
+/// # Valid for
+/// Typical enclosed drives. It grows with ν and n³ without bound and exceeds
+/// [`Changenet2011`](super::Changenet2011) many times at high speed and with thick oil.
+///
+/// # Departs from the source
+/// f_g is the immersed share of the outside diameter, linear, as the source interpolates. The part of
+/// smooth shafts is left away. R_f is not below 0 (m_t < 0.586 mm).
+///
+/// # Source
+/// `[isotr14179_1]`, oil churning loss.
+///
+/// # Example
+/// By hand, the gear of [`Dip::typical`]: f_g = 43/166 = 0.2590, ν n³ = 36.6e9, D^5.7 = 4.515e12,
+/// D^4.7 = 2.720e10, R_f = 6.381, √tan 10° = 0.41991:
+/// sides 1.474 · 0.2590 · 36.6e9 · 4.515e12/2e25 = 0.003155 kW, teeth
+/// 7.37 · 0.2590 · 36.6e9 · 2.720e10 · 24 · 6.381/(2e25 · 0.41991) = 0.034657 kW, sum 37.8 W.
+/// ```
+/// # use willis::losses::churning::{Dip, Iso14179p1, Law};
+/// assert_eq!(format!("{:.1}", Iso14179p1::DEFAULT.eval(&Dip::typical())), "37.8");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iso14179p1 {
+    /// `A_g`
+    pub arrangement: f64,
+}
+
+impl Iso14179p1 {
+    /// As published.
+    pub const DEFAULT: Self = Self { arrangement: 0.2 };
+}
+
+impl Law for Iso14179p1 {
+    const META: Meta<Dip<f64>> = Meta {
+        id: "iso-14179-1",
+        title: "ISO/TR 14179-1, oil churning",
+        source: ("isotr14179_1", "oil churning loss"),
+        trust: Trust::Confirm("R_f and A_g"),
+        tags: &[],
+        valid: &[],
+    };
+
+    fn eval<D: Real>(&self, s: &Dip<D>) -> D {
+        let dip = s.immersion + s.tip_radius - s.radius;
+        let f_g = (dip / (2.0 * s.tip_radius)).clamp(0.0, 1.0);
+        let n = s.speed * (30.0 / std::f64::consts::PI);
+        let (d_mm, f_mm) = (2e3 * s.tip_radius, 1e3 * s.width);
+        let m_t_mm = 1e3 * s.module / s.helix.cos();
+        let r_f = (7.93 - 4.648 / m_t_mm).max(0.0);
+        let helix = s.helix.abs().max(10f64.to_radians());
+        let sides = 1.474 * d_mm.powf(5.7);
+        let teeth = 7.37 * d_mm.powf(4.7) * f_mm * r_f / helix.tan().sqrt();
+        s.kinematic_viscosity * n.powi(3) * (f_g * (sides + teeth) * 1e6 / (self.arrangement * 1e26) * 1e3)
+    }
+}

@@ -1,0 +1,57 @@
+use super::{Law, Lip};
+use crate::losses::{Meta, Trust};
+use crate::real::Real;
+
+/// Power lost by a lip seal after Linke (ISO/TR 14179-2).
+///
+/// # Formula
+/// ```text
+/// P = 7.69e-6 d² n
+/// ```
+///
+/// # Symbols
+/// | there | here       | unit there | meaning        |
+/// |-------|------------|------------|----------------|
+/// | P     | result     | W          | power lost     |
+/// | d     | `diameter` | mm         | shaft diameter |
+/// | n     | `speed`    | r/min      | shaft speed    |
+///
+/// # Valid for
+/// One lip. The formulas of this family differ by a factor of 2 for the same seal; that is the
+/// uncertainty of any of them.
+///
+/// # Departs from the source
+/// Nothing.
+///
+/// # Source
+/// `[isotr14179_2]`, radial lip seals.
+///
+/// # Example
+/// By hand, d = 50 mm, n = 1500 r/min: 7.69e-6 · 2500 · 1500 = 28.84 W.
+/// ```
+/// # use willis::losses::seal::{Iso14179p2, Law, Lip};
+/// assert_eq!(format!("{:.2}", Iso14179p2::DEFAULT.eval(&Lip::typical())), "28.84");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iso14179p2;
+
+impl Iso14179p2 {
+    /// As published.
+    pub const DEFAULT: Self = Self;
+}
+
+impl Law for Iso14179p2 {
+    const META: Meta<Lip<f64>> = Meta {
+        id: "iso-14179-2",
+        title: "Linke (ISO/TR 14179-2)",
+        source: ("isotr14179_2", "radial lip seals"),
+        trust: Trust::Seen,
+        tags: &[],
+        valid: &[],
+    };
+
+    fn eval<D: Real>(&self, s: &Lip<D>) -> D {
+        let d_mm = s.diameter * 1e3;
+        s.speed * (7.69e-6 * d_mm * d_mm * 30.0 / std::f64::consts::PI)
+    }
+}
