@@ -593,7 +593,7 @@ pub fn all() -> &'static [Bearing] {
                     let place = group.columns.iter().position(|c| c == name)?;
                     row.get(place).copied()
                 };
-                let mm = |name: &str| get(name).expect("data/bearings.toml gives d, D and B") * 1e-3;
+                let mm = |name: &str| get(name).expect("data/bearings.toml gives d, D and B") / 1e3;
                 let name = designation(group.kind, series, mm("d") * 1e3);
                 all.push(Bearing {
                     dynamic_rating: get("C").map(|kn| kn * 1e3),
@@ -630,28 +630,30 @@ fn bore_of(code: &str) -> Option<f64> {
         "03" => 17,
         _ => 5 * code.parse::<u32>().ok()?,
     };
-    Some(f64::from(mm) * 1e-3)
+    Some(f64::from(mm) / 1e3)
 }
 
 /// Reads prefix letters, digits and suffix of a designation.
 fn parse(designation: &str) -> Option<Parsed> {
-    let text: String = designation.chars().filter(|c| !c.is_whitespace()).flat_map(char::to_uppercase).collect();
+    let text = designation.trim().to_uppercase();
     let digits_at = text.find(|c: char| c.is_ascii_digit())?;
     let (prefix, rest) = text.split_at(digits_at);
+    let prefix = prefix.trim_end();
     if prefix == "K" {
-        let mm: Vec<f64> = rest.split('X').map(|p| p.parse().ok()).collect::<Option<_>>()?;
+        let mm: Vec<f64> = rest.split('X').map(|p| p.trim().parse().ok()).collect::<Option<_>>()?;
         let [d, big_d, b] = mm[..] else { return None };
-        let cage = Some([big_d * 1e-3, b * 1e-3]);
+        let cage = Some([big_d / 1e3, b / 1e3]);
         return Some(Parsed {
             kind: Kind::NeedleRoller,
             series: "K".to_owned(),
-            bore: Some(d * 1e-3),
+            bore: Some(d / 1e3),
             cage,
             seal: None,
         });
     }
     let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
     let (digits, suffix) = rest.split_at(end);
+    let suffix = suffix.trim_start();
     let series_end = digits.len().checked_sub(2).filter(|n| *n > 0)?;
     let (series, code) = digits.split_at(series_end);
     let kind = match (prefix, series) {
@@ -697,8 +699,8 @@ fn parse(designation: &str) -> Option<Parsed> {
     })
 }
 
-/// The bearing of that designation; blanks, capitals and suffixes that say nothing about friction
-/// do not matter. Of the suffixes, rubbing seals (RS1, RSH, RSL, LS, CS) and the design letters
+/// The bearing of that designation; capitals, blanks between its parts and suffixes that say nothing
+/// about friction do not matter. Of the suffixes, rubbing seals (RS1, RSH, RSL, LS, CS) and the design letters
 /// that have their own friction constants (`E`, `B`, `AC`, `A`) are read; shields (Z) and seals that
 /// do not rub (RZ) cost nothing. Needle cages carry their size in the name: `K 20x24x10`.
 ///

@@ -28,7 +28,7 @@ use crate::real::Real;
 /// `[isotr14179_2]`, radial lip seals.
 ///
 /// # Example
-/// By hand, 60 °C, 100 mm²/s, d = 50 mm, 1500 r/min: (145 − 96 + 350 · 0.301897) 2500 · 1500 · 1e-7 = 58.0 W.
+/// By hand, 60 °C, 100 mm²/s, d = 50 mm, 1500 r/min: (145 − 96 + 350 · 0.301781) 2500 · 1500 · 1e-7 = 58.0 W.
 /// ```
 /// # use willis::losses::seal::{Simrit, Law, Lip};
 /// assert_eq!(format!("{:.1}", Simrit::DEFAULT.eval(&Lip::typical())), "58.0");

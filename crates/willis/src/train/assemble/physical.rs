@@ -5,7 +5,6 @@ use crate::catalogue::oil::{self, Base, Oil};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
 use crate::geometry::{Pair, PairData, Tip, Wheel};
-use crate::losses::Laws;
 use crate::losses::loss_factor::Path;
 use crate::train::describe::physical::{
     BearingSpec, Fluid, GeometrySpec, HousingSpec, OilSpec, RotorSpec, SealSpec, ToothSpec,
