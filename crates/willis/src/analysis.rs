@@ -12,6 +12,7 @@ use serde::{Serialize, Serializer};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
+use crate::operating_point::{BearingReport, ContactReport, Convergence, LossKind, LossSource};
 use crate::statics::Certificate;
 use crate::train::{Efficiency, ShiftElementId, ShiftElementKind, Train};
 
@@ -206,6 +207,22 @@ pub struct Losses {
     pub seal: f64,
 }
 
+impl Losses {
+    fn of(sources: &[LossSource]) -> Self {
+        let mut all = Self::default();
+        for s in sources {
+            *match s.kind {
+                LossKind::Sliding | LossKind::Rolling => &mut all.mesh,
+                LossKind::Bearing => &mut all.bearing,
+                LossKind::Windage => &mut all.windage,
+                LossKind::Churning => &mut all.churning,
+                LossKind::Seal => &mut all.seal,
+            } += s.loss_w;
+        }
+        all
+    }
+}
+
 /// Power that goes round in circles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CirculationReport {
@@ -291,6 +308,18 @@ pub struct SolutionReport {
     pub shift_elements: Named<ShiftElementReport>,
     /// Losses by kind.
     pub losses_w: Losses,
+    /// Losses by source, largest first, where they are computed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sources: Vec<LossSource>,
+    /// Tooth contacts of the meshes whose teeth are given.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub contacts: Named<ContactReport>,
+    /// Rolling bearings.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub bearings: Named<BearingReport>,
+    /// How losses and torques were brought into agreement, where losses are computed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub convergence: Option<Convergence>,
     /// Recirculating powers.
     pub recirculation: Vec<CirculationReport>,
     /// Distance to the next change.

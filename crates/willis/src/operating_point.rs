@@ -242,11 +242,7 @@ impl<'t> Physics<'t> {
             for k in 0..2 {
                 let speed = m.relative_speeds[k].abs();
                 if speed > 0.0 && mesh.computed {
-                    drag(
-                        Source::Rolling(m.mesh.0),
-                        [mesh.gears[k].member, mesh.carrier],
-                        0.5 * rolling / speed,
-                    );
+                    drag(Source::Rolling(m.mesh.0), [mesh.gears[k].member, mesh.carrier], 0.5 * rolling / speed);
                 }
             }
             let sliding = match (&contact.friction, mesh.computed, m.driver) {
@@ -338,7 +334,12 @@ impl<'t> Physics<'t> {
             let error = if contraction < 1.0 { contraction / (1.0 - contraction) * change } else { f64::INFINITY };
             let converged = error <= ACCURACY && change <= 1e3 * ACCURACY || change <= 1e-15;
             if converged || rounds == MOST_ROUNDS {
-                return Some((step, own, flow, Convergence { converged, rounds, error: error.min(change.max(0.0)), contraction }));
+                return Some((
+                    step,
+                    own,
+                    flow,
+                    Convergence { converged, rounds, error: error.min(change.max(0.0)), contraction },
+                ));
             }
             step = next;
             last = change;
@@ -349,11 +350,12 @@ impl<'t> Physics<'t> {
     pub fn sources(&self, step: &Step, flow: &Flow) -> Vec<LossSource> {
         let train = self.train;
         let mut all: Vec<LossSource> = Vec::new();
-        let mut add = |name: &str, kind: LossKind, law: &'static str, loss_w: f64| {
-            match all.iter_mut().find(|s| s.name == name && s.kind == kind) {
-                Some(s) => s.loss_w += loss_w,
-                None => all.push(LossSource { name: name.to_owned(), kind, law, loss_w, share: 0.0 }),
-            }
+        let mut add = |name: &str, kind: LossKind, law: &'static str, loss_w: f64| match all
+            .iter_mut()
+            .find(|s| s.name == name && s.kind == kind)
+        {
+            Some(s) => s.loss_w += loss_w,
+            None => all.push(LossSource { name: name.to_owned(), kind, law, loss_w, share: 0.0 }),
         };
         for (m, own) in flow.meshes.iter().zip(&step.meshes) {
             let mesh = &train.meshes[m.mesh.0];

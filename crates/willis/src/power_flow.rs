@@ -169,7 +169,14 @@ pub(crate) fn demand(c: &Configuration<'_>, s: &Solution) -> Vec<f64> {
 }
 
 /// Follows the force through a chain, mesh by mesh.
-fn walk(c: &Configuration<'_>, e: &Element, force: f64, p_drives: Option<bool>, speeds: &[f64], out: &mut Vec<MeshFlow>) {
+fn walk(
+    c: &Configuration<'_>,
+    e: &Element,
+    force: f64,
+    p_drives: Option<bool>,
+    speeds: &[f64],
+    out: &mut Vec<MeshFlow>,
+) {
     let train = c.train;
     let mut torque = force * e.a.to_f64();
     for link in &e.links {

@@ -3,8 +3,9 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, common};
-use crate::power_flow::{External, Flow};
-use crate::statics::{Certificate, Equilibrium, Solution, Unsolvable};
+use crate::operating_point::{Convergence, Extrapolation, Physics, Step};
+use crate::power_flow::{Drag, External, Flow};
+use crate::statics::{Answer, Certificate, Equilibrium, Solution, Unsolvable};
 use crate::train::{FRAME, Load, MemberId, MemberKind, Operation, ShiftElementKind, Train};
 use crate::units::{Dimension, Quantity};
 
@@ -21,7 +22,10 @@ pub(super) fn report(
     diagnostics: &mut Diagnostics,
 ) -> Result<OperationReport, Diagnostics> {
     let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
-    let keep: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
+    let physics = train.is_physical().then(|| Physics::new(train, operation));
+    let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
+    let dragged = physics.as_ref().map(Physics::visible).unwrap_or_default();
+    let keep: Vec<MemberId> = prescribed.iter().chain(&dragged).copied().collect();
     let c = Configuration::new(train, engaged, &operation.fixed, &keep);
     let place = operation.place.as_str();
     let title = format!("operation `{}`", operation.name);
@@ -55,10 +59,10 @@ pub(super) fn report(
         return Ok(report);
     }
 
-    let problem = Loads::new(&c, operation, &motion)?;
+    let problem = Loads::new(&c, operation, &motion, &[])?;
     let loose: Vec<_> =
         (1..train.members.len()).map(MemberId).filter(|m| motion.speeds[m.0].is_none() && !c.inner[m.0]).collect();
-    let missing_speeds = c.degrees_of_freedom().saturating_sub(independent(&c, &keep));
+    let missing_speeds = c.degrees_of_freedom().saturating_sub(independent(&c, &prescribed));
     let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
     let undetermined = |text: String, hint: String, code: Code| {
         let d = Diagnostic::new(code, place, format!("{title}: {text}"));
@@ -120,19 +124,54 @@ pub(super) fn report(
         ));
     }
 
-    let answer = equilibrium.solve(&problem.torques);
-    report.certificate = Some(answer.certificate.into());
-    if answer.certificate == Certificate::Undecided {
+    let setting = Setting { c: &c, motion: &motion, operation, sigma: &sigma };
+    let Balance { branches, certificate, continuum, driven } = match &physics {
+        None => {
+            let answer = equilibrium.solve(&problem.torques);
+            let branch = |solution| Branch {
+                c: c.clone(),
+                problem: problem.clone(),
+                equilibrium: equilibrium.clone(),
+                solution,
+                drags: vec![],
+                computed: None,
+            };
+            Balance {
+                branches: answer.solutions.into_iter().map(branch).collect(),
+                certificate: answer.certificate,
+                continuum: answer.continuum,
+                driven: None,
+            }
+        }
+        Some(physics) => setting.balance(physics)?,
+    };
+    report.certificate = Some(certificate.into());
+    if certificate == Certificate::Undecided {
         diagnostics.push(Diagnostic::new(
             Code::NotEnumerated,
             place,
             format!("{title}: too many interacting meshes to decide how many equilibria there are"),
         ));
     }
-    let unloaded = problem.torques.iter().all(Rational::is_zero);
-    let frame = Frame { c: &c, motion: &motion, problem: &problem, equilibrium: &equilibrium, operation };
-    let mut all: Vec<SolutionReport> = answer.solutions.iter().map(|s| frame.solution(s)).collect();
+    let unloaded = match branches.first() {
+        Some(b) => b.problem.torques.iter().all(Rational::is_zero),
+        None => problem.torques.iter().all(Rational::is_zero),
+    };
+    let frames: Vec<Frame<'_>> = branches
+        .iter()
+        .map(|branch| Frame {
+            c: &branch.c,
+            motion: &motion,
+            problem: &branch.problem,
+            equilibrium: &branch.equilibrium,
+            operation,
+            drags: &branch.drags,
+            physics: physics.as_ref().zip(branch.computed.as_ref()),
+        })
+        .collect();
+    let mut all: Vec<SolutionReport> = frames.iter().zip(&branches).map(|(f, b)| f.solution(&b.solution)).collect();
     all.sort_by(|a, b| a.efficiency.partial_cmp(&b.efficiency).unwrap_or(std::cmp::Ordering::Equal));
+    let unsettled = all.iter().any(|s| s.convergence.is_some_and(|c| !c.converged));
     let finite = |x: Option<f64>| x.is_none_or(f64::is_finite);
     if all
         .iter()
@@ -160,13 +199,22 @@ pub(super) fn report(
             ),
         ));
     }
-    let driving = all.iter().any(|s| !s.all_dissipated);
+    // Drag may eat a small load up; only tooth friction locks.
+    let driving = driven.unwrap_or_else(|| all.iter().any(|s| !s.all_dissipated));
     let one_freedom = c.degrees_of_freedom() == 1;
     if unloaded {
         report.verdict = Verdict::Unloaded;
         report.reason = Some("no torque or power acts on any terminal".into());
         report.solutions = all;
-    } else if answer.certificate == Certificate::Undecided {
+    } else if unsettled {
+        let text = "losses and torques were not brought into agreement: what is shown is the last step".to_owned();
+        diagnostics.push(
+            Diagnostic::new(Code::NotConverged, place, format!("{title}: {text}"))
+                .hint("the train is close to locking, or a law is far outside its range"),
+        );
+        report.reason = Some(text);
+        report.solutions = all;
+    } else if certificate == Certificate::Undecided {
         // Found or not, nothing is proved: neither "unique" nor "locked" may be said.
         report.reason = Some(match all.is_empty() {
             true => "too many interacting meshes: no equilibrium was found, and none is excluded".into(),
@@ -189,7 +237,7 @@ pub(super) fn report(
         report.reason = Some(text);
         report.dissipative_solutions = all;
     } else {
-        report.verdict = if all.len() > 1 || answer.continuum { Verdict::Multiple } else { Verdict::Unique };
+        report.verdict = if all.len() > 1 || continuum { Verdict::Multiple } else { Verdict::Unique };
         if report.verdict == Verdict::Multiple {
             let list: Vec<_> = all
                 .iter()
@@ -199,7 +247,7 @@ pub(super) fn report(
                     _ => "unloaded".to_owned(),
                 })
                 .collect();
-            let text = match answer.continuum {
+            let text = match continuum {
                 true => "the load lies on a self-locking threshold: a whole range of torques balances it".to_owned(),
                 false => {
                     format!("{} equilibria carry the same load, with efficiencies {}", list.len(), list.join(" and "))
@@ -212,13 +260,23 @@ pub(super) fn report(
             );
             report.reason = Some(text);
         }
-        if all.iter().any(|s| s.all_dissipated) {
+        if physics.is_some() && all.iter().all(|s| s.all_dissipated) {
+            let text = "no power leaves: the losses take all that enters".to_owned();
+            diagnostics.push(Diagnostic::new(Code::AllDissipated, place, format!("{title}: {text}")));
+            report.reason.get_or_insert(text);
+        } else if all.iter().any(|s| s.all_dissipated) {
             let inputs = all.iter().find(|s| s.all_dissipated).map(inputs).unwrap_or_default();
             let text = format!("{inputs} all put power in and none takes power out: everything is dissipated");
             diagnostics.push(Diagnostic::new(Code::AllDissipated, place, format!("{title}: {text}")));
             report.reason.get_or_insert(text);
         }
         report.solutions = all;
+    }
+    if let Some(physics) = &physics {
+        for (branch, frame) in branches.iter().zip(&frames) {
+            let flow = frame.flow(&branch.solution);
+            outside_laws(physics.extrapolations(&flow, &motion), place, &title, diagnostics);
+        }
     }
     for s in report.solutions.iter() {
         one_way_torques(train, s, place, &title, diagnostics);
@@ -298,6 +356,7 @@ fn contradiction(c: &Configuration<'_>, operation: &Operation, broken: &[Vec<Mem
 }
 
 /// External torques as the statics takes them.
+#[derive(Clone)]
 struct Loads {
     /// Prescribed torques by member, in units of `π^pi_power`.
     given: Vec<(MemberId, Rational)>,
@@ -310,7 +369,7 @@ struct Loads {
 }
 
 impl Loads {
-    fn new(c: &Configuration<'_>, operation: &Operation, motion: &Motion) -> Result<Self, Diagnostics> {
+    fn new(c: &Configuration<'_>, operation: &Operation, motion: &Motion, drags: &[Drag]) -> Result<Self, Diagnostics> {
         let train = c.train;
         let mut wrong = Diagnostics::default();
         let mut quantities: Vec<(MemberId, Quantity)> = Vec::new();
@@ -369,6 +428,16 @@ impl Loads {
                 torques[n] += torque.clone();
                 if !torque.is_zero() && !loaded.contains(&n) {
                     loaded.push(n);
+                }
+            }
+        }
+        for drag in drags {
+            for (member, torque) in [(drag.members[0], drag.torque), (drag.members[1], -drag.torque)] {
+                if let (Some(n), Some(t)) = (c.node(member), Rational::from_f64(torque / si)) {
+                    torques[n] += t;
+                    if !loaded.contains(&n) {
+                        loaded.push(n);
+                    }
                 }
             }
         }
@@ -453,6 +522,170 @@ struct Frame<'a> {
     problem: &'a Loads,
     equilibrium: &'a Equilibrium,
     operation: &'a Operation,
+    drags: &'a [Drag],
+    /// Where losses are computed: the laws, and the step in force.
+    physics: Option<(&'a Physics<'a>, &'a (Step, Convergence))>,
+}
+
+/// What all rounds of an operating point have in common.
+struct Setting<'a> {
+    c: &'a Configuration<'a>,
+    motion: &'a Motion,
+    operation: &'a Operation,
+    sigma: &'a [Option<i8>],
+}
+
+/// One equilibrium with everything it was solved from.
+struct Branch<'a> {
+    c: Configuration<'a>,
+    problem: Loads,
+    equilibrium: Equilibrium,
+    solution: Solution,
+    drags: Vec<Drag>,
+    computed: Option<(Step, Convergence)>,
+}
+
+/// Every equilibrium of an operating point.
+struct Balance<'a> {
+    branches: Vec<Branch<'a>>,
+    certificate: Certificate,
+    continuum: bool,
+    /// Where drags act: whether a load is driven without them.
+    driven: Option<bool>,
+}
+
+/// A train with the losses of one step, solved.
+struct Solved<'a> {
+    c: Configuration<'a>,
+    problem: Loads,
+    equilibrium: Equilibrium,
+    answer: Answer,
+}
+
+impl<'a> Setting<'a> {
+    /// Solves with the losses of a step; `Err` where the loads make no question.
+    fn solve(&self, step: &Step, drags: &[Drag]) -> Result<Option<Solved<'a>>, Diagnostics> {
+        let c = step.configure(self.c);
+        let problem = Loads::new(&c, self.operation, self.motion, drags)?;
+        let Ok(equilibrium) = Equilibrium::new(&c, self.sigma, &problem.open, &problem.loaded) else {
+            return Ok(None);
+        };
+        let answer = equilibrium.solve(&problem.torques);
+        Ok(Some(Solved { c, problem, equilibrium, answer }))
+    }
+
+    fn flow(&self, s: &Solved<'_>, solution: &Solution, drags: &[Drag]) -> Flow {
+        let scale = std::f64::consts::PI.powi(s.problem.pi_power.into());
+        Flow::new(&s.c, self.motion, solution, scale, &s.problem.externals, drags)
+    }
+
+    /// Brings torques and computed losses into agreement, for every equilibrium.
+    fn balance(&self, physics: &Physics<'_>) -> Result<Balance<'a>, Diagnostics> {
+        let nothing = |certificate| Balance { branches: vec![], certificate, continuum: false, driven: Some(false) };
+        // The forces of the train without computed losses are the start.
+        let lossless = Step::lossless(self.c.train);
+        let Some(first) = self.solve(&lossless, &[])? else { return Ok(nothing(Certificate::Undecided)) };
+        let start = match first.answer.solutions.first() {
+            Some(solution) => physics.step(&self.flow(&first, solution, &[]), self.motion),
+            None => lossless,
+        };
+        let Some(second) = self.solve(&start, &start.drags)? else { return Ok(nothing(Certificate::Undecided)) };
+        let mut certificate = second.answer.certificate;
+        let mut branches: Vec<Branch<'a>> = Vec::new();
+        let mut continuum = false;
+        let mut driven = None;
+        for k in 0..second.answer.solutions.len() {
+            let mut drivers = second.answer.solutions[k].driver.clone();
+            let agreed = physics.agree(self.motion, start.clone(), |step| {
+                let solved = self.solve(step, &step.drags).ok().flatten()?;
+                let all = &solved.answer.solutions;
+                // The equilibrium in which the same ends drive, or the only one.
+                let at = all.iter().position(|s| s.driver == drivers).or((all.len() == 1).then_some(0))?;
+                drivers = all[at].driver.clone();
+                let flow = self.flow(&solved, &all[at], &step.drags);
+                Some(((solved, at), flow))
+            });
+            let Some((step, (solved, at), _, convergence)) = agreed else { continue };
+            let Solved { c, problem, equilibrium, answer } = solved;
+            if answer.certificate != certificate && !answer.certificate.unique_for_every_load() {
+                certificate = answer.certificate;
+            }
+            continuum |= answer.continuum;
+            let solution = answer.solutions[at].clone();
+            if branches.iter().any(|b| b.solution.driver == solution.driver) {
+                continue;
+            }
+            // Whether a load would be driven without the drags: only then do the teeth not lock it.
+            let free = self.solve(&step, &[])?;
+            let drives = free.is_some_and(|s| {
+                s.problem.torques.iter().all(Rational::is_zero)
+                    || s.answer.solutions.iter().any(|x| self.flow(&s, x, &[]).output_power > 0.0)
+            });
+            driven = Some(driven.unwrap_or(false) || drives);
+            let drags = step.drags.clone();
+            branches.push(Branch { c, problem, equilibrium, solution, drags, computed: Some((step, convergence)) });
+        }
+        if branches.is_empty() {
+            return Ok(nothing(certificate));
+        }
+        Ok(Balance { branches, certificate, continuum, driven })
+    }
+}
+
+/// Warnings where laws were used outside their ranges: one for each quantity of a law.
+fn outside_laws(all: Vec<Extrapolation>, place: &str, title: &str, diagnostics: &mut Diagnostics) {
+    let mut told: Vec<(&str, &str, &str)> = Vec::new();
+    for x in &all {
+        let key = (x.family, x.law, x.outside.symbol);
+        if told.contains(&key) {
+            continue;
+        }
+        told.push(key);
+        let same = |y: &&Extrapolation| (y.family, y.law, y.outside.symbol) == key;
+        let mut at: Vec<String> = Vec::new();
+        for y in all.iter().filter(same) {
+            let text = format!("{} ({})", y.at, readable(y.outside.value, y.outside.unit));
+            if !at.contains(&text) {
+                at.push(text);
+            }
+        }
+        let (low, high) = x.outside.range;
+        let range = match (low.is_finite() && low > 0.0, high.is_finite()) {
+            (true, true) => format!("from {} to {}", readable(low, x.outside.unit), readable(high, x.outside.unit)),
+            (false, _) => format!("up to {}", readable(high, x.outside.unit)),
+            (true, false) => format!("from {}", readable(low, x.outside.unit)),
+        };
+        let message = format!(
+            "{title}: {} = {} of {} is outside its range, {} {range}",
+            x.family,
+            x.law,
+            at.join(", "),
+            x.outside.symbol,
+        );
+        diagnostics.push(Diagnostic::new(Code::OutsideLaw, place, message));
+    }
+}
+
+/// A value with a unit that people use, four digits.
+fn readable(value: f64, unit: &str) -> String {
+    let (factor, unit) = match unit {
+        "m" if value.abs() < 1e-3 => (1e6, "µm"),
+        "m" => (1e3, "mm"),
+        "N/m" => (1e-3, "N/mm"),
+        "Pa" if value.abs() >= 1e5 => (1e-6, "MPa"),
+        "Pa s" => (1e3, "mPa s"),
+        "m^2/s" | "m²/s" => (1e6, "mm²/s"),
+        "rad/s" => (30.0 / std::f64::consts::PI, "rpm"),
+        "-" => (1.0, ""),
+        other => (1.0, other),
+    };
+    let x = value * factor;
+    let digits = if x == 0.0 || !x.is_finite() { 0 } else { (3 - x.abs().log10().floor() as i32).clamp(0, 9) as usize };
+    let mut text = format!("{x:.digits$}");
+    if text.contains('.') {
+        text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    }
+    if unit.is_empty() { text } else { format!("{text} {unit}") }
 }
 
 impl Frame<'_> {
@@ -461,7 +694,7 @@ impl Frame<'_> {
     }
 
     fn flow(&self, s: &Solution) -> Flow {
-        Flow::new(self.c, self.motion, s, self.scale(), &self.problem.externals)
+        Flow::new(self.c, self.motion, s, self.scale(), &self.problem.externals, self.drags)
     }
 
     fn solution(&self, s: &Solution) -> SolutionReport {
@@ -509,8 +742,16 @@ impl Frame<'_> {
                 driver: f.driver.map(|d| train.member_name(mesh.gears[d].member).to_owned()),
                 relative_speed_rad_s: f.relative_speeds[f.driver.unwrap_or(0)],
                 potential_power_w: f.potential_power,
-                efficiency: f.efficiency,
-                loss_w: f.loss,
+                efficiency: match self.physics {
+                    Some((physics, (step, _))) if f.potential_power > 0.0 => {
+                        1.0 - physics.tooth_loss(step, f.mesh.index(), &flow) / f.potential_power
+                    }
+                    _ => f.efficiency,
+                },
+                loss_w: match self.physics {
+                    Some((physics, (step, _))) => physics.tooth_loss(step, f.mesh.index(), &flow),
+                    None => f.loss,
+                },
                 first_torque_n_m: f.torques[0] + 0.0,
                 second_torque_n_m: f.torques[1] + 0.0,
                 carrier_torque_n_m: f.torques[2] + 0.0,
@@ -525,7 +766,12 @@ impl Frame<'_> {
             (e.name.clone(), ShiftElementReport { kind: e.kind, members, torque_n_m: t.torque.map(|t| t + 0.0) })
         });
         let all_dissipated = flow.input_power > 0.0 && flow.output_power <= 0.0;
-        let exact = s.exact.as_ref().and_then(|f| self.exact_efficiency(s, f));
+        let exact = s.exact.as_ref().filter(|_| self.physics.is_none()).and_then(|f| self.exact_efficiency(s, f));
+        let sources = self.physics.map(|(p, (step, _))| p.sources(step, &flow)).unwrap_or_default();
+        let losses_w = match self.physics {
+            Some(_) => Losses::of(&sources),
+            None => Losses { mesh: flow.loss, ..Losses::default() },
+        };
         let efficiency = if flow.input_power <= 0.0 {
             None
         } else if let Some(e) = &exact {
@@ -546,7 +792,11 @@ impl Frame<'_> {
             members,
             meshes,
             shift_elements: Named(shift_elements.collect()),
-            losses_w: Losses { mesh: flow.loss, ..Losses::default() },
+            losses_w,
+            sources,
+            contacts: Named(self.physics.map(|(p, (step, _))| p.contacts(step, &flow)).unwrap_or_default()),
+            bearings: Named(self.physics.map(|(p, (step, _))| p.bearings(step, &flow)).unwrap_or_default()),
+            convergence: self.physics.map(|(_, (_, convergence))| *convergence),
             recirculation: flow
                 .circulations
                 .iter()

@@ -50,7 +50,8 @@ pub(super) fn bodies(train: &Train) -> Vec<Body> {
             }
             seen.push(key);
             let planet = train.members[g.member.0].kind == MemberKind::Planet;
-            let several = train.meshes.iter().flat_map(|m| &m.gears).any(|o| o.member == g.member && o.teeth != g.teeth);
+            let several =
+                train.meshes.iter().flat_map(|m| &m.gears).any(|o| o.member == g.member && o.teeth != g.teeth);
             let name = train.member_name(g.member);
             all.push(Body {
                 name: if several { format!("{name} ({} teeth)", g.teeth) } else { name.to_owned() },
@@ -97,7 +98,9 @@ impl Physics<'_> {
     fn fluid(&self, fluid: Fluid) -> (f64, f64) {
         match (fluid, &self.oil) {
             (Fluid::Oil, Some((_, oil))) => (oil.density, oil.dynamic_viscosity),
-            (Fluid::Mist, Some((l, oil))) => (mist(oil.density, AIR.0, l.mist), mist(oil.dynamic_viscosity, AIR.1, l.mist)),
+            (Fluid::Mist, Some((l, oil))) => {
+                (mist(oil.density, AIR.0, l.mist), mist(oil.dynamic_viscosity, AIR.1, l.mist))
+            }
             _ => AIR,
         }
     }

@@ -447,11 +447,9 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
     unique(&mut a, "bearing", "bearing", spec.bearings.iter().map(|b| b.name.as_str()));
     unique(&mut a, "seal", "seal", spec.seals.iter().map(|s| s.name.as_str()));
     unique(&mut a, "rotor", "rotor", spec.rotors.iter().map(|r| r.name.as_str()));
-    let mut bearings: Vec<_> = (spec.bearings.iter().enumerate())
-        .filter_map(|(k, b)| a.bearing(b, &format!("bearing[{k}]")))
-        .collect();
-    let seals: Vec<_> =
-        spec.seals.iter().enumerate().filter_map(|(k, s)| a.seal(s, &format!("seal[{k}]"))).collect();
+    let mut bearings: Vec<_> =
+        (spec.bearings.iter().enumerate()).filter_map(|(k, b)| a.bearing(b, &format!("bearing[{k}]"))).collect();
+    let seals: Vec<_> = spec.seals.iter().enumerate().filter_map(|(k, s)| a.seal(s, &format!("seal[{k}]"))).collect();
     let rotors: Vec<_> =
         spec.rotors.iter().enumerate().filter_map(|(k, r)| a.rotor(r, &format!("rotor[{k}]"))).collect();
     let masses: Vec<(MemberId, f64)> = (sets.iter())

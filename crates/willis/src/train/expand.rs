@@ -167,8 +167,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 );
                 z_long.clone()
             });
-            let (short, long) =
-                ((planets[0], z_short, false, short.tooth), (planets[1], z_long, false, long.tooth));
+            let (short, long) = ((planets[0], z_short, false, short.tooth), (planets[1], z_long, false, long.tooth));
             if let Some(g) = small_sun {
                 let c = central(a, g, "small_sun")?;
                 pairs.push(pair("small_sun-short_planet", g, c, short.clone()));
@@ -272,8 +271,12 @@ fn teeth(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair<'_>]) 
         all.push(geometry.and_then(|g| a.tooth_pair(&g, gears, &title, place)));
     }
     // Every central gear meshes with planets whose axes run on one circle.
-    let central: Vec<(&Pair<'_>, &Teeth)> =
-        pairs.iter().zip(&all).filter(|(p, _)| p.central.is_some()).filter_map(|(p, t)| Some((p, t.as_ref()?))).collect();
+    let central: Vec<(&Pair<'_>, &Teeth)> = pairs
+        .iter()
+        .zip(&all)
+        .filter(|(p, _)| p.central.is_some())
+        .filter_map(|(p, t)| Some((p, t.as_ref()?)))
+        .collect();
     // In a set with two kinds of planets the circles differ.
     let on_planet = |p: &Pair<'_>| p.gears.iter().find(|g| Some(g.0) != a_central(p)).map(|g| g.0);
     for (k, (p, t)) in central.iter().enumerate() {
@@ -289,9 +292,11 @@ fn teeth(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair<'_>]) 
                     p.name,
                     here * 1e3
                 );
-                a.diagnostics.push(Diagnostic::new(Code::ImpossibleGeometry, format!("{place}.geometry"), message).hint(
-                    "give `centre_distance` (profile shift or backlash make up the rest), or shifts that agree",
-                ));
+                a.diagnostics.push(
+                    Diagnostic::new(Code::ImpossibleGeometry, format!("{place}.geometry"), message).hint(
+                        "give `centre_distance` (profile shift or backlash make up the rest), or shifts that agree",
+                    ),
+                );
             }
         }
     }

@@ -184,18 +184,18 @@ impl Assembler<'_> {
             (None, None, None) => {
                 let Some(name) = &spec.name else {
                     let d = Diagnostic::new(Code::MissingKey, "oil", "the oil has neither a name nor a viscosity");
-                    self.report(d.hint("name one of the catalogue, `name = \"ISO VG 220\"`, or give viscosity_40 and viscosity_100"));
+                    self.report(d.hint(
+                        "name one of the catalogue, `name = \"ISO VG 220\"`, or give viscosity_40 and viscosity_100",
+                    ));
                     return None;
                 };
                 let found = oil::find(name).cloned();
                 if found.is_none() {
                     let known: Vec<&str> = oil::all().iter().map(|o| o.name.as_str()).collect();
                     let message = format!("there is no oil `{}` in the catalogue", clip(name));
-                    let mut d = Diagnostic::new(Code::UnknownName, "oil.name", message).suggest(name, known.iter().copied());
-                    d = d.hint(format!(
-                        "give its viscosity_40 and viscosity_100, or use one of: {}",
-                        list(known)
-                    ));
+                    let mut d =
+                        Diagnostic::new(Code::UnknownName, "oil.name", message).suggest(name, known.iter().copied());
+                    d = d.hint(format!("give its viscosity_40 and viscosity_100, or use one of: {}", list(known)));
                     self.report(d);
                 }
                 found
@@ -399,11 +399,7 @@ impl Assembler<'_> {
 
     /// Planets that revolve, with their orbit and mass, where the geometry tells them; and the
     /// number of places of the bearings on them.
-    pub fn planet_bodies(
-        &mut self,
-        masses: &[(MemberId, f64)],
-        bearings: &mut [BearingMount],
-    ) -> Vec<PlanetBody> {
+    pub fn planet_bodies(&mut self, masses: &[(MemberId, f64)], bearings: &mut [BearingMount]) -> Vec<PlanetBody> {
         let mut all: Vec<PlanetBody> = Vec::new();
         for mesh in &self.meshes {
             for k in 0..2 {
