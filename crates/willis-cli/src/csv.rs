@@ -206,7 +206,7 @@ fn each(a: &Analysis, mut f: impl FnMut(&[String], &SolutionReport)) {
     }
 }
 
-fn verdict(v: Verdict) -> &'static str {
+pub fn verdict(v: Verdict) -> &'static str {
     match v {
         Verdict::Unique => "unique",
         Verdict::Multiple => "multiple",

@@ -2,6 +2,7 @@
 
 mod csv;
 mod input;
+mod losses;
 mod output;
 mod regimes;
 mod text;
@@ -10,7 +11,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
-use willis::analysis::{self, Analysis, Selection};
+use willis::analysis::{self, Analysis, LossRequest, Selection};
 use willis::diagnostic::{Code, Diagnostics, Severity};
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::symbolic::Notation;
@@ -58,6 +59,56 @@ enum Command {
         /// With --format csv: only this table, without a heading.
         #[arg(long, value_enum)]
         table: Option<csv::Table>,
+        /// Put a law into force: mesh_friction=niemann. Several times for several families.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
+    },
+    /// Tell where every watt goes, at a few speeds, loads and temperatures, or law beside law.
+    ///
+    /// Starts from the operations of the file. Loads stay as the file gives them (a torque stays
+    /// that torque, a power that power) unless --powers or --torques varies them.
+    Losses {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// Only this operation.
+        #[arg(long)]
+        operation: Option<String>,
+        /// Speeds of the operation's first prescribed speed: 500rpm,1000rpm,2000rpm.
+        #[arg(long, value_delimiter = ',', value_name = "SPEED")]
+        speeds: Vec<String>,
+        /// Powers at the operation's first load: 100kW,200kW.
+        #[arg(long, value_delimiter = ',', value_name = "POWER", conflicts_with = "torques")]
+        powers: Vec<String>,
+        /// Torques at the operation's first load: '100 N m,200 N m'.
+        #[arg(long, value_delimiter = ',', value_name = "TORQUE")]
+        torques: Vec<String>,
+        /// Oil temperatures: 40degC,60degC,90degC.
+        #[arg(long, value_delimiter = ',', value_name = "TEMPERATURE")]
+        temperature: Vec<String>,
+        /// Compare all laws of this family: mesh_friction, bearing, windage, ...
+        #[arg(long, value_name = "FAMILY")]
+        compare: Option<String>,
+        /// Put a law into force: mesh_friction=niemann. Several times for several families.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: Format,
+    },
+    /// List every loss law with its range, source and how far it was checked.
+    Laws {
+        /// Only this family.
+        #[arg(long)]
+        family: Option<String>,
+        /// List the catalogue of oils instead.
+        #[arg(long, conflicts_with_all = ["family", "bearings"])]
+        oils: bool,
+        /// List the catalogue of bearings instead.
+        #[arg(long, conflicts_with = "family")]
+        bearings: bool,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: Format,
     },
     /// List every regime of a train: who drives whom, in which speeds, with which formula.
     ///
@@ -291,14 +342,49 @@ fn main() -> ExitCode {
 /// What goes to standard output, or to standard error with exit status 1.
 fn run(command: &Command) -> Result<String, String> {
     match command {
-        Command::Analyze { file, state, operation, format, table } => {
+        Command::Analyze { file, state, operation, format, table, law } => {
             let selection = Selection { state: state.clone(), operation: operation.clone() };
-            let job = Job::read(file)?;
+            let job = Job::read(file)?.with_laws(law)?;
             let analysis = job.analyze(&selection)?;
             Ok(match format {
                 Format::Text => text::analysis(&job.train, &analysis) + &job.notes(&analysis),
                 Format::Json => serde_json::to_string_pretty(&analysis).expect("plain data") + "\n",
                 Format::Csv => csv::analysis(&analysis, *table),
+            })
+        }
+        Command::Losses { file, operation, speeds, powers, torques, temperature, compare, law, format } => {
+            let job = Job::read(file)?.with_laws(law)?;
+            let temperature = values("--temperature", temperature, Dimension::TEMPERATURE)?;
+            let request = LossRequest {
+                operation: operation.clone(),
+                speeds: values("--speeds", speeds, Dimension::ANGULAR_SPEED)?,
+                powers: values("--powers", powers, Dimension::POWER)?,
+                torques: values("--torques", torques, Dimension::TORQUE)?,
+                temperatures: temperature.iter().map(Quantity::si).collect(),
+                compare: compare.clone(),
+            };
+            let all = analysis::losses(&job.train, &request).map_err(|wrong| job.failure(wrong))?;
+            Ok(match format {
+                Format::Text => losses::points(&all),
+                Format::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
+                Format::Csv => losses::points_csv(&all),
+            })
+        }
+        Command::Laws { oils: true, .. } => Ok(losses::oils()),
+        Command::Laws { bearings: true, .. } => Ok(losses::bearings_catalogue()),
+        Command::Laws { family, format, .. } => {
+            let mut all = willis::losses::entries();
+            if let Some(family) = family {
+                all.retain(|e| e.family == family);
+                if all.is_empty() {
+                    let known = willis::losses::FAMILIES.join(", ");
+                    return Err(format!("there is no family of laws `{family}`; the families are: {known}\n"));
+                }
+            }
+            Ok(match format {
+                Format::Text => losses::laws(&all),
+                Format::Json => serde_json::to_string_pretty(&losses::laws_json(&all)).expect("plain data") + "\n",
+                Format::Csv => losses::laws_csv(&all),
             })
         }
         Command::Regimes { file, state, terminals, balance, family, map, format } => {
@@ -450,6 +536,20 @@ fn quantities(option: &str, given: &[String], dimension: Dimension) -> Result<Ve
     if wrong.is_empty() { Ok(all) } else { Err(wrong) }
 }
 
+/// Values of an option; everything that is wrong with them at once.
+fn values(option: &str, given: &[String], dimension: Dimension) -> Result<Vec<Quantity>, String> {
+    let (kind, example) = dimension.describe();
+    let mut wrong = String::new();
+    let mut all = Vec::new();
+    for text in given {
+        match units::parse(text, dimension) {
+            Ok(q) => all.push(q),
+            Err(why) => wrong += &format!("{option} {text}: {why}; give {kind}, as in {option} '{example}'\n"),
+        }
+    }
+    if wrong.is_empty() { Ok(all) } else { Err(wrong) }
+}
+
 /// The two members of `--balance`.
 fn pair(names: Option<&[String]>) -> Result<Option<[String; 2]>, String> {
     match names {
@@ -478,6 +578,20 @@ impl Job {
             Some(train) => Ok(Self { file: name.to_owned(), text, reading, train }),
             None => Err(failure(&reading.diagnostics, name, &text)),
         }
+    }
+
+    /// Puts laws into force, `family=law`.
+    fn with_laws(mut self, laws: &[String]) -> Result<Self, String> {
+        for text in laws {
+            let Some((family, law)) = text.split_once('=') else {
+                return Err(format!("--law {text}: write family=law, as in --law mesh_friction=niemann\n"));
+            };
+            match self.train.clone().with_law(family.trim(), law.trim()) {
+                Ok(train) => self.train = train,
+                Err(wrong) => return Err(self.failure(wrong)),
+            }
+        }
+        Ok(self)
     }
 
     fn analyze(&self, selection: &Selection) -> Result<Analysis, String> {

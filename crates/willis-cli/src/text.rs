@@ -302,7 +302,7 @@ fn solution(s: &SolutionReport) -> String {
         right(&mut t, 2..3);
         out += &show(&t);
     }
-    out
+    out + &crate::losses::of_solution(s)
 }
 
 fn margins(s: &SolutionReport) -> String {
@@ -413,7 +413,7 @@ pub fn show(t: &Table) -> String {
     std::iter::once(header).chain(lines.map(String::from)).map(|l| l + "\n").collect()
 }
 
-fn right(t: &mut Table, columns: std::ops::Range<usize>) {
+pub fn right(t: &mut Table, columns: std::ops::Range<usize>) {
     for k in columns {
         if let Some(c) = t.column_mut(k) {
             c.set_cell_alignment(CellAlignment::Right);

@@ -4,8 +4,11 @@
 //! Serialised as JSON it is the results contract `willis-analysis-1`; fields are added, never
 //! renamed. Units are SI and stand in the names.
 
+mod losses;
 mod operation;
 mod table;
+
+pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -511,15 +514,64 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
 /// What the model leaves out, then what stands in for missing data.
 fn assumptions(train: &Train) -> Vec<String> {
     let mut all = vec!["steady state: no inertia".to_owned()];
-    if train.meshes.iter().any(|m| m.efficiency != Efficiency::lossless()) {
-        all.push("mesh efficiencies are constants: independent of load, speed and temperature".into());
+    if train.meshes.iter().any(|m| !m.computed && m.efficiency != Efficiency::lossless()) {
+        all.push("given mesh efficiencies are constants: independent of load, speed and temperature".into());
     }
-    all.push("no bearing, windage, churning or seal losses, no drag of open shift elements".into());
+    if train.is_physical() {
+        physical_assumptions(train, &mut all);
+    } else {
+        all.push("no bearing, windage, churning or seal losses, no drag of open shift elements".into());
+    }
     if train.meshes.iter().any(|m| m.count > 1) {
         all.push("parallel planets share the load equally".into());
     }
     all.extend(train.assumptions.iter().cloned());
     all
+}
+
+/// What the losses rest on: what is not counted, and the laws in force.
+fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
+    if train.meshes.iter().any(|m| m.computed) {
+        let default = crate::losses::mesh_friction::Constant::DEFAULT.mu;
+        let mu = train.laws.friction_coefficient.unwrap_or(default);
+        all.push(format!(
+            "tooth friction is computed in operations; the table of ratios, regimes and formulas use a nominal \
+             coefficient of {mu}"
+        ));
+        let law = train.laws.mesh_friction(train.lubrication.is_some());
+        all.push(format!("tooth friction by `{}`, loss factor `{}`", law.meta().id, train.laws.loss_factor.meta().id));
+    }
+    if !train.bearings.is_empty() {
+        let law = train.laws.bearing.meta().id;
+        all.push(format!("bearing friction by `{law}`; equally spaced planets load central bearings only axially"));
+    }
+    let supply = train.lubrication.as_ref().and_then(|l| l.supply);
+    let mut missing = Vec::new();
+    if train.bearings.is_empty() {
+        missing.push("bearings");
+    }
+    if train.seals.is_empty() {
+        missing.push("seals");
+    }
+    if !missing.is_empty() {
+        all.push(format!("no {} given: their losses are not counted", missing.join(" and ")));
+    }
+    use crate::train::OilSupply::{Bath, Grease, Jet, Mist};
+    all.push(match supply {
+        None => "how the oil is supplied is not given: gears in air or oil lose nothing".into(),
+        Some(Jet | Mist) => {
+            format!(
+                "gears turn in air and oil mist: windage by `{}`, planets relative to their carrier",
+                train.laws.windage.meta().id
+            )
+        }
+        Some(Bath) => format!("churning by `{}` of the gears whose immersion is given", train.laws.churning.meta().id),
+        Some(Grease) => "grease: gears in air lose nothing".into(),
+    });
+    if train.rotors.is_empty() && train.sets.iter().any(|s| s.planets.is_some()) {
+        all.push("no drag of carriers (give a [[rotor]])".into());
+    }
+    all.push("no drag of open shift elements, no oil pump".into());
 }
 
 /// Names of members, for sentences.

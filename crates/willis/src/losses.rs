@@ -96,6 +96,8 @@ pub struct Entry {
     pub source: (&'static str, &'static str),
     /// How far it was checked.
     pub trust: Trust,
+    /// What a user must know of it.
+    pub tags: &'static [Tag],
     /// Range of validity: symbol, unit, lowest, highest value (SI).
     pub valid: Vec<(&'static str, &'static str, f64, f64)>,
     /// Whether it is the one used when nothing is chosen.
@@ -165,7 +167,7 @@ macro_rules! family {
                     let m = l.meta();
                     crate::losses::Entry {
                         family: Self::FAMILY, gives: Self::GIVES, id: m.id, title: m.title, source: m.source,
-                        trust: m.trust, default: k == 0,
+                        trust: m.trust, tags: m.tags, default: k == 0,
                         valid: m.valid.iter().map(|r| (r.symbol, r.unit, r.min, r.max)).collect(),
                     }
                 }).collect()

@@ -1,0 +1,338 @@
+//! Losses at a few points: over speed, load and temperature, and law beside law.
+
+use serde::Serialize;
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use crate::losses::{self, Entry, Tag};
+use crate::train::{Load, MemberId, Operation, Train};
+use crate::units::Quantity;
+
+use super::{Convergence, LossSource, Losses, Named, Verdict, operation};
+
+/// Where to evaluate the losses of a train. An empty list leaves a quantity as the file has it.
+#[derive(Clone, Debug, Default)]
+pub struct LossRequest {
+    /// Only this operation of the file.
+    pub operation: Option<String>,
+    /// Values of the operation's first prescribed speed; further ones are scaled with it.
+    pub speeds: Vec<Quantity>,
+    /// Values of the power at the operation's first load; further loads are scaled with it.
+    pub powers: Vec<Quantity>,
+    /// Values of the torque at the operation's first load; further loads are scaled with it.
+    pub torques: Vec<Quantity>,
+    /// Oil temperatures, K.
+    pub temperatures: Vec<f64>,
+    /// A family of laws: every point is evaluated with every law of it.
+    pub compare: Option<String>,
+}
+
+/// One point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LossPoint {
+    /// The operation it comes from.
+    pub operation: String,
+    /// Speed of the member whose speed is varied, rad/s.
+    pub speed_rad_s: f64,
+    /// What loads the train: torque, N m, of the first load.
+    pub torque_n_m: Option<f64>,
+    /// Oil temperature, K; absent without an oil.
+    pub temperature_k: Option<f64>,
+    /// The law in force, where laws are compared.
+    pub law: Option<&'static str>,
+    /// What can be said of the point.
+    pub verdict: Verdict,
+    /// One sentence that explains the verdict.
+    pub reason: Option<String>,
+    /// Output over input power.
+    pub efficiency: Option<f64>,
+    /// Power in, W.
+    pub input_power_w: f64,
+    /// All losses, W.
+    pub loss_w: f64,
+    /// Losses by kind.
+    pub losses_w: Losses,
+    /// Losses by source, largest first.
+    pub sources: Vec<LossSource>,
+    /// Mean coefficient of friction of each mesh.
+    pub friction: Named<Option<f64>>,
+    /// How losses and torques were brought into agreement.
+    pub convergence: Option<Convergence>,
+    /// Warnings of this point.
+    pub warnings: Vec<String>,
+}
+
+/// How far the laws of a family disagree at a point: the honest uncertainty of a prediction. Laws
+/// outside their range count only where fewer than two are inside; laws that reproduce a published
+/// error never count.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// Smallest loss, W, and the law that gives it.
+    pub least_w: (f64, &'static str),
+    /// Largest loss, W, and the law that gives it.
+    pub most_w: (f64, &'static str),
+    /// Laws that were used inside their ranges.
+    pub inside: usize,
+    /// Laws in all.
+    pub laws: usize,
+}
+
+/// Losses at the points asked for.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LossTable {
+    /// `willis-losses-1`.
+    pub format: &'static str,
+    /// Name of the train.
+    pub train: String,
+    /// The family whose laws are compared.
+    pub family: Option<String>,
+    /// The member whose speed stands in the table.
+    pub speed_of: Option<String>,
+    /// The member whose torque stands in the table.
+    pub torque_of: Option<String>,
+    /// The points, operation by operation, speed, load, temperature, law.
+    pub points: Vec<LossPoint>,
+    /// Where laws are compared: the spread over each group of points that differ in the law alone.
+    pub spreads: Vec<Spread>,
+}
+
+/// Evaluates losses.
+///
+/// # Errors
+/// An unknown operation or family, a train without operations, a speed or load to scale that is
+/// zero, a temperature without an oil, and what an operation prescribes wrongly.
+///
+/// # Example
+/// ```
+/// use willis::analysis::{losses, LossRequest};
+/// use willis::train::Train;
+///
+/// let train = Train::from_toml(r#"
+///     format = 1
+///     name = "one set"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [oil]
+///     name = "ISO VG 220"
+///     temperature = "70 degC"
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     planet = { teeth = 20, count = 4 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+///     geometry = { module = "2 mm", width = "25 mm", roughness = "0.4 um" }
+///     [[operation]]
+///     name = "full load"
+///     speeds = { s = "1000 rpm" }
+///     torques = { s = "200 N m" }
+/// "#)?;
+/// let table = losses(&train, &LossRequest { compare: Some("mesh_friction".into()), ..LossRequest::default() })?;
+/// assert!(table.points.len() > 5);
+/// assert!(table.spreads[0].most_w.0 > table.spreads[0].least_w.0);
+/// # Ok::<(), willis::diagnostic::Diagnostics>(())
+/// ```
+pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnostics> {
+    let mut wrong = Diagnostics::default();
+    let chosen: Vec<&Operation> = match &request.operation {
+        Some(name) => train.operations.iter().filter(|o| o.name == *name).collect(),
+        None => train.operations.iter().collect(),
+    };
+    let known = train.operations.iter().map(|o| o.name.as_str());
+    if let (Some(name), true) = (&request.operation, chosen.is_empty()) {
+        let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
+        wrong.push(d.suggest(name, known.clone()));
+    } else if chosen.is_empty() {
+        let d = Diagnostic::new(Code::UnknownSelection, "", "losses belong to an operating point, and there is none");
+        wrong.push(d.hint("add an [[operation]] with speeds and torques or powers"));
+    }
+    if let Some(family) = &request.compare
+        && !losses::FAMILIES.contains(&family.as_str())
+    {
+        let message = format!("there is no family of laws `{family}`");
+        let d = Diagnostic::new(Code::UnknownName, "", message).suggest(family, losses::FAMILIES.iter().copied());
+        wrong.push(d.hint(format!("the families are: {}", losses::FAMILIES.join(", "))));
+    }
+    if !request.temperatures.is_empty() && train.lubrication.is_none() {
+        let d = Diagnostic::new(Code::MissingKey, "oil", "a temperature is given, but the train has no oil");
+        wrong.push(d.hint("add [oil] with a name of the catalogue, or its viscosities"));
+    }
+    for t in request.temperatures.iter().filter(|t| !(200.0..=600.0).contains(*t)) {
+        let message = format!("an oil temperature of {:.1} °C is none that a gearbox has", t - 273.15);
+        wrong.push(Diagnostic::new(Code::OutOfRange, "", message).hint("from -73 to 327 °C is computed"));
+    }
+    if wrong.has_errors() {
+        return Err(wrong);
+    }
+    let laws: Vec<Option<Entry>> = match &request.compare {
+        Some(family) => losses::entries().into_iter().filter(|e| e.family == *family).map(Some).collect(),
+        None => vec![None],
+    };
+    let mut table = LossTable {
+        format: "willis-losses-1",
+        train: train.name.clone(),
+        family: request.compare.clone(),
+        speed_of: chosen[0].speeds.first().map(|s| train.member_name(s.0).to_owned()),
+        torque_of: chosen[0].loads.first().map(|l| train.member_name(l.0).to_owned()),
+        points: vec![],
+        spreads: vec![],
+    };
+    for operation in chosen {
+        for varied in variants(operation, request, &mut wrong) {
+            let from = table.points.len();
+            for law in &laws {
+                let mut own = train.clone();
+                if let (Some(law), Some(family)) = (law, &request.compare) {
+                    match own.with_law(family, law.id) {
+                        Ok(train) => own = train,
+                        // A law that needs what this train does not give is left out.
+                        Err(_) => continue,
+                    }
+                }
+                match point(&own, &varied, law.as_ref().map(|l| l.id)) {
+                    Ok(p) => table.points.push(p),
+                    Err(d) => wrong.extend(d),
+                }
+            }
+            if let Some(family) = &request.compare {
+                let compatibility =
+                    |id: &str| laws.iter().flatten().any(|e| e.id == id && e.tags.contains(&Tag::Compatibility));
+                table.spreads.extend(spread(&table.points[from..], family, compatibility));
+            }
+        }
+    }
+    if wrong.has_errors() { Err(wrong) } else { Ok(table) }
+}
+
+/// The operation at every combination of the values asked for.
+fn variants(operation: &Operation, request: &LossRequest, wrong: &mut Diagnostics) -> Vec<Operation> {
+    let mut all = vec![operation.clone()];
+    let mut fail = |what: &str| {
+        let message =
+            format!("operation `{}` prescribes no {what} other than zero that could be varied", operation.name);
+        wrong.push(Diagnostic::new(Code::Unfit, operation.place.as_str(), message));
+    };
+    if !request.speeds.is_empty() {
+        match operation.speeds.first().filter(|s| !s.1.value.is_zero()) {
+            None => fail("speed"),
+            Some((_, old)) => {
+                let scaled = |new: &Quantity| {
+                    let scale = |q: &Quantity| Quantity {
+                        value: &q.value * &new.value / &old.value,
+                        pi_power: q.pi_power + new.pi_power - old.pi_power,
+                        dimension: q.dimension,
+                    };
+                    let speeds = operation.speeds.iter().map(|(m, q)| (*m, scale(q))).collect();
+                    Operation { speeds, ..operation.clone() }
+                };
+                all = request.speeds.iter().map(scaled).collect();
+            }
+        }
+    }
+    for (values, torque) in [(&request.powers, false), (&request.torques, true)] {
+        if values.is_empty() {
+            continue;
+        }
+        let mut next = Vec::new();
+        for base in &all {
+            let first = base.loads.first().map(|(m, l)| (*m, quantity(l).clone()));
+            let Some((member, old)) = first.filter(|(_, q)| !q.value.is_zero() || base.loads.len() == 1) else {
+                fail("load");
+                return vec![];
+            };
+            for new in values {
+                let loads: Vec<(MemberId, Load)> = (base.loads.iter().enumerate())
+                    .map(|(k, (m, load))| {
+                        if k == 0 {
+                            let q = new.clone();
+                            return (member, if torque { Load::Torque(q) } else { Load::Power(q) });
+                        }
+                        // As the first changes; where its kind changes, the others stay.
+                        let same_kind = matches!(load, Load::Torque(_)) == torque && old.dimension == new.dimension;
+                        let q = quantity(load);
+                        let q = match same_kind {
+                            true => Quantity {
+                                value: &q.value * &new.value / &old.value,
+                                pi_power: q.pi_power + new.pi_power - old.pi_power,
+                                dimension: q.dimension,
+                            },
+                            false => q.clone(),
+                        };
+                        (*m, if matches!(load, Load::Torque(_)) { Load::Torque(q) } else { Load::Power(q) })
+                    })
+                    .collect();
+                next.push(Operation { loads, ..base.clone() });
+            }
+        }
+        all = next;
+    }
+    if !request.temperatures.is_empty() {
+        let at = |o: &Operation, t: f64| Operation { temperature: Some(t), ..o.clone() };
+        all = all.iter().flat_map(|o| request.temperatures.iter().map(|t| at(o, *t))).collect();
+    }
+    all
+}
+
+fn quantity(load: &Load) -> &Quantity {
+    match load {
+        Load::Torque(q) | Load::Power(q) => q,
+    }
+}
+
+fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Result<LossPoint, Diagnostics> {
+    let mut notes = Diagnostics::default();
+    let report = operation::report(train, operation, &mut notes)?;
+    let solution = report.solutions.first();
+    let speed = operation.speeds.first().map_or(0.0, |s| s.1.si());
+    let torque = operation.loads.first().and_then(|(m, load)| match load {
+        Load::Torque(q) => Some(q.si()),
+        Load::Power(p) => {
+            let speed = (report.speeds_rad_s.get(train.member_name(*m)).copied().flatten()).filter(|w| *w != 0.0);
+            speed.map(|w| p.si() / w)
+        }
+    });
+    let title = format!("operation `{}`: ", operation.name);
+    Ok(LossPoint {
+        operation: operation.name.clone(),
+        speed_rad_s: speed,
+        torque_n_m: torque,
+        temperature_k: train.lubrication.as_ref().map(|l| operation.temperature.unwrap_or(l.temperature)),
+        law,
+        verdict: report.verdict,
+        reason: report.reason.clone(),
+        efficiency: solution.and_then(|s| s.efficiency),
+        input_power_w: solution.map_or(0.0, |s| s.input_power_w),
+        loss_w: solution.map_or(0.0, |s| s.loss_w),
+        losses_w: solution.map_or(Losses::default(), |s| s.losses_w),
+        sources: solution.map(|s| s.sources.clone()).unwrap_or_default(),
+        friction: Named(
+            solution.map(|s| s.contacts.iter().map(|(n, c)| (n.clone(), c.friction)).collect()).unwrap_or_default(),
+        ),
+        convergence: solution.and_then(|s| s.convergence),
+        warnings: notes
+            .into_iter()
+            .filter(|d| d.severity == Severity::Warning)
+            .map(|d| d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned())
+            .collect(),
+    })
+}
+
+fn spread(points: &[LossPoint], family: &str, compatibility: impl Fn(&str) -> bool) -> Option<Spread> {
+    // Laws that reproduce errors are shown, and not counted.
+    let counts = |p: &&LossPoint| p.verdict == Verdict::Unique && p.law.is_some_and(|l| !compatibility(l));
+    let all: Vec<&LossPoint> = points.iter().filter(counts).collect();
+    let inside = |p: &&LossPoint| {
+        let own = format!("{family} = {} of ", p.law.unwrap_or_default());
+        !p.warnings.iter().any(|w| w.starts_with(&own))
+    };
+    let within: Vec<&LossPoint> = all.iter().copied().filter(inside).collect();
+    let counted = if within.len() > 1 { &within } else { &all };
+    let by_loss = |a: &&&LossPoint, b: &&&LossPoint| a.loss_w.total_cmp(&b.loss_w);
+    let least = counted.iter().min_by(by_loss)?;
+    let most = counted.iter().max_by(by_loss)?;
+    Some(Spread {
+        least_w: (least.loss_w, least.law?),
+        most_w: (most.loss_w, most.law?),
+        inside: within.len(),
+        laws: all.len(),
+    })
+}
