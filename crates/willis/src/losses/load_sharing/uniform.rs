@@ -25,7 +25,7 @@ use crate::losses::{Meta, Range, Trust};
 /// `[niemann_winter2003]`, mean losses of helical gears; derived.
 ///
 /// # Example
-/// ε_α = 1.6: 1/1.6 = 0.625 everywhere.
+/// By hand, ε_α = 1.6: 1/1.6 = 0.625 everywhere.
 /// ```
 /// # use willis::losses::load_sharing::{Law, ToothLoad, Uniform};
 /// let place = ToothLoad { position: 0.3, contact_ratio: 1.6, overlap_ratio: 1.0 };

@@ -40,7 +40,7 @@ use crate::real::abs;
 /// `[wimmer2006]`, local loss factor H_VL.
 ///
 /// # Example
-/// 17/22 spur, e = 0.7574, 0.7903, 50/50: the closed form gives 0.32760/2 · (0.7574² + 0.7903² +
+/// By hand, 17/22 spur, e = 0.7574, 0.7903, 50/50: the closed form gives 0.32760/2 · (0.7574² + 0.7903² +
 /// 0.2426² + 0.2097²) = 0.21312.
 /// ```
 /// # use willis::losses::loss_factor::{Integrated, Law, Path};
