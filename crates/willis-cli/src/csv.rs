@@ -15,6 +15,12 @@ pub enum Table {
     Meshes,
     /// One row an engaged shift element in each solution.
     ShiftElements,
+    /// One row a source of loss in each solution, where losses are computed.
+    Losses,
+    /// One row a tooth contact in each solution, where teeth are given.
+    Contacts,
+    /// One row a place with rolling bearings in each solution.
+    Bearings,
     /// Warnings and notes.
     Diagnostics,
 }
@@ -24,8 +30,11 @@ pub fn analysis(a: &Analysis, table: Option<Table>) -> String {
     if let Some(t) = table {
         return rows(a, t);
     }
+    // The tables of computed losses are there when there are any.
+    let physical = a.operations.iter().any(|o| o.solutions.iter().any(|s| s.convergence.is_some()));
     let all: Vec<String> = Table::value_variants()
         .iter()
+        .filter(|t| physical || !matches!(t, Table::Losses | Table::Contacts | Table::Bearings))
         .map(|t| format!("# {}\n{}", t.to_possible_value().expect("none is hidden").get_name(), rows(a, *t)))
         .collect();
     all.join("\n")
@@ -186,6 +195,93 @@ fn rows(a: &Analysis, table: Table) -> String {
                 }
             });
         }
+        Table::Losses => {
+            out.row(["operation", "state", "solution", "source", "kind", "law", "loss_w", "share"]);
+            each(a, |head, s| {
+                for x in &s.sources {
+                    let kind = word(&x.kind);
+                    let tail = [x.name.clone(), kind, x.law.to_owned(), number(Some(x.loss_w)), number(Some(x.share))];
+                    out.row(head.iter().cloned().chain(tail));
+                }
+            });
+        }
+        Table::Contacts => {
+            out.row([
+                "operation",
+                "state",
+                "solution",
+                "mesh",
+                "friction",
+                "loss_factor",
+                "contact_ratio",
+                "overlap_ratio",
+                "tangential_force_n",
+                "line_load_n_per_m",
+                "pitch_line_speed_m_s",
+                "sum_speed_m_s",
+                "sliding_speed_m_s",
+                "pitch_pressure_pa",
+                "pressure_pa",
+                "film_m",
+                "film_ratio",
+                "regime",
+                "sliding_loss_w",
+                "rolling_loss_w",
+            ]);
+            each(a, |head, s| {
+                for (name, c) in s.contacts.iter() {
+                    let mut row: Vec<String> = head.to_vec();
+                    row.extend([name.clone(), number(c.friction)]);
+                    for x in [
+                        c.loss_factor,
+                        c.contact_ratio,
+                        c.overlap_ratio,
+                        c.tangential_force_n,
+                        c.line_load_n_per_m,
+                        c.pitch_line_speed_m_s,
+                        c.sum_speed_m_s,
+                        c.sliding_speed_m_s,
+                        c.pitch_pressure_pa,
+                        c.pressure_pa,
+                    ] {
+                        row.push(number(Some(x)));
+                    }
+                    row.extend([number(c.film_m), number(c.film_ratio), c.regime.map_or(String::new(), |r| word(&r))]);
+                    row.extend([number(Some(c.sliding_loss_w)), number(Some(c.rolling_loss_w))]);
+                    out.row(row);
+                }
+            });
+        }
+        Table::Bearings => {
+            out.row([
+                "operation",
+                "state",
+                "solution",
+                "bearing",
+                "designation",
+                "member",
+                "other",
+                "number",
+                "speed_rad_s",
+                "radial_load_n",
+                "axial_load_n",
+                "torque_n_m",
+                "law",
+                "loss_w",
+            ]);
+            each(a, |head, s| {
+                for (name, b) in s.bearings.iter() {
+                    let [m, other] = b.members.clone();
+                    let mut row: Vec<String> = head.to_vec();
+                    row.extend([name.clone(), b.designation.clone(), m, other, b.bearings.to_string()]);
+                    for x in [b.speed_rad_s, b.radial_load_n, b.axial_load_n, b.torque_n_m] {
+                        row.push(number(Some(x)));
+                    }
+                    row.extend([b.law.to_owned(), number(Some(b.loss_w))]);
+                    out.row(row);
+                }
+            });
+        }
         Table::Diagnostics => {
             out.row(["code", "severity", "place", "message", "hints"]);
             for d in &a.diagnostics {
@@ -195,6 +291,11 @@ fn rows(a: &Analysis, table: Table) -> String {
         }
     }
     out.0
+}
+
+/// The word that the results contract uses.
+fn word(x: &impl serde::Serialize) -> String {
+    serde_json::to_value(x).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 fn each(a: &Analysis, mut f: impl FnMut(&[String], &SolutionReport)) {

@@ -303,7 +303,10 @@ fn documented(name: &str, text: &str) {
         assert!(part(k).lines().count() > 1, "{name}: {} is empty", sections[k]);
     }
     assert!(part(4).contains('['), "{name}: no key of the list of references");
-    assert!(part(5).to_lowercase().contains("by hand") && part(5).contains("assert_eq!"), "{name}: no number worked by hand");
+    assert!(
+        part(5).to_lowercase().contains("by hand") && part(5).contains("assert_eq!"),
+        "{name}: no number worked by hand"
+    );
 }
 
 /// Keys of the list of references.
