@@ -5,15 +5,16 @@
 //!
 //! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions and [`units`];
 //! 2. [`diagnostic`]: what is wrong, where, and what to do;
-//! 3. [`catalogue`] of oils and bearings, [`geometry`] of involute teeth, [`losses`]: laws;
-//! 3. [`train`]: what a gear train is, and the train file;
-//! 4. [`kinematics`]: exact speeds, what is locked, free or redundant;
-//! 5. [`statics`]: torques with losses, the certificate, the verdict;
-//! 6. [`power_flow`]: torque and power everywhere, recirculation;
-//! 7. [`compiled`]: a train made ready for many points;
-//! 8. [`analysis`]: the whole answer, as every front end shows it;
-//! 9. [`regimes`]: every way a train can run, with closed formulas;
-//! 10. [`figure`]: charts and diagrams as data.
+//! 3. [`catalogue`] of oils and bearings, [`geometry`] of involute teeth, [`losses`]: the laws;
+//! 4. [`train`]: what a gear train is, and the train file;
+//! 5. [`kinematics`]: exact speeds, what is locked, free or redundant;
+//! 6. [`statics`]: torques with losses, the certificate, the verdict;
+//! 7. [`power_flow`]: torque and power everywhere, recirculation;
+//! 8. [`compiled`]: a train made ready for many points;
+//! 9. [`operating_point`]: losses and torques in agreement;
+//! 10. [`analysis`]: the whole answer, as every front end shows it;
+//! 11. [`regimes`]: every way a train can run, with closed formulas;
+//! 12. [`figure`]: charts and diagrams as data.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
@@ -77,6 +78,8 @@ mod prose {
     struct TheTrainFile;
     #[doc = include_str!("../../../book/src/shift-tables.md")]
     struct ShiftTables;
+    #[doc = include_str!("../../../book/src/losses.md")]
+    struct WhereDoesEveryWattGo;
     #[doc = include_str!("../../../book/src/regimes.md")]
     struct EveryWayATrainCanRun;
     #[doc = include_str!("../../../book/src/power-split.md")]
