@@ -1,4 +1,5 @@
-//! A train compiled for many operating points: no allocation and no elimination per point.
+//! A train compiled for many operating points: no allocation per point and, with constant
+//! efficiencies, no elimination.
 //!
 //! For a fixed choice of what is prescribed (a [`Duty`]) every torque is linear in the prescribed
 //! torques, the prescribed speeds and the signs of the shaft speeds (Coulomb drag), once it is known
@@ -17,7 +18,7 @@
 //! Torques are then no longer linear, and each point is solved by Newton's method: torques balance to
 //! round-off, and the losses in them agree with their laws to 1e-10 of all mesh losses.
 //!
-//! The certificate carries over. A law is bounded ([`PowerLoss::most`]), so the slope of an element's
+//! The certificate carries over. A law has a ceiling ([`PowerLoss::most`]), so the slope of an element's
 //! output over its input lies between two numbers; if no system of equations with slopes between them is
 //! singular, every load has exactly one equilibrium. Without that certificate every pattern of drivers
 //! is solved at every point, which takes some hundred times as long.
@@ -377,10 +378,9 @@ impl<'t> Compiler<'t> {
         }
         let meshes: Vec<MeshId> = match (train.mesh(name), train.sets.iter().position(|s| s.name == name)) {
             (Some(mesh), _) => vec![mesh],
-            (None, set) => (0..train.meshes.len())
-                .map(MeshId)
-                .filter(|m| set.is_some() && train.meshes[m.0].set == set)
-                .collect(),
+            (None, set) => {
+                (0..train.meshes.len()).map(MeshId).filter(|m| set.is_some() && train.meshes[m.0].set == set).collect()
+            }
         };
         let Some(first) = meshes.first() else {
             let d = Diagnostic::new(Code::UnknownName, "duty", format!("there is no mesh or set `{name}`"));

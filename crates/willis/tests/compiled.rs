@@ -359,10 +359,7 @@ fn load_dependent_losses_are_the_fixed_point_of_constant_ones() {
             let (mut etas, mut known) = ([1.0; 4], [0.0; 15]);
             for _ in 0..30 {
                 let constant = eight_speed(etas).compile(&duty).unwrap();
-                assert_eq!(
-                    constant.evaluate(&[w], &[t], &mut constant.workspace(), &mut known),
-                    PointVerdict::Unique
-                );
+                assert_eq!(constant.evaluate(&[w], &[t], &mut constant.workspace(), &mut known), PointVerdict::Unique);
                 let v = relative_speeds(&known);
                 let next: [f64; 4] = std::array::from_fn(|s| 1.0 - by_law(&LAW, known[s], v[s]));
                 let settled = (0..4).all(|s| (next[s] - etas[s]).abs() < 1e-15);
@@ -373,7 +370,12 @@ fn load_dependent_losses_are_the_fixed_point_of_constant_ones() {
             }
             let drag: f64 = (0..8).map(|m| 0.2 * known[4 + m].abs() + 1e-3 * known[4 + m].powi(2)).sum();
             let loss = known[13] - drag;
-            assert!((out[13] - known[13]).abs() <= 1e-9 * loss + 1e-12 * (t * w).abs(), "{gear} {w} {t}: {} {}", out[13], known[13]);
+            assert!(
+                (out[13] - known[13]).abs() <= 1e-9 * loss + 1e-12 * (t * w).abs(),
+                "{gear} {w} {t}: {} {}",
+                out[13],
+                known[13]
+            );
             // Torques times speeds are powers.
             for s in [0, 1, 2, 3, 12] {
                 let error = (out[s] - known[s]).abs() * w.abs();

@@ -40,10 +40,10 @@ const ROUNDS: usize = 8;
 const MORE_ROUNDS: usize = 64;
 
 /// States of a point.
-const OPEN: u64 = 0;
-const SETTLED: u64 = 1;
+const OPEN: f64 = 0.0;
+const SETTLED: f64 = 1.0;
 /// Settled, with a loss at its ceiling.
-const FULL: u64 = 2;
+const FULL: f64 = 2.0;
 
 /// `λ = min(c · ((|T| + torque)/(|ω| + speed))^exponent, most)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -105,20 +105,26 @@ pub(super) struct Iterated {
     regular: Vec<[bool; 2]>,
 }
 
-/// Work arrays of a chunk.
+/// Work arrays of a chunk, one slot for each element: side by side in memory, or the compiler would
+/// have to prove too many arrays apart to vectorise.
 #[derive(Clone, Debug)]
-pub(super) struct Lanes {
-    free: Vec<[f64; CHUNK]>,
-    slide: Vec<[f64; CHUNK]>,
-    force: Vec<[f64; CHUNK]>,
-    lost: Vec<[f64; CHUNK]>,
-    state: [u64; CHUNK],
+pub(super) struct Lanes(Vec<Slot>);
+
+#[derive(Clone, Debug)]
+struct Slot {
+    free: [f64; CHUNK],
+    slide: [f64; CHUNK],
+    force: [f64; CHUNK],
+    lost: [f64; CHUNK],
+    /// Of the point; the first slot's counts.
+    state: [f64; CHUNK],
 }
 
 impl Lanes {
     pub fn new(iterated: Option<&Iterated>) -> Self {
-        let many = || vec![[0.0; CHUNK]; iterated.map_or(0, |i| i.size)];
-        Self { free: many(), slide: many(), force: many(), lost: many(), state: [OPEN; CHUNK] }
+        let zero = [0.0; CHUNK];
+        let slot = Slot { free: zero, slide: zero, force: zero, lost: zero, state: zero };
+        Self(vec![slot; iterated.map_or(0, |i| i.size)])
     }
 }
 
@@ -155,7 +161,8 @@ impl Iterated {
         let x = solve(&right);
         let x = &x + solve(&(&right - &matrix * &x));
 
-        let size = [1, 2, 3, 4, 6, 8, 12].into_iter().find(|s| *s >= m).expect("bounded by the limit on moving elements");
+        let size =
+            [1, 2, 3, 4, 6, 8, 12].into_iter().find(|s| *s >= m).expect("bounded by the limit on moving elements");
         let pad = |mut v: Vec<f64>, n: usize| {
             v.resize(n, 0.0);
             v
@@ -163,10 +170,8 @@ impl Iterated {
         let row = |j: &usize, range: Range<usize>| x.row(*j).columns_range(range).iter().copied().collect::<Vec<f64>>();
         let mut couple: Vec<_> = moving.iter().map(|j| pad(row(j, features..features + m), size)).collect();
         couple.resize(size, vec![0.0; size]);
-        let mut law: Vec<Law> = moving
-            .iter()
-            .map(|&j| p.columns[j].law.unwrap_or_else(|| Law::constant(p.columns[j].rho)))
-            .collect();
+        let mut law: Vec<Law> =
+            moving.iter().map(|&j| p.columns[j].law.unwrap_or_else(|| Law::constant(p.columns[j].rho))).collect();
         law.resize(size, Law::default());
         let share = law.iter().map(|l| {
             let most = if l.most.is_finite() { l.most } else { l.c[0].max(l.c[1]) };
@@ -267,23 +272,23 @@ impl Iterated {
         to: &mut Target<'_, '_>,
     ) -> usize {
         let n = range.len();
-        for j in 0..self.moving {
-            combine(arch, x, &self.free[j], &mut w.free[j][..n]);
-            combine(arch, &x[speeds.clone()], &self.slide[j], &mut w.slide[j][..n]);
-            w.force[j][..n].copy_from_slice(&w.free[j][..n]);
+        for (j, slot) in w.0.iter_mut().enumerate().take(self.moving) {
+            combine(arch, x, &self.free[j], &mut slot.free[..n]);
+            combine(arch, &x[speeds.clone()], &self.slide[j], &mut slot.slide[..n]);
+            slot.force[..n].copy_from_slice(&slot.free[..n]);
         }
-        w.state[..n].fill(OPEN);
+        w.0[0].state[..n].fill(OPEN);
         let odd = by_size!(self.size, self.settle(arch, n, w));
         for (o, row) in self.table.iter().enumerate() {
             let mut inputs: [&[f64]; MOST_TERMS] = [&[]; MOST_TERMS];
             let mut factors = [0.0; MOST_TERMS];
             for ((slot, factor), &(i, c)) in inputs.iter_mut().zip(&mut factors).zip(row) {
-                (*slot, *factor) = (if i < self.features { x[i] } else { &w.lost[i - self.features][..n] }, c);
+                (*slot, *factor) = (if i < self.features { x[i] } else { &w.0[i - self.features].lost[..n] }, c);
             }
             let out = to.slice(o, linear, range.clone());
             combine(arch, &inputs[..row.len()], &factors[..row.len()], out);
             if odd > 0 {
-                out.iter_mut().zip(&w.state).filter(|(_, s)| **s == OPEN).for_each(|(o, _)| *o = f64::NAN);
+                out.iter_mut().zip(&w.0[0].state).filter(|(_, s)| **s == OPEN).for_each(|(o, _)| *o = f64::NAN);
             }
         }
         odd
@@ -291,34 +296,30 @@ impl Iterated {
 
     /// Settles the points of a chunk; returns how many are not unique.
     fn settle<const K: usize>(&self, arch: pulp::Arch, n: usize, w: &mut Lanes) -> usize {
-        let Lanes { free, slide, force, lost, state } = w;
-        let fit = "as many arrays as elements";
-        let (free, slide): (&[_; K], &[_; K]) = (free[..].try_into().expect(fit), slide[..].try_into().expect(fit));
-        let (force, lost): (&mut [_; K], &mut [_; K]) =
-            ((&mut force[..]).try_into().expect(fit), (&mut lost[..]).try_into().expect(fit));
+        let slots: &mut [Slot; K] = (&mut w.0[..]).try_into().expect("as many slots as elements");
         let system = &self.system::<K>();
         let (mut open, mut odd, mut round) = (n, 0, 0);
         if self.certified {
             // A few points are cheaper one by one than in another pass over all.
-            while open > n / 64 && round < ROUNDS {
-                let state = &mut state[..n];
-                let (left, full) = arch.dispatch(Pass::<K> { system, free, slide, force, lost, state });
-                (open, odd, round) = (left as usize, full as usize, round + 1);
+            while open > n / 8 && round < ROUNDS {
+                let (left, full) = arch.dispatch(Pass::<K> { system, slots, n });
+                (open, odd, round) = (left, full, round + 1);
             }
         }
         if open == 0 {
             return odd;
         }
         for i in 0..n {
-            if state[i] != OPEN {
+            if slots[0].state[i] != OPEN {
                 continue;
             }
-            let at = |from: &[[f64; CHUNK]; K]| std::array::from_fn(|j| from[j][i]);
-            let (verdict, found) = self.finish(system, round, &at(free), &at(slide), at(force));
+            let [free, slide, force] = [0, 1, 2]
+                .map(|what| std::array::from_fn(|j| [&slots[j].free, &slots[j].slide, &slots[j].force][what][i]));
+            let (verdict, found) = self.finish(system, round, &free, &slide, force);
             odd += usize::from(verdict != PointVerdict::Unique);
             if let Some(found) = found {
-                state[i] = SETTLED;
-                (0..K).for_each(|j| lost[j][i] = found[j]);
+                slots[0].state[i] = SETTLED;
+                (0..K).for_each(|j| slots[j].lost[i] = found[j]);
             }
         }
         odd
@@ -403,6 +404,19 @@ struct Round<const K: usize> {
     full: bool,
 }
 
+/// A loop over elements that is certainly unrolled, as it must be to be vectorised over points.
+macro_rules! each {
+    ($count:ident, $j:ident, $body:block) => {
+        each!($count, $j, $body, 0 1 2 3 4 5 6 7 8 9 10 11)
+    };
+    ($count:ident, $j:ident, $body:block, $($at:literal)+) => {
+        $(if $at < $count {
+            let $j = $at;
+            $body
+        })+
+    };
+}
+
 impl<const K: usize> System<K> {
     /// One round of Newton's method from `force`. `forward` says from the power into end p whether p
     /// drives.
@@ -416,7 +430,7 @@ impl<const K: usize> System<K> {
     ) -> Round<K> {
         let (mut lost, mut slope, mut bound, mut per_size) = ([0.0; K], [0.0; K], [0.0; K], [0.0; K]);
         let (mut laws, mut full) = ([0.0; K], false);
-        for j in 0..K {
+        each!(K, j, {
             let (law, speed) = (&self.law[j], slide[j].abs());
             let torque = self.arm[j] * force[j].abs();
             let size = torque + law.torque;
@@ -437,7 +451,7 @@ impl<const K: usize> System<K> {
             slope[j] = part * (1.0 + exponent * (torque * per_size[j]) * m);
             bound[j] = REMAINDER * law.exponent * loss * (m * m) * size * speed;
             laws[j] = by_law;
-        }
+        });
         let mut matrix = self.couple;
         let mut right = *free;
         for i in 0..K {
@@ -446,7 +460,8 @@ impl<const K: usize> System<K> {
                 matrix[i][j] = if i == j { 1.0 } else { 0.0 } - matrix[i][j] * slope[j];
             }
         }
-        let sound = if EXCHANGE { eliminate_exchanging(&mut matrix, &mut right) } else { eliminate(&mut matrix, &mut right) };
+        let sound =
+            if EXCHANGE { eliminate_exchanging(&mut matrix, &mut right) } else { eliminate(&mut matrix, &mut right) };
         // How far what was taken as linear is from the laws, in power.
         let (mut error, mut all_lost, mut through, mut near) = (0.0, 0.0, 0.0, true);
         for j in 0..K {
@@ -469,7 +484,12 @@ impl<const K: usize> System<K> {
     }
 
     /// Rounds with row exchange until they settle.
-    fn newton(&self, free: &[f64; K], slide: &[f64; K], forward: impl Fn(usize, f64) -> bool + Copy) -> Option<Round<K>> {
+    fn newton(
+        &self,
+        free: &[f64; K],
+        slide: &[f64; K],
+        forward: impl Fn(usize, f64) -> bool + Copy,
+    ) -> Option<Round<K>> {
         let mut force = *free;
         for _ in 0..MORE_ROUNDS {
             let r = self.round::<true>(free, slide, &force, forward);
@@ -535,28 +555,28 @@ fn eliminate_exchanging<const K: usize>(m: &mut [[f64; K]; K], x: &mut [f64; K])
 }
 
 /// `x^p` for `0 ≤ p ≤ 1`, to a relative 1e-13 where 1e-100 < x < 1e100; `x` is taken between 1e-300
-/// and 1e300, NaN as the former. Polynomials by Chebyshev interpolation: `log₂ m = s P(s²)`, `s = (m − 1)/(m + 1)` for
-/// `√½ ≤ m < √2`; `2^r = 1 + r Q(r)` for `|r| ≤ ½`.
+/// and 1e300, NaN as the former. Polynomials by Chebyshev interpolation: `log₂ m = s P(s²)`,
+/// `s = (m − 1)/(m + 1)` for `√½ ≤ m < √2`; `2^r = 1 + r Q(r)` for `|r| ≤ ½`.
 #[inline(always)]
 fn power(x: f64, p: f64) -> f64 {
     const P: [f64; 6] = [
-        2.8853900817778506232,
-        0.96179669411226483479,
-        0.57707794266030446849,
-        0.41220922406110435187,
-        0.31990680380701337293,
-        0.28288502340748235534,
+        2.885390081777851,
+        0.9617966941122649,
+        0.5770779426603044,
+        0.41220922406110433,
+        0.31990680380701336,
+        0.28288502340748234,
     ];
     const Q: [f64; 9] = [
-        0.69314718055994530942,
-        0.2402265069581298821,
-        0.055504108664760423921,
-        0.0096181291594025581885,
-        0.0013333558179043111144,
-        0.00015403455852453839442,
-        0.00001525268684626771896,
-        1.3255224878668816975e-6,
-        1.020312106339172922e-7,
+        std::f64::consts::LN_2,
+        0.2402265069581299,
+        0.055504108664760424,
+        0.009618129159402558,
+        0.0013333558179043112,
+        0.00015403455852453838,
+        1.525268684626772e-5,
+        1.3255224878668817e-6,
+        1.0203121063391729e-7,
     ];
     /// Bits of 1 less those of √½.
     const SHIFT: u64 = 1.0_f64.to_bits() - std::f64::consts::FRAC_1_SQRT_2.to_bits();
@@ -588,36 +608,30 @@ fn power(x: f64, p: f64) -> f64 {
 lanes! {
     /// One round at every open point of a chunk; returns how many stay open, and how many have a law
     /// at its ceiling.
-    Pass<'a, const K> {
-        system: &'a System<K>,
-        free: &'a [[f64; CHUNK]; K],
-        slide: &'a [[f64; CHUNK]; K],
-        force: &'a mut [[f64; CHUNK]; K],
-        lost: &'a mut [[f64; CHUNK]; K],
-        state: &'a mut [u64],
-    } -> (u64, u64) {
+    Pass<'a, const K> { system: &'a System<K>, slots: &'a mut [Slot; K], n: usize } -> (usize, usize) {
         let system = *system;
-        let n = state.len().min(CHUNK);
-        let (mut open, mut full) = (0u64, 0u64);
+        let n = n.min(CHUNK);
+        let (mut open, mut full) = (0.0, 0.0);
+        let (mut a, mut v, mut f) = ([0.0; K], [0.0; K], [0.0; K]);
         for i in 0..n {
-            let (mut a, mut v, mut f) = ([0.0; K], [0.0; K], [0.0; K]);
             for j in 0..K {
-                (a[j], v[j], f[j]) = (free[j][i], slide[j][i], force[j][i]);
+                (a[j], v[j], f[j]) = (slots[j].free[i], slots[j].slide[i], slots[j].force[i]);
             }
             let r = system.round::<false>(&a, &v, &f, natural);
-            let was_open = state[i] == OPEN;
+            let was = slots[0].state[i];
             for j in 0..K {
-                force[j][i] = if was_open { r.force[j] } else { f[j] };
-                lost[j][i] = if was_open { r.lost[j] } else { lost[j][i] };
+                slots[j].force[i] = if was == OPEN { r.force[j] } else { f[j] };
+                slots[j].lost[i] = if was == OPEN { r.lost[j] } else { slots[j].lost[i] };
             }
             let found = if r.full { FULL } else { SETTLED };
             let now = if r.settled { found } else { OPEN };
-            let now = if was_open { now } else { state[i] };
-            state[i] = now;
-            open += u64::from(now == OPEN);
-            full += u64::from(now == FULL);
+            slots[0].state[i] = if was == OPEN { now } else { was };
         }
-        (open, full)
+        for state in &slots[0].state[..n] {
+            open += if *state == OPEN { 1.0 } else { 0.0 };
+            full += if *state == FULL { 1.0 } else { 0.0 };
+        }
+        (open as usize, full as usize)
     }
 }
 
