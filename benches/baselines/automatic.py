@@ -22,6 +22,11 @@ second), and as applied to the output from outside.
   numpy-one-point       as numpy-batched-solve, one point a call, from the description
                         of the gear to the torques
 
+Once more with losses that depend on load and speed (tasks automatic-load-gear-N): a set
+loses 0.02 ((|t| + 1)/(|w| + 1))^0.2 of its power, t its sun's torque in N m and w its sun's
+speed relative to the carrier in rad/s; numpy-batched-solve then repeats five solves, each
+with the losses of the one before.
+
 Checksums are plain sums over all points: the output torque, all eight torques, and each
 of the eight. The program fails if they differ.
 """
@@ -47,6 +52,7 @@ COULOMB, VISCOUS = 0.2, 1e-3
 RANGES = (80.0, 420.0), (-100.0, 450.0)
 BITS = 1 << np.arange(4)
 ONE_POINT_GEAR, ONE_POINTS = 3, 2000
+LOSS, EXPONENT, SOLVES = 0.02, 0.2, 5
 
 
 def closed(gear):
@@ -103,6 +109,20 @@ def solve(gear, w, relative, w_in, t_in, rounds=8):
         if np.array_equal(k, last):
             return x
     raise ArithmeticError("the directions of power do not settle")
+
+
+def solve_load(gear, w, relative, w_in, t_in):
+    """The same with losses that depend on load and speed."""
+    rhs = -COULOMB * np.sign(w) - VISCOUS * w_in[:, None] * w
+    rhs[:, INPUT] += t_in
+    v = relative * w_in[:, None]
+    k = np.broadcast_to(RHO, (w_in.size, 4))
+    for _ in range(SOLVES):
+        x = np.linalg.solve(balance(gear, k), rhs[..., None])[..., 0]
+        t = x[:, :4]
+        eta = 1 - LOSS * ((np.abs(t) + 1) / (np.abs(v) + 1)) ** EXPONENT
+        k = RHO * np.where(relative == 0, 1.0, np.where(t * v >= 0, eta, 1 / eta))
+    return x
 
 
 def patterns(gear, w, relative):
@@ -191,10 +211,10 @@ def main():
     x = inputs(args.points, *RANGES)
     out = np.empty((args.points, SHAFTS))
 
-    def measure(gear, peer, run, given, out):
+    def measure(gear, peer, run, given, out, task="automatic-gear"):
         out.fill(np.nan)
         seconds, _ = best(lambda: run(*given, out), args.runs)
-        entry = line(f"automatic-gear-{gear}", peer, len(out), seconds, sums(out))
+        entry = line(f"{task}-{gear}", peer, len(out), seconds, sums(out))
         show(entry, args.json)
         return entry
 
@@ -211,6 +231,10 @@ def main():
         check([measure(gear, peer, run, x, out) for peer, run in cases.items()])
         if gear == ONE_POINT_GEAR:
             few = out[:ONE_POINTS].copy()
+
+    for gear in GEARS:
+        run = partial(blocked, 2048, partial(solve_load, gear, *speeds(gear)))
+        measure(gear, "numpy-batched-solve", run, x, out, "automatic-load-gear")
 
     given = [column[:ONE_POINTS] for column in x]
     run = partial(one_by_one, ONE_POINT_GEAR)

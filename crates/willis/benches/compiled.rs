@@ -11,7 +11,7 @@ use std::path::Path;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use willis::analysis::{Selection, analyze};
-use willis::compiled::{CompiledTrain, Duty, Output, Points, ShaftDrag};
+use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
 use willis::train::{SetSpec, Train};
 
 fn points(default: usize) -> usize {
@@ -139,25 +139,30 @@ fn automatic(c: &mut Criterion) {
         for e in elements.chars() {
             duty = duty.output(Output::ShiftElementTorque(e.to_string()));
         }
-        let compiled = train.compile(&duty.output(Output::Torque("output".into()))).unwrap();
-        let mut work = compiled.workspace();
-        let mut out = vec![vec![0.5; n]; 8];
-        let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
-        let task = format!("automatic-gear-{gear}");
-        group.throughput(Throughput::Elements(n as u64));
-        group.bench_function(&task, |b| b.iter(|| compiled.evaluate_batch(&input, &mut work, &mut slices)));
-        let all: f64 = out.iter().map(|o| sum(o)).sum();
-        record(&task, &[("torque_out", sum(&out[7])), ("torque_all", all)], n);
-        if gear == "3" {
-            let mut one = [0.0; 8];
-            let mut i = 0;
-            group.throughput(Throughput::Elements(1));
-            group.bench_function("automatic-one-point", |b| {
-                b.iter(|| {
-                    i = (i + 1) % n;
-                    compiled.evaluate(&[w[i]], &[t[i]], &mut work, &mut one)
+        let duty = duty.output(Output::Torque("output".into()));
+        let law = PowerLoss { coefficient: 0.02, exponent: 0.2, torque: 1.0, speed: 1.0, ..PowerLoss::default() };
+        let by_load = (1..=4).fold(duty.clone(), |d, s| d.mesh_loss(&format!("P{s}"), law));
+        for (duty, name) in [(duty, "automatic"), (by_load, "automatic-load")] {
+            let compiled = train.compile(&duty).unwrap();
+            let mut work = compiled.workspace();
+            let mut out = vec![vec![0.5; n]; 8];
+            let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+            let task = format!("{name}-gear-{gear}");
+            group.throughput(Throughput::Elements(n as u64));
+            group.bench_function(&task, |b| b.iter(|| compiled.evaluate_batch(&input, &mut work, &mut slices)));
+            let all: f64 = out.iter().map(|o| sum(o)).sum();
+            record(&task, &[("torque_out", sum(&out[7])), ("torque_all", all)], n);
+            if gear == "3" {
+                let mut one = [0.0; 8];
+                let mut i = 0;
+                group.throughput(Throughput::Elements(1));
+                group.bench_function(format!("{name}-one-point"), |b| {
+                    b.iter(|| {
+                        i = (i + 1) % n;
+                        compiled.evaluate(&[w[i]], &[t[i]], &mut work, &mut one)
+                    });
                 });
-            });
+            }
         }
     }
     group.finish();

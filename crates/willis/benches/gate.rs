@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::Command;
 
 use willis::analysis::{Selection, analyze};
-use willis::compiled::{CompiledTrain, Duty, Output, Points, ShaftDrag};
+use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
 use willis::train::{SetSpec, Train};
 
 /// More than this above the recorded count fails.
@@ -21,9 +21,13 @@ type Task = (&'static str, usize, fn(usize));
 const TASKS: &[Task] = &[
     ("map-all", POINTS, map_all),
     ("map-efficiency", POINTS, map_efficiency),
-    ("automatic-gear-1", POINTS, |n| automatic("1", n)),
-    ("automatic-gear-5", POINTS, |n| automatic("5", n)),
-    ("automatic-one-point", POINTS, one_point),
+    ("automatic-gear-1", POINTS, |n| automatic("1", false, n)),
+    ("automatic-gear-5", POINTS, |n| automatic("5", false, n)),
+    ("automatic-one-point", POINTS, |n| one_point(false, n)),
+    ("automatic-load-gear-1", POINTS, |n| automatic("1", true, n)),
+    ("automatic-load-gear-3", POINTS, |n| automatic("3", true, n)),
+    ("automatic-load-gear-5", POINTS, |n| automatic("5", true, n)),
+    ("automatic-load-one-point", POINTS, |n| one_point(true, n)),
     ("eight-speed-text-to-answer", 1, cold),
 ];
 
@@ -73,26 +77,30 @@ fn map_efficiency(n: usize) {
     run(&power_split(&[Output::Efficiency]), &[&w0, &w1], &t, n);
 }
 
-fn eight_speed(gear: &str) -> CompiledTrain {
+fn eight_speed(gear: &str, by_load: bool) -> CompiledTrain {
     let train = Train::from_toml(include_str!("../../../examples/zf-8hp70.toml")).unwrap();
     let mut duty = Duty::new(["input"], ["input"]).state(gear).output(Output::Torque("output".into()));
     for m in ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"] {
         duty = duty.drag(m, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
     }
+    let law = PowerLoss { coefficient: 0.02, exponent: 0.2, torque: 1.0, speed: 1.0, ..PowerLoss::default() };
     for s in 1..=4 {
         duty = duty.output(Output::MeshTorque(format!("P{s}.sun-planet")));
+        if by_load {
+            duty = duty.mesh_loss(&format!("P{s}"), law);
+        }
     }
     train.compile(&duty).unwrap()
 }
 
-fn automatic(gear: &str, n: usize) {
+fn automatic(gear: &str, by_load: bool, n: usize) {
     let [w, t, _] = inputs([(80.0, 500.0), (-100.0, 350.0), (0.0, 1.0)]);
-    run(&eight_speed(gear), &[&w], &t, n);
+    run(&eight_speed(gear, by_load), &[&w], &t, n);
 }
 
-fn one_point(n: usize) {
+fn one_point(by_load: bool, n: usize) {
     let [w, t, _] = inputs([(80.0, 500.0), (-100.0, 350.0), (0.0, 1.0)]);
-    let compiled = eight_speed("3");
+    let compiled = eight_speed("3", by_load);
     let mut work = compiled.workspace();
     let mut out = vec![0.0; compiled.outputs()];
     for _ in 0..n {

@@ -1,4 +1,5 @@
-//! A train compiled for many operating points: no allocation and no elimination per point.
+//! A train compiled for many operating points: no allocation per point and, with constant
+//! efficiencies, no elimination.
 //!
 //! For a fixed choice of what is prescribed (a [`Duty`]) every torque is linear in the prescribed
 //! torques, the prescribed speeds and the signs of the shaft speeds (Coulomb drag), once it is known
@@ -10,14 +11,27 @@
 //! The answers are those of [`crate::analysis`]: an element exactly at rest transmits without
 //! loss, and where the train has no certificate of uniqueness every pattern is tried and the number
 //! of solutions reported.
+//!
+//! # Losses that depend on load and speed
+//!
+//! [`Duty::mesh_loss`] gives a mesh or a set a loss that is a power law of its own torque and speed.
+//! Torques are then no longer linear, and each point is solved by Newton's method: torques balance to
+//! round-off, and the losses in them agree with their laws to 1e-10 of all mesh losses.
+//!
+//! The certificate carries over. A law has a ceiling ([`PowerLoss::most`]), so the slope of an element's
+//! output over its input lies between two numbers; if no system of equations with slopes between them is
+//! singular, every load has exactly one equilibrium. Without that certificate every pattern of drivers
+//! is solved at every point, which takes some hundred times as long.
 
+#[macro_use]
 mod kernel;
+mod iterated;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
-use crate::kinematics::Configuration;
+use crate::kinematics::{Configuration, Element};
 use crate::power_flow;
-use crate::train::{MemberId, ShiftElementId, Train};
+use crate::train::{MemberId, MeshId, ShiftElementId, Train};
 
 use kernel::{CHUNK, Chunk, General, Single, Target};
 
@@ -33,6 +47,82 @@ pub struct ShaftDrag {
     pub coulomb: f64,
     /// Part that grows with speed, N m s.
     pub viscous: f64,
+}
+
+/// Loss of a mesh, or of a set as a whole, that depends on its load and speed:
+///
+/// `1 − η = min(coefficient · ((|T| + torque)/(|ω| + speed))^exponent, most)`
+///
+/// with `T` the torque on the first gear (all planets together), N m, and `ω` the speed of that gear
+/// relative to the carrier, rad/s. `1 − η` is the part of the power that enters, whichever gear
+/// drives. The coefficient is the loss at a torque of 1 N m and a speed of 1 rad/s. At rest relative
+/// to the carrier nothing is lost, as everywhere.
+///
+/// This is the form of mean coefficients of friction. With that of Schlenk (ISO/TR 14179-2), the loss
+/// factor `H_V` of the mesh and `1 − η = H_V μ`, the exponent is 0.2 and for one oil at one
+/// temperature
+///
+/// ```text
+/// coefficient = H_V · 0.048 · X_L · Ra^0.25 · η_oil^−0.05 · (n · r_b · b · 2 r_w · sin α_wt · ρ_redC)^−0.2
+/// ```
+///
+/// with `n` meshes in parallel, base and operating pitch radius of the first gear `r_b` and `r_w` in m,
+/// face width `b` and reduced radius of curvature `ρ_redC` in mm, roughness `Ra` in µm and viscosity
+/// `η_oil` in mPa s: line load `|T|/(n r_b b)`, sum speed `2 |ω| r_w sin α_wt`. `torque` and `speed`
+/// are 0 then; where the law is to stay bounded near standstill, or to keep a loss at no load, they are
+/// not. For meshes in a row that share torque and speed up to constant factors, coefficients
+/// add to first order; a law for each mesh is exact.
+///
+/// # Example
+/// ```
+/// use willis::compiled::{Duty, Output, PowerLoss};
+/// use willis::train::{SetSpec, Train};
+///
+/// let train = Train::builder("reducer")
+///     .members(["sun", "ring", "carrier"])
+///     .terminals(["sun", "carrier"])
+///     .set(SetSpec::simple("P1", ("sun", 30), ("ring", 70), "carrier"))
+///     .build()?;
+/// let law = PowerLoss { coefficient: 0.02, exponent: 0.2, ..PowerLoss::default() };
+/// let duty = Duty::new(["sun"], ["sun"]).fixed("ring").mesh_loss("P1", law).output(Output::Torque("carrier".into()));
+/// let compiled = train.compile(&duty)?;
+/// let mut out = [0.0];
+/// compiled.evaluate(&[100.0], &[50.0], &mut compiled.workspace(), &mut out);
+/// // The carrier takes 3/10 of the sun's speed; relative to it the sun turns at 70 rad/s.
+/// let eta = 1.0 - 0.02 * (50.0_f64 / 70.0).powf(0.2);
+/// assert!((out[0] + 50.0 * (1.0 + 7.0 / 3.0 * eta)).abs() < 1e-10);
+/// # Ok::<(), willis::diagnostic::Diagnostics>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerLoss {
+    /// Loss where both brackets are equal in number, at least 0.
+    pub coefficient: f64,
+    /// At least 0, less than 1; 0 makes a constant loss.
+    pub exponent: f64,
+    /// Added to the torque, N m, at least 0.
+    pub torque: f64,
+    /// Added to the speed, rad/s, at least 0.
+    pub speed: f64,
+    /// Ceiling of the loss, above 0 and at most one half: beyond it the law is not claimed, and a point
+    /// that reaches it says so ([`PointVerdict::OutOfRange`]). The lower, the more trains have a
+    /// certificate. One tenth by default, several times what good gears lose.
+    pub most: f64,
+}
+
+impl Default for PowerLoss {
+    fn default() -> Self {
+        Self { coefficient: 0.0, exponent: 0.0, torque: 0.0, speed: 0.0, most: 0.1 }
+    }
+}
+
+impl PowerLoss {
+    fn is_sound(&self) -> bool {
+        let Self { coefficient, exponent, torque, speed, most } = *self;
+        [coefficient, torque, speed].iter().all(|x| x.is_finite() && *x >= 0.0)
+            && (0.0..1.0).contains(&exponent)
+            && most > 0.0
+            && most <= 0.5
+    }
 }
 
 /// A result to compute for every point.
@@ -64,6 +154,7 @@ pub struct Duty {
     speeds: Vec<String>,
     torques: Vec<String>,
     drag: Vec<(String, ShaftDrag)>,
+    losses: Vec<(String, PowerLoss)>,
     outputs: Vec<Output>,
 }
 
@@ -99,6 +190,14 @@ impl Duty {
         self
     }
 
+    /// Gives a mesh, or a set whose planets touch nothing else, a loss that depends on its load and
+    /// speed, in place of its efficiencies.
+    #[must_use]
+    pub fn mesh_loss(mut self, mesh_or_set: &str, law: PowerLoss) -> Self {
+        self.losses.push((mesh_or_set.into(), law));
+        self
+    }
+
     /// Asks for a result; results come in the order asked for.
     #[must_use]
     pub fn output(mut self, output: Output) -> Self {
@@ -117,6 +216,14 @@ pub enum PointVerdict {
     Multiple,
     /// None: friction locks the train for this load. The outputs are NaN.
     Locked,
+    /// One, with a loss at the ceiling of its law: outside the range for which the law is given.
+    OutOfRange,
+    /// At least one, whose outputs these are; whether losses that depend on load allow more is not
+    /// decided.
+    Undecided,
+    /// The iteration for losses that depend on load found none, nor that there is none. The outputs
+    /// are NaN.
+    NotConverged,
 }
 
 /// A train ready to be evaluated at many points.
@@ -193,6 +300,8 @@ struct Compiler<'t> {
     speeds: Vec<MemberId>,
     torques: Vec<MemberId>,
     drag: Vec<(MemberId, ShaftDrag)>,
+    /// By element.
+    laws: Vec<Option<iterated::Law>>,
     outputs: Vec<Output>,
 }
 
@@ -245,10 +354,65 @@ impl<'t> Compiler<'t> {
         if wrong.has_errors() {
             return Err(wrong);
         }
-        let keep: Vec<MemberId> = speeds.iter().chain(&dragged).copied().collect();
+        // A mesh with a law of its own is no part of a chain.
+        let alone = duty.losses.iter().filter_map(|(name, _)| train.mesh(name));
+        let alone = alone.flat_map(|m| train.meshes[m.0].gears.iter().map(|g| g.member));
+        let keep: Vec<MemberId> = speeds.iter().chain(&dragged).copied().chain(alone).collect();
         let c = Configuration::new(train, engaged, &fixed, &keep);
         let drag = dragged.into_iter().zip(duty.drag.iter().map(|d| d.1)).collect();
-        Ok(Self { train, c, speeds, torques, drag, outputs: duty.outputs.clone() })
+        let laws = vec![None; c.elements.len()];
+        let mut compiler = Self { train, c, speeds, torques, drag, laws, outputs: duty.outputs.clone() };
+        duty.losses.iter().try_for_each(|(name, law)| compiler.law(name, law))?;
+        Ok(compiler)
+    }
+
+    /// Puts a law on the element that a name stands for.
+    fn law(&mut self, name: &str, law: &PowerLoss) -> Result<(), Diagnostics> {
+        let train = self.train;
+        if !law.is_sound() {
+            return Err(fail(
+                Code::OutOfRange,
+                format!("the loss of `{name}` is no law: {law:?}"),
+                "exponents are from 0 to below 1, ceilings up to 0.5, nothing is negative",
+            ));
+        }
+        let meshes: Vec<MeshId> = match (train.mesh(name), train.sets.iter().position(|s| s.name == name)) {
+            (Some(mesh), _) => vec![mesh],
+            (None, set) => {
+                (0..train.meshes.len()).map(MeshId).filter(|m| set.is_some() && train.meshes[m.0].set == set).collect()
+            }
+        };
+        let Some(first) = meshes.first() else {
+            let d = Diagnostic::new(Code::UnknownName, "duty", format!("there is no mesh or set `{name}`"));
+            let known = train.meshes.iter().map(|m| m.name.as_str()).chain(train.sets.iter().map(|s| s.name.as_str()));
+            let mut all = Diagnostics::default();
+            all.push(d.suggest(name, known));
+            return Err(all);
+        };
+        let whole = |e: &Element| e.links.len() == meshes.len() && e.links.iter().all(|l| meshes.contains(&l.mesh));
+        let Some(at) = self.c.elements.iter().position(whole) else {
+            return Err(fail(
+                Code::Unfit,
+                format!("the meshes of `{name}` do not share one power"),
+                "give each mesh its own loss",
+            ));
+        };
+        if self.laws[at].is_some() {
+            return Err(fail(Code::DuplicateName, format!("`{name}` has two losses"), "leave one of them out"));
+        }
+        let element = &mut self.c.elements[at];
+        // End p is the first gear, whose torque and speed the law takes.
+        if (element.links[0].mesh, element.links[0].along) != (*first, true) {
+            *element = element.clone().reversed();
+        }
+        let PowerLoss { coefficient, exponent, torque, speed, most } = *law;
+        let own = iterated::Law { c: [coefficient; 2], exponent, torque, speed, most };
+        // The statics certifies slopes in place of efficiencies.
+        let slopes = if coefficient > 0.0 { own.slopes() } else { [1.0; 2] };
+        let exactly = |x: f64| Rational::from_f64(x).expect("bounded by the checks of the law");
+        (element.forward, element.backward) = (exactly(slopes[0]), exactly(slopes[1]).recip());
+        self.laws[at] = (coefficient > 0.0).then_some(own);
+        Ok(())
     }
 
     fn compile(self) -> Result<CompiledTrain, Diagnostics> {
@@ -416,7 +580,7 @@ impl<'t> Compiler<'t> {
                 kernel::Terminal { torque, speed: row }
             })
             .collect();
-        let general = General::new(kernel::Parts {
+        let parts = kernel::Parts {
             speeds: d,
             torques: l,
             signs: coulomb.into_iter().map(|s| s.0).collect(),
@@ -427,6 +591,8 @@ impl<'t> Compiler<'t> {
                     rho: col.rho,
                     relative: relative[col.element].clone().unwrap_or_else(|| vec![0.0; d]),
                     entries: col.entries.clone(),
+                    arm: c.elements[col.element].a.to_f64().abs(),
+                    law: self.laws[col.element],
                 })
                 .collect(),
             right,
@@ -436,7 +602,8 @@ impl<'t> Compiler<'t> {
             terminals,
             linear: linear.len(),
             certified: equilibrium.certificate().unique_for_every_load(),
-        });
+        };
+        let general = General::new(parts, &|bounds| equilibrium.regular_between(bounds));
         let single = self.single(&general, &open, &drag_of, &columns);
         let column_of = (0..general.linear()).map(|o| columns.iter().position(|c| *c == Column::Linear(o))).collect();
         Ok(CompiledTrain {
@@ -458,6 +625,9 @@ impl<'t> Compiler<'t> {
         drag: &[(MemberId, usize, f64, Vec<f64>, ShaftDrag)],
         columns: &[Column],
     ) -> Option<Single> {
+        if self.laws.iter().any(Option::is_some) {
+            return None;
+        }
         let [loaded] = self.torques[..] else { return None };
         let [first, second] = self.speeds[..] else { return None };
         let node = |m: MemberId| self.c.node(m);

@@ -51,7 +51,7 @@ impl Element {
         }
     }
 
-    fn reversed(mut self) -> Self {
+    pub(crate) fn reversed(mut self) -> Self {
         std::mem::swap(&mut self.p, &mut self.q);
         std::mem::swap(&mut self.a, &mut self.b);
         std::mem::swap(&mut self.forward, &mut self.backward);

@@ -571,6 +571,14 @@ pub(crate) struct SystemColumn {
 }
 
 impl Equilibrium {
+    /// Whether no system with each column's ρ between its bounds is singular, as far as one bound
+    /// on the spectral radius shows.
+    pub(crate) fn regular_between(&self, bounds: &[[f64; 2]]) -> bool {
+        let (centre, radius): (Vec<f64>, Vec<f64>) =
+            bounds.iter().map(|[lo, hi]| ((lo + hi) / 2.0, (hi - lo) / 2.0 * (1.0 + 1e-12))).unzip();
+        self.regular(&centre, &radius)
+    }
+
     pub(crate) fn system(&self) -> System {
         let columns = self
             .columns

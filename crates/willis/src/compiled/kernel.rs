@@ -6,6 +6,7 @@
 
 use std::ops::Range;
 
+use super::iterated::{Iterated, Lanes, Law};
 use super::{PointVerdict, Points, ShaftDrag};
 
 /// Points per chunk: every array of a chunk stays in the first-level cache.
@@ -44,6 +45,10 @@ pub(super) struct Element {
     /// Relative speed of end p over the prescribed speeds, with the sign of its coefficient.
     pub relative: Vec<f64>,
     pub entries: Vec<(usize, f64, f64)>,
+    /// Torque on end p per force.
+    pub arm: f64,
+    /// A loss that depends on load and speed; `rho` are then the bounds of its slopes.
+    pub law: Option<Law>,
 }
 
 /// What the compiler hands over.
@@ -79,6 +84,8 @@ pub(super) struct General {
     forces: Vec<Option<Vec<Vec<f64>>>>,
     /// By pattern: linear outputs over the features.
     table: Vec<Vec<Vec<f64>>>,
+    /// Instead of the patterns, when losses depend on load.
+    iterated: Option<Iterated>,
 }
 
 /// Work arrays of a chunk.
@@ -89,6 +96,7 @@ pub(super) struct Chunk {
     pub loss: [f64; CHUNK],
     pub efficiency: [f64; CHUNK],
     signs: Vec<[f64; CHUNK]>,
+    lanes: Lanes,
     sigma: Vec<[f64; CHUNK]>,
     worst: [f64; CHUNK],
     which: [u64; CHUNK],
@@ -100,13 +108,14 @@ pub(super) struct Chunk {
 impl Chunk {
     pub fn new(g: &General) -> Self {
         let many = |n: usize| vec![[0.0; CHUNK]; n];
-        let last = g.forces.len() - 1;
+        let last = g.forces.len().saturating_sub(1);
         Self {
             speeds: many(g.p.speed_rows.len()),
             linear: many(g.p.linear),
             loss: [0.0; CHUNK],
             efficiency: [0.0; CHUNK],
             signs: many(g.p.signs.len()),
+            lanes: Lanes::new(g.iterated.as_ref()),
             sigma: many(g.moving.len()),
             worst: [0.0; CHUNK],
             which: [0; CHUNK],
@@ -117,7 +126,7 @@ impl Chunk {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |s, (a, b)| s + a * b)
 }
 
@@ -132,7 +141,9 @@ fn sign(x: f64) -> f64 {
 }
 
 impl General {
-    pub fn new(p: Parts) -> Self {
+    /// `regular`: whether a pattern (driver of each column) holds no singular system. Asked only
+    /// where losses depend on load and there is no certificate.
+    pub fn new(p: Parts, regular: &dyn Fn(&[[f64; 2]]) -> bool) -> Self {
         let k = p.columns.len();
         assert!(k <= MOST_ELEMENTS && p.linear <= MOST_LINEAR, "bounded by the limits of a train");
         let features = p.torques + p.speeds + p.signs.len();
@@ -145,7 +156,11 @@ impl General {
             used.next().filter(|_| used.next().is_none()).map(|i| (i, relative[i]))
         });
         let axis = axis.collect();
-        let mut g = Self { features, moving, axis, forces: vec![], table: vec![], p };
+        let mut g = Self { features, moving, axis, forces: vec![], table: vec![], iterated: None, p };
+        if g.p.columns.iter().any(|c| c.law.is_some()) {
+            g.iterated = Some(Iterated::new(&g.p, &g.moving, features, regular));
+            return g;
+        }
         for pattern in 0..1usize << g.moving.len() {
             let rho: Vec<f64> = (0..k).map(|j| g.rho(j, pattern)).collect();
             let matrix = nalgebra::DMatrix::from_fn(k, k, |r, j| {
@@ -227,6 +242,9 @@ impl General {
         let sigma = &mut sigma[..self.moving.len()];
         for (s, &j) in sigma.iter_mut().zip(&self.moving) {
             *s = dot(&self.p.columns[j].relative, speeds);
+        }
+        if let Some(iterated) = &self.iterated {
+            return iterated.point(x, sigma, out);
         }
         if sigma.contains(&0.0) {
             return self.at_rest(x, sigma, out);
@@ -380,18 +398,55 @@ impl General {
         for (slot, s) in inputs.iter_mut().zip(points.torques.iter().chain(points.speeds)) {
             *slot = &s[range.clone()];
         }
-        for (out, row) in w.signs.iter_mut().zip(&self.p.signs) {
+        // Out of `w` while the features point into it.
+        let mut signs = std::mem::take(&mut w.signs);
+        for (out, row) in signs.iter_mut().zip(&self.p.signs) {
             combine(arch, &inputs[l..l + d], row, &mut out[..n]);
             arch.dispatch(Signs { x: &mut out[..n] });
         }
         for (out, row) in w.speeds.iter_mut().zip(&self.p.speed_rows) {
             combine(arch, &inputs[l..l + d], row, &mut out[..n]);
         }
-        for (slot, s) in inputs[l + d..].iter_mut().zip(&w.signs) {
+        for (slot, s) in inputs[l + d..].iter_mut().zip(&signs) {
             *slot = &s[..n];
         }
         let x = &inputs[..self.features];
+        let odd = match &self.iterated {
+            Some(iterated) => iterated.chunk(arch, x, l..l + d, range.clone(), &mut w.lanes, &mut w.linear, &mut to),
+            None => self.patterns(arch, x, range.clone(), w, hint, &mut to),
+        };
+        if to.powers {
+            w.loss[..n].fill(0.0);
+            w.power_in[..n].fill(0.0);
+            for t in &self.p.terminals {
+                combine(arch, &x[l..l + d], &t.speed, &mut w.speed[..n]);
+                let torque: &[f64] = match t.torque {
+                    TorqueFrom::Input(i) => x[i],
+                    TorqueFrom::Linear(i) => to.slice(i, &mut w.linear, range.clone()),
+                };
+                let speed = &w.speed[..n];
+                arch.dispatch(AddPower { torque, speed, loss: &mut w.loss[..n], power_in: &mut w.power_in[..n] });
+            }
+            let (loss, power_in) = (&w.loss[..n], &w.power_in[..n]);
+            arch.dispatch(Efficiency { loss, power_in, out: &mut w.efficiency[..n] });
+        }
+        w.signs = signs;
+        odd
+    }
 
+    /// Linear outputs of a chunk with constant efficiencies: which pattern holds where, then its
+    /// rows. `x` are the features; returns how many points are not unique.
+    fn patterns(
+        &self,
+        arch: pulp::Arch,
+        x: &[&[f64]],
+        range: Range<usize>,
+        w: &mut Chunk,
+        hint: &mut usize,
+        to: &mut Target<'_, '_>,
+    ) -> usize {
+        let n = range.len();
+        let (l, d) = (self.p.torques, self.p.speeds);
         // Relative speeds. Those that follow one prescribed speed need no array of their own.
         w.which[..n].fill(NONE);
         let mut rested = [false; super::MOST_FEATURES];
@@ -508,22 +563,6 @@ impl General {
         if searched > n / 16 && !w.recent.contains(hint) {
             w.recent[RECENT - 1] = *hint;
         }
-
-        if to.powers {
-            w.loss[..n].fill(0.0);
-            w.power_in[..n].fill(0.0);
-            for t in &self.p.terminals {
-                combine(arch, &x[l..l + d], &t.speed, &mut w.speed[..n]);
-                let torque: &[f64] = match t.torque {
-                    TorqueFrom::Input(i) => x[i],
-                    TorqueFrom::Linear(i) => to.slice(i, &mut w.linear, range.clone()),
-                };
-                let speed = &w.speed[..n];
-                arch.dispatch(AddPower { torque, speed, loss: &mut w.loss[..n], power_in: &mut w.power_in[..n] });
-            }
-            let (loss, power_in) = (&w.loss[..n], &w.power_in[..n]);
-            arch.dispatch(Efficiency { loss, power_in, out: &mut w.efficiency[..n] });
-        }
         odd
     }
 }
@@ -543,7 +582,7 @@ pub(super) struct Target<'o, 'a> {
 
 impl Target<'_, '_> {
     /// The slice for linear output `o`: the caller's where it asked for it, else the chunk's own.
-    fn slice<'s>(&'s mut self, o: usize, own: &'s mut [[f64; CHUNK]], range: Range<usize>) -> &'s mut [f64] {
+    pub fn slice<'s>(&'s mut self, o: usize, own: &'s mut [[f64; CHUNK]], range: Range<usize>) -> &'s mut [f64] {
         match self.column[o] {
             Some(k) if !self.out.is_empty() => &mut self.out[k][range],
             _ => &mut own[o][..range.len()],
@@ -753,7 +792,7 @@ lanes! {
 }
 
 /// `out = Σ row_k x_k`.
-fn combine(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
+pub(super) fn combine(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
     fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
         let n = out.len();
         match (<[&[f64]; F]>::try_from(x), <[f64; F]>::try_from(row)) {
