@@ -5,7 +5,7 @@ use num_dual::DualNum;
 /// Numbers in which loss laws are written, so that every law also gives its derivatives.
 ///
 /// Implemented for `f64` and for the dual numbers of the crate `num-dual`. Decisions are taken on
-/// the value, [`DualNum::re`].
+/// the value, [`re`](num_dual::DualStruct::re).
 ///
 /// # Example
 /// ```

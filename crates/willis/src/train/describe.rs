@@ -186,6 +186,8 @@ pub(crate) struct PlanetSpec {
 
 /// The parts of a set, by type.
 #[derive(Clone, Debug)]
+// A description lives for the length of a call; its size does not matter.
+#[allow(clippy::large_enum_variant)]
 pub(crate) enum Parts {
     Simple {
         sun: GearSpec,

@@ -127,16 +127,15 @@ impl Assembler<'_> {
                 self.report(*d);
             }
         }
-        if let Some(mu) = friction_coefficient {
-            if self.positive(mu, true, "a coefficient of friction", "", "laws.friction_coefficient") {
-                if mu > 0.5 {
-                    let message = format!("a coefficient of friction of {mu}: oiled teeth have 0.005 to 0.15");
-                    self.report(Diagnostic::new(Code::OutOfRange, "laws.friction_coefficient", message));
-                } else {
-                    self.friction_coefficient = mu;
-                    self.laws.friction_coefficient = Some(mu);
-                }
-            }
+        const PLACE: &str = "laws.friction_coefficient";
+        let Some(mu) = friction_coefficient else { return };
+        if self.positive(mu, true, "a coefficient of friction", "", PLACE) {
+            self.friction_coefficient = mu;
+            self.laws.friction_coefficient = Some(mu);
+        }
+        if mu > 0.5 && mu.is_finite() {
+            let message = format!("a coefficient of friction of {mu}: oiled teeth have 0.005 to 0.15");
+            self.report(Diagnostic::new(Code::OutOfRange, PLACE, message));
         }
     }
 
