@@ -33,8 +33,7 @@ pub fn of_solution(s: &SolutionReport) -> String {
         if let Some(c) = &s.convergence {
             let text = match c.converged {
                 true => format!(
-                    "losses and torques agree to {:.0e} of the loss after {} (contraction {})",
-                    c.error.max(1e-16),
+                    "losses and torques agree within 10⁻⁹ of the loss: {}, each error {} of the last",
                     crate::text::plural(c.rounds, "round", "rounds"),
                     significant(c.contraction, 2)
                 ),

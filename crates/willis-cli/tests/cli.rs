@@ -156,8 +156,111 @@ fn regress_no_round_off_but_the_residual() {
 }
 
 #[test]
+fn regress_analyze_with_losses() {
+    let args = ["analyze", "examples/fva-planetary-stage.toml", "--operation", "rated"];
+    snapshot!(mask(&answered(&args)));
+}
+
+#[test]
+fn regress_losses_over_speed_and_temperature() {
+    let shown = answered(&[
+        "losses",
+        "examples/fva-planetary-stage.toml",
+        "--operation",
+        "rated",
+        "--speeds",
+        "500rpm,3000rpm",
+        "--temperature",
+        "40degC,90degC",
+    ]);
+    snapshot!(shown);
+}
+
+#[test]
+fn regress_losses_law_beside_law() {
+    let file = "examples/fva-planetary-stage.toml";
+    snapshot!(answered(&["losses", file, "--operation", "rated", "--compare", "mesh_friction"]));
+}
+
+/// Answers of a command in JSON.
+fn parsed(arguments: &[&str]) -> Value {
+    serde_json::from_str(&answered(arguments)).expect("JSON")
+}
+
+/// Standard error of a command that is refused.
+fn wrong(arguments: &[&str]) -> String {
+    refused(&run(arguments), 1)
+}
+
+#[test]
+fn a_point_of_the_loss_table_equals_the_analysis_bit_for_bit() {
+    let file = "examples/fva-planetary-stage.toml";
+    let table = parsed(&["losses", file, "--operation", "rated", "--speeds", "1500rpm", "--format", "json"]);
+    let analysis = parsed(&["analyze", file, "--operation", "rated", "--format", "json"]);
+    let point = &table["points"][0];
+    let solution = &analysis["operations"][0]["solutions"][0];
+    for key in ["efficiency", "loss_w", "losses_w", "sources"] {
+        assert_eq!(point[key], solution[key], "{key}");
+    }
+}
+
+#[test]
+fn a_law_is_chosen_by_name() {
+    let file = "examples/fva-planetary-stage.toml";
+    let of = |law: &str| {
+        let law = format!("mesh_friction={law}");
+        let all = parsed(&["analyze", file, "--operation", "rated", "--law", &law, "--format", "json"]);
+        all["operations"][0]["solutions"][0]["sources"][0]["law"].as_str().expect("a law").to_owned()
+    };
+    for law in ["schlenk", "niemann", "xu-kahraman"] {
+        assert_eq!(of(law), law);
+    }
+    let told = wrong(&["analyze", file, "--law", "mesh_friction=schlenck"]);
+    assert!(told.contains("did you mean `schlenk`?"), "{told}");
+    let told = wrong(&["analyze", file, "--law", "mesh_fricton=schlenk"]);
+    assert!(told.contains("did you mean `mesh_friction`?"), "{told}");
+    assert!(wrong(&["analyze", file, "--law", "schlenk"]).contains("family=law"));
+}
+
+#[test]
+fn losses_refuse_what_makes_no_question() {
+    let file = "examples/fva-planetary-stage.toml";
+    for (args, said) in [
+        (vec!["--operation", "ratd"], "did you mean `rated`?"),
+        (vec!["--speeds", "1500"], "unit is missing"),
+        (vec!["--speeds", "10 N m"], "measures something else"),
+        (vec!["--temperature", "9000 degC"], "none that a gearbox has"),
+        (vec!["--compare", "mesh_frictions"], "did you mean `mesh_friction`?"),
+    ] {
+        let told = wrong(&[&["losses", file][..], &args].concat());
+        assert!(told.contains(said), "{args:?}: {told}");
+    }
+    let none = wrong(&["losses", "examples/ford-aod.toml"]);
+    assert!(none.contains("there is none"), "{none}");
+    let dry = wrong(&["losses", "examples/zf-8hp70.toml", "--temperature", "60degC"]);
+    assert!(dry.contains("no oil"), "{dry}");
+}
+
+#[test]
+fn every_law_and_every_oil_is_listed() {
+    let all = answered(&["laws"]);
+    for name in ["schlenk (default)", "benedict-kelley", "skf (default)", "changenet-2011", "confirm:"] {
+        assert!(all.contains(name), "{name}");
+    }
+    let one = answered(&["laws", "--family", "seal"]);
+    assert!(one.contains("simrit") && !one.contains("schlenk"));
+    assert!(wrong(&["laws", "--family", "seals"]).contains("the families are"));
+    let listed = parsed(&["laws", "--format", "json"]);
+    assert_eq!(listed["format"], "willis-laws-1");
+    assert!(listed["laws"].as_array().expect("a list").len() > 40);
+    assert!(answered(&["laws", "--oils"]).contains("ISO VG 220"));
+    assert!(answered(&["laws", "--bearings"]).contains("NU 1022"));
+    assert!(answered(&["laws", "--format", "csv"]).starts_with("family,law,"));
+}
+
+#[test]
 fn regress_no_blanks_at_line_ends() {
-    for file in ["prius-p112", "zf-8hp70", "two-efficiencies"] {
+    for file in ["prius-p112", "zf-8hp70", "two-efficiencies", "fva-planetary-stage"] {
         let shown = answered(&["analyze", &format!("examples/{file}.toml")]);
         let trailing = shown.lines().find(|l| l.ends_with([' ', '\t']));
         assert_eq!(trailing, None, "blanks at the end of a line");
