@@ -18,7 +18,8 @@ pub fn of_solution(s: &SolutionReport) -> String {
         let mut t = table();
         set_header(&mut t, &["loss", "kind", "law", "W", "share", ""]);
         let most = s.sources.iter().fold(0.0f64, |a, x| a.max(x.loss_w));
-        for x in &s.sources {
+        // What is idle loses nothing and is not worth a line.
+        for x in s.sources.iter().filter(|x| x.loss_w > 0.0 || most == 0.0) {
             t.add_row([
                 x.name.clone(),
                 kind(x.kind).into(),
