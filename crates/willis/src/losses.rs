@@ -311,6 +311,16 @@ impl Laws {
         }
     }
 
+    /// A chosen law that needs an oil, for a train that has none.
+    pub(crate) fn without_oil(&self) -> Option<Diagnostic> {
+        let friction = self.mesh_friction.filter(|l| l.needs_oil()).map(|l| ("mesh_friction", l.meta().id));
+        let rolling = self.rolling.map(|l| ("rolling", l.meta().id)).filter(|l| l.1 != "none");
+        let (family, law) = friction.or(rolling)?;
+        let message = format!("{family} = {law} depends on an oil, and none is given");
+        let d = Diagnostic::new(Code::MissingKey, format!("laws.{family}"), message);
+        Some(d.hint("add [oil] with a name of the catalogue or its viscosities, or choose `constant` friction"))
+    }
+
     /// The rolling law in force beside a friction law; `None` where that contains the rolling loss.
     pub fn rolling(&self, friction: &mesh_friction::MeshFriction) -> Option<rolling::Rolling> {
         let lacks_it = friction.meta().tags.contains(&Tag::SlidingOnly);

@@ -8,8 +8,17 @@
 //! bearing friction that is there without load, seals, gears in oil and air) become drag torques.
 //! The statics solved with them gives new torques, and so on: a contraction, because a loss of a
 //! few percent shifts torques by a few percent, and friction depends on them with a power of about
-//! 0.2. It ends when the bound on the remaining error, `q/(1 − q)` times the last change with the
+//! 0.2. It ends when the bound on the error that is left, the last change over `1 − q` with the
 //! measured contraction `q`, is below 1e-9 of the loss.
+//!
+//! The part of a bearing's friction that grows with the load belongs to a mesh only where the
+//! bearing runs between a gear of that mesh and its carrier, as planet bearings do: only there does
+//! it act between the same two members as the loss of a mesh. On a central shaft of a set whose
+//! carrier turns the bearing reacts on the frame, so all of its friction is a drag.
+//!
+//! A certificate of uniqueness holds for the friction found. Friction that depends on the load can
+//! have a second agreement at much larger forces; the one reached from the forces without computed
+//! losses is the one that is shown.
 
 mod bearing;
 mod body;
@@ -21,7 +30,7 @@ use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion};
 use crate::losses::{Outside, mesh_friction::MeshFriction, rolling::Rolling};
 use crate::power_flow::{Drag, Flow};
-use crate::train::{Efficiency, Lubrication, MemberId, MemberKind, Operation, Train};
+use crate::train::{Efficiency, Gear, Lubrication, MemberId, Operation, Train};
 
 pub use bearing::BearingReport;
 pub use contact::{ContactReport, Regime};
@@ -30,6 +39,8 @@ pub use contact::{ContactReport, Regime};
 const ACCURACY: f64 = 1e-9;
 /// Most rounds of statics and laws.
 const MOST_ROUNDS: usize = 200;
+/// Most of a mesh's power that its computed losses take: the efficiency stays above zero.
+const MOST_LOST: f64 = 0.95;
 
 /// What kind of loss it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -72,7 +83,7 @@ pub struct Convergence {
     pub converged: bool,
     /// Rounds of statics and laws.
     pub rounds: usize,
-    /// Bound on the error that is left, over the loss.
+    /// Bound on the error that is left, over the loss; the last change where nothing bounds it.
     pub error: f64,
     /// The factor by which the last rounds reduced it.
     pub contraction: f64,
@@ -190,9 +201,8 @@ impl<'t> Physics<'t> {
         Self { train, oil, friction, rolling, bodies: body::bodies(train) }
     }
 
-    /// Planets on which a drag acts: they must be seen by the statics.
+    /// Members on which a drag acts: the statics must see them, planets too.
     pub fn visible(&self) -> Vec<MemberId> {
-        let planet = |m: &MemberId| self.train.members[m.0].kind == MemberKind::Planet;
         let mut all: Vec<MemberId> = Vec::new();
         all.extend(self.train.bearings.iter().flat_map(|b| b.members));
         all.extend(self.train.seals.iter().flat_map(|b| b.members));
@@ -202,7 +212,6 @@ impl<'t> Physics<'t> {
             let rolling = self.train.meshes.iter().filter(|m| m.computed);
             all.extend(rolling.flat_map(|m| m.gears.iter().map(|g| g.member)));
         }
-        all.retain(planet);
         all.sort_unstable();
         all.dedup();
         all
@@ -246,7 +255,7 @@ impl<'t> Physics<'t> {
                 }
             }
             let sliding = match (&contact.friction, mesh.computed, m.driver) {
-                (Some(mu), true, Some(_)) => (mu * contact.loss_factor).clamp(0.0, 0.95),
+                (Some(mu), true, Some(_)) => (mu * contact.loss_factor).clamp(0.0, MOST_LOST),
                 // Idle or at rest: nothing is lost, but friction may hold; the nominal value.
                 (_, true, _) => 1.0 - mesh.efficiency.forward.to_f64(),
                 _ => 0.0,
@@ -256,19 +265,22 @@ impl<'t> Physics<'t> {
         let mut reports = Vec::with_capacity(self.train.bearings.len());
         for (k, mount) in self.train.bearings.iter().enumerate() {
             let Some((_, oil)) = &self.oil else { break };
-            let (report, mut torque, mut proportional, loading) = self.bearing(mount, flow, oil, beyond);
+            let (report, mut torque, proportional, loading) = self.bearing(mount, flow, oil, beyond);
             let speed = report.speed_rad_s;
             // The part that grows with the load belongs to the meshes that make the load.
             let weight: f64 = loading.iter().map(|l| l.1).sum();
-            for (mesh, w) in loading {
-                let power = flow.meshes[mesh].potential_power;
-                if weight > 0.0 && power > 0.0 {
-                    let most = 0.5 * power / speed.max(1e-300);
+            for (at, w) in loading {
+                let (m, own) = (&flow.meshes[at], &mut losses[at]);
+                let mesh = &self.train.meshes[m.mesh.0];
+                let between = |g: &Gear| {
+                    mount.members == [g.member, mesh.carrier] || mount.members == [mesh.carrier, g.member]
+                };
+                if weight > 0.0 && speed > 0.0 && m.potential_power > 0.0 && mesh.gears.iter().any(between) {
+                    let most = (MOST_LOST - own.total()).max(0.0) * m.potential_power / speed;
                     let part = (proportional * w / weight).min(most).min(torque);
-                    if part > 0.0 && speed > 0.0 {
-                        losses[mesh].bearings.push((k, part * speed / power));
+                    if part > 0.0 {
+                        own.bearings.push((k, part * speed / m.potential_power));
                         torque -= part;
-                        proportional -= 0.0;
                     }
                 }
             }
@@ -331,14 +343,20 @@ impl<'t> Physics<'t> {
             // The first rounds leave the start behind; they say nothing of the contraction.
             let q = if last.is_finite() && last > 0.0 { (change / last).min(2.0) } else { 0.5 };
             contraction = if rounds > 2 { q.max(0.2 * contraction) } else { q };
-            let error = if contraction < 1.0 { contraction / (1.0 - contraction) * change } else { f64::INFINITY };
-            let converged = error <= ACCURACY && change <= 1e3 * ACCURACY || change <= 1e-15;
+            // The step that was solved is what is returned: all further changes are still missing in it.
+            let error = if contraction < 1.0 { change / (1.0 - contraction) } else { f64::INFINITY };
+            let converged = error <= ACCURACY || change <= 1e-15;
             if converged || rounds == MOST_ROUNDS {
                 return Some((
                     step,
                     own,
                     flow,
-                    Convergence { converged, rounds, error: error.min(change.max(0.0)), contraction },
+                    Convergence {
+                        converged,
+                        rounds,
+                        error: if error.is_finite() { error } else { change.min(f64::MAX) },
+                        contraction,
+                    },
                 ));
             }
             step = next;
@@ -352,7 +370,7 @@ impl<'t> Physics<'t> {
         let mut all: Vec<LossSource> = Vec::new();
         let mut add = |name: &str, kind: LossKind, law: &'static str, loss_w: f64| match all
             .iter_mut()
-            .find(|s| s.name == name && s.kind == kind)
+            .find(|s| s.name == name && s.kind == kind && s.law == law)
         {
             Some(s) => s.loss_w += loss_w,
             None => all.push(LossSource { name: name.to_owned(), kind, law, loss_w, share: 0.0 }),
@@ -404,14 +422,17 @@ impl<'t> Physics<'t> {
     pub fn contacts(&self, step: &Step, flow: &Flow) -> Vec<(String, ContactReport)> {
         let mut all = Vec::new();
         for (m, own) in flow.meshes.iter().zip(&step.meshes) {
-            let Some(contact) = &own.contact else { continue };
-            let mut contact = contact.clone();
+            let mesh = &self.train.meshes[m.mesh.0];
+            let (Some(solved), Some(teeth)) = (&own.contact, &mesh.teeth) else { continue };
+            // Loads of this flow, with the friction it was solved with.
+            let (mut contact, _) = self.contact(mesh, teeth, m, &mut None);
+            contact.friction = solved.friction;
             let bearings: f64 = own.bearings.iter().map(|b| b.1).sum();
             contact.sliding_loss_w = (m.loss - m.potential_power * bearings).max(0.0);
             let rolling = step.sources.iter().zip(&flow.drag_losses);
             contact.rolling_loss_w =
                 rolling.filter(|(s, _)| **s == Source::Rolling(m.mesh.0)).map(|(_, loss)| *loss).sum::<f64>() + 0.0;
-            all.push((self.train.meshes[m.mesh.0].name.clone(), contact));
+            all.push((mesh.name.clone(), contact));
         }
         all
     }
@@ -419,8 +440,11 @@ impl<'t> Physics<'t> {
     /// The bearings of a solved step, with their losses.
     pub fn bearings(&self, step: &Step, flow: &Flow) -> Vec<(String, BearingReport)> {
         let mut all = Vec::new();
-        for (k, report) in step.bearings.iter().enumerate() {
-            let mut report = report.clone();
+        for (k, (solved, mount)) in step.bearings.iter().zip(&self.train.bearings).enumerate() {
+            let Some((_, oil)) = &self.oil else { break };
+            // Loads of this flow, with the torque it was solved with.
+            let (mut report, ..) = self.bearing(mount, flow, oil, &mut None);
+            report.torque_n_m = solved.torque_n_m;
             let by_load = flow.meshes.iter().zip(&step.meshes).flat_map(|(m, own)| {
                 own.bearings.iter().filter(|b| b.0 == k).map(|b| b.1 * m.potential_power).collect::<Vec<_>>()
             });

@@ -402,11 +402,14 @@ impl Train {
     /// The same train with another law in one family.
     ///
     /// # Errors
-    /// If there is no such family or law.
+    /// If there is no such family or law, or if teeth are computed and the law needs an oil that the
+    /// train does not have.
     pub fn with_law(mut self, family: &str, law: &str) -> Result<Self, Diagnostics> {
-        match self.laws.choose(family, law) {
-            Ok(()) => Ok(self),
-            Err(d) => Err([*d].into_iter().collect()),
+        self.laws.choose(family, law).map_err(|d| [*d].into_iter().collect::<Diagnostics>())?;
+        let dry = self.lubrication.is_none() && self.meshes.iter().any(|m| m.computed);
+        match self.laws.without_oil().filter(|_| dry) {
+            Some(d) => Err([d].into_iter().collect()),
+            None => Ok(self),
         }
     }
 

@@ -567,8 +567,12 @@ impl<'a> Setting<'a> {
     fn solve(&self, step: &Step, drags: &[Drag]) -> Result<Option<Solved<'a>>, Diagnostics> {
         let c = step.configure(self.c);
         let problem = Loads::new(&c, self.operation, self.motion, drags)?;
-        let Ok(equilibrium) = Equilibrium::new(&c, self.sigma, &problem.open, &problem.loaded) else {
-            return Ok(None);
+        let equilibrium = match Equilibrium::new(&c, self.sigma, &problem.open, &problem.loaded) {
+            Ok(equilibrium) => equilibrium,
+            // A drag acts on a part that no torque held or balanced before.
+            Err(Unsolvable::MissingLoads(n)) => return Err(wrong_loads(&c, self.operation, &problem, true, n)),
+            Err(Unsolvable::TooManyLoads(n)) => return Err(wrong_loads(&c, self.operation, &problem, false, n)),
+            Err(_) => return Ok(None),
         };
         let answer = equilibrium.solve(&problem.torques);
         Ok(Some(Solved { c, problem, equilibrium, answer }))
@@ -619,7 +623,11 @@ impl<'a> Setting<'a> {
             let free = self.solve(&step, &[])?;
             let drives = free.is_some_and(|s| {
                 s.problem.torques.iter().all(Rational::is_zero)
-                    || s.answer.solutions.iter().any(|x| self.flow(&s, x, &[]).output_power > 0.0)
+                    || s.answer.solutions.iter().any(|x| {
+                        let flow = self.flow(&s, x, &[]);
+                        // At rest no power runs at all.
+                        flow.output_power > 0.0 || flow.input_power <= 0.0
+                    })
             });
             driven = Some(driven.unwrap_or(false) || drives);
             let drags = step.drags.clone();

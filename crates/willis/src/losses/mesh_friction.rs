@@ -93,6 +93,13 @@ family! {
     agma_6011_per_planet::Agma6011PerPlanet,
 }
 
+impl MeshFriction {
+    /// Whether it reads the oil, its film or its base: such a law has no value without an oil.
+    pub fn needs_oil(&self) -> bool {
+        !matches!(self, Self::Constant(_) | Self::Agma6011(_) | Self::Agma6011PerPlanet(_))
+    }
+}
+
 impl MeshContact<f64> {
     /// A case-hardened pair of module 4.5 mm at 8 m/s under FZG load stage 7 in mineral oil
     /// ISO VG 100 at 60 °C: a state inside the range of most laws, for examples and tests.

@@ -63,7 +63,11 @@ impl Physics<'_> {
         let planet = train.planets.iter().find(|p| mount.members.contains(&p.member));
         let (load, loading) = match planet {
             Some(planet) => self.planet_load(planet, flow),
-            None => self.central_load(if a == FRAME { b } else { a }, flow),
+            // Of two shafts, the one that has gears.
+            None => match self.central_load(a, flow) {
+                (_, none) if a == FRAME || none.is_empty() && b != FRAME => self.central_load(b, flow),
+                found => found,
+            },
         };
         let count = f64::from(mount.count);
         // A pair takes the tilting moment by unequal radial loads.
@@ -165,7 +169,7 @@ impl Physics<'_> {
             ..Load::default()
         };
         let mut loading = Vec::new();
-        let mut between_planets = 0.0f64;
+        let (mut between_planets, mut between_tilts) = (0.0f64, 0.0f64);
         for (j, m) in flow.meshes.iter().enumerate() {
             let mesh = &train.meshes[m.mesh.0];
             let Some(k) = mesh.gears.iter().position(|g| g.member == planet.member) else { continue };
@@ -176,29 +180,26 @@ impl Physics<'_> {
             let radius = pair.gears[k].operating_radius;
             let force = moment / radius;
             loading.push((j, force.abs()));
+            // On one helicoid the axial force is in proportion to the moment, wherever the contact is.
+            let axial = if pair.data.double_helical { 0.0 } else { force * pair.operating_helix.tan() };
+            load.axial += axial;
             let other = mesh.gears[1 - k].member;
             if train.planets.iter().any(|p| p.member == other)
                 || train.members[other.0].kind == crate::train::MemberKind::Planet
             {
                 // Where the other planet sits is not known: the whole force, in the worst direction.
                 between_planets += force.abs() / pair.operating_pressure_angle.cos();
+                between_tilts += axial.abs() * radius;
                 continue;
             }
-            let axial = if pair.data.double_helical { 0.0 } else { force * pair.operating_helix.tan() };
-            if pair.internal() {
-                // Contact on the outside, pressing inward.
-                load.tangential += force;
-                load.radial -= force.abs() * pair.operating_pressure_angle.tan();
-                load.axial += axial;
-                load.tilting += axial.abs() * radius;
-            } else {
-                load.tangential -= force;
-                load.radial += force.abs() * pair.operating_pressure_angle.tan();
-                load.axial += axial;
-                load.tilting += axial.abs() * radius;
-            }
+            // Contact on the far side of a ring, pressing inward; on the near side of a sun.
+            let side = if pair.internal() { 1.0 } else { -1.0 };
+            load.tangential += side * force;
+            load.radial -= side * force.abs() * pair.operating_pressure_angle.tan();
+            load.tilting -= side * axial * radius;
         }
         load.tangential = load.tangential.abs() + between_planets;
+        load.tilting = load.tilting.abs() + between_tilts;
         load.axial = load.axial.abs();
         (load, loading)
     }
@@ -218,10 +219,12 @@ impl Physics<'_> {
             let force = m.torques[k].abs() / pair.gears[k].operating_radius;
             let axial = if pair.data.double_helical { 0.0 } else { force * pair.operating_helix.tan() };
             load.axial += axial;
-            if mesh.count == 1 {
+            // A set whose number of planets is not told is taken as balanced.
+            let single = mesh.count == 1 && mesh.set.is_none_or(|s| train.sets[s].planets.is_some());
+            if single {
                 load.tangential += force / pair.operating_pressure_angle.cos();
             }
-            if mesh.count == 1 || axial > 0.0 {
+            if single || axial > 0.0 {
                 loading.push((j, force));
             }
         }

@@ -49,7 +49,8 @@ pub(super) fn bodies(train: &Train) -> Vec<Body> {
                 continue;
             }
             seen.push(key);
-            let planet = train.members[g.member.0].kind == MemberKind::Planet;
+            let planet = train.members[g.member.0].kind == MemberKind::Planet
+                || train.planets.iter().any(|p| p.member == g.member);
             let several =
                 train.meshes.iter().flat_map(|m| &m.gears).any(|o| o.member == g.member && o.teeth != g.teeth);
             let name = train.member_name(g.member);

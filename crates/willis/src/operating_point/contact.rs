@@ -179,7 +179,7 @@ impl Physics<'_> {
         let loss_factor = laws.loss_factor.eval(&path);
         let parallel = f64::from(mesh.count);
         let driver = flow.driver.unwrap_or(0);
-        let torque = if flow.driver.is_some() { flow.torques[driver].abs() / parallel } else { 0.0 };
+        let torque = flow.torques[driver].abs() / parallel;
         let base_force = torque / pair.gears[driver].base_radius;
         let normal_force = base_force / pair.base_helix.cos();
         let pitch_line_speed = flow.relative_speeds[driver].abs() * pair.gears[driver].operating_radius;
@@ -324,7 +324,8 @@ impl Physics<'_> {
         let pinion = &pair.gears[small];
         let tangential = base_force * pinion.base_radius / pinion.operating_radius;
         let width = pair.total_width();
-        let oil = self.oil.map(|o| o.1);
+        // Laws that read the oil are in force only where there is one.
+        let oil = |get: fn(&OilState) -> f64| self.oil.as_ref().map_or(f64::NAN, |o| get(&o.1));
         MeshContact {
             line_load: base_force / width,
             normal_force: base_force / pair.base_helix.cos(),
@@ -339,9 +340,9 @@ impl Physics<'_> {
             hertz_pressure: p.pressure,
             film: p.film,
             film_ratio: if composite > 0.0 { p.film / composite } else { f64::INFINITY },
-            dynamic_viscosity: oil.map_or(0.05, |o| o.dynamic_viscosity),
-            kinematic_viscosity: oil.map_or(55e-6, |o| o.kinematic_viscosity),
-            pressure_viscosity: oil.map_or(16e-9, |o| o.pressure_viscosity),
+            dynamic_viscosity: oil(|o| o.dynamic_viscosity),
+            kinematic_viscosity: oil(|o| o.kinematic_viscosity),
+            pressure_viscosity: oil(|o| o.pressure_viscosity),
             roughness: (teeth.roughness[0] + teeth.roughness[1]) / 2.0,
             composite_roughness: composite,
             peak_roughness: PEAK * (teeth.roughness[0] + teeth.roughness[1]),

@@ -174,6 +174,9 @@ impl Assembler<'_> {
         let geometry = spec.geometry.as_ref().filter(|_| !spec.bevel);
         let teeth = geometry.and_then(|g| self.tooth_pair(g, gears_of_pair, &name, place));
         let computed = efficiency.is_none() && teeth.is_some();
+        if efficiency.is_some() && teeth.is_some() {
+            self.given_efficiency(&name, place);
+        }
         let efficiency = match (efficiency, &teeth) {
             (None, Some(teeth)) => Some(self.nominal_efficiency(teeth)),
             (given, _) => given,
@@ -452,15 +455,21 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
     let seals: Vec<_> = spec.seals.iter().enumerate().filter_map(|(k, s)| a.seal(s, &format!("seal[{k}]"))).collect();
     let rotors: Vec<_> =
         spec.rotors.iter().enumerate().filter_map(|(k, r)| a.rotor(r, &format!("rotor[{k}]"))).collect();
+    a.oil_of_seals(&lubrication, &seals);
     let masses: Vec<(MemberId, f64)> = (sets.iter())
         .flat_map(|(set, planets)| planets.iter().copied().zip(set.planet_masses()))
         .filter_map(|(planet, mass)| Some((planet, mass?)))
         .collect();
-    let planets = a.planet_bodies(&masses, &mut bearings);
     a.housing(&spec.housing);
     for (k, o) in spec.operations.iter().enumerate() {
-        if let (Some(t), Some(l)) = (o.temperature, &lubrication) {
-            a.temperature(&l.oil, t, &format!("operation[{k}].temperature"));
+        let place = format!("operation[{k}].temperature");
+        match (o.temperature, &lubrication) {
+            (Some(t), Some(l)) => a.temperature(&l.oil, t, &place),
+            (Some(_), None) if spec.oil.is_none() => a.report(
+                Diagnostic::new(Code::MissingKey, place, "a temperature is given, but the train has no oil")
+                    .hint("add [oil] with a name of the catalogue, or its viscosities"),
+            ),
+            _ => {}
         }
     }
     a.missing_for_losses(&lubrication, &bearings, &rotors);
@@ -494,6 +503,9 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
             terminals.push(end);
         }
     }
+    let shifting = shift_elements.iter().flat_map(|e| e.members);
+    let central: Vec<MemberId> = terminals.iter().copied().chain(shifting).collect();
+    let planets = a.planet_bodies(&masses, &mut bearings, &central);
     for operation in &operations {
         for (member, load) in &operation.loads {
             if !terminals.contains(member) {

@@ -219,11 +219,20 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
     }
     let carrier = carrier?;
     let teeth = teeth(a, set, &place, &pairs);
-    let computed = set.efficiency.is_none() && teeth.iter().all(Option::is_some);
-    let efficiencies = match computed {
-        true => teeth.iter().flatten().map(|t| a.nominal_efficiency(t)).collect(),
+    if set.efficiency.is_some() && teeth.iter().any(Option::is_some) {
+        a.given_efficiency(name, &place);
+    }
+    // Each pair with teeth is computed, unless an efficiency is given.
+    let computed = |t: &Option<Teeth>| set.efficiency.is_none() && t.is_some();
+    let all: Vec<Efficiency> = match !teeth.is_empty() && teeth.iter().all(computed) {
+        true => vec![Efficiency::lossless(); pairs.len()],
         false => efficiencies(a, set, &place, &pairs),
     };
+    let own = |(t, e): (&Option<Teeth>, Efficiency)| match t.as_ref().filter(|_| computed(t)) {
+        Some(t) => a.nominal_efficiency(t),
+        None => e,
+    };
+    let efficiencies: Vec<Efficiency> = teeth.iter().zip(all).map(own).collect();
     for (k, ((p, efficiency), teeth)) in pairs.into_iter().zip(efficiencies).zip(teeth).enumerate() {
         let [first, second] = p.gears.map(|(member, teeth, internal, _)| Gear { member, teeth, internal });
         if first.member == second.member {
@@ -240,7 +249,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
             bevel: p.bevel,
             count: count.unwrap_or(1),
             set: Some(index),
-            computed,
+            computed: computed(&teeth),
             teeth: teeth.map(Box::new),
         });
     }

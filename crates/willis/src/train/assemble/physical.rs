@@ -18,6 +18,8 @@ use super::{Assembler, clip, list};
 const ROUGHNESS: f64 = 0.4e-6;
 /// Assumed operating temperature, K.
 const TEMPERATURE: f64 = 333.15;
+/// Temperature at which oils are classed, K.
+const COLD: f64 = 313.15;
 /// Density of steel, kg/m³.
 const STEEL: f64 = 7850.0;
 
@@ -118,6 +120,13 @@ impl Assembler<'_> {
         let loss = self.friction_coefficient * self.laws.loss_factor.eval(&Path::of(&teeth.pair));
         let eta = Rational::new(((1.0 - loss).clamp(0.01, 1.0) * 1e6).round() as i64, 1_000_000);
         Efficiency { forward: eta.clone(), backward: eta }
+    }
+
+    /// Says that an efficiency stands beside teeth that would give one.
+    pub fn given_efficiency(&mut self, name: &str, place: &str) {
+        let message = format!("{}: its efficiency is given and used; the teeth tell speeds and pressures", clip(name));
+        let d = Diagnostic::new(Code::GivenEfficiency, format!("{place}.geometry"), message);
+        self.report(d.hint("leave out the efficiency to have the loss computed from the teeth"));
     }
 
     pub fn choose_laws(&mut self, choices: &[(String, String)], friction_coefficient: Option<f64>) {
@@ -374,6 +383,19 @@ impl Assembler<'_> {
         Some(SealMount { name: spec.name.clone(), members, diameter: spec.diameter, material: spec.material, count })
     }
 
+    /// Says what oil seals are taken to run in, where it is not known.
+    pub fn oil_of_seals(&mut self, lubrication: &Option<Lubrication>, seals: &[SealMount]) {
+        let reads_oil = self.laws.seal.meta().id == "simrit";
+        let Some(first) = seals.first().filter(|_| reads_oil) else { return };
+        match lubrication {
+            None => self.assume(&first.name, "no oil given, taken as ISO VG 100 at 60 °C"),
+            Some(l) if !l.oil.covers(COLD) => {
+                self.assume(&first.name, "viscosity of the oil at 40 °C not known, taken as 100 mm²/s");
+            }
+            Some(_) => {}
+        }
+    }
+
     pub fn rotor(&mut self, spec: &RotorSpec, place: &str) -> Option<Rotor> {
         let member = self.resolve(&spec.member, &format!("{place}.member"));
         let axial_gap = spec.axial_gap.unwrap_or(spec.radial_gap);
@@ -398,15 +420,34 @@ impl Assembler<'_> {
 
     /// Planets that revolve, with their orbit and mass, where the geometry tells them; and the
     /// number of places of the bearings on them.
-    pub fn planet_bodies(&mut self, masses: &[(MemberId, f64)], bearings: &mut [BearingMount]) -> Vec<PlanetBody> {
+    pub fn planet_bodies(
+        &mut self,
+        masses: &[(MemberId, f64)],
+        bearings: &mut [BearingMount],
+        central: &[MemberId],
+    ) -> Vec<PlanetBody> {
+        // Planets of sets; and shafts that mesh twice or more on one carrier, carried by a bearing on it.
+        let is_planet = |m: MemberId| {
+            if self.members[m.0].kind == MemberKind::Planet {
+                return true;
+            }
+            let own: Vec<_> = self.meshes.iter().filter(|x| x.gears.iter().any(|g| g.member == m)).collect();
+            let Some(carrier) = own.first().map(|x| x.carrier).filter(|c| *c != FRAME) else { return false };
+            let carried = |b: &BearingMount| b.members == [m, carrier] || b.members == [carrier, m];
+            own.len() > 1
+                && own.iter().all(|x| x.carrier == carrier && x.set.is_none())
+                && m != FRAME
+                && !central.contains(&m)
+                && self.meshes.iter().all(|x| x.carrier != m)
+                && bearings.iter().any(carried)
+        };
+        let planets: Vec<bool> = (0..self.members.len()).map(|m| is_planet(MemberId(m))).collect();
         let mut all: Vec<PlanetBody> = Vec::new();
         for mesh in &self.meshes {
             for k in 0..2 {
                 let member = mesh.gears[k].member;
                 let other = mesh.gears[1 - k].member;
-                let revolves = mesh.carrier != FRAME
-                    && self.members[member.0].kind == MemberKind::Planet
-                    && self.members[other.0].kind != MemberKind::Planet;
+                let revolves = planets[member.0] && !planets[other.0];
                 let Some(teeth) = mesh.teeth.as_ref().filter(|_| revolves) else { continue };
                 if all.iter().any(|p| p.member == member) {
                     continue;
@@ -439,7 +480,7 @@ impl Assembler<'_> {
             };
             let given = masses.iter().find(|(m, _)| *m == body.member).map(|(_, mass)| *mass);
             body.mass = given.unwrap_or_else(estimate);
-            if given.is_none() && bearing.is_some() {
+            if given.is_none() && bearing.is_some() && body.carrier != FRAME {
                 let name = self.members[body.member.0].name.clone();
                 let text = format!(
                     "mass not given, taken as {:.3} kg (steel cylinder of the pitch circle around the bearing)",
@@ -451,7 +492,7 @@ impl Assembler<'_> {
         for b in bearings {
             let planets = |m: MemberId| {
                 let of = |x: &&crate::train::Mesh| x.gears.iter().any(|g| g.member == m);
-                (self.members[m.0].kind == MemberKind::Planet)
+                planets[m.0]
                     .then(|| self.meshes.iter().find(of).map_or(1, |x| x.count))
             };
             b.places = b.members.iter().find_map(|m| planets(*m)).unwrap_or(1);
@@ -484,6 +525,12 @@ impl Assembler<'_> {
             ("bearing", bearings.first().map(|b| b.name.as_str())),
             ("rotor", rotors.iter().find(|r| r.fluid != Fluid::Air).map(|r| r.name.as_str())),
         ];
+        if lubrication.is_none()
+            && self.meshes.iter().any(|m| m.computed)
+            && let Some(d) = self.laws.without_oil()
+        {
+            self.report(d);
+        }
         for (what, name) in needs_oil {
             if let (Some(name), None) = (name, lubrication) {
                 let message = format!("the friction of {what} `{}` depends on an oil, and none is given", clip(name));
