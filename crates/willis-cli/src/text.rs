@@ -138,7 +138,7 @@ fn verdicts(s: &StateReport) -> String {
     if drive == coast { drive } else { format!("{drive} / {coast}") }
 }
 
-fn verdict_word(v: Verdict) -> &'static str {
+pub fn verdict_word(v: Verdict) -> &'static str {
     match v {
         Verdict::Unique => "unique",
         Verdict::Multiple => "several solutions",
@@ -413,7 +413,7 @@ pub fn show(t: &Table) -> String {
     std::iter::once(header).chain(lines.map(String::from)).map(|l| l + "\n").collect()
 }
 
-fn right(t: &mut Table, columns: std::ops::Range<usize>) {
+pub fn right(t: &mut Table, columns: std::ops::Range<usize>) {
     for k in columns {
         if let Some(c) = t.column_mut(k) {
             c.set_cell_alignment(CellAlignment::Right);

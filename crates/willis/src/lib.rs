@@ -12,8 +12,9 @@
 //! 6. [`power_flow`]: torque and power everywhere, recirculation;
 //! 7. [`compiled`]: a train made ready for many points;
 //! 8. [`analysis`]: the whole answer, as every front end shows it;
-//! 9. [`regimes`]: every way a train can run, with closed formulas;
-//! 10. [`figure`]: charts and diagrams as data.
+//! 9. [`hypergraph`]: where the power runs, as a graph of components and contacts;
+//! 10. [`regimes`]: every way a train can run, with closed formulas;
+//! 11. [`figure`]: charts and diagrams as data.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
@@ -56,6 +57,7 @@ pub mod power_flow;
 pub mod compiled;
 pub mod operating_point;
 pub mod analysis;
+pub mod hypergraph;
 pub mod regimes;
 pub mod figure;
 
@@ -81,6 +83,8 @@ mod prose {
     struct EveryWayATrainCanRun;
     #[doc = include_str!("../../../book/src/power-split.md")]
     struct APowerSplit;
+    #[doc = include_str!("../../../book/src/power-flow.md")]
+    struct WhereThePowerRuns;
     #[doc = include_str!("../../../book/src/library.md")]
     struct UsingTheLibrary;
 }
