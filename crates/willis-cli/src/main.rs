@@ -1,6 +1,7 @@
 //! `willis`: reads files, calls the library, prints.
 
 mod csv;
+mod flow;
 mod input;
 mod losses;
 mod output;
@@ -12,7 +13,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use willis::analysis::{self, Analysis, LossRequest, Selection};
-use willis::diagnostic::{Code, Diagnostics, Severity};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
@@ -109,6 +110,27 @@ enum Command {
         /// What to print.
         #[arg(long, value_enum, default_value = "text")]
         format: Format,
+    },
+    /// Show where the power runs in an operating point: components, contacts, paths, losses.
+    ///
+    /// The graph has every component and every contact between components (teeth, bearings, seals,
+    /// clutches), the power between them, the balance of each, the efficiency of each contact and of every
+    /// path from input to output, and power that runs in circles.
+    Flow {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// Only this operation.
+        #[arg(long)]
+        operation: Option<String>,
+        /// What to print; else what the name of the file says.
+        #[arg(long, value_enum)]
+        format: Option<FlowFormat>,
+        /// Write into this file.
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<std::path::PathBuf>,
+        /// Put a law into force: mesh_friction=niemann. Several times for several families.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
     },
     /// List every regime of a train: who drives whom, in which speeds, with which formula.
     ///
@@ -239,6 +261,30 @@ enum Format {
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum FlowFormat {
+    /// For eyes.
+    Text,
+    /// The results contract `willis-flow-1`.
+    Json,
+    /// Graphviz.
+    Dot,
+    /// A figure.
+    Svg,
+}
+
+impl FlowFormat {
+    /// The format that a file's name promises.
+    fn of(path: &std::path::Path) -> Option<Self> {
+        match path.extension()?.to_str()? {
+            "json" => Some(Self::Json),
+            "dot" | "gv" => Some(Self::Dot),
+            "svg" => Some(Self::Svg),
+            _ => None,
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum RegimesFormat {
     /// For eyes.
     Text,
@@ -347,7 +393,7 @@ fn run(command: &Command) -> Result<String, String> {
             let job = Job::read(file)?.with_laws(law)?;
             let analysis = job.analyze(&selection)?;
             Ok(match format {
-                Format::Text => text::analysis(&job.train, &analysis) + &job.notes(&analysis),
+                Format::Text => text::analysis(&job.train, &analysis) + &job.notes(&analysis.diagnostics),
                 Format::Json => serde_json::to_string_pretty(&analysis).expect("plain data") + "\n",
                 Format::Csv => csv::analysis(&analysis, *table),
             })
@@ -386,6 +432,25 @@ fn run(command: &Command) -> Result<String, String> {
                 Format::Json => serde_json::to_string_pretty(&losses::laws_json(&all)).expect("plain data") + "\n",
                 Format::Csv => losses::laws_csv(&all),
             })
+        Command::Flow { file, operation, format, output, law } => {
+            let selection = Selection { state: None, operation: operation.clone() };
+            let job = Job::read(file)?.with_laws(law)?;
+            let all = willis::hypergraph::flows(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+            let promised = output.as_deref().and_then(FlowFormat::of);
+            let text = match format.or(promised).unwrap_or(FlowFormat::Text) {
+                // A file takes no colours.
+                FlowFormat::Text if output.is_some() => {
+                    anstream::adapter::strip_str(&(flow::text(&all) + &job.notes(&all.diagnostics))).to_string()
+                }
+                FlowFormat::Text => flow::text(&all) + &job.notes(&all.diagnostics),
+                FlowFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
+                FlowFormat::Dot => willis_report::flow_dot(&all),
+                FlowFormat::Svg => willis_report::flow_svg(&all) + "\n",
+            };
+            match output {
+                None => Ok(text),
+                Some(path) => output::write(path, text.as_bytes()).map(|()| String::new()),
+            }
         }
         Command::Regimes { file, state, terminals, balance, family, map, format } => {
             let job = Job::read(file)?;
@@ -476,7 +541,7 @@ fn run(command: &Command) -> Result<String, String> {
         Command::Check { file } => {
             let job = Job::read(file)?;
             let analysis = job.analyze(&Selection::default())?;
-            let (train, notes) = (&job.train, job.notes(&analysis));
+            let (train, notes) = (&job.train, job.notes(&analysis.diagnostics));
             let warnings = analysis.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
             let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
             let meshes = train.meshes().len();
@@ -604,9 +669,9 @@ impl Job {
     }
 
     /// Warnings and notes, each at its place in the file.
-    fn notes(&self, analysis: &Analysis) -> String {
+    fn notes(&self, diagnostics: &[Diagnostic]) -> String {
         let mut all = Diagnostics::default();
-        all.extend(analysis.diagnostics.iter().cloned());
+        all.extend(diagnostics.iter().cloned());
         self.reading.locate(&self.text, &mut all);
         all.render(&self.file, &self.text, color())
     }

@@ -138,7 +138,7 @@ fn verdicts(s: &StateReport) -> String {
     if drive == coast { drive } else { format!("{drive} / {coast}") }
 }
 
-fn verdict_word(v: Verdict) -> &'static str {
+pub fn verdict_word(v: Verdict) -> &'static str {
     match v {
         Verdict::Unique => "unique",
         Verdict::Multiple => "several solutions",

@@ -1,7 +1,11 @@
 //! Figures of Willis as SVG: text stays text, colours are safe for the colour-blind, and every
-//! colour also carries a letter.
+//! colour also carries a letter. Power flows also as Graphviz.
 
+mod flow_dot;
+mod flow_svg;
 mod regime_map;
 mod style;
 
+pub use flow_dot::flow_dot;
+pub use flow_svg::flow_svg;
 pub use regime_map::regime_map;

@@ -15,7 +15,7 @@ use serde::{Serialize, Serializer};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
-use crate::operating_point::{BearingReport, ContactReport, Convergence, LossKind, LossSource};
+use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource};
 use crate::statics::Certificate;
 use crate::train::{Efficiency, ShiftElementId, ShiftElementKind, Train};
 
@@ -320,6 +320,9 @@ pub struct SolutionReport {
     /// Rolling bearings.
     #[serde(skip_serializing_if = "Named::is_empty")]
     pub bearings: Named<BearingReport>,
+    /// Drag torques between members, where losses are computed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub drags: Vec<DragReport>,
     /// How losses and torques were brought into agreement, where losses are computed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub convergence: Option<Convergence>,

@@ -13,8 +13,9 @@
 //! 8. [`compiled`]: a train made ready for many points;
 //! 9. [`operating_point`]: losses and torques in agreement;
 //! 10. [`analysis`]: the whole answer, as every front end shows it;
-//! 11. [`regimes`]: every way a train can run, with closed formulas;
-//! 12. [`figure`]: charts and diagrams as data.
+//! 11. [`hypergraph`]: where the power runs, as a graph of components and contacts;
+//! 12. [`regimes`]: every way a train can run, with closed formulas;
+//! 13. [`figure`]: charts and diagrams as data.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
@@ -57,6 +58,7 @@ pub mod power_flow;
 pub mod compiled;
 pub mod operating_point;
 pub mod analysis;
+pub mod hypergraph;
 pub mod regimes;
 pub mod figure;
 
@@ -84,6 +86,8 @@ mod prose {
     struct EveryWayATrainCanRun;
     #[doc = include_str!("../../../book/src/power-split.md")]
     struct APowerSplit;
+    #[doc = include_str!("../../../book/src/power-flow.md")]
+    struct WhereThePowerRuns;
     #[doc = include_str!("../../../book/src/library.md")]
     struct UsingTheLibrary;
 }

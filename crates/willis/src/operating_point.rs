@@ -76,6 +76,45 @@ pub struct LossSource {
     pub share: f64,
 }
 
+/// What exerts a drag torque between two members.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum DragSource {
+    /// Rolling of the teeth of a mesh.
+    Rolling,
+    /// Rolling bearings.
+    Bearing,
+    /// Lip seals.
+    Seal,
+    /// A gear in oil or air.
+    Gear,
+    /// A carrier or drum in oil or air.
+    Rotor,
+}
+
+/// A torque that two members exert on each other against their relative motion.
+///
+/// Of a bearing that the teeth load there are several: the part that is there without load, and one
+/// for each mesh whose load it carries. The latter is contained in that mesh's efficiency, so the
+/// mesh's torques include it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DragReport {
+    /// What exerts it: name of the bearing, seal, gear or rotor; of rolling, of the mesh.
+    pub name: String,
+    /// What that is.
+    pub source: DragSource,
+    /// The two members.
+    pub members: [String; 2],
+    /// Torque on the first member, N m; the second feels the opposite.
+    pub torque_n_m: f64,
+    /// Loss, W: torque times speed of the second relative to the first.
+    pub loss_w: f64,
+    /// The mesh whose torques contain it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contained_in: Option<String>,
+}
+
 /// How the agreement of losses and torques was reached.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Convergence {
@@ -452,6 +491,48 @@ impl<'t> Physics<'t> {
             let rest = drags.filter(|(s, _)| **s == Source::Bearing(k)).map(|(_, loss)| *loss);
             report.loss_w = by_load.chain(rest).sum::<f64>() + 0.0;
             all.push((self.train.bearings[k].name.clone(), report));
+        }
+        all
+    }
+
+    /// Every torque between two members beside those of the teeth.
+    pub fn drags(&self, step: &Step, flow: &Flow) -> Vec<DragReport> {
+        let train = self.train;
+        let members = |m: [MemberId; 2]| m.map(|m| train.member_name(m).to_owned());
+        let mut all = Vec::new();
+        for ((source, drag), loss_w) in step.sources.iter().zip(&step.drags).zip(&flow.drag_losses) {
+            let (source, name) = match *source {
+                Source::Rolling(k) => (DragSource::Rolling, &train.meshes[k].name),
+                Source::Bearing(k) => (DragSource::Bearing, &train.bearings[k].name),
+                Source::Seal(k) => (DragSource::Seal, &train.seals[k].name),
+                Source::Body(k) => (DragSource::Gear, &self.bodies[k].name),
+                Source::Rotor(k) => (DragSource::Rotor, &train.rotors[k].name),
+            };
+            all.push(DragReport {
+                name: name.clone(),
+                source,
+                members: members(drag.members),
+                torque_n_m: drag.torque,
+                loss_w: *loss_w,
+                contained_in: None,
+            });
+        }
+        for (m, own) in flow.meshes.iter().zip(&step.meshes) {
+            for (k, part) in &own.bearings {
+                let mount = &train.bearings[*k];
+                let relative = flow.speeds[mount.members[0].0] - flow.speeds[mount.members[1].0];
+                let loss_w = m.potential_power * part;
+                if relative != 0.0 && loss_w > 0.0 {
+                    all.push(DragReport {
+                        name: mount.name.clone(),
+                        source: DragSource::Bearing,
+                        members: members(mount.members),
+                        torque_n_m: -loss_w / relative,
+                        loss_w,
+                        contained_in: Some(train.meshes[m.mesh.0].name.clone()),
+                    });
+                }
+            }
         }
         all
     }

@@ -338,15 +338,26 @@ fn circulations(c: &Configuration<'_>, meshes: &[MeshFlow], speeds: &[f64], inpu
             .collect();
         names.join("=")
     };
-    let mut found: Vec<Circulation> = Vec::new();
-    while let Some(cycle) = find_cycle(&edges) {
+    let taken = take_out_cycles(&mut edges, smallest);
+    let mut found: Vec<Circulation> = taken
+        .into_iter()
+        .map(|(power, cycle)| Circulation { power, path: cycle.iter().map(|e| label(e.0)).collect() })
+        .collect();
+    found.sort_by(|a, b| b.power.total_cmp(&a.power));
+    found
+}
+
+/// Takes the directed cycles out of a graph of powers, one by one, each with the smallest power on
+/// it. Edges `(from, to, power)` that are left with no more than `smallest` are dropped. Returns
+/// the power and the edges of each cycle.
+pub(crate) fn take_out_cycles(edges: &mut Vec<(usize, usize, f64)>, smallest: f64) -> Vec<(f64, Vec<(usize, usize)>)> {
+    let mut found = Vec::new();
+    while let Some(cycle) = find_cycle(edges) {
         let least = cycle.iter().map(|&k| edges[k].2).fold(f64::INFINITY, f64::min);
-        let path = cycle.iter().map(|&k| label(edges[k].0)).collect();
-        found.push(Circulation { power: least, path });
+        found.push((least, cycle.iter().map(|&k| (edges[k].0, edges[k].1)).collect()));
         cycle.iter().for_each(|&k| edges[k].2 -= least);
         edges.retain(|e| e.2 > smallest);
     }
-    found.sort_by(|a, b| b.power.total_cmp(&a.power));
     found
 }
 

@@ -804,6 +804,7 @@ impl Frame<'_> {
             sources,
             contacts: Named(self.physics.map(|(p, (step, _))| p.contacts(step, &flow)).unwrap_or_default()),
             bearings: Named(self.physics.map(|(p, (step, _))| p.bearings(step, &flow)).unwrap_or_default()),
+            drags: self.physics.map(|(p, (step, _))| p.drags(step, &flow)).unwrap_or_default(),
             convergence: self.physics.map(|(_, (_, convergence))| *convergence),
             recirculation: flow
                 .circulations

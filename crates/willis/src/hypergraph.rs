@@ -1,0 +1,848 @@
+//! Where the power runs in an operating point, as a graph: components, the contacts between them,
+//! and the power that passes each.
+//!
+//! A *component* is a rotor. A *contact* joins components: teeth (a gear, another gear and their
+//! carrier), a bearing, a seal, a gear or drum in its fluid, a closed clutch or brake. A contact with three
+//! components is a hyperedge; it is written here as a node, with an edge to each component. The
+//! edge carries the absolute power `τ ω`: torque that the component puts into the contact times the
+//! component's own speed. It points the way the power runs. The frame stands still, so what leans
+//! on it carries torque and no power.
+//!
+//! In every node power in less power out less loss is zero, up to round-off; the remainder is
+//! printed. Bearing friction that grows with the load of the teeth is part of a mesh's efficiency
+//! while the train is solved ([operating point](crate::operating_point)); here it stands at the
+//! bearing, as a torque between the bearing's two members, and the torques of the mesh are less by
+//! that much.
+//!
+//! *Paths*: at each component and contact what enters mixes and leaves in proportion. A path from an
+//! input to an output then has a share of the input power (its part at each fork, multiplied) and
+//! an efficiency (that of each node on it, multiplied), and
+//!
+//! ```text
+//! Σ share × efficiency = output power / input power
+//! ```
+//!
+//! over all paths, exactly. Shares add up to less than one by what runs into bearings and seals that pass
+//! nothing on. *Loops*, power that runs in circles, are taken out first; an efficiency on a
+//! path is that of the power that is left, and so below that of the contact as a whole.
+//!
+//! Source: the hypergraph of Wang et al., Appl. Sci. 2020, 10, 5849, with torques that balance.
+
+use std::collections::{BTreeMap, BinaryHeap};
+
+use serde::Serialize;
+
+use crate::analysis::{Role, Selection, SolutionReport, Verdict, analyze};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::operating_point::DragSource;
+use crate::power_flow::{families, take_out_cycles};
+use crate::train::{FRAME, MemberId, MemberKind, Train};
+
+/// Most paths that are listed, those that deliver most first.
+pub const MOST_PATHS: usize = 32;
+/// Powers below this part of the largest are round-off.
+const ROUND_OFF: f64 = 1e-12;
+/// Loops below this part of the input are not told.
+const SMALLEST_LOOP: f64 = 1e-9;
+
+/// What a node of the graph is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum NodeKind {
+    /// The frame: takes torques, never power.
+    Frame,
+    /// A component: a rotor.
+    Member,
+    /// A tooth contact, all its pairs in parallel together.
+    Teeth,
+    /// Rolling bearings.
+    Bearing,
+    /// Lip seals.
+    Seal,
+    /// A gear in oil or air.
+    Gear,
+    /// A carrier or drum in oil or air.
+    Rotor,
+    /// A closed clutch or brake, or several that share one load.
+    ShiftElement,
+    /// Where external power enters.
+    Input,
+    /// Where external power leaves.
+    Output,
+}
+
+/// A component, a contact, or an end of the graph.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Node {
+    /// Unique: kind and name, as in `member:sun`, `teeth:P1.sun-planet`, `input:sun`; or `frame`.
+    pub id: String,
+    /// What it is.
+    pub kind: NodeKind,
+    /// Its name in the train.
+    pub name: String,
+    /// Speed of a component, rad/s; absent when not determined.
+    pub speed_rad_s: Option<f64>,
+    /// Identical ones in parallel: tooth pairs, bearings.
+    pub count: u32,
+    /// Power that enters, W.
+    pub power_in_w: f64,
+    /// Power that leaves, W.
+    pub power_out_w: f64,
+    /// Loss in it, W.
+    pub loss_w: f64,
+    /// Outgoing over incoming absolute power; absent where none passes.
+    pub efficiency: Option<f64>,
+    /// Of a tooth contact: efficiency of sliding seen from the carrier.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub carrier_frame_efficiency: Option<f64>,
+    /// Power in less power out less loss, W: round-off.
+    pub residual_w: f64,
+}
+
+/// Power, or only torque, between two nodes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Edge {
+    /// The node that the power leaves.
+    pub from: String,
+    /// The node that it enters.
+    pub to: String,
+    /// The component at one end, whose speed times the torque is the power.
+    pub member: String,
+    /// Torque that the component puts into the contact (at an input or output: external torque on
+    /// the component), N m; absent where statics cannot divide it.
+    pub torque_n_m: Option<f64>,
+    /// Power, W; 0 where the component stands still.
+    pub power_w: f64,
+    /// The part of it that runs in loops, W.
+    pub circulating_w: f64,
+}
+
+/// Power that runs in a circle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Loop {
+    /// The power, W.
+    pub power_w: f64,
+    /// Over the input power.
+    pub share_of_input: f64,
+    /// Identifiers of the nodes it passes, in order; from the last it returns to the first.
+    pub nodes: Vec<String>,
+    /// The set, or ordinary pair, that it never leaves. Such a loop depends on the frame in which
+    /// powers are counted, not on how the train is coupled.
+    pub within: Option<String>,
+}
+
+/// A node on a path.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Station {
+    /// Identifier of the node.
+    pub node: String,
+    /// Its efficiency for the power on paths: out over in, loops taken out; 1 for a component.
+    pub efficiency: f64,
+}
+
+/// A way from an input to an output.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Path {
+    /// Part of the input power that takes it.
+    pub share_of_input: f64,
+    /// Product of the efficiencies along it.
+    pub efficiency: f64,
+    /// What arrives, W.
+    pub delivered_w: f64,
+    /// The nodes along it, input and output included.
+    pub stations: Vec<Station>,
+}
+
+/// The power flow of one equilibrium.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hypergraph {
+    /// Output over input power; 0 when everything is dissipated, absent when nothing is loaded.
+    pub efficiency: Option<f64>,
+    /// Power in, W.
+    pub input_power_w: f64,
+    /// Power out, W.
+    pub output_power_w: f64,
+    /// All losses, W.
+    pub loss_w: f64,
+    /// Input less output less losses, W.
+    pub power_residual_w: f64,
+    /// The largest residual of a node, W.
+    pub largest_residual_w: f64,
+    /// Frame, components, contacts, inputs and outputs.
+    pub nodes: Vec<Node>,
+    /// Powers between them.
+    pub edges: Vec<Edge>,
+    /// Power that runs in circles, largest first.
+    pub loops: Vec<Loop>,
+    /// Ways from inputs to outputs, those that deliver most first, at most [`MOST_PATHS`].
+    pub paths: Vec<Path>,
+    /// How many there are.
+    pub path_count: u64,
+    /// Part of the input power that takes any of them; the rest is lost on its way where nothing is passed on.
+    pub share_on_paths: f64,
+}
+
+/// The power flow of an operating point.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct OperationFlow {
+    /// Its name.
+    pub name: String,
+    /// The state of the shift table.
+    pub state: Option<String>,
+    /// What can be said of it.
+    pub verdict: Verdict,
+    /// One sentence that explains the verdict.
+    pub reason: Option<String>,
+    /// Every equilibrium.
+    pub solutions: Vec<Hypergraph>,
+    /// Of a locked train: equilibria in which every loaded member must push.
+    pub dissipative_solutions: Vec<Hypergraph>,
+}
+
+/// Power flows of a train: the results contract `willis-flow-1`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FlowReport {
+    /// `willis-flow-1`.
+    pub format: &'static str,
+    /// Name of the train.
+    pub train: String,
+    /// Source of its data.
+    pub source: Option<String>,
+    /// The operating points.
+    pub operations: Vec<OperationFlow>,
+    /// What stands in for data that were not given, and what the model leaves out.
+    pub assumptions: Vec<String>,
+    /// Warnings and notes.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// The power flow of every operating point, or of one.
+///
+/// # Errors
+/// What [`analyze`] refuses, and a train without an operating point.
+///
+/// # Example
+/// ```
+/// use willis::analysis::Selection;
+/// use willis::hypergraph::flows;
+/// use willis::train::{OperationSpec, SetSpec, Train};
+/// use willis::units::{AngularSpeed, Torque};
+///
+/// let train = Train::builder("one set")
+///     .members(["s", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).mesh_efficiency(0.99))
+///     .operation(
+///         OperationSpec::new("full load")
+///             .speed("s", AngularSpeed::rpm(1000.0))
+///             .torque("s", Torque::newton_metres(10.0)),
+///     )
+///     .build()?;
+/// let flow = &flows(&train, &Selection::default())?.operations[0].solutions[0];
+/// assert!(flow.largest_residual_w < 1e-9);
+/// // The carrier takes its share from both tooth contacts.
+/// let into_carrier: Vec<_> = flow.edges.iter().filter(|e| e.to == "member:c").map(|e| e.from.as_str()).collect();
+/// assert_eq!(into_carrier, ["teeth:P1.sun-planet", "teeth:P1.planet-ring"]);
+/// // Shares and efficiencies of the paths make the efficiency of the train.
+/// let sum: f64 = flow.paths.iter().map(|p| p.share_of_input * p.efficiency).sum();
+/// assert!((sum - flow.efficiency.unwrap()).abs() < 1e-12);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn flows(train: &Train, selection: &Selection) -> Result<FlowReport, Diagnostics> {
+    let analysis = analyze(train, selection)?;
+    if analysis.operations.is_empty() {
+        let text = "a power flow needs an operating point, and this train has no `[[operation]]`";
+        let text = if train.operations().is_empty() { text } else { "no operation is in that state" };
+        let example = train.terminals().first().map_or("sun", |m| train.member_name(*m));
+        let state = train.states().first().map(|s| format!("state = \"{}\", ", s.name)).unwrap_or_default();
+        let hint = format!(
+            "add one, such as: [[operation]] with name = \"full load\", {state}speeds = {{ {example} = \"1000 rpm\" }}, \
+             torques = {{ {example} = \"100 N m\" }}"
+        );
+        return Err([Diagnostic::new(Code::Unfit, "", text).hint(hint)].into_iter().collect());
+    }
+    let graphs = |all: &[SolutionReport]| all.iter().map(|s| hypergraph(train, s)).collect();
+    let operations = analysis.operations.iter().map(|o| OperationFlow {
+        name: o.name.clone(),
+        state: o.state.clone(),
+        verdict: o.verdict,
+        reason: o.reason.clone(),
+        solutions: graphs(&o.solutions),
+        dissipative_solutions: graphs(&o.dissipative_solutions),
+    });
+    Ok(FlowReport {
+        format: "willis-flow-1",
+        train: analysis.train.clone(),
+        source: analysis.source.clone(),
+        operations: operations.collect(),
+        assumptions: analysis.assumptions.clone(),
+        diagnostics: analysis.diagnostics,
+    })
+}
+
+/// A graph while it is built: torques of components in contacts.
+struct Sketch<'t> {
+    train: &'t Train,
+    nodes: Vec<Node>,
+    /// Speed by member, rad/s; 0 where not determined, since nothing flows there.
+    speeds: Vec<f64>,
+    /// By contact and member: the torque that the member puts in.
+    torques: BTreeMap<(usize, usize), Option<f64>>,
+}
+
+impl Sketch<'_> {
+    /// The node of that kind and name.
+    fn node(&mut self, kind: NodeKind, name: &str, count: u32) -> usize {
+        let word = match kind {
+            NodeKind::Frame => "frame",
+            NodeKind::Member => "member",
+            NodeKind::Teeth => "teeth",
+            NodeKind::Bearing => "bearing",
+            NodeKind::Seal => "seal",
+            NodeKind::Gear => "gear",
+            NodeKind::Rotor => "rotor",
+            NodeKind::ShiftElement => "shift-element",
+            NodeKind::Input => "input",
+            NodeKind::Output => "output",
+        };
+        let id = if kind == NodeKind::Frame { word.to_owned() } else { format!("{word}:{name}") };
+        if let Some(k) = self.nodes.iter().position(|n| n.id == id) {
+            return k;
+        }
+        self.nodes.push(Node {
+            id,
+            kind,
+            name: name.to_owned(),
+            speed_rad_s: None,
+            count,
+            power_in_w: 0.0,
+            power_out_w: 0.0,
+            loss_w: 0.0,
+            efficiency: None,
+            carrier_frame_efficiency: None,
+            residual_w: 0.0,
+        });
+        self.nodes.len() - 1
+    }
+
+    fn add(&mut self, contact: usize, member: usize, torque: f64) {
+        if let Some(t) = self.torques.entry((contact, member)).or_insert(Some(0.0)) {
+            *t += torque;
+        }
+    }
+
+    fn index(&self, name: &str) -> usize {
+        self.train.member(name).map_or(0, MemberId::index)
+    }
+
+    /// Torque that a member puts into all contacts so far.
+    fn given(&self, member: usize) -> f64 {
+        self.torques.iter().filter(|((_, m), _)| *m == member).filter_map(|(_, t)| *t).sum()
+    }
+}
+
+/// The graph of one equilibrium of a train.
+///
+/// # Example
+/// ```
+/// use willis::analysis::{Selection, analyze};
+/// use willis::hypergraph::{NodeKind, hypergraph};
+/// use willis::train::Train;
+///
+/// let train = Train::from_toml(r#"
+///     format = 1
+///     name = "ordinary pair"
+///     members = ["a", "b"]
+///     terminals = ["a", "b"]
+///     [[mesh]]
+///     name = "M"
+///     gears = [{ member = "a", teeth = 20 }, { member = "b", teeth = 60 }]
+///     efficiency = 0.98
+///     [[operation]]
+///     name = "1 kW"
+///     speeds = { a = "1000 rpm" }
+///     powers = { a = "1 kW" }
+/// "#)?;
+/// let analysis = analyze(&train, &Selection::default())?;
+/// let graph = hypergraph(&train, &analysis.operations[0].solutions[0]);
+/// let teeth = graph.nodes.iter().find(|n| n.kind == NodeKind::Teeth).unwrap();
+/// assert!((teeth.loss_w - 20.0).abs() < 1e-9);
+/// assert_eq!(graph.paths.len(), 1);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn hypergraph(train: &Train, solution: &SolutionReport) -> Hypergraph {
+    let members = train.members().len();
+    let mut g = Sketch { train, nodes: Vec::new(), speeds: vec![0.0; members], torques: BTreeMap::new() };
+    // The frame is node 0, and a member's node has the member's number.
+    g.node(NodeKind::Frame, &train.members()[0].name, 1);
+    for (name, m) in solution.members.iter() {
+        let k = g.node(NodeKind::Member, name, 1);
+        g.speeds[k] = m.speed_rad_s.unwrap_or(0.0);
+        g.nodes[k].speed_rad_s = m.speed_rad_s;
+    }
+    let mut contacts_of_mesh = vec![0; train.meshes().len()];
+    for (j, mesh) in train.meshes().iter().enumerate() {
+        let k = g.node(NodeKind::Teeth, &mesh.name, mesh.count);
+        contacts_of_mesh[j] = k;
+        let Some(m) = solution.meshes.get(&mesh.name) else { continue };
+        let torques = [m.first_torque_n_m, m.second_torque_n_m, m.carrier_torque_n_m];
+        for (member, torque) in [mesh.gears[0].member, mesh.gears[1].member, mesh.carrier].into_iter().zip(torques) {
+            g.add(k, member.index(), torque);
+        }
+        g.nodes[k].loss_w = m.loss_w;
+        g.nodes[k].carrier_frame_efficiency = m.driver.is_some().then_some(m.efficiency);
+    }
+    for d in &solution.drags {
+        let kind = match d.source {
+            DragSource::Rolling => NodeKind::Teeth,
+            DragSource::Bearing => NodeKind::Bearing,
+            DragSource::Seal => NodeKind::Seal,
+            DragSource::Gear => NodeKind::Gear,
+            DragSource::Rotor => NodeKind::Rotor,
+        };
+        let count = match kind {
+            NodeKind::Bearing => solution.bearings.get(&d.name).map_or(1, |b| b.bearings),
+            NodeKind::Seal => train.seals().iter().find(|s| s.name == d.name).map_or(1, |s| s.count),
+            _ => 1,
+        };
+        let k = g.node(kind, &d.name, count);
+        let [a, b] = d.members.each_ref().map(|name| g.index(name));
+        // What pushes a member takes that torque out of the contact.
+        g.add(k, a, -d.torque_n_m);
+        g.add(k, b, d.torque_n_m);
+        g.nodes[k].loss_w += d.loss_w;
+        if let Some(mesh) = d.contained_in.as_deref().and_then(|name| train.mesh(name)) {
+            let mesh = contacts_of_mesh[mesh.index()];
+            g.add(mesh, a, d.torque_n_m);
+            g.add(mesh, b, -d.torque_n_m);
+        }
+    }
+    let external = externals(&mut g, solution);
+    shift_elements(&mut g, solution, &external);
+    finish(g, solution, &external)
+}
+
+/// External torque on each member, without what brakes exert; `None` where that is not known.
+fn externals(g: &mut Sketch<'_>, solution: &SolutionReport) -> Vec<Option<f64>> {
+    let mut external: Vec<Option<f64>> = vec![Some(0.0); g.train.members().len()];
+    for (name, m) in solution.members.iter() {
+        external[g.index(name)] = m.torque_n_m;
+    }
+    for (_, e) in solution.shift_elements.iter() {
+        let [a, b] = e.members.each_ref().map(|name| g.index(name));
+        for (member, other, sign) in [(a, b, 1.0), (b, a, -1.0)] {
+            if other == FRAME.index() {
+                external[member] = match (external[member], e.torque_n_m) {
+                    (Some(x), Some(t)) => Some(x - sign * t),
+                    _ => None,
+                };
+            }
+        }
+    }
+    external
+}
+
+/// Clutches and brakes; those whose torques statics cannot divide become one node.
+fn shift_elements(g: &mut Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]) {
+    let mut open: Vec<(Vec<&str>, Vec<usize>)> = Vec::new();
+    for (name, e) in solution.shift_elements.iter() {
+        let members = e.members.each_ref().map(|name| g.index(name));
+        let Some(t) = e.torque_n_m else {
+            let (mut names, mut ends) = (vec![name.as_str()], members.to_vec());
+            let shares = |o: &(Vec<&str>, Vec<usize>)| o.1.iter().any(|m| *m != 0 && members.contains(m));
+            while let Some(k) = open.iter().position(shares) {
+                let (more, others) = open.remove(k);
+                names.splice(0..0, more);
+                ends.extend(others);
+            }
+            ends.sort_unstable();
+            ends.dedup();
+            open.push((names, ends));
+            continue;
+        };
+        let k = g.node(NodeKind::ShiftElement, name, 1);
+        g.add(k, members[0], -t);
+        g.add(k, members[1], t);
+    }
+    for (names, ends) in open {
+        let torques: Vec<Option<f64>> =
+            ends.iter().map(|&m| external[m].filter(|_| m != FRAME.index()).map(|x| x - g.given(m))).collect();
+        let k = g.node(NodeKind::ShiftElement, &names.join(", "), 1);
+        for (m, torque) in ends.into_iter().zip(torques) {
+            g.torques.insert((k, m), torque);
+        }
+    }
+}
+
+/// Edges, balances, loops and paths.
+fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]) -> Hypergraph {
+    struct Line {
+        from: usize,
+        to: usize,
+        member: usize,
+        torque: Option<f64>,
+        power: f64,
+    }
+    let members = external.len();
+    let mut lines: Vec<Line> = Vec::new();
+    let mut balance: Vec<f64> = vec![0.0; members];
+    for (name, m) in solution.members.iter() {
+        let member = g.index(name);
+        let power = m.power_w.unwrap_or(0.0);
+        balance[member] += power;
+        let torque = external[member];
+        let (from, to) = match m.role {
+            Role::Input => (g.node(NodeKind::Input, name, 1), member),
+            Role::Output => (member, g.node(NodeKind::Output, name, 1)),
+            // Something outside holds it.
+            _ => (member, FRAME.index()),
+        };
+        let power = if to == FRAME.index() { 0.0 } else { power.abs() };
+        lines.push(Line { from, to, member, torque, power });
+    }
+    balance.resize(g.nodes.len(), 0.0);
+    for (&(contact, member), &torque) in &g.torques {
+        let power = torque.unwrap_or(0.0) * g.speeds[member];
+        balance[member] -= power;
+        balance[contact] += power;
+        let (from, to) = if power < 0.0 || member == FRAME.index() { (contact, member) } else { (member, contact) };
+        lines.push(Line { from, to, member, torque, power: power.abs() });
+    }
+    let largest = lines.iter().fold(0.0f64, |a, l| a.max(l.power));
+    let strongest = lines.iter().fold(0.0f64, |a, l| a.max(l.torque.unwrap_or(0.0).abs()));
+    for l in &mut lines {
+        if l.power <= ROUND_OFF * largest {
+            l.power = 0.0;
+        }
+    }
+    lines.retain(|l| l.power > 0.0 || l.torque.is_none_or(|t| t.abs() > ROUND_OFF * strongest));
+    // Loads first, then as the train lists its contacts.
+    lines.sort_by_key(|l| (g.nodes[l.from.max(l.to)].kind < NodeKind::Input, l.from.max(l.to), l.member));
+
+    let mut residual = 0.0f64;
+    for (k, node) in g.nodes.iter_mut().enumerate() {
+        node.power_in_w = lines.iter().filter(|l| l.to == k).map(|l| l.power).sum::<f64>() + 0.0;
+        node.power_out_w = lines.iter().filter(|l| l.from == k).map(|l| l.power).sum::<f64>() + 0.0;
+        node.loss_w += 0.0;
+        if !matches!(node.kind, NodeKind::Frame | NodeKind::Input | NodeKind::Output) {
+            node.residual_w = balance[k] - node.loss_w + 0.0;
+            residual = residual.max(node.residual_w.abs());
+            if node.power_in_w > 0.0 {
+                node.efficiency = Some(match node.loss_w == 0.0 {
+                    true => 1.0,
+                    false => (node.power_out_w / node.power_in_w).clamp(0.0, 1.0),
+                });
+            }
+        }
+    }
+
+    let input = solution.input_power_w;
+    let mut powers: Vec<(usize, usize, f64)> =
+        lines.iter().filter(|l| l.power > 0.0).map(|l| (l.from, l.to, l.power)).collect();
+    powers.sort_by_key(|e| (e.0, e.1));
+    let taken = loops(&g, &mut powers);
+    let mut edges: Vec<Edge> = Vec::with_capacity(lines.len());
+    for l in &lines {
+        let round = |e: &&(usize, usize)| **e == (l.from, l.to);
+        let circulating: f64 = taken.iter().map(|t| t.power * t.edges.iter().filter(round).count() as f64).sum();
+        edges.push(Edge {
+            from: g.nodes[l.from].id.clone(),
+            to: g.nodes[l.to].id.clone(),
+            member: g.nodes[l.member].name.clone(),
+            torque_n_m: l.torque.map(|t| t + 0.0),
+            power_w: l.power,
+            circulating_w: circulating + 0.0,
+        });
+    }
+    // The same round found more than once is one loop.
+    let mut told: Vec<Loop> = Vec::new();
+    for t in taken {
+        let nodes: Vec<String> = t.edges.iter().map(|e| g.nodes[e.0].id.clone()).collect();
+        match told.iter_mut().find(|l| l.nodes == nodes) {
+            Some(l) => l.power_w += t.power,
+            None => told.push(Loop { power_w: t.power, share_of_input: 0.0, nodes, within: t.within }),
+        }
+    }
+    told.retain(|l| l.power_w > SMALLEST_LOOP * input);
+    for l in &mut told {
+        l.share_of_input = if input > 0.0 { l.power_w / input } else { 0.0 };
+    }
+    told.sort_by(|a, b| b.power_w.total_cmp(&a.power_w));
+
+    let ways = Ways::new(&g.nodes, &powers);
+    let (paths, path_count, share_on_paths) = ways.list(&g.nodes, input);
+    Hypergraph {
+        efficiency: solution.efficiency,
+        input_power_w: input,
+        output_power_w: solution.output_power_w,
+        loss_w: solution.loss_w,
+        power_residual_w: solution.power_residual_w,
+        largest_residual_w: residual,
+        nodes: g.nodes,
+        edges,
+        loops: told,
+        paths,
+        path_count,
+        share_on_paths,
+    }
+}
+
+/// A cycle that was taken out.
+struct Taken {
+    power: f64,
+    edges: Vec<(usize, usize)>,
+    within: Option<String>,
+}
+
+/// Takes the cycles out of the powers: first those that stay within one set.
+fn loops(g: &Sketch<'_>, powers: &mut Vec<(usize, usize, f64)>) -> Vec<Taken> {
+    let train = g.train;
+    let family = families(train);
+    // Meshes of each set, and the components they touch.
+    let mut sets: BTreeMap<usize, (String, Vec<usize>, Vec<usize>)> = BTreeMap::new();
+    for (j, mesh) in train.meshes().iter().enumerate() {
+        let contact = g.nodes.iter().position(|n| n.kind == NodeKind::Teeth && n.name == mesh.name);
+        let name = mesh.set.map_or(&mesh.name, |s| &train.sets()[s].name);
+        let (_, contacts, members) = sets.entry(family[j]).or_insert_with(|| (name.clone(), vec![], vec![]));
+        contacts.extend(contact);
+        members.extend([mesh.gears[0].member, mesh.gears[1].member, mesh.carrier].map(MemberId::index));
+    }
+    let mut taken = Vec::new();
+    for (name, contacts, members) in sets.values_mut() {
+        // Bearings and the like between the set's own components, one of them a planet.
+        for k in train.members().len()..g.nodes.len() {
+            let mut ends = g.torques.range((k, 0)..(k + 1, 0)).map(|((_, m), _)| *m);
+            let planet = |m: usize| train.members()[m].kind == MemberKind::Planet;
+            let drag = matches!(g.nodes[k].kind, NodeKind::Bearing | NodeKind::Seal | NodeKind::Gear);
+            if drag && ends.clone().any(planet) && ends.all(|m| members.contains(&m)) {
+                contacts.push(k);
+            }
+        }
+        let own = |e: &(usize, usize, f64)| contacts.contains(&e.0) || contacts.contains(&e.1);
+        let mut inside: Vec<_> = powers.iter().copied().filter(own).collect();
+        powers.retain(|e| !own(e));
+        for (power, edges) in take_out_cycles(&mut inside, 0.0) {
+            taken.push(Taken { power, edges, within: Some(name.clone()) });
+        }
+        powers.extend(inside);
+        powers.sort_by_key(|e| (e.0, e.1));
+    }
+    for (power, edges) in take_out_cycles(powers, 0.0) {
+        taken.push(Taken { power, edges, within: None });
+    }
+    taken
+}
+
+/// The powers without cycles: what leaves each node, and where.
+struct Ways {
+    /// By node: target and power.
+    out: Vec<Vec<(usize, f64)>>,
+    power_in: Vec<f64>,
+    power_out: Vec<f64>,
+    /// Nodes, each after all that feed it.
+    order: Vec<usize>,
+}
+
+impl Ways {
+    fn new(nodes: &[Node], powers: &[(usize, usize, f64)]) -> Self {
+        let n = nodes.len();
+        let mut ways = Self {
+            out: vec![vec![]; n],
+            power_in: vec![0.0; n],
+            power_out: vec![0.0; n],
+            order: Vec::with_capacity(n),
+        };
+        let mut waiting = vec![0usize; n];
+        for &(from, to, power) in powers {
+            ways.out[from].push((to, power));
+            ways.power_out[from] += power;
+            ways.power_in[to] += power;
+            waiting[to] += 1;
+        }
+        let mut ready: Vec<usize> = (0..n).rev().filter(|&k| waiting[k] == 0).collect();
+        while let Some(k) = ready.pop() {
+            ways.order.push(k);
+            for &(to, _) in &ways.out[k] {
+                waiting[to] -= 1;
+                if waiting[to] == 0 {
+                    ready.push(to);
+                }
+            }
+        }
+        ways
+    }
+
+    /// Outgoing over incoming power; above one only by round-off.
+    fn efficiency(&self, k: usize) -> f64 {
+        if self.power_in[k] > 0.0 { self.power_out[k] / self.power_in[k] } else { 1.0 }
+    }
+
+    /// The paths that deliver most, their number, and the share of all.
+    fn list(&self, nodes: &[Node], input: f64) -> (Vec<Path>, u64, f64) {
+        let n = nodes.len();
+        let is = |k: usize, kind: NodeKind| nodes[k].kind == kind;
+        // From each node on: the best way to an output, and the number of ways.
+        let (mut best, mut count) = (vec![0.0f64; n], vec![0u64; n]);
+        let passed = |k: usize, power: f64| power / self.power_out[k] * self.efficiency(k);
+        for &k in self.order.iter().rev() {
+            if is(k, NodeKind::Output) {
+                (best[k], count[k]) = (1.0, 1);
+            }
+            for &(to, power) in &self.out[k] {
+                best[k] = best[k].max(passed(k, power) * best[to]);
+                count[k] = count[k].saturating_add(count[to]);
+            }
+        }
+        let starts: Vec<usize> = (0..n).filter(|&k| is(k, NodeKind::Input)).collect();
+        let entering: f64 = starts.iter().map(|&k| self.power_out[k]).sum();
+        if entering <= 0.0 || input <= 0.0 {
+            return (vec![], 0, 0.0);
+        }
+        let number = starts.iter().fold(0u64, |a, &k| a.saturating_add(count[k]));
+        let mut share = vec![0.0; n];
+        starts.iter().for_each(|&k| share[k] = self.power_out[k] / entering);
+        for &k in &self.order {
+            for &(to, power) in &self.out[k] {
+                share[to] += share[k] * power / self.power_out[k];
+            }
+        }
+        let on_paths = (0..n).filter(|&k| is(k, NodeKind::Output)).map(|k| share[k]).sum::<f64>() + 0.0;
+
+        let mut heap = BinaryHeap::new();
+        for &k in starts.iter().filter(|&&k| count[k] > 0) {
+            let share = self.power_out[k] / entering;
+            heap.push(Partial { bound: share * best[k], share, efficiency: 1.0, nodes: vec![k] });
+        }
+        let mut paths = Vec::new();
+        while let Some(p) = heap.pop() {
+            let last = *p.nodes.last().expect("a path begins somewhere");
+            if is(last, NodeKind::Output) {
+                let station = |&k: &usize| Station {
+                    node: nodes[k].id.clone(),
+                    efficiency: match nodes[k].kind {
+                        NodeKind::Input | NodeKind::Output | NodeKind::Member => 1.0,
+                        _ => self.efficiency(k),
+                    },
+                };
+                paths.push(Path {
+                    share_of_input: p.share,
+                    efficiency: p.efficiency,
+                    delivered_w: p.share * p.efficiency * input,
+                    stations: p.nodes.iter().map(station).collect(),
+                });
+                if paths.len() == MOST_PATHS {
+                    break;
+                }
+                continue;
+            }
+            for &(to, power) in self.out[last].iter().filter(|(to, _)| count[*to] > 0) {
+                let share = p.share * power / self.power_out[last];
+                let efficiency = p.efficiency * self.efficiency(last);
+                let nodes = p.nodes.iter().copied().chain([to]).collect();
+                heap.push(Partial { bound: share * efficiency * best[to], share, efficiency, nodes });
+            }
+        }
+        (paths, number, on_paths)
+    }
+}
+
+/// The beginning of a path, by the power that its best continuation delivers.
+struct Partial {
+    bound: f64,
+    share: f64,
+    efficiency: f64,
+    nodes: Vec<usize>,
+}
+
+impl PartialEq for Partial {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Partial {}
+
+impl PartialOrd for Partial {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Partial {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.bound.total_cmp(&other.bound).then_with(|| other.nodes.cmp(&self.nodes))
+    }
+}
+
+impl Hypergraph {
+    /// The node of that identifier.
+    pub fn node(&self, id: &str) -> Option<&Node> {
+        self.nodes.iter().find(|n| n.id == id)
+    }
+
+    /// Recirculation in words, one sentence each; empty when no power runs in a circle.
+    ///
+    /// Loops within one set are told as one: they depend on the frame in which powers are counted.
+    pub fn recirculation(&self) -> Vec<String> {
+        let name = |id: &String| self.nodes.iter().find(|n| n.id == *id).map_or("", |n| n.name.as_str());
+        let mut all: Vec<String> = Vec::new();
+        for l in self.loops.iter().filter(|l| l.within.is_none()) {
+            let path: Vec<&str> = l.nodes.iter().chain(l.nodes.first()).map(name).collect();
+            all.push(format!("{} run in a circle{}: {}", watts(l.power_w), share(l.share_of_input), path.join(" → ")));
+        }
+        let mut sets: Vec<&String> = self.loops.iter().filter_map(|l| l.within.as_ref()).collect();
+        sets.dedup();
+        let mut told: Vec<&String> = Vec::new();
+        for set in sets {
+            if told.contains(&set) {
+                continue;
+            }
+            told.push(set);
+            let own: Vec<&Loop> = self.loops.iter().filter(|l| l.within.as_ref() == Some(set)).collect();
+            let power: f64 = own.iter().map(|l| l.power_w).sum();
+            let part: f64 = own.iter().map(|l| l.share_of_input).sum();
+            let path: Vec<&str> = own[0].nodes.iter().chain(own[0].nodes.first()).map(name).collect();
+            all.push(format!(
+                "within {set} {}{} run in a circle as powers are counted, in the frame of the housing; no shaft carries \
+                 them twice: {}",
+                watts(power),
+                share(part),
+                path.join(" → ")
+            ));
+        }
+        all
+    }
+}
+
+fn share(of_input: f64) -> String {
+    if of_input > 0.0 { format!(" ({} % of the input)", digits(100.0 * of_input)) } else { String::new() }
+}
+
+/// A power for people: four digits, in W, kW or MW.
+///
+/// ```
+/// use willis::hypergraph::watts;
+/// assert_eq!([watts(0.0), watts(12.345), watts(423_870.0), watts(-2.5e6)], ["0 W", "12.35 W", "423.9 kW", "-2.5 MW"]);
+/// ```
+pub fn watts(power: f64) -> String {
+    let (scale, unit) = match power.abs() {
+        p if p >= 999.95e3 => (1e6, "MW"),
+        p if p >= 999.95 => (1e3, "kW"),
+        _ => (1.0, "W"),
+    };
+    format!("{} {unit}", digits(power / scale))
+}
+
+/// Four digits.
+fn digits(x: f64) -> String {
+    if x == 0.0 {
+        return "0".into();
+    }
+    let size = x.abs().log10().floor() as i32;
+    if size < -4 {
+        return format!("{x:.1e}");
+    }
+    let text = format!("{x:.*}", (3 - size).clamp(0, 7) as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
