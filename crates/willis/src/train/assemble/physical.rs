@@ -225,8 +225,7 @@ impl Assembler<'_> {
             TEMPERATURE
         });
         self.temperature(&oil, temperature, "oil.temperature");
-        let mist = spec.mist.unwrap_or(crate::losses::windage::AIR_PER_OIL);
-        Some(Lubrication { oil, temperature, supply: spec.supply, volume: spec.volume, mist })
+        Some(Lubrication { oil, temperature, supply: spec.supply, volume: spec.volume, mist: spec.mist })
     }
 
     /// Says when a temperature lies outside what is known of the oil.
