@@ -13,7 +13,8 @@
 //! 7. [`compiled`]: a train made ready for many points;
 //! 8. [`analysis`]: the whole answer, as every front end shows it;
 //! 9. [`regimes`]: every way a train can run, with closed formulas;
-//! 10. [`figure`]: charts and diagrams as data.
+//! 10. [`figure`]: charts and diagrams as data;
+//! 11. [`casebook`]: published numbers beside ours.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
@@ -58,6 +59,7 @@ pub mod operating_point;
 pub mod analysis;
 pub mod regimes;
 pub mod figure;
+pub mod casebook;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;
