@@ -13,6 +13,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use willis::analysis::{self, Analysis, LossRequest, Selection};
+use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::symbolic::Notation;
@@ -226,6 +227,20 @@ enum Command {
         #[arg(long, value_enum, default_value = "text")]
         format: LocateFormat,
     },
+    /// Compare published numbers with ours: what agrees, what does not, and why.
+    ///
+    /// Without a case it lists the cases. Exit status 0 also where a number differs: that is an
+    /// answer.
+    Validate {
+        /// The case, as listed.
+        case: Option<String>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: LocateFormat,
+        /// Write the curves of the case as CSV files into this folder instead.
+        #[arg(long, value_name = "FOLDER", requires = "case")]
+        data: Option<std::path::PathBuf>,
+    },
     /// Check a train file and say everything that is wrong with it.
     Check {
         /// Train file (TOML), or - for standard input.
@@ -432,6 +447,7 @@ fn run(command: &Command) -> Result<String, String> {
                 Format::Json => serde_json::to_string_pretty(&losses::laws_json(&all)).expect("plain data") + "\n",
                 Format::Csv => losses::laws_csv(&all),
             })
+        }
         Command::Flow { file, operation, format, output, law } => {
             let selection = Selection { state: None, operation: operation.clone() };
             let job = Job::read(file)?.with_laws(law)?;
@@ -538,6 +554,7 @@ fn run(command: &Command) -> Result<String, String> {
                 LocateFormat::Json => serde_json::to_string_pretty(&found).expect("plain data") + "\n",
             })
         }
+        Command::Validate { case, format, data } => validate(case.as_deref(), *format, data.as_deref()),
         Command::Check { file } => {
             let job = Job::read(file)?;
             let analysis = job.analyze(&Selection::default())?;
@@ -580,6 +597,34 @@ fn run(command: &Command) -> Result<String, String> {
             written.map(|()| String::new()).map_err(|e| format!("{}: {e}\n", folder.display()))
         }
     }
+}
+
+/// `willis validate`
+fn validate(case: Option<&str>, format: LocateFormat, folder: Option<&std::path::Path>) -> Result<String, String> {
+    let Some(name) = case else {
+        return Ok(match format {
+            LocateFormat::Text => casebook::CASES.iter().map(|c| format!("{:<12}{}\n", c.name, c.about)).collect(),
+            LocateFormat::Json => {
+                let names: Vec<_> = casebook::CASES.iter().map(|c| c.name).collect();
+                serde_json::to_string_pretty(&names).expect("plain data") + "\n"
+            }
+        });
+    };
+    if let (Some(folder), true) = (folder, casebook::CASES.iter().any(|c| c.name == name)) {
+        let files = casebook::data(name).ok_or_else(|| format!("the case `{name}` has no curves\n"))?;
+        for (file, text) in files {
+            output::write(&folder.join(file), text.as_bytes())?;
+        }
+        return Ok(String::new());
+    }
+    let Some(report) = casebook::run(name) else {
+        let known: Vec<_> = casebook::CASES.iter().map(|c| c.name).collect();
+        return Err(format!("there is no case `{name}`; the cases are: {}\n", known.join(", ")));
+    };
+    Ok(match format {
+        LocateFormat::Text => report.to_string(),
+        LocateFormat::Json => serde_json::to_string_pretty(&report).expect("plain data") + "\n",
+    })
 }
 
 /// `member=value` pairs of an option; everything that is wrong with them at once.

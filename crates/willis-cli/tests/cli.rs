@@ -540,6 +540,43 @@ fn regress_json_verdicts() {
 // ---- The other commands ----------------------------------------------------------------------
 
 #[test]
+fn regress_validate() {
+    snapshot!(answered(&["validate"]));
+}
+
+#[test]
+fn regress_validate_wang_2020() {
+    snapshot!(answered(&["validate", "wang-2020"]));
+}
+
+#[test]
+fn regress_validate_json() {
+    assert_eq!(json(&["validate", "--format", "json"]), serde_json::json!(["wang-2020", "losses"]));
+    for case in ["wang-2020", "losses"] {
+        let report = json(&["validate", case, "--format", "json"]);
+        assert_eq!(report["format"], "willis-validation-1");
+        has(&report["sections"][0], &["title", "text", "columns", "rows", "points"]);
+        has(&report["gates"][0], &["what", "printed", "ours", "low", "high", "holds", "cause"]);
+    }
+}
+
+#[test]
+fn regress_validate_data() {
+    let folder = folder("curves");
+    assert_eq!(answered(&["validate", "wang-2020", "--data", path(&folder)]), "");
+    let files = std::fs::read_dir(&folder).expect("the folder").count();
+    assert_eq!(files, 6);
+}
+
+#[test]
+fn regress_validate_unknown() {
+    let said = refused(&command(&["validate", "wang-2021"]).output().expect("the binary runs"), 1);
+    assert!(said.contains("wang-2020, losses"), "{said}");
+    let said = refused(&command(&["validate", "losses", "--data", "."]).output().expect("the binary runs"), 1);
+    assert!(said.contains("has no curves"), "{said}");
+}
+
+#[test]
 fn regress_check_good() {
     snapshot!(answered(&["check", "examples/zf-8hp70.toml"]));
 }

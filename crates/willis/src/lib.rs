@@ -15,7 +15,8 @@
 //! 10. [`analysis`]: the whole answer, as every front end shows it;
 //! 11. [`hypergraph`]: where the power runs, as a graph of components and contacts;
 //! 12. [`regimes`]: every way a train can run, with closed formulas;
-//! 13. [`figure`]: charts and diagrams as data.
+//! 13. [`figure`]: charts and diagrams as data;
+//! 14. [`casebook`]: published losses beside ours.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
@@ -61,6 +62,7 @@ pub mod analysis;
 pub mod hypergraph;
 pub mod regimes;
 pub mod figure;
+pub mod casebook;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;

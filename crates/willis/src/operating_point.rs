@@ -311,9 +311,8 @@ impl<'t> Physics<'t> {
             for (at, w) in loading {
                 let (m, own) = (&flow.meshes[at], &mut losses[at]);
                 let mesh = &self.train.meshes[m.mesh.0];
-                let between = |g: &Gear| {
-                    mount.members == [g.member, mesh.carrier] || mount.members == [mesh.carrier, g.member]
-                };
+                let between =
+                    |g: &Gear| mount.members == [g.member, mesh.carrier] || mount.members == [mesh.carrier, g.member];
                 if weight > 0.0 && speed > 0.0 && m.potential_power > 0.0 && mesh.gears.iter().any(between) {
                     let most = (MOST_LOST - own.total()).max(0.0) * m.potential_power / speed;
                     let part = (proportional * w / weight).min(most).min(torque);

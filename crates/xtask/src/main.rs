@@ -320,6 +320,14 @@ const GENERATED: &[&str] = &[
     "schema/willis-1.schema.json",
     "validation/README.md",
     "validation/esmail-2018-table-1/README.md",
+    "validation/losses/README.md",
+    "validation/wang-2020/report.md",
+    "validation/wang-2020/planets.csv",
+    "validation/wang-2020/speed-constant-torque.csv",
+    "validation/wang-2020/speed-constant-power.csv",
+    "validation/wang-2020/power.csv",
+    "validation/wang-2020/temperature.csv",
+    "validation/wang-2020/lubrication.csv",
     FIGURES[0].0,
     FIGURES[1].0,
 ];
@@ -360,7 +368,8 @@ fn write_generated(context: &Context) -> Result<(), String> {
 
 /// Writes the pages of `validation`.
 fn write_pages(context: &Context) -> Result<(), String> {
-    let words = "cargo test -p willis --test validation --test esmail_table -- --nocapture write_page";
+    let words =
+        "cargo test -p willis --test validation --test esmail_table --test validation_losses -- --nocapture write_page";
     context.output(context.words(words).env("WILLIS_WRITE", "1")).map(drop)
 }
 

@@ -5,7 +5,7 @@ use crate::losses::Outside;
 use crate::losses::churning::Dip;
 use crate::losses::rotor_drag::Drum;
 use crate::losses::seal::Lip;
-use crate::losses::windage::{Disc, mist};
+use crate::losses::windage::{AIR_PER_OIL, Disc, Windage, mist};
 use crate::power_flow::Flow;
 use crate::train::{FRAME, Fluid, MemberId, MemberKind, OilSupply, Rotor, SealMount, Train};
 
@@ -100,7 +100,8 @@ impl Physics<'_> {
         match (fluid, &self.oil) {
             (Fluid::Oil, Some((_, oil))) => (oil.density, oil.dynamic_viscosity),
             (Fluid::Mist, Some((l, oil))) => {
-                (mist(oil.density, AIR.0, l.mist), mist(oil.dynamic_viscosity, AIR.1, l.mist))
+                let parts = l.mist.unwrap_or(AIR_PER_OIL);
+                (mist(oil.density, AIR.0, parts), mist(oil.dynamic_viscosity, AIR.1, parts))
             }
             _ => AIR,
         }
@@ -141,7 +142,11 @@ impl Physics<'_> {
                 law.eval(&dip)
             }
             None => {
-                let (density, viscosity) = self.fluid(Fluid::Mist);
+                // The mist of 34.25 parts of air belongs to the disc formula that was fitted with it; the
+                // other laws were measured in air.
+                let fitted = matches!(laws.windage, Windage::AndersonLoewenthal(_));
+                let fluid = if fitted || lubrication.mist.is_some() { Fluid::Mist } else { Fluid::Air };
+                let (density, viscosity) = self.fluid(fluid);
                 let free = gear.reference_radius;
                 let gap = self.train.housing.axial_gap.map_or(free, |g| g.min(free));
                 let disc = Disc {

@@ -425,7 +425,8 @@ fn nominal(
     z
 }
 
-/// `z_ring = z_sun + 2 z_planet` (unshifted gears of one module).
+/// `z_ring = z_sun + 2 z_planet` (unshifted gears of one module). Where the teeth are given their
+/// centre distances are compared instead.
 fn coaxial(
     a: &mut Assembler<'_>,
     set: &SetSpec,
@@ -437,7 +438,7 @@ fn coaxial(
 ) {
     let needed = &Rational::from(sun) + &(planet * &Rational::from(2));
     let off = &Rational::from(ring) - &needed;
-    if off.is_zero() {
+    if off.is_zero() || set.geometry.is_some() {
         return;
     }
     let message = format!(

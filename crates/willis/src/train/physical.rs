@@ -41,8 +41,8 @@ pub struct Lubrication {
     pub supply: Option<OilSupply>,
     /// Volume in the sump, m³.
     pub volume: Option<f64>,
-    /// Volumes of air to one of oil in the mist.
-    pub mist: f64,
+    /// Volumes of air to one of oil in the mist, where given.
+    pub mist: Option<f64>,
 }
 
 /// Rolling bearings between two members.

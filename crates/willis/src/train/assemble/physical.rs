@@ -233,8 +233,7 @@ impl Assembler<'_> {
             TEMPERATURE
         });
         self.temperature(&oil, temperature, "oil.temperature");
-        let mist = spec.mist.unwrap_or(crate::losses::windage::AIR_PER_OIL);
-        Some(Lubrication { oil, temperature, supply: spec.supply, volume: spec.volume, mist })
+        Some(Lubrication { oil, temperature, supply: spec.supply, volume: spec.volume, mist: spec.mist })
     }
 
     /// Says when a temperature lies outside what is known of the oil.
@@ -492,8 +491,7 @@ impl Assembler<'_> {
         for b in bearings {
             let planets = |m: MemberId| {
                 let of = |x: &&crate::train::Mesh| x.gears.iter().any(|g| g.member == m);
-                planets[m.0]
-                    .then(|| self.meshes.iter().find(of).map_or(1, |x| x.count))
+                planets[m.0].then(|| self.meshes.iter().find(of).map_or(1, |x| x.count))
             };
             b.places = b.members.iter().find_map(|m| planets(*m)).unwrap_or(1);
         }

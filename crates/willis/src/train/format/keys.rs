@@ -168,7 +168,11 @@ static OIL: Table = Table {
             "How the oil gets to gears and bearings: `bath` churns where gears are immersed, `jet` and `mist` turn the gears in air and oil mist.",
         ),
         may("volume", Kind::Quantity(Dimension::VOLUME), "Volume of oil in the sump; needed for churning."),
-        may("mist", Kind::Number, "Volumes of air to one volume of oil in the mist. Default: 34.25."),
+        may(
+            "mist",
+            Kind::Number,
+            "Volumes of air to one volume of oil in the mist. Default: 34.25 for rotors and the windage law anderson-loewenthal; without it gears turn in air under the other laws.",
+        ),
     ],
 };
 
