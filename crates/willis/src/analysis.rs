@@ -563,10 +563,10 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
     all.push(match supply {
         None => "how the oil is supplied is not given: gears in air or oil lose nothing".into(),
         Some(Jet | Mist) => {
-            format!(
-                "gears turn in air and oil mist: windage by `{}`, planets relative to their carrier",
-                train.laws.windage.meta().id
-            )
+            let law = train.laws.windage.meta().id;
+            let mist = train.lubrication.as_ref().is_some_and(|l| l.mist.is_some());
+            let fluid = if mist || law == "anderson-loewenthal" { "air and oil mist" } else { "air" };
+            format!("gears turn in {fluid}: windage by `{law}`, rings as discs, planets relative to their carrier")
         }
         Some(Bath) => format!("churning by `{}` of the gears whose immersion is given", train.laws.churning.meta().id),
         Some(Grease) => "grease: gears in air lose nothing".into(),
