@@ -83,6 +83,8 @@ mod prose {
     struct EveryWayATrainCanRun;
     #[doc = include_str!("../../../book/src/power-split.md")]
     struct APowerSplit;
+    #[doc = include_str!("../../../book/src/planets-and-losses.md")]
+    struct PlanetsAndLosses;
     #[doc = include_str!("../../../book/src/library.md")]
     struct UsingTheLibrary;
 }

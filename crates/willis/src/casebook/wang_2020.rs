@@ -584,9 +584,10 @@ fn planets(report: &mut Report) {
             "Windage: the notes take the absolute speed of the planets, Willis the speed relative to the carrier, with \
              which the mist turns: 5070 instead of 4640 rpm, 1.28 times the loss of the planets.",
             "Rolling: the notes reduce the film by heating at the mean sliding speed (factor 0.22 in stage 1), Willis at \
-             the pitch point, where nothing slides (0.6). Both are far outside the range of the formula: films of 4 to \
+             the pitch point, where nothing slides (0.67). Both are far outside the range of the formula: films of 4 to \
              12 um. Schlenk's coefficient contains rolling already, so by default none is added.",
-            "Bearings of the default: 25 kg a planet and an oil jet; as notes neither.",
+            "Bearings, as notes: Willis has none of the separating forces at sun and rings; what the notes put there is not \
+             said. The default adds 25 kg a planet and an oil jet.",
             "In air: law `diab`, of which the exponent of the face width is an extrapolation here (width over radius 1.2).",
         ]
         .map(String::from),
@@ -617,7 +618,7 @@ fn impossible(report: &mut Report) {
     s.points.extend(
         [
             "The shares 90.5 / 5.3 / 4.2 % to their printed digit: the number of planets is not said; in correct units \
-             windage alone would lose seven to fourteen times as much power as printed.",
+             windage alone would lose nine to thirteen times as much power as printed.",
             "Figures 10 to 19 as drawn: the text has no numbers for them. The constants of Walther's equation, the \
              pressure coefficient, density of oil and air, the friction coefficients of the three lubrication \
              conditions and the data of the two test rigs are not given. `--data` writes the same curves as we compute \
