@@ -19,6 +19,9 @@ use serde::{Serialize, Serializer};
 use crate::analysis::{Analysis, Selection, SolutionReport, analyze};
 use crate::train::Train;
 
+/// Name and text.
+type File = (&'static str, String);
+
 /// A case.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
@@ -27,7 +30,7 @@ pub struct Case {
     /// What it compares.
     pub about: &'static str,
     run: fn() -> Report,
-    data: Option<fn() -> Vec<(&'static str, String)>>,
+    data: Option<fn() -> Vec<File>>,
 }
 
 /// Every case.

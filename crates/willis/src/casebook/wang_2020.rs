@@ -66,12 +66,15 @@ fn paper() -> &'static Paper {
 /// A point to compute: speed of the sun in rpm, input power in kW, oil temperature in °C.
 type Point = (f64, f64, f64);
 
+/// Families and laws, or texts and what stands for them.
+type Pairs<'a> = &'a [(&'a str, &'a str)];
+
 /// The gearbox with other data.
 #[derive(Clone, Copy, Default)]
 struct Variant<'a> {
     planets: u32,
-    laws: &'a [(&'a str, &'a str)],
-    replace: &'a [(&'a str, &'a str)],
+    laws: Pairs<'a>,
+    replace: Pairs<'a>,
 }
 
 /// The assumptions of an independent evaluation of the same gearbox: 80 mm for both helices together,
@@ -522,7 +525,7 @@ fn planets(report: &mut Report) {
         ],
     );
     let rolling = [("mesh_friction", "schlenk"), ("rolling", "anderson-loewenthal")];
-    let models: [(&str, &[(&str, &str)], &[(&str, &str)]); 6] = [
+    let models: [(&str, Pairs<'_>, Pairs<'_>); 6] = [
         ("Schlenk (default)", &[], &[]),
         ("AGMA 6011, shared", &[SHARED], &[]),
         ("AGMA 6011 per planet (the paper)", &[COMPATIBLE], &[]),
