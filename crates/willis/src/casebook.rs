@@ -19,6 +19,9 @@ use serde::{Serialize, Serializer};
 use crate::analysis::{Analysis, Selection, SolutionReport, analyze};
 use crate::train::Train;
 
+/// Name and text.
+type File = (&'static str, String);
+
 /// A case.
 #[derive(Clone, Copy, Debug)]
 pub struct Case {
@@ -27,7 +30,7 @@ pub struct Case {
     /// What it compares.
     pub about: &'static str,
     run: fn() -> Report,
-    data: Option<fn() -> Vec<(&'static str, String)>>,
+    data: Option<fn() -> Vec<File>>,
 }
 
 /// Every case.
@@ -221,7 +224,9 @@ impl fmt::Display for Report {
         let missed = self.gates.iter().filter(|g| !g.holds).count();
         let mut gates = Section::new(
             "Gates",
-            &["Bounds were set before the comparison. A miss stays a miss, with its cause."],
+            &[
+                "Each row says where its bound comes from; some bounds were set with the other number known. A miss stays a miss, with its cause.",
+            ],
             &["what", "printed", "Willis", "from", "to", "verdict"],
         );
         let size = |g: &Gate| g.low.abs().max(g.high.abs()).max(1e-12);

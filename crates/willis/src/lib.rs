@@ -90,6 +90,8 @@ mod prose {
     struct APowerSplit;
     #[doc = include_str!("../../../book/src/power-flow.md")]
     struct WhereThePowerRuns;
+    #[doc = include_str!("../../../book/src/planets-and-losses.md")]
+    struct PlanetsAndLosses;
     #[doc = include_str!("../../../book/src/library.md")]
     struct UsingTheLibrary;
 }

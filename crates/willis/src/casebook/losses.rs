@@ -119,7 +119,7 @@ fn measured_mesh(report: &mut Report) {
         }
     }
     let slope = ours[3] / ours[0];
-    let why = "Schlenk falls with the 0.25th power of the speed; measured friction hardly falls";
+    let why = "Schlenk falls with the 0.2th power of the speed; measured friction hardly falls";
     sheet.band("loss at 8000 over that at 2000 rpm: schlenk", (3.64, 2), slope, [3.47, 3.81], Some(why));
     let file_xu = law(file.clone(), "mesh_friction", "xu-kahraman");
     let analysis = answer(&file_xu);

@@ -287,19 +287,27 @@ impl Physics<'_> {
 
         let mut rolling = 0.0;
         if let (Some(law), Some((_, oil))) = (&self.rolling, &self.oil) {
-            let inlet = loaded.inlet(oil, pitch.sliding, pitch.sum, pitch.pressure);
-            let contact = RollingContact {
-                sum_speed: pitch.sum,
-                radius: pitch.radius,
+            let contact = |p: &Point| RollingContact {
+                sum_speed: p.sum,
+                radius: p.radius,
                 normal_force: normal_force / pair.contact_ratio,
                 length: pair.total_width() / pair.base_helix.cos(),
                 dynamic_viscosity: oil.dynamic_viscosity,
                 pressure_viscosity: oil.pressure_viscosity,
                 reduced_modulus: teeth.reduced_modulus(),
-                film_reduction: laws.film_reduction.eval(&inlet),
+                film_reduction: laws.film_reduction.eval(&loaded.inlet(oil, p.sliding, p.sum, p.pressure)),
             };
-            note(beyond, "rolling", law.meta().id, law.outside(&contact));
-            rolling = law.eval(&contact) * pair.contact_ratio * parallel;
+            if beyond.is_some() {
+                note(beyond, "rolling", law.meta().id, law.outside(&contact(&pitch)));
+            }
+            // Mean over the path: away from the pitch point sliding heats the inlet and thins the film.
+            let (middle, half) = ((start + end) / 2.0, (end - start) / 2.0);
+            let mean: f64 = GAUSS
+                .into_iter()
+                .flat_map(|(node, w)| [(node, w), (-node, w)])
+                .map(|(node, w)| 0.5 * w * law.eval(&contact(&loaded.point(middle + half * node))))
+                .sum();
+            rolling = mean * pair.contact_ratio * parallel;
         }
         (report, if rolling.is_finite() { rolling.max(0.0) } else { 0.0 })
     }
