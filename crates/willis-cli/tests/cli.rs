@@ -682,6 +682,7 @@ fn mask_balance(text: &str) -> String {
     let masked = |line: &str| {
         let cut = line.rfind(' ').map(|k| line.split_at(k + 1));
         match cut {
+            Some((head, "[round-off]")) => format!("{} [round-off]", head.trim_end()),
             Some((head, last)) if last.contains('e') && last.parse::<f64>().is_ok_and(|x| x.abs() < 1e-3) => {
                 format!("{} [round-off]", head.trim_end())
             }

@@ -395,3 +395,52 @@ fn prop_random_trains_balance_and_names_do_not_matter() {
     }
     assert!(count > 100 && rounds > 10, "{count} {rounds}");
 }
+
+/// Bearings of an ordinary pair carry its tooth forces, and one sits between two turning shafts: what their
+/// friction takes from the mesh leaves every node in balance.
+#[test]
+fn bearings_that_the_teeth_load_balance_on_central_shafts() {
+    let text = r#"
+format = 1
+name = "pair with bearings"
+members = ["a", "b"]
+terminals = ["a", "b"]
+[oil]
+name = "VG 100"
+viscosity_40 = "100 mm^2/s"
+viscosity_100 = "11 mm^2/s"
+density_15 = "880 kg/m^3"
+temperature = "60 degC"
+supply = "jet"
+[[mesh]]
+name = "M"
+gears = [{ member = "a", teeth = 20 }, { member = "b", teeth = 60 }]
+geometry = { module = "4 mm", width = "50 mm", helix = "15 deg", roughness = "0.6 um" }
+[[bearing]]
+name = "A"
+members = ["a"]
+designation = "NU 206"
+count = 2
+[[bearing]]
+name = "B"
+members = ["b", "a"]
+designation = "6210"
+[[operation]]
+name = "load"
+speeds = { a = "1500 rpm" }
+torques = { a = "100 N m" }
+"#;
+    let g = flow_of(text, "load");
+    check("pair", &g);
+    let a = g.node("bearing:A").unwrap();
+    assert!(a.loss_w > 1.0 && a.power_out_w == 0.0);
+    // Between two shafts: power in at one, out at the other or lost.
+    assert!(g.node("bearing:B").unwrap().loss_w > 0.0);
+    let contained = analyze(&Train::from_toml(text).unwrap(), &Selection::default()).unwrap().operations[0].solutions
+        [0]
+    .drags
+    .iter()
+    .filter(|d| d.contained_in.is_some())
+    .count();
+    assert!(contained >= 2, "{contained}");
+}
