@@ -64,10 +64,10 @@ fn graph(g: &Hypergraph) -> String {
     );
     let rounds = g.recirculation();
     if rounds.is_empty() {
-        out += "  recirculates nothing\n";
+        out += "  in circles   nothing\n";
     }
     for text in &rounds {
-        out += &wrap(text, "  recirculates ");
+        out += &wrap(text, "  in circles   ");
         out.push('\n');
     }
 

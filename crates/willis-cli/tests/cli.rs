@@ -818,3 +818,97 @@ fn regress_table_without_csv() {
     // An option that does nothing is not ignored in silence.
     refused(&run(&["analyze", "examples/zf-8hp70.toml", "--table", "states"]), 2);
 }
+
+// ---- flow ------------------------------------------------------------------------------------
+
+/// The last column of its tables is round-off.
+fn mask_balance(text: &str) -> String {
+    let masked = |line: &str| {
+        let cut = line.rfind(' ').map(|k| line.split_at(k + 1));
+        match cut {
+            Some((head, "[round-off]")) => format!("{} [round-off]", head.trim_end()),
+            Some((head, last)) if last.contains('e') && last.parse::<f64>().is_ok_and(|x| x.abs() < 1e-3) => {
+                format!("{} [round-off]", head.trim_end())
+            }
+            Some((head, "0")) => format!("{} [round-off]", head.trim_end()),
+            _ => line.to_owned(),
+        }
+    };
+    mask(text).lines().map(|l| masked(l) + "\n").collect()
+}
+
+#[test]
+fn regress_flow_herringbone() {
+    snapshot!(mask_balance(&answered(&["flow", "examples/wang-herringbone.toml"])));
+}
+
+#[test]
+fn regress_flow_compound_split() {
+    snapshot!(mask_balance(&answered(&["flow", "examples/compound-split.toml"])));
+}
+
+#[test]
+fn regress_flow_locked() {
+    let arguments = ["flow", "examples/wolfrom-498-self-locking.toml", "--operation", "ring helps by 50 N m"];
+    snapshot!(mask_balance(&answered(&arguments)));
+}
+
+#[test]
+fn flow_as_json_has_the_contract() {
+    let json: Value =
+        serde_json::from_str(&answered(&["flow", "examples/two-efficiencies.toml", "--format", "json"])).expect("JSON");
+    assert_eq!(json["format"], "willis-flow-1");
+    assert_eq!(json["operations"][0]["solutions"].as_array().map(Vec::len), Some(2));
+    let graph = &json["operations"][0]["solutions"][0];
+    for list in ["nodes", "edges", "loops", "paths"] {
+        assert!(graph[list].as_array().is_some_and(|a| !a.is_empty()), "{list}");
+    }
+    assert!(graph["nodes"][0]["power_in_w"].is_number());
+}
+
+#[test]
+fn flow_writes_what_the_file_name_says() {
+    let folder = folder("flow");
+    for (name, begins) in [("f.svg", "<svg"), ("f.dot", "digraph"), ("f.json", "{"), ("f.txt", "Two-stage")] {
+        let file = folder.join(name);
+        assert_eq!(answered(&["flow", "examples/wang-herringbone.toml", "-o", path(&file)]), "");
+        let text = std::fs::read_to_string(&file).expect("a file");
+        assert!(text.starts_with(begins), "{name}: {text}");
+        assert!(!text.contains('\u{1b}'), "{name} has colours");
+    }
+}
+
+/// Strings closed, braces paired, every statement ended: what Graphviz asks for.
+#[test]
+fn flow_as_dot_is_well_formed() {
+    for file in ["examples/zf-8hp70.toml", "examples/two-efficiencies.toml", "examples/esmail-fig1.toml"] {
+        let dot = answered(&["flow", file, "--format", "dot"]);
+        let (mut depth, mut string, mut escaped) = (0i32, false, false);
+        let mut bare = String::new();
+        for c in dot.chars() {
+            match (string, c) {
+                (true, _) if escaped => escaped = false,
+                (true, '\\') => escaped = true,
+                (_, '"') => string = !string,
+                (false, '{' | '[') => depth += 1,
+                (false, '}' | ']') => depth -= 1,
+                _ => {}
+            }
+            assert!(depth >= 0, "{file}");
+            if !string && c != '"' {
+                bare.push(c);
+            }
+        }
+        assert!(depth == 0 && !string, "{file}");
+        for line in bare.lines().map(str::trim).filter(|l| !l.is_empty()) {
+            assert!(line.ends_with([';', '{', '}']), "{file}: {line}");
+        }
+    }
+}
+
+#[test]
+fn regress_flow_wrong_questions() {
+    let mut all = refused(&run(&["flow", "examples/prius-p112.toml", "--operation", "acceleration"]), 1);
+    all += &refused(&run(&["flow", "examples/zf-6hp26.toml"]), 1);
+    snapshot!(all);
+}

@@ -19,7 +19,7 @@ use willis::hypergraph::{FlowReport, Hypergraph, Node, NodeKind, watts};
 ///     .operation(
 ///         OperationSpec::new("full load")
 ///             .speed("s", AngularSpeed::rpm(1000.0))
-///             .torque("s", Torque::newton_metres(10.0)),
+///             .torque("s", Torque::n_m(10.0)),
 ///     )
 ///     .build()?;
 /// let dot = willis_report::flow_dot(&willis::hypergraph::flows(&train, &Default::default())?);

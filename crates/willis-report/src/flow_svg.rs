@@ -47,7 +47,7 @@ const GROUND: f64 = 13.0;
 ///     .operation(
 ///         OperationSpec::new("full load")
 ///             .speed("s", AngularSpeed::rpm(1000.0))
-///             .torque("s", Torque::newton_metres(10.0)),
+///             .torque("s", Torque::n_m(10.0)),
 ///     )
 ///     .build()?;
 /// let figure = willis_report::flow_svg(&willis::hypergraph::flows(&train, &Default::default())?);
@@ -363,13 +363,22 @@ impl Drawing {
             })
             .collect();
         let largest = g.edges.iter().fold(f64::MIN_POSITIVE, |a, e| a.max(e.power_w));
-        let sizes: Vec<f64> = (0..shown.len()).map(|k| R + 17.0 + if leans[k] { GROUND } else { 0.0 }).collect();
+        let width = |p: f64| if p > 0.0 { (WIDEST * p / largest).max(1.0) } else { 0.0 };
+        // Lines side by side may be higher than the symbol.
+        let stack = |k: usize, left: bool| -> f64 {
+            let mine = |e: &(usize, usize)| if left { e.1 == k } else { e.0 == k };
+            let own = pairs.iter().zip(&edges).filter(|(e, _)| mine(e));
+            own.map(|(_, j)| width(g.edges[*j].power_w).max(1.0) + 1.5).sum()
+        };
+        let more: Vec<f64> =
+            (0..shown.len()).map(|k| (stack(k, true).max(stack(k, false)) / 2.0 - R).max(0.0)).collect();
+        let sizes: Vec<f64> =
+            (0..shown.len()).map(|k| R + 17.0 + more[k] + if leans[k] { GROUND } else { 0.0 }).collect();
         let (mut all, routes) = places(&sizes, &pairs);
 
         let mut lines: Vec<Line> = Vec::new();
         for ((&edge, route), &(left, _)) in edges.iter().zip(&routes).zip(&pairs) {
             let e = &g.edges[edge];
-            let width = |p: f64| if p > 0.0 { (WIDEST * p / largest).max(1.0) } else { 0.0 };
             let passes = |l: &&willis::hypergraph::Loop| {
                 (0..l.nodes.len()).any(|k| l.nodes[k] == e.from && l.nodes[(k + 1) % l.nodes.len()] == e.to)
             };
@@ -461,7 +470,7 @@ impl Drawing {
         }
         for p in all.iter() {
             if let Some(k) = p.node {
-                group = group.add(symbol(shown[k], middle[p.column], p.y, leans[k]));
+                group = group.add(symbol(shown[k], middle[p.column], p.y, leans[k], more[k]));
             }
         }
         for (b, words) in &labels {
@@ -595,7 +604,7 @@ fn label(
                 }
                 let crossed = others.iter().filter(|p| place.holds(**p)).count();
                 let through = (0..=24).filter(|i| place.holds(bend(a, b, f64::from(*i) / 24.0))).count();
-                let cost = far + 3.0 * crossed as f64 + 1.0 * through as f64 + 8.0 * (t - 0.5).abs() + gap as f64;
+                let cost = far + 3.0 * crossed as f64 + 2.5 * through as f64 + 8.0 * (t - 0.5).abs() + gap as f64;
                 if best.as_ref().is_none_or(|b| cost < b.0) {
                     best = Some((cost, place));
                 }
@@ -655,7 +664,7 @@ fn draw(l: &Line, g: &Hypergraph) -> Group {
     let main = match (whole, l.round[0] > 0.0) {
         (true, true) => colour(Some(1), 0.9),
         (true, false) => colour(Some(4), 1.0),
-        _ => blue,
+        _ => blue.clone(),
     };
     group = group.add(stroke(&main, l.width));
     if l.round[1] > 0.0 && !whole {
@@ -664,6 +673,11 @@ fn draw(l: &Line, g: &Hypergraph) -> Group {
     if l.round[0] > 0.0 && !whole {
         group = group.add(stroke(&colour(Some(1), 0.9), l.round[0]));
     }
+    let head_colour = match e.circulating_w > 0.5 * e.power_w {
+        true if l.round[0] >= l.round[1] => colour(Some(1), 0.9),
+        true => colour(Some(4), 1.0),
+        false => blue,
+    };
     let (tip, base, y) = match l.backwards {
         true => (left, left + long, points[0].1),
         false => (right, right - long, points[last].1),
@@ -682,7 +696,7 @@ fn draw(l: &Line, g: &Hypergraph) -> Group {
                     number(y + head)
                 ),
             )
-            .set("fill", main),
+            .set("fill", head_colour),
     )
 }
 
@@ -744,15 +758,15 @@ fn ground(x: f64, y: f64) -> Group {
     g
 }
 
-fn symbol(n: &Node, x: f64, y: f64, leans: bool) -> Group {
+fn symbol(n: &Node, x: f64, y: f64, leans: bool, more: f64) -> Group {
     let mut g = Group::new();
     if leans {
         g = g.add(ground(x, y));
     }
-    let below = y + R + 12.0 + if leans { GROUND - 2.0 } else { 0.0 };
+    let below = y + R + 12.0 + if leans { (GROUND - 2.0).max(more) } else { more };
     g = g.add(shape(n.kind, x, y));
     let bold = matches!(n.kind, NodeKind::Member | NodeKind::Input | NodeKind::Output);
-    let mut title = halo(text(x, y - R - 6.0, SMALL, Anchor::Middle, &name(n)));
+    let mut title = halo(text(x, y - R - 6.0 - more, SMALL, Anchor::Middle, &name(n)));
     if bold {
         title = title.set("font-weight", "bold");
     }
@@ -783,10 +797,10 @@ fn legend(kinds: &[NodeKind], [round, within, ground_marks, rest]: [bool; 4], to
         entries.push((sample(colour(Some(0), 0.8), 5.0), "power, the wider the more"));
     }
     if round {
-        entries.push((sample(colour(Some(1), 0.9), 5.0), "power that runs in a circle"));
+        entries.push((sample(colour(Some(1), 0.9), 5.0), "runs in a circle"));
     }
     if within {
-        entries.push((sample(colour(Some(4), 1.0), 5.0), "the same within one set"));
+        entries.push((sample(colour(Some(4), 1.0), 5.0), "runs in a circle within one set"));
     }
     if rest {
         let dashed = line((0.0, 0.0), (22.0, 0.0), LINE, 1.0).set("stroke-dasharray", "3 3");

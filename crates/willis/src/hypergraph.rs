@@ -127,8 +127,11 @@ pub struct Loop {
     pub share_of_input: f64,
     /// Identifiers of the nodes it passes, in order; from the last it returns to the first.
     pub nodes: Vec<String>,
-    /// The set, or ordinary pair, that it never leaves. Such a loop depends on the frame in which
-    /// powers are counted, not on how the train is coupled.
+    /// The same seen from afar: names of shafts, sets and clutches.
+    pub passes: Vec<String>,
+    /// The set, or ordinary pair, that it never leaves; or the sets it passes although none of them
+    /// takes part in a circle as a whole ([`SolutionReport::recirculation`], which counts set by set). Such a
+    /// loop depends on the frame in which powers are counted, not on how the train is coupled.
     pub within: Option<String>,
 }
 
@@ -236,7 +239,7 @@ pub struct FlowReport {
 ///     .operation(
 ///         OperationSpec::new("full load")
 ///             .speed("s", AngularSpeed::rpm(1000.0))
-///             .torque("s", Torque::newton_metres(10.0)),
+///             .torque("s", Torque::n_m(10.0)),
 ///     )
 ///     .build()?;
 /// let flow = &flows(&train, &Selection::default())?.operations[0].solutions[0];
@@ -537,7 +540,7 @@ fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]
         }
     }
 
-    let input = solution.input_power_w;
+    let (input, train) = (solution.input_power_w, g.train);
     let mut powers: Vec<(usize, usize, f64)> =
         lines.iter().filter(|l| l.power > 0.0).map(|l| (l.from, l.to, l.power)).collect();
     powers.sort_by_key(|e| (e.0, e.1));
@@ -561,7 +564,13 @@ fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]
         let nodes: Vec<String> = t.edges.iter().map(|e| g.nodes[e.0].id.clone()).collect();
         match told.iter_mut().find(|l| l.nodes == nodes) {
             Some(l) => l.power_w += t.power,
-            None => told.push(Loop { power_w: t.power, share_of_input: 0.0, nodes, within: t.within }),
+            None => {
+                let passes = from_afar(&g, &t.edges);
+                let sets = |n: &&String| train.sets().iter().any(|s| s.name == **n);
+                let counted = || passes.iter().filter(sets).cloned().collect::<Vec<_>>().join(", ");
+                let within = t.within.or_else(|| solution.recirculation.is_empty().then(counted));
+                told.push(Loop { power_w: t.power, share_of_input: 0.0, nodes, passes, within });
+            }
         }
     }
     told.retain(|l| l.power_w > SMALLEST_LOOP * input);
@@ -632,6 +641,42 @@ fn loops(g: &Sketch<'_>, powers: &mut Vec<(usize, usize, f64)>) -> Vec<Taken> {
         taken.push(Taken { power, edges, within: None });
     }
     taken
+}
+
+/// The shafts and sets of a cycle: planets and single contacts of a set are the set.
+fn from_afar(g: &Sketch<'_>, cycle: &[(usize, usize)]) -> Vec<String> {
+    let train = g.train;
+    let family = families(train);
+    let set = |j: usize| {
+        let first = family.iter().position(|f| *f == family[j]).unwrap_or(j);
+        let mesh = &train.meshes()[first];
+        mesh.set.map_or(&mesh.name, |s| &train.sets()[s].name).clone()
+    };
+    let mut all: Vec<(bool, String)> = Vec::new();
+    for (k, _) in cycle {
+        let node = &g.nodes[*k];
+        let station = match node.kind {
+            NodeKind::Member if train.members()[*k].kind == MemberKind::Planet => {
+                let of = |m: &crate::train::Mesh| m.gears.iter().any(|x| x.member.index() == *k);
+                train.meshes().iter().position(of).map_or(node.name.clone(), set)
+            }
+            NodeKind::Teeth => train.mesh(&node.name).map_or(node.name.clone(), |m| set(m.index())),
+            _ => node.name.clone(),
+        };
+        let station = (node.kind == NodeKind::Member && train.members()[*k].kind != MemberKind::Planet, station);
+        if all.last() != Some(&station) {
+            all.push(station);
+        }
+    }
+    if all.len() > 1 && all.first() == all.last() {
+        all.pop();
+    }
+    // It begins at the shaft that the train lists first.
+    let place =
+        |s: &(bool, String)| if s.0 { train.member(&s.1).map_or(usize::MAX, MemberId::index) } else { usize::MAX };
+    let first = (0..all.len()).min_by_key(|&i| place(&all[i])).unwrap_or(0);
+    all.rotate_left(first);
+    all.into_iter().map(|s| s.1).collect()
 }
 
 /// The powers without cycles: what leaves each node, and where.
@@ -783,35 +828,40 @@ impl Hypergraph {
 
     /// Recirculation in words, one sentence each; empty when no power runs in a circle.
     ///
-    /// Loops within one set are told as one: they depend on the frame in which powers are counted.
+    /// Loops that pass the same shafts and sets are told as one.
     pub fn recirculation(&self) -> Vec<String> {
-        let name = |id: &String| self.nodes.iter().find(|n| n.id == *id).map_or("", |n| n.name.as_str());
-        let mut all: Vec<String> = Vec::new();
-        for l in self.loops.iter().filter(|l| l.within.is_none()) {
-            let path: Vec<&str> = l.nodes.iter().chain(l.nodes.first()).map(name).collect();
-            all.push(format!("{} run in a circle{}: {}", watts(l.power_w), share(l.share_of_input), path.join(" → ")));
-        }
-        let mut sets: Vec<&String> = self.loops.iter().filter_map(|l| l.within.as_ref()).collect();
-        sets.dedup();
-        let mut told: Vec<&String> = Vec::new();
-        for set in sets {
-            if told.contains(&set) {
-                continue;
+        let mut rounds: Vec<(&Loop, f64)> = Vec::new();
+        for l in &self.loops {
+            let same = |o: &Loop| match (&o.within, &l.within) {
+                (None, None) => o.passes == l.passes,
+                (a, b) => a == b,
+            };
+            match rounds.iter_mut().find(|(o, _)| same(o)) {
+                Some((_, power)) => *power += l.power_w,
+                None => rounds.push((l, l.power_w)),
             }
-            told.push(set);
-            let own: Vec<&Loop> = self.loops.iter().filter(|l| l.within.as_ref() == Some(set)).collect();
-            let power: f64 = own.iter().map(|l| l.power_w).sum();
-            let part: f64 = own.iter().map(|l| l.share_of_input).sum();
-            let path: Vec<&str> = own[0].nodes.iter().chain(own[0].nodes.first()).map(name).collect();
-            all.push(format!(
-                "within {set} {}{} run in a circle as powers are counted, in the frame of the housing; no shaft carries \
-                 them twice: {}",
-                watts(power),
-                share(part),
-                path.join(" → ")
-            ));
         }
-        all
+        rounds.sort_by_key(|(l, _)| l.within.is_some());
+        let name = |id: &String| self.nodes.iter().find(|n| n.id == *id).map_or("", |n| n.name.as_str());
+        let sentence = |(l, power): &(&Loop, f64)| {
+            let share = share(if self.input_power_w > 0.0 { power / self.input_power_w } else { 0.0 });
+            match &l.within {
+                None => {
+                    let path: Vec<&str> = l.passes.iter().chain(l.passes.first()).map(String::as_str).collect();
+                    format!("{} run in a circle{share}: {}", watts(*power), path.join(" → "))
+                }
+                Some(set) => {
+                    let path: Vec<&str> = l.nodes.iter().chain(l.nodes.first()).map(name).collect();
+                    format!(
+                        "within {set} {}{share} run in a circle as powers are counted in the frame of the housing, not \
+                         through the train: {}",
+                        watts(*power),
+                        path.join(" → ")
+                    )
+                }
+            }
+        };
+        rounds.iter().map(sentence).collect()
     }
 }
 

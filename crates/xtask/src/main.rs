@@ -330,6 +330,7 @@ const GENERATED: &[&str] = &[
     "validation/wang-2020/lubrication.csv",
     FIGURES[0].0,
     FIGURES[1].0,
+    FIGURES[2].0,
 ];
 
 /// Figures of the book, and what draws them.
@@ -350,6 +351,7 @@ const FIGURES: &[(&str, &[&str])] = &[
             "--map",
         ],
     ),
+    ("book/src/figures/herringbone-flow.svg", &["flow", "examples/wang-herringbone.toml", "--output"]),
 ];
 
 /// Writes every generated file. Needs the optimised program.
@@ -448,7 +450,13 @@ fn examples(context: &Context) -> Outcome {
                 &["regimes", json[0], json[1]],
                 &["formula", "--derivatives"],
             ];
-            for arguments in questions {
+            // A power flow needs an operating point.
+            let text = fs::read_to_string(context.root.join(file)).map_err(|e| format!("{file}: {e}"))?;
+            let flows: &[&[&str]] = match text.lines().any(|l| l.trim() == "[[operation]]") {
+                true => &[&["flow"], &["flow", "--format", "json"], &["flow", "--format", "svg"]],
+                false => &[],
+            };
+            for arguments in questions.iter().chain(flows).copied() {
                 let mut command = context.willis();
                 match context.output(command.args(arguments).arg(file)) {
                     Err(e) => wrong.push(e),
@@ -463,7 +471,7 @@ fn examples(context: &Context) -> Outcome {
     };
     match all() {
         Ok(count) => {
-            println!("{count} example trains: check, analyze, regimes, formula, and as JSON");
+            println!("{count} example trains: check, analyze, regimes, formula, flow, and as JSON");
             Outcome::Passed
         }
         Err(e) => Outcome::Failed(e),
