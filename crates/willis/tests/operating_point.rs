@@ -122,10 +122,13 @@ fn close(is: f64, should: f64, tolerance: f64) {
     assert!((is - should).abs() <= tolerance * should.abs(), "{is}, not {should}: off by {:e}", is / should - 1.0);
 }
 
-const RATED: &str = "[[operation]]\nname = \"rated\"\nspeeds = { sun = \"1500 rpm\" }\ntorques = { sun = \"1591.549 N m\" }\n";
+const RATED: &str =
+    "[[operation]]\nname = \"rated\"\nspeeds = { sun = \"1500 rpm\" }\ntorques = { sun = \"1591.549 N m\" }\n";
 
 fn load(speed: &str, member: &str, torque: f64) -> String {
-    format!("[[operation]]\nname = \"load\"\nspeeds = {{ sun = \"{speed}\" }}\ntorques = {{ {member} = \"{torque:e} N m\" }}\n")
+    format!(
+        "[[operation]]\nname = \"load\"\nspeeds = {{ sun = \"{speed}\" }}\ntorques = {{ {member} = \"{torque:e} N m\" }}\n"
+    )
 }
 
 // ---- A second calculation ------------------------------------------------------------------------
@@ -173,10 +176,7 @@ fn second(split: bool) -> Second {
         let double = whole(all - 1.0) - whole(0.0) + whole(all) - whole(1.0);
         2.0 * PI * k * (0.5 * double + whole(1.0) - whole(all - 1.0))
     };
-    let h = [
-        factor(1.0 / z_s + 1.0 / z_p, [over(r_s), over(r_p)]),
-        factor(1.0 / z_p - 1.0 / z_r, [over(r_p), ring]),
-    ];
+    let h = [factor(1.0 / z_s + 1.0 / z_p, [over(r_s), over(r_p)]), factor(1.0 / z_p - 1.0 / z_r, [over(r_p), ring])];
     let rho_red = [r_s * r_p / (r_s + r_p), r_p * r_r / (r_r - r_p)].map(|r| r * alpha.sin());
     let sum_speed = 2.0 * sun * r_s * alpha.sin();
     let mu = |base_force: f64, k: usize| {
@@ -332,7 +332,11 @@ fn teeth_see_the_carrier_frame() {
 
 #[test]
 fn without_friction_nothing_is_lost() {
-    let s = only(&bare(SET, "mesh_friction = \"constant\"\nfriction_coefficient = 0", &load("1000 rpm", "sun", 50.0).replace("speeds", "fixed = [\"ring\"]\nspeeds")));
+    let s = only(&bare(
+        SET,
+        "mesh_friction = \"constant\"\nfriction_coefficient = 0",
+        &load("1000 rpm", "sun", 50.0).replace("speeds", "fixed = [\"ring\"]\nspeeds"),
+    ));
     assert_eq!(s.efficiency, Some(1.0));
     assert_eq!(s.loss_w, 0.0);
     close(torque(&s, "carrier"), -50.0 * 10.0 / 3.0, 1e-14);
@@ -343,7 +347,9 @@ fn order_and_names_do_not_matter() {
     let text = stage(3, 50.0, "", RATED);
     let plain = only(&text);
     let renamed = text.replace("\"carrier\"", "\"arm\"").replace("\"sun\"", "\"a\"").replace("sun = \"1", "a = \"1");
-    let turned = renamed.replace("[\"a\", \"arm\"]", "[\"arm\", \"a\"]").replace("terminals = [\"arm\", \"a\"]", "terminals = [\"a\", \"arm\"]");
+    let turned = renamed
+        .replace("[\"a\", \"arm\"]", "[\"arm\", \"a\"]")
+        .replace("terminals = [\"arm\", \"a\"]", "terminals = [\"a\", \"arm\"]");
     let other = only(&turned);
     close(other.loss_w, plain.loss_w, 1e-13);
     close(torque(&other, "arm"), torque(&plain, "carrier"), 1e-13);
@@ -423,7 +429,8 @@ fn planet_bearing(text: &str) -> willis::operating_point::BearingReport {
     only(text).bearings.get("b").unwrap().clone()
 }
 
-const B: &str = "[[bearing]]\nname = \"b\"\nmembers = [\"P1.planet\", \"carrier\"]\ndesignation = \"NU 204\"\ncount = 2\n";
+const B: &str =
+    "[[bearing]]\nname = \"b\"\nmembers = [\"P1.planet\", \"carrier\"]\ndesignation = \"NU 204\"\ncount = 2\n";
 const O: &str = "[[operation]]\nname = \"o\"\nfixed = [\"ring\"]\nspeeds = { sun = \"1000 rpm\" }\ntorques = { sun = \"100 N m\" }\n";
 
 #[test]
@@ -545,11 +552,24 @@ fn shafts_of_a_pair_carry_the_whole_force() {
 fn every_type_of_set() {
     let geometry = "geometry = { module = \"2 mm\", width = \"20 mm\", roughness = \"0.4 um\" }";
     let o = "[[operation]]\nname = \"o\"\nfixed = [\"carrier\"]\nspeeds = { sun = \"1000 rpm\" }\ntorques = { sun = \"50 N m\" }\n";
-    let bearing = |planet: &str| format!("[[bearing]]\nname = \"{planet}\"\nmembers = [\"P1.{planet}\", \"carrier\"]\ndesignation = \"NU 203\"\n");
+    let bearing = |planet: &str| {
+        format!(
+            "[[bearing]]\nname = \"{planet}\"\nmembers = [\"P1.{planet}\", \"carrier\"]\ndesignation = \"NU 203\"\n"
+        )
+    };
     for (parts, planets) in [
-        ("type = \"double-planet\"\nsun = { member = \"sun\", teeth = 24 }\ninner_planet = { teeth = 18, count = 3 }\nouter_planet = { teeth = 18, count = 3 }\nring = { member = \"ring\", teeth = 84 }", vec!["inner_planet", "outer_planet"]),
-        ("type = \"stepped\"\nsuns = [ { member = \"sun\", teeth = 20, planet_teeth = 40 } ]\nrings = [ { member = \"ring\", teeth = 80, planet_teeth = 20 } ]\nplanet = { count = 3 }", vec!["planet"]),
-        ("type = \"ravigneaux\"\nsmall_sun = { member = \"sun\", teeth = 24 }\nshort_planet = { teeth = 20, count = 3 }\nlong_planet = { teeth = 22, count = 3 }\nring = { member = \"ring\", teeth = 76 }\n", vec!["short_planet", "long_planet"]),
+        (
+            "type = \"double-planet\"\nsun = { member = \"sun\", teeth = 24 }\ninner_planet = { teeth = 18, count = 3 }\nouter_planet = { teeth = 18, count = 3 }\nring = { member = \"ring\", teeth = 84 }",
+            vec!["inner_planet", "outer_planet"],
+        ),
+        (
+            "type = \"stepped\"\nsuns = [ { member = \"sun\", teeth = 20, planet_teeth = 40 } ]\nrings = [ { member = \"ring\", teeth = 80, planet_teeth = 20 } ]\nplanet = { count = 3 }",
+            vec!["planet"],
+        ),
+        (
+            "type = \"ravigneaux\"\nsmall_sun = { member = \"sun\", teeth = 24 }\nshort_planet = { teeth = 20, count = 3 }\nlong_planet = { teeth = 22, count = 3 }\nring = { member = \"ring\", teeth = 76 }\n",
+            vec!["short_planet", "long_planet"],
+        ),
     ] {
         let all: String = planets.iter().map(|p| bearing(p)).collect();
         let set = format!("[[set]]\nname = \"P1\"\ncarrier = \"carrier\"\n{geometry}\n{parts}\n");
@@ -560,7 +580,11 @@ fn every_type_of_set() {
             let force = 50.0 / 3.0 / 24e-3;
             assert!(b.radial_load_n > 0.5 * force && b.radial_load_n < 5.0 * force, "{b:?}");
         }
-        assert!(s.contacts.iter().all(|c| c.1.friction.is_some_and(|mu| (0.01..0.12).contains(&mu))), "{:?}", s.contacts);
+        assert!(
+            s.contacts.iter().all(|c| c.1.friction.is_some_and(|mu| (0.01..0.12).contains(&mu))),
+            "{:?}",
+            s.contacts
+        );
         assert!((0.9..1.0).contains(&s.efficiency.unwrap()), "{parts}: {:?}", s.efficiency);
     }
 }
@@ -610,7 +634,9 @@ fn bearing_friction_changes_the_verdict() {
     assert_eq!(first(&wolfrom("", rough, COAST)).verdict, Verdict::Locked);
     // The same smooth teeth with many large bearings on each planet: load-dependent friction locks.
     let bearing = |count: usize, size: &str| {
-        format!("[[bearing]]\nname = \"b\"\nmembers = [\"W.planet\", \"arm\"]\n{size}\ncount = {count}\nsupply = \"mist\"\n")
+        format!(
+            "[[bearing]]\nname = \"b\"\nmembers = [\"W.planet\", \"arm\"]\n{size}\ncount = {count}\nsupply = \"mist\"\n"
+        )
     };
     let small = "designation = \"NU 203\"";
     let large = "kind = \"spherical-roller\"\nseries = \"230\"\nbore = \"300 mm\"\noutside_diameter = \"460 mm\"\nwidth = \"118 mm\"\nstatic_rating = \"1 N\"";
@@ -618,7 +644,13 @@ fn bearing_friction_changes_the_verdict() {
     assert_eq!(light.verdict, Verdict::Unique, "{:?}", light.reason);
     assert!(light.solutions[0].efficiency.unwrap() < free.solutions[0].efficiency.unwrap());
     let heavy = first(&wolfrom(&bearing(1, large), smooth, COAST));
-    assert_eq!(heavy.verdict, Verdict::Locked, "{:?} {:?}", heavy.reason, heavy.solutions.first().map(|s| s.efficiency));
+    assert_eq!(
+        heavy.verdict,
+        Verdict::Locked,
+        "{:?} {:?}",
+        heavy.reason,
+        heavy.solutions.first().map(|s| s.efficiency)
+    );
     // Driven forward it runs, or drowns in drag; it is not locked.
     assert_ne!(first(&wolfrom(&bearing(1, small), smooth, DRIVE)).verdict, Verdict::Locked);
 }
@@ -669,16 +701,24 @@ fn a_train_at_rest_has_loads_and_no_losses() {
 
 #[test]
 fn a_block_turns_without_tooth_losses() {
-    let text = bare(SET, "", &format!(
-        "[[shift_element]]\nname = \"C\"\nkind = \"clutch\"\nmembers = [\"sun\", \"ring\"]\n\
+    let text = bare(
+        SET,
+        "",
+        &format!(
+            "[[shift_element]]\nname = \"C\"\nkind = \"clutch\"\nmembers = [\"sun\", \"ring\"]\n\
          [[shift_element]]\nname = \"B\"\nkind = \"brake\"\nmembers = [\"ring\"]\n\
          [[state]]\nname = \"direct\"\nengaged = [\"C\"]\n[[state]]\nname = \"low\"\nengaged = [\"B\"]\n{B}\
          [[bearing]]\nname = \"c\"\nmembers = [\"carrier\"]\ndesignation = \"6210\"\nradial_load = \"500 N\"\n\
          [[operation]]\nname = \"direct\"\nstate = \"direct\"\nspeeds = {{ sun = \"1000 rpm\" }}\ntorques = {{ sun = \"100 N m\", ring = \"0 N m\" }}\n\
          [[operation]]\nname = \"low\"\nstate = \"low\"\nspeeds = {{ sun = \"1000 rpm\" }}\ntorques = {{ sun = \"100 N m\" }}\n\
          [[operation]]\nname = \"coast\"\nstate = \"low\"\nspeeds = {{ sun = \"1000 rpm\" }}\ntorques = {{ carrier = \"200 N m\" }}\n"
-    ));
-    let all = analysis(&text.replace("terminals = [\"sun\", \"ring\", \"carrier\"]", "terminals = [\"sun\", \"carrier\"]").replace(", ring = \"0 N m\"", ""));
+        ),
+    );
+    let all = analysis(
+        &text
+            .replace("terminals = [\"sun\", \"ring\", \"carrier\"]", "terminals = [\"sun\", \"carrier\"]")
+            .replace(", ring = \"0 N m\"", ""),
+    );
     let [direct, low, coast] = &all.operations[..] else { panic!("three operations") };
     for o in [direct, low, coast] {
         assert_eq!(o.verdict, Verdict::Unique, "{}: {:?}", o.name, o.reason);
@@ -693,9 +733,13 @@ fn a_block_turns_without_tooth_losses() {
 fn a_part_without_a_speed_drags_nothing() {
     // A second set whose ring and carrier nobody holds.
     let loose = SET.replace("P1", "P2").replace("\"ring\"", "\"x\"").replace("\"carrier\"", "\"y\"");
-    let text = bare(&format!("{SET}{loose}"), "", &format!("{B}{}{O}", B.replace("\"b\"", "\"c\"").replace("P1", "P2").replace("\"carrier\"", "\"y\"")))
-        .replace("members = [\"sun\", ", "members = [\"x\", \"y\", \"sun\", ")
-        .replace("supply", "# supply");
+    let text = bare(
+        &format!("{SET}{loose}"),
+        "",
+        &format!("{B}{}{O}", B.replace("\"b\"", "\"c\"").replace("P1", "P2").replace("\"carrier\"", "\"y\"")),
+    )
+    .replace("members = [\"sun\", ", "members = [\"x\", \"y\", \"sun\", ")
+    .replace("supply", "# supply");
     let o = first(&text);
     assert_eq!(o.verdict, Verdict::Unique, "{:?}", o.reason);
     assert_eq!(o.solutions[0].bearings.get("c").unwrap().loss_w, 0.0);
@@ -730,11 +774,15 @@ fn row(sets: &[(i64, i64, u32, usize)], oil: bool, friction: usize, speed: f64, 
              ring = {{ member = \"{r}\", teeth = {ring} }}\ncarrier = \"{c}\"\ngeometry = {{ module = \"2.5 mm\", width = \"30 mm\" }}\n"
         );
         if oil {
-            text += &format!("[[bearing]]\nname = \"b{k}\"\nmembers = [\"P{k}.planet\", \"{c}\"]\ndesignation = \"NU 205\"\n");
+            text += &format!(
+                "[[bearing]]\nname = \"b{k}\"\nmembers = [\"P{k}.planet\", \"{c}\"]\ndesignation = \"NU 205\"\n"
+            );
         }
     }
     let at = if coast { last } else { 0 };
-    text + &format!("[[operation]]\nname = \"o\"\nspeeds = {{ m0 = \"{speed} rpm\" }}\ntorques = {{ m{at} = \"{torque} N m\" }}\n")
+    text + &format!(
+        "[[operation]]\nname = \"o\"\nspeeds = {{ m0 = \"{speed} rpm\" }}\ntorques = {{ m{at} = \"{torque} N m\" }}\n"
+    )
 }
 
 proptest! {
@@ -762,5 +810,25 @@ proptest! {
                 agreement(s, 2.5e-3, 30e-3, 0.4, [sun, planet, sun + 2 * planet].map(|z| z as f64), f64::from(count));
             }
         }
+    }
+}
+
+// ---- Laws that need an oil -------------------------------------------------------------------------
+
+#[test]
+fn a_law_that_needs_an_oil_gets_one_or_is_refused() {
+    let dry = bare(SET, "", O).replace(&OIL.replace("supply = \"jet\"\n", ""), "");
+    let train = Train::from_toml(&dry).unwrap();
+    for law in ["schlenk", "benedict-kelley", "coulomb-by-regime", "iso-14179-1"] {
+        let wrong = train.clone().with_law("mesh_friction", law).unwrap_err();
+        assert!(wrong.iter().any(|d| d.code == Code::MissingKey && !d.hints.is_empty()), "{wrong}");
+        let text = dry.replace("[laws]\n", &format!("[laws]\nmesh_friction = \"{law}\"\n"));
+        assert!(Train::from_toml(&text).unwrap_err().iter().any(|d| d.code == Code::MissingKey));
+    }
+    assert!(train.clone().with_law("rolling", "anderson-loewenthal").is_err());
+    for law in ["constant", "agma-6011"] {
+        let own = train.clone().with_law("mesh_friction", law).unwrap();
+        let all = analyze(&own, &Selection::default()).unwrap();
+        assert!(all.operations[0].solutions[0].contacts.iter().all(|c| c.1.friction.is_some_and(|mu| mu > 0.0)));
     }
 }
