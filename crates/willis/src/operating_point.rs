@@ -39,6 +39,10 @@ pub use contact::{ContactReport, Regime};
 const ACCURACY: f64 = 1e-9;
 /// Most rounds of statics and laws.
 const MOST_ROUNDS: usize = 200;
+/// Changes that grow by this factor in so many rounds on end will not come to rest.
+const GROWTH: (f64, usize) = (1.5, 8);
+/// A drag below this counts as none, N m: far below any, and still an exact number.
+const LEAST_DRAG: f64 = 1e-50;
 /// Most of a mesh's power that its computed losses take: the efficiency stays above zero.
 const MOST_LOST: f64 = 0.95;
 
@@ -273,7 +277,7 @@ impl<'t> Physics<'t> {
         let known = |m: MemberId| motion.speeds[m.0].is_some();
         let mut drag = |source: Source, members: [MemberId; 2], torque: f64| {
             let relative = flow.speeds[members[0].0] - flow.speeds[members[1].0];
-            if torque > 0.0 && relative != 0.0 && members.iter().all(|m| known(*m)) {
+            if torque > LEAST_DRAG && relative != 0.0 && members.iter().all(|m| known(*m)) {
                 step.sources.push(source);
                 step.drags.push(Drag { members, torque: -torque * relative.signum() });
             }
@@ -372,11 +376,15 @@ impl<'t> Physics<'t> {
         let mut step = start;
         let (mut last, mut contraction) = (f64::INFINITY, 0.0f64);
         let mut rounds = 0;
+        // Watts of the last round's change, and for how many rounds it has been growing.
+        let (mut watts, mut growing) = (f64::INFINITY, 0);
         loop {
             rounds += 1;
             let (own, flow) = solve(&step)?;
             let next = self.step(&flow, motion);
             let (change, loss) = self.change(&flow, &step, &next);
+            growing = if change > GROWTH.0 * watts { growing + 1 } else { 0 };
+            watts = change;
             let change = if change == 0.0 { 0.0 } else { change / loss.max(f64::MIN_POSITIVE) };
             // The first rounds leave the start behind; they say nothing of the contraction.
             let q = if last.is_finite() && last > 0.0 { (change / last).min(2.0) } else { 0.5 };
@@ -384,7 +392,7 @@ impl<'t> Physics<'t> {
             // The step that was solved is what is returned: all further changes are still missing in it.
             let error = if contraction < 1.0 { change / (1.0 - contraction) } else { f64::INFINITY };
             let converged = error <= ACCURACY || change <= 1e-15;
-            if converged || rounds == MOST_ROUNDS {
+            if converged || rounds == MOST_ROUNDS || growing == GROWTH.1 {
                 return Some((
                     step,
                     own,

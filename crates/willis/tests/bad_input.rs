@@ -1079,6 +1079,193 @@ fn any_damage() -> impl Strategy<Value = Damage> {
     ]
 }
 
+/// A train with every kind of physical data.
+const PHYSICAL: &str = r#"format = 1
+name = "physical"
+members = ["sun", "carrier", "out"]
+terminals = ["sun", "out"]
+
+[oil]
+name = "own"
+base = "mineral"
+viscosity_40 = "220 mm^2/s"
+viscosity_100 = "19 mm^2/s"
+density_15 = "890 kg/m^3"
+pressure_viscosity = "20 1/GPa"
+lubricant_factor = 1.0
+temperature = "70 degC"
+supply = "bath"
+volume = "5 l"
+mist = 34.25
+
+[laws]
+mesh_friction = "benedict-kelley"
+friction_coefficient = 0.05
+rolling = "anderson-loewenthal"
+bearing = "palmgren"
+
+[housing]
+enclosure = 0.7
+axial_gap = "30 mm"
+
+[[set]]
+name = "P1"
+sun = { member = "sun", teeth = 17, shift = 0.3, addendum = 0.9, dedendum = 1.2, roughness = "0.3 um" }
+planet = { teeth = 22, count = 3, mass = "0.5 kg", tip_alteration = "-0.1 mm", immersion = "5 mm" }
+ring = { member = "frame", teeth = 61 }
+carrier = "carrier"
+geometry = { module = "4 mm", width = "50 mm", pressure_angle = "20 deg", helix = "12 deg", double_helical = false, centre_distance = "80.5 mm", roughness = "0.6 um", youngs_modulus = "206 GPa", poisson_ratio = 0.3 }
+
+[[mesh]]
+name = "pair"
+gears = [ { member = "carrier", teeth = 20, immersion = "10 mm" }, { member = "out", teeth = 41, tip_diameter = "174 mm" } ]
+geometry = { module = "4 mm", width = "60 mm", helix = "10 deg", double_helical = true }
+
+[[bearing]]
+name = "planet bearings"
+members = ["P1.planet", "carrier"]
+designation = "NU 206"
+count = 2
+span = "30 mm"
+
+[[bearing]]
+name = "own"
+members = ["out"]
+kind = "tapered-roller"
+series = "322"
+bore = "50 mm"
+outside_diameter = "90 mm"
+width = "24.75 mm"
+static_rating = "100 kN"
+axial_factor = 1.4
+radial_load = "400 N"
+axial_load = "300 N"
+shaft_diameter = "50 mm"
+level = "3 mm"
+
+[[seal]]
+name = "seal"
+members = ["sun"]
+diameter = "50 mm"
+material = "nbr"
+count = 2
+
+[[rotor]]
+name = "drum"
+member = "carrier"
+radius = "130 mm"
+length = "110 mm"
+radial_gap = "12 mm"
+axial_gap = "15 mm"
+fluid = "oil"
+
+[[operation]]
+name = "hot"
+speeds = { sun = "1500 rpm" }
+torques = { sun = "300 N m" }
+temperature = "90 degC"
+"#;
+
+#[test]
+fn regress_the_physical_train_is_good() {
+    let all = answer(PHYSICAL).unwrap_or_else(|d| panic!("{d}"));
+    assert_eq!(all.operations[0].verdict, Verdict::Unique, "{:?}", all.operations[0].reason);
+    assert!(all.operations[0].solutions[0].sources.len() > 8);
+}
+
+#[test]
+fn regress_physical_errors_all_at_once() {
+    let mut text = PHYSICAL.to_owned();
+    for (old, new) in [
+        ("\"0.3 um\"", "\"-0.3 um\""),
+        ("[\"sun\"]\ndiameter = \"50 mm\"", "[\"sun\"]\ndiameter = \"0 mm\""),
+        ("tip_diameter = \"174 mm\"", "tip_diameter = \"100 mm\""),
+        ("shaft_diameter = \"50 mm\"", "shaft_diameter = \"55 mm\""),
+        ("NU 206", "NU 2060"),
+        ("benedict-kelley", "benedict"),
+        ("member = \"carrier\"\nradius", "member = \"arm\"\nradius"),
+        ("90 degC", "900 degC"),
+        ("enclosure = 0.7", "enclosure = 7"),
+        ("length = \"110 mm\"", "length = \"nan mm\""),
+    ] {
+        text = with(&text, old, new);
+    }
+    let errors = answer(&text).unwrap_err().to_string();
+    // A value that cannot be read stops before the meaning is looked at.
+    assert!(errors.contains("nan"), "{errors}");
+    let errors = answer(&with(&text, "nan mm", "-110 mm")).unwrap_err().to_string();
+    for part in
+        ["-0.3", "diameter of 0", "tip", "55.0 mm", "NU 2060", "benedict", "arm", "900.0 °C", "factor of 7", "-110"]
+    {
+        assert!(errors.contains(part), "{part} is missing in\n{errors}");
+    }
+}
+
+/// A drag beyond what the statics can take is refused, not dropped.
+#[test]
+fn regress_a_drag_beyond_all_bounds() {
+    let text = with(PHYSICAL, "diameter = \"50 mm\"\nmaterial", "diameter = \"1e60 mm\"\nmaterial");
+    let wrong = answer(&text).unwrap_err();
+    assert!(wrong.iter().any(|d| d.code == Code::TooLarge), "{wrong}");
+    // And one that is next to nothing is nothing.
+    let text = with(PHYSICAL, "diameter = \"50 mm\"\nmaterial", "diameter = \"1e-40 mm\"\nmaterial");
+    assert_eq!(answer(&text).unwrap().operations[0].solutions[0].losses_w.seal, 0.0);
+}
+
+/// Numbers that a builder, unlike a file, lets through.
+#[test]
+fn regress_physical_numbers_of_a_builder() {
+    use willis::train::{BearingSpec, GeometrySpec, OilSpec, RotorSpec, SetSpec};
+    let good = GeometrySpec { module: 2e-3, width: 20e-3, ..GeometrySpec::default() };
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, 1e300] {
+        for g in [
+            GeometrySpec { module: bad, ..good },
+            GeometrySpec { width: bad, ..good },
+            GeometrySpec { helix: bad, ..good },
+            GeometrySpec { pressure_angle: bad, ..good },
+            GeometrySpec { centre_distance: Some(bad), ..good },
+            GeometrySpec { addendum: bad, ..good },
+            GeometrySpec { dedendum: bad, ..good },
+            GeometrySpec { youngs_modulus: bad, ..good },
+            GeometrySpec { poisson_ratio: bad, ..good },
+        ] {
+            let set = SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).geometry(g);
+            let train = Train::builder("x").members(["s", "c"]).terminals(["s", "c"]).set(set).build();
+            if let Ok(train) = train {
+                sound(&analyze(&train, &Selection::default()).expect("nothing to analyse"));
+            }
+        }
+        let set = || SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).geometry(good);
+        let oil = OilSpec { viscosity: Some(bad), temperature: Some(bad), volume: Some(bad), ..OilSpec::default() };
+        let bearing = BearingSpec {
+            name: "b".into(),
+            members: vec!["s".into()],
+            designation: Some("6210".into()),
+            radial_load: Some(bad),
+            bore: Some(bad),
+            ..BearingSpec::default()
+        };
+        let rotor = RotorSpec {
+            name: "r".into(),
+            member: "s".into(),
+            radius: bad,
+            length: bad,
+            radial_gap: bad,
+            axial_gap: None,
+            fluid: Default::default(),
+        };
+        let all = Train::builder("x")
+            .members(["s", "c"])
+            .terminals(["s", "c"])
+            .set(set())
+            .oil(oil)
+            .bearing(bearing)
+            .rotor(rotor)
+            .build();
+        assert!(all.is_err(), "{bad}");
+    }
+}
+
 // ---- Trains that nobody would build ----------------------------------------------------------
 
 /// A train from a list of numbers: sets, meshes, shift elements and operations between few members,
@@ -1182,6 +1369,11 @@ proptest! {
         let all = examples();
         let text = damage(&all[which.index(all.len())], &how);
         let _ = answer(&text);
+    }
+
+    #[test]
+    fn regress_damaged_physical_trains(how in prop::collection::vec(any_damage(), 1..4)) {
+        let _ = answer(&damage(PHYSICAL, &how));
     }
 
     #[test]

@@ -30,6 +30,30 @@ speeds = { sun = "1000 rpm" }
 torques = { sun = "10 N m" }
 "#;
 
+/// A set with teeth and an oil.
+const TOOTHED: &str = r#"format = 1
+name = "toothed"
+members = ["sun", "carrier"]
+terminals = ["sun", "carrier"]
+
+[oil]
+name = "ISO VG 220"
+temperature = "60 degC"
+
+[[set]]
+name = "P1"
+sun = { member = "sun", teeth = 30 }
+planet = { teeth = 20, count = 4 }
+ring = { member = "frame", teeth = 70 }
+carrier = "carrier"
+geometry = { module = "2 mm", width = "20 mm" }
+
+[[operation]]
+name = "full load"
+speeds = { sun = "1000 rpm" }
+torques = { sun = "10 N m" }
+"#;
+
 /// A set with three free members, a brake, a clutch and a shift table.
 const TWO_SPEED: &str = r#"format = 1
 name = "two speeds"
@@ -429,6 +453,52 @@ cases! {
     // W313 NotEnumerated
     regress_w313_long_chain: NotEnumerated, long_chain();
 
+    // E110 ImpossibleGeometry
+    regress_e110_pointed_tip: ImpossibleGeometry, with(TOOTHED, "teeth = 30", "teeth = 30, addendum = 2.4");
+    regress_e110_no_contact: ImpossibleGeometry, with(TOOTHED, "width = \"20 mm\"", "width = \"20 mm\", centre_distance = \"60 mm\"");
+    regress_w314_tip_below_base: DoubtfulGeometry, with(TOOTHED, "teeth = 70", "teeth = 70, tip_diameter = \"120 mm\"");
+    regress_e110_two_circles: ImpossibleGeometry, with(TOOTHED, "teeth = 30", "teeth = 30, shift = 0.4");
+
+    // E111 ImpossibleBearing
+    regress_e111_shaft: ImpossibleBearing, and(TOOTHED, "[[bearing]]\nname = \"b\"\nmembers = [\"sun\"]\ndesignation = \"6210\"\nshaft_diameter = \"40 mm\"");
+    regress_e111_ring_inside_out: ImpossibleBearing,
+        and(TOOTHED, "[[bearing]]\nname = \"b\"\nmembers = [\"sun\"]\nkind = \"cylindrical-roller\"\nbore = \"90 mm\"\noutside_diameter = \"50 mm\"\nwidth = \"20 mm\"");
+
+    // The physical layer, by codes that others have too.
+    regress_e005_law_without_oil: MissingKey,
+        and(&with(TOOTHED, "[oil]\nname = \"ISO VG 220\"\ntemperature = \"60 degC\"\n", ""), "[laws]\nmesh_friction = \"schlenk\"");
+    regress_e005_bearing_without_oil: MissingKey,
+        and(&with(TOOTHED, "[oil]\nname = \"ISO VG 220\"\ntemperature = \"60 degC\"\n", ""), "[[bearing]]\nname = \"b\"\nmembers = [\"sun\"]\ndesignation = \"6210\"");
+    regress_e005_temperature_without_oil: MissingKey, and(REDUCER, "temperature = \"60 degC\"");
+    regress_e005_churning_without_volume: MissingKey, with(TOOTHED, "teeth = 30", "teeth = 30, immersion = \"10 mm\"");
+    regress_e007_module_without_unit: Quantity, with(TOOTHED, "module = \"2 mm\"", "module = 2");
+    regress_e008_physical: OutOfRange,
+        with(&with(TOOTHED, "width = \"20 mm\"", "width = \"0 mm\", roughness = \"-0.4 um\", poisson_ratio = 0.7"), "60 degC", "700 degC");
+    regress_e101_law: UnknownName, and(TOOTHED, "[laws]\nmesh_friction = \"schlenck\"");
+    regress_e101_oil: UnknownName, with(TOOTHED, "ISO VG 220", "ISO VG 221");
+    regress_e101_bearing: UnknownName, and(TOOTHED, "[[bearing]]\nname = \"b\"\nmembers = [\"sun\"]\ndesignation = \"62010\"");
+    regress_e107_bearing: ShiftElement, and(TOOTHED, "[[bearing]]\nname = \"b\"\nmembers = []\ndesignation = \"6210\"");
+    regress_e109_oil_twice: Conflict, with(TOOTHED, "temperature =", "viscosity_40 = \"220 mm^2/s\"\ntemperature =");
+
+    // W314 DoubtfulGeometry
+    regress_w314_undercut: DoubtfulGeometry,
+        with(&with(&with(TOOTHED, "teeth = 30", "teeth = 12"), "teeth = 20", "teeth = 29"), "teeth = 70", "teeth = 70");
+
+    // W315 DoubtfulBearing
+    regress_w315_bore: DoubtfulBearing,
+        and(TOOTHED, "[[bearing]]\nname = \"b\"\nmembers = [\"sun\"]\ndesignation = \"6210\"\noutside_diameter = \"95 mm\"");
+
+    // W316 OutsideLaw
+    regress_w316_cold_oil: OutsideLaw, with(TOOTHED, "60 degC", "-40 degC");
+    regress_w316_load: OutsideLaw, with(TOOTHED, "10 N m", "0.1 N m");
+
+    // W317 NotConverged
+    regress_w317_no_agreement: NotConverged, RESTLESS;
+
+    // N404 GivenEfficiency
+    regress_n404_set: GivenEfficiency, with(TOOTHED, "carrier = \"carrier\"", "carrier = \"carrier\"\nmesh_efficiency = 0.99");
+    regress_n404_mesh: GivenEfficiency, with(PAIR, "efficiency = 0.98", "efficiency = 0.98\ngeometry = { module = \"2 mm\", width = \"20 mm\" }");
+
     // N401 Stiction
     regress_n401_mesh_at_rest: Stiction, STICTION;
 
@@ -449,6 +519,42 @@ cases! {
     regress_non_ascii: UnknownName,
         PAIR.replace("\"b\"", "\"Hohlrad ü\"").replace("member = \"a\"", "member = \"Sonnenrad Größe µ\"");
 }
+
+/// Thrust of helical teeth on a bearing whose friction is larger than what makes the thrust.
+const RESTLESS: &str = r#"format = 1
+name = "restless"
+members = ["sun", "carrier"]
+terminals = ["sun", "carrier"]
+
+[oil]
+name = "ISO VG 220"
+temperature = "60 degC"
+
+[laws]
+bearing = "palmgren"
+
+[[set]]
+name = "P1"
+sun = { member = "sun", teeth = 30 }
+planet = { teeth = 20, count = 4 }
+ring = { member = "frame", teeth = 70 }
+carrier = "carrier"
+geometry = { module = "2 mm", width = "20 mm", helix = "30 deg" }
+
+[[bearing]]
+name = "thrust bearing"
+members = ["sun"]
+kind = "deep-groove-ball"
+bore = "1000 mm"
+outside_diameter = "1220 mm"
+width = "100 mm"
+static_rating = "1 N"
+
+[[operation]]
+name = "full load"
+speeds = { sun = "10 rpm" }
+torques = { sun = "1000 N m" }
+"#;
 
 const STEPPED: &str = r#"format = 1
 name = "stepped"

@@ -812,3 +812,23 @@ proptest! {
         }
     }
 }
+
+// ---- Laws that need an oil -------------------------------------------------------------------------
+
+#[test]
+fn a_law_that_needs_an_oil_gets_one_or_is_refused() {
+    let dry = bare(SET, "", O).replace(&OIL.replace("supply = \"jet\"\n", ""), "");
+    let train = Train::from_toml(&dry).unwrap();
+    for law in ["schlenk", "benedict-kelley", "coulomb-by-regime", "iso-14179-1"] {
+        let wrong = train.clone().with_law("mesh_friction", law).unwrap_err();
+        assert!(wrong.iter().any(|d| d.code == Code::MissingKey && !d.hints.is_empty()), "{wrong}");
+        let text = dry.replace("[laws]\n", &format!("[laws]\nmesh_friction = \"{law}\"\n"));
+        assert!(Train::from_toml(&text).unwrap_err().iter().any(|d| d.code == Code::MissingKey));
+    }
+    assert!(train.clone().with_law("rolling", "anderson-loewenthal").is_err());
+    for law in ["constant", "agma-6011"] {
+        let own = train.clone().with_law("mesh_friction", law).unwrap();
+        let all = analyze(&own, &Selection::default()).unwrap();
+        assert!(all.operations[0].solutions[0].contacts.iter().all(|c| c.1.friction.is_some_and(|mu| mu > 0.0)));
+    }
+}

@@ -1149,7 +1149,8 @@ fn val_every_formula_of_every_example_equals_the_solver() {
 fn val_every_formula_of_every_example_equals_the_analysis_exactly() {
     let mut random = Random(6);
     let (mut compared, mut as_fraction) = (0, 0);
-    for (name, mut text, train) in examples() {
+    // Where losses are computed, an operating point has others than the nominal ones of the formulas.
+    for (name, mut text, train) in examples().into_iter().filter(|e| !e.2.is_physical()) {
         // Inputs and outputs, efficiency, torque signs.
         type Expected = (String, Rational, Vec<(String, i8)>);
         let mut expected: Vec<Expected> = Vec::new();

@@ -433,11 +433,16 @@ impl Loads {
         }
         for drag in drags {
             for (member, torque) in [(drag.members[0], drag.torque), (drag.members[1], -drag.torque)] {
-                if let (Some(n), Some(t)) = (c.node(member), Rational::from_f64(torque / si)) {
-                    torques[n] += t;
-                    if !loaded.contains(&n) {
-                        loaded.push(n);
-                    }
+                let Some(n) = c.node(member) else { continue };
+                let Some(t) = Rational::from_f64(torque / si) else {
+                    let name = train.member_name(member);
+                    let message = format!("operation `{}`: the drag on `{name}` is beyond 1e50 N m", operation.name);
+                    wrong.push(Diagnostic::new(Code::TooLarge, operation.place.as_str(), message));
+                    continue;
+                };
+                torques[n] += t;
+                if !loaded.contains(&n) {
+                    loaded.push(n);
                 }
             }
         }
@@ -600,8 +605,15 @@ impl<'a> Setting<'a> {
         let mut driven = None;
         for k in 0..second.answer.solutions.len() {
             let mut drivers = second.answer.solutions[k].driver.clone();
+            let mut failed = None;
             let agreed = physics.agree(self.motion, start.clone(), |step| {
-                let solved = self.solve(step, &step.drags).ok().flatten()?;
+                let solved = match self.solve(step, &step.drags) {
+                    Ok(solved) => solved?,
+                    Err(wrong) => {
+                        failed = Some(wrong);
+                        return None;
+                    }
+                };
                 let all = &solved.answer.solutions;
                 // The equilibrium in which the same ends drive, or the only one.
                 let at = all.iter().position(|s| s.driver == drivers).or((all.len() == 1).then_some(0))?;
@@ -609,6 +621,9 @@ impl<'a> Setting<'a> {
                 let flow = self.flow(&solved, &all[at], &step.drags);
                 Some(((solved, at), flow))
             });
+            if let Some(wrong) = failed {
+                return Err(wrong);
+            }
             let Some((step, (solved, at), _, convergence)) = agreed else { continue };
             let Solved { c, problem, equilibrium, answer } = solved;
             if answer.certificate != certificate && !answer.certificate.unique_for_every_load() {

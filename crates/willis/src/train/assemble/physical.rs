@@ -29,10 +29,19 @@ impl Assembler<'_> {
         let good = value.is_finite() && (value > 0.0 || zero_too && value == 0.0);
         if !good {
             let bound = if zero_too { "not negative" } else { "above zero" };
-            let message = format!("{what} of {value} {unit}: it is a finite number, {bound}");
-            self.report(Diagnostic::new(Code::OutOfRange, place, message));
+            // As it was written, before it was turned into SI.
+            let shown = if (value * 1e9).is_finite() { (value * 1e9).round() / 1e9 } else { value };
+            let message = format!("{what} of {shown} {unit}: it is a finite number, {bound}").replace(" :", ":");
+            self.report_once(Diagnostic::new(Code::OutOfRange, place, message));
         }
         good
+    }
+
+    /// Reports what several meshes of a set share only once.
+    fn report_once(&mut self, d: Diagnostic) {
+        if !self.diagnostics.iter().rev().take(16).any(|e| *e == d) {
+            self.report(d);
+        }
     }
 
     /// The involute pair of two gears, each with tooth count, whether internal, and teeth.
@@ -55,7 +64,7 @@ impl Assembler<'_> {
         }
         if !(0.0..0.5).contains(&g.poisson_ratio) {
             let message = format!("a Poisson's ratio of {}: it lies from 0 to below 0.5", g.poisson_ratio);
-            self.report(Diagnostic::new(Code::OutOfRange, format!("{at}.poisson_ratio"), message));
+            self.report_once(Diagnostic::new(Code::OutOfRange, format!("{at}.poisson_ratio"), message));
             good = false;
         }
         for (_, _, t) in &gears {

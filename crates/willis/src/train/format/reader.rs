@@ -308,7 +308,10 @@ impl Reader<'_> {
             Kind::Table(table) => match value.get_ref().as_table() {
                 Some(map) => Some(Node::Table(self.table(map, table, place, value.span()))),
                 None => {
-                    let keys: Vec<_> = table.keys.iter().map(|k| format!("{} = …", k.name)).collect();
+                    // What it must have; where it may have anything, all of it.
+                    let must = table.keys.iter().any(|k| k.required);
+                    let keys = table.keys.iter().filter(|k| k.required || !must);
+                    let keys: Vec<_> = keys.map(|k| format!("{} = …", k.name)).collect();
                     self.wrong_type(place, value, &format!("a table, {{ {} }}", keys.join(", ")));
                     None
                 }
