@@ -442,5 +442,6 @@ torques = { a = "100 N m" }
     .iter()
     .filter(|d| d.contained_in.is_some())
     .count();
-    assert!(contained >= 2, "{contained}");
+    // The bearing between a gear and the carrier of its mesh, the frame here; the one between the shafts is a drag.
+    assert!(contained >= 1, "{contained}");
 }

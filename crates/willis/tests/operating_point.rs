@@ -18,6 +18,7 @@ viscosity_100 = "11 mm^2/s"
 density_15 = "880 kg/m^3"
 temperature = "60 degC"
 supply = "jet"
+mist = 34.25
 "#;
 
 /// A planetary stage 17/22/61 with everything that loses power.
@@ -64,7 +65,7 @@ radial_gap = "10 mm"
 
 /// Teeth and oil, nothing else that loses power.
 fn bare(parts: &str, laws: &str, operations: &str) -> String {
-    let oil = OIL.replace("supply = \"jet\"\n", "");
+    let oil = OIL.replace("supply = \"jet\"\nmist = 34.25\n", "");
     format!(
         "format = 1\nname = \"bare\"\nmembers = [\"sun\", \"ring\", \"carrier\"]\nterminals = [\"sun\", \"ring\", \"carrier\"]\n\
          {oil}\n[laws]\n{laws}\n{parts}\n{operations}"
@@ -817,7 +818,7 @@ proptest! {
 
 #[test]
 fn a_law_that_needs_an_oil_gets_one_or_is_refused() {
-    let dry = bare(SET, "", O).replace(&OIL.replace("supply = \"jet\"\n", ""), "");
+    let dry = bare(SET, "", O).replace(&OIL.replace("supply = \"jet\"\nmist = 34.25\n", ""), "");
     let train = Train::from_toml(&dry).unwrap();
     for law in ["schlenk", "benedict-kelley", "coulomb-by-regime", "iso-14179-1"] {
         let wrong = train.clone().with_law("mesh_friction", law).unwrap_err();

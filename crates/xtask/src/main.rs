@@ -450,10 +450,16 @@ fn examples(context: &Context) -> Outcome {
                 &["regimes", json[0], json[1]],
                 &["formula", "--derivatives"],
             ];
-            // A power flow needs an operating point.
+            // Power flow and losses need an operating point.
             let text = fs::read_to_string(context.root.join(file)).map_err(|e| format!("{file}: {e}"))?;
             let flows: &[&[&str]] = match text.lines().any(|l| l.trim() == "[[operation]]") {
-                true => &[&["flow"], &["flow", "--format", "json"], &["flow", "--format", "svg"]],
+                true => &[
+                    &["flow"],
+                    &["flow", "--format", "json"],
+                    &["flow", "--format", "svg"],
+                    &["losses"],
+                    &["losses", "--compare", "mesh_friction", "--format", "json"],
+                ],
                 false => &[],
             };
             for arguments in questions.iter().chain(flows).copied() {
@@ -471,7 +477,7 @@ fn examples(context: &Context) -> Outcome {
     };
     match all() {
         Ok(count) => {
-            println!("{count} example trains: check, analyze, regimes, formula, flow, and as JSON");
+            println!("{count} example trains: check, analyze, regimes, formula, flow, losses, and as JSON");
             Outcome::Passed
         }
         Err(e) => Outcome::Failed(e),

@@ -615,8 +615,9 @@ impl<'a> Setting<'a> {
                     }
                 };
                 let all = &solved.answer.solutions;
-                // The equilibrium in which the same ends drive, or the only one.
-                let at = all.iter().position(|s| s.driver == drivers).or((all.len() == 1).then_some(0))?;
+                // The equilibrium in which the same ends drive, or most of them; none where it locks.
+                let alike = |s: &Solution| s.driver.iter().zip(&drivers).filter(|(a, b)| a == b).count();
+                let at = (0..all.len()).max_by_key(|&k| (alike(&all[k]), std::cmp::Reverse(k)))?;
                 drivers = all[at].driver.clone();
                 let flow = self.flow(&solved, &all[at], &step.drags);
                 Some(((solved, at), flow))

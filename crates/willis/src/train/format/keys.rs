@@ -200,7 +200,7 @@ static HOUSING: Table = Table {
         may(
             "enclosure",
             Kind::Number,
-            "Factor on windage: 1 free, 0.6 to 0.7 large case, 0.5 fitting case. Default: 1.",
+            "Factor on windage by `dawson-1984`: 1 free, 0.6 to 0.7 large case, 0.5 fitting case. Default: 1. `diab` takes the axial gap instead.",
         ),
         may(
             "axial_gap",
