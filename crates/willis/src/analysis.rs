@@ -571,7 +571,10 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
         Some(Bath) => format!("churning by `{}` of the gears whose immersion is given", train.laws.churning.meta().id),
         Some(Grease) => "grease: gears in air lose nothing".into(),
     });
-    if train.rotors.is_empty() && train.sets.iter().any(|s| s.planets.is_some()) {
+    if !train.rotors.is_empty() {
+        let law = train.laws.rotor_drag.meta().id;
+        all.push(format!("drag of carriers and drums by `{law}`: an estimate, good to ±50 %"));
+    } else if train.sets.iter().any(|s| s.planets.is_some()) {
         all.push("no drag of carriers (give a [[rotor]])".into());
     }
     all.push("no drag of open shift elements, no oil pump".into());

@@ -26,8 +26,9 @@ pub(super) fn geometry(t: &Fields) -> Option<GeometrySpec> {
     let g = t.table("geometry")?;
     let standard = GeometrySpec::default();
     Some(GeometrySpec {
-        module: g.si("module")?,
-        width: g.si("width")?,
+        // What is missing or wrong was reported; the rest is checked all the same.
+        module: g.si("module").unwrap_or(1e-3),
+        width: g.si("width").unwrap_or(10e-3),
         pressure_angle: g.si("pressure_angle").unwrap_or(standard.pressure_angle),
         helix: g.si("helix").unwrap_or(standard.helix),
         double_helical: g.flag("double_helical"),
