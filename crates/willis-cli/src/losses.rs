@@ -33,6 +33,10 @@ pub fn of_solution(s: &SolutionReport) -> String {
         out += &show(&t);
         if let Some(c) = &s.convergence {
             let text = match c.converged {
+                true if c.rounds < 3 => format!(
+                    "losses and torques agree within 10⁻⁹ of the loss: {}",
+                    crate::text::plural(c.rounds, "round", "rounds")
+                ),
                 true => format!(
                     "losses and torques agree within 10⁻⁹ of the loss: {}, each error {} of the last",
                     crate::text::plural(c.rounds, "round", "rounds"),
@@ -151,6 +155,14 @@ pub fn points(all: &LossTable) -> String {
             // As many spreads as there are runs through the laws.
             let runs = group.iter().filter(|p| p.law == group[0].law).count();
             for s in spreads.by_ref().take(runs) {
+                if s.most_w.0 == s.least_w.0 {
+                    let text = format!(
+                        "no loss here depends on {family}: what it is about is not given, or given as a number"
+                    );
+                    out += &wrap(&text, "  ");
+                    out.push('\n');
+                    continue;
+                }
                 let text = format!(
                     "spread of {family}: from {} W ({}) to {} W ({}), a factor of {}; {} of {} laws inside their range",
                     significant(s.least_w.0, 4),
@@ -174,10 +186,10 @@ pub fn points(all: &LossTable) -> String {
 fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
     let mut t = table();
     let oil = group.iter().any(|p| p.temperature_k.is_some());
-    let speed = format!("{} rpm", all.speed_of.as_deref().unwrap_or("speed"));
-    let torque = format!("{} N m", all.torque_of.as_deref().unwrap_or("torque"));
+    let speed = format!("{} rpm", group[0].speed_of.as_deref().unwrap_or("speed"));
+    let torque = format!("{} N m", group[0].torque_of.as_deref().unwrap_or("torque"));
     let mut header = vec![speed.as_str()];
-    if all.torque_of.is_some() {
+    if group[0].torque_of.is_some() {
         header.push(&torque);
     }
     if oil {
@@ -193,7 +205,7 @@ fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
     set_header(&mut t, &header);
     for p in group {
         let mut row = vec![significant(rpm(p.speed_rad_s), 6)];
-        if all.torque_of.is_some() {
+        if group[0].torque_of.is_some() {
             row.push(p.torque_n_m.map_or("-".into(), |t| significant(t, 5)));
         }
         if oil {
@@ -237,11 +249,12 @@ fn verdict(p: &LossPoint) -> String {
 
 /// Warnings under a table, each once.
 fn notes(group: &[LossPoint]) -> String {
-    let mut told: Vec<&str> = Vec::new();
+    let mut told: Vec<(&str, &str)> = Vec::new();
     let mut out = String::new();
     for w in group.iter().flat_map(|p| &p.warnings) {
         // Numbers differ from point to point; what is outside does not.
-        let key = w.split(" of ").next().unwrap_or(w);
+        let (law, range) = (w.split(" of ").next().unwrap_or(w), w.split_once("range, ").map_or("", |r| r.1));
+        let key = (law, range);
         if !told.contains(&key) {
             told.push(key);
             out += &dim(&wrap(w, "  * "));
@@ -257,7 +270,9 @@ pub fn points_csv(all: &LossTable) -> String {
     out.row([
         "operation",
         "law",
+        "speed_of",
         "speed_rad_s",
+        "torque_of",
         "torque_n_m",
         "temperature_k",
         "verdict",
@@ -278,7 +293,9 @@ pub fn points_csv(all: &LossTable) -> String {
         out.row([
             p.operation.as_str(),
             p.law.unwrap_or_default(),
+            p.speed_of.as_deref().unwrap_or_default(),
             &p.speed_rad_s.to_string(),
+            p.torque_of.as_deref().unwrap_or_default(),
             &number(p.torque_n_m),
             &number(p.temperature_k),
             crate::csv::verdict(p.verdict),
@@ -416,7 +433,8 @@ pub fn oils() -> String {
     let mut t = table();
     set_header(&mut t, &["oil", "base", "ν 40 °C", "ν 100 °C", "ρ 15 °C", "trust"]);
     for o in oil::all() {
-        let nu = |t: f64| match o.covers(t) {
+        let fixed = matches!(o.viscosity, oil::Viscosity::Fixed { .. });
+        let nu = |t: f64| match o.covers(t) && !fixed {
             true => significant(o.kinematic_viscosity(t) * 1e6, 4),
             false => "-".into(),
         };

@@ -103,10 +103,10 @@ enum Command {
         #[arg(long)]
         family: Option<String>,
         /// List the catalogue of oils instead.
-        #[arg(long, conflicts_with_all = ["family", "bearings"])]
+        #[arg(long, conflicts_with_all = ["family", "bearings", "format"])]
         oils: bool,
         /// List the catalogue of bearings instead.
-        #[arg(long, conflicts_with = "family")]
+        #[arg(long, conflicts_with_all = ["family", "format"])]
         bearings: bool,
         /// What to print.
         #[arg(long, value_enum, default_value = "text")]
@@ -269,7 +269,7 @@ enum Command {
 enum Format {
     /// For eyes.
     Text,
-    /// The results contract `willis-analysis-1`.
+    /// The results contract, for machines.
     Json,
     /// Tables.
     Csv,
@@ -294,6 +294,7 @@ impl FlowFormat {
             "json" => Some(Self::Json),
             "dot" | "gv" => Some(Self::Dot),
             "svg" => Some(Self::Svg),
+            "txt" => Some(Self::Text),
             _ => None,
         }
     }
@@ -453,6 +454,10 @@ fn run(command: &Command) -> Result<String, String> {
             let job = Job::read(file)?.with_laws(law)?;
             let all = willis::hypergraph::flows(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
             let promised = output.as_deref().and_then(FlowFormat::of);
+            if let (Some(path), None, None) = (output, format, promised) {
+                let told = "its ending is none of .svg, .json, .dot, .txt; name one of them, or give --format";
+                return Err(format!("{}: {told}\n", path.display()));
+            }
             let text = match format.or(promised).unwrap_or(FlowFormat::Text) {
                 // A file takes no colours.
                 FlowFormat::Text if output.is_some() => {

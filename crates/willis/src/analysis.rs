@@ -549,6 +549,28 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
         all.push(format!("bearing friction by `{law}`; equally spaced planets load central bearings only axially"));
     }
     let supply = train.lubrication.as_ref().and_then(|l| l.supply);
+    use crate::train::OilSupply::{Bath, Grease, Jet, Mist};
+    let shallow =
+        |b: &crate::train::BearingMount| b.level.is_none() && matches!(b.supply.or(supply), None | Some(Bath));
+    let skf = matches!(train.laws.bearing.meta().id, "skf" | "skf-6000");
+    let without: Vec<&str> =
+        train.bearings.iter().filter(|b| skf && b.bearing.skf.is_none()).map(|b| b.name.as_str()).collect();
+    if !without.is_empty() {
+        all.push(format!("{}: no constants of the SKF model, `palmgren` stands in", without.join(", ")));
+    }
+    if train.bearings.iter().any(shallow) {
+        all.push("bearings without an oil level: a low bath, no drag of oil".into());
+    }
+    let dips = |m: &crate::train::Mesh| {
+        let planet = |k: usize| train.members[m.gears[k].member.0].kind == crate::train::MemberKind::Planet;
+        m.teeth.as_ref().is_some_and(|t| (0..2).any(|k| t.immersion[k].is_some() && planet(k)))
+    };
+    if train.meshes.iter().any(dips) {
+        all.push(
+            "planets that dip run through a ring of oil that turns with their carrier: an estimate, good to ±50 %"
+                .into(),
+        );
+    }
     let mut missing = Vec::new();
     if train.bearings.is_empty() {
         missing.push("bearings");
@@ -559,7 +581,6 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
     if !missing.is_empty() {
         all.push(format!("no {} given: their losses are not counted", missing.join(" and ")));
     }
-    use crate::train::OilSupply::{Bath, Grease, Jet, Mist};
     all.push(match supply {
         None => "how the oil is supplied is not given: gears in air or oil lose nothing".into(),
         Some(Jet | Mist) => {

@@ -31,9 +31,13 @@ pub struct LossRequest {
 pub struct LossPoint {
     /// The operation it comes from.
     pub operation: String,
-    /// Speed of the member whose speed is varied, rad/s.
+    /// The member of the first prescribed speed.
+    pub speed_of: Option<String>,
+    /// Its speed, rad/s.
     pub speed_rad_s: f64,
-    /// What loads the train: torque, N m, of the first load.
+    /// The member of the first load.
+    pub torque_of: Option<String>,
+    /// Its torque, N m.
     pub torque_n_m: Option<f64>,
     /// Oil temperature, K; absent without an oil.
     pub temperature_k: Option<f64>,
@@ -85,10 +89,6 @@ pub struct LossTable {
     pub train: String,
     /// The family whose laws are compared.
     pub family: Option<String>,
-    /// The member whose speed stands in the table.
-    pub speed_of: Option<String>,
-    /// The member whose torque stands in the table.
-    pub torque_of: Option<String>,
     /// The points, operation by operation, speed, load, temperature, law.
     pub points: Vec<LossPoint>,
     /// Where laws are compared: the spread over each group of points that differ in the law alone.
@@ -171,8 +171,6 @@ pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnos
         format: "willis-losses-1",
         train: train.name.clone(),
         family: request.compare.clone(),
-        speed_of: chosen[0].speeds.first().map(|s| train.member_name(s.0).to_owned()),
-        torque_of: chosen[0].loads.first().map(|l| train.member_name(l.0).to_owned()),
         points: vec![],
         spreads: vec![],
     };
@@ -293,7 +291,9 @@ fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Res
     let title = format!("operation `{}`: ", operation.name);
     Ok(LossPoint {
         operation: operation.name.clone(),
+        speed_of: operation.speeds.first().map(|s| train.member_name(s.0).to_owned()),
         speed_rad_s: speed,
+        torque_of: operation.loads.first().map(|l| train.member_name(l.0).to_owned()),
         torque_n_m: torque,
         temperature_k: train.lubrication.as_ref().map(|l| operation.temperature.unwrap_or(l.temperature)),
         law,
@@ -308,8 +308,10 @@ fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Res
             solution.map(|s| s.contacts.iter().map(|(n, c)| (n.clone(), c.friction)).collect()).unwrap_or_default(),
         ),
         convergence: solution.and_then(|s| s.convergence),
-        warnings: notes
-            .into_iter()
+        warnings: (train.lubrication.iter())
+            .filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)))
+            .map(|text| Diagnostic::new(Code::OutsideLaw, "", text))
+            .chain(notes)
             .filter(|d| d.severity == Severity::Warning)
             .map(|d| d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned())
             .collect(),

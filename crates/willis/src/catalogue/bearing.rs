@@ -343,7 +343,9 @@ impl fmt::Display for Mismatch {
                 write!(f, "the envelope is that of {designation}, a {kind}")
             }
             Self::NoConstants { kind, series } => {
-                write!(f, "no friction constants are known for a {kind} of series `{series}`")
+                let series =
+                    if series.is_empty() { "without a series".into() } else { format!("of series `{series}`") };
+                write!(f, "no constants of the SKF model are known for a {kind} {series}: Palmgren's law stands in")
             }
         }
     }

@@ -95,7 +95,17 @@ impl Physics<'_> {
             base: lubrication.oil.base,
             sliding_friction: match mount.bearing.kind.is_ball() {
                 true => lubrication.oil.sliding_ball,
-                false => lubrication.oil.sliding_roller,
+                // Measured on cylindrical rollers.
+                false => lubrication.oil.sliding_roller.filter(|_| {
+                    use crate::catalogue::bearing::Kind::{
+                        AxialCylindricalRoller, CylindricalRoller, FullComplementCylindricalRoller, NeedleRoller,
+                    };
+                    let kind = mount.bearing.kind;
+                    matches!(
+                        kind,
+                        CylindricalRoller | FullComplementCylindricalRoller | AxialCylindricalRoller | NeedleRoller
+                    )
+                }),
             },
             supply: self.supply(mount),
         };

@@ -86,6 +86,9 @@ const GAUSS: [(f64, f64); 4] = [
     (0.960_289_856_497_536_2, 0.101_228_536_290_376_26),
 ];
 
+/// Most tooth pairs in contact whose exchange is looked at.
+const MOST_PAIRS: usize = 5;
+
 /// rms over arithmetic mean roughness of a ground flank.
 const RMS: f64 = 1.25;
 /// Peak-to-valley height over arithmetic mean roughness of a ground flank.
@@ -186,12 +189,17 @@ impl Physics<'_> {
         let loaded = Loaded { physics: self, teeth, normal_force, speed: flow.relative_speeds[0].abs() };
         let pitch = loaded.point(0.0);
         let [start, end] = pair.path();
-        let mut breaks = pair.breakpoints();
+        // Where a tooth pair more or less is in contact: whole base pitches from both ends, and C.
+        let mut breaks = [0.0; 2 * MOST_PAIRS + 1];
+        for k in 0..MOST_PAIRS {
+            breaks[2 * k] = (start + k as f64 * pair.base_pitch).min(end);
+            breaks[2 * k + 1] = (end - k as f64 * pair.base_pitch).max(start);
+        }
         breaks.sort_by(f64::total_cmp);
 
         // Extremes: at the ends of each part of the path, just inside.
         let mut worst = Point { film: f64::INFINITY, ..pitch };
-        for k in 0..4 {
+        for k in 0..breaks.len() - 1 {
             let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
             for s in [from + 1e-9 * (to - from), to - 1e-9 * (to - from)] {
                 if to <= from {
@@ -236,6 +244,12 @@ impl Physics<'_> {
         };
         if mesh.computed && beyond.is_some() {
             note(beyond, "loss_factor", laws.loss_factor.meta().id, laws.loss_factor.outside(&path));
+            let place = ToothLoad {
+                position: pair.position(0.0),
+                contact_ratio: pair.contact_ratio,
+                overlap_ratio: pair.overlap_ratio,
+            };
+            note(beyond, "load_sharing", laws.load_sharing.meta().id, laws.load_sharing.outside(&place));
         }
         if base_force <= 0.0 || pitch_line_speed <= 0.0 {
             return (report, 0.0);
@@ -243,6 +257,8 @@ impl Physics<'_> {
         if let (true, Some((_, oil)), true) = (beyond.is_some(), &self.oil, mesh.computed) {
             let contact = loaded.film_contact(oil, pitch.line_load, pitch.radius, pitch.sum);
             note(beyond, "film", laws.film.meta().id, laws.film.outside(&contact));
+            let inlet = loaded.inlet(oil, pitch.sliding, pitch.sum, pitch.pressure);
+            note(beyond, "film_reduction", laws.film_reduction.meta().id, laws.film_reduction.outside(&inlet));
         }
         if !mesh.computed {
             return (report, 0.0);
@@ -251,7 +267,7 @@ impl Physics<'_> {
         let state = |p: &Point| self.state(mesh, teeth, p, base_force, pitch_line_speed, loss_factor, composite);
         let mu = if self.friction.meta().tags.contains(&Tag::Local) {
             let (mut friction, mut weight) = (0.0, 0.0);
-            for k in 0..4 {
+            for k in 0..breaks.len() - 1 {
                 let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
                 let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
                 if half <= 0.0 {

@@ -171,7 +171,18 @@ impl Assembler<'_> {
             let g = &spec.gears[k];
             (g.z() as f64, g.internal, g.tooth)
         });
-        let geometry = spec.geometry.as_ref().filter(|_| !spec.bevel);
+        let alike = spec.same_sense == Some(true) && !any_internal;
+        if spec.geometry.is_some() && (spec.bevel || alike) {
+            let (message, hint) = match spec.bevel {
+                true => ("bevel teeth are not computed: a geometry describes cylindrical gears", "give `efficiency`"),
+                false => (
+                    "two external gears in mesh turn in opposite senses; a chain or belt has no tooth geometry",
+                    "give `efficiency`, or leave out `sense`",
+                ),
+            };
+            self.report(Diagnostic::new(Code::Conflict, format!("{place}.geometry"), message).hint(hint));
+        }
+        let geometry = spec.geometry.as_ref().filter(|_| !spec.bevel && !alike);
         let teeth = geometry.and_then(|g| self.tooth_pair(g, gears_of_pair, &name, place));
         let computed = efficiency.is_none() && teeth.is_some();
         if efficiency.is_some() && teeth.is_some() {
@@ -464,7 +475,7 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
     for (k, o) in spec.operations.iter().enumerate() {
         let place = format!("operation[{k}].temperature");
         match (o.temperature, &lubrication) {
-            (Some(t), Some(l)) => a.temperature(&l.oil, t, &place),
+            (Some(t), Some(l)) => a.temperature(l, t, &place),
             (Some(_), None) if spec.oil.is_none() => a.report(
                 Diagnostic::new(Code::MissingKey, place, "a temperature is given, but the train has no oil")
                     .hint("add [oil] with a name of the catalogue, or its viscosities"),
@@ -472,7 +483,10 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
             _ => {}
         }
     }
-    a.missing_for_losses(&lubrication, &bearings, &rotors);
+    // An oil that is wrong was reported; it is not missing as well.
+    if lubrication.is_some() || spec.oil.is_none() {
+        a.missing_for_losses(&lubrication, &bearings, &rotors);
+    }
 
     let mut terminals: Vec<MemberId> = Vec::new();
     for (k, name) in spec.terminals.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! The physical layer of a train: teeth, oil, bearings, seals, bodies that drag.
 
 use crate::catalogue::bearing::Bearing;
-use crate::catalogue::oil::Oil;
+use crate::catalogue::oil::{Oil, Viscosity};
 use crate::geometry::Pair;
 use crate::losses::seal::Material;
 
@@ -43,6 +43,33 @@ pub struct Lubrication {
     pub volume: Option<f64>,
     /// Volumes of air to one of oil in the mist, where given.
     pub mist: Option<f64>,
+}
+
+impl Lubrication {
+    /// What is wrong with the oil's data at a temperature, K: it lies outside them, or they hold for one
+    /// temperature only.
+    pub(crate) fn beyond(&self, temperature: f64) -> Option<String> {
+        let celsius = |t: f64| t - 273.15;
+        let name = &self.oil.name;
+        if matches!(self.oil.viscosity, Viscosity::Fixed { .. }) {
+            return ((temperature - self.temperature).abs() > 0.5).then(|| {
+                format!(
+                    "{name} at {:.0} °C: its viscosity is given for {:.0} °C alone and taken as the same here",
+                    celsius(temperature),
+                    celsius(self.temperature)
+                )
+            });
+        }
+        let [low, high] = self.oil.temperature_range();
+        (!self.oil.covers(temperature)).then(|| {
+            format!(
+                "{name} at {:.0} °C: its data reach from {:.0} to {:.0} °C",
+                celsius(temperature),
+                celsius(low),
+                celsius(high)
+            )
+        })
+    }
 }
 
 /// Rolling bearings between two members.

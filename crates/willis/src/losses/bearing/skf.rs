@@ -248,7 +248,7 @@ pub(super) fn load_and_seals<D: Real>(
         replenishment: phi_rs,
         boundary_share: phi_bl,
         sliding: g_sl * mu_sl * 1e-3,
-        seals: D::from(s.bearing.seal.map_or(0.0, |seal| seal_torque(&seal, d, big_d)) * 1e-3),
+        seals: D::from(s.bearing.seal.map_or(0.0, |seal| seal_torque(&seal, s.bearing.kind, d, big_d)) * 1e-3),
         drag: D::from(0.0),
     }
 }
@@ -317,14 +317,17 @@ fn geometry<D: Real>(s: &BearingDuty<D>, k: &SkfConstants, dm: f64, n: D) -> (D,
 }
 
 /// Torque of rubbing seals, N mm.
-fn seal_torque(seal: &Seal, d: f64, big_d: f64) -> f64 {
+fn seal_torque(seal: &Seal, kind: Kind, d: f64, big_d: f64) -> f64 {
     let share = match seal.kind {
         SealKind::Rs1 => 0.32,
         SealKind::Rsl | SealKind::Rsh | SealKind::Cs => 0.25,
         SealKind::Ls => 0.8,
     };
     let d_s = seal.diameter.map_or(d + share * (big_d - d), |x| x * 1e3);
+    let deep_groove = kind == Kind::DeepGrooveBall;
     let (k_s1, k_s2, beta) = match seal.kind {
+        // Angular contact and self-aligning ball bearings have a row of their own.
+        SealKind::Rs1 if kind.is_ball() && !deep_groove => (0.014, 10.0, 2.0),
         SealKind::Rsl if big_d <= 25.0 => (0.0, 0.0, 0.0),
         SealKind::Rsl if big_d <= 52.0 => (0.0018, 0.0, 2.25),
         SealKind::Rsh if big_d <= 52.0 => (0.028, 2.0, 2.25),

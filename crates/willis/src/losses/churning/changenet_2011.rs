@@ -37,6 +37,7 @@ use crate::real::Real;
 /// Nothing for a gear in a box. For a planet in an oil ring `gravity` takes the centrifugal
 /// acceleration: an estimate without experiment, good to half its value. A gear that does not dip
 /// (h ≤ 0), or stands still, loses nothing; one that is drowned has θ = π.
+/// Under another acceleration than gravity γ is scaled with it, so that the regimes keep their places.
 ///
 /// # Source
 /// `[changenet2011]`, drag torque coefficients in the four regimes.
@@ -87,7 +88,8 @@ impl Law for Changenet2011 {
 
         let fr = w * w * (r / s.gravity);
         let re = w / s.kinematic_viscosity * (r * b);
-        let gamma = w * w * (r * b * s.module).cbrt();
+        // The limits of the regimes were found under gravity.
+        let gamma = w * w * ((r * b * s.module).cbrt() * 9.806_65 / s.gravity);
         let viscous = re.re() < 4000.0;
         let (depth, volume, slim) = ((h / d).min(1.0), s.oil_volume / d.powi(3), b / d);
         let regime = |laminar: f64, turbulent: f64, powers: [f64; 3], froude: f64| {

@@ -23,6 +23,8 @@ use crate::losses::{Meta, Range, Trust};
 /// # Valid for
 /// As Schlenk: case-hardened steel gears, oil of 40 to 120 °C, and the range in [`Law::META`]. Made
 /// for the contact temperature of micropitting.
+/// Towards zero speed the formula rises without bound; from 0.5 m/s down (our limit: the slowest gear tests)
+/// it is flagged.
 ///
 /// # Departs from the source
 /// Nothing. Where no factor was measured for the oil, `X_L` is the one of its base; the factors of
@@ -71,7 +73,7 @@ impl Law for Niemann {
         tags: &[],
         valid: &[
             Range { symbol: "F_bt/b", unit: "N/m", min: 150e3, max: f64::INFINITY, get: |s| s.line_load },
-            Range { symbol: "v_t", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.pitch_line_speed },
+            Range { symbol: "v_t", unit: "m/s", min: 0.5, max: 50.0, get: |s| s.pitch_line_speed },
             Range { symbol: "Ra", unit: "m", min: 0.2e-6, max: 1e-6, get: |s| s.roughness },
         ],
     };

@@ -23,6 +23,8 @@ use crate::losses::{Meta, Range, Trust};
 ///
 /// # Valid for
 /// As Schlenk: case-hardened steel gears, oil of 40 to 120 °C, and the range in [`Law::META`].
+/// Towards zero speed the formula rises without bound; from 0.5 m/s down (our limit: the slowest gear tests)
+/// it is flagged.
 ///
 /// # Departs from the source
 /// Nothing known. The roughness factor stands as recalled, with 3.8 and the exponent 0.25.
@@ -63,7 +65,7 @@ impl Law for NiemannWinter {
         tags: &[],
         valid: &[
             Range { symbol: "F_bt/b", unit: "N/m", min: 150e3, max: f64::INFINITY, get: |s| s.line_load },
-            Range { symbol: "v_t", unit: "m/s", min: 0.0, max: 50.0, get: |s| s.pitch_line_speed },
+            Range { symbol: "v_t", unit: "m/s", min: 0.5, max: 50.0, get: |s| s.pitch_line_speed },
             Range { symbol: "Ra", unit: "m", min: 0.2e-6, max: 1e-6, get: |s| s.roughness },
         ],
     };

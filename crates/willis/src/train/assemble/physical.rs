@@ -228,6 +228,9 @@ impl Assembler<'_> {
         if !good {
             return None;
         }
+        if matches!(oil.viscosity, oil::Viscosity::Fixed { .. }) && spec.viscosity.is_none() {
+            self.assume(&oil.name, "its viscosity is known at one temperature, and taken at the operating temperature");
+        }
         if let Some(x) = spec.lubricant_factor {
             oil.lubricant_factor = Some(x);
         }
@@ -241,25 +244,22 @@ impl Assembler<'_> {
             self.assume(&oil.name, "temperature not given, taken as 60 °C");
             TEMPERATURE
         });
-        self.temperature(&oil, temperature, "oil.temperature");
-        Some(Lubrication { oil, temperature, supply: spec.supply, volume: spec.volume, mist: spec.mist })
+        let lubrication = Lubrication { oil, temperature, supply: spec.supply, volume: spec.volume, mist: spec.mist };
+        self.temperature(&lubrication, temperature, "oil.temperature");
+        Some(lubrication)
     }
 
     /// Says when a temperature lies outside what is known of the oil.
-    pub fn temperature(&mut self, oil: &Oil, temperature: f64, place: &str) {
-        let [low, high] = oil.temperature_range();
+    pub fn temperature(&mut self, lubrication: &Lubrication, temperature: f64, place: &str) {
         if !(200.0..=600.0).contains(&temperature) {
             let message = format!("an oil temperature of {:.1} °C is none that a gearbox has", temperature - 273.15);
             self.report(Diagnostic::new(Code::OutOfRange, place, message).hint("from -73 to 327 °C is computed"));
-        } else if !oil.covers(temperature) {
-            let message = format!(
-                "{} at {:.0} °C: its data reach from {:.0} to {:.0} °C",
-                oil.name,
-                temperature - 273.15,
-                low - 273.15,
-                high - 273.15
-            );
-            self.report(Diagnostic::new(Code::OutsideLaw, place, message).hint("the viscosity is extrapolated"));
+        } else if let Some(message) = lubrication.beyond(temperature) {
+            let hint = match message.contains("alone") {
+                true => "give viscosity_40 and viscosity_100, and it follows the temperature",
+                false => "the viscosity is extrapolated",
+            };
+            self.report(Diagnostic::new(Code::OutsideLaw, place, message).hint(hint));
         }
     }
 
@@ -468,6 +468,10 @@ impl Assembler<'_> {
                     mass: 0.0,
                 });
             }
+        }
+        for (member, mass) in masses {
+            let name = self.members[member.0].name.clone();
+            self.positive(*mass, true, &format!("{name}: a mass"), "kg", "set");
         }
         for body in &mut all {
             let bearing = bearings.iter().find(|b| b.members.contains(&body.member));
