@@ -673,3 +673,30 @@ fn disc_dual(s: &Disc<f64>) -> Disc<Dual64> {
         enclosure: s.enclosure,
     }
 }
+
+/// The row of angular contact and self-aligning bearings in SKF's table of seals, two lips:
+/// 7210 with a counterface of 62.8 mm, 0.014 · 62.8² + 10 = 65 N mm.
+#[test]
+fn val_seals_of_angular_contact_bearings_have_their_own_row() {
+    use willis::losses::bearing::Skf;
+    let mut bearing = willis::catalogue::bearing::find("7210 BE-2RS1").expect("in the catalogue");
+    if let Some(seal) = &mut bearing.seal {
+        seal.diameter = Some(62.8e-3);
+    }
+    let duty = BearingDuty { bearing: bearing.data(), ..BearingDuty::typical() };
+    let seals = Skf::DEFAULT.parts(&duty).expect("constants are known").seals;
+    assert!((seals - 65.2e-3).abs() < 0.2e-3, "{seals}");
+}
+
+/// In an oil ring the regimes change where they do under gravity, scaled: no jump with speed.
+#[test]
+fn churning_in_an_oil_ring_keeps_its_regime() {
+    use willis::losses::churning::{Churning, Dip};
+    let at = |speed: f64| {
+        // The acceleration goes with the square of the speed, as on a carrier.
+        let state = Dip { speed, gravity: 0.005 * speed * speed, ..Dip::typical() };
+        Churning::default().eval(&state) / speed.powi(3)
+    };
+    let (slow, fast) = (at(300.0), at(1200.0));
+    assert!((slow / fast - 1.0).abs() < 0.5, "{slow} against {fast}");
+}
