@@ -269,7 +269,10 @@ proptest! {
         let s = &o.solutions[0];
         prop_assert!((s.efficiency.unwrap() - 1.0).abs() < 1e-11, "{:?}", s.efficiency);
         let power = |m: usize| s.members.get(&plain(m)).unwrap().power_w.unwrap();
-        prop_assert!((power(1) + power(2)).abs() <= 1e-11 * power(1).abs());
+        // As in `check`: the largest power anywhere sets the round-off. Where power circulates it is
+        // many thousand times the power of the terminals, which are then a small difference.
+        let inside = s.meshes.iter().fold(power(1).abs(), |a, (_, m)| a.max(m.potential_power_w));
+        prop_assert!((power(1) + power(2)).abs() <= 1e-12 * inside, "{} {} of {inside}", power(1), power(2));
     }
 
     #[test]

@@ -274,8 +274,15 @@ fn component(context: &Context, name: &str) -> Result<(), String> {
 }
 
 /// Runs tests, passes their output through and reads the result lines.
+///
+/// The random trains are the same in every run, so that a run can be repeated and tells of the
+/// change that was made; `PROPTEST_RNG_SEED` in the environment looks at others.
 fn test(context: &Context, words: &str) -> Outcome {
-    let mut child = match context.words(words).stdout(Stdio::piped()).spawn() {
+    let mut command = context.words(words);
+    if std::env::var_os("PROPTEST_RNG_SEED").is_none() {
+        command.env("PROPTEST_RNG_SEED", "1841");
+    }
+    let mut child = match command.stdout(Stdio::piped()).spawn() {
         Ok(child) => child,
         Err(e) => return Outcome::Failed(format!("`{words}` cannot be started: {e}")),
     };
