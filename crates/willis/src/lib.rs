@@ -58,6 +58,7 @@ pub mod statics;
 pub mod power_flow;
 pub mod compiled;
 pub mod operating_point;
+pub mod dynamics;
 pub mod analysis;
 pub mod hypergraph;
 pub mod regimes;

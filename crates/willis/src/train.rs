@@ -7,6 +7,7 @@
 
 mod assemble;
 mod describe;
+mod dynamic;
 mod expand;
 mod format;
 mod physical;
@@ -26,6 +27,10 @@ pub use describe::physical::{
 pub use describe::{
     EfficiencySpec, GearSpec, MeshSpec, OperationSpec, SetEfficiencySpec, SetSpec, ShiftElementSpec, StateSpec,
     TrainBuilder,
+};
+pub use dynamic::{
+    Contact, Curve, DragMount, Engagement, Formula, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal, Source,
+    SourceKind,
 };
 pub use format::{Reading, schema};
 pub use physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
@@ -183,6 +188,8 @@ pub struct ShiftElement {
     pub members: [MemberId; 2],
     /// For a one-way clutch: the sign of the relative speed of the first member that it prevents.
     pub blocks: i8,
+    /// What it can hold, where that is limited and known.
+    pub friction: Option<Friction>,
 }
 
 /// A row of the shift table.
@@ -263,6 +270,11 @@ pub struct Train {
     pub(crate) seals: Vec<SealMount>,
     pub(crate) rotors: Vec<Rotor>,
     pub(crate) planets: Vec<PlanetBody>,
+    pub(crate) inertias: Vec<Inertia>,
+    pub(crate) drags: Vec<DragMount>,
+    pub(crate) shafts: Vec<Shaft>,
+    pub(crate) loss_tables: Vec<LossTable>,
+    pub(crate) scenarios: Vec<Scenario>,
 }
 
 impl Train {
@@ -389,6 +401,36 @@ impl Train {
     /// Planets whose orbit is known.
     pub fn planets(&self) -> &[PlanetBody] {
         &self.planets
+    }
+
+    /// Every moment of inertia.
+    pub fn inertias(&self) -> &[Inertia] {
+        &self.inertias
+    }
+
+    /// Friction that does not depend on tooth loads.
+    pub fn drags(&self) -> &[DragMount] {
+        &self.drags
+    }
+
+    /// Every elastic shaft.
+    pub fn shafts(&self) -> &[Shaft] {
+        &self.shafts
+    }
+
+    /// Loss tables of meshes.
+    pub fn loss_tables(&self) -> &[LossTable] {
+        &self.loss_tables
+    }
+
+    /// The motions of the file.
+    pub fn scenarios(&self) -> &[Scenario] {
+        &self.scenarios
+    }
+
+    /// The motion of that name.
+    pub fn scenario(&self, name: &str) -> Option<&Scenario> {
+        self.scenarios.iter().find(|s| s.name == name)
     }
 
     /// Whether losses are computed at operating points, beside given mesh efficiencies.
