@@ -116,6 +116,10 @@ codes! {
     /// three terminals, a wheel of regimes two degrees of freedom and one independent torque, an
     /// operating point as many speeds and torques as are independent.
     E208 Unfit: "the question does not fit this train";
+    /// In a simulation torques become accelerations by inertia. Some members can move together, along the
+    /// gears, without any of them having a moment of inertia, so that no acceleration follows. Give
+    /// one of them an inertia in `[inertias]`, prescribe a speed, or hold one of them.
+    E209 NoInertia: "inertia is missing";
     /// Profile shift (or another number of planet teeth) has to close a difference of one or two
     /// teeth between ring and sun plus planets. Ratios and efficiencies do not depend on it.
     W301 NearlyCoaxial: "the set closes only with profile shift";

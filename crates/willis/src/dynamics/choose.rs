@@ -1,0 +1,396 @@
+//! Which mode a state is in: decided by accelerations, never by flipping a sign.
+//!
+//! At a change of mode some groups are at zero slip. Each may be held or slide off either way, and the tooth
+//! forces may turn round; the right choice is the one whose accelerations and forces agree with it. Single
+//! disagreements are flipped, starting from the mode before (Murty's pivoting: finite where the solution is
+//! unique); where that does not settle, friction is balanced by projected sweeps; what is left is
+//! tried one by one. Without a certificate all modes are tried, so that several solutions, or none, are found and
+//! said (the gear form of Painlevé's paradox).
+
+use std::collections::HashSet;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::engine::{Engine, Margin, NOISE, Watch};
+use super::mode::{Mode, Side, dot, dot_size};
+
+/// Why there is no one mode.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Trouble {
+    /// Elements that join members of different speed at once.
+    Impact(String),
+    /// No mode agrees with itself.
+    None(String),
+    /// Several do.
+    Several(String),
+}
+
+/// Modes that are tried one by one, at most.
+const MOST_TRIED: usize = 20_000;
+
+impl Engine {
+    /// Speeds in the state made exactly those of groups at rest, with the least change in kinetic energy.
+    pub fn bring_to_rest(&mut self, x: &mut [f64], at_rest: &[bool]) {
+        let free = self.system.free;
+        let groups: Vec<usize> =
+            (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
+        if groups.is_empty() {
+            return;
+        }
+        let d = DMatrix::from_fn(groups.len(), free, |i, k| self.system.groups[groups[i]].row[k]);
+        let Some(mass) = self.system.mass.clone().cholesky() else { return };
+        let minv_dt = mass.solve(&d.transpose());
+        let w = &d * &minv_dt;
+        let Ok(inverse) = w.pseudo_inverse(1e-12 * d.norm().max(1e-300).powi(2) / self.system.mass.norm()) else {
+            return;
+        };
+        for _ in 0..2 {
+            let mut slip = DVector::from_fn(groups.len(), |i, _| dot(&self.system.groups[groups[i]].row[..free], &x[..free]));
+            for (i, &g) in groups.iter().enumerate() {
+                slip[i] += dot(&self.system.groups[g].row[free..], &self.speed[free..]);
+            }
+            let change = &minv_dt * (&inverse * slip);
+            for k in 0..free {
+                x[k] -= change[k];
+            }
+        }
+        // What is left is round-off of a coordinate at rest.
+        for k in 0..free {
+            let exactly = groups.iter().any(|&g| {
+                let row = &self.system.groups[g].row;
+                row.iter().enumerate().all(|(i, r)| (i == k) == (*r != 0.0))
+            });
+            if exactly {
+                x[k] = 0.0;
+            }
+        }
+    }
+
+    /// Groups whose slip is zero but for round-off.
+    pub fn at_rest(&self) -> Vec<bool> {
+        (0..self.system.groups.len())
+            .map(|g| {
+                let row = &self.system.groups[g].row;
+                self.group_slip(g).abs() <= 1e-11 * dot_size(row, &self.speed)
+            })
+            .collect()
+    }
+
+    /// The mode of a state. `at_rest`: groups at zero slip; `guess`: the mode before.
+    pub fn choose(&mut self, t: f64, x: &[f64], at_rest: &[bool], guess: &Mode) -> Result<Mode, Trouble> {
+        self.look(t, x);
+        for k in 0..self.engaged.len() {
+            let threshold = if self.system.frictions[k].rigid { 0.5 } else { 0.0 };
+            self.engaged[k] = self.engagement(k, t) > threshold;
+        }
+        for k in 0..self.touch.len() {
+            self.touch[k] = self.touch_now(k, x);
+        }
+        let mut start = guess.clone();
+        for g in 0..at_rest.len() {
+            let slip = self.group_slip(g);
+            if !at_rest[g] {
+                start.slip[g] = if slip > 0.0 { 1 } else { -1 };
+                let c = self.capacity(g, false, t);
+                if (slip > 0.0 && c.forward.is_infinite()) || (slip < 0.0 && c.backward.is_infinite()) {
+                    return Err(Trouble::Impact(format!(
+                        "{} would stop a relative speed of {:.6} rad/s at once; give the shift element a capacity, or \
+                         engage it when its sides turn alike",
+                        self.system.groups[g].name, slip
+                    )));
+                }
+            } else if self.system.groups[g].driven {
+                start.slip[g] = 0;
+            }
+        }
+        let found = self.pivot(t, x, at_rest, &start).or_else(|| {
+            let balanced = self.balance_guess(t, x, at_rest, &start);
+            self.pivot(t, x, at_rest, &balanced)
+        });
+        let certified = self.is_certified();
+        if found.is_some() && (certified || self.combinations(at_rest) > MOST_TRIED) {
+            return Ok(found.expect("some"));
+        }
+        let all = self.try_all(t, x, at_rest, &start);
+        match (all.len(), found) {
+            (0, Some(mode)) => Ok(mode),
+            (0, None) => Err(Trouble::None(self.no_solution(at_rest))),
+            (1, _) => Ok(all.into_iter().next().expect("one")),
+            (n, _) => Err(Trouble::Several(format!(
+                "{n} sets of tooth forces and accelerations agree with this state; the first two give {} and {}",
+                self.accelerations_of(t, x, &all[0]),
+                self.accelerations_of(t, x, &all[1]),
+            ))),
+        }
+    }
+
+    fn accelerations_of(&mut self, t: f64, x: &[f64], mode: &Mode) -> String {
+        self.enter(mode);
+        self.solve(t, x);
+        let list: Vec<String> = (0..self.system.free)
+            .map(|k| {
+                let name = self.system.train.member_name(self.system.coordinates[k]);
+                format!("d{name}/dt = {:.6} rad/s²", self.acceleration[k])
+            })
+            .collect();
+        list.join(", ")
+    }
+
+    fn no_solution(&self, at_rest: &[bool]) -> String {
+        let still: Vec<&str> = (at_rest.iter().enumerate())
+            .filter(|(_, r)| **r)
+            .map(|(g, _)| self.system.groups[g].name.as_str())
+            .collect();
+        let where_ = if still.is_empty() { String::new() } else { format!(" ({} at rest)", still.join("; ")) };
+        format!(
+            "no accelerations and tooth forces agree with each other here{where_}: friction grows with the force it \
+             causes and jams the train"
+        )
+    }
+
+    fn combinations(&self, at_rest: &[bool]) -> usize {
+        let mut n = 1usize;
+        for (g, group) in self.system.groups.iter().enumerate() {
+            if at_rest[g] && !group.driven {
+                n = n.saturating_mul(3);
+            }
+            n = n.saturating_mul(1usize << group.elements.len().min(30));
+        }
+        n
+    }
+
+    /// Margins of the present mode and those of groups that start to slide. Empty vector: it agrees.
+    fn disagreements(&mut self, t: f64, x: &[f64], at_rest: &[bool], out: &mut Vec<Margin>) {
+        self.margins(t, x, out);
+        out.retain(|m| match m.watch {
+            Watch::Slip(g) => !at_rest[g],
+            Watch::Touch(_) | Watch::Engage(_) => false,
+            _ => true,
+        });
+        let Some(map) = self.map.clone() else { return };
+        for g in (0..at_rest.len()).filter(|&g| at_rest[g]) {
+            let sign = self.mode.slip[g];
+            if sign != 0 {
+                let value = f64::from(sign) * self.group_acceleration(g);
+                let row = &self.system.groups[g].row[..self.system.free];
+                let size: f64 = row.iter().enumerate().map(|(i, r)| r.abs() * map.size(i, &self.tau)).sum();
+                out.push(Margin { watch: Watch::Slip(g), value, noise: NOISE * size });
+            }
+        }
+        out.retain(Margin::is_broken);
+    }
+
+    /// Flips single disagreements until there are none.
+    fn pivot(&mut self, t: f64, x: &[f64], at_rest: &[bool], start: &Mode) -> Option<Mode> {
+        let mut mode = start.clone();
+        let mut seen: HashSet<Mode> = HashSet::new();
+        let mut broken = Vec::new();
+        let mut least_index = false;
+        for _ in 0..400 {
+            if !self.enter(&mode) {
+                return None;
+            }
+            self.solve(t, x);
+            self.disagreements(t, x, at_rest, &mut broken);
+            let worst = |m: &Margin| -m.value / (m.noise + 1e-300);
+            let pick = if least_index {
+                broken.first()
+            } else {
+                broken.iter().max_by(|a, b| worst(a).total_cmp(&worst(b)))
+            };
+            let Some(&pick) = pick else { return Some(mode) };
+            match pick.watch {
+                Watch::Slip(g) => mode.slip[g] = 0,
+                Watch::Hold(g, sign) => mode.slip[g] = sign,
+                Watch::Side(j) => mode.side[j] = mode.side[j].other(),
+                Watch::HoldAll => {
+                    let next = self.balance_guess(t, x, at_rest, &mode);
+                    if next == mode {
+                        return None;
+                    }
+                    mode = next;
+                }
+                Watch::Touch(_) | Watch::Engage(_) => unreachable!("left out"),
+            }
+            if !seen.insert(mode.clone()) {
+                if least_index {
+                    return None;
+                }
+                least_index = true;
+                seen.clear();
+            }
+        }
+        None
+    }
+
+    /// Every mode that agrees with the state, those of equal accelerations once.
+    pub fn try_all(&mut self, t: f64, x: &[f64], at_rest: &[bool], start: &Mode) -> Vec<Mode> {
+        if self.combinations(at_rest) > MOST_TRIED {
+            return vec![];
+        }
+        let open: Vec<usize> =
+            (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
+        let sides: Vec<usize> = self.system.groups.iter().flat_map(|g| g.elements.iter().copied()).collect();
+        let mut found: Vec<(Mode, Vec<f64>)> = Vec::new();
+        let mut broken = Vec::new();
+        for state in 0..3usize.pow(open.len() as u32) {
+            let mut mode = start.clone();
+            let mut rest = state;
+            for &g in &open {
+                mode.slip[g] = [0, 1, -1][rest % 3];
+                rest /= 3;
+            }
+            let moving: Vec<usize> =
+                sides.iter().copied().filter(|&j| mode.element_slip(&self.system, j) != 0).collect();
+            for pattern in 0..1usize << moving.len() {
+                for (k, &j) in moving.iter().enumerate() {
+                    mode.side[j] = if pattern >> k & 1 == 0 { Side::Drive } else { Side::Coast };
+                }
+                if !self.enter(&mode) {
+                    continue;
+                }
+                self.solve(t, x);
+                self.disagreements(t, x, at_rest, &mut broken);
+                if !broken.is_empty() {
+                    continue;
+                }
+                let a = self.acceleration.clone();
+                let size = a.iter().fold(0.0f64, |s, a| s.max(a.abs()));
+                let known = found.iter().any(|(_, b)| a.iter().zip(b).all(|(x, y)| (x - y).abs() <= 1e-8 * size));
+                if !known {
+                    found.push((mode.clone(), a));
+                }
+            }
+        }
+        found.into_iter().map(|(mode, _)| mode).collect()
+    }
+
+    /// Whether groups that are held several times over stay held: some split of the torques among them fits.
+    pub fn holds(&mut self, t: f64, x: &[f64]) -> bool {
+        let mode = self.mode.clone();
+        let held: Vec<bool> = mode.slip.iter().map(|s| *s == 0).collect();
+        let balanced = self.balance_guess(t, x, &held, &mode);
+        self.enter(&mode);
+        self.solve(t, x);
+        balanced.slip == mode.slip
+    }
+
+    /// Balances friction by projected sweeps (Gauss–Seidel): every element at rest takes the torque that
+    /// stops its slip, within what it can hold. Where several share, any share that holds is found.
+    fn balance_guess(&mut self, t: f64, x: &[f64], at_rest: &[bool], start: &Mode) -> Mode {
+        let mut mode = start.clone();
+        for g in 0..at_rest.len() {
+            if at_rest[g] {
+                mode.slip[g] = 0;
+            }
+        }
+        let p = self.system.ports;
+        let all = self.system.all();
+        let groups: Vec<usize> =
+            (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
+        let mut rates = vec![0.0; at_rest.len()];
+        let mut sizes = vec![0.0; at_rest.len()];
+        for _round in 0..20 {
+            self.mode = mode.clone();
+            self.load(t, x);
+            let mut tau = self.tau.clone();
+            // Limits of the friction elements at rest.
+            let mut limits: Vec<(usize, usize, f64, f64, f64)> = Vec::new();
+            for &g in &groups {
+                for &f in &self.system.groups[g].frictions {
+                    let friction = &self.system.frictions[f];
+                    let (_, factor) = friction.group.expect("of this group");
+                    let c = |engine: &Self, sign: i8| engine.capacity_of(f, sign, t);
+                    limits.push((g, friction.port, factor, -c(self, 1), c(self, -1)));
+                }
+            }
+            let Some(pattern) = self.maps.pattern(&self.system, &mode) else { return mode };
+            let response = pattern.response.clone();
+            let slip = pattern.slip.clone();
+            let torque_of = |j: usize, tau: &[f64], factors: [f64; 2]| {
+                factors[0] * dot(&response[(all + j) * p..(all + j + 1) * p], tau)
+            };
+            for _sweep in 0..4000 {
+                let mut change = 0.0f64;
+                for &(g, port, factor, low, high) in &limits {
+                    let d = factor * slip[g * p + port];
+                    if d <= 0.0 {
+                        continue;
+                    }
+                    let a = factor * dot(&slip[g * p..(g + 1) * p], &tau);
+                    let next = (tau[port] - a / d).clamp(low, high);
+                    change = change.max((next - tau[port]).abs() / (next.abs() + 1e-300).max(dot_size(&slip[g * p..(g + 1) * p], &tau) / d.abs()));
+                    tau[port] = next;
+                }
+                for &g in &groups {
+                    for &j in &self.system.groups[g].elements {
+                        let e = &self.system.elements[j];
+                        let (_, factor) = e.group.expect("of this group");
+                        let d = factor * slip[g * p + e.port];
+                        if d >= 0.0 {
+                            continue;
+                        }
+                        let a = factor * dot(&slip[g * p..(g + 1) * p], &tau);
+                        let torque = torque_of(j, &tau, e.factors);
+                        let loss = e.loss(0.0);
+                        let upper = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
+                        let lower = (loss.drive * torque - loss.drive_torque).min(loss.coast * torque - loss.coast_torque);
+                        let next = (tau[e.port] - a / d).clamp(lower.min(upper), upper.max(lower));
+                        change = change.max((next - tau[e.port]).abs() / (next.abs() + 1e-300).max(dot_size(&slip[g * p..(g + 1) * p], &tau) / d.abs()));
+                        tau[e.port] = next;
+                    }
+                }
+                for (j, e) in self.system.elements.iter().enumerate() {
+                    if e.varies() && mode.element_slip(&self.system, j) != 0 {
+                        let loss = e.loss(dot(&e.row, &self.speed).abs());
+                        let torque = torque_of(j, &tau, e.factors);
+                        tau[e.port] = super::mode::slope(loss, mode.side[j]) * torque + self.tau[e.port];
+                    }
+                }
+                if change < 1e-13 {
+                    break;
+                }
+            }
+            for &g in &groups {
+                rates[g] = dot(&slip[g * p..(g + 1) * p], &tau);
+                sizes[g] = dot_size(&slip[g * p..(g + 1) * p], &tau);
+            }
+            // Sides of what moves, at the torques found.
+            let mut turned = false;
+            for (j, e) in self.system.elements.iter().enumerate() {
+                let sign = f64::from(mode.element_slip(&self.system, j));
+                if e.group.is_none() {
+                    continue;
+                }
+                let torque = torque_of(j, &tau, e.factors);
+                let loss = e.loss(dot(&e.row, &self.speed).abs());
+                let sign = if sign == 0.0 {
+                    let (g, factor) = e.group.expect("checked");
+                    (rates[g] * factor).signum()
+                } else {
+                    sign
+                };
+                let value = sign * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
+                let side = if value >= 0.0 { Side::Drive } else { Side::Coast };
+                if side != mode.side[j] {
+                    mode.side[j] = side;
+                    turned |= mode.element_slip(&self.system, j) != 0;
+                }
+            }
+            if !turned {
+                break;
+            }
+        }
+        for &g in &groups {
+            if rates[g].abs() > 1e-8 * sizes[g] {
+                mode.slip[g] = if rates[g] > 0.0 { 1 } else { -1 };
+            }
+        }
+        mode
+    }
+
+    /// Amount of torque with which a friction element at rest opposes slip in a direction.
+    fn capacity_of(&self, f: usize, sign: i8, t: f64) -> f64 {
+        self.sliding(f, 0.0, sign, true, t).abs()
+    }
+}

@@ -1,0 +1,213 @@
+//! Where the energy goes: every source and every named loss is integrated along with the motion.
+
+use crate::train::SourceKind;
+
+use super::engine::Engine;
+use super::mode::{Side, dot, slope};
+use super::report::{EnergyLoss, EnergyReport, SourceEnergy};
+use super::system::Rubs;
+
+/// What a friction element does to its first member, and what it costs.
+#[derive(Clone, Copy)]
+pub(super) struct Rubbing {
+    /// N m on the first member; NaN where it is held together with others.
+    pub torque: f64,
+    /// W
+    pub loss: f64,
+}
+
+/// What an element takes at its first gear, and what it costs.
+#[derive(Clone, Copy)]
+pub(super) struct Meshing {
+    /// N m
+    pub torque: f64,
+    /// W
+    pub loss: f64,
+}
+
+impl Engine {
+    /// Number of energies that are integrated: of sources (net and in), of frictions, shafts, meshes.
+    pub fn energies(&self) -> usize {
+        let s = &self.system;
+        2 * s.drivers.len() + s.frictions.len() + s.elastic.len() + s.train.meshes().len()
+    }
+
+    /// The whole torque of a source, at the state solved last.
+    pub fn applied_torque(&self, k: usize, t: f64) -> f64 {
+        let driver = &self.system.drivers[k];
+        if let Some(i) = driver.prescribed {
+            return self.map.as_ref().map_or(f64::NAN, |m| m.unknown(self.system.free + i, &self.tau));
+        }
+        let mut torque = driver.port.map_or(0.0, |p| self.tau[p]);
+        if let SourceKind::Controller { derivative, .. } = &self.system.scenario.sources[k].kind {
+            torque -= derivative * dot(&self.system.speeds[driver.member.index()], &self.acceleration);
+        }
+        if let Some(f) = driver.rolling {
+            let rolling = self.rubbing(f, t).torque;
+            torque += if rolling.is_nan() { 0.0 } else { rolling };
+        }
+        torque
+    }
+
+    /// A friction element at the state solved last.
+    pub fn rubbing(&self, k: usize, t: f64) -> Rubbing {
+        let f = &self.system.frictions[k];
+        let w = dot(&f.row, &self.speed);
+        let viscous = -f.viscous * w;
+        let Some((g, factor)) = f.group else {
+            return Rubbing { torque: viscous, loss: -viscous * w };
+        };
+        let sign = self.mode.slip[g] * factor.signum() as i8;
+        let group = &self.system.groups[g];
+        if sign != 0 {
+            let sliding = self.sliding(k, w, sign, false, t);
+            let sliding = if sliding.is_finite() { sliding } else { 0.0 };
+            return Rubbing { torque: viscous + sliding, loss: -(viscous + sliding) * w };
+        }
+        // Held: the torque is determined where nothing else shares in it.
+        let can_hold = |f: usize| {
+            let (p, m) = (self.sliding(f, 0.0, 1, true, t), self.sliding(f, 0.0, -1, true, t));
+            p != 0.0 || m != 0.0
+        };
+        let holding: Vec<usize> = group.frictions.iter().copied().filter(|&f| can_hold(f)).collect();
+        let alone = group.elements.is_empty() && holding.len() == 1;
+        let torque = match (&self.map, can_hold(k)) {
+            (_, false) => viscous,
+            (Some(map), _) if alone && !map.is_redundant() && !group.driven => {
+                group.lead.1 * map.held(g, &self.tau) / factor + viscous
+            }
+            _ => f64::NAN,
+        };
+        Rubbing { torque, loss: 0.0 }
+    }
+
+    /// An element at the state solved last.
+    pub fn meshing(&self, j: usize) -> Meshing {
+        let e = &self.system.elements[j];
+        let (torque, _) = self.element_torque(j);
+        let sign = self.mode.element_slip(&self.system, j);
+        if sign == 0 {
+            // How the elements of a locked group share what holds it is open, and with it their forces.
+            let open = e.group.is_some_and(|(g, _)| {
+                let group = &self.system.groups[g];
+                group.elements.len() + group.frictions.len() > 1
+                    || self.map.as_ref().is_some_and(|m| m.is_redundant())
+            });
+            return Meshing { torque: if open { f64::NAN } else { torque }, loss: 0.0 };
+        }
+        let w = dot(&e.row, &self.speed);
+        let loss = e.loss(w.abs());
+        let side = self.mode.side[j];
+        let constant = match side {
+            Side::Drive => loss.drive_torque,
+            Side::Coast => loss.coast_torque,
+        };
+        Meshing { torque, loss: (slope(loss, side) * torque + f64::from(sign) * constant) * w }
+    }
+
+    /// How the loss of an element divides among its meshes: link and part.
+    pub fn shares(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let e = &self.system.elements[j];
+        let drive = self.mode.side[j] == Side::Drive;
+        let efficiency = move |k: usize| {
+            let link = e.links[k];
+            let own = &self.system.train.meshes()[link.mesh.index()].efficiency;
+            if link.along == drive { own.forward.to_f64() } else { own.backward.to_f64() }
+        };
+        let n = e.links.len();
+        let whole: f64 = 1.0 - (0..n).map(efficiency).product::<f64>();
+        (0..n).map(move |k| {
+            let before: f64 = if drive { (0..k).map(efficiency).product() } else { (k + 1..n).map(efficiency).product() };
+            let part = if n == 1 || whole == 0.0 { 1.0 / n as f64 } else { before * (1.0 - efficiency(k)) / whole };
+            (e.links[k].mesh.index(), part)
+        })
+    }
+
+    /// Rates of the energies at the state solved last, W.
+    pub fn powers(&mut self, t: f64, x: &[f64], out: &mut [f64]) {
+        out.iter_mut().for_each(|p| *p = 0.0);
+        let s = &self.system;
+        let sources = s.drivers.len();
+        for k in 0..sources {
+            let power = self.applied_torque(k, t) * self.member_speed(s.drivers[k].member);
+            out[k] = power;
+            out[sources + k] = power.max(0.0);
+        }
+        let mut at = 2 * sources;
+        for k in 0..s.frictions.len() {
+            if !matches!(s.frictions[k].what, Rubs::Rolling(_)) {
+                out[at + k] = self.rubbing(k, t).loss;
+            }
+        }
+        at += s.frictions.len();
+        for k in 0..s.elastic.len() {
+            // What the damper takes; the spring gives back what it took.
+            out[at + k] = self.damper_power(k, x);
+        }
+        at += s.elastic.len();
+        for j in 0..s.elements.len() {
+            if s.elements[j].group.is_none() {
+                continue;
+            }
+            let loss = self.meshing(j).loss;
+            for (mesh, part) in self.shares(j) {
+                out[at + mesh] += loss * part;
+            }
+        }
+    }
+
+    /// Kinetic energy and that of twisted shafts.
+    pub fn stored(&self, x: &[f64]) -> f64 {
+        let w = nalgebra::DVector::from_column_slice(&self.speed);
+        let kinetic = 0.5 * (w.transpose() * &self.system.energy * &w)[(0, 0)];
+        let twisted: f64 = (0..self.system.elastic.len()).map(|k| self.spring_energy(k, x)).sum();
+        kinetic + twisted
+    }
+
+    /// The report at the end of a run. `stored` and the energies: at the start, at the end.
+    pub fn energy_report(&self, stored: [f64; 2], energies: &[f64]) -> EnergyReport {
+        let s = &self.system;
+        let n = s.drivers.len();
+        let sources: Vec<SourceEnergy> = (0..n)
+            .map(|k| SourceEnergy {
+                name: s.scenario.sources[k].name.clone(),
+                member: s.train.member_name(s.drivers[k].member).to_owned(),
+                energy_j: energies[k],
+                in_j: energies[n + k],
+                out_j: energies[n + k] - energies[k],
+            })
+            .collect();
+        let mut losses = Vec::new();
+        let mut at = 2 * n;
+        for (k, f) in s.frictions.iter().enumerate() {
+            if !f.open && !matches!(f.what, Rubs::Rolling(_)) {
+                losses.push(EnergyLoss { name: f.name.clone(), kind: self.kind(k), energy_j: energies[at + k] });
+            }
+        }
+        at += s.frictions.len();
+        for (k, shaft) in s.train.shafts().iter().enumerate() {
+            if shaft.damping > 0.0 || shaft.backlash > 0.0 {
+                losses.push(EnergyLoss { name: shaft.name.clone(), kind: "shaft", energy_j: energies[at + k] });
+            }
+        }
+        at += s.elastic.len();
+        for (k, mesh) in s.train.meshes().iter().enumerate() {
+            losses.push(EnergyLoss { name: mesh.name.clone(), kind: "mesh", energy_j: energies[at + k] });
+        }
+        losses.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));
+        let stored_j = stored[1] - stored[0];
+        let lost: f64 = losses.iter().map(|l| l.energy_j).sum();
+        let net: f64 = sources.iter().map(|s| s.energy_j).sum();
+        let came_in: f64 = sources.iter().map(|s| s.in_j).sum();
+        let went_out: f64 = sources.iter().map(|s| s.out_j).sum();
+        let turned_over_j = came_in + (-stored_j).max(0.0);
+        EnergyReport {
+            stored_j,
+            residual_j: net - stored_j - lost,
+            turned_over_j,
+            efficiency: (came_in > 0.0 && stored_j.abs() <= 1e-9 * came_in).then(|| went_out / came_in),
+            sources,
+            losses,
+        }
+    }
+}

@@ -1,0 +1,686 @@
+//! From start to end: smooth motion, changes of mode, rows and events.
+
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::train::{MemberId, SourceKind, Train};
+
+use super::choose::Trouble;
+use super::engine::{Engine, Margin, Watch};
+use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
+use super::report::{Column, Event, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
+use super::system::{System, element_name};
+
+/// A scenario that is being run.
+///
+/// # Example
+/// ```
+/// use willis::dynamics::{Options, Outcome, Simulation};
+/// use willis::train::Train;
+///
+/// let train = Train::from_toml(r#"
+///     format = 1
+///     name = "a rotor coasts"
+///     members = ["rotor"]
+///     inertias = { rotor = "2 kg m^2" }
+///
+///     [[drag]]
+///     name = "bearing"
+///     members = ["rotor"]
+///     coulomb = "4 N m"
+///
+///     [[scenario]]
+///     name = "coast"
+///     duration = "10 s"
+///     initial_speeds = { rotor = "12 rad/s" }
+/// "#)?;
+/// let mut run = Simulation::new(&train, "coast", &Options::default())?;
+/// assert_eq!(run.advance(3.0, &mut ()), None);
+/// assert!((run.speed("rotor").unwrap() - 6.0).abs() < 1e-9);
+/// assert_eq!(run.advance(10.0, &mut ()), Some(Outcome::Finished));
+/// assert_eq!(run.speed("rotor"), Some(0.0));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub struct Simulation {
+    engine: Engine,
+    options: Options,
+    explicit: Dopri5,
+    implicit: Implicit,
+    stiff: bool,
+    /// Whether the integrator stands at the present state in the present mode.
+    rolling: bool,
+    t: f64,
+    /// States and energies.
+    x: Vec<f64>,
+    segment: f64,
+    at_rest: Vec<bool>,
+    labels: Vec<(String, ModeLabel)>,
+    /// Why the mode is chosen anew.
+    cause: Option<String>,
+    columns: Vec<Column>,
+    row: Vec<f64>,
+    next_sample: usize,
+    samples: usize,
+    recent: VecDeque<f64>,
+    last_step: Option<f64>,
+    steps: usize,
+    events: usize,
+    stored_at_start: f64,
+    outcome: Option<Outcome>,
+    notes: Vec<String>,
+    margins: Vec<Margin>,
+    state: Vec<f64>,
+}
+
+/// How the present stretch ended.
+enum Stretch {
+    /// An event or a break of the inputs: the mode is chosen anew.
+    Again,
+    /// The time asked for was reached.
+    Reached,
+    /// It cannot go on.
+    Ended(Outcome),
+}
+
+impl Simulation {
+    /// Prepares a scenario of a train.
+    ///
+    /// # Errors
+    /// An unknown scenario, contradictory speeds, inertia that is missing.
+    pub fn new(train: &Train, scenario: &str, options: &Options) -> Result<Self, Diagnostics> {
+        let system = System::new(train, scenario)?;
+        let mut engine = Engine::new(system);
+        let start = engine.system.scenario.start;
+        engine.inside = start;
+        let mut x = vec![0.0; engine.states() + engine.quadratures()];
+        initial_speeds(&mut engine, &mut x).map_err(|d| [d].into_iter().collect::<Diagnostics>())?;
+        engine.look(start, &x);
+        let stored_at_start = engine.stored(&x);
+        let columns = engine.columns();
+        let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
+        let (states, quadratures) = (engine.states(), engine.quadratures());
+        let groups = engine.system.groups.len();
+        let mut notes = Vec::new();
+        if !engine.certified {
+            notes.push(match (engine.system.rolling_is_unique(), engine.system.sticking_is_unique()) {
+                (Some(false), _) => "the tooth forces may have several solutions, or none, in some states of this train: \
+                                     every change of mode was searched for all of them"
+                    .to_owned(),
+                (_, Some(false)) => "sticking and sliding may both be possible in some states of this train: every \
+                                     change of mode was searched for all solutions"
+                    .to_owned(),
+                _ => "too many meshes and friction elements for a certificate that the forces are unique".to_owned(),
+            });
+        }
+        Ok(Self {
+            options: options.clone(),
+            explicit: Dopri5::new(states, quadratures),
+            implicit: Implicit::new(states, quadratures),
+            stiff: false,
+            rolling: false,
+            t: start,
+            x,
+            segment: start,
+            at_rest: vec![false; groups],
+            labels: vec![],
+            cause: Some("start".into()),
+            columns,
+            row: vec![],
+            next_sample: 0,
+            samples,
+            recent: VecDeque::new(),
+            last_step: None,
+            steps: 0,
+            events: 0,
+            stored_at_start,
+            outcome: None,
+            notes,
+            margins: vec![],
+            state: vec![0.0; states + quadratures],
+            engine,
+        })
+    }
+
+    /// The columns of a row.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// Time reached, s.
+    pub fn time(&self) -> f64 {
+        self.t
+    }
+
+    /// Speed of a member, rad/s.
+    pub fn speed(&self, member: &str) -> Option<f64> {
+        let m = self.engine.system.train.member(member)?;
+        Some(self.engine.member_speed(m))
+    }
+
+    /// Angle that a member has turned through since the start, rad.
+    pub fn angle(&self, member: &str) -> Option<f64> {
+        let s = &self.engine.system;
+        let m = s.train.member(member)?;
+        Some(super::mode::dot(&s.speeds[m.index()], &self.x[s.free..s.free + s.all()]))
+    }
+
+    /// Replaces what a source does from now on by a constant torque, N m, or speed, rad/s, as its kind is.
+    ///
+    /// # Errors
+    /// If there is no such source or it is neither a torque nor a speed.
+    pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
+        use crate::train::Signal;
+        let known: Vec<String> = self.engine.system.scenario.sources.iter().map(|s| s.name.clone()).collect();
+        let Some(k) = known.iter().position(|n| n == source) else {
+            return Err(format!("there is no source `{source}`; the sources are: {}", known.join(", ")));
+        };
+        match &mut self.engine.system.scenario.sources[k].kind {
+            SourceKind::Torque(signal) | SourceKind::Speed(signal) => *signal = Signal::Constant(value),
+            SourceKind::Controller { setpoint, .. } => *setpoint = Signal::Constant(value),
+            SourceKind::Motor { throttle, .. } => *throttle = Signal::Constant(value),
+            SourceKind::Vehicle { grade, .. } => *grade = Signal::Constant(value),
+            SourceKind::Linear { .. } | SourceKind::Quadratic { .. } => {
+                return Err(format!("`{source}` is a load that follows the speed; it takes no value"));
+            }
+        }
+        self.rolling = false;
+        Ok(())
+    }
+
+    /// The present row, in the order of the columns.
+    pub fn row(&mut self) -> &[f64] {
+        let (t, x) = (self.t, std::mem::take(&mut self.x));
+        let mut row = std::mem::take(&mut self.row);
+        self.engine.row(t, &x, &mut row);
+        self.x = x;
+        self.row = row;
+        &self.row
+    }
+
+    /// Goes on to a time, s, or to the end of the scenario, whichever comes first. `None` if the scenario is
+    /// not at its end.
+    pub fn advance(&mut self, until: f64, recorder: &mut dyn Recorder) -> Option<Outcome> {
+        if self.outcome.is_some() {
+            return self.outcome.clone();
+        }
+        let end = self.engine.system.scenario.end;
+        let target = until.min(end);
+        let outcome = loop {
+            if !self.rolling
+                && let Err(trouble) = self.choose(recorder)
+            {
+                break Some(trouble);
+            }
+            if self.t >= target {
+                break (self.t >= end).then_some(Outcome::Finished);
+            }
+            match self.stretch(target, recorder) {
+                Stretch::Again => {}
+                Stretch::Reached => break (self.t >= end).then_some(Outcome::Finished),
+                Stretch::Ended(outcome) => break Some(outcome),
+            }
+        };
+        if let Some(outcome) = &outcome {
+            if *outcome == Outcome::Finished {
+                self.emit_samples(f64::INFINITY, recorder);
+            }
+            self.outcome = Some(outcome.clone());
+        }
+        let x = std::mem::take(&mut self.x);
+        self.engine.look(self.t, &x);
+        self.x = x;
+        outcome
+    }
+
+    /// Chooses the mode at the present state and tells of the change.
+    fn choose(&mut self, recorder: &mut dyn Recorder) -> Result<(), Outcome> {
+        let end = self.engine.system.scenario.end;
+        let next = self.engine.system.signals().map(|s| s.next_break(self.t)).fold(f64::INFINITY, f64::min);
+        self.segment = next.min(end);
+        self.engine.inside = if self.segment > self.t { 0.5 * (self.t + self.segment) } else { self.t };
+        let mut x = std::mem::take(&mut self.x);
+        let free = self.engine.system.free;
+        let before: Vec<f64> = self.engine.speed[free..].to_vec();
+        self.engine.look(self.t, &x);
+        let jump = (before.iter().zip(&self.engine.speed[free..])).any(|(a, b)| (a - b).abs() > 1e-9 * (a.abs() + b.abs()));
+        if jump && self.events > 0 {
+            self.x = x;
+            return Err(Outcome::Impact("a prescribed speed jumps: that takes an infinite torque; use a ramp".into()));
+        }
+        for (rest, now) in self.at_rest.iter_mut().zip(self.engine.at_rest()) {
+            *rest |= now;
+        }
+        self.engine.bring_to_rest(&mut x, &self.at_rest);
+        self.engine.look(self.t, &x);
+        let at_rest = std::mem::take(&mut self.at_rest);
+        let mut guess = self.engine.mode.clone();
+        for (slip, rest) in guess.slip.iter_mut().zip(&at_rest) {
+            if *rest {
+                *slip = 0;
+            }
+        }
+        let chosen = self.engine.choose(self.t, &x, &at_rest, &guess);
+        let mode = match chosen {
+            Ok(mode) => mode,
+            Err(trouble) => {
+                let several = matches!(trouble, Trouble::Several(_));
+                let outcome = match trouble {
+                    Trouble::Impact(why) => Outcome::Impact(why),
+                    Trouble::None(why) => Outcome::NoSolution(why),
+                    Trouble::Several(why) => Outcome::SeveralSolutions(why),
+                };
+                if !(several && self.options.continue_when_ambiguous) {
+                    self.at_rest = at_rest;
+                    self.x = x;
+                    return Err(outcome);
+                }
+                if let Outcome::SeveralSolutions(why) = outcome {
+                    self.notes.push(format!("at t = {} s: {why}; the first was taken", self.t));
+                }
+                self.engine.try_all(self.t, &x, &at_rest, &guess).swap_remove(0)
+            }
+        };
+        self.at_rest = mode.slip.iter().map(|s| *s == 0).collect();
+        self.engine.enter(&mode);
+        let labels = self.engine.labels();
+        let changed: Vec<(String, ModeLabel)> = (labels.iter().enumerate())
+            .filter(|(k, l)| self.labels.get(*k) != Some(l))
+            .map(|(_, l)| l.clone())
+            .collect();
+        let cause = self.cause.take();
+        if !changed.is_empty() || cause.as_deref().is_some_and(|c| c != INPUT) {
+            let event = Event { time_s: self.t, cause: cause.unwrap_or_else(|| INPUT.into()), modes: changed };
+            self.labels = labels;
+            self.events += 1;
+            if self.events > 1 || self.next_sample > 0 {
+                self.engine.row(self.t, &x, &mut self.row);
+                let _ = recorder.sample(Sample { time: self.t, values: &self.row });
+            }
+            if recorder.event(&event).is_break() {
+                self.x = x;
+                return Err(Outcome::Interrupted);
+            }
+        }
+        let tolerance = self.options.tolerance;
+        let (t, segment, hint) = (self.t, self.segment, self.last_step);
+        if segment > t {
+            if self.stiff {
+                self.implicit.restart(&mut self.engine, t, &x, tolerance, segment, hint);
+            } else {
+                self.explicit.restart(&mut self.engine, t, &x, tolerance, segment, hint);
+            }
+        }
+        self.x = x;
+        self.rolling = true;
+        Ok(())
+    }
+
+    /// Steps until something happens.
+    fn stretch(&mut self, target: f64, recorder: &mut dyn Recorder) -> Stretch {
+        loop {
+            let goal = self.segment;
+            let taken = if self.stiff {
+                self.implicit.step(&mut self.engine, goal)
+            } else {
+                self.explicit.step(&mut self.engine, goal)
+            };
+            if let Err(error) = taken {
+                if !self.stiff && matches!(error, StepError::StepTooSmall) {
+                    self.stiff = true;
+                    self.rolling = false;
+                    return Stretch::Again;
+                }
+                return Stretch::Ended(Outcome::NotConverged(match error {
+                    StepError::NotFinite => format!(
+                        "accelerations are not finite at t = {} s: a formula leaves its domain, or the equations lose their \
+                         unique solution",
+                        self.t
+                    ),
+                    _ => format!("at t = {} s the tolerance cannot be kept with any step", self.t),
+                }));
+            }
+            self.steps += 1;
+            let (t_old, t_new) = self.span();
+            self.last_step = Some(t_new - t_old);
+            if let Some((t, watch)) = self.find_event(t_old, t_new) {
+                self.emit_samples(t, recorder);
+                if self.stiff { self.implicit.truncate(t) } else { self.explicit.truncate(t) }
+                return self.event(t, watch, recorder);
+            }
+            if t_new >= target && target < self.segment {
+                // Stop inside the step; what lies beyond is stepped again.
+                self.emit_samples(target, recorder);
+                if self.stiff { self.implicit.truncate(target) } else { self.explicit.truncate(target) }
+                self.take_state(target);
+                self.rolling = false;
+                self.cause = None;
+                return Stretch::Reached;
+            }
+            self.emit_samples(t_new, recorder);
+            self.take_state(t_new);
+            if recorder.progress(self.t).is_break() {
+                return Stretch::Ended(Outcome::Interrupted);
+            }
+            if !self.engine.certified && !self.still_single() {
+                return Stretch::Again;
+            }
+            if self.t >= self.segment {
+                self.rolling = false;
+                self.cause = Some(INPUT.into());
+                return if self.t >= target { Stretch::Reached } else { self.before_break(recorder) };
+            }
+            if !self.stiff && self.explicit.is_stiff() {
+                self.stiff = true;
+                self.rolling = false;
+                self.cause = None;
+                self.last_step = None;
+                return Stretch::Again;
+            }
+        }
+    }
+
+    /// Without a certificate: whether the present solution is the only one. If not, the mode is chosen anew,
+    /// which says so.
+    fn still_single(&mut self) -> bool {
+        if self.options.continue_when_ambiguous {
+            return true;
+        }
+        let x = std::mem::take(&mut self.x);
+        let mode = self.engine.mode.clone();
+        let at_rest = self.at_rest.clone();
+        let all = self.engine.try_all(self.t, &x, &at_rest, &mode);
+        self.engine.enter(&mode);
+        self.engine.solve(self.t, &x);
+        self.x = x;
+        if all.len() > 1 {
+            self.rolling = false;
+            self.cause = None;
+            return false;
+        }
+        true
+    }
+
+    fn before_break(&mut self, recorder: &mut dyn Recorder) -> Stretch {
+        // The row before a jump of the inputs.
+        let x = std::mem::take(&mut self.x);
+        self.engine.row(self.t, &x, &mut self.row);
+        self.x = x;
+        match recorder.sample(Sample { time: self.t, values: &self.row }) {
+            ControlFlow::Break(()) => Stretch::Ended(Outcome::Interrupted),
+            ControlFlow::Continue(()) => Stretch::Again,
+        }
+    }
+
+    fn span(&self) -> (f64, f64) {
+        if self.stiff {
+            (self.implicit.t_old(), self.implicit.t())
+        } else {
+            (self.explicit.t_old(), self.explicit.t())
+        }
+    }
+
+    fn take_state(&mut self, t: f64) {
+        let x = if self.stiff { self.implicit.x() } else { self.explicit.x() };
+        self.x.copy_from_slice(x);
+        self.t = t;
+    }
+
+    fn interpolate(&mut self, t: f64) {
+        if self.stiff {
+            self.implicit.interpolate(t, &mut self.state);
+        } else {
+            self.explicit.interpolate(t, &mut self.state);
+        }
+    }
+
+    fn event(&mut self, t: f64, watch: Watch, recorder: &mut dyn Recorder) -> Stretch {
+        self.take_state(t);
+        self.rolling = false;
+        let s = &self.engine.system;
+        self.cause = Some(match watch {
+            Watch::Slip(g) => {
+                self.at_rest[g] = true;
+                format!("{} comes to rest", s.groups[g].name)
+            }
+            Watch::Hold(g, _) => format!("{} breaks away", s.groups[g].name),
+            Watch::HoldAll => "what is held breaks away".into(),
+            Watch::Side(j) => format!("drive reverses in {}", element_name(&s.train, &s.elements[j].links)),
+            Watch::Touch(k) => format!("contact changes in {}", s.train.shafts()[k].name),
+            Watch::Engage(k) => {
+                let verb = if self.engine.engaged[k] { "opens" } else { "engages" };
+                format!("{} {verb}", s.frictions[k].name)
+            }
+        });
+        // Bounded in time, and in number where time stands still.
+        let window = (s.scenario.end - s.scenario.start) / 1000.0;
+        self.recent.push_back(t);
+        while self.recent.front().is_some_and(|f| *f < t - window) {
+            self.recent.pop_front();
+        }
+        let still = self.recent.iter().rev().take_while(|e| t - **e <= 1e-13 * t.abs().max(window)).count();
+        if self.recent.len() > self.options.most_events || still > 50 {
+            return Stretch::Ended(Outcome::TooManyEvents(format!(
+                "{} changes of mode within {:.3e} s before t = {t} s; the last: {}",
+                self.recent.len(),
+                t - self.recent[0],
+                self.cause.as_deref().unwrap_or_default(),
+            )));
+        }
+        if matches!(watch, Watch::Side(_)) {
+            return if recorder.progress(t).is_break() { Stretch::Ended(Outcome::Interrupted) } else { Stretch::Again };
+        }
+        self.before_break(recorder)
+    }
+
+    /// Margins at a time within the last step.
+    fn margins_at(&mut self, t: f64) {
+        self.interpolate(t);
+        let x = std::mem::take(&mut self.state);
+        self.engine.solve(t, &x);
+        let mut margins = std::mem::take(&mut self.margins);
+        self.engine.margins(t, &x, &mut margins);
+        self.margins = margins;
+        self.state = x;
+    }
+
+    /// The first event of the last step: just after it, and what it was.
+    fn find_event(&mut self, t_old: f64, t_new: f64) -> Option<(f64, Watch)> {
+        let mut low = t_old;
+        for part in [0.5, 1.0] {
+            let t = if part == 1.0 { t_new } else { t_old + part * (t_new - t_old) };
+            self.margins_at(t);
+            if self.margins.iter().any(Margin::is_broken) {
+                return Some(self.bracket(low, t));
+            }
+            low = t;
+        }
+        None
+    }
+
+    /// The first time at which a margin is broken, between one at which none is and one at which some is.
+    fn bracket(&mut self, mut low: f64, mut high: f64) -> (f64, Watch) {
+        let broken = |margins: &[Margin]| -> Vec<Margin> { margins.iter().copied().filter(Margin::is_broken).collect() };
+        let mut at_high = broken(&self.margins);
+        loop {
+            // The earliest root of those broken at the end, each by the secant, kept within the middle.
+            let width = high - low;
+            let least = 4.0 * f64::EPSILON * high.abs().max(low.abs());
+            if width <= least {
+                break;
+            }
+            self.margins_at(low);
+            let at_low: Vec<Margin> = self.margins.clone();
+            let mut t = high;
+            for m in &at_high {
+                let before = at_low.iter().find(|l| l.watch == m.watch).map_or(0.0, |l| l.value.max(0.0));
+                t = t.min(low + width * (before / (before - m.value)));
+            }
+            // Just past the secant's root if it is good, else halve.
+            let mut moved = false;
+            for guess in [t + 0.25 * (high - t).min(least.max(1e-6 * width)), t] {
+                let guess = guess.clamp(low + 0.5 * least, high - 0.5 * least);
+                self.margins_at(guess);
+                let found = broken(&self.margins);
+                if found.is_empty() {
+                    low = guess;
+                } else {
+                    high = guess;
+                    at_high = found;
+                }
+                moved |= high - low < 0.5 * width;
+                if high - low <= least {
+                    break;
+                }
+                if moved {
+                    break;
+                }
+            }
+            if !moved && high - low > least {
+                let guess = 0.5 * (low + high);
+                self.margins_at(guess);
+                let found = broken(&self.margins);
+                if found.is_empty() {
+                    low = guess;
+                } else {
+                    high = guess;
+                    at_high = found;
+                }
+            }
+        }
+        let first = at_high.iter().min_by(|a, b| (a.value / a.noise.max(1e-300)).total_cmp(&(b.value / b.noise.max(1e-300))));
+        (high, first.expect("broken at the end").watch)
+    }
+
+    fn sample_time(&self, k: usize) -> f64 {
+        let s = &self.engine.system.scenario;
+        if k + 1 == self.samples { s.end } else { s.start + (s.end - s.start) * k as f64 / (self.samples - 1) as f64 }
+    }
+
+    /// Rows of the grid up to a time in the last step.
+    fn emit_samples(&mut self, until: f64, recorder: &mut dyn Recorder) {
+        while self.next_sample < self.samples {
+            let t = self.sample_time(self.next_sample);
+            if t > until || (until.is_infinite() && t > self.t) {
+                break;
+            }
+            if t <= self.t || until.is_infinite() {
+                let x = std::mem::take(&mut self.x);
+                self.engine.row(self.t, &x, &mut self.row);
+                self.x = x;
+            } else {
+                self.interpolate(t);
+                let x = std::mem::take(&mut self.state);
+                self.engine.row(t, &x, &mut self.row);
+                self.state = x;
+            }
+            self.next_sample += 1;
+            let _ = recorder.sample(Sample { time: t, values: &self.row });
+        }
+    }
+
+    /// What there is to say about the run so far.
+    pub fn report(&self) -> RunReport {
+        let s = &self.engine.system;
+        let states = self.engine.states();
+        let mut engine_speed = vec![];
+        for (m, member) in s.train.members().iter().enumerate().skip(1) {
+            engine_speed.push((member.name.clone(), self.engine.member_speed(MemberId(m))));
+        }
+        let mut notes = self.notes.clone();
+        if self.stiff {
+            notes.push("stiff shafts: an implicit integrator was used".into());
+        }
+        RunReport {
+            format: "willis-simulation-1",
+            train: s.train.name().to_owned(),
+            scenario: s.scenario.name.clone(),
+            outcome: self.outcome.clone().unwrap_or(Outcome::Interrupted),
+            start_s: s.scenario.start,
+            end_s: self.t,
+            coordinates: s.coordinates.iter().map(|m| s.train.member_name(*m).to_owned()).collect(),
+            unique_for_every_load: self.engine.certified,
+            steps: self.steps,
+            events: self.events,
+            final_speeds_rad_s: engine_speed,
+            energy: self.engine.energy_report([self.stored_at_start, self.engine.stored(&self.x)], &self.x[states..]),
+            assumptions: s.assumptions.clone(),
+            notes,
+        }
+    }
+}
+
+/// The cause of a change by a break of an input.
+const INPUT: &str = "input";
+
+/// Runs a scenario from its start to its end and hands rows and events to a recorder as they come.
+///
+/// # Errors
+/// What is wrong with the scenario: inertia that is missing, speeds that contradict each other.
+pub fn simulate(
+    train: &Train,
+    scenario: &str,
+    options: &Options,
+    recorder: &mut dyn Recorder,
+) -> Result<RunReport, Diagnostics> {
+    let mut run = Simulation::new(train, scenario, options)?;
+    if recorder.columns(&run.columns).is_continue() {
+        run.advance(f64::INFINITY, recorder);
+    }
+    Ok(run.report())
+}
+
+/// Sets the speeds of the start: those given, others at rest as far as the gears leave them free.
+fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostic> {
+    let start = engine.system.scenario.start;
+    engine.look(start, x);
+    let s = &engine.system;
+    let free = s.free;
+    // Rows of conditions over the free coordinates, in order of preference.
+    let mut rows: Vec<(MemberId, Vec<f64>, f64, bool)> = Vec::new();
+    let prescribed = |row: &[f64]| -> f64 { row[free..].iter().zip(&engine.speed[free..]).map(|(a, b)| a * b).sum() };
+    for &(m, w) in &s.scenario.initial_speeds {
+        let row = &s.speeds[m.index()];
+        rows.push((m, row[..free].to_vec(), w - prescribed(row), true));
+    }
+    for &m in &s.coordinates[..free] {
+        rows.push((m, s.speeds[m.index()][..free].to_vec(), -prescribed(&s.speeds[m.index()]), false));
+    }
+    let mut taken: Vec<&(MemberId, Vec<f64>, f64, bool)> = Vec::new();
+    for row in &rows {
+        let mut matrix: Vec<&[f64]> = taken.iter().map(|r| r.1.as_slice()).collect();
+        matrix.push(&row.1);
+        let m = DMatrix::from_fn(matrix.len(), free, |i, k| matrix[i][k]);
+        let norms: Vec<f64> = (0..m.nrows()).map(|i| m.row(i).norm()).collect();
+        let independent = norms.iter().all(|n| *n > 0.0)
+            && taken.len() < free
+            && DMatrix::from_fn(m.nrows(), free, |i, k| m[(i, k)] / norms[i]).rank(1e-10) == m.nrows();
+        if independent {
+            taken.push(row);
+        }
+    }
+    let a = DMatrix::from_fn(taken.len(), free, |i, k| taken[i].1[k]);
+    let b = DVector::from_fn(taken.len(), |i, _| taken[i].2);
+    if free > 0 {
+        let v = a.lu().solve(&b).unwrap_or_else(|| DVector::zeros(free));
+        x[..free].copy_from_slice(v.as_slice());
+    }
+    for (m, row, w, given) in &rows {
+        let is: f64 = row.iter().zip(&x[..free]).map(|(a, b)| a * b).sum();
+        let size: f64 = row.iter().zip(&x[..free]).map(|(a, b)| (a * b).abs()).sum::<f64>() + w.abs();
+        if *given && (is - w).abs() > 1e-9 * size {
+            let row = &s.speeds[m.index()];
+            let name = s.train.member_name(*m);
+            let message = format!(
+                "`{name}` cannot start at {} rad/s: the gears and the other speeds given make it {} rad/s",
+                w + prescribed(row),
+                is + prescribed(row)
+            );
+            let place = format!("{}.initial_speeds.{name}", s.scenario.place);
+            return Err(Diagnostic::new(Code::ContradictorySpeeds, place, message).hint("leave out one of the speeds"));
+        }
+    }
+    Ok(())
+}

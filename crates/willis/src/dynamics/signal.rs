@@ -1,0 +1,163 @@
+//! Values over time, piece by piece.
+//!
+//! A signal is smooth between its breaks. Within a piece its formula is evaluated as if it went on, so that
+//! an integrator that touches the end of the piece sees the value before a jump: `inside` is a time
+//! inside the piece that says which one it is.
+
+use crate::train::{Formula, MemberId, Signal};
+
+impl Signal {
+    /// Value at `t` in the piece that holds `inside`; `speed` tells the speed of a member.
+    pub(crate) fn value(&self, t: f64, inside: f64, speed: &dyn Fn(MemberId) -> f64) -> f64 {
+        match self {
+            Self::Constant(x) => *x,
+            Self::Step { offset, height, at } => offset + if inside >= *at { *height } else { 0.0 },
+            Self::Ramp { offset, height, at, duration } => {
+                if inside < *at {
+                    *offset
+                } else if inside < at + duration {
+                    offset + height * (t - at) / duration
+                } else {
+                    offset + height
+                }
+            }
+            Self::Sine { offset, amplitude, frequency, phase, at, decay } => {
+                if inside < *at {
+                    *offset
+                } else {
+                    let since = t - at;
+                    offset
+                        + amplitude
+                            * (-decay * since).exp()
+                            * (std::f64::consts::TAU * frequency * since + phase).sin()
+                }
+            }
+            Self::Pulse { offset, amplitude, period, width, at } => {
+                let phase = (inside - at) / period;
+                offset + if phase >= 0.0 && phase - phase.floor() < *width { *amplitude } else { 0.0 }
+            }
+            Self::Table { points, hold } => match segment(points, inside) {
+                Segment::Before => points[0][1],
+                Segment::After => points[points.len() - 1][1],
+                Segment::Between(k) if *hold => points[k][1],
+                Segment::Between(k) => {
+                    let ([t0, y0], [t1, y1]) = (points[k], points[k + 1]);
+                    y0 + (y1 - y0) * (t - t0) / (t1 - t0)
+                }
+            },
+            Self::Product(of) => of[0].value(t, inside, speed) * of[1].value(t, inside, speed),
+            Self::Expression { formula, speeds } => expression(formula, speeds, t, speed),
+        }
+    }
+
+    /// Rate of change in time at `t`, speeds held, in the piece that holds `inside`.
+    pub(crate) fn rate(&self, t: f64, inside: f64, speed: &dyn Fn(MemberId) -> f64) -> f64 {
+        match self {
+            Self::Constant(_) | Self::Step { .. } | Self::Pulse { .. } => 0.0,
+            Self::Ramp { height, at, duration, .. } => {
+                if inside >= *at && inside < at + duration { height / duration } else { 0.0 }
+            }
+            Self::Sine { amplitude, frequency, phase, at, decay, .. } => {
+                if inside < *at {
+                    return 0.0;
+                }
+                let (since, w) = (t - at, std::f64::consts::TAU * frequency);
+                let (s, c) = (w * since + phase).sin_cos();
+                amplitude * (-decay * since).exp() * (w * c - decay * s)
+            }
+            Self::Table { points, hold } => match segment(points, inside) {
+                Segment::Between(k) if !hold => {
+                    (points[k + 1][1] - points[k][1]) / (points[k + 1][0] - points[k][0])
+                }
+                _ => 0.0,
+            },
+            Self::Product(of) => {
+                of[0].rate(t, inside, speed) * of[1].value(t, inside, speed)
+                    + of[0].value(t, inside, speed) * of[1].rate(t, inside, speed)
+            }
+            Self::Expression { formula, speeds } => {
+                let h = 1e-6 * t.abs().max(1.0);
+                let at = |t| expression(formula, speeds, t, speed);
+                (at(t + h) - at(t - h)) / (2.0 * h)
+            }
+        }
+    }
+
+    /// The first time after `t` at which it is not smooth.
+    pub(crate) fn next_break(&self, t: f64) -> f64 {
+        let first = |times: &[f64]| times.iter().copied().filter(|&b| b > t).fold(f64::INFINITY, f64::min);
+        match self {
+            Self::Constant(_) | Self::Expression { .. } => f64::INFINITY,
+            Self::Step { at, .. } | Self::Sine { at, .. } => first(&[*at]),
+            Self::Ramp { at, duration, .. } => first(&[*at, at + duration]),
+            Self::Pulse { period, width, at, .. } => {
+                let k = ((t - at) / period).floor().max(0.0);
+                let edge = |n: f64| [at + n * period, at + (n + width) * period];
+                first(&[edge(k), edge(k + 1.0)].concat())
+            }
+            Self::Table { points, .. } => {
+                let k = points.partition_point(|p| p[0] <= t);
+                points.get(k).map_or(f64::INFINITY, |p| p[0])
+            }
+            Self::Product(of) => of[0].next_break(t).min(of[1].next_break(t)),
+        }
+    }
+
+    /// Whether it may become zero at a time that is not known beforehand.
+    pub(crate) fn crosses_unannounced(&self) -> bool {
+        match self {
+            Self::Constant(_) | Self::Step { .. } | Self::Pulse { .. } => false,
+            Self::Table { hold, .. } => !hold,
+            Self::Product(of) => of.iter().any(Self::crosses_unannounced),
+            Self::Ramp { .. } | Self::Sine { .. } | Self::Expression { .. } => true,
+        }
+    }
+}
+
+fn expression(formula: &Formula, speeds: &[MemberId], t: f64, speed: &dyn Fn(MemberId) -> f64) -> f64 {
+    const FEW: usize = 8;
+    if speeds.len() <= FEW {
+        let mut few = [0.0; FEW];
+        few.iter_mut().zip(speeds).for_each(|(x, m)| *x = speed(*m));
+        return formula.value(t, &few[..speeds.len()]);
+    }
+    let all: Vec<f64> = speeds.iter().map(|m| speed(*m)).collect();
+    formula.value(t, &all)
+}
+
+enum Segment {
+    Before,
+    Between(usize),
+    After,
+}
+
+/// Where a time lies among points; of several points of one time the last counts.
+fn segment(points: &[[f64; 2]], t: f64) -> Segment {
+    match points.partition_point(|p| p[0] <= t) {
+        0 => Segment::Before,
+        k if k == points.len() => Segment::After,
+        k => Segment::Between(k - 1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(s: &Signal, t: f64, inside: f64) -> f64 {
+        s.value(t, inside, &|_| 0.0)
+    }
+
+    #[test]
+    fn regress_a_piece_goes_on_to_its_end() {
+        let step = Signal::Step { offset: 1.0, height: 2.0, at: 0.5 };
+        assert_eq!((at(&step, 0.5, 0.2), at(&step, 0.5, 0.7)), (1.0, 3.0));
+        let ramp = Signal::Ramp { offset: 0.0, height: 5.0, at: 1.0, duration: 2.0 };
+        assert_eq!((at(&ramp, 3.0, 2.0), at(&ramp, 3.0, 4.0), ramp.rate(2.0, 2.0, &|_| 0.0)), (5.0, 5.0, 2.5));
+        let pulse = Signal::Pulse { offset: 0.0, amplitude: 1.0, period: 2.0, width: 0.25, at: 1.0 };
+        assert_eq!([0.5, 1.1, 1.6, 3.2].map(|t| at(&pulse, t, t)), [0.0, 1.0, 0.0, 1.0]);
+        assert_eq!([0.0, 1.0, 1.5, 3.0].map(|t| pulse.next_break(t)), [1.0, 1.5, 3.0, 3.5]);
+        let jump = Signal::Table { points: vec![[0.0, 0.0], [1.0, 1.0], [1.0, 3.0], [2.0, 3.0]], hold: false };
+        assert_eq!((at(&jump, 1.0, 0.5), at(&jump, 1.0, 1.5), jump.next_break(0.5)), (1.0, 3.0, 1.0));
+    }
+}
