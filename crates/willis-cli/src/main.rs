@@ -688,7 +688,7 @@ impl Job {
     fn read(file: &str) -> Result<Self, String> {
         let name = if file == "-" { "standard input" } else { file };
         let text = input::read(file).map_err(|d| d.render(name, "", color()))?;
-        let mut reading = Train::read_toml(&text);
+        let mut reading = Train::read_toml_with(&text, &mut input::tables_beside(file));
         match reading.train.take() {
             Some(train) => Ok(Self { file: name.to_owned(), text, reading, train }),
             None => Err(failure(&reading.diagnostics, name, &text)),

@@ -21,6 +21,9 @@ use crate::exact::Rational;
 use crate::losses::Laws;
 use crate::units::Quantity;
 
+pub use describe::dynamic::{
+    DragSpec, PlanetBodySpec, ScenarioSpec, ShaftSpec, SignalSpec, SourceKindSpec, SourceSpec,
+};
 pub use describe::physical::{
     BearingSpec, Fluid, GeometrySpec, HousingSpec, OilSpec, OilSupply, RotorSpec, SealSpec, ToothSpec,
 };
@@ -29,8 +32,8 @@ pub use describe::{
     TrainBuilder,
 };
 pub use dynamic::{
-    Contact, Curve, DragMount, Engagement, Formula, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal, Source,
-    SourceKind,
+    Contact, Curve, DragMount, Engagement, Formula, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal,
+    Source, SourceKind,
 };
 pub use format::{Reading, schema};
 pub use physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
@@ -299,8 +302,35 @@ impl Train {
     }
 
     /// Like [`Train::from_toml`], and tells the warnings about a good train too.
+    ///
+    /// A text that names CSV files is read by [`Train::read_toml_with`].
     pub fn read_toml(text: &str) -> Reading {
-        format::read(text)
+        Self::read_toml_with(text, &mut |_| Err("files are not read here".into()))
+    }
+
+    /// Like [`Train::read_toml`]; `load` gives the text of a file that the train file names, or says
+    /// why it cannot.
+    ///
+    /// # Example
+    /// ```
+    /// let text = r#"
+    ///     format = 1
+    ///     name = "wheel"
+    ///     members = ["wheel"]
+    ///     inertias = { wheel = "2 kg m^2" }
+    ///     [[scenario]]
+    ///     name = "measured load"
+    ///     duration = "1 s"
+    ///     [[scenario.source]]
+    ///     member = "wheel"
+    ///     torque = { type = "csv", file = "load.csv", time = "t", value = "torque" }
+    /// "#;
+    /// let mut load = |_: &str| Ok("t,torque\n0,5\n1,7".to_owned());
+    /// let train = willis::train::Train::read_toml_with(text, &mut load).train.unwrap();
+    /// assert_eq!(train.scenarios()[0].sources[0].name, "torque on wheel");
+    /// ```
+    pub fn read_toml_with(text: &str, load: &mut dyn FnMut(&str) -> Result<String, String>) -> Reading {
+        format::read(text, load)
     }
 
     /// Its name.

@@ -42,6 +42,22 @@ impl Dimension {
     pub const KINEMATIC_VISCOSITY: Self = Self([2, 0, -1, 0, 0]);
     /// Pa s
     pub const DYNAMIC_VISCOSITY: Self = Self([-1, 1, -1, 0, 0]);
+    /// s
+    pub const TIME: Self = Self([0, 0, 1, 0, 0]);
+    /// 1/s
+    pub const FREQUENCY: Self = Self([0, 0, -1, 0, 0]);
+    /// m²
+    pub const AREA: Self = Self([2, 0, 0, 0, 0]);
+    /// kg m²
+    pub const INERTIA: Self = Self([2, 1, 0, 0, 0]);
+    /// N m/rad
+    pub const STIFFNESS: Self = Self([2, 1, -2, -1, 0]);
+    /// N m s/rad
+    pub const VISCOUS: Self = Self([2, 1, -1, -1, 0]);
+    /// N m s²/rad, torque over angular acceleration
+    pub const TORQUE_PER_ACCELERATION: Self = Self([2, 1, 0, -1, 0]);
+    /// N m s²/rad², torque over the square of angular speed
+    pub const TORQUE_PER_SPEED_SQUARED: Self = Self([2, 1, 0, -2, 0]);
 
     /// What a person calls it, and an example that the reader accepts.
     pub fn describe(self) -> (&'static str, &'static str) {
@@ -60,6 +76,14 @@ impl Dimension {
             Self::PRESSURE_COEFFICIENT => ("a pressure coefficient", "16.5 1/GPa"),
             Self::KINEMATIC_VISCOSITY => ("a kinematic viscosity", "220 mm^2/s"),
             Self::DYNAMIC_VISCOSITY => ("a dynamic viscosity", "80 mPa s"),
+            Self::TIME => ("a time", "0.5 s"),
+            Self::FREQUENCY => ("a frequency", "2 Hz"),
+            Self::AREA => ("an area", "0.7 m^2"),
+            Self::INERTIA => ("a moment of inertia", "0.05 kg m^2"),
+            Self::STIFFNESS => ("a stiffness", "1e4 N m/rad"),
+            Self::VISCOUS => ("a viscous coefficient", "2 N m s/rad"),
+            Self::TORQUE_PER_ACCELERATION => ("a torque over acceleration", "0.02 N m s^2/rad"),
+            Self::TORQUE_PER_SPEED_SQUARED => ("a torque over speed squared", "0.05 N m s^2/rad^2"),
             _ => ("a quantity of another kind", ""),
         }
     }
@@ -101,6 +125,8 @@ const UNITS: &[Unit] = &[
     ("ms",    "1/1000",0, [0, 0, 1, 0, 0]),
     ("min",   "60",    0, [0, 0, 1, 0, 0]),
     ("h",     "3600",  0, [0, 0, 1, 0, 0]),
+    ("Hz",    "1",     0, [0, 0, -1, 0, 0]),
+    ("kHz",   "1000",  0, [0, 0, -1, 0, 0]),
     ("N",     "1",     0, [1, 1, -2, 0, 0]),
     ("kN",    "1000",  0, [1, 1, -2, 0, 0]),
     ("MN",    "1e6",   0, [1, 1, -2, 0, 0]),
@@ -381,6 +407,19 @@ mod tests {
         close(si("206 GPa", Dimension::PRESSURE), 206e9);
         close(si("5 l", Dimension::VOLUME), 5e-3);
         close(si("2 t", Dimension::MASS), 2000.0);
+        close(si("500 ms", Dimension::TIME), 0.5);
+        for f in ["2 Hz", "2 1/s", "2 s^-1", "0.002 kHz"] {
+            close(si(f, Dimension::FREQUENCY), 2.0);
+        }
+        close(si("0.7 m^2", Dimension::AREA), 0.7);
+        close(si("6e-5 kg m^2", Dimension::INERTIA), 6e-5);
+        close(si("500 g cm²", Dimension::INERTIA), 5e-5);
+        close(si("1e4 N m/rad", Dimension::STIFFNESS), 1e4);
+        close(si("180 N m/deg", Dimension::STIFFNESS), 180.0 * 180.0 / std::f64::consts::PI);
+        close(si("2 N m s/rad", Dimension::VISCOUS), 2.0);
+        close(si("2 Nm/rpm", Dimension::VISCOUS), 60.0 / std::f64::consts::PI);
+        close(si("0.02 N m s^2/rad", Dimension::TORQUE_PER_ACCELERATION), 0.02);
+        close(si("0.05 N m s^2/rad^2", Dimension::TORQUE_PER_SPEED_SQUARED), 0.05);
     }
 
     #[test]

@@ -42,8 +42,8 @@ codes! {
     /// reading stopped. A frequent cause: a name with a dot or a blank needs quotes, as in
     /// `speeds = { "P1.planet" = "10 rpm" }`.
     E001 Syntax: "the file is not valid TOML";
-    /// The file could not be read at all: it does not exist, is a directory, may not be read, is
-    /// larger than 4 MiB, or is not text in UTF-8.
+    /// The file, or one that it names, could not be read at all: it does not exist, is a directory,
+    /// may not be read, is larger than 4 MiB (64 MiB for tables), or is not text in UTF-8.
     E002 Unreadable: "the file cannot be read";
     /// Every train file says which format it is written in: `format = 1`. The number changes only
     /// when an old file would be read differently.
@@ -93,6 +93,15 @@ codes! {
     E110 ImpossibleGeometry: "these teeth cannot exist";
     /// The dimensions of a bearing exclude each other or do not fit its shaft.
     E111 ImpossibleBearing: "the bearing cannot be built or does not fit";
+    /// A table of points is empty, its first column does not rise, or a CSV file that a signal names
+    /// has no such column, an empty cell or a cell that is no finite number. Points of a curve lie
+    /// at different abscissae; in a signal two points of the same time are a jump. A CSV file has a
+    /// header row, commas between columns, decimal points, and values in SI units.
+    E112 BadTable: "a table of values cannot be used";
+    /// A formula cannot be read, or uses a name that is neither the time `t` nor the speed of a
+    /// member, `w_sun`. Names with other characters than letters, digits and `_` stand in braces:
+    /// `{w_P1.planet}`. Its value is in SI units: N m, rad/s.
+    E113 BadFormula: "a formula cannot be used";
     /// The prescribed speeds cannot all hold: the gears already tie some of them together. Give
     /// as many independent speeds as the train has degrees of freedom.
     E201 ContradictorySpeeds: "the prescribed speeds contradict each other";

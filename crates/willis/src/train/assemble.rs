@@ -1,5 +1,6 @@
 //! From names and numbers to a checked [`Train`]: everything that is wrong is found in one pass.
 
+mod dynamic;
 mod physical;
 
 use std::collections::{HashMap, HashSet};
@@ -10,8 +11,8 @@ use crate::losses::Laws;
 
 use super::describe::{EfficiencySpec, GearSpec, MeshSpec, OperationSpec, ShiftElementSpec, StateSpec, TrainBuilder};
 use super::{
-    Efficiency, FRAME, Gear, Member, MemberId, MemberKind, Mesh, Operation, ShiftElement, ShiftElementId,
-    ShiftElementKind, State, Train, expand,
+    Efficiency, FRAME, Gear, LossTable, Member, MemberId, MemberKind, Mesh, MeshId, Operation, ShiftElement,
+    ShiftElementId, ShiftElementKind, State, Train, expand,
 };
 
 /// Largest train that is analysed; beyond it exact elimination is no longer bounded in time.
@@ -19,6 +20,7 @@ pub(super) const MOST_MESHES: usize = 128;
 const MOST_MEMBERS: usize = 1024;
 const MOST_STATES: usize = 256;
 const MOST_OPERATIONS: usize = 4096;
+const MOST_SCENARIOS: usize = 256;
 const MOST_TEETH: i64 = 100_000;
 const MOST_COUNT: i64 = 1000;
 
@@ -32,6 +34,7 @@ pub(super) struct Assembler<'a> {
     pub laws: Laws,
     /// The coefficient of friction where nothing better is known.
     pub friction_coefficient: f64,
+    loss_tables: Vec<LossTable>,
     by_name: HashMap<String, MemberId>,
     mesh_names: HashSet<String>,
 }
@@ -58,6 +61,25 @@ impl Assembler<'_> {
             d = d.suggest(name, known.iter().copied());
             if d.hints.is_empty() {
                 d = d.hint(format!("name it in `members`, or use one of: {}", list(known)));
+            }
+            self.report(d);
+        }
+        found
+    }
+
+    /// The position of a name among those known of its kind (`key` in the file), or an error.
+    fn position(&mut self, what: &str, key: &str, name: &str, place: String, known: &[&str]) -> Option<usize> {
+        let found = known.iter().position(|k| *k == name);
+        if found.is_none() {
+            let mut d = Diagnostic::new(Code::UnknownName, place, format!("there is no {what} `{}`", clip(name)));
+            if self.hints_are_read() {
+                d = d.suggest(name, known.iter().copied());
+            }
+            if self.hints_are_read() && d.hints.is_empty() {
+                d = d.hint(match known.len() {
+                    0 => format!("add it as a [[{key}]]"),
+                    _ => format!("the {what}s are: {}", list(known.to_vec())),
+                });
             }
             self.report(d);
         }
@@ -150,7 +172,7 @@ impl Assembler<'_> {
                 gears.push(Gear { member, teeth, internal: g.internal });
             }
         }
-        let efficiency = spec.efficiency.as_ref().map(|e| self.efficiency(e, &format!("{place}.efficiency")));
+        let given = spec.efficiency.as_ref().map(|e| self.efficiency(e, &format!("{place}.efficiency")));
         let count = self.count(spec.count, &format!("{place}.count"));
         let any_internal = spec.gears.iter().any(|g| g.internal);
         if any_internal && spec.same_sense == Some(false) {
@@ -182,7 +204,9 @@ impl Assembler<'_> {
             };
             self.report(Diagnostic::new(Code::Conflict, format!("{place}.geometry"), message).hint(hint));
         }
-        let geometry = spec.geometry.as_ref().filter(|_| !spec.bevel && !alike);
+        let table = self.loss_table(spec, &name, place);
+        let efficiency = table.as_ref().map(|(first, _)| first.clone()).or(given);
+        let geometry = spec.geometry.as_ref().filter(|_| !spec.bevel && !alike && spec.loss_table.is_none());
         let teeth = geometry.and_then(|g| self.tooth_pair(g, gears_of_pair, &name, place));
         let computed = efficiency.is_none() && teeth.is_some();
         if efficiency.is_some() && teeth.is_some() {
@@ -192,7 +216,7 @@ impl Assembler<'_> {
             (None, Some(teeth)) => Some(self.nominal_efficiency(teeth)),
             (given, _) => given,
         };
-        if efficiency.is_none() {
+        if efficiency.is_none() && spec.loss_table.is_none() {
             self.assume(&name, "no efficiency given, taken as lossless");
         }
         let (Some(carrier), Ok([first, second])) = (carrier, <[Gear; 2]>::try_from(gears)) else { return };
@@ -215,6 +239,8 @@ impl Assembler<'_> {
                 );
             }
         }
+        let mesh = MeshId(self.meshes.len());
+        self.loss_tables.extend(table.map(|(_, rows)| LossTable { mesh, rows }));
         self.meshes.push(Mesh {
             name,
             same_sense: spec.same_sense.unwrap_or(any_internal),
@@ -237,6 +263,7 @@ impl Assembler<'_> {
                     .hint("leave out `blocks`, or make it a one-way clutch: kind = \"one-way\""),
             );
         }
+        let friction = self.friction(&spec.friction, place);
         let place = format!("{place}.members");
         let ids: Vec<_> =
             spec.members.iter().enumerate().map(|(k, m)| self.resolve(m, &format!("{place}[{k}]"))).collect();
@@ -264,35 +291,28 @@ impl Assembler<'_> {
             self.report(Diagnostic::new(Code::ShiftElement, place, message).hint("name the two members it joins"));
             return None;
         }
-        Some(ShiftElement { name: spec.name.clone(), kind: spec.kind, members, blocks: spec.blocks.unwrap_or(-1), friction: None })
+        Some(ShiftElement {
+            name: spec.name.clone(),
+            kind: spec.kind,
+            members,
+            blocks: spec.blocks.unwrap_or(-1),
+            friction,
+        })
     }
 
     fn state(&mut self, spec: &StateSpec, elements: &[ShiftElementSpec], place: &str) -> State {
+        let known: Vec<&str> = elements.iter().map(|e| e.name.as_str()).collect();
         let mut engaged = Vec::new();
         for (k, name) in spec.engaged.iter().enumerate() {
             let place = format!("{place}.engaged[{k}]");
-            match elements.iter().position(|e| e.name == *name) {
-                Some(id) if engaged.contains(&ShiftElementId(id)) => {
-                    let message = format!("`{}` is engaged twice in this state", clip(name));
-                    self.report(Diagnostic::new(Code::DuplicateName, place, message).hint("name it once"));
-                }
-                Some(id) => engaged.push(ShiftElementId(id)),
-                None if !self.hints_are_read() => {
-                    let message = format!("there is no shift element `{}`", clip(name));
-                    self.report(Diagnostic::new(Code::UnknownName, place, message));
-                }
-                None => {
-                    let known: Vec<&str> = elements.iter().map(|e| e.name.as_str()).collect();
-                    let message = format!("there is no shift element `{}`", clip(name));
-                    let mut d = Diagnostic::new(Code::UnknownName, place, message).suggest(name, known.iter().copied());
-                    if d.hints.is_empty() {
-                        d = d.hint(match known.len() {
-                            0 => "add it as a [[shift_element]]".into(),
-                            _ => format!("the shift elements are: {}", list(known)),
-                        });
-                    }
-                    self.report(d);
-                }
+            let Some(id) = self.position("shift element", "shift_element", name, place.clone(), &known) else {
+                continue;
+            };
+            if engaged.contains(&ShiftElementId(id)) {
+                let message = format!("`{}` is engaged twice in this state", clip(name));
+                self.report(Diagnostic::new(Code::DuplicateName, place, message).hint("name it once"));
+            } else {
+                engaged.push(ShiftElementId(id));
             }
         }
         let input = spec.input.as_ref().and_then(|n| self.resolve(n, &format!("{place}.input")));
@@ -301,24 +321,9 @@ impl Assembler<'_> {
     }
 
     fn operation(&mut self, spec: &OperationSpec, states: &[StateSpec], place: String) -> Operation {
-        let state = spec.state.as_ref().and_then(|name| {
-            let found = states.iter().position(|s| s.name == *name);
-            if found.is_none() {
-                let message = format!("there is no state `{}`", clip(name));
-                let mut d = Diagnostic::new(Code::UnknownName, format!("{place}.state"), message);
-                if self.hints_are_read() {
-                    d = d.suggest(name, states.iter().map(|s| s.name.as_str()));
-                    if d.hints.is_empty() {
-                        d = d.hint(match states.len() {
-                            0 => "add it as a [[state]]".to_owned(),
-                            _ => format!("the states are: {}", list(states.iter().map(|s| s.name.as_str()).collect())),
-                        });
-                    }
-                }
-                self.report(d);
-            }
-            found
-        });
+        let known: Vec<&str> = states.iter().map(|s| s.name.as_str()).collect();
+        let of = |name: &String| self.position("state", "state", name, format!("{place}.state"), &known);
+        let state = spec.state.as_ref().and_then(of);
         let mut seen = HashSet::new();
         let mut operation = Operation {
             name: spec.name.clone(),
@@ -383,6 +388,9 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         ("states", spec.states.len(), MOST_STATES),
         ("operations", spec.operations.len(), MOST_OPERATIONS),
         ("bearings, seals and rotors", spec.bearings.len() + spec.seals.len() + spec.rotors.len(), MOST_MEMBERS),
+        ("drags and shafts", spec.drags.len() + spec.shafts.len(), MOST_MEMBERS),
+        ("scenarios", spec.scenarios.len(), MOST_SCENARIOS),
+        ("sources of a scenario", spec.scenarios.iter().map(|s| s.sources.len()).max().unwrap_or(0), MOST_MEMBERS),
     ] {
         if is > most {
             let message = format!("{is} {what}: at most {most} are analysed");
@@ -401,6 +409,7 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         assumptions: vec![],
         laws: Laws::default(),
         friction_coefficient: crate::losses::mesh_friction::Constant::DEFAULT.mu,
+        loss_tables: vec![],
         by_name: HashMap::from([("frame".into(), FRAME)]),
         mesh_names: spec.meshes.iter().filter_map(|m| m.name.clone()).collect(),
     };
@@ -468,7 +477,7 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         spec.rotors.iter().enumerate().filter_map(|(k, r)| a.rotor(r, &format!("rotor[{k}]"))).collect();
     a.oil_of_seals(&lubrication, &seals);
     let masses: Vec<(MemberId, f64)> = (sets.iter())
-        .flat_map(|(set, planets)| planets.iter().copied().zip(set.planet_masses()))
+        .flat_map(|(set, planets)| planets.iter().copied().zip(set.planets().into_iter().map(|(_, p)| p.body.mass)))
         .filter_map(|(planet, mass)| Some((planet, mass?)))
         .collect();
     a.housing(&spec.housing);
@@ -520,6 +529,24 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
     let shifting = shift_elements.iter().flat_map(|e| e.members);
     let central: Vec<MemberId> = terminals.iter().copied().chain(shifting).collect();
     let planets = a.planet_bodies(&masses, &mut bearings, &central);
+    let mut inertias = a.inertias(&spec.inertias);
+    let moving = !spec.scenarios.is_empty();
+    let of_planets = a.planet_inertias(&sets, &resolved_sets, &planets, &inertias, moving);
+    inertias.extend(of_planets);
+    unique(&mut a, "drag", "drag", spec.drags.iter().map(|d| d.name.as_str()));
+    unique(&mut a, "shaft", "shaft", spec.shafts.iter().map(|s| s.name.as_str()));
+    unique(&mut a, "scenario", "scenario", spec.scenarios.iter().map(|s| s.name.as_str()));
+    let drags: Vec<_> = spec.drags.iter().enumerate().filter_map(|(k, d)| a.drag(d, &format!("drag[{k}]"))).collect();
+    let shafts: Vec<_> =
+        spec.shafts.iter().enumerate().filter_map(|(k, s)| a.shaft(s, &format!("shaft[{k}]"))).collect();
+    let scene = dynamic::Scene {
+        states: &states,
+        elements: spec.shift_elements.iter().map(|e| (e.name.as_str(), e.kind)).collect(),
+        shafts: spec.shafts.iter().map(|s| s.name.as_str()).collect(),
+    };
+    let scenarios: Vec<_> = (spec.scenarios.iter().enumerate())
+        .filter_map(|(k, s)| a.scenario(s, &scene, format!("scenario[{k}]")))
+        .collect();
     for operation in &operations {
         for (member, load) in &operation.loads {
             if !terminals.contains(member) {
@@ -548,12 +575,18 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         );
     }
     if a.diagnostics.len() == before || !a.diagnostics.has_errors() {
-        loose_members(&mut a, &shift_elements);
+        let touched = (shift_elements.iter().flat_map(|e| e.members))
+            .chain(inertias.iter().map(|i| i.member))
+            .chain(drags.iter().flat_map(|d| d.members))
+            .chain(shafts.iter().flat_map(|s| s.members))
+            .chain(scenarios.iter().flat_map(|s| s.sources.iter().map(|x| x.member)))
+            .collect();
+        loose_members(&mut a, touched);
     }
 
     let failed = a.diagnostics.iter().skip(before).any(|d| d.severity == crate::diagnostic::Severity::Error);
     let assumptions = a.assumptions();
-    let Assembler { diagnostics, members, meshes, laws, .. } = a;
+    let Assembler { diagnostics, members, meshes, laws, loss_tables, .. } = a;
     (!failed).then(|| Train {
         name: spec.name,
         source: spec.source,
@@ -575,21 +608,18 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         seals,
         rotors,
         planets,
-        inertias: vec![],
-        drags: vec![],
-        shafts: vec![],
-        loss_tables: vec![],
-        scenarios: vec![],
+        inertias,
+        drags,
+        shafts,
+        loss_tables,
+        scenarios,
     })
 }
 
-fn loose_members(a: &mut Assembler<'_>, shift_elements: &[ShiftElement]) {
-    let used: HashSet<MemberId> = a
-        .meshes
-        .iter()
-        .flat_map(|m| [m.gears[0].member, m.gears[1].member, m.carrier])
-        .chain(shift_elements.iter().flat_map(|e| e.members))
-        .collect();
+/// Warns of members that mesh with nothing and are not `touched` by anything else.
+fn loose_members(a: &mut Assembler<'_>, touched: HashSet<MemberId>) {
+    let mut used = touched;
+    used.extend(a.meshes.iter().flat_map(|m| [m.gears[0].member, m.gears[1].member, m.carrier]));
     let loose: Vec<_> = (1..a.members.len())
         .filter(|&k| a.members[k].kind == MemberKind::Shaft && !used.contains(&MemberId(k)))
         .collect();

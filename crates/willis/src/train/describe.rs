@@ -7,8 +7,11 @@ use crate::units::{AngularSpeed, Power, Quantity, Torque};
 
 use super::{Load, assemble};
 
+pub(super) mod dynamic;
 pub(super) mod physical;
 
+use crate::train::dynamic::LossRow;
+use dynamic::{DragSpec, FrictionSpec, PlanetBodySpec, ScenarioSpec, ShaftSpec};
 use physical::{BearingSpec, GeometrySpec, HousingSpec, OilSpec, RotorSpec, SealSpec, ToothSpec};
 
 /// A gear of a mesh: its member, tooth count, and whether it is a ring gear.
@@ -108,6 +111,7 @@ pub struct MeshSpec {
     pub(crate) bevel: bool,
     pub(crate) count: i64,
     pub(crate) geometry: Option<GeometrySpec>,
+    pub(crate) loss_table: Option<Vec<LossRow>>,
 }
 
 impl MeshSpec {
@@ -122,6 +126,7 @@ impl MeshSpec {
             bevel: false,
             count: 1,
             geometry: None,
+            loss_table: None,
         }
     }
 
@@ -181,7 +186,7 @@ pub(crate) struct PlanetSpec {
     pub teeth: Option<i64>,
     pub count: Option<i64>,
     pub tooth: ToothSpec,
-    pub mass: Option<f64>,
+    pub body: PlanetBodySpec,
 }
 
 /// The parts of a set, by type.
@@ -337,13 +342,8 @@ impl SetSpec {
     /// Teeth and number of the planets (the first kind, where there are two).
     #[must_use]
     pub fn planet(mut self, teeth: i64, count: i64) -> Self {
-        let spec = PlanetSpec { teeth: Some(teeth), count: Some(count), ..PlanetSpec::default() };
-        match &mut self.parts {
-            Parts::Simple { planet, .. } | Parts::Stepped { planet, .. } | Parts::Bevel { planet, .. } => {
-                *planet = spec
-            }
-            Parts::DoublePlanet { inner, .. } => *inner = spec,
-            Parts::Ravigneaux { short, .. } => *short = spec,
+        for first in self.planets_mut().into_iter().take(1) {
+            (first.teeth, first.count) = (Some(teeth), Some(count));
         }
         self
     }
@@ -354,11 +354,8 @@ impl SetSpec {
     /// On a set with one kind of planet.
     #[must_use]
     pub fn second_planet(mut self, teeth: i64) -> Self {
-        match &mut self.parts {
-            Parts::DoublePlanet { inner: first, outer: second, .. }
-            | Parts::Ravigneaux { short: first, long: second, .. } => {
-                *second = PlanetSpec { teeth: Some(teeth), count: first.count, ..PlanetSpec::default() };
-            }
+        match self.planets_mut().as_mut_slice() {
+            [first, second] => (second.teeth, second.count) = (Some(teeth), first.count),
             _ => panic!("this set has one kind of planet"),
         }
         self
@@ -372,14 +369,23 @@ impl SetSpec {
         self
     }
 
-    /// Mass of each kind of planet, in the order in which their members are added.
-    pub(crate) fn planet_masses(&self) -> Vec<Option<f64>> {
+    /// The kinds of planets, in the order in which their members are added.
+    fn planets_mut(&mut self) -> Vec<&mut PlanetSpec> {
+        match &mut self.parts {
+            Parts::Simple { planet, .. } | Parts::Stepped { planet, .. } | Parts::Bevel { planet, .. } => vec![planet],
+            Parts::DoublePlanet { inner: first, outer: second, .. }
+            | Parts::Ravigneaux { short: first, long: second, .. } => vec![first, second],
+        }
+    }
+
+    /// What the kinds of planets are called, and what is known of them.
+    pub(crate) fn planets(&self) -> Vec<(&'static str, &PlanetSpec)> {
         match &self.parts {
             Parts::Simple { planet, .. } | Parts::Stepped { planet, .. } | Parts::Bevel { planet, .. } => {
-                vec![planet.mass]
+                vec![("planet", planet)]
             }
-            Parts::DoublePlanet { inner, outer, .. } => vec![inner.mass, outer.mass],
-            Parts::Ravigneaux { short, long, .. } => vec![short.mass, long.mass],
+            Parts::DoublePlanet { inner, outer, .. } => vec![("inner_planet", inner), ("outer_planet", outer)],
+            Parts::Ravigneaux { short, long, .. } => vec![("short_planet", short), ("long_planet", long)],
         }
     }
 
@@ -414,23 +420,28 @@ pub struct ShiftElementSpec {
     pub(crate) members: Vec<String>,
     /// For a one-way clutch, the sign of the relative speed that it prevents; backward by default.
     pub(crate) blocks: Option<i8>,
+    pub(crate) friction: FrictionSpec,
 }
 
 impl ShiftElementSpec {
+    fn new(name: impl Into<String>, kind: ShiftElementKind, members: &[&str]) -> Self {
+        let members = members.iter().map(|m| (*m).to_owned()).collect();
+        Self { name: name.into(), kind, members, blocks: None, friction: FrictionSpec::default() }
+    }
+
     /// Joins two members when engaged.
     pub fn clutch(name: impl Into<String>, a: &str, b: &str) -> Self {
-        Self { name: name.into(), kind: ShiftElementKind::Clutch, members: vec![a.into(), b.into()], blocks: None }
+        Self::new(name, ShiftElementKind::Clutch, &[a, b])
     }
 
     /// Holds a member when engaged.
     pub fn brake(name: impl Into<String>, member: &str) -> Self {
-        Self { name: name.into(), kind: ShiftElementKind::Brake, members: vec![member.into()], blocks: None }
+        Self::new(name, ShiftElementKind::Brake, &[member])
     }
 
     /// Prevents `member` from turning backward relative to `other` (use `"frame"` for the housing).
     pub fn one_way(name: impl Into<String>, member: &str, other: &str) -> Self {
-        let members = vec![member.into(), other.into()];
-        Self { name: name.into(), kind: ShiftElementKind::OneWay, members, blocks: None }
+        Self::new(name, ShiftElementKind::OneWay, &[member, other])
     }
 }
 
@@ -540,6 +551,10 @@ pub struct TrainBuilder {
     pub(crate) bearings: Vec<BearingSpec>,
     pub(crate) seals: Vec<SealSpec>,
     pub(crate) rotors: Vec<RotorSpec>,
+    pub(crate) inertias: Vec<(String, f64)>,
+    pub(crate) drags: Vec<DragSpec>,
+    pub(crate) shafts: Vec<ShaftSpec>,
+    pub(crate) scenarios: Vec<ScenarioSpec>,
 }
 
 impl TrainBuilder {
@@ -563,6 +578,10 @@ impl TrainBuilder {
             bearings: vec![],
             seals: vec![],
             rotors: vec![],
+            inertias: vec![],
+            drags: vec![],
+            shafts: vec![],
+            scenarios: vec![],
         }
     }
 

@@ -290,20 +290,21 @@ impl Formula {
     }
 }
 
-/// What acts on members from outside in a scenario.
+/// What acts on members from outside in a scenario; `S` is what a value over time is told by, `C` a
+/// curve.
 #[derive(Clone, Debug, PartialEq)]
-pub enum SourceKind {
+pub enum SourceKind<S = Signal, C = Curve> {
     /// An external torque, N m, over time.
-    Torque(Signal),
+    Torque(S),
     /// A prescribed speed, rad/s, over time; its torque is a result.
-    Speed(Signal),
+    Speed(S),
     /// A speed controller, `T = T_ff + k_p e + k_i ∫e dt + k_d de/dt` with `e = w_set − w` (Galvagno 2010,
     /// section 6.2).
     Controller {
         /// The speed wanted, rad/s.
-        setpoint: Signal,
+        setpoint: S,
         /// T_ff, N m.
-        feed_forward: Signal,
+        feed_forward: S,
         /// k_p, N m s/rad.
         proportional: f64,
         /// k_i, N m/rad.
@@ -346,16 +347,16 @@ pub enum SourceKind {
         /// kg/m³
         air_density: f64,
         /// Rise over run.
-        grade: Signal,
+        grade: S,
     },
     /// A motor: between the torque it drags with and its full-load torque, by a throttle from 0 to 1.
     Motor {
         /// Full-load torque over speed, rad/s to N m.
-        full_load: Curve,
+        full_load: C,
         /// Torque at closed throttle over speed (negative for drag), rad/s to N m.
-        closed: Curve,
+        closed: C,
         /// 0 to 1.
-        throttle: Signal,
+        throttle: S,
     },
 }
 
@@ -406,4 +407,3 @@ pub struct Scenario {
     pub samples: usize,
     pub(crate) place: String,
 }
-

@@ -11,12 +11,7 @@ use super::{Efficiency, Gear, MemberId, Mesh, Set};
 
 /// Adds the planet rotors of a set, in the order in which [`expand`] uses them.
 pub(super) fn planets(a: &mut Assembler<'_>, set: &SetSpec) -> Vec<MemberId> {
-    let roles: &[&str] = match set.parts {
-        Parts::Simple { .. } | Parts::Stepped { .. } | Parts::Bevel { .. } => &["planet"],
-        Parts::DoublePlanet { .. } => &["inner_planet", "outer_planet"],
-        Parts::Ravigneaux { .. } => &["short_planet", "long_planet"],
-    };
-    roles.iter().map(|role| a.add_planet(format!("{}.{role}", set.name))).collect()
+    set.planets().iter().map(|(role, _)| a.add_planet(format!("{}.{role}", set.name))).collect()
 }
 
 /// The two gears of a mesh to be, with the place of the first for messages.

@@ -5,6 +5,8 @@
 //! value each takes, [`read`] checks the whole document against it and collects every error with
 //! its place, and the little that is left is to pour checked values into a [`TrainBuilder`].
 
+mod csv;
+mod dynamic;
 mod keys;
 mod physical;
 mod reader;
@@ -56,7 +58,7 @@ fn give_places(spans: &reader::Spans, text: &str, diagnostics: &mut Diagnostics)
     }
 }
 
-pub(super) fn read(text: &str) -> Reading {
+pub(super) fn read(text: &str, load: &mut reader::Load<'_>) -> Reading {
     let mut diagnostics = Diagnostics::default();
     if text.trim().is_empty() {
         diagnostics.push(
@@ -65,7 +67,7 @@ pub(super) fn read(text: &str) -> Reading {
         );
         return Reading { train: None, diagnostics, spans: reader::Spans::default() };
     }
-    let (root, spans) = reader::read(text, &keys::FILE, &mut diagnostics);
+    let (root, spans) = reader::read(text, &keys::FILE, load, &mut diagnostics);
     for (k, set) in root.tables("set").iter().enumerate() {
         if set.set_efficiency("mesh_efficiency").is_some() && set.efficiency("basic_efficiency").is_some() {
             let message = "`mesh_efficiency` and `basic_efficiency` both say what the set loses";
@@ -73,6 +75,7 @@ pub(super) fn read(text: &str) -> Reading {
             diagnostics.push(d.hint("keep the one that is known"));
         }
     }
+    dynamic::check_sources(&root, &mut diagnostics);
     let mut train = None;
     if !diagnostics.has_errors() {
         train = assemble::assemble(builder(&root), &mut diagnostics);
@@ -114,6 +117,10 @@ fn builder(root: &Fields) -> TrainBuilder {
     b.bearings = root.tables("bearing").iter().map(physical::bearing).collect();
     b.seals = root.tables("seal").iter().map(physical::seal).collect();
     b.rotors = root.tables("rotor").iter().map(physical::rotor).collect();
+    b.inertias = dynamic::values(root, "inertias");
+    b.drags = root.tables("drag").iter().map(dynamic::drag).collect();
+    b.shafts = root.tables("shaft").iter().map(dynamic::shaft).collect();
+    b.scenarios = root.tables("scenario").iter().map(dynamic::scenario).collect();
     b
 }
 
@@ -143,6 +150,7 @@ fn mesh(t: &Fields) -> MeshSpec {
         bevel: t.optional_text("kind").is_some_and(|k| k == "bevel"),
         count: t.integer("count").unwrap_or(1),
         geometry: physical::geometry(t),
+        loss_table: dynamic::loss_table(t),
         ..MeshSpec::new(first, second)
     }
 }
@@ -152,7 +160,7 @@ fn planet(t: &Fields, key: &str) -> PlanetSpec {
         teeth: p.integer("teeth"),
         count: p.integer("count"),
         tooth: physical::tooth(p),
-        mass: p.si("mass"),
+        body: dynamic::planet_body(p),
     })
 }
 
@@ -206,6 +214,7 @@ fn shift_element(t: &Fields) -> ShiftElementSpec {
         },
         members: t.names("members"),
         blocks: t.optional_text("blocks").map(|b| if b == "forward" { 1 } else { -1 }),
+        friction: dynamic::friction(t),
     }
 }
 

@@ -25,7 +25,7 @@ const STEEL: f64 = 7850.0;
 
 impl Assembler<'_> {
     /// A number that must be finite and above (or at) zero; reported and replaced where it is not.
-    fn positive(&mut self, value: f64, zero_too: bool, what: &str, unit: &str, place: &str) -> bool {
+    pub fn positive(&mut self, value: f64, zero_too: bool, what: &str, unit: &str, place: &str) -> bool {
         let good = value.is_finite() && (value > 0.0 || zero_too && value == 0.0);
         if !good {
             let bound = if zero_too { "not negative" } else { "above zero" };
@@ -264,7 +264,7 @@ impl Assembler<'_> {
     }
 
     /// One or two members; one means against the frame.
-    fn two_members(&mut self, names: &[String], what: &str, place: &str) -> Option<[MemberId; 2]> {
+    pub fn two_members(&mut self, names: &[String], what: &str, place: &str) -> Option<[MemberId; 2]> {
         let place = format!("{place}.members");
         let ids: Vec<_> = names.iter().enumerate().map(|(k, m)| self.resolve(m, &format!("{place}[{k}]"))).collect();
         if !(1..=2).contains(&ids.len()) {
@@ -468,10 +468,6 @@ impl Assembler<'_> {
                     mass: 0.0,
                 });
             }
-        }
-        for (member, mass) in masses {
-            let name = self.members[member.0].name.clone();
-            self.positive(*mass, true, &format!("{name}: a mass"), "kg", "set");
         }
         for body in &mut all {
             let bearing = bearings.iter().find(|b| b.members.contains(&body.member));

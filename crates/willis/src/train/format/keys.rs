@@ -12,6 +12,8 @@ pub(super) enum Kind {
     Name,
     Names,
     Integer,
+    /// A number of rows.
+    Samples,
     Flag,
     Choice(&'static [&'static str]),
     /// A number, or `{ forward, backward }`.
@@ -24,11 +26,33 @@ pub(super) enum Kind {
     Quantity(Dimension),
     /// Member name to quantity.
     Quantities(Dimension),
+    /// A list of pairs.
+    Points([Measure; 2]),
+    /// A plain number, or points of it over a quantity.
+    NumberOrPoints(Dimension),
+    /// A list of times and names.
+    Schedule,
+    /// A value over time.
+    Signal(&'static SignalKind),
+    /// Two signals, the second of plain numbers.
+    Product(&'static SignalKind),
     Table(&'static Table),
     /// `[[key]]`, or a list of inline tables; with the least number of entries.
     Tables(&'static Table, usize),
     /// Like `Tables`, the table depending on the entry's `type` (the first is the default).
     Variants(&'static [(&'static str, &'static Table)]),
+}
+
+/// The dimension of a quantity; `None` for a plain number.
+pub(super) type Measure = Option<Dimension>;
+
+/// What a value over time may be: a constant, or a table by its `type`.
+#[derive(Debug)]
+pub(super) struct SignalKind {
+    /// What it is called in the schema.
+    pub name: &'static str,
+    pub of: Measure,
+    pub types: &'static [(&'static str, &'static Table)],
 }
 
 #[derive(Debug)]
@@ -83,6 +107,14 @@ pub(super) static FILE: Table = Table {
         may("bearing", Kind::Tables(&BEARING, 0), "Rolling bearings."),
         may("seal", Kind::Tables(&SEAL, 0), "Radial lip seals."),
         may("rotor", Kind::Tables(&ROTOR, 0), "Carriers and drums that drag the fluid around them."),
+        may(
+            "inertias",
+            Kind::Quantities(Dimension::INERTIA),
+            "Moments of inertia of members about their axes; of planets, all of them together. Planets of sets may have theirs in the set.",
+        ),
+        may("drag", Kind::Tables(&DRAG, 0), "Friction that does not depend on tooth loads, in motion."),
+        may("shaft", Kind::Tables(&SHAFT, 0), "Elastic shafts."),
+        may("scenario", Kind::Tables(&SCENARIO, 0), "Motions to simulate."),
     ],
 };
 
@@ -315,6 +347,11 @@ static MESH: Table = Table {
         may("count", Kind::Integer, "Identical meshes in parallel. Default: 1."),
         GEAR_GEOMETRY,
         may(
+            "loss_table",
+            Kind::Tables(&LOSS_ROW, 0),
+            "Efficiency and bearing torque over speed, instead of an efficiency; operating points use its first row.",
+        ),
+        may(
             "sense",
             Kind::Choice(&["opposite", "same"]),
             "Relative to the carrier. `same` for chains and for the second side gear of a bevel set.",
@@ -380,23 +417,32 @@ static PLANET: Table = Table {
             "Tooth count. Without it planet speeds are those of the nominal planet (z_ring - z_sun)/2.",
         ),
         may("count", Kind::Integer, "Number of planets; enables the assembly checks."),
-        may(
-            "mass",
-            Kind::Quantity(Dimension::MASS),
-            "Mass of one planet; its centrifugal force loads the planet bearings."
-        ),
+        PLANET_MASS,
+        PLANET_INERTIA,
+        ORBIT_RADIUS,
     ],
 };
+
+const PLANET_MASS: Key = may(
+    "mass",
+    Kind::Quantity(Dimension::MASS),
+    "Mass of one planet; its centrifugal force loads the planet bearings, and it turns with the carrier.",
+);
+const PLANET_INERTIA: Key =
+    may("inertia", Kind::Quantity(Dimension::INERTIA), "Moment of inertia of one planet about its own axis.");
+const ORBIT_RADIUS: Key = may(
+    "orbit_radius",
+    Kind::Quantity(Dimension::LENGTH),
+    "Distance of the planet's axis from the carrier's. Default: the centre distance of the geometry.",
+);
 
 static STEPPED_PLANET: Table = Table {
     doc: "The stepped planets of a set; their teeth stand with the gears they mesh with.",
     keys: &[
         may("count", Kind::Integer, "Number of planets; enables the assembly checks."),
-        may(
-            "mass",
-            Kind::Quantity(Dimension::MASS),
-            "Mass of one planet; its centrifugal force loads the planet bearings.",
-        ),
+        PLANET_MASS,
+        PLANET_INERTIA,
+        ORBIT_RADIUS,
     ],
 };
 
@@ -515,6 +561,27 @@ static SHIFT_ELEMENT: Table = Table {
             Kind::Choice(&["backward", "forward"]),
             "For a one-way clutch: the direction of the first member relative to the second that it prevents. Default: backward.",
         ),
+        may(
+            "capacity",
+            Kind::Quantity(Dimension::TORQUE),
+            "Torque that it transmits when fully engaged and sliding, in motion. Default: unlimited.",
+        ),
+        may(
+            "friction",
+            Kind::NumberOrPoints(Dimension::ANGULAR_SPEED),
+            "Coefficient of friction, or points of it over slip, with `normal_force` and `effective_radius`. With `capacity`: a factor on it. Default: 1.",
+        ),
+        may("normal_force", Kind::Quantity(Dimension::FORCE), "Force on the friction surfaces when fully engaged."),
+        may(
+            "effective_radius",
+            Kind::Quantity(Dimension::LENGTH),
+            "Mean radius times the number of friction surfaces.",
+        ),
+        may(
+            "peak",
+            Kind::Number,
+            "Torque at which it breaks away over that at which it slides; at least 1. Default: 1.",
+        ),
     ],
 };
 
@@ -548,3 +615,289 @@ static OPERATION: Table = Table {
         ),
     ],
 };
+
+static LOSS_ROW: Table = Table {
+    doc: "Losses of a mesh at one speed.",
+    keys: &[
+        must("speed", Kind::Quantity(Dimension::ANGULAR_SPEED), "Amount of the first gear's speed on the carrier."),
+        must("forward", Kind::Number, "Efficiency when the first gear drives."),
+        must("backward", Kind::Number, "Efficiency when the second gear drives."),
+        may(
+            "forward_torque",
+            Kind::Quantity(Dimension::TORQUE),
+            "Bearing torque at the first gear when it drives. Default: 0 N m.",
+        ),
+        may(
+            "backward_torque",
+            Kind::Quantity(Dimension::TORQUE),
+            "Bearing torque at the first gear when the second drives. Default: 0 N m.",
+        ),
+    ],
+};
+
+const SPEED: Measure = Some(Dimension::ANGULAR_SPEED);
+const TORQUE: Measure = Some(Dimension::TORQUE);
+
+static DRAG: Table = Table {
+    doc: "Friction between two members that does not depend on tooth loads; at a planet of a set, at every planet. It needs `coulomb`, `viscous` or `table`.",
+    keys: &[
+        must("name", Kind::Text, "What it is called."),
+        must("members", Kind::Names, "The two members, or one that turns against the frame."),
+        may("coulomb", Kind::Quantity(Dimension::TORQUE), "Torque at any speed; holds at rest."),
+        may("viscous", Kind::Quantity(Dimension::VISCOUS), "Torque over relative speed."),
+        may("table", Kind::Points([SPEED, TORQUE]), "Torque over the amount of relative speed, instead of `coulomb`."),
+        may(
+            "peak",
+            Kind::Number,
+            "Torque at which it breaks away over that at which it slides; at least 1. Default: 1.",
+        ),
+    ],
+};
+
+static SHAFT: Table = Table {
+    doc: "An elastic shaft. It needs a stiffness or a damping.",
+    keys: &[
+        must("name", Kind::Text, "What it is called."),
+        must("members", Kind::Names, "The two members it joins, or one that it ties to the frame."),
+        may("stiffness", Kind::Quantity(Dimension::STIFFNESS), "Torque over twist."),
+        may("damping", Kind::Quantity(Dimension::VISCOUS), "Torque over the rate of twist."),
+        may("backlash", Kind::Quantity(Dimension::ANGLE), "Whole backlash. Default: none."),
+        may(
+            "contact",
+            Kind::Choice(&["soft", "hard"]),
+            "At the ends of the backlash: `soft` damping never exceeds the spring and never pulls; with `hard` the torque may jump. Default: soft.",
+        ),
+    ],
+};
+
+static SCENARIO: Table = Table {
+    doc: "A motion to simulate, from `start` for a `duration` (or to `end`).",
+    keys: &[
+        must("name", Kind::Text, "What it is called."),
+        may("start", Kind::Quantity(Dimension::TIME), "When it begins. Default: 0 s."),
+        may("duration", Kind::Quantity(Dimension::TIME), "How long it takes."),
+        may("end", Kind::Quantity(Dimension::TIME), "When it ends, instead of `duration`."),
+        may("samples", Kind::Samples, "Rows of output, evenly spaced in time. Default: 500."),
+        may(
+            "initial_speeds",
+            Kind::Quantities(Dimension::ANGULAR_SPEED),
+            "Speeds at the start; those that the gears settle follow, what is left is at rest.",
+        ),
+        may("initial_twists", Kind::Quantities(Dimension::ANGLE), "Twist of shafts at the start. Default: none."),
+        may("fixed", Kind::Names, "Members held at rest from outside."),
+        may("state", Kind::Name, "State of the shift table whose elements are engaged. Default: none are."),
+        may("gears", Kind::Schedule, "Times and states, instead of `state`: [ [\"0 s\", \"1\"], [\"2 s\", \"2\"] ]."),
+        may(
+            "shift_time",
+            Kind::Quantity(Dimension::TIME),
+            "How long elements take to engage and to open when the gear changes. Default: 0 s.",
+        ),
+        may("source", Kind::Tables(&SOURCE, 0), "What acts on members from outside."),
+        may("engagement", Kind::Tables(&ENGAGEMENT, 0), "Engagement of single shift elements over time."),
+    ],
+};
+
+static ENGAGEMENT: Table = Table {
+    doc: "How far a shift element is engaged over time; instead of what `state` or `gears` say of it.",
+    keys: &[
+        must("element", Kind::Name, "The shift element."),
+        must("value", Kind::Signal(&NUMBER_SIGNAL), "From 0, open, to 1, fully engaged."),
+    ],
+};
+
+/// The keys of a source of which it has exactly one.
+pub(super) const SOURCE_KINDS: &[&str] = &["torque", "speed", "controller", "linear", "quadratic", "vehicle", "motor"];
+
+static SOURCE: Table = Table {
+    doc: "What acts on a member from outside: exactly one of torque, speed, controller, linear, quadratic, vehicle, motor.",
+    keys: &[
+        may("name", Kind::Text, "What it is called. Default: after what it is, `torque on sun`."),
+        must("member", Kind::Name, "The member it acts on."),
+        may("torque", Kind::Signal(&TORQUE_SIGNAL), "An external torque on the member."),
+        may("speed", Kind::Signal(&SPEED_SIGNAL), "A prescribed speed; its torque is a result."),
+        may("controller", Kind::Table(&CONTROLLER), "A torque that seeks a speed."),
+        may("linear", Kind::Table(&LINEAR), "torque - slope (w - about)."),
+        may("quadratic", Kind::Table(&QUADRATIC), "torque - factor (w - about)^2, against the direction of w - about."),
+        may("vehicle", Kind::Table(&VEHICLE), "A vehicle on its wheels."),
+        may("motor", Kind::Table(&MOTOR), "A motor with its full-load curve and a throttle."),
+    ],
+};
+
+static CONTROLLER: Table = Table {
+    doc: "A speed controller: feed_forward + proportional e + integral of e + derivative of e, where e = setpoint - w.",
+    keys: &[
+        must("setpoint", Kind::Signal(&SPEED_SIGNAL), "The speed wanted."),
+        may("feed_forward", Kind::Signal(&TORQUE_SIGNAL), "Torque without any error. Default: 0 N m."),
+        may("proportional", Kind::Quantity(Dimension::VISCOUS), "Torque over error. Default: none."),
+        may("integral", Kind::Quantity(Dimension::STIFFNESS), "Torque over the integral of the error. Default: none."),
+        may(
+            "derivative",
+            Kind::Quantity(Dimension::TORQUE_PER_ACCELERATION),
+            "Torque over the rate of the error; acts as an added inertia. Default: none.",
+        ),
+    ],
+};
+
+static LINEAR: Table = Table {
+    doc: "A torque that falls in a straight line with speed.",
+    keys: &[
+        may("torque", Kind::Quantity(Dimension::TORQUE), "Torque at the speed `about`. Default: 0 N m."),
+        may("about", Kind::Quantity(Dimension::ANGULAR_SPEED), "Default: 0 rad/s."),
+        may("slope", Kind::Quantity(Dimension::VISCOUS), "Fall of the torque over speed. Default: none."),
+    ],
+};
+
+static QUADRATIC: Table = Table {
+    doc: "A torque that falls with the square of speed: fans, air.",
+    keys: &[
+        may("torque", Kind::Quantity(Dimension::TORQUE), "Torque at the speed `about`. Default: 0 N m."),
+        may("about", Kind::Quantity(Dimension::ANGULAR_SPEED), "Default: 0 rad/s."),
+        may(
+            "factor",
+            Kind::Quantity(Dimension::TORQUE_PER_SPEED_SQUARED),
+            "Fall of the torque over the square of speed. Default: none.",
+        ),
+        may("even", Kind::Flag, "true: the torque does not follow the direction of rotation."),
+    ],
+};
+
+static VEHICLE: Table = Table {
+    doc: "A vehicle on its wheels: mass, rolling resistance, air and slope.",
+    keys: &[
+        must("mass", Kind::Quantity(Dimension::MASS), "Mass of the vehicle."),
+        must("wheel_radius", Kind::Quantity(Dimension::LENGTH), "Rolling radius of the wheels."),
+        may("final_drive", Kind::Number, "Turns of the member to one turn of the wheels. Default: 1."),
+        may("rolling", Kind::Number, "Rolling resistance coefficient; holds the vehicle at rest. Default: 0."),
+        may("drag_area", Kind::Quantity(Dimension::AREA), "Drag coefficient times frontal area. Default: 0 m^2."),
+        may("air_density", Kind::Quantity(Dimension::DENSITY), "Default: 1.2 kg/m^3."),
+        may("grade", Kind::Signal(&NUMBER_SIGNAL), "Slope of the road, rise over run. Default: 0."),
+    ],
+};
+
+static MOTOR: Table = Table {
+    doc: "A motor: between the torque it drags with and its full-load torque.",
+    keys: &[
+        must("full_load", Kind::Points([SPEED, TORQUE]), "Torque over speed at full throttle."),
+        may(
+            "closed",
+            Kind::Points([SPEED, TORQUE]),
+            "Torque over speed at closed throttle, negative for drag. Default: 0 N m.",
+        ),
+        may("throttle", Kind::Signal(&NUMBER_SIGNAL), "From 0, closed, to 1, full load. Default: 1."),
+    ],
+};
+
+const SIGNAL_TYPE: Key = must("type", Kind::Text, "How the value changes over time.");
+const HOLD: Key = may("hold", Kind::Flag, "true: level from each point to the next, instead of straight lines.");
+const AT: Key = may("at", Kind::Quantity(Dimension::TIME), "When. Default: 0 s.");
+
+/// A kind of signal: its name, its measure and the kind of key that takes a value of it.
+macro_rules! signal {
+    ($signal:ident, $name:literal, $of:expr, $value:expr) => {
+        pub(super) static $signal: SignalKind = SignalKind {
+            name: $name,
+            of: $of,
+            types: &[
+                (
+                    "step",
+                    &Table {
+                        doc: "A jump.",
+                        keys: &[
+                            SIGNAL_TYPE,
+                            may("offset", $value, "Value before. Default: 0."),
+                            must("height", $value, "The jump."),
+                            AT,
+                        ],
+                    },
+                ),
+                (
+                    "ramp",
+                    &Table {
+                        doc: "A straight rise.",
+                        keys: &[
+                            SIGNAL_TYPE,
+                            may("offset", $value, "Value before. Default: 0."),
+                            must("height", $value, "The rise."),
+                            AT,
+                            must("duration", Kind::Quantity(Dimension::TIME), "How long it takes."),
+                        ],
+                    },
+                ),
+                (
+                    "sine",
+                    &Table {
+                        doc: "offset + amplitude exp(-decay (t - at)) sin(2 pi frequency (t - at) + phase); before `at` the offset.",
+                        keys: &[
+                            SIGNAL_TYPE,
+                            may("offset", $value, "Mean. Default: 0."),
+                            must("amplitude", $value, "Amplitude."),
+                            must("frequency", Kind::Quantity(Dimension::FREQUENCY), "Frequency, \"2 Hz\"."),
+                            may("phase", Kind::Quantity(Dimension::ANGLE), "Default: 0 deg."),
+                            AT,
+                            may("decay", Kind::Quantity(Dimension::FREQUENCY), "How fast it fades, \"0.5 1/s\". Default: not."),
+                        ],
+                    },
+                ),
+                (
+                    "pulse",
+                    &Table {
+                        doc: "A value that comes and goes.",
+                        keys: &[
+                            SIGNAL_TYPE,
+                            may("offset", $value, "Value between pulses. Default: 0."),
+                            must("amplitude", $value, "Height of a pulse."),
+                            must("period", Kind::Quantity(Dimension::TIME), "From one pulse to the next."),
+                            may("width", Kind::Number, "Part of the period that a pulse takes, 0 to 1. Default: 0.5."),
+                            AT,
+                        ],
+                    },
+                ),
+                (
+                    "table",
+                    &Table {
+                        doc: "Through points in time; level before the first and after the last. Two points of one time are a jump.",
+                        keys: &[
+                            SIGNAL_TYPE,
+                            must("points", Kind::Points([Some(Dimension::TIME), $of]), "Times and values."),
+                            HOLD,
+                        ],
+                    },
+                ),
+                (
+                    "csv",
+                    &Table {
+                        doc: "Through the points of a CSV file: a header row, commas, values in SI units.",
+                        keys: &[
+                            SIGNAL_TYPE,
+                            must("file", Kind::Text, "The file, seen from the train file."),
+                            must("time", Kind::Text, "Name of the column with the times, s."),
+                            must("value", Kind::Text, "Name of the column with the values, SI."),
+                            HOLD,
+                        ],
+                    },
+                ),
+                (
+                    "expression",
+                    &Table {
+                        doc: "A formula of the time t and of speeds w_member in rad/s; its value is in SI units.",
+                        keys: &[SIGNAL_TYPE, must("formula", Kind::Text, "Such as \"60 + 200*sin(4*PI*t) - 3*w_sun\".")],
+                    },
+                ),
+                (
+                    "product",
+                    &Table {
+                        doc: "The product of two signals.",
+                        keys: &[
+                            SIGNAL_TYPE,
+                            must("of", Kind::Product(&$signal), "A signal of this kind, and one of plain numbers."),
+                        ],
+                    },
+                ),
+            ],
+        };
+    };
+}
+
+signal!(TORQUE_SIGNAL, "torque_signal", TORQUE, Kind::Quantity(Dimension::TORQUE));
+signal!(SPEED_SIGNAL, "speed_signal", SPEED, Kind::Quantity(Dimension::ANGULAR_SPEED));
+signal!(NUMBER_SIGNAL, "number_signal", None, Kind::Number);

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
@@ -13,7 +13,11 @@ use crate::train::assemble::clip;
 use crate::train::describe::EfficiencySpec;
 use crate::units::{self, Dimension, Quantity, QuantityError};
 
-use super::keys::{Kind, Table};
+use super::csv;
+use super::keys::{Kind, Measure, NUMBER_SIGNAL, SignalKind, Table};
+
+/// Gives the text of a file that the train file names, or says why it cannot.
+pub(super) type Load<'l> = dyn FnMut(&str) -> Result<String, String> + 'l;
 
 /// Where each place of the document stands in the text.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +47,8 @@ enum Node {
     Quantities(Vec<(String, Quantity)>),
     Quantity(Quantity),
     Number(f64),
+    Points(Vec<[f64; 2]>),
+    Schedule(Vec<(f64, String)>),
     Table(Fields),
     Tables(Vec<Fields>),
 }
@@ -80,6 +86,19 @@ impl Fields {
         }
     }
 
+    /// Whether the key was given, and was sound.
+    pub fn has(&self, key: &str) -> bool {
+        self.0.contains_key(key)
+    }
+
+    /// A quantity in SI, or a plain number.
+    pub fn scalar(&self, key: &str) -> Option<f64> {
+        self.si(key).or(self.real(key))
+    }
+
+    getter!(points, Node::Points(p) => p.clone(), Option<Vec<[f64; 2]>>);
+    getter!(schedule, Node::Schedule(s) => s.clone(), Option<Vec<(f64, String)>>);
+
     /// A plain number.
     pub fn real(&self, key: &str) -> Option<f64> {
         match self.0.get(key) {
@@ -103,7 +122,7 @@ impl Fields {
     }
 }
 
-pub(super) fn read(text: &str, table: &Table, diagnostics: &mut Diagnostics) -> (Fields, Spans) {
+pub(super) fn read(text: &str, table: &Table, load: &mut Load<'_>, diagnostics: &mut Diagnostics) -> (Fields, Spans) {
     // Recovering from error after error takes time that grows with the square of the garbage.
     const MOST_RECOVERED: usize = 1 << 16;
     const MOST_ERRORS: usize = 20;
@@ -120,7 +139,7 @@ pub(super) fn read(text: &str, table: &Table, diagnostics: &mut Diagnostics) -> 
         d.span = error.span().map(|s| s.start.min(text.len())..s.end.min(text.len()));
         diagnostics.push(d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"));
     }
-    let mut reader = Reader { diagnostics, spans: Spans::default() };
+    let mut reader = Reader { diagnostics, spans: Spans::default(), load, files: BTreeMap::new() };
     if !errors.is_empty() {
         return (Fields::default(), reader.spans);
     }
@@ -128,14 +147,17 @@ pub(super) fn read(text: &str, table: &Table, diagnostics: &mut Diagnostics) -> 
     (fields, reader.spans)
 }
 
-struct Reader<'d> {
+struct Reader<'d, 'l> {
     diagnostics: &'d mut Diagnostics,
     spans: Spans,
+    load: &'d mut Load<'l>,
+    /// The files loaded so far.
+    files: BTreeMap<String, Result<String, String>>,
 }
 
 type Value<'i> = Spanned<DeValue<'i>>;
 
-impl Reader<'_> {
+impl Reader<'_, '_> {
     fn report(&mut self, code: Code, place: &str, message: String, hint: impl Into<String>) {
         let hint = hint.into();
         let d = Diagnostic::new(code, place, message);
@@ -232,7 +254,7 @@ impl Reader<'_> {
                 }
                 Some(Node::Names(names))
             }
-            Kind::Integer => {
+            Kind::Integer | Kind::Samples => {
                 let found = integer(value.get_ref());
                 if found.is_none() {
                     match value.get_ref() {
@@ -242,7 +264,11 @@ impl Reader<'_> {
                         }
                         DeValue::Float(x) => {
                             let message = format!("`{}` is a whole number, here is {}", last(place), clip(x.as_str()));
-                            self.report(Code::WrongType, place, message, "a tooth or planet count has no fraction");
+                            let hint = match kind {
+                                Kind::Integer => "a tooth or planet count has no fraction",
+                                _ => "",
+                            };
+                            self.report(Code::WrongType, place, message, hint);
                         }
                         _ => self.wrong_type(place, value, "a whole number"),
                     }
@@ -305,6 +331,36 @@ impl Reader<'_> {
             }
             Kind::Quantity(dimension) => self.quantity(value, *dimension, place).map(Node::Quantity),
             Kind::Number => self.number(value, place, "").map(|x| Node::Number(x.to_f64())),
+            Kind::Points(of) => self.points(value, *of, place).map(Node::Points),
+            Kind::NumberOrPoints(over) => match value.get_ref() {
+                DeValue::Array(_) => self.points(value, [Some(*over), None], place).map(Node::Points),
+                _ => self.measure(value, None, place).map(|x| Node::Points(vec![[0.0, x]])),
+            },
+            Kind::Schedule => {
+                let read = |reader: &mut Self, [time, state]: [&Value<'_>; 2], places: [&str; 2]| {
+                    let time = reader.measure(time, Some(Dimension::TIME), places[0]);
+                    let name = state.get_ref().as_str().map(str::to_owned);
+                    if name.is_none() {
+                        reader.wrong_type(places[1], state, "the name of a state in quotes");
+                    }
+                    Some((time?, name?))
+                };
+                self.pairs(value, place, "[\"0 s\", \"1\"]", read).map(Node::Schedule)
+            }
+            Kind::Signal(kind) => self.signal(value, kind, place),
+            Kind::Product(kind) => {
+                let Some([first, second]) = value.get_ref().as_array().and_then(pair) else {
+                    self.wrong_type(place, value, "a list of two signals, the second of plain numbers");
+                    return None;
+                };
+                let places = [0, 1].map(|k| format!("{place}[{k}]"));
+                for (place, value) in places.iter().zip([first, second]) {
+                    self.spans.0.insert(place.clone(), value.span());
+                }
+                let first = self.signal(first, kind, &places[0]);
+                let second = self.signal(second, &NUMBER_SIGNAL, &places[1]);
+                Some(Node::Table(Fields(BTreeMap::from([("first", first?), ("second", second?)]))))
+            }
             Kind::Table(table) => match value.get_ref().as_table() {
                 Some(map) => Some(Node::Table(self.table(map, table, place, value.span()))),
                 None => {
@@ -362,6 +418,117 @@ impl Reader<'_> {
             }
         }
         Some(all)
+    }
+
+    /// A quantity in SI, or a plain number.
+    fn measure(&mut self, value: &Value<'_>, measure: Measure, place: &str) -> Option<f64> {
+        match measure {
+            Some(dimension) => self.quantity(value, dimension, place).map(|q| q.si()),
+            None => self.number(value, place, "").map(|x| x.to_f64()),
+        }
+    }
+
+    /// A list of pairs, each read by `read` from its two values and their places.
+    fn pairs<T>(
+        &mut self,
+        value: &Value<'_>,
+        place: &str,
+        example: &str,
+        mut read: impl FnMut(&mut Self, [&Value<'_>; 2], [&str; 2]) -> Option<T>,
+    ) -> Option<Vec<T>> {
+        let Some(array) = value.get_ref().as_array() else {
+            self.wrong_type(place, value, &format!("a list of pairs, [ {example}, … ]"));
+            return None;
+        };
+        let mut all = Vec::with_capacity(array.len());
+        for (k, item) in array.iter().enumerate() {
+            let place = format!("{place}[{k}]");
+            self.spans.0.insert(place.clone(), item.span());
+            let Some(values) = item.get_ref().as_array().and_then(pair) else {
+                self.wrong_type(&place, item, &format!("a pair, {example}"));
+                continue;
+            };
+            let places = [0, 1].map(|j| format!("{place}[{j}]"));
+            for (place, value) in places.iter().zip(values) {
+                self.spans.0.insert(place.clone(), value.span());
+            }
+            all.extend(read(self, values, [&places[0], &places[1]]));
+        }
+        (all.len() == array.len()).then_some(all)
+    }
+
+    fn points(&mut self, value: &Value<'_>, of: [Measure; 2], place: &str) -> Option<Vec<[f64; 2]>> {
+        let [x, y] = of.map(|m| m.map_or("0.5".to_owned(), |d| format!("\"{}\"", d.describe().1)));
+        self.pairs(value, place, &format!("[{x}, {y}]"), |reader, [x, y], places| {
+            let (x, y) = (reader.measure(x, of[0], places[0]), reader.measure(y, of[1], places[1]));
+            Some([x?, y?])
+        })
+    }
+
+    /// A value over time: a constant, or a table by its `type`.
+    fn signal(&mut self, value: &Value<'_>, kind: &SignalKind, place: &str) -> Option<Node> {
+        let Some(map) = value.get_ref().as_table() else {
+            return match kind.of {
+                Some(dimension) => self.quantity(value, dimension, place).map(Node::Quantity),
+                None => self.number(value, place, "").map(|x| Node::Number(x.to_f64())),
+            };
+        };
+        let types = || kind.types.iter().map(|t| t.0);
+        let listed = || format!("one of: {}", types().collect::<Vec<_>>().join(", "));
+        let at = join(place, "type");
+        let Some(given) = map.get("type") else {
+            let mut d = Diagnostic::new(Code::MissingKey, at, format!("`type` is missing in {place}"));
+            d.span = Some(value.span());
+            self.diagnostics.push(d.hint(listed()));
+            return None;
+        };
+        self.spans.0.insert(at.clone(), given.span());
+        let Some(name) = given.get_ref().as_str() else {
+            self.wrong_type(&at, given, "a text in quotes");
+            return None;
+        };
+        let Some((name, table)) = kind.types.iter().find(|t| t.0 == name) else {
+            let message = format!("there is no signal of type `{}`", clip(name));
+            let d = Diagnostic::new(Code::UnknownName, at, message).suggest(name, types());
+            self.diagnostics.push(d.hint(listed()));
+            return None;
+        };
+        let before = self.diagnostics.len();
+        let mut fields = self.table(map, table, place, value.span());
+        let keys: Vec<&str> = table.keys.iter().map(|k| k.name).collect();
+        let hint = format!("`{name}` takes: {}", keys.join(", "));
+        for d in self.diagnostics.iter_mut().skip(before) {
+            let own = d.place.strip_prefix(place).is_some_and(|rest| !rest[1..].contains(['.', '[']));
+            if own && matches!(d.code, Code::UnknownKey | Code::MissingKey) {
+                d.hints.retain(|h| !h.starts_with("the keys here are"));
+                d.hints.push(hint.clone());
+            }
+        }
+        if *name == "csv" {
+            let points = self.csv(&fields, place)?;
+            fields.0.insert("points", Node::Points(points));
+        }
+        Some(Node::Table(fields))
+    }
+
+    /// The points of the columns of a file.
+    fn csv(&mut self, fields: &Fields, place: &str) -> Option<Vec<[f64; 2]>> {
+        let [file, time, value] = ["file", "time", "value"].map(|k| fields.optional_text(k));
+        let (file, time, value) = (file?, time?, value?);
+        let at = join(place, "file");
+        let load = &mut self.load;
+        let text = self.files.entry(file.clone()).or_insert_with(|| load(&file));
+        let (code, hint, wrong) = match text {
+            Err(why) => (Code::Unreadable, "", vec![why.clone()]),
+            Ok(text) => match csv::points(text, [&time, &value]) {
+                Ok(points) => return Some(points),
+                Err(wrong) => (Code::BadTable, "a header row, commas, decimal points, times in s that rise", wrong),
+            },
+        };
+        for message in wrong {
+            self.report(code, &at, format!("{}: {message}", clip(&file)), hint);
+        }
+        None
     }
 
     /// Reads a table of exactly two keys.
@@ -482,6 +649,15 @@ impl Reader<'_> {
             }
         }
         None
+    }
+}
+
+/// The two entries of a list that has two.
+fn pair<'v, 'i>(array: &'v DeArray<'i>) -> Option<[&'v Value<'i>; 2]> {
+    let mut values = array.iter();
+    match (values.next(), values.next(), values.next()) {
+        (Some(first), Some(second), None) => Some([first, second]),
+        _ => None,
     }
 }
 

@@ -2,7 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::keys::{FILE, Key, Kind, Table};
+use crate::units::Dimension;
+
+use super::keys::{FILE, Key, Kind, Measure, NUMBER_SIGNAL, SPEED_SIGNAL, SignalKind, TORQUE_SIGNAL, Table};
 
 /// The JSON Schema of the train file, format 1, for editors that complete and check TOML.
 ///
@@ -20,7 +22,40 @@ pub fn schema() -> Value {
     let body = root.as_object_mut().expect("a table is an object");
     let mut all = head.as_object().expect("an object").clone();
     all.append(body);
+    let signals = [&TORQUE_SIGNAL, &SPEED_SIGNAL, &NUMBER_SIGNAL];
+    let definitions: Map<String, Value> = signals.iter().map(|s| (s.name.to_owned(), signal(s))).collect();
+    all.insert("$defs".into(), definitions.into());
     Value::Object(all)
+}
+
+/// Signals contain signals, so they are defined once and referred to.
+fn signal(s: &SignalKind) -> Value {
+    let mut all = vec![measure(s.of)];
+    all.extend(s.types.iter().map(|(name, t)| {
+        let mut schema = table(t);
+        schema["properties"]["type"] = json!({ "const": name });
+        schema
+    }));
+    json!({ "anyOf": all })
+}
+
+fn reference(s: &SignalKind) -> Value {
+    json!({ "$ref": format!("#/$defs/{}", s.name) })
+}
+
+/// A number with a unit, or a plain one.
+fn measure(m: Measure) -> Value {
+    let Some(dimension) = m else { return json!({ "type": "number" }) };
+    let (what, example) = dimension.describe();
+    json!({ "type": "string", "description": format!("{what} with its unit"), "examples": [example] })
+}
+
+fn pair_of(items: [Value; 2]) -> Value {
+    json!({ "type": "array", "prefixItems": items, "minItems": 2, "maxItems": 2 })
+}
+
+fn points(of: [Measure; 2]) -> Value {
+    json!({ "type": "array", "items": pair_of(of.map(measure)), "minItems": 1 })
 }
 
 fn table(t: &Table) -> Value {
@@ -64,22 +99,20 @@ fn kind(k: &Kind) -> Value {
         Kind::SetEfficiency => {
             json!({ "anyOf": [efficiency.clone(), pair(["external", "internal"], &efficiency)] })
         }
-        Kind::Number => json!({ "type": "number" }),
-        Kind::Quantity(dimension) => {
-            let (what, example) = dimension.describe();
-            json!({ "type": "string", "description": format!("{what} with its unit"), "examples": [example] })
-        }
+        Kind::Samples => json!({ "type": "integer", "minimum": 2, "maximum": 10_000_000 }),
+        Kind::Number => measure(None),
+        Kind::Quantity(dimension) => measure(Some(*dimension)),
         Kind::Quantities(dimension) => {
-            let (what, example) = dimension.describe();
-            json!({
-                "type": "object",
-                "additionalProperties": {
-                    "type": "string",
-                    "description": format!("{what} with its unit"),
-                    "examples": [example],
-                },
-            })
+            json!({ "type": "object", "additionalProperties": measure(Some(*dimension)) })
         }
+        Kind::Points(of) => points(*of),
+        Kind::NumberOrPoints(over) => json!({ "anyOf": [measure(None), points([Some(*over), None])] }),
+        Kind::Schedule => {
+            let entry = pair_of([measure(Some(Dimension::TIME)), json!({ "type": "string" })]);
+            json!({ "type": "array", "items": entry, "minItems": 1 })
+        }
+        Kind::Signal(s) => reference(s),
+        Kind::Product(s) => pair_of([reference(s), reference(&NUMBER_SIGNAL)]),
         Kind::Table(t) => table(t),
         Kind::Tables(t, 0) => json!({ "type": "array", "items": table(t) }),
         Kind::Tables(t, n) => json!({ "type": "array", "items": table(t), "minItems": n, "maxItems": n }),
