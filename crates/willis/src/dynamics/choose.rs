@@ -81,7 +81,10 @@ impl Engine {
         self.look(t, x);
         for k in 0..self.engaged.len() {
             let threshold = if self.system.frictions[k].rigid { 0.5 } else { 0.0 };
-            self.engaged[k] = self.engagement(k, t) > threshold;
+            let above = self.engagement(k, t) - threshold;
+            // Just at the threshold the direction decides.
+            let above = if above.abs() <= 1e-12 { self.engagement_rate(k, t) } else { above };
+            self.engaged[k] = above > 0.0;
         }
         for k in 0..self.touch.len() {
             self.touch[k] = self.touch_now(k, x);

@@ -62,6 +62,9 @@ pub(super) struct Capacity {
 /// Round-off of a sum, relative to the sum of amounts.
 pub(super) const NOISE: f64 = 1e-12;
 
+/// Size below which a speed, rad/s, or an angle, rad, counts as small at the start of a run.
+const LEAST_SCALE: f64 = 1e-3;
+
 /// A system in a mode.
 pub(crate) struct Engine {
     pub system: System,
@@ -82,6 +85,8 @@ pub(crate) struct Engine {
     pub away: Vec<[Vec<Side>; 2]>,
     /// Whether one solution is certain in every state.
     pub certified: bool,
+    /// Sizes of the states, against which errors are measured where a state is small.
+    pub scales: Vec<f64>,
     /// Room for port torques.
     pub spare: Vec<f64>,
 }
@@ -103,15 +108,18 @@ impl Engine {
             acceleration: vec![0.0; system.all()],
             tau: vec![0.0; system.ports],
             away,
+            scales: vec![LEAST_SCALE; system.free + system.all() + system.integrals],
             spare: vec![0.0; system.ports],
             certified: system.rolling_is_unique() == Some(true) && system.sticking_is_unique() == Some(true),
             system,
         }
     }
 
-    /// Position of the angles in the state.
-    pub fn angles(&self) -> usize {
-        self.system.free
+    /// Remembers how large the states become.
+    pub fn rescale(&mut self, x: &[f64]) {
+        for (scale, x) in self.scales.iter_mut().zip(x) {
+            *scale = scale.max(0.1 * x.abs());
+        }
     }
 
     /// Position of the controllers' integrals.
@@ -257,6 +265,12 @@ impl Engine {
     /// How far a friction element is engaged.
     pub fn engagement(&self, f: usize, t: f64) -> f64 {
         self.system.engaged(&self.system.frictions[f], t, self.inside, &|m| self.member_speed(m))
+    }
+
+    /// How fast that changes, 1/s.
+    pub fn engagement_rate(&self, f: usize, t: f64) -> f64 {
+        let signal = self.system.frictions[f].engagement.map(|k| &self.system.scenario.engagements[k].signal);
+        signal.map_or(0.0, |s| s.rate(t, self.inside, &|m| self.member_speed(m)))
     }
 
     /// Torque with which the friction elements of a group oppose its slip.
@@ -585,16 +599,11 @@ impl Smooth for Engine {
     }
 
     fn scale(&self, state: usize) -> f64 {
-        if state < self.system.free { 1.0 } else { 0.1 }
+        self.scales[state]
     }
 }
 
 impl Engine {
-    /// Names a group's cause of rest in words.
-    pub fn group_name(&self, g: usize) -> &str {
-        &self.system.groups[g].name
-    }
-
     /// What a friction element is, for names of columns and losses.
     pub fn kind(&self, f: usize) -> &'static str {
         match self.system.frictions[f].what {

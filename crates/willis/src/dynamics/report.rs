@@ -26,7 +26,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             method: Method::Adaptive,
-            tolerance: 1e-9,
+            tolerance: 1e-10,
             most_events: 1000,
             continue_when_ambiguous: false,
             lagged_forces: false,

@@ -98,6 +98,7 @@ impl Simulation {
         let mut x = vec![0.0; engine.states() + engine.quadratures()];
         initial_speeds(&mut engine, &mut x).map_err(|d| [d].into_iter().collect::<Diagnostics>())?;
         engine.look(start, &x);
+        engine.rescale(&x);
         let stored_at_start = engine.stored(&x);
         let columns = engine.columns();
         let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
@@ -425,6 +426,7 @@ impl Simulation {
     fn take_state(&mut self, t: f64) {
         let x = if self.stiff { self.implicit.x() } else { self.explicit.x() };
         self.x.copy_from_slice(x);
+        self.engine.rescale(&self.x);
         self.t = t;
     }
 
