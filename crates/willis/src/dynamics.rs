@@ -9,6 +9,7 @@ mod certificate;
 mod choose;
 mod energy;
 mod engine;
+mod fixed;
 mod integrator;
 mod mode;
 mod output;
@@ -17,6 +18,7 @@ mod run;
 mod signal;
 mod system;
 
+pub use fixed::FixedStep;
 pub use report::{
     Column, EnergyLoss, EnergyReport, Event, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample,
     SourceEnergy,

@@ -184,7 +184,7 @@ impl Engine {
     }
 
     /// Torque of an elastic shaft on its first member.
-    fn shaft_torque(&self, k: usize, x: &[f64]) -> f64 {
+    pub fn shaft_torque(&self, k: usize, x: &[f64]) -> f64 {
         let shaft = &self.system.train.shafts()[k];
         let (spring, damper) = self.shaft_parts(k, x);
         match (self.touch[k], shaft.backlash > 0.0) {
@@ -209,7 +209,7 @@ impl Engine {
     }
 
     /// Torque of spring and damper, as if in contact.
-    fn shaft_parts(&self, k: usize, x: &[f64]) -> (f64, f64) {
+    pub fn shaft_parts(&self, k: usize, x: &[f64]) -> (f64, f64) {
         let shaft = &self.system.train.shafts()[k];
         let twist = self.twist(k, x);
         let beyond = twist.signum() * (twist.abs() - shaft.backlash / 2.0).max(0.0);

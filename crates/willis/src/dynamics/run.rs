@@ -94,11 +94,7 @@ impl Simulation {
         let system = System::new(train, scenario)?;
         let mut engine = Engine::new(system);
         let start = engine.system.scenario.start;
-        engine.inside = start;
-        let mut x = vec![0.0; engine.states() + engine.quadratures()];
-        initial_speeds(&mut engine, &mut x).map_err(|d| [d].into_iter().collect::<Diagnostics>())?;
-        engine.look(start, &x);
-        engine.rescale(&x);
+        let x = initial_state(&mut engine)?;
         let stored_at_start = engine.stored(&x);
         let columns = engine.columns();
         let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
@@ -173,20 +169,7 @@ impl Simulation {
     /// # Errors
     /// If there is no such source or it is neither a torque nor a speed.
     pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
-        use crate::train::Signal;
-        let known: Vec<String> = self.engine.system.scenario.sources.iter().map(|s| s.name.clone()).collect();
-        let Some(k) = known.iter().position(|n| n == source) else {
-            return Err(format!("there is no source `{source}`; the sources are: {}", known.join(", ")));
-        };
-        match &mut self.engine.system.scenario.sources[k].kind {
-            SourceKind::Torque(signal) | SourceKind::Speed(signal) => *signal = Signal::Constant(value),
-            SourceKind::Controller { setpoint, .. } => *setpoint = Signal::Constant(value),
-            SourceKind::Motor { throttle, .. } => *throttle = Signal::Constant(value),
-            SourceKind::Vehicle { grade, .. } => *grade = Signal::Constant(value),
-            SourceKind::Linear { .. } | SourceKind::Quadratic { .. } => {
-                return Err(format!("`{source}` is a load that follows the speed; it takes no value"));
-            }
-        }
+        self.engine.system.set_input(source, value)?;
         self.rolling = false;
         Ok(())
     }
@@ -632,6 +615,17 @@ pub fn simulate(
         run.advance(f64::INFINITY, recorder);
     }
     Ok(run.report())
+}
+
+/// The state at the start, without energies; the engine looks at it.
+pub(super) fn initial_state(engine: &mut Engine) -> Result<Vec<f64>, Diagnostics> {
+    let start = engine.system.scenario.start;
+    engine.inside = start;
+    let mut x = vec![0.0; engine.states() + engine.quadratures()];
+    initial_speeds(engine, &mut x).map_err(|d| [d].into_iter().collect::<Diagnostics>())?;
+    engine.look(start, &x);
+    engine.rescale(&x);
+    Ok(x)
 }
 
 /// Sets the speeds of the start: those given, others at rest as far as the gears leave them free.

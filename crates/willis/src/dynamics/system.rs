@@ -639,6 +639,29 @@ impl System {
         }
     }
 
+    /// Replaces what a source does by a constant.
+    pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
+        let sources = &mut self.scenario.sources;
+        let Some(k) = sources.iter().position(|s| s.name == source) else {
+            let known: Vec<&str> = sources.iter().map(|s| s.name.as_str()).collect();
+            return Err(format!("there is no source `{source}`; the sources are: {}", known.join(", ")));
+        };
+        if !value.is_finite() {
+            return Err(format!("`{source}` takes a finite number, not {value}"));
+        }
+        match &mut sources[k].kind {
+            SourceKind::Torque(signal)
+            | SourceKind::Speed(signal)
+            | SourceKind::Controller { setpoint: signal, .. }
+            | SourceKind::Motor { throttle: signal, .. }
+            | SourceKind::Vehicle { grade: signal, .. } => *signal = Signal::Constant(value),
+            SourceKind::Linear { .. } | SourceKind::Quadratic { .. } => {
+                return Err(format!("`{source}` is a load that follows the speed; it takes no value"));
+            }
+        }
+        Ok(())
+    }
+
     /// The signals of the scenario.
     pub fn signals(&self) -> impl Iterator<Item = &Signal> {
         let sources = self.scenario.sources.iter().flat_map(|s| signals_of(&s.kind));
