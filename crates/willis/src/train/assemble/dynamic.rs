@@ -637,14 +637,14 @@ impl Assembler<'_> {
         if let Some(gears) = &spec.gears {
             let points: Vec<[f64; 2]> = gears.iter().map(|g| [g.0, 0.0]).collect();
             self.curve(&points, &at);
-            if let Some(k) =
-                points.windows(2).position(|w| w[0][0] < w[1][0] && w[0][0] + shift > w[1][0]).filter(|k| *k > 0)
-            {
-                let (now, next) = (points[k][0], points[k + 1][0]);
+            // The first is where it begins; only the others shift.
+            let changes: Vec<f64> = points.iter().skip(1).map(|p| p[0]).collect();
+            if let Some(k) = changes.windows(2).position(|w| w[0] < w[1] && w[0] + shift > w[1]) {
+                let (now, next) = (changes[k], changes[k + 1]);
                 let message = format!(
-                    "the shift of {shift} s that begins at {now} s is not over at {next} s, when the next begins"
+                    "a shift of {shift} s that begins at {now} s is not over at {next} s, when the next begins"
                 );
-                self.refuse(Code::OutOfRange, &format!("{at}[{}]", k + 1), message, "shorten `shift_time`");
+                self.refuse(Code::OutOfRange, &format!("{at}[{}]", k + 2), message, "shorten `shift_time`");
             }
         }
         let place = if spec.gears.is_some() { at } else { format!("{place}.state") };
