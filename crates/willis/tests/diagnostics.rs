@@ -369,12 +369,12 @@ cases! {
     // E113 BadFormula
     regress_e113_bracket: BadFormula, scenario("torque = { type = \"expression\", formula = \"60 + 200*sin(4*PI*t\" }");
     regress_e113_variable: BadFormula, scenario("torque = { type = \"expression\", formula = \"60 - 3*sun\" }");
-    regress_e113_hyphen: BadFormula, scenario("torque = { type = \"expression\", formula = \"w_mg-1\" }");
 
     // The same codes in the dynamic layer
     regress_motion_signal_type: UnknownName, scenario("torque = { type = \"sin\", amplitude = \"1 N m\" }");
     regress_motion_signal_keys: MissingKey, scenario("torque = { type = \"sine\", amplitude = \"1 N m\", freq = \"2 Hz\" }");
     regress_motion_formula_member: UnknownName, scenario("torque = { type = \"expression\", formula = \"5 - 0.1*w_carier\" }");
+    regress_motion_formula_hyphen: UnknownName, scenario("torque = { type = \"expression\", formula = \"w_mg-1\" }").replace("\"sun\"", "\"mg-1\"");
     regress_motion_two_kinds: Conflict, scenario("torque = \"5 N m\"\nspeed = \"100 rpm\"");
     regress_motion_no_kind: MissingKey, scenario("name = \"engine\"");
     regress_motion_frame: HeldAndDriven, scenario("torque = \"5 N m\"").replace("member = \"sun\"\ntorque = ", "member = \"frame\"\ntorque = ");
