@@ -744,6 +744,24 @@ fn regress_e002_oversized() {
     assert!(wrong.len() < 10_000, "{} bytes of message", wrong.len());
 }
 
+#[test]
+fn regress_tables_stand_beside_the_train_file() {
+    let folder = folder("tables");
+    let train = "format = 1\nname = \"wheel\"\nmembers = [\"a\"]\n[[scenario]]\nname = \"s\"\nduration = \"1 s\"\n\
+                 [[scenario.source]]\nmember = \"a\"\n\
+                 torque = { type = \"csv\", file = \"load.csv\", time = \"t\", value = \"T\" }\n";
+    std::fs::write(folder.join("train.toml"), train).expect("written");
+    let check = || run(&["check", path(&folder.join("train.toml"))]);
+    let wrong = refused(&check(), 1);
+    assert!(wrong.contains("E002") && wrong.contains("load.csv"), "{wrong}");
+    std::fs::write(folder.join("load.csv"), "t,T\n0,1\n1,x\n").expect("written");
+    let wrong = refused(&check(), 1);
+    assert!(wrong.contains("E112") && wrong.contains("line 3, column `T`"), "{wrong}");
+    std::fs::write(folder.join("load.csv"), "t,T\n0,1\n1,2\n").expect("written");
+    let output = check();
+    assert!(output.status.success(), "{output:?}");
+}
+
 #[cfg(unix)]
 #[test]
 fn regress_e002_no_permission() {
