@@ -5,16 +5,21 @@
 //! a mode the right-hand side is smooth, and changes of mode are located as events. Source:
 //! Galvagno 2010 with corrected signs and its loop solved.
 
+mod certificate;
+mod choose;
+mod energy;
+mod engine;
+mod fixed;
 mod integrator;
+mod mode;
 mod modes;
+mod output;
 mod report;
 mod run;
 mod signal;
 mod system;
 
-use crate::diagnostic::Diagnostics;
-use crate::train::Train;
-
+pub use fixed::FixedStep;
 pub use modes::{Mode, ModesReport, Part, RigidMode, modes};
 pub use report::{
     Column, EnergyLoss, EnergyReport, Event, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample,
