@@ -406,4 +406,3 @@ pub struct Scenario {
     pub samples: usize,
     pub(crate) place: String,
 }
-
