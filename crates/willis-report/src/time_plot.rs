@@ -45,7 +45,8 @@ pub fn time_plot(plot: &TimePlot) -> String {
         y += 60.0;
     }
     let bottom = y - GAP;
-    body = body.add(time.labels(bottom)).add(events(plot, &time, &frames));
+    // Events lie under the curves.
+    let body = Group::new().add(events(plot, &time, &frames)).add(body).add(time.labels(bottom));
     let list_top = bottom + 74.0;
     let (list, height) = told(plot, &time, list_top);
     let title = format!("{}: {}", plot.train, plot.scenario);
@@ -228,12 +229,12 @@ fn absent(plot: &TimePlot, time: &TimeAxis, top: f64, bottom: f64) -> Group {
         return Group::new();
     }
     let g = Group::new().add(rectangle(from, top, RIGHT - from, bottom - top, ABSENT));
-    // One word of it is enough.
-    if RIGHT - from < 70.0 || top > TOP {
+    // One word of it is enough, above the first panel.
+    if top > TOP || RIGHT - from < 70.0 {
         return g;
     }
     let word = if plot.outcome == Outcome::Finished { "no rows" } else { "not reached" };
-    g.add(text(RIGHT - 8.0, top + 16.0, 11.0, Anchor::End, word).set("fill", FAINT))
+    g.add(text(RIGHT, top - 4.0, 11.0, Anchor::End, word).set("fill", FAINT))
 }
 
 fn dashes(k: usize) -> &'static str {
@@ -443,7 +444,14 @@ fn mode_row(r: &ModeRow, time: &TimeAxis, y: f64) -> Group {
         let word = look(s.mode).1;
         if width > 6.5 * word.chars().count() as f64 + 8.0 {
             let ink = if s.mode == Some(ModeLabel::Stuck) { PAPER } else { INK };
-            let mut label = text(from + width / 2.0, y + ROW / 2.0 + 4.0, 11.0, Anchor::Middle, word).set("fill", ink);
+            // Away from the marked edge.
+            let shift = match s.mode {
+                Some(ModeLabel::Forward) => 5.5,
+                Some(ModeLabel::Backward) => 2.5,
+                _ => 4.0,
+            };
+            let mut label =
+                text(from + width / 2.0, y + ROW / 2.0 + shift, 11.0, Anchor::Middle, word).set("fill", ink);
             if s.mode == Some(ModeLabel::Free) {
                 label =
                     label.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 5).set("fill", FAINT);
@@ -460,13 +468,15 @@ fn events(plot: &TimePlot, time: &TimeAxis, frames: &[(f64, f64)]) -> Group {
     let (Some(first), Some(_)) = (frames.first(), plot.event_times.first()) else { return g };
     let mut d = String::new();
     let mut last = f64::NEG_INFINITY;
+    let mut drawn = 0;
     for t in &plot.event_times {
         let x = time.x(*t);
         // No more than one line where two could not be told apart.
-        if x - last < 1.5 || !(LEFT..=RIGHT).contains(&x) {
+        if x - last < 2.5 || !(LEFT..=RIGHT).contains(&x) {
             continue;
         }
         last = x;
+        drawn += 1;
         for (top, bottom) in frames {
             d += &format!("M{} {} V{} ", number(x), number(*top), number(*bottom));
         }
@@ -477,7 +487,7 @@ fn events(plot: &TimePlot, time: &TimeAxis, frames: &[(f64, f64)]) -> Group {
             .set("fill", "none")
             .set("stroke", INK)
             .set("stroke-width", 0.6)
-            .set("stroke-opacity", 0.45),
+            .set("stroke-opacity", if drawn > 60 { 0.15 } else { 0.5 }),
     );
     let mut free = LEFT;
     for (k, m) in plot.marks.iter().enumerate() {

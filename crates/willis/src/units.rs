@@ -42,6 +42,8 @@ impl Dimension {
     pub const KINEMATIC_VISCOSITY: Self = Self([2, 0, -1, 0, 0]);
     /// Pa s
     pub const DYNAMIC_VISCOSITY: Self = Self([-1, 1, -1, 0, 0]);
+    /// s
+    pub const TIME: Self = Self([0, 0, 1, 0, 0]);
 
     /// What a person calls it, and an example that the reader accepts.
     pub fn describe(self) -> (&'static str, &'static str) {
@@ -60,6 +62,7 @@ impl Dimension {
             Self::PRESSURE_COEFFICIENT => ("a pressure coefficient", "16.5 1/GPa"),
             Self::KINEMATIC_VISCOSITY => ("a kinematic viscosity", "220 mm^2/s"),
             Self::DYNAMIC_VISCOSITY => ("a dynamic viscosity", "80 mPa s"),
+            Self::TIME => ("a time", "0.5 s"),
             _ => ("a quantity of another kind", ""),
         }
     }
