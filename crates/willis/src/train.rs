@@ -29,8 +29,8 @@ pub use describe::{
     TrainBuilder,
 };
 pub use dynamic::{
-    Contact, Curve, DragMount, Engagement, Formula, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal,
-    Source, SourceKind,
+    Contact, Curve, DragMount, Engagement, Formula, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal, Source,
+    SourceKind,
 };
 pub use format::{Reading, schema};
 pub use physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};

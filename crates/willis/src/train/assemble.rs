@@ -264,13 +264,7 @@ impl Assembler<'_> {
             self.report(Diagnostic::new(Code::ShiftElement, place, message).hint("name the two members it joins"));
             return None;
         }
-        Some(ShiftElement {
-            name: spec.name.clone(),
-            kind: spec.kind,
-            members,
-            blocks: spec.blocks.unwrap_or(-1),
-            friction: None,
-        })
+        Some(ShiftElement { name: spec.name.clone(), kind: spec.kind, members, blocks: spec.blocks.unwrap_or(-1), friction: None })
     }
 
     fn state(&mut self, spec: &StateSpec, elements: &[ShiftElementSpec], place: &str) -> State {

@@ -406,3 +406,4 @@ pub struct Scenario {
     pub samples: usize,
     pub(crate) place: String,
 }
+
