@@ -5,11 +5,14 @@
 //! a mode the right-hand side is smooth, and changes of mode are located as events. Source:
 //! Galvagno 2010 with corrected signs and its loop solved.
 
+mod integrator;
+mod modes;
 mod report;
 
 use crate::diagnostic::Diagnostics;
 use crate::train::Train;
 
+pub use modes::{Mode, ModesReport, Part, RigidMode, modes};
 pub use report::{
     Column, EnergyLoss, EnergyReport, Event, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample,
     SourceEnergy,
