@@ -4,6 +4,7 @@ mod csv;
 mod flow;
 mod input;
 mod losses;
+mod modes;
 mod output;
 mod regimes;
 mod simulate;
@@ -274,6 +275,25 @@ enum Command {
         #[arg(long, value_enum, default_value = "text")]
         format: SimulateFormat,
     },
+    /// List torsional natural frequencies: shapes, damping, where the energy is.
+    ///
+    /// Small vibrations of the moments of inertia on the elastic shafts; the gears tie them together.
+    Modes {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// State of the shift table; else the train as drawn.
+        #[arg(long)]
+        state: Option<String>,
+        /// Members held at rest, with commas between.
+        #[arg(long, value_delimiter = ',', value_name = "MEMBER")]
+        fixed: Vec<String>,
+        /// Draw the shapes into this SVG file.
+        #[arg(long, value_name = "FILE.svg")]
+        plot: Option<std::path::PathBuf>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: ModesFormat,
+    },
     /// Compare published numbers with ours: what agrees, what does not, and why.
     ///
     /// Without a case it lists the cases. Exit status 0 also where a number differs: that is an
@@ -375,6 +395,16 @@ enum SimulateFormat {
     Text,
     /// The results contract `willis-simulation-1`; with the rows, unless --out takes them.
     Json,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum ModesFormat {
+    /// For eyes.
+    Text,
+    /// The results contract `willis-modes-1`.
+    Json,
+    /// One row a number.
+    Csv,
 }
 
 /// A relative tolerance that the arithmetic can keep.
@@ -666,6 +696,20 @@ fn run(command: &Command) -> Result<String, String> {
             Ok(match format {
                 SimulateFormat::Text => simulate::text(&run),
                 SimulateFormat::Json => simulate::json(&run),
+            })
+        }
+        Command::Modes { file, state, fixed, plot, format } => {
+            let job = Job::read(file)?;
+            let held: Vec<&str> = fixed.iter().map(String::as_str).collect();
+            let all =
+                willis::dynamics::modes(&job.train, state.as_deref(), &held).map_err(|wrong| job.failure(wrong))?;
+            if let Some(path) = plot {
+                output::write(path, (willis_report::modes_plot(&all) + "\n").as_bytes())?;
+            }
+            Ok(match format {
+                ModesFormat::Text => modes::text(&all),
+                ModesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
+                ModesFormat::Csv => modes::csv(&all),
             })
         }
         Command::Validate { case, format, data } => validate(case.as_deref(), *format, data.as_deref()),

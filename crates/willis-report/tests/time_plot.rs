@@ -37,9 +37,13 @@ fn labels(svg: &str) -> (Vec<Label>, [f64; 2]) {
 fn check(name: &str, plot: &TimePlot) -> String {
     let svg = willis_report::time_plot(plot);
     assert_eq!(svg, willis_report::time_plot(plot), "{name}: not the same twice");
+    apart(name, &svg)
+}
+
+fn apart(name: &str, svg: &str) -> String {
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
-    std::fs::write(folder.join(format!("time-plot-{name}.svg")), &svg).expect("written");
-    let (labels, [width, height]) = labels(&svg);
+    std::fs::write(folder.join(format!("time-plot-{name}.svg")), svg).expect("written");
+    let (labels, [width, height]) = labels(svg);
     for (k, (a, [left, right, top, bottom])) in labels.iter().enumerate() {
         assert!(*left >= 0.0 && *right <= width && *top >= 0.0 && *bottom <= height, "{name}: `{a}` is off the page");
         for (b, [l, r, t, u]) in &labels[..k] {
@@ -48,7 +52,7 @@ fn check(name: &str, plot: &TimePlot) -> String {
         }
     }
     assert!(svg.contains("<title>") && svg.contains("<desc>") && !svg.contains("NaN") && !svg.contains("inf "));
-    svg
+    svg.to_owned()
 }
 
 fn train() -> Train {
@@ -239,4 +243,33 @@ fn nothing_at_all_is_said() {
         let _ = plot.sample(Sample { time: t, values: &values });
     }
     check("rest", &plot.finish(&report(Outcome::Finished, 3.0)));
+}
+
+#[test]
+fn shapes_of_vibration_keep_apart() {
+    use willis::dynamics::{Mode, ModesReport, Part, RigidMode};
+    let part = |k: usize, value: f64| Part { name: format!("a rather long rotor {k}"), value };
+    let shape = |m: usize| (0..9).map(|k| part(k, ((k * m) as f64 * 0.7).cos())).collect::<Vec<_>>();
+    let mode = |m: usize| Mode {
+        frequency_hz: 7.0 * 3f64.powi(m as i32),
+        angular_frequency_rad_s: 44.0 * 3f64.powi(m as i32),
+        damping_ratio: (m != 2).then_some(0.0123 * m as f64),
+        damped_frequency_hz: None,
+        shape: shape(m),
+        kinetic_energy: vec![],
+        strain_energy: (0..4).map(|k| part(k, 0.25)).collect(),
+    };
+    let all = ModesReport {
+        format: "willis-modes-1",
+        train: "A driveline".into(),
+        state: "as drawn".into(),
+        fixed: vec!["ring".into()],
+        coordinates: vec![],
+        rigid_body_modes: vec![RigidMode { shape: shape(0), kinetic_energy: vec![] }],
+        modes: (1..12).map(mode).collect(),
+        assumptions: vec![],
+        notes: vec![],
+    };
+    let svg = apart("modes", &willis_report::modes_plot(&all));
+    assert!(svg.contains("2 more modes are not drawn") && svg.contains("21 Hz"));
 }
