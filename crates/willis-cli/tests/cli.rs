@@ -930,3 +930,40 @@ fn regress_flow_wrong_questions() {
     all += &refused(&run(&["flow", "examples/zf-6hp26.toml"]), 1);
     snapshot!(all);
 }
+
+// ---- simulate --------------------------------------------------------------------------------
+
+#[test]
+fn regress_simulate_wrong_questions() {
+    let prius = "examples/prius-p112.toml";
+    let questions: [&[&str]; 7] = [
+        &["simulate", prius],
+        &["simulate", prius, "--out", "run.xlsx"],
+        &["simulate", prius, "--out", "run"],
+        &["simulate", prius, "--plot", "run.png"],
+        &["simulate", prius, "--plot", "nowhere/run.svg"],
+        &["simulate", prius, "--fixed-step", "1 rpm"],
+        &["simulate", prius, "--fixed-step", "0 s"],
+    ];
+    let mut all = String::new();
+    for question in questions {
+        let message = refused(&run(question), 1);
+        all += &format!("willis {}\n{message}\n", question.join(" "));
+    }
+    snapshot!(all);
+}
+
+#[test]
+fn regress_simulate_usage() {
+    let prius = "examples/prius-p112.toml";
+    for arguments in [
+        &["simulate"][..],
+        &["simulate", prius, "--tolerance", "5"],
+        &["simulate", prius, "--samples", "1"],
+        &["simulate", prius, "--lagged-forces"],
+        &["simulate", prius, "--fixed-step", "1 ms", "--tolerance", "1e-6"],
+        &["simulate", prius, "--format", "csv"],
+    ] {
+        refused(&run(arguments), 2);
+    }
+}
