@@ -62,8 +62,8 @@ struct GroupStep {
 }
 
 /// Key of a map: which groups are held, and the sides of what moves.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-struct Key {
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct Key {
     held: u64,
     coast: u64,
 }
@@ -317,7 +317,7 @@ impl FixedStep {
 
     /// Which groups are held and which sides drive: the key of the present mode.
     #[inline]
-    fn key(&self) -> Key {
+    pub(super) fn key(&self) -> Key {
         let mut key = Key { held: 0, coast: 0 };
         for (g, group) in self.groups.iter().enumerate() {
             if self.sign[g] == 0 && !group.driven {
@@ -508,7 +508,7 @@ impl FixedStep {
             // A single mesh that holds by its own friction: its loss torque lies between both sliding laws.
             let e = &self.engine.system.elements[usize::from(*j)];
             let (g, _) = e.group.expect("in a group");
-            let torque = e.factors[0] * dot(row, &self.tau);
+            let torque = dot(row, &self.tau);
             let at = map.held.iter().position(|h| usize::from(*h) == g).expect("held");
             let holding = dot(&map.rows[(free + at) * cols..(free + at + 1) * cols], &self.tau);
             let loss = e.loss(0.0);
@@ -535,7 +535,7 @@ impl FixedStep {
             if value < 0.0 {
                 // A mesh that carries nothing keeps its side.
                 let largest = self.tau.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-                if value < -1e-13 * sum * largest {
+                if value < -1e-11 * sum * largest {
                     return Some(Flip::Side(j));
                 }
             }
@@ -728,8 +728,7 @@ impl FixedStep {
             let e = &s.elements[j];
             let torque = dot(row, &self.tau) * super::mode::slope(loss, self.side[j]) + tau[e.port];
             let energy = torque * dot(&e.row, &mean) * self.h;
-            self.engine.mode.side[j] = self.side[j];
-            for (mesh, part) in self.engine.shares(j) {
+            for &(mesh, part) in &e.shares[usize::from(self.side[j] == Side::Coast)] {
                 self.energies[at + mesh] += energy * part;
             }
         }
@@ -739,7 +738,7 @@ impl FixedStep {
             for &j in &self.groups[usize::from(g)].elements {
                 if s.elements[j].port == port {
                     let energy = tau[port] * dot(&s.elements[j].row, &mean) * self.h;
-                    for (mesh, part) in self.engine.shares(j) {
+                    for &(mesh, part) in &s.elements[j].shares[usize::from(self.side[j] == Side::Coast)] {
                         self.energies[at + mesh] += energy * part;
                     }
                 }
@@ -747,8 +746,15 @@ impl FixedStep {
         }
     }
 
-    /// The state as the engine keeps it, and its mode.
-    pub(super) fn into_engine(&mut self, x: &mut Vec<f64>) {
+    /// What labels depend on.
+    pub(super) fn state_of_modes(&self) -> (u64, u64, f64) {
+        let held = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s == 0) << g).sum();
+        let forward = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s > 0) << g).sum();
+        (held, forward, self.until)
+    }
+
+    /// Brings the engine to the state and mode reached.
+    pub(super) fn copy_to_engine(&mut self, x: &mut Vec<f64>) {
         let free = self.engine.system.free;
         x.clear();
         x.extend_from_slice(&self.v[..free]);
