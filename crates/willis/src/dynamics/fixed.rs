@@ -13,7 +13,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{Signal, SourceKind, Train};
 
 use super::engine::Engine;
-use super::mode::{Mode, Pattern, Side, compose, dot};
+use super::mode::{Mode, Pattern, Side, compose, dot, dot_size};
 use super::run::initial_state;
 use super::system::System;
 
@@ -132,6 +132,10 @@ pub struct FixedStep {
     keeps_angles: bool,
     /// Energies as the engine counts them; empty unless asked for.
     pub(super) energies: Vec<f64>,
+    /// Without losses: the map that friction is balanced with where flipping does not settle.
+    lossless: Pattern,
+    /// Whether the last step was balanced by sweeps: the port torques are then complete.
+    swept: bool,
     unsettled: u64,
     impacts: u64,
 }
@@ -198,6 +202,9 @@ impl FixedStep {
         let (g, e, p) = (s.groups.len(), s.elements.len(), s.ports);
         let v = engine.speed.clone();
         let sign = groups.iter().map(|group| if dot(&group.row, &v) < 0.0 { -1 } else { 1 }).collect();
+        let Some(lossless) = Pattern::new(s, &vec![0.0; e]).map(|p| p.with_slips(g)) else {
+            return Err(fail("the equations of motion have no unique solution without losses".into(), "check the inertias"));
+        };
         let signals = s.signals().count();
         let engagement_signals = (0..s.scenario.engagements.len()).map(|k| signals - s.scenario.engagements.len() + k).collect();
         Ok(Self {
@@ -229,6 +236,8 @@ impl FixedStep {
             engagement_signals,
             keeps_angles: true,
             energies: vec![],
+            lossless,
+            swept: false,
             unsettled: 0,
             impacts: 0,
             engine,
@@ -580,7 +589,9 @@ impl FixedStep {
                 .map(|i| self.groups[g].row[i] * dot(&rows[i * cols..(i + 1) * cols], &self.tau))
                 .sum();
             let end = self.slip[g] + self.h * rate;
-            if end * f64::from(sign) > 1e-12 * self.slip[g].abs() + 1e-15 * self.h * rate.abs() {
+            // Others may hold it as well: then nothing but round-off is left.
+            let size = dot_size(&self.groups[g].row, &self.v) + self.slip[g].abs();
+            if end * f64::from(sign) > 1e-11 * size {
                 return Some(sign);
             }
         }
@@ -645,7 +656,8 @@ impl FixedStep {
         self.load(middle);
         let free = self.engine.system.free;
         let cols = self.tau.len();
-        if !self.settle(free, cols) {
+        self.swept = false;
+        if !self.settle(free, cols) && !self.sweep(free, cols) {
             self.unsettled += 1;
         }
         if !self.energies.is_empty() {
@@ -671,6 +683,75 @@ impl FixedStep {
         self.count += 1;
     }
 
+    /// Balances friction and tooth losses by projected sweeps, where flipping single modes does not settle: each
+    /// takes the torque that brings its slip to rest by the end of the step, within its law. True if that
+    /// converged.
+    #[cold]
+    fn sweep(&mut self, free: usize, cols: usize) -> bool {
+        const MOST_SWEEPS: usize = 2000;
+        let mut tau = std::mem::take(&mut self.tau);
+        let slips = &self.lossless.slip;
+        let all = self.engine.system.all();
+        let elements = &self.engine.system.elements;
+        for group in &self.groups {
+            group.rubs.iter().for_each(|r| tau[r.port] = r.viscous);
+            group.elements.iter().for_each(|&j| tau[elements[j].port] = 0.0);
+        }
+        let torque_row = |j: usize| &self.lossless.response[(all + j) * cols..(all + j + 1) * cols];
+        let mut converged = false;
+        for _ in 0..MOST_SWEEPS {
+            let mut change = 0.0f64;
+            let mut largest = 0.0f64;
+            for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
+                let row = &slips[g * cols..(g + 1) * cols];
+                for rub in &group.rubs {
+                    let d = rub.factor * row[rub.port];
+                    let [forward, backward] = rub.opposes;
+                    let (low, high) = if rub.factor > 0.0 { (-forward, backward) } else { (-backward, forward) };
+                    let old = tau[rub.port] - rub.viscous;
+                    let next = (old - rub.factor * dot(row, &tau) / d).clamp(low, high);
+                    change = change.max((next - old).abs());
+                    largest = largest.max(next.abs());
+                    tau[rub.port] = next + rub.viscous;
+                }
+                for &j in &group.elements {
+                    let (_, factor, loss) = self.teeth[j];
+                    let port = elements[j].port;
+                    let torque = elements[j].factors[0] * dot(torque_row(j), &tau);
+                    let upper = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
+                    let lower = (loss.drive * torque - loss.drive_torque).min(loss.coast * torque - loss.coast_torque);
+                    let old = tau[port];
+                    let next = (old - factor * dot(row, &tau) / (factor * row[port])).clamp(lower, upper);
+                    change = change.max((next - old).abs());
+                    largest = largest.max(torque.abs());
+                    tau[port] = next;
+                }
+            }
+            if change <= 1e-13 * largest {
+                converged = true;
+                break;
+            }
+        }
+        for i in 0..free {
+            self.next[i] = self.v[i] + self.h * dot(&self.lossless.response[i * cols..(i + 1) * cols], &tau);
+        }
+        for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
+            let end = dot(&group.row, &self.next);
+            let rest = end.abs() <= 1e-9 * (dot_size(&group.row, &self.v) + self.slip[g].abs());
+            self.sign[g] = if rest { 0 } else { end.signum() as i8 };
+            for &j in &group.elements {
+                let (_, factor, loss) = self.teeth[j];
+                let torque = elements[j].factors[0] * dot(torque_row(j), &tau);
+                let along = end.signum() * factor.signum();
+                let value = along * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
+                self.side[j] = if value >= 0.0 { Side::Drive } else { Side::Coast };
+            }
+        }
+        self.tau = tau;
+        self.swept = true;
+        converged
+    }
+
     /// Begins to count energies.
     pub(super) fn with_energies(&mut self) {
         self.energies = vec![0.0; self.engine.energies()];
@@ -684,7 +765,7 @@ impl FixedStep {
         let map = &self.maps[map as usize];
         // Holding torques join those of the ports.
         let mut tau = self.tau[..s.ports].to_vec();
-        for (k, &g) in map.held.iter().enumerate() {
+        for (k, &g) in map.held.iter().enumerate().filter(|_| !self.swept) {
             let row = &map.rows[(free + k) * cols..(free + k + 1) * cols];
             tau[self.groups[usize::from(g)].lead.0] += dot(row, &self.tau);
         }
@@ -694,7 +775,9 @@ impl FixedStep {
             let row = &s.speeds[driver.member.index()];
             let mut torque = match driver.prescribed {
                 Some(i) => {
-                    let row = &map.reactions[i * cols..(i + 1) * cols];
+                    let reactions =
+                        if self.swept { &self.lossless.response[free * cols..] } else { &map.reactions[..] };
+                    let row = &reactions[i * cols..(i + 1) * cols];
                     dot(row, &self.tau)
                 }
                 None => tau[driver.port.expect("a torque")],
@@ -721,6 +804,15 @@ impl FixedStep {
             self.energies[at + k] -= (tau[e.port] + spring) * dot(&e.row, &mean) * self.h;
         }
         at += s.elastic.len();
+        if self.swept {
+            for (j, e) in s.elements.iter().enumerate() {
+                let energy = tau[e.port] * dot(&e.row, &mean) * self.h;
+                for &(mesh, part) in &e.shares[usize::from(self.side[j] == Side::Coast)] {
+                    self.energies[at + mesh] += energy * part;
+                }
+            }
+            return;
+        }
         let moving = map.rows[(free + map.held.len()) * cols..].chunks_exact(cols);
         for (&j, row) in map.moving.iter().zip(moving) {
             let j = usize::from(j);
