@@ -29,8 +29,10 @@ struct StepMap {
     sums: Vec<f64>,
     held: Vec<u16>,
     moving: Vec<u16>,
-    /// Torques at the first gears of elements that are held alone in their group.
-    alone: Vec<(u16, Vec<f64>)>,
+    /// Torques at the first gears of the elements of held groups, in the order of `held`.
+    still: Vec<(u16, Vec<f64>)>,
+    /// Whether some of what is held is held several times over.
+    redundant: bool,
     /// Torques behind prescribed speeds.
     reactions: Vec<f64>,
 }
@@ -132,8 +134,9 @@ pub struct FixedStep {
     keeps_angles: bool,
     /// Energies as the engine counts them; empty unless asked for.
     pub(super) energies: Vec<f64>,
-    /// Without losses: the map that friction is balanced with where flipping does not settle.
-    lossless: Pattern,
+    /// Losses of the elements and torques behind prescribed speeds, when balanced by sweeps.
+    losses: Vec<f64>,
+    reactions: Vec<f64>,
     /// Whether the last step was balanced by sweeps: the port torques are then complete.
     swept: bool,
     unsettled: u64,
@@ -202,9 +205,6 @@ impl FixedStep {
         let (g, e, p) = (s.groups.len(), s.elements.len(), s.ports);
         let v = engine.speed.clone();
         let sign = groups.iter().map(|group| if dot(&group.row, &v) < 0.0 { -1 } else { 1 }).collect();
-        let Some(lossless) = Pattern::new(s, &vec![0.0; e]).map(|p| p.with_slips(g)) else {
-            return Err(fail("the equations of motion have no unique solution without losses".into(), "check the inertias"));
-        };
         let signals = s.signals().count();
         let engagement_signals = (0..s.scenario.engagements.len()).map(|k| signals - s.scenario.engagements.len() + k).collect();
         Ok(Self {
@@ -236,7 +236,8 @@ impl FixedStep {
             engagement_signals,
             keeps_angles: true,
             energies: vec![],
-            lossless,
+            losses: vec![0.0; e],
+            reactions: vec![0.0; s.prescribed],
             swept: false,
             unsettled: 0,
             impacts: 0,
@@ -497,37 +498,28 @@ impl FixedStep {
             }
         }
         let mut rows = map.rows[free * cols..].chunks_exact(cols);
+        let mut teeth = map.still.iter();
         for &g in &map.held {
             let g = usize::from(g);
             let group = &self.groups[g];
-            let holding = dot(rows.next().expect("a row for each"), &self.tau);
-            if group.elements.is_empty() {
-                let force = group.lead.1 * holding;
-                let [forward, backward] = self.capacity[g];
-                let noise = 1e-12 * (force.abs() + 1e-300);
-                if forward + force < -noise {
-                    return Some(Flip::Group(g, 1));
-                }
-                if backward - force < -noise {
-                    return Some(Flip::Group(g, -1));
-                }
+            let force = group.lead.1 * dot(rows.next().expect("a row for each"), &self.tau);
+            let [mut forward, mut backward] = self.capacity[g];
+            // Teeth at rest hold by the forces in them.
+            for &j in &group.elements {
+                let (_, row) = teeth.next().expect("a row for each");
+                let (_, factor, loss) = self.teeth[j];
+                let torque = dot(row, &self.tau);
+                let upper = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
+                let lower = (loss.drive * torque - loss.drive_torque).min(loss.coast * torque - loss.coast_torque);
+                let (along, against) = if factor > 0.0 { (upper, -lower) } else { (lower, -upper) };
+                forward += factor * along;
+                backward += factor * against;
             }
-        }
-        for (j, row) in &map.alone {
-            // A single mesh that holds by its own friction: its loss torque lies between both sliding laws.
-            let e = &self.engine.system.elements[usize::from(*j)];
-            let (g, _) = e.group.expect("in a group");
-            let torque = dot(row, &self.tau);
-            let at = map.held.iter().position(|h| usize::from(*h) == g).expect("held");
-            let holding = dot(&map.rows[(free + at) * cols..(free + at + 1) * cols], &self.tau);
-            let loss = e.loss(0.0);
-            let upper = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
-            let lower = (loss.drive * torque - loss.drive_torque).min(loss.coast * torque - loss.coast_torque);
-            let noise = 1e-12 * holding.abs();
-            if holding > upper + noise {
+            let noise = 1e-12 * (force.abs() + 1e-300);
+            if forward + force < -noise {
                 return Some(Flip::Group(g, 1));
             }
-            if holding < lower - noise {
+            if backward - force < -noise {
                 return Some(Flip::Group(g, -1));
             }
         }
@@ -624,7 +616,7 @@ impl FixedStep {
         for _ in 0..trials {
             let Some(map) = self.solve(free, cols) else { return false };
             let mut flip = self.disagreement(&self.maps[map as usize], free, cols);
-            if flip.is_none() && self.shares {
+            if flip.is_none() && self.shares && !self.maps[map as usize].redundant {
                 for g in 0..self.groups.len() {
                     if self.sign[g] == 0
                         && self.groups[g].shares
@@ -683,71 +675,92 @@ impl FixedStep {
         self.count += 1;
     }
 
-    /// Balances friction and tooth losses by projected sweeps, where flipping single modes does not settle: each
-    /// takes the torque that brings its slip to rest by the end of the step, within its law. True if that
-    /// converged.
+    /// Balances the friction of clutches, brakes and drags by projected sweeps, where flipping single modes does not
+    /// settle: each takes the torque that brings its slip to rest by the end of the step, within what it can
+    /// hold. Teeth that move lose what they lose on their present sides; teeth at rest are taken to follow
+    /// what holds the shafts around them, without friction of their own. True if that converged.
     #[cold]
     fn sweep(&mut self, free: usize, cols: usize) -> bool {
         const MOST_SWEEPS: usize = 2000;
-        let mut tau = std::mem::take(&mut self.tau);
-        let slips = &self.lossless.slip;
-        let all = self.engine.system.all();
-        let elements = &self.engine.system.elements;
-        for group in &self.groups {
-            group.rubs.iter().for_each(|r| tau[r.port] = r.viscous);
-            group.elements.iter().for_each(|&j| tau[elements[j].port] = 0.0);
-        }
-        let torque_row = |j: usize| &self.lossless.response[(all + j) * cols..(all + j + 1) * cols];
+        const ROUNDS: usize = 8;
+        let still = |slip: f64, group: &GroupStep, v: &[f64]| slip.abs() <= 1e-9 * dot_size(&group.row, v);
         let mut converged = false;
-        for _ in 0..MOST_SWEEPS {
-            let mut change = 0.0f64;
-            let mut largest = 0.0f64;
-            for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
-                let row = &slips[g * cols..(g + 1) * cols];
-                for rub in &group.rubs {
-                    let d = rub.factor * row[rub.port];
-                    let [forward, backward] = rub.opposes;
-                    let (low, high) = if rub.factor > 0.0 { (-forward, backward) } else { (-backward, forward) };
-                    let old = tau[rub.port] - rub.viscous;
-                    let next = (old - rub.factor * dot(row, &tau) / d).clamp(low, high);
-                    change = change.max((next - old).abs());
-                    largest = largest.max(next.abs());
-                    tau[rub.port] = next + rub.viscous;
-                }
-                for &j in &group.elements {
-                    let (_, factor, loss) = self.teeth[j];
-                    let port = elements[j].port;
-                    let torque = elements[j].factors[0] * dot(torque_row(j), &tau);
-                    let upper = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
-                    let lower = (loss.drive * torque - loss.drive_torque).min(loss.coast * torque - loss.coast_torque);
-                    let old = tau[port];
-                    let next = (old - factor * dot(row, &tau) / (factor * row[port])).clamp(lower, upper);
-                    change = change.max((next - old).abs());
-                    largest = largest.max(torque.abs());
-                    tau[port] = next;
+        for _ in 0..ROUNDS {
+            let mut mode = Mode { slip: vec![0; self.groups.len()], side: self.side.clone() };
+            for (g, group) in self.groups.iter().enumerate() {
+                let sign = if self.slip[g] < 0.0 { -1 } else { 1 };
+                mode.slip[g] = if still(self.slip[g], group, &self.v) && !group.driven { 0 } else { sign };
+            }
+            let s = &self.engine.system;
+            let Some(pattern) = self.engine.maps.pattern(s, &mode) else { return false };
+            let wide = pattern.with_slips(self.groups.len());
+            let tau = &mut self.tau;
+            for (g, group) in self.groups.iter().enumerate() {
+                group.rubs.iter().for_each(|r| tau[r.port] = r.viscous);
+                for &(j, port, [drive, coast]) in &group.constants {
+                    let along = f64::from(mode.slip[g]) * self.teeth[j].1.signum();
+                    tau[port] = along * if self.side[j] == Side::Drive { drive } else { coast };
                 }
             }
-            if change <= 1e-13 * largest {
-                converged = true;
+            converged = false;
+            for _ in 0..MOST_SWEEPS {
+                let (mut change, mut largest) = (0.0f64, 0.0f64);
+                for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
+                    let row = &wide.slip[g * cols..(g + 1) * cols];
+                    for rub in &group.rubs {
+                        let [forward, backward] = rub.opposes;
+                        let (low, high) = if rub.factor > 0.0 { (-forward, backward) } else { (-backward, forward) };
+                        let old = tau[rub.port] - rub.viscous;
+                        let next = (old - dot(row, tau) / row[rub.port]).clamp(low, high);
+                        change = change.max((next - old).abs());
+                        largest = largest.max(next.abs());
+                        tau[rub.port] = next + rub.viscous;
+                    }
+                }
+                if change <= 1e-13 * largest {
+                    converged = true;
+                    break;
+                }
+            }
+            for i in 0..free {
+                self.next[i] = self.v[i] + self.h * dot(&wide.response[i * cols..(i + 1) * cols], tau);
+            }
+            // Sides of what moves.
+            let all = s.all();
+            let mut turned = false;
+            for (g, group) in self.groups.iter().enumerate() {
+                let end = dot(&group.row, &self.next);
+                let rest = still(end, group, &self.v) && still(end, group, &self.next);
+                self.sign[g] = if rest && !group.driven { 0 } else if end < 0.0 { -1 } else { 1 };
+                for &j in &group.elements {
+                    let (_, factor, loss) = self.teeth[j];
+                    let torque = s.elements[j].factors[0] * dot(&wide.response[(all + j) * cols..(all + j + 1) * cols], tau);
+                    let along = f64::from(if self.sign[g] == 0 { mode.slip[g] } else { self.sign[g] }) * factor.signum();
+                    let value = along * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
+                    let side = if value >= 0.0 { Side::Drive } else { Side::Coast };
+                    turned |= side != self.side[j] && mode.slip[g] != 0;
+                    self.side[j] = side;
+                }
+            }
+            // The losses stand beside the ports, for the count of energies.
+            for (j, e) in s.elements.iter().enumerate() {
+                if let Some((g, _)) = e.group
+                    && mode.slip[g] != 0
+                {
+                    let torque = e.factors[0] * dot(&wide.response[(all + j) * cols..(all + j + 1) * cols], &self.tau);
+                    self.losses[j] = super::mode::slope(self.teeth[j].2, mode.side[j]) * torque + self.tau[e.port];
+                } else {
+                    self.losses[j] = 0.0;
+                }
+            }
+            for i in 0..s.prescribed {
+                let row = &wide.response[(free + i) * cols..(free + i + 1) * cols];
+                self.reactions[i] = dot(row, &self.tau);
+            }
+            if !turned {
                 break;
             }
         }
-        for i in 0..free {
-            self.next[i] = self.v[i] + self.h * dot(&self.lossless.response[i * cols..(i + 1) * cols], &tau);
-        }
-        for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
-            let end = dot(&group.row, &self.next);
-            let rest = end.abs() <= 1e-9 * (dot_size(&group.row, &self.v) + self.slip[g].abs());
-            self.sign[g] = if rest { 0 } else { end.signum() as i8 };
-            for &j in &group.elements {
-                let (_, factor, loss) = self.teeth[j];
-                let torque = elements[j].factors[0] * dot(torque_row(j), &tau);
-                let along = end.signum() * factor.signum();
-                let value = along * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
-                self.side[j] = if value >= 0.0 { Side::Drive } else { Side::Coast };
-            }
-        }
-        self.tau = tau;
         self.swept = true;
         converged
     }
@@ -775,10 +788,11 @@ impl FixedStep {
             let row = &s.speeds[driver.member.index()];
             let mut torque = match driver.prescribed {
                 Some(i) => {
-                    let reactions =
-                        if self.swept { &self.lossless.response[free * cols..] } else { &map.reactions[..] };
-                    let row = &reactions[i * cols..(i + 1) * cols];
-                    dot(row, &self.tau)
+                    if self.swept {
+                        self.reactions[i]
+                    } else {
+                        dot(&map.reactions[i * cols..(i + 1) * cols], &self.tau)
+                    }
                 }
                 None => tau[driver.port.expect("a torque")],
             };
@@ -806,7 +820,7 @@ impl FixedStep {
         at += s.elastic.len();
         if self.swept {
             for (j, e) in s.elements.iter().enumerate() {
-                let energy = tau[e.port] * dot(&e.row, &mean) * self.h;
+                let energy = self.losses[j] * dot(&e.row, &mean) * self.h;
                 for &(mesh, part) in &e.shares[usize::from(self.side[j] == Side::Coast)] {
                     self.energies[at + mesh] += energy * part;
                 }
@@ -872,7 +886,10 @@ fn step_map(s: &System, mode: &Mode, pattern: &Pattern) -> Option<StepMap> {
     let wide = pattern.with_slips(s.groups.len());
     let map = compose(s, mode, &wide, &[])?;
     let cols = wide.ports;
-    let row = |i: usize| &map.response[i * cols..(i + 1) * cols];
+    let torque_row = |j: usize| -> Vec<f64> {
+        let row = &map.response[(s.all() + j) * cols..(s.all() + j + 1) * cols];
+        row.iter().map(|x| x * s.elements[j].factors[0]).collect()
+    };
     let mut rows: Vec<f64> = map.response[..s.free * cols].to_vec();
     let held: Vec<u16> =
         (0..s.groups.len()).filter(|&g| mode.slip[g] == 0 && !s.groups[g].driven).map(|g| g as u16).collect();
@@ -881,20 +898,22 @@ fn step_map(s: &System, mode: &Mode, pattern: &Pattern) -> Option<StepMap> {
     }
     let mut moving = Vec::new();
     let mut sums = Vec::new();
-    let mut alone = Vec::new();
     for (j, e) in s.elements.iter().enumerate() {
         let Some((g, _)) = e.group else { continue };
-        let torque: Vec<f64> = row(s.all() + j).iter().map(|x| x * e.factors[0]).collect();
+        let torque = torque_row(j);
         if mode.slip[g] != 0 || s.groups[g].driven {
             moving.push(j as u16);
             sums.push(torque.iter().map(|x| x.abs()).sum());
             rows.extend_from_slice(&torque);
-        } else if s.groups[g].elements.len() == 1 && s.groups[g].frictions.is_empty() {
-            alone.push((j as u16, torque));
         }
     }
+    let still = (held.iter())
+        .flat_map(|&g| &s.groups[usize::from(g)].elements)
+        .map(|&j| (j as u16, torque_row(j)))
+        .collect();
+    let redundant = map.is_redundant();
     let reactions = map.response[s.free * cols..s.all() * cols].to_vec();
-    Some(StepMap { rows, sums, held, moving, alone, reactions })
+    Some(StepMap { rows, sums, held, moving, still, redundant, reactions })
 }
 
 enum Flip {
