@@ -346,7 +346,9 @@ impl Simulation {
             self.steps += 1;
             let (t_old, t_new) = self.span();
             self.last_step = Some(t_new - t_old);
-            if let Some((t, watch)) = self.find_event(t_old, t_new) {
+            // One beyond the time asked for is found again when it is reached.
+            let found = self.find_event(t_old, t_new).filter(|(t, _)| *t <= target);
+            if let Some((t, watch)) = found {
                 self.emit_samples(t, recorder);
                 if self.stiff { self.implicit.truncate(t) } else { self.explicit.truncate(t) }
                 return self.event(t, watch, recorder);
