@@ -254,6 +254,7 @@ impl Simulation {
         for (rest, now) in self.at_rest.iter_mut().zip(self.engine.at_rest()) {
             *rest |= now;
         }
+        self.engine.rest_with_others(&mut self.at_rest);
         self.engine.bring_to_rest(&mut x, &self.at_rest);
         self.engine.look(self.t, &x);
         let at_rest = std::mem::take(&mut self.at_rest);
