@@ -293,7 +293,9 @@ impl Simulation {
             .map(|(_, l)| l.clone())
             .collect();
         let cause = self.cause.take();
-        if !changed.is_empty() || cause.as_deref().is_some_and(|c| c != INPUT) {
+        // At its limit by round-off only, a held element stays held and breaks away next time.
+        let nothing = |c: &str| c == INPUT || c.ends_with(BREAKS_AWAY);
+        if !changed.is_empty() || cause.as_deref().is_some_and(|c| !nothing(c)) {
             let event = Event { time_s: self.t, cause: cause.unwrap_or_else(|| INPUT.into()), modes: changed };
             self.labels = labels;
             self.events += 1;
@@ -450,8 +452,8 @@ impl Simulation {
                 self.at_rest[g] = true;
                 format!("{} comes to rest", s.groups[g].name)
             }
-            Watch::Hold(g, _) => format!("{} breaks away", s.groups[g].name),
-            Watch::HoldAll => "what is held breaks away".into(),
+            Watch::Hold(g, _) => format!("{} {BREAKS_AWAY}", s.groups[g].name),
+            Watch::HoldAll => format!("what is held {BREAKS_AWAY}"),
             Watch::Side(j) => format!("drive reverses in {}", element_name(&s.train, &s.elements[j].links)),
             Watch::Touch(k) => format!("contact changes in {}", s.train.shafts()[k].name),
             Watch::Engage(k) => {
@@ -619,6 +621,9 @@ impl Simulation {
 
 /// The cause of a change by a break of an input.
 const INPUT: &str = "input";
+
+/// How the cause ends where a held element begins to slide.
+const BREAKS_AWAY: &str = "breaks away";
 
 /// Runs a scenario from its start to its end and hands rows and events to a recorder as they come.
 ///
