@@ -11,6 +11,7 @@ mod energy;
 mod engine;
 mod integrator;
 mod mode;
+pub mod offset;
 mod output;
 mod report;
 mod run;
