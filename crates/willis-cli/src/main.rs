@@ -4,8 +4,10 @@ mod csv;
 mod flow;
 mod input;
 mod losses;
+mod modes;
 mod output;
 mod regimes;
+mod simulate;
 mod text;
 
 use std::io::Write;
@@ -15,6 +17,7 @@ use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use willis::analysis::{self, Analysis, LossRequest, Selection};
 use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use willis::dynamics::{Method, Options};
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
@@ -227,6 +230,70 @@ enum Command {
         #[arg(long, value_enum, default_value = "text")]
         format: LocateFormat,
     },
+    /// Simulate a scenario: how the train accelerates, sticks, slips and shifts, and where the energy goes.
+    ///
+    /// A run that jams, has several solutions or ends otherwise before the scenario is an answer:
+    /// exit status 0, and the outcome says so. Ctrl-C ends the run where it is; what was computed is
+    /// written and told, with exit status 130.
+    ///
+    /// Rows are in SI units; where a value is not determined the field is empty (CSV) or null. Modes
+    /// are 1 forward, -1 backward, 0 stuck, 2 free. A CSV of a run that ended early has a last line
+    /// that begins with `# ` and says when and why; in Parquet the metadata `willis.complete` is
+    /// false and `willis.ended_s` has the time.
+    Simulate {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// The scenario; needed where the file has several.
+        #[arg(long)]
+        scenario: Option<String>,
+        /// Write the rows into this file, .csv or .parquet, as they come.
+        #[arg(short, long, value_name = "FILE")]
+        out: Option<std::path::PathBuf>,
+        /// Draw the run into this SVG file.
+        #[arg(long, value_name = "FILE.svg")]
+        plot: Option<std::path::PathBuf>,
+        /// Only these columns in rows and figure, by kind (speed, torque, mode, ...) or by name.
+        #[arg(long, value_delimiter = ',', value_name = "KIND|NAME")]
+        columns: Vec<String>,
+        /// How many rows, evenly spaced in time; else as the scenario says.
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000_000))]
+        samples: Option<u32>,
+        /// Relative tolerance of speeds and angles [default: 1e-9].
+        #[arg(long, value_name = "TOLERANCE", value_parser = tolerance)]
+        tolerance: Option<f64>,
+        /// Advance in steps of this length, each of bounded cost: '1 ms'.
+        #[arg(long, value_name = "TIME", conflicts_with = "tolerance")]
+        fixed_step: Option<String>,
+        /// Take the sign of each tooth force from the step before, as in Galvagno 2010, to show the
+        /// error of that.
+        #[arg(long, requires = "fixed_step")]
+        lagged_forces: bool,
+        /// Where several motions are possible, go on with one of them.
+        #[arg(long)]
+        continue_when_ambiguous: bool,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: SimulateFormat,
+    },
+    /// List torsional natural frequencies: shapes, damping, where the energy is.
+    ///
+    /// Small vibrations of the moments of inertia on the elastic shafts; the gears tie them together.
+    Modes {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// State of the shift table; else the train as drawn.
+        #[arg(long)]
+        state: Option<String>,
+        /// Members held at rest, with commas between.
+        #[arg(long, value_delimiter = ',', value_name = "MEMBER")]
+        fixed: Vec<String>,
+        /// Draw the shapes into this SVG file.
+        #[arg(long, value_name = "FILE.svg")]
+        plot: Option<std::path::PathBuf>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: ModesFormat,
+    },
     /// Compare published numbers with ours: what agrees, what does not, and why.
     ///
     /// Without a case it lists the cases. Exit status 0 also where a number differs: that is an
@@ -323,6 +390,32 @@ enum LocateFormat {
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum SimulateFormat {
+    /// For eyes.
+    Text,
+    /// The results contract `willis-simulation-1`; with the rows, unless --out takes them.
+    Json,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum ModesFormat {
+    /// For eyes.
+    Text,
+    /// The results contract `willis-modes-1`.
+    Json,
+    /// One row a number.
+    Csv,
+}
+
+/// A relative tolerance that the arithmetic can keep.
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if (1e-13..=1e-2).contains(&x) => Ok(x),
+        _ => Err("a number from 1e-13 to 1e-2, as in 1e-9".into()),
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Language {
     /// For eyes.
     Text,
@@ -391,6 +484,7 @@ fn main() -> ExitCode {
                     let _ = writeln!(anstream::stderr(), "standard output: {e}");
                     ExitCode::FAILURE
                 }
+                _ if simulate::interrupted() => ExitCode::from(130),
                 _ => ExitCode::SUCCESS,
             }
         }
@@ -557,6 +651,65 @@ fn run(command: &Command) -> Result<String, String> {
             Ok(match format {
                 LocateFormat::Text => regimes::location(&found),
                 LocateFormat::Json => serde_json::to_string_pretty(&found).expect("plain data") + "\n",
+            })
+        }
+        Command::Simulate {
+            file,
+            scenario,
+            out,
+            plot,
+            columns,
+            samples,
+            tolerance,
+            fixed_step,
+            lagged_forces,
+            continue_when_ambiguous,
+            format,
+        } => {
+            let job = Job::read(file)?;
+            let mut options = Options {
+                samples: samples.map(|n| n as usize),
+                continue_when_ambiguous: *continue_when_ambiguous,
+                lagged_forces: *lagged_forces,
+                ..Options::default()
+            };
+            options.tolerance = tolerance.unwrap_or(options.tolerance);
+            if let Some(text) = fixed_step {
+                let step = values("--fixed-step", std::slice::from_ref(text), Dimension::TIME)?[0].si();
+                if step <= 0.0 {
+                    return Err(format!("--fixed-step {text}: give a time above zero, as in --fixed-step '1 ms'\n"));
+                }
+                options.method = Method::Fixed(step);
+            }
+            let request = simulate::Request {
+                scenario: scenario.clone(),
+                out: out.clone(),
+                plot: plot.clone(),
+                columns: columns.clone(),
+                options,
+                json: *format == SimulateFormat::Json,
+            };
+            let run = simulate::run(&job.train, &request).map_err(|failure| match failure {
+                simulate::Failure::Input(wrong) => job.failure(wrong),
+                simulate::Failure::Told(text) => text,
+            })?;
+            Ok(match format {
+                SimulateFormat::Text => simulate::text(&run),
+                SimulateFormat::Json => simulate::json(&run),
+            })
+        }
+        Command::Modes { file, state, fixed, plot, format } => {
+            let job = Job::read(file)?;
+            let held: Vec<&str> = fixed.iter().map(String::as_str).collect();
+            let all =
+                willis::dynamics::modes(&job.train, state.as_deref(), &held).map_err(|wrong| job.failure(wrong))?;
+            if let Some(path) = plot {
+                output::write(path, (willis_report::modes_plot(&all) + "\n").as_bytes())?;
+            }
+            Ok(match format {
+                ModesFormat::Text => modes::text(&all),
+                ModesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
+                ModesFormat::Csv => modes::csv(&all),
             })
         }
         Command::Validate { case, format, data } => validate(case.as_deref(), *format, data.as_deref()),

@@ -744,6 +744,24 @@ fn regress_e002_oversized() {
     assert!(wrong.len() < 10_000, "{} bytes of message", wrong.len());
 }
 
+#[test]
+fn regress_tables_stand_beside_the_train_file() {
+    let folder = folder("tables");
+    let train = "format = 1\nname = \"wheel\"\nmembers = [\"a\"]\n[[scenario]]\nname = \"s\"\nduration = \"1 s\"\n\
+                 [[scenario.source]]\nmember = \"a\"\n\
+                 torque = { type = \"csv\", file = \"load.csv\", time = \"t\", value = \"T\" }\n";
+    std::fs::write(folder.join("train.toml"), train).expect("written");
+    let check = || run(&["check", path(&folder.join("train.toml"))]);
+    let wrong = refused(&check(), 1);
+    assert!(wrong.contains("E002") && wrong.contains("load.csv"), "{wrong}");
+    std::fs::write(folder.join("load.csv"), "t,T\n0,1\n1,x\n").expect("written");
+    let wrong = refused(&check(), 1);
+    assert!(wrong.contains("E112") && wrong.contains("line 3, column `T`"), "{wrong}");
+    std::fs::write(folder.join("load.csv"), "t,T\n0,1\n1,2\n").expect("written");
+    let output = check();
+    assert!(output.status.success(), "{output:?}");
+}
+
 #[cfg(unix)]
 #[test]
 fn regress_e002_no_permission() {
@@ -911,4 +929,41 @@ fn regress_flow_wrong_questions() {
     let mut all = refused(&run(&["flow", "examples/prius-p112.toml", "--operation", "acceleration"]), 1);
     all += &refused(&run(&["flow", "examples/zf-6hp26.toml"]), 1);
     snapshot!(all);
+}
+
+// ---- simulate --------------------------------------------------------------------------------
+
+#[test]
+fn regress_simulate_wrong_questions() {
+    let prius = "examples/prius-p112.toml";
+    let questions: [&[&str]; 7] = [
+        &["simulate", prius],
+        &["simulate", prius, "--out", "run.xlsx"],
+        &["simulate", prius, "--out", "run"],
+        &["simulate", prius, "--plot", "run.png"],
+        &["simulate", prius, "--plot", "nowhere/run.svg"],
+        &["simulate", prius, "--fixed-step", "1 rpm"],
+        &["simulate", prius, "--fixed-step", "0 s"],
+    ];
+    let mut all = String::new();
+    for question in questions {
+        let message = refused(&run(question), 1);
+        all += &format!("willis {}\n{message}\n", question.join(" "));
+    }
+    snapshot!(all);
+}
+
+#[test]
+fn regress_simulate_usage() {
+    let prius = "examples/prius-p112.toml";
+    for arguments in [
+        &["simulate"][..],
+        &["simulate", prius, "--tolerance", "5"],
+        &["simulate", prius, "--samples", "1"],
+        &["simulate", prius, "--lagged-forces"],
+        &["simulate", prius, "--fixed-step", "1 ms", "--tolerance", "1e-6"],
+        &["simulate", prius, "--format", "csv"],
+    ] {
+        refused(&run(arguments), 2);
+    }
 }

@@ -9,8 +9,10 @@ mod certificate;
 mod choose;
 mod energy;
 mod engine;
+mod fixed;
 mod integrator;
 mod mode;
+mod modes;
 pub mod offset;
 mod output;
 mod report;
@@ -18,6 +20,8 @@ mod run;
 mod signal;
 mod system;
 
+pub use fixed::FixedStep;
+pub use modes::{Mode, ModesReport, Part, RigidMode, modes};
 pub use report::{
     Column, EnergyLoss, EnergyReport, Event, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample,
     SourceEnergy,

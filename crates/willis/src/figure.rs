@@ -2,5 +2,7 @@
 //! fonts; front ends draw.
 
 mod regime_map;
+mod time_plot;
 
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
+pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};

@@ -305,7 +305,7 @@ impl Train {
     ///
     /// A text that names CSV files is read by [`Train::read_toml_with`].
     pub fn read_toml(text: &str) -> Reading {
-        Self::read_toml_with(text, &mut |_| Err("files are not read here".into()))
+        Self::read_toml_with(text, &mut |file| Err(format!("`{file}`: files are not read here")))
     }
 
     /// Like [`Train::read_toml`]; `load` gives the text of a file that the train file names, or says

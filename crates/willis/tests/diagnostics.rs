@@ -121,6 +121,12 @@ fn and(text: &str, more: &str) -> String {
     format!("{text}\n{more}\n")
 }
 
+/// A scenario with a source of these keys.
+fn scenario(source: &str) -> String {
+    let head = "[[scenario]]\nname = \"start\"\nduration = \"3 s\"\nstate = \"low\"";
+    and(TWO_SPEED, &format!("{head}\n\n[[scenario.source]]\nmember = \"sun\"\n{source}"))
+}
+
 /// Everything the library has to say about a text.
 fn diagnose(text: &str, selection: &Selection) -> Diagnostics {
     let reading = Train::read_toml(text);
@@ -355,6 +361,28 @@ cases! {
     regress_e109_two_efficiencies: Conflict, with(REDUCER, "mesh_efficiency = 0.99", "mesh_efficiency = 0.99\nbasic_efficiency = 0.98");
     regress_e109_basic_efficiency_of_three: Conflict,
         STEPPED.replace("RINGS", "rings = [ { member = \"ring\", teeth = 60, planet_teeth = 20 }, { member = \"out\", teeth = 58, planet_teeth = 18 } ]\nbasic_efficiency = 0.98");
+
+    // E112 BadTable
+    regress_e112_falling_speeds: BadTable, and(TWO_SPEED, "[[drag]]\nname = \"bearing\"\nmembers = [\"sun\"]\ntable = [ [\"0 rpm\", \"1 N m\"], [\"-10 rpm\", \"1 N m\"] ]");
+    regress_e112_falling_times: BadTable, scenario("torque = { type = \"table\", points = [ [\"0 s\", \"1 N m\"], [\"2 s\", \"3 N m\"], [\"1 s\", \"5 N m\"] ] }");
+
+    // E113 BadFormula
+    regress_e113_bracket: BadFormula, scenario("torque = { type = \"expression\", formula = \"60 + 200*sin(4*PI*t\" }");
+    regress_e113_variable: BadFormula, scenario("torque = { type = \"expression\", formula = \"60 - 3*sun\" }");
+
+    // The same codes in the dynamic layer
+    regress_motion_signal_type: UnknownName, scenario("torque = { type = \"sin\", amplitude = \"1 N m\" }");
+    regress_motion_signal_keys: MissingKey, scenario("torque = { type = \"sine\", amplitude = \"1 N m\", freq = \"2 Hz\" }");
+    regress_motion_formula_member: UnknownName, scenario("torque = { type = \"expression\", formula = \"5 - 0.1*w_carier\" }");
+    regress_motion_formula_hyphen: UnknownName, scenario("torque = { type = \"expression\", formula = \"w_mg-1\" }").replace("\"sun\"", "\"mg-1\"");
+    regress_motion_two_kinds: Conflict, scenario("torque = \"5 N m\"\nspeed = \"100 rpm\"");
+    regress_motion_no_kind: MissingKey, scenario("name = \"engine\"");
+    regress_motion_frame: HeldAndDriven, scenario("torque = \"5 N m\"").replace("member = \"sun\"\ntorque = ", "member = \"frame\"\ntorque = ");
+    regress_motion_end_before_start: OutOfRange, scenario("torque = \"5 N m\"").replace("duration = \"3 s\"", "start = \"5 s\"\nend = \"3 s\"");
+    regress_motion_no_file: Unreadable, scenario("torque = { type = \"csv\", file = \"load.csv\", time = \"t\", value = \"torque\" }");
+    regress_motion_shaft: MissingKey, and(TWO_SPEED, "[[shaft]]\nname = \"output\"\nmembers = [\"carrier\"]\nbacklash = \"1 deg\"");
+    regress_motion_capacity: MissingKey, with(TWO_SPEED, "members = [\"ring\"]", "members = [\"ring\"]\nfriction = 0.12");
+    regress_motion_loss_table: Conflict, with(PAIR, "efficiency = 0.98", "efficiency = 0.98\nloss_table = [ { speed = \"0 rpm\", forward = 0.9, backward = 98 } ]");
 
     // E201 ContradictorySpeeds
     regress_e201_two_speeds: ContradictorySpeeds, with(PAIR, "{ a = \"100 rpm\" }", "{ a = \"100 rpm\", b = \"100 rpm\" }");

@@ -28,6 +28,9 @@ pub(super) struct Meshing {
 impl Engine {
     /// Number of energies that are integrated: of sources (net and in), of frictions, shafts, meshes.
     pub fn energies(&self) -> usize {
+        if !self.counts {
+            return 0;
+        }
         let s = &self.system;
         2 * s.drivers.len() + s.frictions.len() + s.elastic.len() + s.train.meshes().len()
     }
@@ -105,26 +108,16 @@ impl Engine {
         Meshing { torque, loss: (slope(loss, side) * torque + f64::from(sign) * constant) * w }
     }
 
-    /// How the loss of an element divides among its meshes: link and part.
-    pub fn shares(&self, j: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let e = &self.system.elements[j];
-        let drive = self.mode.side[j] == Side::Drive;
-        let efficiency = move |k: usize| {
-            let link = e.links[k];
-            let own = &self.system.train.meshes()[link.mesh.index()].efficiency;
-            if link.along == drive { own.forward.to_f64() } else { own.backward.to_f64() }
-        };
-        let n = e.links.len();
-        let whole: f64 = 1.0 - (0..n).map(efficiency).product::<f64>();
-        (0..n).map(move |k| {
-            let before: f64 = if drive { (0..k).map(efficiency).product() } else { (k + 1..n).map(efficiency).product() };
-            let part = if n == 1 || whole == 0.0 { 1.0 / n as f64 } else { before * (1.0 - efficiency(k)) / whole };
-            (e.links[k].mesh.index(), part)
-        })
+    /// How the loss of an element divides among its meshes at present: mesh and part.
+    pub fn shares(&self, j: usize) -> &[(usize, f64)] {
+        &self.system.elements[j].shares[usize::from(self.mode.side[j] == Side::Coast)]
     }
 
     /// Rates of the energies at the state solved last, W.
     pub fn powers(&mut self, t: f64, x: &[f64], out: &mut [f64]) {
+        if out.is_empty() {
+            return;
+        }
         out.iter_mut().for_each(|p| *p = 0.0);
         let s = &self.system;
         let sources = s.drivers.len();
@@ -150,7 +143,7 @@ impl Engine {
                 continue;
             }
             let loss = self.meshing(j).loss;
-            for (mesh, part) in self.shares(j) {
+            for &(mesh, part) in self.shares(j) {
                 out[at + mesh] += loss * part;
             }
         }
@@ -168,6 +161,8 @@ impl Engine {
     pub fn energy_report(&self, stored: [f64; 2], energies: &[f64]) -> EnergyReport {
         let s = &self.system;
         let n = s.drivers.len();
+        let none = vec![f64::NAN; 2 * n + s.frictions.len() + s.elastic.len() + s.train.meshes().len()];
+        let energies = if self.counts { energies } else { &none };
         let sources: Vec<SourceEnergy> = (0..n)
             .map(|k| SourceEnergy {
                 name: s.scenario.sources[k].name.clone(),

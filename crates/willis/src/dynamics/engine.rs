@@ -85,6 +85,8 @@ pub(crate) struct Engine {
     pub away: Vec<[Vec<Side>; 2]>,
     /// Whether one solution is certain in every state.
     pub certified: bool,
+    /// Whether energies are counted.
+    pub counts: bool,
     /// Sizes of the states, against which errors are measured where a state is small.
     pub scales: Vec<f64>,
     /// Room for port torques.
@@ -110,6 +112,7 @@ impl Engine {
             away,
             scales: vec![LEAST_SCALE; system.free + system.all() + system.integrals],
             spare: vec![0.0; system.ports],
+            counts: true,
             certified: system.rolling_is_unique() == Some(true) && system.sticking_is_unique() == Some(true),
             system,
         }
@@ -184,7 +187,7 @@ impl Engine {
     }
 
     /// Torque of an elastic shaft on its first member.
-    fn shaft_torque(&self, k: usize, x: &[f64]) -> f64 {
+    pub fn shaft_torque(&self, k: usize, x: &[f64]) -> f64 {
         let shaft = &self.system.train.shafts()[k];
         let (spring, damper) = self.shaft_parts(k, x);
         match (self.touch[k], shaft.backlash > 0.0) {
@@ -209,7 +212,7 @@ impl Engine {
     }
 
     /// Torque of spring and damper, as if in contact.
-    fn shaft_parts(&self, k: usize, x: &[f64]) -> (f64, f64) {
+    pub fn shaft_parts(&self, k: usize, x: &[f64]) -> (f64, f64) {
         let shaft = &self.system.train.shafts()[k];
         let twist = self.twist(k, x);
         let beyond = twist.signum() * (twist.abs() - shaft.backlash / 2.0).max(0.0);
@@ -408,6 +411,19 @@ impl Engine {
         match mode.side[j] {
             Side::Drive => (value, noise),
             Side::Coast => (-value, noise),
+        }
+    }
+
+    /// Turns the sides that disagree with the state solved last.
+    pub fn turn_sides(&self, mode: &mut Mode) {
+        for j in 0..self.system.elements.len() {
+            if mode.element_slip(&self.system, j) != 0 {
+                let (torque, size) = self.element_torque(j);
+                let (value, noise) = self.side_margin(j, mode, torque, size);
+                if value < -noise {
+                    mode.side[j] = mode.side[j].other();
+                }
+            }
         }
     }
 

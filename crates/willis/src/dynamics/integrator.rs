@@ -4,7 +4,6 @@
 //! stiff systems. Both are restarted after every change of mode. Source: Hairer, Nørsett, Wanner,
 //! Solving Ordinary Differential Equations I, 2nd ed. 1993, section II.4 to II.6; Hairer, Wanner, II,
 //! 2nd ed. 1996, section IV.8.
-#![allow(dead_code)] // used by the simulation
 
 mod dopri5;
 mod implicit;

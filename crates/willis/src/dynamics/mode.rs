@@ -111,6 +111,7 @@ pub(super) fn dot_size(a: &[f64], b: &[f64]) -> f64 {
 
 /// What follows from the loss slopes alone: unknowns × ports, and slip accelerations of all groups × ports.
 pub(super) struct Pattern {
+    pub ports: usize,
     pub response: Vec<f64>,
     pub slip: Vec<f64>,
 }
@@ -137,7 +138,22 @@ impl Pattern {
                 row[system.port_of_prescribed + i] += group.row[system.free + i];
             }
         }
-        Some(Self { response, slip })
+        Some(Self { ports: p, response, slip })
+    }
+
+    /// With one more port for each group, which adds to its slip acceleration and to nothing else: what a step
+    /// of fixed length has to take away to end at rest.
+    pub fn with_slips(&self, groups: usize) -> Self {
+        let widen = |rows: &[f64]| -> Vec<f64> {
+            let zeros = std::iter::repeat_n(0.0, groups);
+            rows.chunks_exact(self.ports).flat_map(|row| row.iter().copied().chain(zeros.clone())).collect()
+        };
+        let ports = self.ports + groups;
+        let mut slip = widen(&self.slip);
+        for g in 0..groups {
+            slip[g * ports + self.ports + g] = 1.0;
+        }
+        Self { ports, response: widen(&self.response), slip }
     }
 }
 
@@ -191,7 +207,7 @@ impl Maps {
 ///
 /// Groups that are held already by others get no torque of their own.
 pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: &[(usize, f64)]) -> Option<Map> {
-    let (n, p, all) = (system.unknowns(), system.ports, system.all());
+    let (n, p, all) = (system.unknowns(), pattern.ports, system.all());
     let held: Vec<usize> =
         (0..system.groups.len()).filter(|&g| mode.slip[g] == 0 && !system.groups[g].driven).collect();
     // Rows of conditions `row · τ = 0` over all ports, each solved for one port.

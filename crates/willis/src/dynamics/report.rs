@@ -18,6 +18,9 @@ pub struct Options {
     /// The sign of each tooth force is that of the step before (Galvagno 2010, section 5): compatibility
     /// with the paper, to show its error. With [`Method::Fixed`] only.
     pub lagged_forces: bool,
+    /// Whether to count where the energy goes. Without it the energies of the report are NaN, and the run is
+    /// faster.
+    pub energies: bool,
     /// How many rows; that of the scenario unless given.
     pub samples: Option<usize>,
 }
@@ -30,6 +33,7 @@ impl Default for Options {
             most_events: 1000,
             continue_when_ambiguous: false,
             lagged_forces: false,
+            energies: true,
             samples: None,
         }
     }

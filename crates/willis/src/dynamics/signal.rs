@@ -26,10 +26,8 @@ impl Signal {
                     *offset
                 } else {
                     let since = t - at;
-                    offset
-                        + amplitude
-                            * (-decay * since).exp()
-                            * (std::f64::consts::TAU * frequency * since + phase).sin()
+                    let swing = amplitude * (std::f64::consts::TAU * frequency * since + phase).sin();
+                    offset + if *decay == 0.0 { swing } else { swing * (-decay * since).exp() }
                 }
             }
             Self::Pulse { offset, amplitude, period, width, at } => {

@@ -40,6 +40,26 @@ pub(super) struct Element {
     /// Its group and its speed over that of the group; `None` if it loses nothing or never moves.
     pub group: Option<(usize, f64)>,
     pub port: usize,
+    /// How its loss divides among its meshes when its first gear drives and when the second does: mesh and part.
+    pub shares: [Vec<(usize, f64)>; 2],
+}
+
+/// Part of each mesh of a chain in the loss of all: the power that reaches it, less what leaves it.
+fn shares(train: &Train, links: &[Link]) -> [Vec<(usize, f64)>; 2] {
+    [true, false].map(|drive| {
+        let mut reaches = 1.0;
+        let mut parts: Vec<(usize, f64)> = Vec::new();
+        let order: Vec<&Link> = if drive { links.iter().collect() } else { links.iter().rev().collect() };
+        for link in order {
+            let own = &train.meshes()[link.mesh.index()].efficiency;
+            let efficiency = if link.along == drive { own.forward.to_f64() } else { own.backward.to_f64() };
+            parts.push((link.mesh.index(), reaches * (1.0 - efficiency)));
+            reaches *= efficiency;
+        }
+        let whole: f64 = parts.iter().map(|p| p.1).sum();
+        let alone = 1.0 / parts.len() as f64;
+        parts.iter().map(|&(mesh, part)| (mesh, if whole > 0.0 { part / whole } else { alone })).collect()
+    })
 }
 
 /// Efficiency and bearing torque of an element at a speed.
@@ -487,6 +507,7 @@ impl System {
                 row: difference(e.p, e.carrier),
                 group: None,
                 port: columns.len() - 1,
+                shares: shares(train, &e.links),
             });
         }
         let port_of_prescribed = columns.len();
@@ -637,6 +658,29 @@ impl System {
             None => 1.0,
             Some(k) => self.scenario.engagements[k].signal.value(t, inside, speed),
         }
+    }
+
+    /// Replaces what a source does by a constant.
+    pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
+        let sources = &mut self.scenario.sources;
+        let Some(k) = sources.iter().position(|s| s.name == source) else {
+            let known: Vec<&str> = sources.iter().map(|s| s.name.as_str()).collect();
+            return Err(format!("there is no source `{source}`; the sources are: {}", known.join(", ")));
+        };
+        if !value.is_finite() {
+            return Err(format!("`{source}` takes a finite number, not {value}"));
+        }
+        match &mut sources[k].kind {
+            SourceKind::Torque(signal)
+            | SourceKind::Speed(signal)
+            | SourceKind::Controller { setpoint: signal, .. }
+            | SourceKind::Motor { throttle: signal, .. }
+            | SourceKind::Vehicle { grade: signal, .. } => *signal = Signal::Constant(value),
+            SourceKind::Linear { .. } | SourceKind::Quadratic { .. } => {
+                return Err(format!("`{source}` is a load that follows the speed; it takes no value"));
+            }
+        }
+        Ok(())
     }
 
     /// The signals of the scenario.

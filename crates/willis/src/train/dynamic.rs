@@ -232,7 +232,8 @@ pub enum Signal {
 #[derive(Clone, Debug)]
 pub struct Formula {
     text: String,
-    expression: exmex::FlatEx<f64>,
+    /// It takes 20 kB in place.
+    expression: Box<exmex::FlatEx<f64>>,
     /// For each variable of the expression: the time, or the position of a speed.
     variables: Vec<Option<usize>>,
 }
@@ -262,7 +263,7 @@ impl Formula {
                 _ => return Err(format!("`{name}` is neither the time t nor a speed such as w_sun")),
             }
         }
-        Ok((Self { text: text.to_owned(), expression, variables }, speeds))
+        Ok((Self { text: text.to_owned(), expression: Box::new(expression), variables }, speeds))
     }
 
     /// The text.

@@ -58,21 +58,21 @@ impl Assembler<'_> {
     }
 
     /// A curve through points of rising abscissa.
-    fn curve(&mut self, points: &[[f64; 2]], place: &str) -> Option<Curve> {
+    fn curve(&mut self, points: &[[f64; 2]], unit: &str, place: &str) -> Option<Curve> {
         let curve = Curve::new(points.to_vec());
         if curve.is_none() {
-            self.bad_points(points, |a, b| a < b, place);
+            self.bad_points(points, |a, b| a < b, unit, place);
         }
         curve
     }
 
     /// A curve over the amount of something, of values that are not negative.
     fn curve_of_amounts(&mut self, points: &[[f64; 2]], place: &str) -> Option<Curve> {
-        let curve = self.curve(points, place)?;
+        let curve = self.curve(points, "rad/s", place)?;
         match points.iter().position(|p| p.iter().any(|x| *x < 0.0)) {
             None => Some(curve),
             Some(k) => {
-                let [x, y] = points[k];
+                let [x, y] = points[k].map(shown);
                 let message = format!("point {} ({x}, {y}): speed and value are amounts, not negative", k + 1);
                 self.refuse(Code::BadTable, &format!("{place}[{k}]"), message, "");
                 None
@@ -81,7 +81,7 @@ impl Assembler<'_> {
     }
 
     /// Says what is wrong with points.
-    fn bad_points(&mut self, points: &[[f64; 2]], rises: impl Fn(f64, f64) -> bool, place: &str) {
+    fn bad_points(&mut self, points: &[[f64; 2]], rises: impl Fn(f64, f64) -> bool, unit: &str, place: &str) {
         if points.is_empty() {
             self.refuse(Code::BadTable, place, "the table has no points", "give one or more");
         }
@@ -89,8 +89,9 @@ impl Assembler<'_> {
             let message = format!("point {} has a value that is no finite number", k + 1);
             self.refuse(Code::BadTable, &format!("{place}[{k}]"), message, "");
         } else if let Some(k) = points.windows(2).position(|w| !rises(w[0][0], w[1][0])) {
-            let (before, after) = (points[k][0], points[k + 1][0]);
-            let message = format!("point {} at {after} (SI) does not lie beyond point {} at {before}", k + 2, k + 1);
+            let [before, after] = [points[k][0], points[k + 1][0]].map(shown);
+            let message =
+                format!("point {} at {after} {unit} does not lie beyond point {} at {before} {unit}", k + 2, k + 1);
             self.refuse(Code::BadTable, &format!("{place}[{}]", k + 1), message, "the first column rises");
         }
     }
@@ -557,8 +558,8 @@ impl Assembler<'_> {
             }
             SourceKind::Motor { full_load, closed, throttle } => {
                 let place = format!("{place}.motor");
-                let full_load = self.curve(full_load, &format!("{place}.full_load"));
-                let closed = self.curve(closed, &format!("{place}.closed"));
+                let full_load = self.curve(full_load, "rad/s", &format!("{place}.full_load"));
+                let closed = self.curve(closed, "rad/s", &format!("{place}.closed"));
                 let at = format!("{place}.throttle");
                 let throttle = self.signal(throttle, &at);
                 if let Some(signal) = &throttle {
@@ -636,15 +637,15 @@ impl Assembler<'_> {
         }
         if let Some(gears) = &spec.gears {
             let points: Vec<[f64; 2]> = gears.iter().map(|g| [g.0, 0.0]).collect();
-            self.curve(&points, &at);
-            if let Some(k) =
-                points.windows(2).position(|w| w[0][0] < w[1][0] && w[0][0] + shift > w[1][0]).filter(|k| *k > 0)
-            {
-                let (now, next) = (points[k][0], points[k + 1][0]);
+            self.curve(&points, "s", &at);
+            // The first is where it begins; only the others shift.
+            let changes: Vec<f64> = points.iter().skip(1).map(|p| p[0]).collect();
+            if let Some(k) = changes.windows(2).position(|w| w[0] < w[1] && w[0] + shift > w[1]) {
+                let (now, next) = (changes[k], changes[k + 1]);
                 let message = format!(
-                    "the shift of {shift} s that begins at {now} s is not over at {next} s, when the next begins"
+                    "a shift of {shift} s that begins at {now} s is not over at {next} s, when the next begins"
                 );
-                self.refuse(Code::OutOfRange, &format!("{at}[{}]", k + 1), message, "shorten `shift_time`");
+                self.refuse(Code::OutOfRange, &format!("{at}[{}]", k + 2), message, "shorten `shift_time`");
             }
         }
         let place = if spec.gears.is_some() { at } else { format!("{place}.state") };
@@ -704,7 +705,7 @@ impl Assembler<'_> {
                 let finite = points.iter().flatten().all(|x| x.is_finite());
                 let rising = points.windows(2).all(|w| w[0][0] <= w[1][0]);
                 if points.is_empty() || !finite || !rising {
-                    self.bad_points(points, |a, b| a <= b, &at("points"));
+                    self.bad_points(points, |a, b| a <= b, "s", &at("points"));
                     return None;
                 }
                 true
@@ -743,7 +744,13 @@ impl Assembler<'_> {
     fn resolve_in_text(&mut self, name: &str, place: &str) -> Option<MemberId> {
         let before = self.diagnostics.len();
         let found = self.resolve(name, place);
-        self.diagnostics.iter_mut().skip(before).for_each(|d| d.replacement = None);
+        // `w_mg-1` reads as the speed of `mg`, less one.
+        let cut = |m: &&str| m.strip_prefix(name).is_some_and(|rest| rest.starts_with(|c: char| !c.is_alphanumeric()));
+        let meant = self.members.iter().map(|m| m.name.as_str()).find(cut).map(str::to_owned);
+        for d in self.diagnostics.iter_mut().skip(before) {
+            d.replacement = None;
+            d.hints.extend(meant.iter().map(|m| format!("if `{m}` is meant, write {{w_{m}}}")));
+        }
         found
     }
 }
@@ -788,6 +795,12 @@ fn range(signal: &Signal) -> Option<[f64; 2]> {
         }
         Signal::Product(_) | Signal::Expression { .. } => return None,
     })
+}
+
+/// A number for a message: it may have come from other units.
+fn shown(x: f64) -> f64 {
+    let rounded = (x * 1e6).round() / 1e6;
+    if rounded.is_finite() { rounded } else { x }
 }
 
 /// A parser's words on one line.

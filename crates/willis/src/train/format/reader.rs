@@ -518,15 +518,21 @@ impl Reader<'_, '_> {
         let at = join(place, "file");
         let load = &mut self.load;
         let text = self.files.entry(file.clone()).or_insert_with(|| load(&file));
-        let (code, hint, wrong) = match text {
-            Err(why) => (Code::Unreadable, "", vec![why.clone()]),
-            Ok(text) => match csv::points(text, [&time, &value]) {
-                Ok(points) => return Some(points),
-                Err(wrong) => (Code::BadTable, "a header row, commas, decimal points, times in s that rise", wrong),
-            },
+        let columns = match text {
+            Ok(text) => csv::points(text, [&time, &value]),
+            Err(why) => {
+                let why = why.clone();
+                self.report(Code::Unreadable, &at, why, "");
+                return None;
+            }
+        };
+        let wrong = match columns {
+            Ok(points) => return Some(points),
+            Err(wrong) => wrong,
         };
         for message in wrong {
-            self.report(code, &at, format!("{}: {message}", clip(&file)), hint);
+            let hint = "a header row, commas, decimal points, times in s that rise";
+            self.report(Code::BadTable, &at, format!("{}: {message}", clip(&file)), hint);
         }
         None
     }

@@ -1,0 +1,811 @@
+//! Steps of fixed length and bounded cost, for real time and for many runs.
+//!
+//! Semi-implicit stepping with set-valued friction: within a step the mode is one whose torques agree with the
+//! speeds at the *end* of the step, so that what sticks has exactly zero slip and nothing chatters. With the maps of the
+//! modes kept, a step is a small matrix–vector product and a check. First order in the step; the energies close to
+//! round-off all the same, because `½ ω⁺ᵀMω⁺ − ½ ωᵀMω` is the work of the step's torques at the mean of both
+//! speeds. Sources: Moreau's time stepping, as in Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical
+//! Systems*, 2008, ch. 10.
+
+use std::collections::HashMap;
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::train::{Signal, SourceKind, Train};
+
+use super::engine::Engine;
+use super::mode::{Mode, Pattern, Side, compose, dot};
+use super::run::initial_state;
+use super::system::System;
+
+/// Groups and elements that fit the key of a mode.
+const MOST_GROUPS: usize = 48;
+const MOST_ELEMENTS: usize = 64;
+
+/// The map of a mode, flat: rows over ports and slips.
+struct StepMap {
+    /// Accelerations of the free coordinates, then holding torques of `held`, then torques of `moving`.
+    rows: Vec<f64>,
+    /// Sum of amounts of each row of `moving`.
+    sums: Vec<f64>,
+    held: Vec<u16>,
+    moving: Vec<u16>,
+    /// Torques at the first gears of elements that are held alone in their group.
+    alone: Vec<(u16, Vec<f64>)>,
+    /// Torques behind prescribed speeds.
+    reactions: Vec<f64>,
+}
+
+/// A friction element of a group, ready for the step.
+struct Rub {
+    friction: usize,
+    port: usize,
+    factor: f64,
+    /// Torque, if it does not depend on slip.
+    constant: Option<f64>,
+    /// At this step: its viscous torque, and the torques with which it opposes slip of its group forward and
+    /// backward.
+    viscous: f64,
+    opposes: [f64; 2],
+}
+
+/// What a group needs in a step.
+struct GroupStep {
+    row: Vec<f64>,
+    rubs: Vec<Rub>,
+    elements: Vec<usize>,
+    lead: (usize, f64),
+    driven: bool,
+    /// Whether several parts, teeth among them, share in holding it.
+    shares: bool,
+    /// Elements with losses that do not depend on load: port, torques when driving and coasting.
+    constants: Vec<(usize, usize, [f64; 2])>,
+}
+
+/// Key of a map: which groups are held, and the sides of what moves.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct Key {
+    held: u64,
+    coast: u64,
+}
+
+/// A scenario in steps of fixed length.
+///
+/// # Example
+/// ```
+/// use willis::dynamics::FixedStep;
+/// use willis::train::Train;
+///
+/// let train = Train::from_toml(r#"
+///     format = 1
+///     name = "a rotor coasts"
+///     members = ["rotor"]
+///     inertias = { rotor = "2 kg m^2" }
+///
+///     [[drag]]
+///     name = "bearing"
+///     members = ["rotor"]
+///     coulomb = "4 N m"
+///
+///     [[scenario]]
+///     name = "coast"
+///     duration = "10 s"
+///     initial_speeds = { rotor = "12 rad/s" }
+/// "#)?;
+/// let mut run = FixedStep::new(&train, "coast", 1e-3)?;
+/// run.run(3000);
+/// assert!((run.speed("rotor").unwrap() - 6.0).abs() < 1e-9);
+/// run.run(7000);
+/// assert_eq!(run.speed("rotor"), Some(0.0));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub struct FixedStep {
+    pub(super) engine: Engine,
+    h: f64,
+    start: f64,
+    count: u64,
+    /// Speeds of all coordinates.
+    v: Vec<f64>,
+    /// Angles and integrals, as in the state of the engine.
+    pub(super) rest: Vec<f64>,
+    tau: Vec<f64>,
+    slip: Vec<f64>,
+    next: Vec<f64>,
+    groups: Vec<GroupStep>,
+    sign: Vec<i8>,
+    side: Vec<Side>,
+    /// Torques with which a group can oppose slip, forward and backward, at this step.
+    capacity: Vec<[f64; 2]>,
+    /// Group, factor and losses of each element that has any.
+    teeth: Vec<(usize, f64, super::system::Loss)>,
+    /// Whether any group shares.
+    shares: bool,
+    /// The state at the start of the step, where shafts need it.
+    state: Vec<f64>,
+    maps: Vec<StepMap>,
+    by_key: HashMap<Key, u32>,
+    /// The map of the last step and its key.
+    last: Option<(Key, u32)>,
+    /// Values of signals that are level until `until`.
+    level: Vec<Option<f64>>,
+    until: f64,
+    engagement_signals: Vec<usize>,
+    keeps_angles: bool,
+    /// Energies as the engine counts them; empty unless asked for.
+    pub(super) energies: Vec<f64>,
+    unsettled: u64,
+    impacts: u64,
+}
+
+impl FixedStep {
+    /// Prepares a scenario with steps of `h`, s.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`](super::Simulation::new); and trains with more than 48 friction groups or 64 mesh
+    /// elements.
+    pub fn new(train: &Train, scenario: &str, h: f64) -> Result<Self, Diagnostics> {
+        let fail = |message: String, hint: &str| -> Diagnostics {
+            [Diagnostic::new(Code::Unfit, "", message).hint(hint)].into_iter().collect()
+        };
+        if !(h > 0.0 && h.is_finite()) {
+            return Err(fail(format!("a step of {h} s"), "a step is longer than zero"));
+        }
+        let system = System::new(train, scenario)?;
+        if system.groups.len() > MOST_GROUPS || system.elements.len() > MOST_ELEMENTS {
+            let message = format!(
+                "{} friction groups and {} mesh elements: steps of fixed length take at most {MOST_GROUPS} and {MOST_ELEMENTS}",
+                system.groups.len(),
+                system.elements.len()
+            );
+            return Err(fail(message, "use the adaptive method"));
+        }
+        if let Some(j) = system.elements.iter().position(|e| e.varies()) {
+            let name = super::system::element_name(train, &system.elements[j].links);
+            let message = format!("the efficiency of {name} depends on its speed");
+            return Err(fail(message, "steps of fixed length take constant efficiencies; use the adaptive method"));
+        }
+        let mut engine = Engine::new(system);
+        let x = initial_state(&mut engine)?;
+        let s = &engine.system;
+        let groups: Vec<GroupStep> = (s.groups.iter())
+            .map(|g| GroupStep {
+                row: g.row.clone(),
+                rubs: (g.frictions.iter())
+                    .map(|&f| {
+                        let friction = &s.frictions[f];
+                        let points = friction.torque.points();
+                        let level = points.iter().all(|p| p[1] == points[0][1]);
+                        Rub {
+                            friction: f,
+                            port: friction.port,
+                            factor: friction.group.expect("of this group").1,
+                            constant: (level && !friction.rigid).then_some(points[0][1]),
+                            viscous: 0.0,
+                            opposes: [0.0; 2],
+                        }
+                    })
+                    .collect(),
+                elements: g.elements.clone(),
+                lead: g.lead,
+                driven: g.driven,
+                shares: !g.elements.is_empty() && g.elements.len() + g.frictions.len() > 1,
+                constants: (g.elements.iter())
+                    .map(|&j| (j, s.elements[j].port, s.elements[j].loss(0.0)))
+                    .filter(|(.., loss)| loss.drive_torque != 0.0 || loss.coast_torque != 0.0)
+                    .map(|(j, port, loss)| (j, port, [loss.drive_torque, loss.coast_torque]))
+                    .collect(),
+            })
+            .collect();
+        let (g, e, p) = (s.groups.len(), s.elements.len(), s.ports);
+        let v = engine.speed.clone();
+        let sign = groups.iter().map(|group| if dot(&group.row, &v) < 0.0 { -1 } else { 1 }).collect();
+        let signals = s.signals().count();
+        let engagement_signals = (0..s.scenario.engagements.len()).map(|k| signals - s.scenario.engagements.len() + k).collect();
+        Ok(Self {
+            h,
+            start: s.scenario.start,
+            count: 0,
+            rest: x[s.free..s.free + s.all() + s.integrals].to_vec(),
+            tau: vec![0.0; p + g],
+            slip: vec![0.0; g],
+            next: v.clone(),
+            v,
+            sign,
+            side: vec![Side::Drive; e],
+            capacity: vec![[0.0; 2]; g],
+            teeth: (s.elements.iter())
+                .map(|e| {
+                    let (g, factor) = e.group.unwrap_or((0, 1.0));
+                    (g, factor, e.loss(0.0))
+                })
+                .collect(),
+            shares: groups.iter().any(|g| g.shares),
+            state: vec![],
+            groups,
+            maps: Vec::with_capacity(64),
+            by_key: HashMap::with_capacity(64),
+            last: None,
+            level: vec![None; signals],
+            until: f64::NEG_INFINITY,
+            engagement_signals,
+            keeps_angles: true,
+            energies: vec![],
+            unsettled: 0,
+            impacts: 0,
+            engine,
+        })
+    }
+
+    /// Time reached, s.
+    pub fn time(&self) -> f64 {
+        self.start + self.count as f64 * self.h
+    }
+
+    /// Speed of a member, rad/s.
+    pub fn speed(&self, member: &str) -> Option<f64> {
+        let s = &self.engine.system;
+        Some(dot(&s.speeds[s.train.member(member)?.index()], &self.v))
+    }
+
+    /// Steps whose mode was not settled within the bounded number of trials.
+    pub fn unsettled_steps(&self) -> u64 {
+        self.unsettled
+    }
+
+    /// Steps in which parts of different speed were joined at once, as in an inelastic impact.
+    pub fn impacts(&self) -> u64 {
+        self.impacts
+    }
+
+    /// Leaves out the angles, where nothing depends on them.
+    pub fn without_angles(&mut self) {
+        self.keeps_angles = !self.engine.system.elastic.is_empty();
+    }
+
+    /// Replaces what a source does from now on by a constant: torque, N m; set speed, rad/s; throttle or grade.
+    ///
+    /// # Errors
+    /// If there is no such source, or it is a load that follows the speed.
+    pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
+        self.until = f64::NEG_INFINITY;
+        self.engine.system.set_input(source, value)
+    }
+
+    /// Takes steps.
+    pub fn run(&mut self, steps: u64) {
+        for _ in 0..steps {
+            self.step();
+        }
+    }
+
+    /// The map of a mode, made if it was not met before: the only place that takes more than bounded time.
+    #[inline]
+    fn map(&mut self, key: Key) -> Option<u32> {
+        if let Some((k, map)) = self.last
+            && k == key
+        {
+            return Some(map);
+        }
+        let found = match self.by_key.get(&key) {
+            Some(&k) => (k != u32::MAX).then_some(k),
+            None => self.make(key),
+        };
+        if let Some(map) = found {
+            self.last = Some((key, map));
+        }
+        found
+    }
+
+    fn make(&mut self, key: Key) -> Option<u32> {
+        let s = &self.engine.system;
+        let mode = Mode {
+            slip: (0..self.groups.len()).map(|g| i8::from(key.held >> g & 1 == 0)).collect(),
+            side: (0..s.elements.len())
+                .map(|j| if key.coast >> j & 1 == 1 { Side::Coast } else { Side::Drive })
+                .collect(),
+        };
+        let made = self.engine.maps.pattern(s, &mode).and_then(|pattern| step_map(s, &mode, pattern));
+        let k = match made {
+            Some(map) => {
+                self.maps.push(map);
+                self.maps.len() as u32 - 1
+            }
+            None => u32::MAX,
+        };
+        self.by_key.insert(key, k);
+        (k != u32::MAX).then_some(k)
+    }
+
+    /// Which groups are held and which sides drive: the key of the present mode.
+    #[inline]
+    pub(super) fn key(&self) -> Key {
+        let mut key = Key { held: 0, coast: 0 };
+        for (g, group) in self.groups.iter().enumerate() {
+            if self.sign[g] == 0 && !group.driven {
+                key.held |= 1 << g;
+            } else {
+                for &j in &group.elements {
+                    key.coast |= u64::from(self.side[j] == Side::Coast) << j;
+                }
+            }
+        }
+        key
+    }
+
+    /// Sets what the signals that are level for a while are worth.
+    #[cold]
+    fn refresh(&mut self, t: f64) {
+        let s = &self.engine.system;
+        self.until = s.signals().map(|s| s.next_break(t)).fold(f64::INFINITY, f64::min);
+        for (level, signal) in self.level.iter_mut().zip(s.signals()) {
+            let moves = match signal {
+                Signal::Ramp { at, duration, .. } => t >= *at && t < at + duration,
+                Signal::Sine { at, .. } => t >= *at,
+                Signal::Table { hold, .. } => !hold,
+                Signal::Expression { .. } | Signal::Product(_) => true,
+                Signal::Constant(_) | Signal::Step { .. } | Signal::Pulse { .. } => false,
+            };
+            *level = (!moves).then(|| signal.value(t, t, &|_| 0.0));
+        }
+    }
+
+    /// Torques of the ports in the middle of the step, friction and losses excluded, slips and capacities.
+    fn load(&mut self, middle: f64) {
+        let s = &self.engine.system;
+        let p = s.ports;
+        self.tau.iter_mut().for_each(|x| *x = 0.0);
+        let v = &self.v;
+        let speed = |m: crate::train::MemberId| dot(&s.speeds[m.index()], v);
+        let mut signal_at = 0;
+        let mut take = |signal: &Signal| {
+            let k = signal_at;
+            signal_at += 1;
+            self.level[k].unwrap_or_else(|| signal.value(middle, middle, &speed))
+        };
+        for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
+            let torque = match &source.kind {
+                SourceKind::Torque(signal) => take(signal),
+                SourceKind::Speed(signal) => {
+                    let _ = take(signal);
+                    let i = driver.prescribed.expect("a prescribed speed");
+                    let end = middle + 0.5 * self.h;
+                    let u = signal.value(end, middle, &|_| 0.0);
+                    self.next[s.free + i] = u;
+                    self.tau[s.port_of_prescribed + i] = (u - v[s.free + i]) / self.h;
+                    continue;
+                }
+                SourceKind::Controller { setpoint, feed_forward, proportional, integral, derivative } => {
+                    let error = take(setpoint) - speed(driver.member);
+                    let sum = driver.integral.map_or(0.0, |i| self.rest[s.all() + i]);
+                    let rate =
+                        if *derivative == 0.0 { 0.0 } else { setpoint.rate(middle, middle, &speed) * derivative };
+                    take(feed_forward) + proportional * error + integral * sum + rate
+                }
+                SourceKind::Linear { torque, about, slope } => torque - slope * (speed(driver.member) - about),
+                SourceKind::Quadratic { torque, about, factor, even } => {
+                    let d = speed(driver.member) - about;
+                    torque - factor * if *even { d * d } else { d * d.abs() }
+                }
+                SourceKind::Vehicle { mass, wheel_radius, final_drive, drag_area, air_density, grade, .. } => {
+                    let arm = wheel_radius / final_drive;
+                    let w = speed(driver.member) * arm;
+                    -(0.5 * air_density * drag_area * w * w.abs() + super::system::slope_force(*mass, take(grade))) * arm
+                }
+                SourceKind::Motor { full_load, closed, throttle } => {
+                    let w = speed(driver.member);
+                    let (low, high) = (closed.at(w), full_load.at(w));
+                    low + take(throttle).clamp(0.0, 1.0) * (high - low)
+                }
+            };
+            self.tau[driver.port.expect("a torque")] = torque;
+        }
+        for f in s.frictions.iter().filter(|f| f.viscous != 0.0) {
+            self.tau[f.port] -= f.viscous * dot(&f.row, v);
+        }
+        if !s.elastic.is_empty() {
+            self.engine.speed.copy_from_slice(v);
+            self.state.clear();
+            self.state.extend_from_slice(&v[..s.free]);
+            self.state.extend_from_slice(&self.rest);
+            for k in 0..self.engine.system.elastic.len() {
+                self.engine.touch[k] = self.engine.touch_now(k, &self.state);
+                self.tau[self.engine.system.elastic[k].port] = self.engine.shaft_torque(k, &self.state);
+            }
+        }
+        let s = &self.engine.system;
+        let (v, h, level, next) = (&self.v, self.h, &self.level, &self.next);
+        for (g, group) in self.groups.iter_mut().enumerate() {
+            // With the prescribed speeds of the end of the step.
+            let slip = dot(&group.row[..s.free], &v[..s.free]) + dot(&group.row[s.free..], &next[s.free..]);
+            self.slip[g] = slip;
+            self.tau[p + g] = slip / h;
+            let (mut slides, mut holds) = ([0.0, 0.0], [0.0, 0.0]);
+            for rub in &mut group.rubs {
+                let friction = &s.frictions[rub.friction];
+                let engaged = match friction.engagement {
+                    None => 1.0,
+                    Some(k) => level[self.engagement_signals[k]].unwrap_or_else(|| {
+                        s.scenario.engagements[k].signal.value(middle, middle, &|m| dot(&s.speeds[m.index()], v))
+                    }),
+                };
+                rub.opposes = match (rub.constant, friction.blocks) {
+                    (Some(c), _) => [c * engaged.clamp(0.0, 1.0); 2],
+                    (None, Some(blocks)) => {
+                        let along = f64::from(blocks) * rub.factor;
+                        [along > 0.0, along < 0.0].map(|b| if b { f64::INFINITY } else { 0.0 })
+                    }
+                    (None, None) if friction.rigid => [if engaged >= 0.5 { f64::INFINITY } else { 0.0 }; 2],
+                    (None, None) => [friction.torque.at((rub.factor * slip).abs()) * engaged.clamp(0.0, 1.0); 2],
+                };
+                rub.viscous = self.tau[rub.port];
+                for k in 0..2 {
+                    let c = rub.opposes[k] * rub.factor.abs();
+                    slides[k] += c;
+                    holds[k] += c * friction.peak;
+                }
+            }
+            self.capacity[g] = holds;
+            // What has no friction has no mode, and what cannot slide that way is held.
+            if slides == [0.0; 2] && group.elements.is_empty() {
+                self.sign[g] = 1;
+            } else if self.sign[g] != 0 && slides[usize::from(self.sign[g] < 0)].is_infinite() {
+                self.impacts += u64::from(slip * f64::from(self.sign[g]) > 1e-9);
+                self.sign[g] = 0;
+            }
+        }
+    }
+
+    /// Torques of what slides, and the losses of teeth that do not depend on load, in the present mode.
+    #[inline]
+    fn rub(&mut self) {
+        for (g, group) in self.groups.iter().enumerate() {
+            let sign = self.sign[g];
+            for rub in &group.rubs {
+                let opposes = match sign {
+                    0 => 0.0,
+                    1 => -rub.opposes[0],
+                    _ => rub.opposes[1],
+                };
+                let opposes = if opposes.is_finite() { opposes } else { 0.0 };
+                self.tau[rub.port] = rub.viscous + if rub.factor < 0.0 { -opposes } else { opposes };
+            }
+            for &(j, port, [drive, coast]) in &group.constants {
+                let (_, factor) = self.engine.system.elements[j].group.expect("of this group");
+                let torque = if self.side[j] == Side::Drive { drive } else { coast };
+                self.tau[port] = f64::from(sign) * factor.signum() * torque;
+            }
+        }
+    }
+
+    /// The first thing in which the mode and the end of the step disagree.
+    #[inline]
+    fn disagreement(&self, map: &StepMap, free: usize, cols: usize) -> Option<Flip> {
+        for (g, group) in self.groups.iter().enumerate() {
+            if self.sign[g] != 0 && !group.driven {
+                let end = dot(&group.row, &self.next) * f64::from(self.sign[g]);
+                if end < 0.0 && (self.capacity[g] != [0.0; 2] || !group.elements.is_empty()) {
+                    return Some(Flip::Group(g, 0));
+                }
+            }
+        }
+        let mut rows = map.rows[free * cols..].chunks_exact(cols);
+        for &g in &map.held {
+            let g = usize::from(g);
+            let group = &self.groups[g];
+            let holding = dot(rows.next().expect("a row for each"), &self.tau);
+            if group.elements.is_empty() {
+                let force = group.lead.1 * holding;
+                let [forward, backward] = self.capacity[g];
+                let noise = 1e-12 * (force.abs() + 1e-300);
+                if forward + force < -noise {
+                    return Some(Flip::Group(g, 1));
+                }
+                if backward - force < -noise {
+                    return Some(Flip::Group(g, -1));
+                }
+            }
+        }
+        for (j, row) in &map.alone {
+            // A single mesh that holds by its own friction: its loss torque lies between both sliding laws.
+            let e = &self.engine.system.elements[usize::from(*j)];
+            let (g, _) = e.group.expect("in a group");
+            let torque = dot(row, &self.tau);
+            let at = map.held.iter().position(|h| usize::from(*h) == g).expect("held");
+            let holding = dot(&map.rows[(free + at) * cols..(free + at + 1) * cols], &self.tau);
+            let loss = e.loss(0.0);
+            let upper = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
+            let lower = (loss.drive * torque - loss.drive_torque).min(loss.coast * torque - loss.coast_torque);
+            let noise = 1e-12 * holding.abs();
+            if holding > upper + noise {
+                return Some(Flip::Group(g, 1));
+            }
+            if holding < lower - noise {
+                return Some(Flip::Group(g, -1));
+            }
+        }
+        for ((&j, sum), row) in map.moving.iter().zip(&map.sums).zip(rows) {
+            let j = usize::from(j);
+            let (g, factor, loss) = self.teeth[j];
+            if self.sign[g] == 0 {
+                continue;
+            }
+            let sign = f64::from(self.sign[g]) * factor.signum();
+            let torque = dot(row, &self.tau);
+            let value = sign * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
+            let value = if self.side[j] == Side::Drive { value } else { -value };
+            if value < 0.0 {
+                // A mesh that carries nothing keeps its side.
+                let largest = self.tau.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+                if value < -1e-11 * sum * largest {
+                    return Some(Flip::Side(j));
+                }
+            }
+        }
+        None
+    }
+
+    /// Whether a held group whose parts share in holding would slide off: tried in both directions.
+    fn breaks_away(&mut self, g: usize) -> Option<i8> {
+        let sides: u64 = self.coasting();
+        let p = self.engine.system.ports;
+        let (free, cols) = (self.engine.system.free, p + self.groups.len());
+        for sign in [1i8, -1] {
+            if self.capacity[g][usize::from(sign < 0)].is_infinite() {
+                continue;
+            }
+            self.sign[g] = sign;
+            // Sides that agree: the last ones, else each turned once.
+            for _ in 0..=self.groups[g].elements.len() {
+                let Some(map) = self.map(self.key()) else { break };
+                self.rub();
+                let map = &self.maps[map as usize];
+                let rows = &map.rows;
+                let turned = (map.moving.iter().zip(rows[(free + map.held.len()) * cols..].chunks_exact(cols)))
+                    .filter(|(j, _)| self.teeth[usize::from(**j)].0 == g)
+                    .find_map(|(&j, row)| {
+                        let j = usize::from(j);
+                        let (_, factor, loss) = self.teeth[j];
+                        let along = f64::from(sign) * factor.signum();
+                        let value =
+                            along * (loss.drive - loss.coast) * dot(row, &self.tau) + loss.drive_torque - loss.coast_torque;
+                        let side = if value >= 0.0 { Side::Drive } else { Side::Coast };
+                        (side != self.side[j]).then_some((j, side))
+                    });
+                let Some((j, side)) = turned else { break };
+                self.side[j] = side;
+            }
+            let Some(map) = self.map(self.key()) else { continue };
+            self.rub();
+            let rows = &self.maps[map as usize].rows;
+            let rate: f64 = (0..free)
+                .map(|i| self.groups[g].row[i] * dot(&rows[i * cols..(i + 1) * cols], &self.tau))
+                .sum();
+            let end = self.slip[g] + self.h * rate;
+            if end * f64::from(sign) > 1e-12 * self.slip[g].abs() + 1e-15 * self.h * rate.abs() {
+                return Some(sign);
+            }
+        }
+        self.sign[g] = 0;
+        for (j, side) in self.side.iter_mut().enumerate() {
+            *side = if sides >> j & 1 == 1 { Side::Coast } else { Side::Drive };
+        }
+        None
+    }
+
+    fn coasting(&self) -> u64 {
+        self.side.iter().enumerate().map(|(j, s)| u64::from(*s == Side::Coast) << j).sum()
+    }
+
+    /// Solves the step in the present mode.
+    #[inline]
+    fn solve(&mut self, free: usize, cols: usize) -> Option<u32> {
+        let map = self.map(self.key())?;
+        self.rub();
+        let rows = &self.maps[map as usize].rows;
+        for (i, row) in rows[..free * cols].chunks_exact(cols).enumerate() {
+            self.next[i] = self.v[i] + self.h * dot(row, &self.tau);
+        }
+        Some(map)
+    }
+
+    /// Finds the mode of the step and its end.
+    fn settle(&mut self, free: usize, cols: usize) -> bool {
+        let trials = 4 * (self.groups.len() + self.side.len()) + 4;
+        for _ in 0..trials {
+            let Some(map) = self.solve(free, cols) else { return false };
+            let mut flip = self.disagreement(&self.maps[map as usize], free, cols);
+            if flip.is_none() && self.shares {
+                for g in 0..self.groups.len() {
+                    if self.sign[g] == 0
+                        && self.groups[g].shares
+                        && let Some(sign) = self.breaks_away(g)
+                    {
+                        flip = Some(Flip::Group(g, sign));
+                        break;
+                    }
+                }
+                if flip.is_none() {
+                    self.solve(free, cols);
+                }
+            }
+            match flip {
+                None => return true,
+                Some(Flip::Group(g, sign)) => self.sign[g] = sign,
+                Some(Flip::Side(j)) => self.side[j] = self.side[j].other(),
+            }
+        }
+        false
+    }
+
+    /// Takes one step.
+    pub fn step(&mut self) {
+        let middle = self.time() + 0.5 * self.h;
+        if middle >= self.until || self.until == f64::NEG_INFINITY {
+            self.refresh(middle);
+        }
+        self.load(middle);
+        let free = self.engine.system.free;
+        let cols = self.tau.len();
+        if !self.settle(free, cols) {
+            self.unsettled += 1;
+        }
+        if !self.energies.is_empty() {
+            self.count_energies();
+        }
+        // What is held is at rest exactly, not but for round-off.
+        if self.keeps_angles {
+            let all = self.engine.system.all();
+            for i in 0..all {
+                self.rest[i] += self.h * self.next[i];
+            }
+            for (k, driver) in self.engine.system.drivers.iter().enumerate() {
+                if let (Some(i), SourceKind::Controller { setpoint, .. }) =
+                    (driver.integral, &self.engine.system.scenario.sources[k].kind)
+                {
+                    let set = setpoint.value(middle, middle, &|_| 0.0);
+                    self.rest[all + i] +=
+                        self.h * (set - dot(&self.engine.system.speeds[driver.member.index()], &self.next));
+                }
+            }
+        }
+        std::mem::swap(&mut self.v, &mut self.next);
+        self.count += 1;
+    }
+
+    /// Begins to count energies.
+    pub(super) fn with_energies(&mut self) {
+        self.energies = vec![0.0; self.engine.energies()];
+    }
+
+    /// Work of the step's torques at the mean of the speeds before and after it.
+    fn count_energies(&mut self) {
+        let s = &self.engine.system;
+        let (free, cols) = (s.free, self.tau.len());
+        let Some((_, map)) = self.last else { return };
+        let map = &self.maps[map as usize];
+        // Holding torques join those of the ports.
+        let mut tau = self.tau[..s.ports].to_vec();
+        for (k, &g) in map.held.iter().enumerate() {
+            let row = &map.rows[(free + k) * cols..(free + k + 1) * cols];
+            tau[self.groups[usize::from(g)].lead.0] += dot(row, &self.tau);
+        }
+        let mean: Vec<f64> = self.v.iter().zip(&self.next).map(|(a, b)| 0.5 * (a + b)).collect();
+        let n = s.drivers.len();
+        for (k, (driver, source)) in s.drivers.iter().zip(&s.scenario.sources).enumerate() {
+            let row = &s.speeds[driver.member.index()];
+            let mut torque = match driver.prescribed {
+                Some(i) => {
+                    let row = &map.reactions[i * cols..(i + 1) * cols];
+                    dot(row, &self.tau)
+                }
+                None => tau[driver.port.expect("a torque")],
+            };
+            if let SourceKind::Controller { derivative, .. } = &source.kind {
+                torque -= derivative * (dot(row, &self.next) - dot(row, &self.v)) / self.h;
+            }
+            if let Some(f) = driver.rolling {
+                torque += tau[s.frictions[f].port];
+            }
+            let work = torque * dot(row, &mean) * self.h;
+            self.energies[k] += work;
+            self.energies[n + k] += work.max(0.0);
+        }
+        let mut at = 2 * n;
+        for (k, f) in s.frictions.iter().enumerate() {
+            if !matches!(f.what, super::system::Rubs::Rolling(_)) {
+                self.energies[at + k] -= tau[f.port] * dot(&f.row, &mean) * self.h;
+            }
+        }
+        at += s.frictions.len();
+        for (k, e) in s.elastic.iter().enumerate() {
+            let (spring, _) = self.engine.shaft_parts(k, &self.state);
+            self.energies[at + k] -= (tau[e.port] + spring) * dot(&e.row, &mean) * self.h;
+        }
+        at += s.elastic.len();
+        let moving = map.rows[(free + map.held.len()) * cols..].chunks_exact(cols);
+        for (&j, row) in map.moving.iter().zip(moving) {
+            let j = usize::from(j);
+            let (_, _, loss) = self.teeth[j];
+            let e = &s.elements[j];
+            let torque = dot(row, &self.tau) * super::mode::slope(loss, self.side[j]) + tau[e.port];
+            let energy = torque * dot(&e.row, &mean) * self.h;
+            for &(mesh, part) in &e.shares[usize::from(self.side[j] == Side::Coast)] {
+                self.energies[at + mesh] += energy * part;
+            }
+        }
+        // Teeth that hold, in the step in which they come to rest.
+        for &g in &map.held {
+            let (port, _) = self.groups[usize::from(g)].lead;
+            for &j in &self.groups[usize::from(g)].elements {
+                if s.elements[j].port == port {
+                    let energy = tau[port] * dot(&s.elements[j].row, &mean) * self.h;
+                    for &(mesh, part) in &s.elements[j].shares[usize::from(self.side[j] == Side::Coast)] {
+                        self.energies[at + mesh] += energy * part;
+                    }
+                }
+            }
+        }
+    }
+
+    /// What labels depend on.
+    pub(super) fn state_of_modes(&self) -> (u64, u64, f64) {
+        let held = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s == 0) << g).sum();
+        let forward = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s > 0) << g).sum();
+        (held, forward, self.until)
+    }
+
+    /// Brings the engine to the state and mode reached.
+    pub(super) fn copy_to_engine(&mut self, x: &mut Vec<f64>) {
+        let free = self.engine.system.free;
+        x.clear();
+        x.extend_from_slice(&self.v[..free]);
+        x.extend_from_slice(&self.rest);
+        x.extend_from_slice(&self.energies);
+        let t = self.time();
+        self.engine.inside = t;
+        self.engine.look(t, x);
+        let mode = Mode {
+            slip: self.sign.iter().enumerate().map(|(g, s)| if self.groups[g].driven { 0 } else { *s }).collect(),
+            side: self.side.clone(),
+        };
+        for k in 0..self.engine.engaged.len() {
+            let threshold = if self.engine.system.frictions[k].rigid { 0.5 } else { 0.0 };
+            self.engine.engaged[k] = self.engine.engagement(k, t) > threshold;
+        }
+        self.engine.enter(&mode);
+    }
+}
+
+/// The flat map of a mode.
+fn step_map(s: &System, mode: &Mode, pattern: &Pattern) -> Option<StepMap> {
+    let wide = pattern.with_slips(s.groups.len());
+    let map = compose(s, mode, &wide, &[])?;
+    let cols = wide.ports;
+    let row = |i: usize| &map.response[i * cols..(i + 1) * cols];
+    let mut rows: Vec<f64> = map.response[..s.free * cols].to_vec();
+    let held: Vec<u16> =
+        (0..s.groups.len()).filter(|&g| mode.slip[g] == 0 && !s.groups[g].driven).map(|g| g as u16).collect();
+    for &g in &held {
+        rows.extend_from_slice(&map.holding[usize::from(g) * cols..(usize::from(g) + 1) * cols]);
+    }
+    let mut moving = Vec::new();
+    let mut sums = Vec::new();
+    let mut alone = Vec::new();
+    for (j, e) in s.elements.iter().enumerate() {
+        let Some((g, _)) = e.group else { continue };
+        let torque: Vec<f64> = row(s.all() + j).iter().map(|x| x * e.factors[0]).collect();
+        if mode.slip[g] != 0 || s.groups[g].driven {
+            moving.push(j as u16);
+            sums.push(torque.iter().map(|x| x.abs()).sum());
+            rows.extend_from_slice(&torque);
+        } else if s.groups[g].elements.len() == 1 && s.groups[g].frictions.is_empty() {
+            alone.push((j as u16, torque));
+        }
+    }
+    let reactions = map.response[s.free * cols..s.all() * cols].to_vec();
+    Some(StepMap { rows, sums, held, moving, alone, reactions })
+}
+
+enum Flip {
+    Group(usize, i8),
+    Side(usize),
+}
