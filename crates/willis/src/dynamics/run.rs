@@ -744,10 +744,12 @@ fn lagged(
     let mut at = vec![0.0; n];
     run.outcome = Some(Outcome::Finished);
     // The first step has no step before: the sides that agree with the start.
+    let mut torques = vec![];
     for _ in 0..8 {
         run.engine.enter(&mode);
         run.engine.solve(run.t, &x);
-        run.engine.turn_sides(&mut mode);
+        torques = run.engine.element_torques();
+        run.engine.turn_sides(&mut mode, &torques);
     }
     for step in 0..=steps {
         let t = start + step as f64 * h;
@@ -775,6 +777,8 @@ fn lagged(
                     mode.slip[g] = if slip < 0.0 { -1 } else { 1 };
                 }
             }
+            // Old forces, new speeds: where the speed reverses, so does the drive.
+            run.engine.turn_sides(&mut mode, &torques);
             if mode != run.engine.mode {
                 run.engine.enter(&mode);
             }
@@ -786,7 +790,7 @@ fn lagged(
             x[i] += h / 6.0 * (k[0][i] + 2.0 * k[1][i] + 2.0 * k[2][i] + k[3][i]);
         }
         run.engine.solve(t + h, &x);
-        run.engine.turn_sides(&mut mode);
+        torques = run.engine.element_torques();
         run.steps += 1;
     }
     run.engine.look(run.t, &x);
