@@ -555,8 +555,8 @@ fn regress_validate_json() {
         let all = [&["validate", "--format", "json"], arguments].concat();
         serde_json::from_str(&answered(&all)).expect("JSON")
     };
-    assert_eq!(json(&[]), serde_json::json!(["wang-2020", "losses"]));
-    for case in ["wang-2020", "losses"] {
+    assert_eq!(json(&[]), serde_json::json!(["wang-2020", "losses", "galvagno"]));
+    for case in ["wang-2020", "losses", "galvagno"] {
         let report = json(&[case]);
         assert_eq!(report["format"], "willis-validation-1");
         has(&report["sections"][0], &["title", "text", "columns", "rows", "points"]);
@@ -575,7 +575,7 @@ fn regress_validate_data() {
 #[test]
 fn regress_validate_unknown() {
     let said = refused(&command(&["validate", "wang-2021"]).output().expect("the binary runs"), 1);
-    assert!(said.contains("wang-2020, losses"), "{said}");
+    assert!(said.contains("wang-2020, losses, galvagno"), "{said}");
     let said = refused(&command(&["validate", "losses", "--data", "."]).output().expect("the binary runs"), 1);
     assert!(said.contains("has no curves"), "{said}");
 }

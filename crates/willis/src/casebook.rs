@@ -9,6 +9,7 @@
 //! assert!(report.gates.iter().all(|g| g.holds || g.cause.is_some()));
 //! ```
 
+mod galvagno;
 mod losses;
 mod wang_2020;
 
@@ -45,6 +46,12 @@ pub const CASES: &[Case] = &[
         name: "losses",
         about: "losses: measurements, other programs, worked examples, with gates and misses",
         run: losses::report,
+        data: None,
+    },
+    Case {
+        name: "galvagno",
+        about: "motion of a lossy planetary set, Galvagno 2010: fourteen power flows, transients, offsets, jamming",
+        run: galvagno::report,
         data: None,
     },
 ];

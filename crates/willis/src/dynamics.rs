@@ -13,6 +13,7 @@ mod fixed;
 mod integrator;
 mod mode;
 mod modes;
+pub mod offset;
 mod output;
 mod report;
 mod run;

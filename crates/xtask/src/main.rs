@@ -328,6 +328,8 @@ const GENERATED: &[&str] = &[
     "validation/README.md",
     "validation/esmail-2018-table-1/README.md",
     "validation/losses/README.md",
+    "validation/galvagno/README.md",
+    "validation/modelica/README.md",
     "validation/wang-2020/report.md",
     "validation/wang-2020/planets.csv",
     "validation/wang-2020/speed-constant-torque.csv",
@@ -377,8 +379,8 @@ fn write_generated(context: &Context) -> Result<(), String> {
 
 /// Writes the pages of `validation`.
 fn write_pages(context: &Context) -> Result<(), String> {
-    let words =
-        "cargo test -p willis --test validation --test esmail_table --test validation_losses -- --nocapture write_page";
+    let words = "cargo test -p willis --test validation --test esmail_table --test validation_losses \
+                 --test validation_dynamics -- --nocapture write_page";
     context.output(context.words(words).env("WILLIS_WRITE", "1")).map(drop)
 }
 

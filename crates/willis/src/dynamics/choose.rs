@@ -76,6 +76,30 @@ impl Engine {
             .collect()
     }
 
+    /// Adds the groups whose slip is zero because that of others is: the last of several that stop together.
+    pub fn rest_with_others(&self, at_rest: &mut [bool]) {
+        let groups = &self.system.groups;
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        // What is left of a row beside those at rest; none if it is made of them.
+        let beyond = |g: usize, basis: &[Vec<f64>]| -> Option<Vec<f64>> {
+            let mut row = groups[g].row.clone();
+            let size = dot(&row, &row).sqrt();
+            for b in basis.iter().chain(basis) {
+                let along = dot(&row, b);
+                row.iter_mut().zip(b).for_each(|(x, y)| *x -= along * y);
+            }
+            let left = dot(&row, &row).sqrt();
+            row.iter_mut().for_each(|x| *x /= left);
+            (left > 1e-10 * size).then_some(row)
+        };
+        for g in (0..at_rest.len()).filter(|&g| at_rest[g]) {
+            basis.extend(beyond(g, &basis));
+        }
+        for g in 0..at_rest.len() {
+            at_rest[g] = at_rest[g] || beyond(g, &basis).is_none();
+        }
+    }
+
     /// The mode of a state. `at_rest`: groups at zero slip; `guess`: the mode before.
     pub fn choose(&mut self, t: f64, x: &[f64], at_rest: &[bool], guess: &Mode) -> Result<Mode, Trouble> {
         self.look(t, x);

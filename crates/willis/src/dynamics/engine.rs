@@ -414,11 +414,15 @@ impl Engine {
         }
     }
 
-    /// Turns the sides that disagree with the state solved last.
-    pub fn turn_sides(&self, mode: &mut Mode) {
-        for j in 0..self.system.elements.len() {
+    /// Torques of all elements at their first gears, at the state solved last, and their round-off.
+    pub fn element_torques(&self) -> Vec<(f64, f64)> {
+        (0..self.system.elements.len()).map(|j| self.element_torque(j)).collect()
+    }
+
+    /// Turns the sides that disagree with these torques, at the speeds looked at last.
+    pub fn turn_sides(&self, mode: &mut Mode, torques: &[(f64, f64)]) {
+        for (j, &(torque, size)) in torques.iter().enumerate() {
             if mode.element_slip(&self.system, j) != 0 {
-                let (torque, size) = self.element_torque(j);
                 let (value, noise) = self.side_margin(j, mode, torque, size);
                 if value < -noise {
                     mode.side[j] = mode.side[j].other();

@@ -239,6 +239,7 @@ impl Simulation {
         for (rest, now) in self.at_rest.iter_mut().zip(self.engine.at_rest()) {
             *rest |= now;
         }
+        self.engine.rest_with_others(&mut self.at_rest);
         self.engine.bring_to_rest(&mut x, &self.at_rest);
         self.engine.look(self.t, &x);
         let at_rest = std::mem::take(&mut self.at_rest);
@@ -277,7 +278,9 @@ impl Simulation {
             .map(|(_, l)| l.clone())
             .collect();
         let cause = self.cause.take();
-        if !changed.is_empty() || cause.as_deref().is_some_and(|c| c != INPUT) {
+        // At its limit by round-off only, a held element stays held and breaks away next time.
+        let nothing = |c: &str| c == INPUT || c.ends_with(BREAKS_AWAY);
+        if !changed.is_empty() || cause.as_deref().is_some_and(|c| !nothing(c)) {
             let event = Event { time_s: self.t, cause: cause.unwrap_or_else(|| INPUT.into()), modes: changed };
             self.labels = labels;
             self.events += 1;
@@ -331,7 +334,9 @@ impl Simulation {
             self.steps += 1;
             let (t_old, t_new) = self.span();
             self.last_step = Some(t_new - t_old);
-            if let Some((t, watch)) = self.find_event(t_old, t_new) {
+            // One beyond the time asked for is found again when it is reached.
+            let found = self.find_event(t_old, t_new).filter(|(t, _)| *t <= target);
+            if let Some((t, watch)) = found {
                 self.emit_samples(t, recorder);
                 if self.stiff { self.implicit.truncate(t) } else { self.explicit.truncate(t) }
                 return self.event(t, watch, recorder);
@@ -432,8 +437,8 @@ impl Simulation {
                 self.at_rest[g] = true;
                 format!("{} comes to rest", s.groups[g].name)
             }
-            Watch::Hold(g, _) => format!("{} breaks away", s.groups[g].name),
-            Watch::HoldAll => "what is held breaks away".into(),
+            Watch::Hold(g, _) => format!("{} {BREAKS_AWAY}", s.groups[g].name),
+            Watch::HoldAll => format!("what is held {BREAKS_AWAY}"),
             Watch::Side(j) => format!("drive reverses in {}", element_name(&s.train, &s.elements[j].links)),
             Watch::Touch(k) => format!("contact changes in {}", s.train.shafts()[k].name),
             Watch::Engage(k) => {
@@ -597,6 +602,9 @@ impl Simulation {
 /// The cause of a change by a break of an input.
 const INPUT: &str = "input";
 
+/// How the cause ends where a held element begins to slide.
+const BREAKS_AWAY: &str = "breaks away";
+
 /// Runs a scenario from its start to its end and hands rows and events to a recorder as they come.
 ///
 /// # Errors
@@ -736,10 +744,12 @@ fn lagged(
     let mut at = vec![0.0; n];
     run.outcome = Some(Outcome::Finished);
     // The first step has no step before: the sides that agree with the start.
+    let mut torques = vec![];
     for _ in 0..8 {
         run.engine.enter(&mode);
         run.engine.solve(run.t, &x);
-        run.engine.turn_sides(&mut mode);
+        torques = run.engine.element_torques();
+        run.engine.turn_sides(&mut mode, &torques);
     }
     for step in 0..=steps {
         let t = start + step as f64 * h;
@@ -767,6 +777,8 @@ fn lagged(
                     mode.slip[g] = if slip < 0.0 { -1 } else { 1 };
                 }
             }
+            // Old forces, new speeds: where the speed reverses, so does the drive.
+            run.engine.turn_sides(&mut mode, &torques);
             if mode != run.engine.mode {
                 run.engine.enter(&mode);
             }
@@ -778,7 +790,7 @@ fn lagged(
             x[i] += h / 6.0 * (k[0][i] + 2.0 * k[1][i] + 2.0 * k[2][i] + k[3][i]);
         }
         run.engine.solve(t + h, &x);
-        run.engine.turn_sides(&mut mode);
+        torques = run.engine.element_torques();
         run.steps += 1;
     }
     run.engine.look(run.t, &x);
