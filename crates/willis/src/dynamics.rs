@@ -10,6 +10,7 @@ mod choose;
 mod energy;
 mod engine;
 mod fixed;
+mod fused;
 mod integrator;
 mod mode;
 mod modes;

@@ -10,27 +10,31 @@
 use std::collections::HashMap;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::train::{Signal, SourceKind, Train};
+use crate::train::{MemberId, Signal, SourceKind, Train};
 
 use super::engine::Engine;
+use super::fused::{Exactly, Fused, NOISE, add_column};
 use super::mode::{Mode, Pattern, Side, compose, dot, dot_size};
 use super::run::initial_state;
-use super::system::System;
+use super::system::{System, signals_of, slope_force};
 
 /// Groups and elements that fit the key of a mode.
 const MOST_GROUPS: usize = 48;
 const MOST_ELEMENTS: usize = 64;
 
+/// Stands for a torque without bound: of a rigid lock, of a one-way clutch.
+pub(super) const UNBOUNDED: f64 = 1e30;
+/// What counts as such when multiplied by a ratio of gears.
+const LEAST_UNBOUNDED: f64 = 1e24;
+
 /// The map of a mode, flat: rows over ports and slips.
-struct StepMap {
+pub(super) struct StepMap {
     /// Accelerations of the free coordinates, then holding torques of `held`, then torques of `moving`.
-    rows: Vec<f64>,
-    /// Sum of amounts of each row of `moving`.
-    sums: Vec<f64>,
-    held: Vec<u16>,
-    moving: Vec<u16>,
+    pub rows: Vec<f64>,
+    pub held: Vec<u16>,
+    pub moving: Vec<u16>,
     /// Torques at the first gears of the elements of held groups, in the order of `held`.
-    still: Vec<(u16, Vec<f64>)>,
+    pub still: Vec<(u16, Vec<f64>)>,
     /// Whether some of what is held is held several times over.
     redundant: bool,
     /// Torques behind prescribed speeds.
@@ -38,12 +42,12 @@ struct StepMap {
 }
 
 /// A friction element of a group, ready for the step.
-struct Rub {
-    friction: usize,
-    port: usize,
-    factor: f64,
-    /// Torque, if it does not depend on slip.
-    constant: Option<f64>,
+pub(super) struct Rub {
+    pub friction: usize,
+    pub port: usize,
+    pub factor: f64,
+    /// Holds any torque, or none.
+    pub is_rigid: bool,
     /// At this step: its viscous torque, and the torques with which it opposes slip of its group forward and
     /// backward.
     viscous: f64,
@@ -51,16 +55,16 @@ struct Rub {
 }
 
 /// What a group needs in a step.
-struct GroupStep {
-    row: Vec<f64>,
-    rubs: Vec<Rub>,
-    elements: Vec<usize>,
-    lead: (usize, f64),
-    driven: bool,
+pub(super) struct GroupStep {
+    pub row: Vec<f64>,
+    pub rubs: Vec<Rub>,
+    pub elements: Vec<usize>,
+    pub lead: (usize, f64),
+    pub driven: bool,
     /// Whether several parts, teeth among them, share in holding it.
     shares: bool,
     /// Elements with losses that do not depend on load: port, torques when driving and coasting.
-    constants: Vec<(usize, usize, [f64; 2])>,
+    pub constants: Vec<(usize, usize, [f64; 2])>,
 }
 
 /// Key of a map: which groups are held, and the sides of what moves.
@@ -131,7 +135,24 @@ pub struct FixedStep {
     level: Vec<Option<f64>>,
     until: f64,
     engagement_signals: Vec<usize>,
+    /// The first signal of each source.
+    signal_of: Vec<usize>,
+    /// Torque of each friction element, if it does not depend on slip.
+    flat: Vec<Option<f64>>,
+    /// What enters a step, which of that is not level, and by what it is multiplied.
+    pub(super) inputs: Vec<f64>,
+    pub(super) varying: Vec<usize>,
+    pub(super) factors: Vec<f64>,
+    /// Steps of modes met before, and the present one with its part of level inputs and its round-off.
+    pub(super) fused: Vec<Fused>,
+    by_exact_key: HashMap<Exactly, u32>,
+    present: Option<u32>,
+    base: Vec<f64>,
+    least: Vec<f64>,
+    ends: Vec<f64>,
     keeps_angles: bool,
+    /// Speeds, angles with integrals, and signs at the start.
+    at_start: (Vec<f64>, Vec<f64>, Vec<i8>),
     /// Energies as the engine counts them; empty unless asked for.
     pub(super) energies: Vec<f64>,
     /// Losses of the elements and torques behind prescribed speeds, when balanced by sweeps.
@@ -179,13 +200,11 @@ impl FixedStep {
                 rubs: (g.frictions.iter())
                     .map(|&f| {
                         let friction = &s.frictions[f];
-                        let points = friction.torque.points();
-                        let level = points.iter().all(|p| p[1] == points[0][1]);
                         Rub {
                             friction: f,
                             port: friction.port,
                             factor: friction.group.expect("of this group").1,
-                            constant: (level && !friction.rigid).then_some(points[0][1]),
+                            is_rigid: friction.rigid || friction.blocks.is_some(),
                             viscous: 0.0,
                             opposes: [0.0; 2],
                         }
@@ -204,14 +223,30 @@ impl FixedStep {
             .collect();
         let (g, e, p) = (s.groups.len(), s.elements.len(), s.ports);
         let v = engine.speed.clone();
-        let sign = groups.iter().map(|group| if dot(&group.row, &v) < 0.0 { -1 } else { 1 }).collect();
+        let sign: Vec<i8> = groups.iter().map(|group| if dot(&group.row, &v) < 0.0 { -1 } else { 1 }).collect();
+        let rest = x[s.free..s.free + s.all() + s.integrals].to_vec();
         let signals = s.signals().count();
+        let signal_of = (s.scenario.sources.iter())
+            .scan(0, |at, source| {
+                let first = *at;
+                *at += signals_of(&source.kind).len();
+                Some(first)
+            })
+            .collect();
+        let flat = (s.frictions.iter())
+            .map(|f| {
+                let points = f.torque.points();
+                points.iter().all(|p| p[1] == points[0][1]).then_some(points[0][1])
+            })
+            .collect();
+        let inputs = s.drivers.len() + s.frictions.len() + s.elastic.len() + 1;
         let engagement_signals = (0..s.scenario.engagements.len()).map(|k| signals - s.scenario.engagements.len() + k).collect();
         Ok(Self {
             h,
             start: s.scenario.start,
             count: 0,
-            rest: x[s.free..s.free + s.all() + s.integrals].to_vec(),
+            at_start: (v.clone(), rest.clone(), sign.clone()),
+            rest,
             tau: vec![0.0; p + g],
             slip: vec![0.0; g],
             next: v.clone(),
@@ -234,6 +269,17 @@ impl FixedStep {
             level: vec![None; signals],
             until: f64::NEG_INFINITY,
             engagement_signals,
+            signal_of,
+            flat,
+            inputs: vec![0.0; inputs],
+            varying: Vec::with_capacity(inputs),
+            factors: vec![1.0; inputs],
+            fused: Vec::with_capacity(64),
+            by_exact_key: HashMap::with_capacity(64),
+            present: None,
+            base: vec![],
+            least: vec![],
+            ends: vec![],
             keeps_angles: true,
             energies: vec![],
             losses: vec![0.0; e],
@@ -278,6 +324,28 @@ impl FixedStep {
     pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
         self.until = f64::NEG_INFINITY;
         self.engine.system.set_input(source, value)
+    }
+
+    /// Goes back to the start; what was learned about modes stays.
+    pub fn reset(&mut self) {
+        let (v, rest, sign) = &self.at_start;
+        self.v.copy_from_slice(v);
+        self.rest.copy_from_slice(rest);
+        self.sign.copy_from_slice(sign);
+        self.side.fill(Side::Drive);
+        self.energies.fill(0.0);
+        (self.count, self.unsettled, self.impacts) = (0, 0, 0);
+        (self.present, self.last, self.until) = (None, None, f64::NEG_INFINITY);
+    }
+
+    /// Runs the whole scenario once and goes back to its start.
+    ///
+    /// A step that meets a mode for the first time prepares it, which takes many times as long as a step and
+    /// memory. After a rehearsal the same run meets no new mode: its steps allocate nothing and take bounded time.
+    pub fn rehearse(&mut self) {
+        let end = self.engine.system.scenario.end;
+        self.run((((end - self.start) / self.h - 1e-9).ceil() as u64).saturating_sub(self.count));
+        self.reset();
     }
 
     /// Takes steps.
@@ -341,54 +409,60 @@ impl FixedStep {
         key
     }
 
-    /// Sets what the signals that are level for a while are worth.
+    /// Sets what the signals that are level for a while are worth, and which inputs are not.
     #[cold]
     fn refresh(&mut self, t: f64) {
         let s = &self.engine.system;
         self.until = s.signals().map(|s| s.next_break(t)).fold(f64::INFINITY, f64::min);
         for (level, signal) in self.level.iter_mut().zip(s.signals()) {
-            let moves = match signal {
-                Signal::Ramp { at, duration, .. } => t >= *at && t < at + duration,
-                Signal::Sine { at, .. } => t >= *at,
-                Signal::Table { hold, .. } => !hold,
-                Signal::Expression { .. } | Signal::Product(_) => true,
-                Signal::Constant(_) | Signal::Step { .. } | Signal::Pulse { .. } => false,
-            };
+            let moves = signal.moves(t);
             *level = (!moves).then(|| signal.value(t, t, &|_| 0.0));
         }
+        self.varying.clear();
+        let drivers = s.drivers.len();
+        for (k, source) in s.scenario.sources.iter().enumerate() {
+            let of_torque = matches!(source.kind, SourceKind::Torque(_) | SourceKind::Speed(_));
+            if !of_torque || self.level[self.signal_of[k]].is_none() {
+                self.varying.push(k);
+            }
+        }
+        for (f, friction) in s.frictions.iter().enumerate() {
+            let level = match friction.engagement {
+                Some(k) => self.level[self.engagement_signals[k]].is_some(),
+                None => true,
+            };
+            let of_slip = self.flat[f].is_none() && !friction.rigid && friction.blocks.is_none();
+            if friction.group.is_some() && (!level || of_slip) {
+                self.varying.push(drivers + f);
+            }
+        }
+        self.varying.extend((0..s.elastic.len()).map(|k| drivers + s.frictions.len() + k));
     }
 
-    /// Torques of the ports in the middle of the step, friction and losses excluded, slips and capacities.
-    fn load(&mut self, middle: f64) {
+    /// What enters a step: torque or end speed of each source, torque with which each friction element can
+    /// oppose slip, torque of each shaft, one.
+    #[inline]
+    fn input(&self, k: usize, middle: f64) -> f64 {
         let s = &self.engine.system;
-        let p = s.ports;
-        self.tau.iter_mut().for_each(|x| *x = 0.0);
         let v = &self.v;
-        let speed = |m: crate::train::MemberId| dot(&s.speeds[m.index()], v);
-        let mut signal_at = 0;
-        let mut take = |signal: &Signal| {
-            let k = signal_at;
-            signal_at += 1;
-            self.level[k].unwrap_or_else(|| signal.value(middle, middle, &speed))
-        };
-        for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
-            let torque = match &source.kind {
-                SourceKind::Torque(signal) => take(signal),
+        let speed = |m: MemberId| dot(&s.speeds[m.index()], v);
+        let drivers = s.drivers.len();
+        if k < drivers {
+            let driver = &s.drivers[k];
+            let first = self.signal_of[k];
+            let take =
+                |at: usize, signal: &Signal| self.level[first + at].unwrap_or_else(|| signal.value(middle, middle, &speed));
+            return self.factors[k] * match &s.scenario.sources[k].kind {
+                SourceKind::Torque(signal) => take(0, signal),
                 SourceKind::Speed(signal) => {
-                    let _ = take(signal);
-                    let i = driver.prescribed.expect("a prescribed speed");
-                    let end = middle + 0.5 * self.h;
-                    let u = signal.value(end, middle, &|_| 0.0);
-                    self.next[s.free + i] = u;
-                    self.tau[s.port_of_prescribed + i] = (u - v[s.free + i]) / self.h;
-                    continue;
+                    self.level[first].unwrap_or_else(|| signal.value(middle + 0.5 * self.h, middle, &|_| 0.0))
                 }
                 SourceKind::Controller { setpoint, feed_forward, proportional, integral, derivative } => {
-                    let error = take(setpoint) - speed(driver.member);
+                    let error = take(0, setpoint) - speed(driver.member);
                     let sum = driver.integral.map_or(0.0, |i| self.rest[s.all() + i]);
                     let rate =
                         if *derivative == 0.0 { 0.0 } else { setpoint.rate(middle, middle, &speed) * derivative };
-                    take(feed_forward) + proportional * error + integral * sum + rate
+                    take(1, feed_forward) + proportional * error + integral * sum + rate
                 }
                 SourceKind::Linear { torque, about, slope } => torque - slope * (speed(driver.member) - about),
                 SourceKind::Quadratic { torque, about, factor, even } => {
@@ -398,31 +472,74 @@ impl FixedStep {
                 SourceKind::Vehicle { mass, wheel_radius, final_drive, drag_area, air_density, grade, .. } => {
                     let arm = wheel_radius / final_drive;
                     let w = speed(driver.member) * arm;
-                    -(0.5 * air_density * drag_area * w * w.abs() + super::system::slope_force(*mass, take(grade))) * arm
+                    -(0.5 * air_density * drag_area * w * w.abs() + slope_force(*mass, take(0, grade))) * arm
                 }
                 SourceKind::Motor { full_load, closed, throttle } => {
                     let w = speed(driver.member);
                     let (low, high) = (closed.at(w), full_load.at(w));
-                    low + take(throttle).clamp(0.0, 1.0) * (high - low)
+                    low + take(0, throttle).clamp(0.0, 1.0) * (high - low)
                 }
             };
-            self.tau[driver.port.expect("a torque")] = torque;
+        }
+        let f = k - drivers;
+        if f < s.frictions.len() {
+            let friction = &s.frictions[f];
+            let engaged = match friction.engagement {
+                None => 1.0,
+                Some(k) => self.level[self.engagement_signals[k]]
+                    .unwrap_or_else(|| s.scenario.engagements[k].signal.value(middle, middle, &speed)),
+            };
+            return match self.flat[f] {
+                _ if friction.group.is_none() || friction.blocks.is_some() => 0.0,
+                _ if friction.rigid => if engaged >= 0.5 { UNBOUNDED } else { 0.0 },
+                Some(torque) => self.factors[k] * torque * engaged.clamp(0.0, 1.0),
+                None => self.factors[k] * friction.torque.at(dot(&friction.row, v).abs()) * engaged.clamp(0.0, 1.0),
+            };
+        }
+        let e = f - s.frictions.len();
+        if e < s.elastic.len() { self.engine.shaft_torque(e, &self.state) } else { 1.0 }
+    }
+
+    /// The state as the engine's shafts know it.
+    fn look_at_shafts(&mut self) {
+        self.engine.speed.copy_from_slice(&self.v);
+        self.state.clear();
+        self.state.extend_from_slice(&self.v[..self.engine.system.free]);
+        self.state.extend_from_slice(&self.rest);
+        for k in 0..self.engine.system.elastic.len() {
+            self.engine.touch[k] = self.engine.touch_now(k, &self.state);
+        }
+    }
+
+    /// Torques of the ports in the middle of the step, friction and losses excluded, slips and capacities.
+    fn load(&mut self, middle: f64) {
+        if !self.engine.system.elastic.is_empty() {
+            self.look_at_shafts();
+        }
+        for k in 0..self.inputs.len() {
+            self.inputs[k] = self.input(k, middle);
+        }
+        let s = &self.engine.system;
+        let p = s.ports;
+        let v = &self.v;
+        self.tau.iter_mut().for_each(|x| *x = 0.0);
+        for (driver, &u) in s.drivers.iter().zip(&self.inputs) {
+            match (driver.prescribed, driver.port) {
+                (Some(i), _) => {
+                    self.next[s.free + i] = u;
+                    self.tau[s.port_of_prescribed + i] = (u - v[s.free + i]) / self.h;
+                }
+                (None, port) => self.tau[port.expect("a torque")] = u,
+            }
         }
         for f in s.frictions.iter().filter(|f| f.viscous != 0.0) {
             self.tau[f.port] -= f.viscous * dot(&f.row, v);
         }
-        if !s.elastic.is_empty() {
-            self.engine.speed.copy_from_slice(v);
-            self.state.clear();
-            self.state.extend_from_slice(&v[..s.free]);
-            self.state.extend_from_slice(&self.rest);
-            for k in 0..self.engine.system.elastic.len() {
-                self.engine.touch[k] = self.engine.touch_now(k, &self.state);
-                self.tau[self.engine.system.elastic[k].port] = self.engine.shaft_torque(k, &self.state);
-            }
+        let of_frictions = s.drivers.len();
+        for (k, e) in s.elastic.iter().enumerate() {
+            self.tau[e.port] = self.inputs[of_frictions + s.frictions.len() + k];
         }
-        let s = &self.engine.system;
-        let (v, h, level, next) = (&self.v, self.h, &self.level, &self.next);
+        let (h, next) = (self.h, &self.next);
         for (g, group) in self.groups.iter_mut().enumerate() {
             // With the prescribed speeds of the end of the step.
             let slip = dot(&group.row[..s.free], &v[..s.free]) + dot(&group.row[s.free..], &next[s.free..]);
@@ -431,20 +548,12 @@ impl FixedStep {
             let (mut slides, mut holds) = ([0.0, 0.0], [0.0, 0.0]);
             for rub in &mut group.rubs {
                 let friction = &s.frictions[rub.friction];
-                let engaged = match friction.engagement {
-                    None => 1.0,
-                    Some(k) => level[self.engagement_signals[k]].unwrap_or_else(|| {
-                        s.scenario.engagements[k].signal.value(middle, middle, &|m| dot(&s.speeds[m.index()], v))
-                    }),
-                };
-                rub.opposes = match (rub.constant, friction.blocks) {
-                    (Some(c), _) => [c * engaged.clamp(0.0, 1.0); 2],
-                    (None, Some(blocks)) => {
+                rub.opposes = match friction.blocks {
+                    Some(blocks) => {
                         let along = f64::from(blocks) * rub.factor;
-                        [along > 0.0, along < 0.0].map(|b| if b { f64::INFINITY } else { 0.0 })
+                        [along > 0.0, along < 0.0].map(|b| if b { UNBOUNDED } else { 0.0 })
                     }
-                    (None, None) if friction.rigid => [if engaged >= 0.5 { f64::INFINITY } else { 0.0 }; 2],
-                    (None, None) => [friction.torque.at((rub.factor * slip).abs()) * engaged.clamp(0.0, 1.0); 2],
+                    None => [self.inputs[of_frictions + rub.friction]; 2],
                 };
                 rub.viscous = self.tau[rub.port];
                 for k in 0..2 {
@@ -457,7 +566,7 @@ impl FixedStep {
             // What has no friction has no mode, and what cannot slide that way is held.
             if slides == [0.0; 2] && group.elements.is_empty() {
                 self.sign[g] = 1;
-            } else if self.sign[g] != 0 && slides[usize::from(self.sign[g] < 0)].is_infinite() {
+            } else if self.sign[g] != 0 && slides[usize::from(self.sign[g] < 0)] >= LEAST_UNBOUNDED {
                 self.impacts += u64::from(slip * f64::from(self.sign[g]) > 1e-9);
                 self.sign[g] = 0;
             }
@@ -475,7 +584,7 @@ impl FixedStep {
                     1 => -rub.opposes[0],
                     _ => rub.opposes[1],
                 };
-                let opposes = if opposes.is_finite() { opposes } else { 0.0 };
+                let opposes = if opposes.abs() >= LEAST_UNBOUNDED { 0.0 } else { opposes };
                 self.tau[rub.port] = rub.viscous + if rub.factor < 0.0 { -opposes } else { opposes };
             }
             for &(j, port, [drive, coast]) in &group.constants {
@@ -486,22 +595,28 @@ impl FixedStep {
         }
     }
 
-    /// The first thing in which the mode and the end of the step disagree.
+    /// Round-off of the slip of a group at the end of the step.
+    fn round_off(&self, g: usize) -> f64 {
+        NOISE * (dot_size(&self.groups[g].row, &self.next) + self.slip[g].abs())
+    }
+
+    /// The first thing in which the mode and the end of the step disagree. Groups in `kept` came to rest at once after
+    /// they were released: those that others hold as well go on sliding without moving, the rest is not released again.
     #[inline]
-    fn disagreement(&self, map: &StepMap, free: usize, cols: usize) -> Option<Flip> {
-        for (g, group) in self.groups.iter().enumerate() {
-            if self.sign[g] != 0 && !group.driven {
+    fn disagreement(&self, map: &StepMap, free: usize, cols: usize, kept: u64) -> Option<Flip> {
+        let mut rows = map.rows[free * cols..].chunks_exact(cols);
+        let mut stuck = None;
+        let mut teeth = map.still.iter();
+        for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
+            if self.sign[g] != 0 {
                 let end = dot(&group.row, &self.next) * f64::from(self.sign[g]);
-                if end < 0.0 && (self.capacity[g] != [0.0; 2] || !group.elements.is_empty()) {
+                let may_hold = self.capacity[g] != [0.0; 2] || !group.elements.is_empty();
+                let only_noise = || kept >> g & 1 == 1 && end >= -self.round_off(g);
+                if end < 0.0 && may_hold && !only_noise() {
                     return Some(Flip::Group(g, 0));
                 }
+                continue;
             }
-        }
-        let mut rows = map.rows[free * cols..].chunks_exact(cols);
-        let mut teeth = map.still.iter();
-        for &g in &map.held {
-            let g = usize::from(g);
-            let group = &self.groups[g];
             let force = group.lead.1 * dot(rows.next().expect("a row for each"), &self.tau);
             let [mut forward, mut backward] = self.capacity[g];
             // Teeth at rest hold by the forces in them.
@@ -516,14 +631,17 @@ impl FixedStep {
                 backward += factor * against;
             }
             let noise = 1e-12 * (force.abs() + 1e-300);
-            if forward + force < -noise {
-                return Some(Flip::Group(g, 1));
+            let sign = match (forward + force < -noise, backward - force < -noise) {
+                (true, _) => 1,
+                (_, true) => -1,
+                _ => continue,
+            };
+            if kept >> g & 1 == 0 {
+                return Some(Flip::Group(g, sign));
             }
-            if backward - force < -noise {
-                return Some(Flip::Group(g, -1));
-            }
+            stuck = Some(Flip::Stuck);
         }
-        for ((&j, sum), row) in map.moving.iter().zip(&map.sums).zip(rows) {
+        for (&j, row) in map.moving.iter().zip(rows) {
             let j = usize::from(j);
             let (g, factor, loss) = self.teeth[j];
             if self.sign[g] == 0 {
@@ -533,15 +651,12 @@ impl FixedStep {
             let torque = dot(row, &self.tau);
             let value = sign * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
             let value = if self.side[j] == Side::Drive { value } else { -value };
-            if value < 0.0 {
-                // A mesh that carries nothing keeps its side.
-                let largest = self.tau.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-                if value < -1e-11 * sum * largest {
-                    return Some(Flip::Side(j));
-                }
+            // A mesh that carries nothing keeps its side.
+            if value < 0.0 && value < -NOISE * (loss.drive - loss.coast) * dot_size(row, &self.tau) {
+                return Some(Flip::Side(j));
             }
         }
-        None
+        stuck
     }
 
     /// Whether a held group whose parts share in holding would slide off: tried in both directions.
@@ -550,7 +665,7 @@ impl FixedStep {
         let p = self.engine.system.ports;
         let (free, cols) = (self.engine.system.free, p + self.groups.len());
         for sign in [1i8, -1] {
-            if self.capacity[g][usize::from(sign < 0)].is_infinite() {
+            if self.capacity[g][usize::from(sign < 0)] >= LEAST_UNBOUNDED {
                 continue;
             }
             self.sign[g] = sign;
@@ -613,9 +728,11 @@ impl FixedStep {
     /// Finds the mode of the step and its end.
     fn settle(&mut self, free: usize, cols: usize) -> bool {
         let trials = 4 * (self.groups.len() + self.side.len()) + 4;
+        // The group released last, and those that came to rest again at once.
+        let (mut released, mut kept) = (None, 0u64);
         for _ in 0..trials {
             let Some(map) = self.solve(free, cols) else { return false };
-            let mut flip = self.disagreement(&self.maps[map as usize], free, cols);
+            let mut flip = self.disagreement(&self.maps[map as usize], free, cols, kept);
             if flip.is_none() && self.shares && !self.maps[map as usize].redundant {
                 for g in 0..self.groups.len() {
                     if self.sign[g] == 0
@@ -632,11 +749,110 @@ impl FixedStep {
             }
             match flip {
                 None => return true,
-                Some(Flip::Group(g, sign)) => self.sign[g] = sign,
+                Some(Flip::Group(g, sign)) => {
+                    let again = sign == 0 && released == Some(g) && kept >> g & 1 == 0;
+                    if again {
+                        kept |= 1 << g;
+                    }
+                    released = (sign != 0).then_some(g);
+                    if !again || dot(&self.groups[g].row, &self.next).abs() > self.round_off(g) {
+                        self.sign[g] = sign;
+                    }
+                }
                 Some(Flip::Side(j)) => self.side[j] = self.side[j].other(),
+                Some(Flip::Stuck) => return false,
             }
         }
         false
+    }
+
+    /// The mode in every detail.
+    fn exactly(&self) -> Exactly {
+        let mut key = Exactly::default();
+        for (g, group) in self.groups.iter().enumerate() {
+            let bit = 1 << g;
+            if self.sign[g] == 0 && !group.driven {
+                key.held |= bit;
+            } else if self.capacity[g] == [0.0; 2] && group.elements.is_empty() {
+                key.idle |= bit;
+            } else if self.sign[g] > 0 {
+                key.forward |= bit;
+            }
+        }
+        key.coast = self.coasting();
+        key
+    }
+
+    /// Makes the fused step of the mode just settled the present one.
+    fn fuse(&mut self) {
+        self.present = None;
+        let Some((_, map)) = self.last else { return };
+        let map = &self.maps[map as usize];
+        let held_shares = self.groups.iter().zip(&self.sign).any(|(group, sign)| *sign == 0 && group.shares);
+        if self.swept || !self.energies.is_empty() || held_shares && !map.redundant {
+            return;
+        }
+        for (j, row) in &map.still {
+            let torque = dot(row, &self.tau);
+            self.side[usize::from(*j)] = if torque >= 0.0 { Side::Drive } else { Side::Coast };
+        }
+        let key = self.exactly();
+        let k = match self.by_exact_key.get(&key) {
+            Some(&k) => k,
+            None => {
+                let s = &self.engine.system;
+                self.fused.push(Fused::new(s, &self.groups, &self.teeth, map, &key, self.h));
+                let k = self.fused.len() as u32 - 1;
+                self.by_exact_key.insert(key, k);
+                k
+            }
+        };
+        let fused = &self.fused[k as usize];
+        fused.settle(&self.v, &self.inputs, &self.varying, &mut self.base, &mut self.least);
+        self.ends.resize(fused.rows, 0.0);
+        self.present = Some(k);
+    }
+
+    /// Takes the step in the mode of the last one; false, and nothing done, if that does not go on.
+    #[inline]
+    fn glide(&mut self, middle: f64) -> bool {
+        let Some(k) = self.present else { return false };
+        if !self.engine.system.elastic.is_empty() {
+            self.look_at_shafts();
+        }
+        let fused = &self.fused[k as usize];
+        let all = self.v.len();
+        self.ends.copy_from_slice(&self.base);
+        for (k, v) in self.v.iter().enumerate() {
+            add_column(&mut self.ends, fused.column(k), *v);
+        }
+        let s = &self.engine.system;
+        let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
+        for &k in &self.varying {
+            let u = self.input(k, middle);
+            // What opens, closes or locks is more than a change of torque.
+            if k >= drivers && k < drivers + frictions {
+                let was = self.inputs[k];
+                if (u == 0.0) != (was == 0.0) || (u == UNBOUNDED) != (was == UNBOUNDED) {
+                    return false;
+                }
+            }
+            add_column(&mut self.ends, fused.column(all + k), u);
+            self.inputs[k] = u;
+        }
+        let broken = self.ends.iter().zip(&self.least).fold(false, |broken, (end, least)| broken | (end < least));
+        if broken {
+            return false;
+        }
+        self.next[..s.free].copy_from_slice(&self.ends[..s.free]);
+        if s.prescribed > 0 {
+            for (driver, u) in s.drivers.iter().zip(&self.inputs) {
+                if let Some(i) = driver.prescribed {
+                    self.next[s.free + i] = *u;
+                }
+            }
+        }
+        true
     }
 
     /// Takes one step.
@@ -644,16 +860,20 @@ impl FixedStep {
         let middle = self.time() + 0.5 * self.h;
         if middle >= self.until || self.until == f64::NEG_INFINITY {
             self.refresh(middle);
+            self.present = None;
         }
-        self.load(middle);
-        let free = self.engine.system.free;
-        let cols = self.tau.len();
-        self.swept = false;
-        if !self.settle(free, cols) && !self.sweep(free, cols) {
-            self.unsettled += 1;
-        }
-        if !self.energies.is_empty() {
-            self.count_energies();
+        if !self.glide(middle) {
+            self.load(middle);
+            let free = self.engine.system.free;
+            let cols = self.tau.len();
+            self.swept = false;
+            if !self.settle(free, cols) && !self.sweep(free, cols) {
+                self.unsettled += 1;
+            }
+            if !self.energies.is_empty() {
+                self.count_energies();
+            }
+            self.fuse();
         }
         // What is held is at rest exactly, not but for round-off.
         if self.keeps_angles {
@@ -897,13 +1117,11 @@ fn step_map(s: &System, mode: &Mode, pattern: &Pattern) -> Option<StepMap> {
         rows.extend_from_slice(&map.holding[usize::from(g) * cols..(usize::from(g) + 1) * cols]);
     }
     let mut moving = Vec::new();
-    let mut sums = Vec::new();
     for (j, e) in s.elements.iter().enumerate() {
         let Some((g, _)) = e.group else { continue };
         let torque = torque_row(j);
         if mode.slip[g] != 0 || s.groups[g].driven {
             moving.push(j as u16);
-            sums.push(torque.iter().map(|x| x.abs()).sum());
             rows.extend_from_slice(&torque);
         }
     }
@@ -913,10 +1131,12 @@ fn step_map(s: &System, mode: &Mode, pattern: &Pattern) -> Option<StepMap> {
         .collect();
     let redundant = map.is_redundant();
     let reactions = map.response[s.free * cols..s.all() * cols].to_vec();
-    Some(StepMap { rows, sums, held, moving, still, redundant, reactions })
+    Some(StepMap { rows, held, moving, still, redundant, reactions })
 }
 
 enum Flip {
     Group(usize, i8),
     Side(usize),
+    /// Only groups that are kept would have to be released.
+    Stuck,
 }

@@ -48,6 +48,21 @@ impl Signal {
         }
     }
 
+    /// Whether its value changes within the piece that holds `inside`.
+    pub(crate) fn moves(&self, inside: f64) -> bool {
+        match self {
+            Self::Constant(_) | Self::Step { .. } | Self::Pulse { .. } => false,
+            Self::Ramp { at, duration, .. } => inside >= *at && inside < at + duration,
+            Self::Sine { at, .. } => inside >= *at,
+            Self::Table { points, hold } => match segment(points, inside) {
+                Segment::Between(k) => !hold && points[k][1] != points[k + 1][1],
+                Segment::Before | Segment::After => false,
+            },
+            Self::Product(of) => of.iter().any(|s| s.moves(inside)),
+            Self::Expression { .. } => true,
+        }
+    }
+
     /// Rate of change in time at `t`, speeds held, in the piece that holds `inside`.
     pub(crate) fn rate(&self, t: f64, inside: f64, speed: &dyn Fn(MemberId) -> f64) -> f64 {
         match self {

@@ -690,7 +690,7 @@ impl System {
     }
 }
 
-fn signals_of(kind: &SourceKind) -> Vec<&Signal> {
+pub(super) fn signals_of(kind: &SourceKind) -> Vec<&Signal> {
     match kind {
         SourceKind::Torque(s) | SourceKind::Speed(s) => vec![s],
         SourceKind::Controller { setpoint, feed_forward, .. } => vec![setpoint, feed_forward],

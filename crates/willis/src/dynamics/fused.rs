@@ -1,0 +1,228 @@
+//! A step in one mode as a single affine map, with every condition under which the mode goes on.
+//!
+//! Within a mode all is linear: the speeds after a step and the margins of the mode (a slip that keeps its sign, a held
+//! group within what holds it, a mesh whose drive does not reverse) are sums over the speeds before it
+//! and over what enters it. One small product says both where the step ends and whether it may be taken.
+
+use super::fixed::{GroupStep, StepMap, UNBOUNDED};
+use super::mode::Side;
+use super::system::{Loss, System};
+
+/// Rows come in blocks of as many, so that the product runs without a remainder.
+const BLOCK: usize = 4;
+
+/// Round-off of a margin, relative to the sum of amounts.
+pub(super) const NOISE: f64 = 1e-11;
+
+/// The affine map of a step in a mode.
+pub(super) struct Fused {
+    /// Speeds after the step, then margins, then zeros up to a whole number of blocks.
+    pub rows: usize,
+    pub free: usize,
+    /// Columns of the speeds before the step, then of the inputs.
+    columns: Vec<f64>,
+}
+
+/// What tells a mode from others: by group whether it is held, slides forward, or has nothing to hold it; by element
+/// its side, for teeth at rest the sign of the torque in them.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub(super) struct Exactly {
+    pub held: u64,
+    pub forward: u64,
+    pub idle: u64,
+    pub coast: u64,
+}
+
+impl Exactly {
+    fn has(word: u64, k: usize) -> bool {
+        word >> k & 1 == 1
+    }
+
+    fn side(&self, element: usize) -> Side {
+        if Self::has(self.coast, element) { Side::Coast } else { Side::Drive }
+    }
+
+    fn sign(&self, group: usize) -> f64 {
+        if Self::has(self.forward, group) { 1.0 } else { -1.0 }
+    }
+}
+
+impl Fused {
+    /// From the map of a mode over torques of ports and slips of groups; `h` is the length of the step.
+    pub fn new(
+        s: &System,
+        groups: &[GroupStep],
+        teeth: &[(usize, f64, Loss)],
+        map: &StepMap,
+        mode: &Exactly,
+        h: f64,
+    ) -> Self {
+        let (free, all, cols) = (s.free, s.all(), s.ports + groups.len());
+        let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
+        let one = drivers + frictions + s.elastic.len();
+        let width = all + one + 1;
+        // A sum over the torques of the ports, as a sum over speeds and inputs.
+        let widen = |row: &[f64]| -> Vec<f64> {
+            let mut x = vec![0.0; width];
+            for (k, driver) in s.drivers.iter().enumerate() {
+                match driver.prescribed {
+                    Some(i) => {
+                        let per_step = row[s.port_of_prescribed + i] / h;
+                        x[all + k] += per_step;
+                        x[free + i] -= per_step;
+                    }
+                    None => x[all + k] += row[driver.port.expect("a torque")],
+                }
+            }
+            for f in &s.frictions {
+                for (x, w) in x.iter_mut().zip(&f.row) {
+                    *x -= row[f.port] * f.viscous * w;
+                }
+            }
+            for (k, e) in s.elastic.iter().enumerate() {
+                x[all + drivers + frictions + k] += row[e.port];
+            }
+            for (g, group) in groups.iter().enumerate() {
+                let per_step = row[s.ports + g] / h;
+                for i in 0..free {
+                    x[i] += per_step * group.row[i];
+                }
+                for (k, driver) in s.drivers.iter().enumerate() {
+                    if let Some(i) = driver.prescribed {
+                        x[all + k] += per_step * group.row[free + i];
+                    }
+                }
+                if Exactly::has(mode.held, g) || Exactly::has(mode.idle, g) {
+                    continue;
+                }
+                let sign = mode.sign(g);
+                for rub in group.rubs.iter().filter(|r| !r.is_rigid) {
+                    x[all + drivers + rub.friction] -= sign * rub.factor.signum() * row[rub.port];
+                }
+                for &(j, port, [drive, coast]) in &group.constants {
+                    let torque = if mode.side(j) == Side::Drive { drive } else { coast };
+                    x[all + one] += sign * teeth[j].1.signum() * torque * row[port];
+                }
+            }
+            x
+        };
+        let add = |x: &mut [f64], y: &[f64], factor: f64| x.iter_mut().zip(y).for_each(|(x, y)| *x += factor * y);
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        for (i, row) in map.rows[..free * cols].chunks_exact(cols).enumerate() {
+            let mut row = widen(row);
+            row.iter_mut().for_each(|x| *x *= h);
+            row[i] += 1.0;
+            rows.push(row);
+        }
+        for (g, group) in groups.iter().enumerate() {
+            if group.driven || Exactly::has(mode.held, g) || Exactly::has(mode.idle, g) {
+                continue;
+            }
+            let mut row = vec![0.0; width];
+            for i in 0..free {
+                let next = std::mem::take(&mut rows[i]);
+                add(&mut row, &next, mode.sign(g) * group.row[i]);
+                rows[i] = next;
+            }
+            for (k, driver) in s.drivers.iter().enumerate() {
+                if let Some(i) = driver.prescribed {
+                    row[all + k] += mode.sign(g) * group.row[free + i];
+                }
+            }
+            rows.push(row);
+        }
+        let mut lines = map.rows[free * cols..].chunks_exact(cols);
+        let mut still = map.still.iter();
+        for &g in &map.held {
+            let group = &groups[usize::from(g)];
+            let force = widen(lines.next().expect("a row for each"));
+            let mut margins = [force.clone(), force];
+            scale(&mut margins[0], group.lead.1);
+            scale(&mut margins[1], -group.lead.1);
+            for rub in &group.rubs {
+                let friction = &s.frictions[rub.friction];
+                for (k, margin) in margins.iter_mut().enumerate() {
+                    match friction.blocks {
+                        Some(blocks) => {
+                            let along = f64::from(blocks) * rub.factor;
+                            if (along > 0.0) == (k == 0) {
+                                margin[all + one] += UNBOUNDED * rub.factor.abs();
+                            }
+                        }
+                        None => margin[all + drivers + rub.friction] += rub.factor.abs() * friction.peak,
+                    }
+                }
+            }
+            // What teeth at rest can hold is a kinked function of the torque in them; either of its pieces is a
+            // safe bound, and this is the one that is right for the present sign of that torque.
+            for &j in &group.elements {
+                let (_, row) = still.next().expect("a row for each");
+                let (_, factor, loss) = teeth[j];
+                let torque = widen(row);
+                let ((up, up_one), (down, down_one)) = match mode.side(j) {
+                    Side::Drive => ((loss.drive, loss.drive_torque), (-loss.coast, loss.coast_torque)),
+                    Side::Coast => ((loss.coast, loss.coast_torque), (-loss.drive, loss.drive_torque)),
+                };
+                let pieces = [(up, up_one), (down, down_one)];
+                let order = if factor > 0.0 { [0, 1] } else { [1, 0] };
+                for (margin, piece) in margins.iter_mut().zip(order) {
+                    let (slope, constant) = pieces[piece];
+                    add(margin, &torque, factor.abs() * slope);
+                    margin[all + one] += factor.abs() * constant;
+                }
+            }
+            rows.extend(margins);
+        }
+        for (&j, line) in map.moving.iter().zip(lines) {
+            let j = usize::from(j);
+            let (g, factor, loss) = teeth[j];
+            let along = if mode.side(j) == Side::Drive { 1.0 } else { -1.0 };
+            let mut row = widen(line);
+            scale(&mut row, along * mode.sign(g) * factor.signum() * (loss.drive - loss.coast));
+            row[all + one] += along * (loss.drive_torque - loss.coast_torque);
+            rows.push(row);
+        }
+        rows.resize(rows.len().next_multiple_of(BLOCK), vec![0.0; width]);
+        let columns = (0..width).flat_map(|c| rows.iter().map(move |row| row[c])).collect();
+        Self { rows: rows.len(), free, columns }
+    }
+
+    /// Column of a speed, or of an input behind them.
+    #[inline]
+    pub fn column(&self, k: usize) -> &[f64] {
+        &self.columns[k * self.rows..(k + 1) * self.rows]
+    }
+
+    /// The part of level inputs, and for each row how negative it may be from round-off.
+    pub fn settle(&self, v: &[f64], inputs: &[f64], varying: &[usize], base: &mut Vec<f64>, least: &mut Vec<f64>) {
+        base.clear();
+        base.resize(self.rows, 0.0);
+        least.clear();
+        least.resize(self.rows, 0.0);
+        for (k, x) in v.iter().chain(inputs).enumerate() {
+            let is_level = k >= v.len() && !varying.contains(&(k - v.len()));
+            for ((b, l), w) in base.iter_mut().zip(least.iter_mut()).zip(self.column(k)) {
+                let part = w * x;
+                *l -= NOISE * part.abs();
+                if is_level {
+                    *b += part;
+                }
+            }
+        }
+        least[..self.free].fill(f64::NEG_INFINITY);
+    }
+}
+
+fn scale(x: &mut [f64], factor: f64) {
+    x.iter_mut().for_each(|x| *x *= factor);
+}
+
+/// Adds a multiple of a column.
+#[inline]
+pub(super) fn add_column(sum: &mut [f64], column: &[f64], x: f64) {
+    for (sum, c) in sum.chunks_exact_mut(BLOCK).zip(column.chunks_exact(BLOCK)) {
+        for k in 0..BLOCK {
+            sum[k] += c[k] * x;
+        }
+    }
+}
