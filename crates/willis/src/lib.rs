@@ -93,6 +93,12 @@ mod prose {
     struct WhereThePowerRuns;
     #[doc = include_str!("../../../book/src/planets-and-losses.md")]
     struct PlanetsAndLosses;
+    #[doc = include_str!("../../../book/src/shift-a-gear.md")]
+    struct WhatHappensWhileIShift;
+    #[doc = include_str!("../../../book/src/why-does-it-not-move.md")]
+    struct WhyDoesItNotMove;
+    #[doc = include_str!("../../../book/src/galvagno.md")]
+    struct GalvagnosExperiment;
     #[doc = include_str!("../../../book/src/library.md")]
     struct UsingTheLibrary;
 }
