@@ -4,6 +4,7 @@
 //! [`STEPS`] is the whole list. Adding a step is adding an entry there.
 
 mod bench;
+mod book;
 
 use std::env;
 use std::ffi::OsStr;
@@ -95,6 +96,14 @@ const STEPS: &[Step] = &[
         about: "the program answers for every example train",
         env: &[],
         action: Action::Call(examples),
+        may_skip: false,
+        in_check: false,
+    },
+    Step {
+        name: "book",
+        about: "what README and book say the program prints is what it prints",
+        env: &[],
+        action: Action::Call(book),
         may_skip: false,
         in_check: false,
     },
@@ -568,6 +577,17 @@ fn is_object(text: &[u8]) -> bool {
         }
     }
     text.starts_with(b"{") && text.ends_with(b"}") && open.is_empty() && !string
+}
+
+/// Runs the commands of README and book and compares.
+fn book(context: &Context) -> Outcome {
+    match build_willis(context).and_then(|()| book::run(context)) {
+        Ok(told) => {
+            println!("{told}");
+            Outcome::Passed
+        }
+        Err(e) => Outcome::Failed(e),
+    }
 }
 
 /// Work counts against their committed values, once that benchmark exists.
