@@ -401,7 +401,15 @@ const FIGURES: &[(&str, &[&str])] = &[
     ),
     (
         "book/src/figures/why-does-it-not-move.svg",
-        &["simulate", "examples/why-does-it-not-move.toml", "--scenario", "lift, let go, lower", "--plot"],
+        &[
+            "simulate",
+            "examples/why-does-it-not-move.toml",
+            "--scenario",
+            "lift, let go, lower",
+            "--columns",
+            "speed.sun,torque.motor,mode",
+            "--plot",
+        ],
     ),
     (
         "book/src/figures/galvagno-coast-down.svg",
