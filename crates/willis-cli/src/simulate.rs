@@ -237,7 +237,8 @@ fn record(
 /// What a file says of a run that did not reach its end.
 fn early(r: &RunReport, end: f64) -> String {
     let word = if r.outcome == Outcome::Interrupted { "interrupted" } else { "ended" };
-    format!("{word} at t = {} s of {end} s: the run {}", r.end_s, outcome_in_words(&r.outcome))
+    let why = if r.outcome.why().is_empty() { String::new() } else { format!("; {}", r.outcome.why()) };
+    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, outcome_in_words(&r.outcome))
 }
 
 /// `willis-simulation-1`

@@ -11,7 +11,7 @@ use crate::text::{bold, dim, percent, plural, right, rpm, set_header, show, sign
 pub const MOST_EVENTS: usize = 40;
 /// The cause of the first event.
 const START: &str = "start";
-/// A part of the energy turned over that is round-off.
+/// A part of the energy that is round-off.
 const NOTHING: f64 = 1e-12;
 
 pub fn text(run: &Run) -> String {
@@ -19,17 +19,20 @@ pub fn text(run: &Run) -> String {
     let mut out = bold(&r.train) + "\n";
     let [start, reached, end] = [r.start_s, r.end_s, run.scenario_end_s].map(seconds);
     out += &format!("{}   {start} to {end} s\n", bold(&format!("Scenario: {}", r.scenario)));
-    let words = match &r.outcome {
-        Outcome::Finished => outcome_in_words(&r.outcome),
-        other => format!("{}, at t = {reached} s of {end} s", outcome_in_words(other)),
-    };
+    let words = outcome_in_words(&r.outcome);
     let mut line = |name: &str, words: &str| {
         out += &wrap(words, &format!("  {name:<13}"));
         out.push('\n');
     };
-    line("outcome", &format!("the run {words}"));
+    match r.outcome {
+        Outcome::Finished => line("outcome", &format!("the run {words}")),
+        _ => line("outcome", &format!("the run {words}, at t = {reached} s of {end} s")),
+    }
+    if !r.outcome.why().is_empty() {
+        line("why", r.outcome.why());
+    }
     if let Some(advice) = advice(&r.outcome) {
-        line("", advice);
+        line("what to do", advice);
     }
     // The start is an event too, but no change.
     let changes = r.events.saturating_sub(1);
@@ -66,15 +69,15 @@ pub fn text(run: &Run) -> String {
 fn advice(outcome: &Outcome) -> Option<&'static str> {
     Some(match outcome {
         Outcome::Finished | Outcome::Interrupted => return None,
-        Outcome::NoSolution(_) => "Rigid parts cannot tell what follows; an elastic [[shaft]] in the jammed path can.",
+        Outcome::NoSolution(_) => "rigid parts cannot tell what follows; an elastic [[shaft]] in the jammed path can",
         Outcome::SeveralSolutions(_) => {
-            "What decides between them is not in the model; --continue-when-ambiguous goes on with the first."
+            "what decides between them is not in the model; --continue-when-ambiguous goes on with the first"
         }
         Outcome::TooManyEvents(_) => {
-            "Allow more with --most-events, or pass over them with --fixed-step, at first order in the step."
+            "allow more with --most-events, or pass over them with --fixed-step, at first order in the step"
         }
-        Outcome::NotConverged(_) => "Try a coarser --tolerance, or --fixed-step.",
-        Outcome::Impact(_) => "--fixed-step goes on as after an inelastic impact.",
+        Outcome::NotConverged(_) => "try a coarser --tolerance, or --fixed-step",
+        Outcome::Impact(_) => "--fixed-step goes on as after an inelastic impact",
     })
 }
 
@@ -158,21 +161,23 @@ fn energy(run: &Run) -> String {
     let mut out = format!("\n{}\n", bold("Where the energy went"));
     let mut rows: Vec<(f64, [String; 5])> = Vec::new();
     let flow = |x: f64| if x == 0.0 { "-".to_owned() } else { joules(x) };
-    let share = |x: f64| if e.turned_over_j > 0.0 { percent(x / e.turned_over_j) } else { "-".to_owned() };
+    let (more, less) = (e.stored_j.max(0.0), (-e.stored_j).max(0.0));
+    let came_in = e.sources.iter().map(|s| s.in_j).sum::<f64>() + less;
+    let share = |x: f64| if came_in > 0.0 { percent(x / came_in) } else { "-".to_owned() };
+    let nothing = NOTHING * came_in.max(e.turned_over_j);
     for s in &e.sources {
         let name = if s.name == s.member { s.name.clone() } else { format!("{} at {}", s.name, s.member) };
         let out = s.out_j.abs();
         rows.push((s.in_j.max(out), [name, "source".into(), flow(s.in_j), flow(out), share(s.in_j.max(out))]));
     }
-    let (more, less) = (e.stored_j.max(0.0), (-e.stored_j).max(0.0));
     let stored = e.stored_j.abs();
-    if stored > NOTHING * e.turned_over_j {
+    if stored > nothing {
         let name = "stored in motion and twist";
         rows.push((stored, [name.into(), "stored".into(), flow(less), flow(more), share(stored)]));
     }
     let mut idle = 0;
     for l in &e.losses {
-        if l.energy_j.abs() <= NOTHING * e.turned_over_j {
+        if l.energy_j.abs() <= nothing {
             idle += 1;
             continue;
         }
@@ -191,20 +196,17 @@ fn energy(run: &Run) -> String {
         out += &show(&t);
     }
     if idle > 0 {
-        out += &dim(&format!("  nothing is lost in {idle} more"));
+        out += &dim(&format!("  nothing is lost in {}", if idle == 1 { "one more".to_owned() } else { format!("{idle} more") }));
         out.push('\n');
     }
-    let lost: f64 = e.losses.iter().map(|l| l.energy_j).sum();
-    match e.turned_over_j > 0.0 {
-        true => {
-            out += &format!("  lost         {}, {} of what came in\n", joules(lost), percent(lost / e.turned_over_j));
-            if let Some(efficiency) = e.efficiency {
-                out += &format!("  efficiency   {}\n", percent(efficiency));
-            }
-            let part = e.residual_j.abs() / e.turned_over_j;
-            out += &format!("  balance      closes to {part:.1e} of the {} that came in\n", joules(e.turned_over_j));
-        }
-        false => out += &format!("  balance      residual {:.1e} J; no energy came in\n", e.residual_j),
+    if came_in == 0.0 {
+        return out + "  balance      no energy came in\n";
     }
-    out
+    let lost: f64 = e.losses.iter().map(|l| l.energy_j).filter(|l| l.abs() > nothing).sum();
+    out += &format!("  lost         {}, {} of what came in\n", joules(lost), percent(lost / came_in));
+    if let Some(efficiency) = e.efficiency {
+        out += &format!("  efficiency   {}\n", percent(efficiency));
+    }
+    let part = e.residual_j.abs() / came_in;
+    out + &format!("  balance      closes to {part:.1e} of the {} that came in\n", joules(came_in))
 }

@@ -144,8 +144,22 @@ pub enum Outcome {
     TooManyEvents(String),
     /// The integrator could not keep the tolerance.
     NotConverged(String),
-    /// Members of different speed would be joined at once.
+    /// A speed would have to change at once: members joined, or a prescribed speed that jumps.
     Impact(String),
+}
+
+impl Outcome {
+    /// Why the run ended there, in words; empty where the outcome itself says it.
+    pub fn why(&self) -> &str {
+        match self {
+            Self::Finished | Self::Interrupted => "",
+            Self::NoSolution(why)
+            | Self::SeveralSolutions(why)
+            | Self::TooManyEvents(why)
+            | Self::NotConverged(why)
+            | Self::Impact(why) => why,
+        }
+    }
 }
 
 /// Energy that went into one cause of loss.

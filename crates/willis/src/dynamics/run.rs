@@ -75,6 +75,8 @@ pub struct Simulation {
     stored_at_start: f64,
     outcome: Option<Outcome>,
     notes: Vec<String>,
+    /// The first of several solutions was taken: why the first time, and how often.
+    ambiguous: Option<(String, usize)>,
     margins: Vec<Margin>,
     state: Vec<f64>,
 }
@@ -141,6 +143,7 @@ impl Simulation {
             stored_at_start,
             outcome: None,
             notes,
+            ambiguous: None,
             margins: vec![],
             state: vec![0.0; states + quadratures],
             engine,
@@ -228,6 +231,7 @@ impl Simulation {
     /// Chooses the mode at the present state and tells of the change.
     fn choose(&mut self, recorder: &mut dyn Recorder) -> Result<(), Outcome> {
         let end = self.engine.system.scenario.end;
+        let inside = self.engine.inside;
         let next = self.engine.system.signals().map(|s| s.next_break(self.t)).fold(f64::INFINITY, f64::min);
         self.segment = next.min(end);
         self.engine.inside = if self.segment > self.t { 0.5 * (self.t + self.segment) } else { self.t };
@@ -235,10 +239,19 @@ impl Simulation {
         let free = self.engine.system.free;
         let before: Vec<f64> = self.engine.speed[free..].to_vec();
         self.engine.look(self.t, &x);
-        let jump = (before.iter().zip(&self.engine.speed[free..])).any(|(a, b)| (a - b).abs() > 1e-9 * (a.abs() + b.abs()));
-        if jump && self.events > 0 {
+        let jump = (before.iter().zip(&self.engine.speed[free..]).enumerate())
+            .find(|(_, (a, b))| (*a - *b).abs() > 1e-9 * (a.abs() + b.abs()))
+            .filter(|_| self.events > 0);
+        if let Some((k, (from, to))) = jump {
+            let s = &self.engine.system;
+            let name = s.train.member_name(s.coordinates[free + k]);
+            let why = format!(
+                "the speed prescribed for {name} jumps from {from} to {to} rad/s, which takes an infinite torque; use a ramp"
+            );
+            // What is told is the state before.
+            self.engine.inside = inside;
             self.x = x;
-            return Err(Outcome::Impact("a prescribed speed jumps: that takes an infinite torque; use a ramp".into()));
+            return Err(Outcome::Impact(why));
         }
         for (rest, now) in self.at_rest.iter_mut().zip(self.engine.at_rest()) {
             *rest |= now;
@@ -253,25 +266,21 @@ impl Simulation {
                 *slip = 0;
             }
         }
-        let chosen = self.engine.choose(self.t, &x, &at_rest, &guess);
-        let mode = match chosen {
+        let mode = match self.engine.choose(self.t, &x, &at_rest, &guess) {
             Ok(mode) => mode,
+            Err(Trouble::Several(why, first)) if self.options.continue_when_ambiguous => {
+                let (_, times) = self.ambiguous.get_or_insert((format!("at t = {} s {why}", self.t), 0));
+                *times += 1;
+                first
+            }
             Err(trouble) => {
-                let several = matches!(trouble, Trouble::Several(_));
-                let outcome = match trouble {
+                self.at_rest = at_rest;
+                self.x = x;
+                return Err(match trouble {
                     Trouble::Impact(why) => Outcome::Impact(why),
                     Trouble::None(why) => Outcome::NoSolution(why),
-                    Trouble::Several(why) => Outcome::SeveralSolutions(why),
-                };
-                if !(several && self.options.continue_when_ambiguous) {
-                    self.at_rest = at_rest;
-                    self.x = x;
-                    return Err(outcome);
-                }
-                if let Outcome::SeveralSolutions(why) = outcome {
-                    self.notes.push(format!("at t = {} s: {why}; the first was taken", self.t));
-                }
-                self.engine.try_all(self.t, &x, &at_rest, &guess).swap_remove(0)
+                    Trouble::Several(why, _) => Outcome::SeveralSolutions(why),
+                });
             }
         };
         self.at_rest = mode.slip.iter().map(|s| *s == 0).collect();
@@ -589,8 +598,12 @@ impl Simulation {
         let final_speeds = (s.train.members().iter().enumerate().skip(1))
             .map(|(m, member)| (member.name.clone(), self.engine.member_speed(MemberId(m))));
         let mut notes = self.notes.clone();
+        if let Some((why, times)) = &self.ambiguous {
+            let again = if *times > 1 { format!("; so {} times more", times - 1) } else { String::new() };
+            notes.push(format!("{why}; the first was taken{again}"));
+        }
         if self.stiff {
-            notes.push("stiff shafts: an implicit integrator was used".into());
+            notes.push("stiff: an implicit integrator was used".into());
         }
         RunReport {
             format: "willis-simulation-1",
@@ -694,12 +707,19 @@ fn fixed(
     stepper.copy_to_engine(&mut x);
     run.t = stepper.time();
     run.notes.push(format!("steps of {h} s: first order in the step"));
+    if run.t > end + 1e-9 * h {
+        run.notes.push(format!("the last step ends at t = {} s, past the end of the scenario", run.t));
+    }
     let (unsettled, impacts) = (stepper.unsettled_steps(), stepper.impacts());
+    let in_steps = |n: u64| if n == 1 { "in one step".to_owned() } else { format!("in {n} steps") };
     if unsettled > 0 {
-        run.notes.push(format!("in {unsettled} steps the mode was not settled within the bounded number of trials"));
+        run.notes.push(format!("{} the mode was not settled within the bounded number of trials", in_steps(unsettled)));
     }
     if impacts > 0 {
-        run.notes.push(format!("in {impacts} steps parts of different speed were joined at once, as in an inelastic impact"));
+        run.notes.push(format!(
+            "{} parts of different speed were joined at once, as in an inelastic impact",
+            in_steps(impacts)
+        ));
     }
     run.x = x;
     run.engine = stepper.engine;
