@@ -213,8 +213,8 @@ fn regress_e209() {
     let light = motion("ring = \"1 kg m^2\"", "");
     let neutral = motion("sun = \"1 kg m^2\"", "").replace("state = \"low\"", "");
     let speeds = motion(
-        "sun = \"1 kg m^2\"",
-        "initial_speeds = { sun = \"10 rad/s\", carrier = \"10 rad/s\" }",
+        "sun = \"1 kg m^2\", ring = \"1 kg m^2\"",
+        "initial_speeds = { sun = \"10 rad/s\", ring = \"0 rad/s\", carrier = \"10 rad/s\" }",
     );
     let mut text = String::new();
     for (train, code) in
