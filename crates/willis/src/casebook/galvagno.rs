@@ -572,7 +572,7 @@ fn steady(report: &mut Report) {
 fn kind(cause: &str) -> &'static str {
     if cause == "start" {
         "start"
-    } else if cause.ends_with("comes to rest") {
+    } else if ["rest", "turns round", "turn round", "instant"].iter().any(|end| cause.ends_with(end)) {
         "zero"
     } else if cause.ends_with("away") {
         "release"

@@ -21,8 +21,8 @@ pub(super) enum Trouble {
     Impact(String),
     /// No mode agrees with itself.
     None(String),
-    /// Several do.
-    Several(String),
+    /// Several do; the first of them.
+    Several(String, Mode),
 }
 
 /// Modes that are tried one by one, at most.
@@ -143,11 +143,14 @@ impl Engine {
             (0, Some(mode)) => Ok(mode),
             (0, None) => Err(Trouble::None(self.no_solution(at_rest))),
             (1, _) => Ok(all.into_iter().next().expect("one")),
-            (n, _) => Err(Trouble::Several(format!(
-                "{n} sets of tooth forces and accelerations agree with this state; the first two give {} and {}",
-                self.accelerations_of(t, x, &all[0]),
-                self.accelerations_of(t, x, &all[1]),
-            ))),
+            (n, _) => {
+                let why = format!(
+                    "{n} sets of tooth forces and accelerations agree with this state; the first gives {}, the second {}",
+                    self.accelerations_of(t, x, &all[0]),
+                    self.accelerations_of(t, x, &all[1]),
+                );
+                Err(Trouble::Several(why, all.into_iter().next().expect("several")))
+            }
         }
     }
 
@@ -157,7 +160,7 @@ impl Engine {
         let list: Vec<String> = (0..self.system.free)
             .map(|k| {
                 let name = self.system.train.member_name(self.system.coordinates[k]);
-                format!("d{name}/dt = {:.6} rad/s²", self.acceleration[k])
+                format!("{name} {:.6} rad/s²", self.acceleration[k])
             })
             .collect();
         list.join(", ")
@@ -168,10 +171,9 @@ impl Engine {
             .filter(|(_, r)| **r)
             .map(|(g, _)| self.system.groups[g].name.as_str())
             .collect();
-        let where_ = if still.is_empty() { String::new() } else { format!(" ({} at rest)", still.join("; ")) };
+        let still = if still.is_empty() { String::new() } else { format!(" with {} at rest", still.join("; ")) };
         format!(
-            "no accelerations and tooth forces agree with each other here{where_}: friction grows with the force it \
-             causes and jams the train"
+            "no accelerations and tooth forces agree with each other{still}: friction grows with the force it causes"
         )
     }
 
