@@ -43,7 +43,7 @@ pub fn text(run: &Run) -> String {
         "tooth forces",
         match r.unique_for_every_load {
             true => "proved: in every rolling state the tooth forces have exactly one solution",
-            false => "not proved unique for every load; each state was checked on its way",
+            false => "not proved unique for every load; see the notes",
         },
     );
     if let Some(start) = run.events.first().filter(|e| e.cause == START && !e.modes.is_empty()) {
@@ -206,7 +206,8 @@ fn energy(run: &Run) -> String {
     if came_in == 0.0 {
         return out + "  balance      no energy came in\n";
     }
-    let lost: f64 = e.losses.iter().map(|l| l.energy_j).filter(|l| l.abs() > nothing).sum();
+    // A sum of nothing is -0.0.
+    let lost = e.losses.iter().map(|l| l.energy_j).filter(|l| l.abs() > nothing).sum::<f64>() + 0.0;
     out += &format!("  lost         {}, {} of what came in\n", joules(lost), percent(lost / came_in));
     if let Some(efficiency) = e.efficiency {
         out += &format!("  efficiency   {}\n", percent(efficiency));

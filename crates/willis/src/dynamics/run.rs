@@ -107,20 +107,7 @@ impl Simulation {
         let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
         let (states, quadratures) = (engine.states(), engine.quadratures());
         let groups = engine.system.groups.len();
-        let mut notes = Vec::new();
-        if !engine.certified {
-            notes.push(match (engine.system.rolling_is_unique(), engine.system.sticking_is_unique()) {
-                (Some(false), _) => {
-                    "the tooth forces may have several solutions, or none, in some states of this train: \
-                                     every change of mode was searched for all of them"
-                        .to_owned()
-                }
-                (_, Some(false)) => "sticking and sliding may both be possible in some states of this train: every \
-                                     change of mode was searched for all solutions"
-                    .to_owned(),
-                _ => "too many meshes and friction elements for a certificate that the forces are unique".to_owned(),
-            });
-        }
+        let notes = uniqueness(&engine, options.method).into_iter().collect();
         Ok(Self {
             options: options.clone(),
             explicit: Dopri5::new(states, quadratures),
@@ -622,6 +609,23 @@ impl Simulation {
             notes,
         }
     }
+}
+
+/// What there is to know where no certificate says that the forces are unique.
+fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
+    if engine.certified {
+        return None;
+    }
+    let what = match (engine.system.rolling_is_unique(), engine.system.sticking_is_unique()) {
+        (Some(false), _) => "the tooth forces may have several solutions, or none, in some states of this train",
+        (_, Some(false)) => "sticking and sliding may both be possible in some states of this train",
+        _ => return Some("too many meshes and friction elements for a certificate that the forces are unique".into()),
+    };
+    let done = match method {
+        Method::Adaptive => "every change of mode was searched for all of them",
+        Method::Fixed(_) => "steps of fixed length go on with what they find first, and do not notice where there is none",
+    };
+    Some(format!("{what}: {done}"))
 }
 
 /// Runs a scenario from its start to its end and hands rows and events to a recorder as they come.
