@@ -123,7 +123,8 @@ pub fn run(train: &Train, request: &Request) -> Result<Run, Failure> {
     let scenario = &train.scenarios()[choose(train.name(), &names, request.scenario.as_deref())?];
     let rows = request.options.samples.unwrap_or(scenario.samples);
     if request.rows() && rows > MOST_ROWS {
-        let why = format!("{rows} rows are too many for one JSON document; stream them with --out run.csv or run.parquet\n");
+        let why =
+            format!("{rows} rows are too many for one JSON document; stream them with --out run.csv or run.parquet\n");
         return Err(Failure::Told(why));
     }
     listen();

@@ -1231,3 +1231,51 @@ fn regress_simulate_to_a_full_disk() {
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stderr).contains("No space left on device"), "{}", text(&output.stderr));
 }
+
+// ---- modes -----------------------------------------------------------------------------------
+
+/// Two rotors, one geared to a third, on an elastic shaft.
+const ROTORS: &str = r#"format = 1
+name = "three rotors"
+members = ["motor", "pinion", "wheel"]
+terminals = ["motor", "wheel"]
+inertias = { motor = "0.02 kg m^2", pinion = "0.004 kg m^2", wheel = "0.3 kg m^2" }
+
+[[mesh]]
+name = "pair"
+gears = [ { member = "pinion", teeth = 20 }, { member = "wheel", teeth = 60 } ]
+
+[[shaft]]
+name = "coupling"
+members = ["motor", "pinion"]
+stiffness = "900 N m/rad"
+damping = "0.3 N m s/rad"
+"#;
+
+#[test]
+fn regress_modes_text() {
+    let output = piped(&["modes", "-"], ROTORS.as_bytes());
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()));
+    snapshot!(text(&output.stdout));
+}
+
+/// Formula: ω² = k (1/J1 + 1/J2), J2 = J_pinion + J_wheel (z1/z2)²; ζ = c ω / (2 k).
+#[test]
+fn formula_modes_of_two_bodies() {
+    let output = piped(&["modes", "-", "--format", "json"], ROTORS.as_bytes());
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(answer["format"], "willis-modes-1");
+    let mode = &answer["modes"][0];
+    let second = 0.004 + 0.3 / 9.0;
+    let w = f64::sqrt(900.0 * (1.0 / 0.02 + 1.0 / second));
+    let close = |key: &str, expected: f64| {
+        let is = mode[key].as_f64().expect("a number");
+        assert!((is - expected).abs() < 1e-9 * expected, "{key}: {is}, {expected}");
+    };
+    close("angular_frequency_rad_s", w);
+    close("frequency_hz", w / std::f64::consts::TAU);
+    close("damping_ratio", 0.3 * w / 1800.0);
+    assert_eq!(answer["rigid_body_modes"].as_array().map(Vec::len), Some(1));
+    let none = ROTORS.split("[[shaft]]").next().expect("a train").replace("inertias", "# inertias");
+    assert!(refused(&piped(&["modes", "-"], none.as_bytes()), 1).contains("moments of inertia"));
+}

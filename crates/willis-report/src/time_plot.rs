@@ -46,7 +46,10 @@ pub fn time_plot(plot: &TimePlot) -> String {
     }
     let bottom = y - GAP;
     // Events lie under the curves.
-    let body = Group::new().add(events(plot, &time, &frames)).add(body).add(time.labels(bottom));
+    body = Group::new().add(events(plot, &time, &frames)).add(body);
+    if !frames.is_empty() {
+        body = body.add(time.labels(bottom));
+    }
     let list_top = bottom + 74.0;
     let (list, height) = told(plot, &time, list_top);
     let title = format!("{}: {}", plot.train, plot.scenario);

@@ -217,9 +217,7 @@ fn regress_e209() {
         "initial_speeds = { sun = \"10 rad/s\", ring = \"0 rad/s\", carrier = \"10 rad/s\" }",
     );
     let mut text = String::new();
-    for (train, code) in
-        [(light, Code::NoInertia), (neutral, Code::NoInertia), (speeds, Code::ContradictorySpeeds)]
-    {
+    for (train, code) in [(light, Code::NoInertia), (neutral, Code::NoInertia), (speeds, Code::ContradictorySpeeds)] {
         let reading = Train::read_toml(&train);
         let own = reading.train.as_ref().expect("a good train");
         let mut all = willis::dynamics::simulate(own, "start", &Default::default(), &mut ()).expect_err("refused");

@@ -183,7 +183,8 @@ fn too_many_changes_of_mode_are_told_and_not_waited_for() {
 
 #[test]
 fn a_prescribed_speed_that_jumps_is_refused_with_the_state_before_it() {
-    let jump = r#"speed = { type = "table", points = [["0 s", "1 rad/s"], ["0.5 s", "1 rad/s"], ["0.5 s", "9 rad/s"]] }"#;
+    let jump =
+        r#"speed = { type = "table", points = [["0 s", "1 rad/s"], ["0.5 s", "1 rad/s"], ["0.5 s", "9 rad/s"]] }"#;
     let text = two_rotors(
         "stiffness = \"1e3 N m/rad\"\ndamping = \"1 N m s/rad\"",
         &format!("duration = \"1 s\"\n[[scenario.source]]\nmember = \"a\"\n{jump}"),

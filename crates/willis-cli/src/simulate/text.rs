@@ -43,7 +43,7 @@ pub fn text(run: &Run) -> String {
         "tooth forces",
         match r.unique_for_every_load {
             true => "proved: in every rolling state the tooth forces have exactly one solution",
-            false => "not proved unique for every load; each state was checked on its way",
+            false => "not proved unique for every load; see the notes",
         },
     );
     if let Some(start) = run.events.first().filter(|e| e.cause == START && !e.modes.is_empty()) {
@@ -163,17 +163,18 @@ fn energy(run: &Run) -> String {
     let flow = |x: f64| if x == 0.0 { "-".to_owned() } else { joules(x) };
     let (more, less) = (e.stored_j.max(0.0), (-e.stored_j).max(0.0));
     let came_in = e.sources.iter().map(|s| s.in_j).sum::<f64>() + less;
-    let share = |x: f64| if came_in > 0.0 { percent(x / came_in) } else { "-".to_owned() };
+    // What became of what came in: what went out, all together 100 %.
+    let share = |out: f64| if came_in > 0.0 && out != 0.0 { percent(out / came_in) } else { "-".to_owned() };
     let nothing = NOTHING * came_in.max(e.turned_over_j);
     for s in &e.sources {
         let name = if s.name == s.member { s.name.clone() } else { format!("{} at {}", s.name, s.member) };
         let out = s.out_j.abs();
-        rows.push((s.in_j.max(out), [name, "source".into(), flow(s.in_j), flow(out), share(s.in_j.max(out))]));
+        rows.push((s.in_j.max(out), [name, "source".into(), flow(s.in_j), flow(out), share(out)]));
     }
     let stored = e.stored_j.abs();
     if stored > nothing {
         let name = "stored in motion and twist";
-        rows.push((stored, [name.into(), "stored".into(), flow(less), flow(more), share(stored)]));
+        rows.push((stored, [name.into(), "stored".into(), flow(less), flow(more), share(more)]));
     }
     let mut idle = 0;
     for l in &e.losses {
@@ -196,13 +197,17 @@ fn energy(run: &Run) -> String {
         out += &show(&t);
     }
     if idle > 0 {
-        out += &dim(&format!("  nothing is lost in {}", if idle == 1 { "one more".to_owned() } else { format!("{idle} more") }));
+        out += &dim(&format!(
+            "  nothing is lost in {}",
+            if idle == 1 { "one more".to_owned() } else { format!("{idle} more") }
+        ));
         out.push('\n');
     }
     if came_in == 0.0 {
         return out + "  balance      no energy came in\n";
     }
-    let lost: f64 = e.losses.iter().map(|l| l.energy_j).filter(|l| l.abs() > nothing).sum();
+    // A sum of nothing is -0.0.
+    let lost = e.losses.iter().map(|l| l.energy_j).filter(|l| l.abs() > nothing).sum::<f64>() + 0.0;
     out += &format!("  lost         {}, {} of what came in\n", joules(lost), percent(lost / came_in));
     if let Some(efficiency) = e.efficiency {
         out += &format!("  efficiency   {}\n", percent(efficiency));

@@ -87,13 +87,28 @@ fn verb(train: &Train, name: &str, before: ModeLabel, now: ModeLabel) -> Verb {
     match (before, now) {
         (_, ModeLabel::Free) if shaft => PARTS,
         _ if shaft => TOUCHES,
-        (_, ModeLabel::Free) => if one_way() { OVERRUNS } else { OPENS },
-        (ModeLabel::Free, _) => if one_way() { LOCKS } else { ENGAGES },
+        (_, ModeLabel::Free) => {
+            if one_way() {
+                OVERRUNS
+            } else {
+                OPENS
+            }
+        }
+        (ModeLabel::Free, _) => {
+            if one_way() {
+                LOCKS
+            } else {
+                ENGAGES
+            }
+        }
         (_, ModeLabel::Stuck) => RESTS,
         (ModeLabel::Stuck, _) => BREAKS_AWAY,
         _ => TURNS,
     }
 }
+
+/// Letters of names in a sentence.
+const LONG: usize = 36;
 
 /// Names in a sentence; the modes of an event have them all.
 fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
@@ -102,7 +117,9 @@ fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
         [] => String::new(),
         [one] => one.to_owned(),
         [a, b] => format!("{a} and {b}"),
-        [a, b, c] => format!("{a}, {b} and {c}"),
+        [a, b, c] if a.len() + b.len() + c.len() <= LONG => format!("{a}, {b} and {c}"),
+        // Long names would push the verb out of a table or figure.
+        [a, b, ..] if a.len() + b.len() > LONG => format!("{a} and {} more", names.len() - 1),
         [a, b, ..] => format!("{a}, {b} and {} more", names.len() - 2),
     }
 }

@@ -107,18 +107,7 @@ impl Simulation {
         let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
         let (states, quadratures) = (engine.states(), engine.quadratures());
         let groups = engine.system.groups.len();
-        let mut notes = Vec::new();
-        if !engine.certified {
-            notes.push(match (engine.system.rolling_is_unique(), engine.system.sticking_is_unique()) {
-                (Some(false), _) => "the tooth forces may have several solutions, or none, in some states of this train: \
-                                     every change of mode was searched for all of them"
-                    .to_owned(),
-                (_, Some(false)) => "sticking and sliding may both be possible in some states of this train: every \
-                                     change of mode was searched for all solutions"
-                    .to_owned(),
-                _ => "too many meshes and friction elements for a certificate that the forces are unique".to_owned(),
-            });
-        }
+        let notes = uniqueness(&engine, options.method).into_iter().collect();
         Ok(Self {
             options: options.clone(),
             explicit: Dopri5::new(states, quadratures),
@@ -419,11 +408,7 @@ impl Simulation {
     }
 
     fn span(&self) -> (f64, f64) {
-        if self.stiff {
-            (self.implicit.t_old(), self.implicit.t())
-        } else {
-            (self.explicit.t_old(), self.explicit.t())
-        }
+        if self.stiff { (self.implicit.t_old(), self.implicit.t()) } else { (self.explicit.t_old(), self.explicit.t()) }
     }
 
     fn truncate(&mut self, t: f64) {
@@ -514,7 +499,8 @@ impl Simulation {
 
     /// The first time at which a margin is broken, between one at which none is and one at which some is.
     fn bracket(&mut self, mut low: f64, mut high: f64) -> (f64, Watch) {
-        let broken = |margins: &[Margin]| -> Vec<Margin> { margins.iter().copied().filter(Margin::is_broken).collect() };
+        let broken =
+            |margins: &[Margin]| -> Vec<Margin> { margins.iter().copied().filter(Margin::is_broken).collect() };
         let mut at_high = broken(&self.margins);
         let mut at_low: Vec<Margin> = vec![];
         let mut halve = false;
@@ -557,7 +543,8 @@ impl Simulation {
             }
             halve = !halve && high - low > 0.5 * width;
         }
-        let first = at_high.iter().min_by(|a, b| (a.value / a.noise.max(1e-300)).total_cmp(&(b.value / b.noise.max(1e-300))));
+        let first =
+            at_high.iter().min_by(|a, b| (a.value / a.noise.max(1e-300)).total_cmp(&(b.value / b.noise.max(1e-300))));
         (high, first.expect("broken at the end").watch)
     }
 
@@ -624,6 +611,23 @@ impl Simulation {
     }
 }
 
+/// What there is to know where no certificate says that the forces are unique.
+fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
+    if engine.certified {
+        return None;
+    }
+    let what = match (engine.system.rolling_is_unique(), engine.system.sticking_is_unique()) {
+        (Some(false), _) => "the tooth forces may have several solutions, or none, in some states of this train",
+        (_, Some(false)) => "sticking and sliding may both be possible in some states of this train",
+        _ => return Some("too many meshes and friction elements for a certificate that the forces are unique".into()),
+    };
+    let done = match method {
+        Method::Adaptive => "every change of mode was searched for all of them",
+        Method::Fixed(_) => "steps of fixed length go on with what they find first, and do not notice where there is none",
+    };
+    Some(format!("{what}: {done}"))
+}
+
 /// Runs a scenario from its start to its end and hands rows and events to a recorder as they come.
 ///
 /// # Errors
@@ -670,7 +674,8 @@ fn fixed(
     run.outcome = Some(Outcome::Finished);
     for step in 0..=steps {
         let t = stepper.time();
-        let sampled = run.next_sample < run.samples && (t >= run.sample_time(run.next_sample) - 0.5 * h || step == steps);
+        let sampled =
+            run.next_sample < run.samples && (t >= run.sample_time(run.next_sample) - 0.5 * h || step == steps);
         let changed = key != Some(stepper.state_of_modes());
         if sampled || changed {
             key = Some(stepper.state_of_modes());
