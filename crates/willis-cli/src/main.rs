@@ -232,9 +232,9 @@ enum Command {
     },
     /// Simulate a scenario: how the train accelerates, sticks, slips and shifts, and where the energy goes.
     ///
-    /// A run that jams, has several solutions or ends otherwise before the scenario is an answer:
-    /// exit status 0, and the outcome says so. Ctrl-C ends the run where it is; what was computed is
-    /// written and told, with exit status 130.
+    /// A run that jams, has several solutions or ends otherwise before the scenario is an answer too:
+    /// the outcome says so, with exit status 3. Ctrl-C ends the run where it is, with exit status 130.
+    /// In both cases what was computed is written and told.
     ///
     /// Rows are in SI units; where a value is not determined the field is empty (CSV) or null. Modes
     /// are 1 forward, -1 backward, 0 stuck, 2 free. A CSV of a run that ended early has a last line
@@ -258,7 +258,7 @@ enum Command {
         /// How many rows, evenly spaced in time; else as the scenario says.
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000_000))]
         samples: Option<u32>,
-        /// Relative tolerance of speeds and angles [default: 1e-9].
+        /// Relative tolerance of speeds and angles [default: 1e-10].
         #[arg(long, value_name = "TOLERANCE", value_parser = tolerance)]
         tolerance: Option<f64>,
         /// Advance in steps of this length, each of bounded cost: '1 ms'.
@@ -271,6 +271,9 @@ enum Command {
         /// Where several motions are possible, go on with one of them.
         #[arg(long)]
         continue_when_ambiguous: bool,
+        /// The most changes of mode within a thousandth of the scenario [default: 1000].
+        #[arg(long, value_name = "N", conflicts_with = "fixed_step")]
+        most_events: Option<usize>,
         /// What to print.
         #[arg(long, value_enum, default_value = "text")]
         format: SimulateFormat,
@@ -475,7 +478,8 @@ fn main() -> ExitCode {
         let kind = clap::error::ErrorKind::ArgumentConflict;
         Arguments::command().error(kind, "--table belongs to --format csv").exit();
     }
-    match run(&arguments.command) {
+    let mut status = 0;
+    match run(&arguments.command, &mut status) {
         Ok(output) => {
             // A reader that closes the pipe early (`willis … | head`) is no error.
             let mut out = anstream::stdout();
@@ -484,8 +488,7 @@ fn main() -> ExitCode {
                     let _ = writeln!(anstream::stderr(), "standard output: {e}");
                     ExitCode::FAILURE
                 }
-                _ if simulate::interrupted() => ExitCode::from(130),
-                _ => ExitCode::SUCCESS,
+                _ => ExitCode::from(status),
             }
         }
         Err(message) => {
@@ -495,8 +498,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// What goes to standard output, or to standard error with exit status 1.
-fn run(command: &Command) -> Result<String, String> {
+/// What goes to standard output with the exit status, 0 unless set; or to standard error with exit status 1.
+fn run(command: &Command, status: &mut u8) -> Result<String, String> {
     match command {
         Command::Analyze { file, state, operation, format, table, law } => {
             let selection = Selection { state: state.clone(), operation: operation.clone() };
@@ -664,6 +667,7 @@ fn run(command: &Command) -> Result<String, String> {
             fixed_step,
             lagged_forces,
             continue_when_ambiguous,
+            most_events,
             format,
         } => {
             let job = Job::read(file)?;
@@ -674,6 +678,7 @@ fn run(command: &Command) -> Result<String, String> {
                 ..Options::default()
             };
             options.tolerance = tolerance.unwrap_or(options.tolerance);
+            options.most_events = most_events.unwrap_or(options.most_events);
             if let Some(text) = fixed_step {
                 let step = values("--fixed-step", std::slice::from_ref(text), Dimension::TIME)?[0].si();
                 if step <= 0.0 {
@@ -693,6 +698,7 @@ fn run(command: &Command) -> Result<String, String> {
                 simulate::Failure::Input(wrong) => job.failure(wrong),
                 simulate::Failure::Told(text) => text,
             })?;
+            *status = run.status();
             Ok(match format {
                 SimulateFormat::Text => simulate::text(&run),
                 SimulateFormat::Json => simulate::json(&run),

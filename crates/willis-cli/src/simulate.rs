@@ -51,6 +51,17 @@ pub struct Run {
     with_rows: bool,
 }
 
+impl Run {
+    /// The exit status: 0 at the end of the scenario, 130 after Ctrl-C, 3 where the run ended before.
+    pub fn status(&self) -> u8 {
+        match self.report.outcome {
+            Outcome::Finished => 0,
+            Outcome::Interrupted => 130,
+            _ => 3,
+        }
+    }
+}
+
 /// Why there is no run.
 pub enum Failure {
     /// The train or its scenario are wrong.
@@ -65,13 +76,16 @@ impl From<String> for Failure {
     }
 }
 
+/// Rows that are kept in memory for an answer.
+const MOST_ROWS: usize = 1_000_000;
+
 /// Set by Ctrl-C.
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// The unfinished file, for a second Ctrl-C.
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-/// Whether Ctrl-C ended the run.
-pub fn interrupted() -> bool {
+/// Whether Ctrl-C was pressed.
+fn interrupted() -> bool {
     INTERRUPTED.load(Ordering::Relaxed)
 }
 
@@ -107,6 +121,12 @@ pub fn run(train: &Train, request: &Request) -> Result<Run, Failure> {
     }
     let names: Vec<&str> = train.scenarios().iter().map(|s| s.name.as_str()).collect();
     let scenario = &train.scenarios()[choose(train.name(), &names, request.scenario.as_deref())?];
+    let rows = request.options.samples.unwrap_or(scenario.samples);
+    if request.rows() && rows > MOST_ROWS {
+        let why =
+            format!("{rows} rows are too many for one JSON document; stream them with --out run.csv or run.parquet\n");
+        return Err(Failure::Told(why));
+    }
     listen();
     let engine = |recorder: &mut dyn Recorder| {
         willis::dynamics::simulate(train, &scenario.name, &request.options, recorder).map_err(Failure::Input)
@@ -141,6 +161,7 @@ impl<'a> Target<'a> {
         let told = |why: &str| Err(format!("{}: {why}\n", path.display()));
         match ending.as_deref() {
             _ if path.is_dir() => told("is a directory; name a file in it"),
+            _ if path.exists() && !path.is_file() => told("is no ordinary file"),
             Some("csv") => Ok(Self { path, parquet: false }),
             Some("parquet") => Ok(Self { path, parquet: true }),
             _ => told("rows are written as .csv or .parquet; end the name with one of them"),
@@ -199,7 +220,7 @@ fn record(
             Sink::Parquet(rows) => rows.finish(&report, early.as_deref()),
         };
         closed.map_err(|why| format!("{}: {why}\n", t.path.display()))?;
-        u.complete(t.path)?;
+        u.complete()?;
     }
     if let (Some(path), Some(plot)) = (&request.plot, listener.plot) {
         crate::output::write(path, (willis_report::time_plot(&plot.finish(&report)) + "\n").as_bytes())?;
@@ -217,7 +238,8 @@ fn record(
 /// What a file says of a run that did not reach its end.
 fn early(r: &RunReport, end: f64) -> String {
     let word = if r.outcome == Outcome::Interrupted { "interrupted" } else { "ended" };
-    format!("{word} at t = {} s of {end} s: the run {}", r.end_s, outcome_in_words(&r.outcome))
+    let why = if r.outcome.why().is_empty() { String::new() } else { format!("; {}", r.outcome.why()) };
+    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, outcome_in_words(&r.outcome))
 }
 
 /// `willis-simulation-1`
@@ -240,6 +262,7 @@ pub fn json(run: &Run) -> String {
 /// A file that has its name only when it is whole.
 struct Unfinished {
     path: PathBuf,
+    target: PathBuf,
     file: File,
     done: bool,
 }
@@ -247,6 +270,8 @@ struct Unfinished {
 impl Unfinished {
     fn create(target: &Path) -> Result<Self, String> {
         let fail = |e: std::io::Error| format!("{}: {e}\n", target.display());
+        // Beside the file itself, which a link stays a link to.
+        let target = target.canonicalize().unwrap_or_else(|_| target.to_owned());
         let mut name = target.file_name().unwrap_or_default().to_owned();
         name.push(format!(".{}.part", std::process::id()));
         let path = target.with_file_name(name);
@@ -254,11 +279,12 @@ impl Unfinished {
         if let Ok(mut unfinished) = UNFINISHED.lock() {
             *unfinished = Some(path.clone());
         }
-        Ok(Self { path, file, done: false })
+        Ok(Self { path, target, file, done: false })
     }
 
-    fn complete(mut self, target: &Path) -> Result<(), String> {
-        std::fs::rename(&self.path, target).map_err(|e| format!("{}: {e}\n", target.display()))?;
+    fn complete(mut self) -> Result<(), String> {
+        let fail = |e: std::io::Error| format!("{}: {e}\n", self.target.display());
+        std::fs::rename(&self.path, &self.target).map_err(fail)?;
         self.done = true;
         Ok(())
     }
@@ -341,7 +367,9 @@ impl Recorder for Listener<'_> {
             Some(Sink::Parquet(rows)) => rows.row(&self.row),
             None => Ok(()),
         };
-        self.check(written)
+        self.check(written)?;
+        // One step may have many rows.
+        self.progress(sample.time)
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {

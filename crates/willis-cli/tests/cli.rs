@@ -1,5 +1,5 @@
 //! The command line as its user meets it: what it prints, and the exit status: 0 answered (also
-//! when the train locks), 1 wrong input, 2 wrong usage.
+//! when the train locks), 1 wrong input, 2 wrong usage, 3 a run that ended before its scenario, 130 Ctrl-C.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -966,4 +966,316 @@ fn regress_simulate_usage() {
     ] {
         refused(&run(arguments), 2);
     }
+}
+
+/// A set that a brake brings to rest while a motor swings.
+const BRAKED: &str = r#"format = 1
+name = "braked"
+members = ["sun", "ring", "carrier"]
+terminals = ["sun", "carrier"]
+inertias = { sun = "0.02 kg m^2", ring = "0.05 kg m^2", carrier = "0.1 kg m^2" }
+
+[[set]]
+name = "P"
+sun = { member = "sun", teeth = 30 }
+planet = { teeth = 20, count = 4 }
+ring = { member = "ring", teeth = 70 }
+carrier = "carrier"
+mesh_efficiency = 0.99
+
+[[shift_element]]
+name = "B"
+kind = "brake"
+members = ["ring"]
+capacity = "40 N m"
+
+[[scenario]]
+name = "stop the ring"
+duration = "2 s"
+samples = 5
+initial_speeds = { sun = "50 rad/s", ring = "20 rad/s" }
+
+[[scenario.source]]
+name = "motor"
+member = "sun"
+torque = { type = "sine", amplitude = "4 N m", frequency = "1 Hz" }
+
+[[scenario.engagement]]
+element = "B"
+value = { type = "table", points = [ ["0.1 s", 0], ["0.5 s", 1] ] }
+"#;
+
+/// Two suns on stepped planets with a light carrier: the tooth forces have two solutions or none, as it turns.
+fn jamming(carrier_speed: &str) -> String {
+    format!(
+        r#"format = 1
+name = "two suns"
+members = ["a", "b", "carrier"]
+terminals = ["a", "b"]
+inertias = {{ a = "1 kg m^2", carrier = "0.001 kg m^2" }}
+
+[[set]]
+name = "P"
+type = "stepped"
+carrier = "carrier"
+basic_efficiency = 0.9
+suns = [ {{ member = "a", teeth = 20, planet_teeth = 20 }}, {{ member = "b", teeth = 21, planet_teeth = 20 }} ]
+
+[[scenario]]
+name = "run"
+duration = "0.01 s"
+fixed = ["b"]
+initial_speeds = {{ carrier = "{carrier_speed}" }}
+
+[[scenario.source]]
+name = "motor"
+member = "a"
+torque = "1 N m"
+"#
+    )
+}
+
+/// Two rotors, a clutch without limit between them, and what a scenario of 1 s has beside.
+fn clutched(scenario: &str) -> String {
+    format!(
+        r#"format = 1
+name = "two rotors"
+members = ["a", "b"]
+terminals = ["a", "b"]
+inertias = {{ a = "1 kg m^2", b = "2 kg m^2" }}
+
+[[shift_element]]
+name = "C"
+kind = "clutch"
+members = ["a", "b"]
+
+[[scenario]]
+name = "run"
+duration = "1 s"
+{scenario}
+"#
+    )
+}
+
+const LOCKED_ON_THE_WAY: &str = r#"initial_speeds = { a = "10 rad/s" }
+[[scenario.engagement]]
+element = "C"
+value = { type = "table", points = [ ["0 s", 0], ["0.5 s", 0], ["0.5 s", 1] ] }"#;
+
+const JUMP: &str = r#"[[scenario.source]]
+name = "drive"
+member = "a"
+speed = { type = "table", points = [ ["0 s", "0 rad/s"], ["0.5 s", "0 rad/s"], ["0.5 s", "10 rad/s"] ] }"#;
+
+/// How well the energies close is round-off.
+fn mask_energy(text: &str) -> String {
+    let mask = |line: &str| match line.split_once("closes to ") {
+        Some((before, after)) => {
+            let (part, rest) = after.split_once(" of the ").expect("a part of the energy");
+            assert!(part.parse::<f64>().expect("a number") < 1e-9, "{line}");
+            format!("{before}closes to [part] of the {rest}\n")
+        }
+        None => format!("{line}\n"),
+    };
+    text.lines().map(mask).collect()
+}
+
+#[test]
+fn regress_simulate_text() {
+    let output = piped(&["simulate", "-"], BRAKED.as_bytes());
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()));
+    snapshot!(mask_energy(&text(&output.stdout)));
+}
+
+#[test]
+fn regress_simulate_verdicts() {
+    let mut all = String::new();
+    for (train, verdict) in [
+        (jamming("10 rad/s"), "several-solutions"),
+        (jamming("-10 rad/s"), "no-solution"),
+        (clutched(LOCKED_ON_THE_WAY), "impact"),
+        (clutched(JUMP), "impact"),
+    ] {
+        let output = piped(&["simulate", "-", "--format", "json"], train.as_bytes());
+        assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
+        let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        assert_eq!(answer["outcome"]["verdict"], verdict);
+        assert!(!answer["outcome"]["why"].as_str().expect("words").is_empty());
+        let output = piped(&["simulate", "-"], train.as_bytes());
+        assert_eq!(output.status.code(), Some(3));
+        all += &mask_energy(&text(&output.stdout));
+    }
+    snapshot!(all);
+    let on = piped(&["simulate", "-", "--continue-when-ambiguous"], jamming("10 rad/s").as_bytes());
+    assert_eq!(on.status.code(), Some(0), "{}", text(&on.stderr));
+    assert!(text(&on.stdout).contains("the first was taken"));
+    let impact = piped(&["simulate", "-", "--fixed-step", "1 ms"], clutched(LOCKED_ON_THE_WAY).as_bytes());
+    assert_eq!(impact.status.code(), Some(0), "{}", text(&impact.stderr));
+    assert!(text(&impact.stdout).contains("in one step parts of different speed were joined at once"));
+}
+
+/// `willis-simulation-1`: objects by name, units in the names, rows beside their columns.
+#[test]
+fn regress_simulate_contract() {
+    let output = piped(&["simulate", "-", "--format", "json", "--columns", "speed,mode.B"], BRAKED.as_bytes());
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    has(
+        &answer,
+        &[
+            "format",
+            "train",
+            "scenario",
+            "outcome",
+            "start_s",
+            "end_s",
+            "scenario_end_s",
+            "coordinates",
+            "unique_for_every_load",
+            "steps",
+            "event_count",
+            "events",
+            "final_speeds_rad_s",
+            "energy",
+            "assumptions",
+            "notes",
+            "columns",
+            "rows",
+        ],
+    );
+    let energy = &answer["energy"];
+    has(energy, &["sources", "stored_j", "losses", "turned_over_j", "residual_j", "efficiency"]);
+    has(&energy["sources"][0], &["name", "member", "energy_j", "in_j", "out_j"]);
+    has(&energy["losses"][0], &["name", "kind", "energy_j"]);
+    assert_eq!(answer["format"], "willis-simulation-1");
+    let speeds = answer["final_speeds_rad_s"].as_object().expect("speeds by name");
+    assert!(["sun", "ring", "carrier", "P.planet"].iter().all(|m| speeds[*m].is_f64()));
+    let events = answer["events"].as_array().expect("events");
+    assert_eq!(answer["event_count"], events.len());
+    for event in events {
+        has(event, &["time_s", "cause", "modes"]);
+        for (_, mode) in event["modes"].as_object().expect("modes by name") {
+            assert!(["forward", "backward", "stuck", "free"].contains(&mode.as_str().expect("a word")));
+        }
+    }
+    assert_eq!((&events[0]["cause"], &events[0]["modes"]["B"]), (&"start".into(), &"free".into()));
+    assert!(events.iter().any(|e| e["cause"] == "B comes to rest" && e["modes"]["B"] == "stuck"), "{events:?}");
+    let columns = answer["columns"].as_array().expect("columns");
+    columns.iter().for_each(|c| has(c, &["name", "unit", "kind", "of"]));
+    let names: Vec<&str> = columns.iter().map(|c| c["name"].as_str().expect("a name")).collect();
+    assert_eq!(names, ["time_s", "speed.sun", "speed.ring", "speed.carrier", "speed.P.planet", "mode.B"]);
+    let rows = answer["rows"].as_array().expect("rows");
+    assert!(rows.iter().all(|r| r.as_array().expect("a row").len() == names.len()));
+    let last: Vec<f64> = rows[rows.len() - 1].as_array().expect("a row")[1..5].iter().flat_map(Value::as_f64).collect();
+    assert_eq!(last, ["sun", "ring", "carrier", "P.planet"].map(|m| speeds[m].as_f64().expect("a speed")));
+}
+
+#[test]
+fn regress_simulate_wrong_trains() {
+    let light = BRAKED.replace("sun = \"0.02 kg m^2\", ", "").replace(", carrier = \"0.1 kg m^2\"", "");
+    let fast = BRAKED.replace("ring = \"20 rad/s\"", "ring = \"20 rad/s\", carrier = \"50 rad/s\"");
+    let still = BRAKED.replace("\"2 s\"", "\"0 s\"");
+    let mut all = String::new();
+    for train in [light, fast, still] {
+        all += &refused(&piped(&["simulate", "-"], train.as_bytes()), 1);
+        all.push('\n');
+    }
+    let rows = ["simulate", "-", "--format", "json", "--samples", "1000000000"];
+    all += &refused(&piped(&rows, BRAKED.as_bytes()), 1);
+    snapshot!(all);
+}
+
+/// Ctrl-C in the middle of a run with very many rows: a whole file that says so.
+#[cfg(unix)]
+#[test]
+fn regress_simulate_interrupted() {
+    let folder = folder("interrupted");
+    let train = folder.join("braked.toml");
+    std::fs::write(&train, BRAKED).expect("written");
+    for name in ["run.csv", "run.parquet"] {
+        let (train, out) = (train.to_str().expect("text"), folder.join(name));
+        let arguments = ["simulate", train, "--samples", "1000000000", "--out", out.to_str().expect("text")];
+        let child = command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
+        // Rows are on their way: the file that will take the name is there.
+        let begun = || std::fs::read_dir(&folder).expect("the folder").count() > 1 + usize::from(name != "run.csv");
+        while !begun() {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+        std::thread::sleep(std::time::Duration::from_millis(200));
+        let pid = child.id().to_string();
+        assert!(Command::new("kill").args(["-INT", &pid]).status().expect("a signal").success());
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
+        assert!(text(&output.stdout).contains("the run was interrupted, at t = "));
+        let written = std::fs::read(&out).expect("rows");
+        if name == "run.csv" {
+            let told = text(&written);
+            let last = told.lines().last().expect("lines");
+            assert!(last.starts_with("# interrupted at t = ") && last.ends_with("the run was interrupted"), "{last}");
+            let rows: Vec<&str> = told.lines().skip(1).filter(|l| !l.starts_with('#')).collect();
+            assert!(!rows.is_empty() && rows.iter().all(|r| r.matches(',').count() == rows[0].matches(',').count()));
+        } else {
+            assert!(written.starts_with(b"PAR1") && written.ends_with(b"PAR1"));
+        }
+    }
+    std::fs::remove_dir_all(&folder).expect("removed");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn regress_simulate_to_a_full_disk() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has one");
+    let mut child = command(&["simulate", "-"]);
+    let mut child = child.stdin(Stdio::piped()).stdout(full).stderr(Stdio::piped()).spawn().expect("it runs");
+    child.stdin.take().expect("piped").write_all(BRAKED.as_bytes()).expect("read");
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("No space left on device"), "{}", text(&output.stderr));
+}
+
+// ---- modes -----------------------------------------------------------------------------------
+
+/// Two rotors, one geared to a third, on an elastic shaft.
+const ROTORS: &str = r#"format = 1
+name = "three rotors"
+members = ["motor", "pinion", "wheel"]
+terminals = ["motor", "wheel"]
+inertias = { motor = "0.02 kg m^2", pinion = "0.004 kg m^2", wheel = "0.3 kg m^2" }
+
+[[mesh]]
+name = "pair"
+gears = [ { member = "pinion", teeth = 20 }, { member = "wheel", teeth = 60 } ]
+
+[[shaft]]
+name = "coupling"
+members = ["motor", "pinion"]
+stiffness = "900 N m/rad"
+damping = "0.3 N m s/rad"
+"#;
+
+#[test]
+fn regress_modes_text() {
+    let output = piped(&["modes", "-"], ROTORS.as_bytes());
+    assert_eq!((output.status.code(), text(&output.stderr)), (Some(0), String::new()));
+    snapshot!(text(&output.stdout));
+}
+
+/// Formula: ω² = k (1/J1 + 1/J2), J2 = J_pinion + J_wheel (z1/z2)²; ζ = c ω / (2 k).
+#[test]
+fn formula_modes_of_two_bodies() {
+    let output = piped(&["modes", "-", "--format", "json"], ROTORS.as_bytes());
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(answer["format"], "willis-modes-1");
+    let mode = &answer["modes"][0];
+    let second = 0.004 + 0.3 / 9.0;
+    let w = f64::sqrt(900.0 * (1.0 / 0.02 + 1.0 / second));
+    let close = |key: &str, expected: f64| {
+        let is = mode[key].as_f64().expect("a number");
+        assert!((is - expected).abs() < 1e-9 * expected, "{key}: {is}, {expected}");
+    };
+    close("angular_frequency_rad_s", w);
+    close("frequency_hz", w / std::f64::consts::TAU);
+    close("damping_ratio", 0.3 * w / 1800.0);
+    assert_eq!(answer["rigid_body_modes"].as_array().map(Vec::len), Some(1));
+    let none = ROTORS.split("[[shaft]]").next().expect("a train").replace("inertias", "# inertias");
+    assert!(refused(&piped(&["modes", "-"], none.as_bytes()), 1).contains("moments of inertia"));
 }

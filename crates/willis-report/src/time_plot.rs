@@ -46,7 +46,10 @@ pub fn time_plot(plot: &TimePlot) -> String {
     }
     let bottom = y - GAP;
     // Events lie under the curves.
-    let body = Group::new().add(events(plot, &time, &frames)).add(body).add(time.labels(bottom));
+    body = Group::new().add(events(plot, &time, &frames)).add(body);
+    if !frames.is_empty() {
+        body = body.add(time.labels(bottom));
+    }
     let list_top = bottom + 74.0;
     let (list, height) = told(plot, &time, list_top);
     let title = format!("{}: {}", plot.train, plot.scenario);
@@ -69,7 +72,8 @@ fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
         1 => "one change of mode: the thin upright line".to_owned(),
         n => format!("{n} changes of mode: thin upright lines"),
     };
-    let mut two = vec![changes];
+    let mut two: Vec<String> = Some(plot.outcome.why().to_owned()).filter(|why| !why.is_empty()).into_iter().collect();
+    two.push(changes);
     for p in plot.panels.iter().filter(|p| p.left_out > 0) {
         two.push(format!("{} with small {} left out", p.left_out, p.quantity.to_lowercase()));
     }
@@ -489,7 +493,9 @@ fn events(plot: &TimePlot, time: &TimeAxis, frames: &[(f64, f64)]) -> Group {
             .set("stroke-width", 0.6)
             .set("stroke-opacity", if drawn > 60 { 0.15 } else { 0.5 }),
     );
-    let mut free = LEFT;
+    // Beside the head of the first panel.
+    let head = plot.panels.first().map_or("Mode", |p| p.quantity).chars().count() + 8;
+    let mut free = LEFT.max(28.0 + 7.0 * head as f64);
     for (k, m) in plot.marks.iter().enumerate() {
         let x = time.x(m.time);
         let name = (k + 1).to_string();

@@ -2,6 +2,7 @@
 
 use willis::dynamics::{Column, EnergyReport, Event, ModeLabel, Outcome, Recorder, RunReport, Sample};
 use willis::figure::{TimePlot, TimePlotBuilder};
+use willis::named::Named;
 use willis::train::{SetSpec, ShiftElementSpec, Train};
 
 type Label = (String, [f64; 4]);
@@ -91,7 +92,7 @@ fn report(outcome: Outcome, end: f64) -> RunReport {
         unique_for_every_load: true,
         steps: 2000,
         events: 3,
-        final_speeds_rad_s: vec![],
+        final_speeds_rad_s: Named::default(),
         energy: EnergyReport {
             sources: vec![],
             stored_j: 0.0,
@@ -109,7 +110,7 @@ fn report(outcome: Outcome, end: f64) -> RunReport {
 fn launch(plot: &mut TimePlotBuilder, end: f64, rows: usize) {
     let _ = plot.columns(&columns());
     let event =
-        |t: f64, cause: &str| Event { time_s: t, cause: cause.into(), modes: vec![("B".into(), ModeLabel::Stuck)] };
+        |t: f64, cause: &str| Event { time_s: t, cause: cause.into(), modes: Named(vec![("B".into(), ModeLabel::Stuck)]) };
     let mut causes = [
         (0.0, "start"),
         (0.8, "brake B comes to rest"),
@@ -219,7 +220,7 @@ fn many_members_many_events_and_tiny_times() {
         let _ = plot.sample(Sample { time: t, values: &values });
         if k % 7 == 1 {
             let _ =
-                plot.event(&Event { time_s: t, cause: format!("brake B breaks away & sticks < {k}"), modes: vec![] });
+                plot.event(&Event { time_s: t, cause: format!("brake B breaks away & sticks < {k}"), modes: Named::default() });
         }
     }
     let plot = plot.finish(&report(Outcome::TooManyEvents("1001 within 2 µs".into()), 2e-3));

@@ -10,51 +10,15 @@ mod table;
 
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 
-use serde::ser::SerializeMap;
-use serde::{Serialize, Serializer};
+pub use crate::named::Named;
+
+use serde::Serialize;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
 use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource};
 use crate::statics::Certificate;
 use crate::train::{Efficiency, ShiftElementId, ShiftElementKind, Train};
-
-/// Values by name, in the order of the train file; a JSON object.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Named<T>(pub Vec<(String, T)>);
-
-impl<T> Default for Named<T> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
-}
-
-impl<T> Named<T> {
-    /// The value of that name.
-    pub fn get(&self, name: &str) -> Option<&T> {
-        self.0.iter().find(|(n, _)| n == name).map(|(_, v)| v)
-    }
-
-    /// All, in order.
-    pub fn iter(&self) -> std::slice::Iter<'_, (String, T)> {
-        self.0.iter()
-    }
-
-    /// Whether there is none.
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-}
-
-impl<T: Serialize> Serialize for Named<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, value) in &self.0 {
-            map.serialize_entry(name, value)?;
-        }
-        map.end()
-    }
-}
 
 /// What can be said of a load case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

@@ -9,6 +9,7 @@ mod certificate;
 mod choose;
 mod energy;
 mod engine;
+mod event;
 mod fixed;
 mod fused;
 mod integrator;

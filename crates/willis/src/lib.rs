@@ -3,7 +3,7 @@
 //!
 //! The modules are listed in the order of the pipeline, and a module uses only those above it:
 //!
-//! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions and [`units`];
+//! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions, [`units`] and values by name ([`named`]);
 //! 2. [`diagnostic`]: what is wrong, where, and what to do;
 //! 3. [`catalogue`] of oils and bearings, [`geometry`] of involute teeth, [`losses`]: the laws;
 //! 4. [`train`]: what a gear train is, and the train file;
@@ -48,6 +48,7 @@ pub mod exact;
 pub mod symbolic;
 pub mod real;
 pub mod units;
+pub mod named;
 pub mod diagnostic;
 pub mod catalogue;
 pub mod geometry;
@@ -93,6 +94,12 @@ mod prose {
     struct WhereThePowerRuns;
     #[doc = include_str!("../../../book/src/planets-and-losses.md")]
     struct PlanetsAndLosses;
+    #[doc = include_str!("../../../book/src/shift-a-gear.md")]
+    struct WhatHappensWhileIShift;
+    #[doc = include_str!("../../../book/src/why-does-it-not-move.md")]
+    struct WhyDoesItNotMove;
+    #[doc = include_str!("../../../book/src/galvagno.md")]
+    struct GalvagnosExperiment;
     #[doc = include_str!("../../../book/src/library.md")]
     struct UsingTheLibrary;
 }

@@ -176,8 +176,8 @@ macro_rules! cases {
 #[test]
 fn regress_every_code_has_a_case() {
     // E002 is about files, which the library never touches: crates/willis-cli/tests/cli.rs has it.
-    // E208 is about questions other than `analyze`: `regress_e208` below.
-    let elsewhere = [Code::Unreadable, Code::Unfit];
+    // E208 and E209 are about questions other than `analyze`: `regress_e208` and `regress_e209` below.
+    let elsewhere = [Code::Unreadable, Code::Unfit, Code::NoInertia];
     let missing: Vec<_> =
         Code::ALL.iter().filter(|c| !elsewhere.contains(c) && !COVERED.contains(c)).map(|c| c.as_str()).collect();
     assert!(missing.is_empty(), "no case for {missing:?}");
@@ -196,6 +196,35 @@ fn regress_e208() {
     for (what, wrong) in wrong {
         assert!(wrong.iter().all(|d| d.code == Code::Unfit), "{what}: {wrong}");
         text += &format!("{what}\n{}\n", wrong.render("train.toml", REDUCER, false));
+    }
+    insta::with_settings!({ omit_expression => true }, {
+        insta::assert_snapshot!(text);
+    });
+}
+
+/// Motions need inertia and speeds that agree: what `simulate` says before it starts.
+#[test]
+fn regress_e209() {
+    let motion = |inertias: &str, more: &str| {
+        let scenario = "[[scenario]]\nname = \"start\"\nduration = \"3 s\"\nstate = \"low\"";
+        let text = with(TWO_SPEED, "terminals =", &format!("inertias = {{ {inertias} }}\nterminals ="));
+        and(&text, &format!("{scenario}\n{more}"))
+    };
+    let light = motion("ring = \"1 kg m^2\"", "");
+    let neutral = motion("sun = \"1 kg m^2\"", "").replace("state = \"low\"", "");
+    let speeds = motion(
+        "sun = \"1 kg m^2\", ring = \"1 kg m^2\"",
+        "initial_speeds = { sun = \"10 rad/s\", ring = \"0 rad/s\", carrier = \"10 rad/s\" }",
+    );
+    let mut text = String::new();
+    for (train, code) in [(light, Code::NoInertia), (neutral, Code::NoInertia), (speeds, Code::ContradictorySpeeds)] {
+        let reading = Train::read_toml(&train);
+        let own = reading.train.as_ref().expect("a good train");
+        let mut all = willis::dynamics::simulate(own, "start", &Default::default(), &mut ()).expect_err("refused");
+        reading.locate(&train, &mut all);
+        assert!(all.iter().any(|d| d.code == code), "{all}");
+        text += &all.render("train.toml", &train, false);
+        text.push('\n');
     }
     insta::with_settings!({ omit_expression => true }, {
         insta::assert_snapshot!(text);
@@ -383,6 +412,10 @@ cases! {
     regress_motion_shaft: MissingKey, and(TWO_SPEED, "[[shaft]]\nname = \"output\"\nmembers = [\"carrier\"]\nbacklash = \"1 deg\"");
     regress_motion_capacity: MissingKey, with(TWO_SPEED, "members = [\"ring\"]", "members = [\"ring\"]\nfriction = 0.12");
     regress_motion_loss_table: Conflict, with(PAIR, "efficiency = 0.98", "efficiency = 0.98\nloss_table = [ { speed = \"0 rpm\", forward = 0.9, backward = 98 } ]");
+
+    regress_motion_stiffness: OutOfRange, and(TWO_SPEED, "[[shaft]]\nname = \"output\"\nmembers = [\"carrier\"]\nstiffness = \"-1 N m/rad\"");
+    regress_oil_thin: OutOfRange, with(TOOTHED, "name = \"ISO VG 220\"", "viscosity_40 = \"220 mm^2/s\"\nviscosity_100 = \"1e-60 mm^2/s\"");
+    regress_oil_thick: OutOfRange, with(TOOTHED, "name = \"ISO VG 220\"", "viscosity = \"1e9 Pa s\"");
 
     // E201 ContradictorySpeeds
     regress_e201_two_speeds: ContradictorySpeeds, with(PAIR, "{ a = \"100 rpm\" }", "{ a = \"100 rpm\", b = \"100 rpm\" }");

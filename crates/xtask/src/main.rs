@@ -4,6 +4,7 @@
 //! [`STEPS`] is the whole list. Adding a step is adding an entry there.
 
 mod bench;
+mod book;
 
 use std::env;
 use std::ffi::OsStr;
@@ -95,6 +96,14 @@ const STEPS: &[Step] = &[
         about: "the program answers for every example train",
         env: &[],
         action: Action::Call(examples),
+        may_skip: false,
+        in_check: false,
+    },
+    Step {
+        name: "book",
+        about: "what README and book say the program prints is what it prints",
+        env: &[],
+        action: Action::Call(book),
         may_skip: false,
         in_check: false,
     },
@@ -340,6 +349,11 @@ const GENERATED: &[&str] = &[
     FIGURES[0].0,
     FIGURES[1].0,
     FIGURES[2].0,
+    FIGURES[3].0,
+    FIGURES[4].0,
+    FIGURES[5].0,
+    FIGURES[6].0,
+    FIGURES[7].0,
 ];
 
 /// Figures of the book, and what draws them.
@@ -361,6 +375,47 @@ const FIGURES: &[(&str, &[&str])] = &[
         ],
     ),
     ("book/src/figures/herringbone-flow.svg", &["flow", "examples/wang-herringbone.toml", "--output"]),
+    (
+        "book/src/figures/shift-handed-over.svg",
+        &[
+            "simulate",
+            "examples/shift-8hp70.toml",
+            "--scenario",
+            "1 to 2, handed over",
+            "--columns",
+            "speed.input,speed.output,torque.C,torque.E,mode.C,mode.E",
+            "--plot",
+        ],
+    ),
+    (
+        "book/src/figures/shift-overlap.svg",
+        &[
+            "simulate",
+            "examples/shift-8hp70.toml",
+            "--scenario",
+            "overlap too long",
+            "--columns",
+            "speed.input,speed.output,torque.C,torque.E,mode.C,mode.E",
+            "--plot",
+        ],
+    ),
+    (
+        "book/src/figures/why-does-it-not-move.svg",
+        &[
+            "simulate",
+            "examples/why-does-it-not-move.toml",
+            "--scenario",
+            "lift, let go, lower",
+            "--columns",
+            "speed.sun,torque.motor,mode",
+            "--plot",
+        ],
+    ),
+    (
+        "book/src/figures/galvagno-coast-down.svg",
+        &["simulate", "examples/galvagno-coast-down.toml", "--scenario", "coast down", "--plot"],
+    ),
+    ("book/src/figures/launch-modes.svg", &["modes", "examples/launch.toml", "--state", "clutch closed", "--plot"]),
 ];
 
 /// Writes every generated file. Needs the optimised program.
@@ -443,7 +498,14 @@ fn example_files(context: &Context) -> Result<Vec<String>, String> {
     Ok(files)
 }
 
-/// Checks and analyses every example.
+/// Names of the scenarios of a train file: the first key of each.
+fn scenarios(text: &str) -> Vec<&str> {
+    let lines: Vec<&str> = text.lines().map(str::trim).collect();
+    let heads = lines.windows(2).filter(|w| w[0].split('#').next().is_some_and(|l| l.trim() == "[[scenario]]"));
+    heads.filter_map(|w| w[1].strip_prefix("name = \"")?.split('"').next()).collect()
+}
+
+/// Checks and analyses every example, and runs every scenario.
 fn examples(context: &Context) -> Outcome {
     let all = || -> Result<usize, String> {
         build_willis(context)?;
@@ -471,7 +533,19 @@ fn examples(context: &Context) -> Outcome {
                 ],
                 false => &[],
             };
-            for arguments in questions.iter().chain(flows).copied() {
+            let names = scenarios(&text);
+            if names.len() != text.lines().filter(|l| l.trim_start().starts_with("[[scenario]]")).count() {
+                wrong.push(format!("{file}: a scenario does not begin with its name"));
+            }
+            let runs: Vec<[&str; 5]> = (names.iter())
+                .flat_map(|name| ["text", "json"].map(|format| ["simulate", "--scenario", name, "--format", format]))
+                .collect();
+            let shafts: &[&[&str]] = match text.contains("stiffness = ") {
+                true => &[&["modes"], &["modes", "--format", "json"]],
+                false => &[],
+            };
+            let moves = runs.iter().map(|r| &r[..]).chain(shafts.iter().copied());
+            for arguments in questions.iter().chain(flows).copied().chain(moves) {
                 let mut command = context.willis();
                 match context.output(command.args(arguments).arg(file)) {
                     Err(e) => wrong.push(e),
@@ -486,7 +560,9 @@ fn examples(context: &Context) -> Outcome {
     };
     match all() {
         Ok(count) => {
-            println!("{count} example trains: check, analyze, regimes, formula, flow, losses, and as JSON");
+            println!(
+                "{count} example trains: check, analyze, regimes, formula, flow, losses, simulate, modes, and as JSON"
+            );
             Outcome::Passed
         }
         Err(e) => Outcome::Failed(e),
@@ -509,6 +585,17 @@ fn is_object(text: &[u8]) -> bool {
         }
     }
     text.starts_with(b"{") && text.ends_with(b"}") && open.is_empty() && !string
+}
+
+/// Runs the commands of README and book and compares.
+fn book(context: &Context) -> Outcome {
+    match build_willis(context).and_then(|()| book::run(context)) {
+        Ok(told) => {
+            println!("{told}");
+            Outcome::Passed
+        }
+        Err(e) => Outcome::Failed(e),
+    }
 }
 
 /// Work counts against their committed values, once that benchmark exists.
@@ -720,6 +807,12 @@ mod tests {
         for bad in ["", "[]", "{", "{]}", "{\"a}", "error {}", "{}}"] {
             assert!(!is_object(bad.as_bytes()), "{bad}");
         }
+    }
+
+    #[test]
+    fn scenarios_are_found_by_name() {
+        let text = "[[scenario]]\nname = \"up, down\"\n\n[[scenario.source]]\nname = \"m\"\n\n[[scenario]]   # two\nname = \"2\"\n";
+        assert_eq!(scenarios(text), ["up, down", "2"]);
     }
 
     #[test]

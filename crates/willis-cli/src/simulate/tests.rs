@@ -2,6 +2,7 @@ use super::*;
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use ::parquet::record::Field;
 use willis::dynamics::{EnergyLoss, EnergyReport, ModeLabel, SourceEnergy};
+use willis::named::Named;
 use willis::train::SetSpec;
 
 fn train() -> Train {
@@ -43,7 +44,7 @@ fn report(outcome: Outcome, end: f64) -> RunReport {
         unique_for_every_load: true,
         steps: 120,
         events: 2,
-        final_speeds_rad_s: vec![("sun".into(), 100.0), ("ring".into(), 1e-14)],
+        final_speeds_rad_s: Named(vec![("sun".into(), 100.0), ("ring".into(), 1e-14)]),
         energy: EnergyReport {
             sources: vec![SourceEnergy {
                 name: "motor".into(),
@@ -83,7 +84,7 @@ fn feed(recorder: &mut dyn Recorder, rows: usize, end: f64) -> ControlFlow<()> {
     for k in 0..rows {
         let t = end * k as f64 / (rows - 1) as f64;
         if k == rows / 2 {
-            let modes = vec![("B".into(), ModeLabel::Stuck)];
+            let modes = Named(vec![("B".into(), ModeLabel::Stuck)]);
             recorder.event(&Event { time_s: t, cause: "brake B comes to rest".into(), modes })?;
         }
         let torque = if k % 3 == 1 { f64::NAN } else { -0.1 * k as f64 };
@@ -128,7 +129,7 @@ fn a_csv_of_a_run_that_ended_early_says_so_in_its_last_line() {
     assert_eq!(text.lines().last(), Some("# interrupted at t = 1.25 s of 3 s: the run was interrupted"));
     recorded(&request(Some(path.clone())), 4, Outcome::NoSolution("two\nlines".into()), 1.25).expect("a run");
     let text = std::fs::read_to_string(&path).expect("written");
-    let last = "# ended at t = 1.25 s of 3 s: the run jammed: no tooth forces fit the motion (two lines)";
+    let last = "# ended at t = 1.25 s of 3 s: the run jammed: no tooth forces fit the motion; two lines";
     assert_eq!(text.lines().last(), Some(last));
     assert_eq!(files(&folder), ["run.csv"]);
 }
@@ -243,10 +244,12 @@ fn the_text_has_the_answer_first_and_the_events_in_bounds() {
     let text = anstream::adapter::strip_str(&text(&run)).to_string();
     for words in [
         "Scenario: launch   0 to 3 s",
-        "jammed: no tooth forces fit the motion (both drive), at t = 1.5 s of 3 s",
-        "120 steps, 1234 changes of mode",
+        "jammed: no tooth forces fit the motion, at t = 1.5 s of 3 s",
+        "why          both drive",
+        "an elastic [[shaft]]",
+        "120 steps, 1233 changes of mode",
         "… and 1194 more, all in --format json",
-        "closes to 1.0e-10 of the 1 kJ turned over",
+        "closes to 1.0e-10 of the 1 kJ that came in",
         "oil is warm",
     ] {
         assert!(text.contains(words), "{words}\n{text}");

@@ -572,7 +572,7 @@ fn steady(report: &mut Report) {
 fn kind(cause: &str) -> &'static str {
     if cause == "start" {
         "start"
-    } else if cause.ends_with("comes to rest") {
+    } else if ["rest", "turns round", "turn round", "instant"].iter().any(|end| cause.ends_with(end)) {
         "zero"
     } else if cause.ends_with("away") {
         "release"
@@ -786,8 +786,8 @@ fn jamming(report: &mut Report) {
         &[
             "Two suns on stepped planets, ratio 1.05, efficiency 0.9, the second sun held, 1 N m on the first. With a carrier \
            of little inertia the same state has two sets of tooth forces, or none, as in Painlevé's problem; a \
-           simulator has to say so. Formula: the acceleration is the torque over \
-           D = 1/I_s + (1 - i0)(1 - i0 e)/I_c, e = 0.9 or 1/0.9; two signs of D are two solutions or none.",
+           simulator has to say so. Formula: the teeth take the torque over \
+           D from the first sun, D = 1/I_s + (1 - i0)(1 - i0 e)/I_c, e = 0.9 or 1/0.9; two signs of D are two solutions or none.",
         ],
         &["carrier inertia, kg m^2", "relative speed", "D, e = 0.9", "D, e = 1/0.9", "solutions", "Willis"],
     );

@@ -21,8 +21,13 @@ pub(super) enum Trouble {
     Impact(String),
     /// No mode agrees with itself.
     None(String),
-    /// Several do.
-    Several(String),
+    /// Several do; the first of them.
+    Several(String, Mode),
+}
+
+/// A number with six decimals at most.
+fn short(x: f64) -> f64 {
+    (x * 1e6).round() / 1e6
 }
 
 /// Modes that are tried one by one, at most.
@@ -32,8 +37,7 @@ impl Engine {
     /// Speeds in the state made exactly those of groups at rest, with the least change in kinetic energy.
     pub fn bring_to_rest(&mut self, x: &mut [f64], at_rest: &[bool]) {
         let free = self.system.free;
-        let groups: Vec<usize> =
-            (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
+        let groups: Vec<usize> = (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
         if groups.is_empty() {
             return;
         }
@@ -45,7 +49,8 @@ impl Engine {
             return;
         };
         for _ in 0..2 {
-            let mut slip = DVector::from_fn(groups.len(), |i, _| dot(&self.system.groups[groups[i]].row[..free], &x[..free]));
+            let mut slip =
+                DVector::from_fn(groups.len(), |i, _| dot(&self.system.groups[groups[i]].row[..free], &x[..free]));
             for (i, &g) in groups.iter().enumerate() {
                 slip[i] += dot(&self.system.groups[g].row[free..], &self.speed[free..]);
             }
@@ -121,9 +126,10 @@ impl Engine {
                 let c = self.capacity(g, false, t);
                 if (slip > 0.0 && c.forward.is_infinite()) || (slip < 0.0 && c.backward.is_infinite()) {
                     return Err(Trouble::Impact(format!(
-                        "{} would stop a relative speed of {:.6} rad/s at once; give the shift element a capacity, or \
+                        "{} would stop a relative speed of {} rad/s at once; give the shift element a capacity, or \
                          engage it when its sides turn alike",
-                        self.system.groups[g].name, slip
+                        self.system.groups[g].name,
+                        short(slip)
                     )));
                 }
             } else if self.system.groups[g].driven {
@@ -143,11 +149,14 @@ impl Engine {
             (0, Some(mode)) => Ok(mode),
             (0, None) => Err(Trouble::None(self.no_solution(at_rest))),
             (1, _) => Ok(all.into_iter().next().expect("one")),
-            (n, _) => Err(Trouble::Several(format!(
-                "{n} sets of tooth forces and accelerations agree with this state; the first two give {} and {}",
-                self.accelerations_of(t, x, &all[0]),
-                self.accelerations_of(t, x, &all[1]),
-            ))),
+            (n, _) => {
+                let why = format!(
+                    "{n} sets of tooth forces and accelerations agree with this state; the first gives {}, the second {}",
+                    self.accelerations_of(t, x, &all[0]),
+                    self.accelerations_of(t, x, &all[1]),
+                );
+                Err(Trouble::Several(why, all.into_iter().next().expect("several")))
+            }
         }
     }
 
@@ -157,7 +166,7 @@ impl Engine {
         let list: Vec<String> = (0..self.system.free)
             .map(|k| {
                 let name = self.system.train.member_name(self.system.coordinates[k]);
-                format!("d{name}/dt = {:.6} rad/s²", self.acceleration[k])
+                format!("{name}: {} rad/s²", short(self.acceleration[k]))
             })
             .collect();
         list.join(", ")
@@ -168,10 +177,9 @@ impl Engine {
             .filter(|(_, r)| **r)
             .map(|(g, _)| self.system.groups[g].name.as_str())
             .collect();
-        let where_ = if still.is_empty() { String::new() } else { format!(" ({} at rest)", still.join("; ")) };
+        let still = if still.is_empty() { String::new() } else { format!(" with {} at rest", still.join("; ")) };
         format!(
-            "no accelerations and tooth forces agree with each other here{where_}: friction grows with the force it \
-             causes and jams the train"
+            "no accelerations and tooth forces agree with each other{still}: friction grows with the force it causes"
         )
     }
 
@@ -220,11 +228,8 @@ impl Engine {
             self.solve(t, x);
             self.disagreements(t, x, at_rest, &mut broken);
             let worst = |m: &Margin| -m.value / (m.noise + 1e-300);
-            let pick = if least_index {
-                broken.first()
-            } else {
-                broken.iter().max_by(|a, b| worst(a).total_cmp(&worst(b)))
-            };
+            let pick =
+                if least_index { broken.first() } else { broken.iter().max_by(|a, b| worst(a).total_cmp(&worst(b))) };
             let Some(&pick) = pick else { return Some(mode) };
             match pick.watch {
                 Watch::Slip(g) => mode.slip[g] = 0,
@@ -255,8 +260,7 @@ impl Engine {
         if self.combinations(at_rest) > MOST_TRIED {
             return vec![];
         }
-        let open: Vec<usize> =
-            (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
+        let open: Vec<usize> = (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
         let sides: Vec<usize> = self.system.groups.iter().flat_map(|g| g.elements.iter().copied()).collect();
         let mut found: Vec<(Mode, Vec<f64>)> = Vec::new();
         let mut broken = Vec::new();
@@ -313,8 +317,7 @@ impl Engine {
         }
         let p = self.system.ports;
         let all = self.system.all();
-        let groups: Vec<usize> =
-            (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
+        let groups: Vec<usize> = (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
         let mut rates = vec![0.0; at_rest.len()];
         let mut sizes = vec![0.0; at_rest.len()];
         for _round in 0..20 {
@@ -346,7 +349,10 @@ impl Engine {
                     }
                     let a = factor * dot(&slip[g * p..(g + 1) * p], &tau);
                     let next = (tau[port] - a / d).clamp(low, high);
-                    change = change.max((next - tau[port]).abs() / (next.abs() + 1e-300).max(dot_size(&slip[g * p..(g + 1) * p], &tau) / d.abs()));
+                    change = change.max(
+                        (next - tau[port]).abs()
+                            / (next.abs() + 1e-300).max(dot_size(&slip[g * p..(g + 1) * p], &tau) / d.abs()),
+                    );
                     tau[port] = next;
                 }
                 for &g in &groups {
@@ -360,10 +366,15 @@ impl Engine {
                         let a = factor * dot(&slip[g * p..(g + 1) * p], &tau);
                         let torque = torque_of(j, &tau, e.factors);
                         let loss = e.loss(0.0);
-                        let upper = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
-                        let lower = (loss.drive * torque - loss.drive_torque).min(loss.coast * torque - loss.coast_torque);
+                        let upper =
+                            (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
+                        let lower =
+                            (loss.drive * torque - loss.drive_torque).min(loss.coast * torque - loss.coast_torque);
                         let next = (tau[e.port] - a / d).clamp(lower.min(upper), upper.max(lower));
-                        change = change.max((next - tau[e.port]).abs() / (next.abs() + 1e-300).max(dot_size(&slip[g * p..(g + 1) * p], &tau) / d.abs()));
+                        change = change.max(
+                            (next - tau[e.port]).abs()
+                                / (next.abs() + 1e-300).max(dot_size(&slip[g * p..(g + 1) * p], &tau) / d.abs()),
+                        );
                         tau[e.port] = next;
                     }
                 }

@@ -4,6 +4,8 @@ use std::ops::ControlFlow;
 
 use serde::Serialize;
 
+use crate::named::Named;
+
 /// How to run a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
@@ -90,10 +92,11 @@ pub enum ModeLabel {
 pub struct Event {
     /// s
     pub time_s: f64,
-    /// Why: `start`, `P1 comes to rest`, `brake B breaks away`, `drive reverses in P1.sun-planet`, `input`.
+    /// What happened: `start`; `B comes to rest`, `B and P1.sun-planet break away`, `bearing turns round`,
+    /// `C engages, B opens`, `side shafts: contact`, `drive reverses in P1.sun-planet`.
     pub cause: String,
     /// The modes after it that differ from those before, by element.
-    pub modes: Vec<(String, ModeLabel)>,
+    pub modes: Named<ModeLabel>,
 }
 
 /// Takes the output as it comes; [`ControlFlow::Break`] ends the run there.
@@ -141,8 +144,22 @@ pub enum Outcome {
     TooManyEvents(String),
     /// The integrator could not keep the tolerance.
     NotConverged(String),
-    /// Members of different speed would be joined at once.
+    /// A speed would have to change at once: members joined, or a prescribed speed that jumps.
     Impact(String),
+}
+
+impl Outcome {
+    /// Why the run ended there, in words; empty where the outcome itself says it.
+    pub fn why(&self) -> &str {
+        match self {
+            Self::Finished | Self::Interrupted => "",
+            Self::NoSolution(why)
+            | Self::SeveralSolutions(why)
+            | Self::TooManyEvents(why)
+            | Self::NotConverged(why)
+            | Self::Impact(why) => why,
+        }
+    }
 }
 
 /// Energy that went into one cause of loss.
@@ -188,7 +205,8 @@ pub struct EnergyReport {
     pub efficiency: Option<f64>,
 }
 
-/// The whole answer beside rows and events.
+/// The whole answer beside rows and events. Serialised it is the head of the results contract
+/// `willis-simulation-1`: fields are added, never renamed; units are SI and stand in the names.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunReport {
     /// `willis-simulation-1`
@@ -211,8 +229,8 @@ pub struct RunReport {
     pub steps: usize,
     /// Changes of mode.
     pub events: usize,
-    /// Final speeds of all members, rad/s.
-    pub final_speeds_rad_s: Vec<(String, f64)>,
+    /// Speeds of all members at the end, rad/s.
+    pub final_speeds_rad_s: Named<f64>,
     /// Where the energy went.
     pub energy: EnergyReport,
     /// What stands in for data that were not given.

@@ -10,10 +10,11 @@ use crate::train::{MemberId, Train};
 
 use super::choose::Trouble;
 use super::engine::{Engine, Margin, Watch};
+use super::event::{Why, event};
 use super::fixed::FixedStep;
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
-use super::report::{Column, Event, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
-use super::system::{System, element_name};
+use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
+use super::system::System;
 
 /// A scenario that is being run.
 ///
@@ -60,7 +61,9 @@ pub struct Simulation {
     at_rest: Vec<bool>,
     labels: Vec<(String, ModeLabel)>,
     /// Why the mode is chosen anew.
-    cause: Option<String>,
+    why: Option<Why>,
+    /// The last event.
+    told: String,
     columns: Vec<Column>,
     row: Vec<f64>,
     next_sample: usize,
@@ -72,6 +75,8 @@ pub struct Simulation {
     stored_at_start: f64,
     outcome: Option<Outcome>,
     notes: Vec<String>,
+    /// The first of several solutions was taken: why the first time, and how often.
+    ambiguous: Option<(String, usize)>,
     margins: Vec<Margin>,
     state: Vec<f64>,
 }
@@ -102,18 +107,7 @@ impl Simulation {
         let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
         let (states, quadratures) = (engine.states(), engine.quadratures());
         let groups = engine.system.groups.len();
-        let mut notes = Vec::new();
-        if !engine.certified {
-            notes.push(match (engine.system.rolling_is_unique(), engine.system.sticking_is_unique()) {
-                (Some(false), _) => "the tooth forces may have several solutions, or none, in some states of this train: \
-                                     every change of mode was searched for all of them"
-                    .to_owned(),
-                (_, Some(false)) => "sticking and sliding may both be possible in some states of this train: every \
-                                     change of mode was searched for all solutions"
-                    .to_owned(),
-                _ => "too many meshes and friction elements for a certificate that the forces are unique".to_owned(),
-            });
-        }
+        let notes = uniqueness(&engine, options.method).into_iter().collect();
         Ok(Self {
             options: options.clone(),
             explicit: Dopri5::new(states, quadratures),
@@ -125,7 +119,8 @@ impl Simulation {
             segment: start,
             at_rest: vec![false; groups],
             labels: vec![],
-            cause: Some("start".into()),
+            why: Some(Why::Start),
+            told: String::new(),
             columns,
             row: vec![],
             next_sample: 0,
@@ -137,6 +132,7 @@ impl Simulation {
             stored_at_start,
             outcome: None,
             notes,
+            ambiguous: None,
             margins: vec![],
             state: vec![0.0; states + quadratures],
             engine,
@@ -211,7 +207,7 @@ impl Simulation {
         };
         if let Some(outcome) = &outcome {
             if *outcome == Outcome::Finished {
-                self.emit_samples(f64::INFINITY, recorder);
+                let _ = self.emit_samples(f64::INFINITY, recorder);
             }
             self.outcome = Some(outcome.clone());
         }
@@ -224,6 +220,7 @@ impl Simulation {
     /// Chooses the mode at the present state and tells of the change.
     fn choose(&mut self, recorder: &mut dyn Recorder) -> Result<(), Outcome> {
         let end = self.engine.system.scenario.end;
+        let inside = self.engine.inside;
         let next = self.engine.system.signals().map(|s| s.next_break(self.t)).fold(f64::INFINITY, f64::min);
         self.segment = next.min(end);
         self.engine.inside = if self.segment > self.t { 0.5 * (self.t + self.segment) } else { self.t };
@@ -231,10 +228,19 @@ impl Simulation {
         let free = self.engine.system.free;
         let before: Vec<f64> = self.engine.speed[free..].to_vec();
         self.engine.look(self.t, &x);
-        let jump = (before.iter().zip(&self.engine.speed[free..])).any(|(a, b)| (a - b).abs() > 1e-9 * (a.abs() + b.abs()));
-        if jump && self.events > 0 {
+        let jump = (before.iter().zip(&self.engine.speed[free..]).enumerate())
+            .find(|(_, (a, b))| (*a - *b).abs() > 1e-9 * (a.abs() + b.abs()))
+            .filter(|_| self.events > 0);
+        if let Some((k, (from, to))) = jump {
+            let s = &self.engine.system;
+            let name = s.train.member_name(s.coordinates[free + k]);
+            let why = format!(
+                "the speed prescribed for {name} jumps from {from} to {to} rad/s, which takes an infinite torque; use a ramp"
+            );
+            // What is told is the state before.
+            self.engine.inside = inside;
             self.x = x;
-            return Err(Outcome::Impact("a prescribed speed jumps: that takes an infinite torque; use a ramp".into()));
+            return Err(Outcome::Impact(why));
         }
         for (rest, now) in self.at_rest.iter_mut().zip(self.engine.at_rest()) {
             *rest |= now;
@@ -249,49 +255,39 @@ impl Simulation {
                 *slip = 0;
             }
         }
-        let chosen = self.engine.choose(self.t, &x, &at_rest, &guess);
-        let mode = match chosen {
+        let mode = match self.engine.choose(self.t, &x, &at_rest, &guess) {
             Ok(mode) => mode,
+            Err(Trouble::Several(why, first)) if self.options.continue_when_ambiguous => {
+                let (_, times) = self.ambiguous.get_or_insert((format!("at t = {} s {why}", self.t), 0));
+                *times += 1;
+                first
+            }
             Err(trouble) => {
-                let several = matches!(trouble, Trouble::Several(_));
-                let outcome = match trouble {
+                self.at_rest = at_rest;
+                self.x = x;
+                return Err(match trouble {
                     Trouble::Impact(why) => Outcome::Impact(why),
                     Trouble::None(why) => Outcome::NoSolution(why),
-                    Trouble::Several(why) => Outcome::SeveralSolutions(why),
-                };
-                if !(several && self.options.continue_when_ambiguous) {
-                    self.at_rest = at_rest;
-                    self.x = x;
-                    return Err(outcome);
-                }
-                if let Outcome::SeveralSolutions(why) = outcome {
-                    self.notes.push(format!("at t = {} s: {why}; the first was taken", self.t));
-                }
-                self.engine.try_all(self.t, &x, &at_rest, &guess).swap_remove(0)
+                    Trouble::Several(why, _) => Outcome::SeveralSolutions(why),
+                });
             }
         };
         self.at_rest = mode.slip.iter().map(|s| *s == 0).collect();
         self.engine.enter(&mode);
         let labels = self.engine.labels();
-        let changed: Vec<(String, ModeLabel)> = (labels.iter().enumerate())
-            .filter(|(k, l)| self.labels.get(*k) != Some(l))
-            .map(|(_, l)| l.clone())
-            .collect();
-        let cause = self.cause.take();
-        // At its limit by round-off only, a held element stays held and breaks away next time.
-        let nothing = |c: &str| c == INPUT || c.ends_with(BREAKS_AWAY);
-        if !changed.is_empty() || cause.as_deref().is_some_and(|c| !nothing(c)) {
-            let event = Event { time_s: self.t, cause: cause.unwrap_or_else(|| INPUT.into()), modes: changed };
+        if let Some(event) = event(&self.engine, self.t, self.why.take(), &self.labels, &labels) {
             self.labels = labels;
             self.events += 1;
+            let mut flow = ControlFlow::Continue(());
             if self.events > 1 || self.next_sample > 0 {
                 self.engine.row(self.t, &x, &mut self.row);
-                let _ = recorder.sample(Sample { time: self.t, values: &self.row });
+                flow = recorder.sample(Sample { time: self.t, values: &self.row });
             }
-            if recorder.event(&event).is_break() {
+            if flow.is_break() || recorder.event(&event).is_break() {
                 self.x = x;
                 return Err(Outcome::Interrupted);
             }
+            self.told = event.cause;
         }
         let tolerance = self.options.tolerance;
         let (t, segment, hint) = (self.t, self.segment, self.last_step);
@@ -337,20 +333,26 @@ impl Simulation {
             // One beyond the time asked for is found again when it is reached.
             let found = self.find_event(t_old, t_new).filter(|(t, _)| *t <= target);
             if let Some((t, watch)) = found {
-                self.emit_samples(t, recorder);
-                if self.stiff { self.implicit.truncate(t) } else { self.explicit.truncate(t) }
+                if let ControlFlow::Break(last) = self.emit_samples(t, recorder) {
+                    return self.stop(last);
+                }
+                self.truncate(t);
                 return self.event(t, watch, recorder);
             }
             if t_new >= target && target < self.segment {
                 // Stop inside the step; what lies beyond is stepped again.
-                self.emit_samples(target, recorder);
-                if self.stiff { self.implicit.truncate(target) } else { self.explicit.truncate(target) }
+                if let ControlFlow::Break(last) = self.emit_samples(target, recorder) {
+                    return self.stop(last);
+                }
+                self.truncate(target);
                 self.take_state(target);
                 self.rolling = false;
-                self.cause = None;
+                self.why = None;
                 return Stretch::Reached;
             }
-            self.emit_samples(t_new, recorder);
+            if let ControlFlow::Break(last) = self.emit_samples(t_new, recorder) {
+                return self.stop(last);
+            }
             self.take_state(t_new);
             if recorder.progress(self.t).is_break() {
                 return Stretch::Ended(Outcome::Interrupted);
@@ -360,13 +362,13 @@ impl Simulation {
             }
             if self.t >= self.segment {
                 self.rolling = false;
-                self.cause = Some(INPUT.into());
+                self.why = Some(Why::Input);
                 return if self.t >= target { Stretch::Reached } else { self.before_break(recorder) };
             }
             if !self.stiff && self.explicit.is_stiff() {
                 self.stiff = true;
                 self.rolling = false;
-                self.cause = None;
+                self.why = None;
                 self.last_step = None;
                 return Stretch::Again;
             }
@@ -388,7 +390,7 @@ impl Simulation {
         self.x = x;
         if all.len() > 1 {
             self.rolling = false;
-            self.cause = None;
+            self.why = None;
             return false;
         }
         true
@@ -406,11 +408,24 @@ impl Simulation {
     }
 
     fn span(&self) -> (f64, f64) {
+        if self.stiff { (self.implicit.t_old(), self.implicit.t()) } else { (self.explicit.t_old(), self.explicit.t()) }
+    }
+
+    fn truncate(&mut self, t: f64) {
         if self.stiff {
-            (self.implicit.t_old(), self.implicit.t())
+            self.implicit.truncate(t);
         } else {
-            (self.explicit.t_old(), self.explicit.t())
+            self.explicit.truncate(t);
         }
+    }
+
+    /// The end where the recorder wants no more, within the last step.
+    fn stop(&mut self, t: f64) -> Stretch {
+        if t > self.t {
+            self.truncate(t);
+            self.take_state(t);
+        }
+        Stretch::Ended(Outcome::Interrupted)
     }
 
     fn take_state(&mut self, t: f64) {
@@ -431,21 +446,11 @@ impl Simulation {
     fn event(&mut self, t: f64, watch: Watch, recorder: &mut dyn Recorder) -> Stretch {
         self.take_state(t);
         self.rolling = false;
+        self.why = Some(Why::Watch(watch));
+        if let Watch::Slip(g) = watch {
+            self.at_rest[g] = true;
+        }
         let s = &self.engine.system;
-        self.cause = Some(match watch {
-            Watch::Slip(g) => {
-                self.at_rest[g] = true;
-                format!("{} comes to rest", s.groups[g].name)
-            }
-            Watch::Hold(g, _) => format!("{} {BREAKS_AWAY}", s.groups[g].name),
-            Watch::HoldAll => format!("what is held {BREAKS_AWAY}"),
-            Watch::Side(j) => format!("drive reverses in {}", element_name(&s.train, &s.elements[j].links)),
-            Watch::Touch(k) => format!("contact changes in {}", s.train.shafts()[k].name),
-            Watch::Engage(k) => {
-                let verb = if self.engine.engaged[k] { "opens" } else { "engages" };
-                format!("{} {verb}", s.frictions[k].name)
-            }
-        });
         // Bounded in time, and in number where time stands still.
         let window = (s.scenario.end - s.scenario.start) / 1000.0;
         self.recent.push_back(t);
@@ -458,7 +463,7 @@ impl Simulation {
                 "{} changes of mode within {:.3e} s before t = {t} s; the last: {}",
                 self.recent.len(),
                 t - self.recent[0],
-                self.cause.as_deref().unwrap_or_default(),
+                self.told,
             )));
         }
         if matches!(watch, Watch::Side(_)) {
@@ -494,7 +499,8 @@ impl Simulation {
 
     /// The first time at which a margin is broken, between one at which none is and one at which some is.
     fn bracket(&mut self, mut low: f64, mut high: f64) -> (f64, Watch) {
-        let broken = |margins: &[Margin]| -> Vec<Margin> { margins.iter().copied().filter(Margin::is_broken).collect() };
+        let broken =
+            |margins: &[Margin]| -> Vec<Margin> { margins.iter().copied().filter(Margin::is_broken).collect() };
         let mut at_high = broken(&self.margins);
         let mut at_low: Vec<Margin> = vec![];
         let mut halve = false;
@@ -537,7 +543,8 @@ impl Simulation {
             }
             halve = !halve && high - low > 0.5 * width;
         }
-        let first = at_high.iter().min_by(|a, b| (a.value / a.noise.max(1e-300)).total_cmp(&(b.value / b.noise.max(1e-300))));
+        let first =
+            at_high.iter().min_by(|a, b| (a.value / a.noise.max(1e-300)).total_cmp(&(b.value / b.noise.max(1e-300))));
         (high, first.expect("broken at the end").watch)
     }
 
@@ -546,8 +553,8 @@ impl Simulation {
         if k + 1 == self.samples { s.end } else { s.start + (s.end - s.start) * k as f64 / (self.samples - 1) as f64 }
     }
 
-    /// Rows of the grid up to a time in the last step.
-    fn emit_samples(&mut self, until: f64, recorder: &mut dyn Recorder) {
+    /// Rows of the grid up to a time in the last step; breaks with the time of the last one that was wanted.
+    fn emit_samples(&mut self, until: f64, recorder: &mut dyn Recorder) -> ControlFlow<f64> {
         while self.next_sample < self.samples {
             let t = self.sample_time(self.next_sample);
             if t > until || (until.is_infinite() && t > self.t) {
@@ -564,21 +571,26 @@ impl Simulation {
                 self.state = x;
             }
             self.next_sample += 1;
-            let _ = recorder.sample(Sample { time: t, values: &self.row });
+            if recorder.sample(Sample { time: t, values: &self.row }).is_break() {
+                return ControlFlow::Break(t);
+            }
         }
+        ControlFlow::Continue(())
     }
 
     /// What there is to say about the run so far.
     pub fn report(&self) -> RunReport {
         let s = &self.engine.system;
         let states = self.engine.states();
-        let mut engine_speed = vec![];
-        for (m, member) in s.train.members().iter().enumerate().skip(1) {
-            engine_speed.push((member.name.clone(), self.engine.member_speed(MemberId(m))));
-        }
+        let final_speeds = (s.train.members().iter().enumerate().skip(1))
+            .map(|(m, member)| (member.name.clone(), self.engine.member_speed(MemberId(m))));
         let mut notes = self.notes.clone();
+        if let Some((why, times)) = &self.ambiguous {
+            let again = if *times > 1 { format!("; so {} times more", times - 1) } else { String::new() };
+            notes.push(format!("{why}; the first was taken{again}"));
+        }
         if self.stiff {
-            notes.push("stiff shafts: an implicit integrator was used".into());
+            notes.push("stiff: an implicit integrator was used".into());
         }
         RunReport {
             format: "willis-simulation-1",
@@ -591,7 +603,7 @@ impl Simulation {
             unique_for_every_load: self.engine.certified,
             steps: self.steps,
             events: self.events,
-            final_speeds_rad_s: engine_speed,
+            final_speeds_rad_s: final_speeds.collect(),
             energy: self.engine.energy_report([self.stored_at_start, self.engine.stored(&self.x)], &self.x[states..]),
             assumptions: s.assumptions.clone(),
             notes,
@@ -599,11 +611,22 @@ impl Simulation {
     }
 }
 
-/// The cause of a change by a break of an input.
-const INPUT: &str = "input";
-
-/// How the cause ends where a held element begins to slide.
-const BREAKS_AWAY: &str = "breaks away";
+/// What there is to know where no certificate says that the forces are unique.
+fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
+    if engine.certified {
+        return None;
+    }
+    let what = match (engine.system.rolling_is_unique(), engine.system.sticking_is_unique()) {
+        (Some(false), _) => "the tooth forces may have several solutions, or none, in some states of this train",
+        (_, Some(false)) => "sticking and sliding may both be possible in some states of this train",
+        _ => return Some("too many meshes and friction elements for a certificate that the forces are unique".into()),
+    };
+    let done = match method {
+        Method::Adaptive => "every change of mode was searched for all of them",
+        Method::Fixed(_) => "steps of fixed length go on with what they find first, and do not notice where there is none",
+    };
+    Some(format!("{what}: {done}"))
+}
 
 /// Runs a scenario from its start to its end and hands rows and events to a recorder as they come.
 ///
@@ -626,20 +649,6 @@ pub fn simulate(
             Ok(run.report())
         }
     }
-}
-
-/// Why labels differ, in the words of an event.
-fn change(before: &[(String, ModeLabel)], now: &[(String, ModeLabel)]) -> Option<Event> {
-    let modes: Vec<(String, ModeLabel)> =
-        now.iter().zip(before).filter(|(a, b)| a != b).map(|(a, _)| a.clone()).collect();
-    let (name, label) = modes.first()?;
-    let cause = match label {
-        ModeLabel::Stuck => format!("{name} comes to rest"),
-        ModeLabel::Free => format!("{name} opens"),
-        _ if before.iter().any(|(n, l)| n == name && *l == ModeLabel::Stuck) => format!("{name} breaks away"),
-        _ => format!("{name} turns round"),
-    };
-    Some(Event { time_s: 0.0, cause, modes })
 }
 
 /// A run in steps of fixed length.
@@ -665,17 +674,16 @@ fn fixed(
     run.outcome = Some(Outcome::Finished);
     for step in 0..=steps {
         let t = stepper.time();
-        let sampled = run.next_sample < run.samples && (t >= run.sample_time(run.next_sample) - 0.5 * h || step == steps);
+        let sampled =
+            run.next_sample < run.samples && (t >= run.sample_time(run.next_sample) - 0.5 * h || step == steps);
         let changed = key != Some(stepper.state_of_modes());
         if sampled || changed {
             key = Some(stepper.state_of_modes());
             stepper.copy_to_engine(&mut x);
             let labels = stepper.engine.labels();
             if step == 0 || !run.labels.is_empty() && run.labels != labels {
-                let event = match step {
-                    0 => Some(Event { time_s: t, cause: "start".into(), modes: labels.clone() }),
-                    _ => change(&run.labels, &labels).map(|e| Event { time_s: t, ..e }),
-                };
+                let why = (step == 0).then_some(Why::Start);
+                let event = event(&stepper.engine, t, why, &run.labels, &labels);
                 run.events += 1;
                 if event.is_some_and(|e| recorder.event(&e).is_break()) {
                     run.outcome = Some(Outcome::Interrupted);
@@ -704,12 +712,19 @@ fn fixed(
     stepper.copy_to_engine(&mut x);
     run.t = stepper.time();
     run.notes.push(format!("steps of {h} s: first order in the step"));
+    if run.t > end + 1e-9 * h {
+        run.notes.push(format!("the last step ends at t = {} s, past the end of the scenario", run.t));
+    }
     let (unsettled, impacts) = (stepper.unsettled_steps(), stepper.impacts());
+    let in_steps = |n: u64| if n == 1 { "in one step".to_owned() } else { format!("in {n} steps") };
     if unsettled > 0 {
-        run.notes.push(format!("in {unsettled} steps the mode was not settled within the bounded number of trials"));
+        run.notes.push(format!("{} the mode was not settled within the bounded number of trials", in_steps(unsettled)));
     }
     if impacts > 0 {
-        run.notes.push(format!("in {impacts} steps parts of different speed were joined at once, as in an inelastic impact"));
+        run.notes.push(format!(
+            "{} parts of different speed were joined at once, as in an inelastic impact",
+            in_steps(impacts)
+        ));
     }
     run.x = x;
     run.engine = stepper.engine;
@@ -761,7 +776,10 @@ fn lagged(
                 run.outcome = Some(Outcome::Interrupted);
             }
         }
-        if step == steps || run.outcome != Some(Outcome::Finished) || recorder.progress(t).is_break() {
+        if recorder.progress(t).is_break() {
+            run.outcome = Some(Outcome::Interrupted);
+        }
+        if step == steps || run.outcome != Some(Outcome::Finished) {
             break;
         }
         run.engine.inside = t + 0.5 * h;
@@ -796,7 +814,8 @@ fn lagged(
     run.engine.look(run.t, &x);
     run.x = x;
     run.notes.push(format!(
-        "compatibility: steps of {h} s with the tooth forces' directions of the step before (Galvagno 2010); wrong after          each reversal, and nothing sticks"
+        "compatibility: steps of {h} s with the tooth forces' directions of the step before (Galvagno 2010); wrong after \
+         each reversal, and nothing sticks"
     ));
     Ok(run.report())
 }

@@ -450,18 +450,17 @@ impl Modes {
     }
 }
 
-/// How a run ended, in words, as in `the run …`.
-pub fn outcome_in_words(outcome: &Outcome) -> String {
-    let (what, why) = match outcome {
-        Outcome::Finished => ("reached the end of the scenario", ""),
-        Outcome::Interrupted => ("was interrupted", ""),
-        Outcome::NoSolution(why) => ("jammed: no tooth forces fit the motion", why.as_str()),
-        Outcome::SeveralSolutions(why) => ("stopped where several motions are possible", why.as_str()),
-        Outcome::TooManyEvents(why) => ("stopped: modes change too often", why.as_str()),
-        Outcome::NotConverged(why) => ("stopped: the tolerance could not be kept", why.as_str()),
-        Outcome::Impact(why) => ("stopped at an impact: members of different speed would be joined", why.as_str()),
-    };
-    if why.is_empty() { what.to_owned() } else { format!("{what} ({why})") }
+/// How a run ended, in words, as in `the run …`; [`Outcome::why`] says more.
+pub fn outcome_in_words(outcome: &Outcome) -> &'static str {
+    match outcome {
+        Outcome::Finished => "reached the end of the scenario",
+        Outcome::Interrupted => "was interrupted",
+        Outcome::NoSolution(_) => "jammed: no tooth forces fit the motion",
+        Outcome::SeveralSolutions(_) => "stopped where several motions are possible",
+        Outcome::TooManyEvents(_) => "stopped: modes change too often",
+        Outcome::NotConverged(_) => "stopped: the tolerance could not be kept",
+        Outcome::Impact(_) => "stopped at an impact: a speed would have to change at once",
+    }
 }
 
 #[cfg(test)]

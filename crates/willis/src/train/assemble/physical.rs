@@ -174,6 +174,18 @@ impl Assembler<'_> {
                 good &= self.positive(value, false, what, unit, &format!("oil.{key}"));
             }
         }
+        // Walther's double logarithm ends at 0.3 mm²/s; petrol has 0.5, a gas 0.01 mPa s, pitch is no lubricant.
+        for (value, [least, most], unit, key) in [
+            (spec.viscosity_40.map(|v| v * 1e6), [0.31, 1e6], "mm²/s", "viscosity_40"),
+            (spec.viscosity_100.map(|v| v * 1e6), [0.31, 1e6], "mm²/s", "viscosity_100"),
+            (spec.viscosity.map(|v| v * 1e3), [0.01, 1e6], "mPa s", "viscosity"),
+        ] {
+            if let Some(value) = value.filter(|v| good && !(least..=most).contains(v)) {
+                let message = format!("a viscosity of {value:?} {unit}: lubricants have {least} to {most} {unit}");
+                self.report(Diagnostic::new(Code::OutOfRange, format!("oil.{key}"), message));
+                good = false;
+            }
+        }
         let base = spec.base.unwrap_or(Base::Mineral);
         let density = spec.density_15.unwrap_or(match base {
             Base::Pao => 845.0,

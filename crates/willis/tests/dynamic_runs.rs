@@ -1,0 +1,327 @@
+//! Whole runs: verdicts where the motion is not determined, energy that closes, and symmetries that no
+//! implementation may break.
+
+use std::ops::ControlFlow;
+
+use proptest::prelude::*;
+use willis::dynamics::{Event, Method, Options, Outcome, Recorder, RunReport, Sample, simulate};
+use willis::named::Named;
+use willis::train::Train;
+
+/// What a run gave.
+#[derive(Default)]
+struct Rows {
+    names: Vec<String>,
+    rows: Vec<Vec<f64>>,
+    events: Vec<Event>,
+}
+
+impl Rows {
+    /// All values of the columns that begin so.
+    fn of<'a>(&'a self, prefix: &'a str) -> impl Iterator<Item = f64> + 'a {
+        let columns: Vec<usize> = (0..self.names.len()).filter(|&k| self.names[k].starts_with(prefix)).collect();
+        self.rows.iter().flat_map(move |row| columns.iter().map(|&k| row[k]).collect::<Vec<_>>())
+    }
+
+    fn greatest(&self, prefix: &str) -> f64 {
+        self.of(prefix).fold(0.0, |most, x| most.max(x.abs()))
+    }
+}
+
+impl Recorder for Rows {
+    fn columns(&mut self, columns: &[willis::dynamics::Column]) -> ControlFlow<()> {
+        self.names = columns.iter().map(|c| c.name.clone()).collect();
+        ControlFlow::Continue(())
+    }
+
+    fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
+        self.rows.push(sample.values.to_vec());
+        ControlFlow::Continue(())
+    }
+
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.events.push(event.clone());
+        ControlFlow::Continue(())
+    }
+}
+
+fn train(text: &str) -> Train {
+    Train::from_toml(text).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+fn run(text: &str, options: &Options) -> (Rows, RunReport) {
+    let mut rows = Rows::default();
+    let report = simulate(&train(text), "run", options, &mut rows).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    (rows, report)
+}
+
+/// What does not close, as a part of all that came in, also from the store.
+fn open_part(report: &RunReport) -> f64 {
+    let e = &report.energy;
+    let came_in = e.sources.iter().map(|s| s.in_j).sum::<f64>() + (-e.stored_j).max(0.0);
+    e.residual_j.abs() / came_in.max(1e-300)
+}
+
+/// Two suns on stepped planets with a light carrier: whether tooth forces exist, and how many sets of them, depends
+/// on the direction of motion (validation/galvagno, the gear form of Painlevé's paradox).
+fn two_suns(carrier_inertia: f64, carrier_speed: f64) -> String {
+    format!(
+        r#"format = 1
+        name = "two suns"
+        members = ["a", "b", "carrier"]
+        terminals = ["a", "b"]
+        inertias = {{ a = "1 kg m^2", carrier = "{carrier_inertia} kg m^2" }}
+        [[set]]
+        name = "P"
+        type = "stepped"
+        carrier = "carrier"
+        basic_efficiency = 0.9
+        suns = [
+          {{ member = "a", teeth = 20, planet_teeth = 20 }},
+          {{ member = "b", teeth = 21, planet_teeth = 20 }},
+        ]
+        [[scenario]]
+        name = "run"
+        duration = "0.01 s"
+        fixed = ["b"]
+        initial_speeds = {{ carrier = "{carrier_speed} rad/s" }}
+        [[scenario.source]]
+        member = "a"
+        torque = "1 N m"
+        "#
+    )
+}
+
+#[test]
+fn several_motions_none_or_one_are_told_apart() {
+    let end = |inertia, speed| run(&two_suns(inertia, speed), &Options::default()).1;
+    let several = end(0.001, 10.0);
+    assert!(matches!(several.outcome, Outcome::SeveralSolutions(_)), "{:?}", several.outcome);
+    // Formula: 1/D for D = -1.75 and 28/3, against the torque of 1 N m seen at the sun.
+    assert!(several.outcome.why().starts_with("2 sets of tooth forces"), "{}", several.outcome.why());
+    let none = end(0.001, -10.0);
+    assert!(matches!(none.outcome, Outcome::NoSolution(_)), "{:?}", none.outcome);
+    assert!(none.outcome.why().contains("friction grows with the force it causes"), "{}", none.outcome.why());
+    for report in [&several, &none] {
+        assert!(!report.unique_for_every_load && report.end_s == 0.0);
+    }
+    for speed in [10.0, -10.0] {
+        let one = end(0.1, speed);
+        assert_eq!(one.outcome, Outcome::Finished);
+    }
+}
+
+#[test]
+fn one_of_several_motions_is_gone_on_with_when_asked() {
+    let options = Options { continue_when_ambiguous: true, ..Options::default() };
+    let (_, report) = run(&two_suns(0.001, 10.0), &options);
+    assert_eq!(report.outcome, Outcome::Finished);
+    let told = report.notes.iter().find(|n| n.starts_with("at t = 0 s")).expect("a note");
+    assert!(told.contains("the first was taken"), "{told}");
+}
+
+/// Two rotors on a shaft, the first driven.
+fn two_rotors(shaft: &str, scenario: &str) -> String {
+    format!(
+        r#"format = 1
+        name = "two rotors"
+        members = ["a", "b"]
+        terminals = ["a", "b"]
+        inertias = {{ a = "0.01 kg m^2", b = "1 kg m^2" }}
+        [[shaft]]
+        name = "shaft"
+        members = ["a", "b"]
+        {shaft}
+        [[scenario]]
+        name = "run"
+        {scenario}
+        "#
+    )
+}
+
+#[test]
+fn a_stiff_shaft_is_run_implicitly_and_its_energy_closes() {
+    let text = two_rotors(
+        "stiffness = \"1e7 N m/rad\"\ndamping = \"3000 N m s/rad\"",
+        "duration = \"2 s\"\n[[scenario.source]]\nmember = \"a\"\ntorque = \"5 N m\"",
+    );
+    let (_, report) = run(&text, &Options::default());
+    assert_eq!(report.outcome, Outcome::Finished);
+    assert!(report.notes.iter().any(|n| n.contains("implicit")), "{:?}", report.notes);
+    assert!(report.steps < 5000, "{} steps", report.steps);
+    // As one body once the shaft is wound up: ω = T t / (J1 + J2), less the ripple of the start.
+    let speed = report.final_speeds_rad_s.get("b").expect("a rotor");
+    assert!((speed - 10.0 / 1.01).abs() < 1e-4 * speed, "{speed}");
+    assert!(open_part(&report) <= 1e-9, "{:.2e}", open_part(&report));
+}
+
+/// A rotor falls onto an elastic stop again and again, each time less high: ever more changes in ever less time.
+fn bounce() -> String {
+    two_rotors(
+        "stiffness = \"1e6 N m/rad\"\ndamping = \"60 N m s/rad\"\nbacklash = \"0.2 rad\"",
+        "duration = \"20 s\"\nfixed = [\"b\"]\n[[scenario.source]]\nmember = \"a\"\ntorque = \"-0.01 N m\"",
+    )
+}
+
+#[test]
+fn a_bounce_comes_to_its_end() {
+    let (rows, report) = run(&bounce(), &Options::default());
+    assert_eq!(report.outcome, Outcome::Finished);
+    assert!(rows.events.len() > 20 && rows.events.len() < 5000, "{} events", rows.events.len());
+    assert!(report.final_speeds_rad_s.get("a").expect("a rotor").abs() < 1e-9);
+    assert!(rows.events.windows(2).all(|e| e[0].time_s <= e[1].time_s));
+}
+
+#[test]
+fn too_many_changes_of_mode_are_told_and_not_waited_for() {
+    let options = Options { most_events: 3, ..Options::default() };
+    let (_, report) = run(&bounce(), &options);
+    let Outcome::TooManyEvents(why) = &report.outcome else { panic!("{:?}", report.outcome) };
+    assert!(why.starts_with("4 changes of mode within") && why.contains("shaft"), "{why}");
+    assert!(report.end_s < 20.0);
+}
+
+#[test]
+fn a_prescribed_speed_that_jumps_is_refused_with_the_state_before_it() {
+    let jump =
+        r#"speed = { type = "table", points = [["0 s", "1 rad/s"], ["0.5 s", "1 rad/s"], ["0.5 s", "9 rad/s"]] }"#;
+    let text = two_rotors(
+        "stiffness = \"1e3 N m/rad\"\ndamping = \"1 N m s/rad\"",
+        &format!("duration = \"1 s\"\n[[scenario.source]]\nmember = \"a\"\n{jump}"),
+    );
+    let (_, report) = run(&text, &Options::default());
+    let Outcome::Impact(why) = &report.outcome else { panic!("{:?}", report.outcome) };
+    assert!(why.starts_with("the speed prescribed for a jumps from 1 to 9 rad/s"), "{why}");
+    assert_eq!(report.end_s, 0.5);
+    assert_eq!(report.final_speeds_rad_s.get("a"), Some(&1.0));
+    assert!(open_part(&report) <= 1e-9, "{:.2e}", open_part(&report));
+}
+
+/// A planetary set with losses, a slipping brake on the ring, a bearing and a load: what a random run is made of.
+#[derive(Clone, Debug)]
+struct Contraption {
+    teeth: [u32; 2],
+    efficiency: [f64; 2],
+    inertias: [f64; 3],
+    brake: f64,
+    bearing: f64,
+    speeds: [f64; 2],
+    torques: [f64; 2],
+    swing: f64,
+}
+
+impl Contraption {
+    fn any() -> impl Strategy<Value = Self> {
+        let f = |from: f64, to: f64| from..to;
+        (
+            [18u32..40, 18u32..32],
+            [f(0.85, 1.0), f(0.85, 1.0)],
+            [f(0.01, 0.5), f(0.01, 0.5), f(0.01, 0.5)],
+            (f(1.0, 30.0), f(0.1, 5.0)),
+            [f(-60.0, 60.0), f(-60.0, 60.0)],
+            [f(-20.0, 20.0), f(-20.0, 20.0)],
+            f(0.5, 3.0),
+        )
+            .prop_map(|(teeth, efficiency, inertias, (brake, bearing), speeds, torques, swing)| Self {
+                teeth,
+                efficiency,
+                inertias,
+                brake,
+                bearing,
+                speeds,
+                torques,
+                swing,
+            })
+    }
+
+    /// The train file; `sense` is -1 for all speeds and torques reversed, `names` are those of sun, ring, carrier in the
+    /// order in which they are listed.
+    fn text(&self, sense: f64, names: [&str; 3]) -> String {
+        let [sun, planet] = self.teeth;
+        let ring = sun + 2 * planet;
+        let [forward, backward] = self.efficiency;
+        let [js, jr, jc] = self.inertias;
+        let [ws, wr] = self.speeds.map(|w| sense * w);
+        let [ts, tc] = self.torques.map(|t| sense * t);
+        let (brake, bearing, swing) = (self.brake, self.bearing, self.swing);
+        let members = names.map(|n| format!("\"{n}\"")).join(", ");
+        format!(
+            r#"format = 1
+            name = "contraption"
+            members = [{members}]
+            terminals = ["s", "c"]
+            inertias = {{ s = "{js} kg m^2", r = "{jr} kg m^2", c = "{jc} kg m^2" }}
+            [[set]]
+            name = "P"
+            sun = {{ member = "s", teeth = {sun} }}
+            planet = {{ teeth = {planet}, count = 1 }}
+            ring = {{ member = "r", teeth = {ring} }}
+            carrier = "c"
+            mesh_efficiency = {{ external = {{ forward = {forward}, backward = {backward} }}, internal = 0.99 }}
+            [[drag]]
+            name = "brake"
+            members = ["r"]
+            coulomb = "{brake} N m"
+            peak = 1.2
+            [[drag]]
+            name = "bearing"
+            members = ["c"]
+            coulomb = "{bearing} N m"
+            viscous = "0.05 N m s/rad"
+            [[scenario]]
+            name = "run"
+            duration = "1 s"
+            samples = 201
+            initial_speeds = {{ s = "{ws} rad/s", r = "{wr} rad/s" }}
+            [[scenario.source]]
+            name = "motor"
+            member = "s"
+            torque = {{ type = "sine", amplitude = "{ts} N m", frequency = "{swing} Hz" }}
+            [[scenario.source]]
+            name = "load"
+            member = "c"
+            torque = "{tc} N m"
+            "#
+        )
+    }
+}
+
+const LISTED: [&str; 3] = ["s", "r", "c"];
+
+fn speeds_differ(a: &Named<f64>, b: &Named<f64>, sense: f64) -> f64 {
+    a.iter().map(|(name, w)| (w - sense * b.get(name).expect("the same members")).abs()).fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn energy_closes_and_mirrored_or_relabelled_trains_move_alike(what in Contraption::any()) {
+        let options = Options { tolerance: 1e-12, ..Options::default() };
+        let (rows, report) = run(&what.text(1.0, LISTED), &options);
+        prop_assert_eq!(&report.outcome, &Outcome::Finished);
+        prop_assert!(open_part(&report) <= 1e-9, "{:.2e}", open_part(&report));
+        let size = rows.greatest("speed.").max(1.0);
+        let (mirrored, turned) = run(&what.text(-1.0, LISTED), &options);
+        prop_assert!(speeds_differ(&report.final_speeds_rad_s, &turned.final_speeds_rad_s, -1.0) <= 1e-8 * size);
+        prop_assert_eq!(rows.events.len(), mirrored.events.len());
+        let (_, listed) = run(&what.text(1.0, ["c", "s", "r"]), &options);
+        prop_assert!(speeds_differ(&report.final_speeds_rad_s, &listed.final_speeds_rad_s, 1.0) <= 1e-8 * size);
+    }
+
+    #[test]
+    fn fixed_steps_are_right_to_first_order(what in Contraption::any()) {
+        let text = what.text(1.0, LISTED);
+        let (rows, exact) = run(&text, &Options::default());
+        let fixed = |h: f64| {
+            let (_, report) = run(&text, &Options { method: Method::Fixed(h), ..Options::default() });
+            speeds_differ(&exact.final_speeds_rad_s, &report.final_speeds_rad_s, 1.0)
+        };
+        // A change of mode that is late by a step changes the speed by an acceleration times that step.
+        let change = rows.greatest("acceleration.") * rows.events.len() as f64;
+        for h in [2e-3, 2e-4] {
+            let error = fixed(h);
+            prop_assert!(error <= 3.0 * h * change, "{error:.2e} at {h} s, {:.2e} allowed", 3.0 * h * change);
+        }
+    }
+}
