@@ -211,11 +211,16 @@ impl Engine {
         0.5 * shaft.stiffness * beyond * beyond
     }
 
-    /// Torque of spring and damper, as if in contact.
+    /// Torque of the spring, and of the damper as if in contact. Without a kink within a mode: a contact goes on
+    /// beyond its end, a gap beyond its contact.
     pub fn shaft_parts(&self, k: usize, x: &[f64]) -> (f64, f64) {
         let shaft = &self.system.train.shafts()[k];
-        let twist = self.twist(k, x);
-        let beyond = twist.signum() * (twist.abs() - shaft.backlash / 2.0).max(0.0);
+        let half = shaft.backlash / 2.0;
+        let beyond = match self.touch[k] {
+            _ if half == 0.0 => self.twist(k, x),
+            Touch::Gap => 0.0,
+            Touch::On(side) | Touch::Limited(side) | Touch::Parting(side) => self.twist(k, x) - f64::from(side) * half,
+        };
         (shaft.stiffness * beyond, shaft.damping * self.twist_rate(k))
     }
 
@@ -239,8 +244,8 @@ impl Engine {
         if outside < 0.0 || (outside == 0.0 && !arriving) {
             return Touch::Gap;
         }
-        let (spring, damper) = self.shaft_parts(k, x);
         let along = f64::from(side);
+        let (spring, damper) = (shaft.stiffness * outside * along, shaft.damping * rate);
         if (spring + damper) * along < 0.0 {
             Touch::Parting(side)
         } else if shaft.contact == Contact::Soft && damper * along > spring * along {
