@@ -12,6 +12,7 @@ use std::collections::HashSet;
 use nalgebra::{DMatrix, DVector};
 
 use super::engine::{Engine, Margin, NOISE, Watch};
+use super::event::short;
 use super::mode::{Mode, Side, dot, dot_size};
 
 /// Why there is no one mode.
@@ -23,11 +24,6 @@ pub(super) enum Trouble {
     None(String),
     /// Several do; the first of them.
     Several(String, Mode),
-}
-
-/// A number with six decimals at most.
-fn short(x: f64) -> f64 {
-    (x * 1e6).round() / 1e6
 }
 
 /// Modes that are tried one by one, at most.
