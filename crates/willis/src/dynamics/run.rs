@@ -270,6 +270,7 @@ impl Simulation {
                 return Err(match trouble {
                     Trouble::Impact(why) => Outcome::Impact(why),
                     Trouble::None(why) => Outcome::NoSolution(why),
+                    Trouble::NotFound(why) => Outcome::NotConverged(why),
                     Trouble::Several(why, _) => Outcome::SeveralSolutions(why),
                 });
             }
@@ -625,7 +626,9 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     };
     let done = match method {
         Method::Adaptive => "every change of mode was searched for all of them",
-        Method::Fixed(_) => "steps of fixed length go on with what they find first, and do not notice where there is none",
+        Method::Fixed(_) => {
+            "steps of fixed length go on with what they find first, and do not notice where there is none"
+        }
     };
     Some(format!("{what}: {done}"))
 }
