@@ -12,6 +12,7 @@ use std::collections::HashSet;
 use nalgebra::{DMatrix, DVector};
 
 use super::engine::{Engine, Margin, NOISE, Watch};
+use super::event::short;
 use super::mode::{Mode, Side, dot, dot_size};
 
 /// Why there is no one mode.
@@ -21,13 +22,10 @@ pub(super) enum Trouble {
     Impact(String),
     /// No mode agrees with itself.
     None(String),
+    /// None was found, and there are too many to try them all.
+    NotFound(String),
     /// Several do; the first of them.
     Several(String, Mode),
-}
-
-/// A number with six decimals at most.
-fn short(x: f64) -> f64 {
-    (x * 1e6).round() / 1e6
 }
 
 /// Modes that are tried one by one, at most.
@@ -140,10 +138,12 @@ impl Engine {
             let balanced = self.balance_guess(t, x, at_rest, &start);
             self.pivot(t, x, at_rest, &balanced)
         });
-        let certified = self.is_certified();
-        if found.is_some() && (certified || self.combinations(at_rest) > MOST_TRIED) {
-            return Ok(found.expect("some"));
-        }
+        let untried = self.combinations(at_rest) > MOST_TRIED;
+        let found = match found {
+            Some(mode) if untried || self.is_certified() => return Ok(mode),
+            None if untried => return Err(Trouble::NotFound(Self::not_found())),
+            other => other,
+        };
         let all = self.try_all(t, x, at_rest, &start);
         match (all.len(), found) {
             (0, Some(mode)) => Ok(mode),
@@ -180,6 +180,13 @@ impl Engine {
         let still = if still.is_empty() { String::new() } else { format!(" with {} at rest", still.join("; ")) };
         format!(
             "no accelerations and tooth forces agree with each other{still}: friction grows with the force it causes"
+        )
+    }
+
+    fn not_found() -> String {
+        format!(
+            "no accelerations and tooth forces were found that agree with each other; more than {MOST_TRIED} \
+             combinations of sticking and driving are too many to try them all"
         )
     }
 

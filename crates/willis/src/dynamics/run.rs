@@ -10,7 +10,7 @@ use crate::train::{MemberId, Train};
 
 use super::choose::Trouble;
 use super::engine::{Engine, Margin, Watch};
-use super::event::{Why, event};
+use super::event::{Why, event, short};
 use super::fixed::FixedStep;
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
@@ -238,7 +238,9 @@ impl Simulation {
             let s = &self.engine.system;
             let name = s.train.member_name(s.coordinates[free + k]);
             let why = format!(
-                "the speed prescribed for {name} jumps from {from} to {to} rad/s, which takes an infinite torque; use a ramp"
+                "the speed prescribed for {name} jumps from {} to {} rad/s, which takes an infinite torque; use a ramp",
+                short(*from),
+                short(*to)
             );
             // What is told is the state before.
             self.engine.inside = inside;
@@ -271,6 +273,7 @@ impl Simulation {
                 return Err(match trouble {
                     Trouble::Impact(why) => Outcome::Impact(why),
                     Trouble::None(why) => Outcome::NoSolution(why),
+                    Trouble::NotFound(why) => Outcome::NotConverged(why),
                     Trouble::Several(why, _) => Outcome::SeveralSolutions(why),
                 });
             }
@@ -636,7 +639,9 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     };
     let done = match method {
         Method::Adaptive => "every change of mode was searched for all of them",
-        Method::Fixed(_) => "steps of fixed length go on with what they find first, and do not notice where there is none",
+        Method::Fixed(_) => {
+            "steps of fixed length go on with what they find first, and do not notice where there is none"
+        }
     };
     Some(format!("{what}: {done}"))
 }
@@ -927,8 +932,8 @@ fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostic> 
             let name = s.train.member_name(*m);
             let message = format!(
                 "`{name}` cannot start at {} rad/s: the gears and the other speeds given make it {} rad/s",
-                w + prescribed(row),
-                is + prescribed(row)
+                short(w + prescribed(row)),
+                short(is + prescribed(row))
             );
             let place = format!("{}.initial_speeds.{name}", s.scenario.place);
             return Err(Diagnostic::new(Code::ContradictorySpeeds, place, message).hint("leave out one of the speeds"));
