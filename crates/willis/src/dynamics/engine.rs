@@ -91,6 +91,9 @@ pub(crate) struct Engine {
     pub scales: Vec<f64>,
     /// Room for port torques.
     pub spare: Vec<f64>,
+    /// By how many times its round-off a force has to be beyond its limit before that counts as an event: what
+    /// the integrator leaves open.
+    pub slack: f64,
 }
 
 impl Engine {
@@ -112,6 +115,7 @@ impl Engine {
             away,
             scales: vec![LEAST_SCALE; system.free + system.all() + system.integrals],
             spare: vec![0.0; system.ports],
+            slack: 1.0,
             counts: true,
             certified: system.rolling_is_unique() == Some(true) && system.sticking_is_unique() == Some(true),
             system,
@@ -419,6 +423,13 @@ impl Engine {
         }
     }
 
+    /// Whether an element, at the state solved last, carries no more than what the integrator leaves open.
+    pub fn is_between_sides(&self, j: usize) -> bool {
+        let (torque, size) = self.element_torque(j);
+        let (value, noise) = self.side_margin(j, &self.mode, torque, size);
+        value.abs() <= 1e3 * self.slack * noise
+    }
+
     /// Torques of all elements at their first gears, at the state solved last, and their round-off.
     pub fn element_torques(&self) -> Vec<(f64, f64)> {
         (0..self.system.elements.len()).map(|j| self.element_torque(j)).collect()
@@ -459,7 +470,7 @@ impl Engine {
             if self.mode.element_slip(&self.system, j) != 0 {
                 let (torque, size) = self.element_torque(j);
                 let (value, noise) = self.side_margin(j, &self.mode, torque, size);
-                out.push(Margin { watch: Watch::Side(j), value, noise });
+                out.push(Margin { watch: Watch::Side(j), value, noise: self.slack * noise });
             }
         }
         for k in 0..self.system.elastic.len() {
@@ -516,7 +527,8 @@ impl Engine {
             for (sign, most) in [(1, capacity.forward), (-1, capacity.backward)] {
                 if most.is_finite() {
                     let value = most + f64::from(sign) * force;
-                    out.push(Margin { watch: Watch::Hold(g, sign), value, noise: noise + NOISE * most });
+                    let noise = self.slack * (noise + NOISE * most);
+                    out.push(Margin { watch: Watch::Hold(g, sign), value, noise });
                 }
             }
             return;
@@ -524,7 +536,7 @@ impl Engine {
         for (sign, most) in [(1, capacity.forward), (-1, capacity.backward)] {
             if most.is_finite() {
                 let (value, noise) = self.breakaway(g, sign, t, x);
-                out.push(Margin { watch: Watch::Hold(g, sign), value, noise });
+                out.push(Margin { watch: Watch::Hold(g, sign), value, noise: self.slack * noise });
             }
         }
     }

@@ -9,7 +9,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{MemberId, Train};
 
 use super::choose::Trouble;
-use super::engine::{Engine, Margin, Watch};
+use super::engine::{Engine, Margin, NOISE, Watch};
 use super::event::{Why, event, short};
 use super::fixed::FixedStep;
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
@@ -102,6 +102,7 @@ impl Simulation {
         let system = System::new(train, scenario)?;
         let mut engine = Engine::new(system);
         engine.counts = options.energies;
+        engine.slack = (0.1 * options.tolerance / NOISE).max(1.0);
         let start = engine.system.scenario.start;
         let x = initial_state(&mut engine)?;
         let stored_at_start = engine.stored(&x);
@@ -261,7 +262,17 @@ impl Simulation {
             }
         }
         let mode = match self.engine.choose(self.t, &x, &at_rest, &guess) {
-            Ok(mode) => mode,
+            // Where the drive of a mesh reverses, both sides agree to within what the integrator leaves open: the other
+            // one goes on.
+            Ok(mut mode) => {
+                if let Some(Why::Watch(Watch::Side(j))) = self.why
+                    && mode == guess
+                    && self.engine.is_between_sides(j)
+                {
+                    mode.side[j] = mode.side[j].other();
+                }
+                mode
+            }
             Err(Trouble::Several(why, first)) if self.options.continue_when_ambiguous => {
                 let (_, times) = self.ambiguous.get_or_insert((format!("at t = {} s {why}", self.t), 0));
                 *times += 1;
