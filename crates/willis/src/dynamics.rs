@@ -5,6 +5,7 @@
 //! a mode the right-hand side is smooth, and changes of mode are located as events. Source:
 //! Galvagno 2010 with corrected signs and its loop solved.
 
+mod batch;
 mod certificate;
 mod choose;
 mod energy;
@@ -22,6 +23,7 @@ mod run;
 mod signal;
 mod system;
 
+pub use batch::Batch;
 pub use fixed::FixedStep;
 pub use modes::{Mode, ModesReport, Part, RigidMode, modes};
 pub use report::{

@@ -107,19 +107,19 @@ pub(super) struct Key {
 /// ```
 pub struct FixedStep {
     pub(super) engine: Engine,
-    h: f64,
+    pub(super) h: f64,
     start: f64,
-    count: u64,
+    pub(super) count: u64,
     /// Speeds of all coordinates.
-    v: Vec<f64>,
+    pub(super) v: Vec<f64>,
     /// Angles and integrals, as in the state of the engine.
     pub(super) rest: Vec<f64>,
     tau: Vec<f64>,
     slip: Vec<f64>,
     next: Vec<f64>,
     groups: Vec<GroupStep>,
-    sign: Vec<i8>,
-    side: Vec<Side>,
+    pub(super) sign: Vec<i8>,
+    pub(super) side: Vec<Side>,
     /// Torques with which a group can oppose slip, forward and backward, at this step.
     capacity: Vec<[f64; 2]>,
     /// Group, factor and losses of each element that has any.
@@ -147,10 +147,10 @@ pub struct FixedStep {
     /// Steps of modes met before, and the present one with its part of level inputs and its round-off.
     pub(super) fused: Vec<Fused>,
     by_exact_key: HashMap<Exactly, u32>,
-    present: Option<u32>,
-    base: Vec<f64>,
-    least: Vec<f64>,
-    ends: Vec<f64>,
+    pub(super) present: Option<u32>,
+    pub(super) base: Vec<f64>,
+    pub(super) least: Vec<f64>,
+    pub(super) ends: Vec<f64>,
     keeps_angles: bool,
     /// Speeds, angles with integrals, and signs at the start.
     at_start: (Vec<f64>, Vec<f64>, Vec<i8>),
@@ -162,8 +162,8 @@ pub struct FixedStep {
     reactions: Vec<f64>,
     /// Whether the last step was balanced by sweeps: the port torques are then complete.
     swept: bool,
-    unsettled: u64,
-    impacts: u64,
+    pub(super) unsettled: u64,
+    pub(super) impacts: u64,
 }
 
 impl FixedStep {
@@ -416,7 +416,7 @@ impl FixedStep {
 
     /// Sets what the signals that are level for a while are worth, and which inputs are not.
     #[cold]
-    fn refresh(&mut self, t: f64) {
+    pub(super) fn refresh(&mut self, t: f64) {
         let s = &self.engine.system;
         self.until = s.signals().map(|s| s.next_break(t)).fold(f64::INFINITY, f64::min);
         for (level, signal) in self.level.iter_mut().zip(s.signals()) {
@@ -447,40 +447,74 @@ impl FixedStep {
     /// What enters a step: torque or end speed of each source, torque with which each friction element can
     /// oppose slip, torque of each shaft, one.
     #[inline]
-    fn input(&self, k: usize, middle: f64) -> f64 {
+    pub(super) fn input(&self, k: usize, middle: f64) -> f64 {
+        let w = dot(self.row_of_input(k), &self.v);
+        let sum = self.integral_of(k).map_or(0.0, |i| self.rest[i]);
+        self.factors[k] * self.input_at(k, middle, w, sum)
+    }
+
+    /// The speed or slip that an input may follow, over the coordinates.
+    #[inline]
+    pub(super) fn row_of_input(&self, k: usize) -> &[f64] {
         let s = &self.engine.system;
-        let v = &self.v;
-        let speed = |m: MemberId| dot(&s.speeds[m.index()], v);
+        match k.checked_sub(s.drivers.len()) {
+            None => &s.speeds[s.drivers[k].member.index()],
+            Some(f) => s.frictions.get(f).map_or(&[], |f| &f.row),
+        }
+    }
+
+    /// Position of the integral of a controller.
+    #[inline]
+    pub(super) fn integral_of(&self, k: usize) -> Option<usize> {
+        let s = &self.engine.system;
+        Some(s.all() + s.drivers.get(k)?.integral?)
+    }
+
+    /// Whether formulas of speeds, or twists of shafts, enter an input.
+    pub(super) fn needs_all_speeds(&self, k: usize) -> bool {
+        let s = &self.engine.system;
+        let engagement = |f: usize| s.frictions.get(f).and_then(|f| f.engagement);
+        match k.checked_sub(s.drivers.len()) {
+            None => signals_of(&s.scenario.sources[k].kind).iter().any(|s| s.depends_on_speed()),
+            Some(f) => match engagement(f) {
+                Some(e) => s.scenario.engagements[e].signal.depends_on_speed(),
+                None => f >= s.frictions.len(),
+            },
+        }
+    }
+
+    /// An input, but for its factor, at the speed or slip that it follows.
+    #[inline]
+    pub(super) fn input_at(&self, k: usize, middle: f64, w: f64, sum: f64) -> f64 {
+        let s = &self.engine.system;
+        let speed = |m: MemberId| dot(&s.speeds[m.index()], &self.v);
         let drivers = s.drivers.len();
         if k < drivers {
-            let driver = &s.drivers[k];
             let first = self.signal_of[k];
-            let take =
-                |at: usize, signal: &Signal| self.level[first + at].unwrap_or_else(|| signal.value(middle, middle, &speed));
-            return self.factors[k] * match &s.scenario.sources[k].kind {
+            let take = |at: usize, signal: &Signal| {
+                self.level[first + at].unwrap_or_else(|| signal.value(middle, middle, &speed))
+            };
+            return match &s.scenario.sources[k].kind {
                 SourceKind::Torque(signal) => take(0, signal),
                 SourceKind::Speed(signal) => {
                     self.level[first].unwrap_or_else(|| signal.value(middle + 0.5 * self.h, middle, &|_| 0.0))
                 }
                 SourceKind::Controller { setpoint, feed_forward, proportional, integral, derivative } => {
-                    let error = take(0, setpoint) - speed(driver.member);
-                    let sum = driver.integral.map_or(0.0, |i| self.rest[s.all() + i]);
                     let rate =
                         if *derivative == 0.0 { 0.0 } else { setpoint.rate(middle, middle, &speed) * derivative };
-                    take(1, feed_forward) + proportional * error + integral * sum + rate
+                    take(1, feed_forward) + proportional * (take(0, setpoint) - w) + integral * sum + rate
                 }
-                SourceKind::Linear { torque, about, slope } => torque - slope * (speed(driver.member) - about),
+                SourceKind::Linear { torque, about, slope } => torque - slope * (w - about),
                 SourceKind::Quadratic { torque, about, factor, even } => {
-                    let d = speed(driver.member) - about;
+                    let d = w - about;
                     torque - factor * if *even { d * d } else { d * d.abs() }
                 }
                 SourceKind::Vehicle { mass, wheel_radius, final_drive, drag_area, air_density, grade, .. } => {
                     let arm = wheel_radius / final_drive;
-                    let w = speed(driver.member) * arm;
-                    -(0.5 * air_density * drag_area * w * w.abs() + slope_force(*mass, take(0, grade))) * arm
+                    let v = w * arm;
+                    -(0.5 * air_density * drag_area * v * v.abs() + slope_force(*mass, take(0, grade))) * arm
                 }
                 SourceKind::Motor { full_load, closed, throttle } => {
-                    let w = speed(driver.member);
                     let (low, high) = (closed.at(w), full_load.at(w));
                     low + take(0, throttle).clamp(0.0, 1.0) * (high - low)
                 }
@@ -497,8 +531,8 @@ impl FixedStep {
             return match self.flat[f] {
                 _ if friction.group.is_none() || friction.blocks.is_some() => 0.0,
                 _ if friction.rigid => if engaged >= 0.5 { UNBOUNDED } else { 0.0 },
-                Some(torque) => self.factors[k] * torque * engaged.clamp(0.0, 1.0),
-                None => self.factors[k] * friction.torque.at(dot(&friction.row, v).abs()) * engaged.clamp(0.0, 1.0),
+                Some(torque) => torque * engaged.clamp(0.0, 1.0),
+                None => friction.torque.at(w.abs()) * engaged.clamp(0.0, 1.0),
             };
         }
         let e = f - s.frictions.len();
@@ -862,10 +896,38 @@ impl FixedStep {
         true
     }
 
+    /// The middle of the next step, s.
+    pub(super) fn middle(&self) -> f64 {
+        self.time() + 0.5 * self.h
+    }
+
+    /// Whether what was level is no longer.
+    pub(super) fn is_over(&self, middle: f64) -> bool {
+        middle >= self.until || self.until == f64::NEG_INFINITY
+    }
+
+    /// Whether an input that is not level depends on speeds, not on time alone.
+    pub(super) fn depends_on_speed(&self, k: usize) -> bool {
+        let s = &self.engine.system;
+        let drivers = s.drivers.len();
+        let signal = match s.scenario.sources.get(k).map(|source| &source.kind) {
+            Some(SourceKind::Torque(signal) | SourceKind::Speed(signal)) => signal,
+            Some(_) => return true,
+            None => match s.frictions.get(k - drivers) {
+                Some(friction) if friction.rigid || self.flat[k - drivers].is_some() => match friction.engagement {
+                    Some(e) => &s.scenario.engagements[e].signal,
+                    None => return false,
+                },
+                _ => return true,
+            },
+        };
+        signal.depends_on_speed()
+    }
+
     /// Takes one step.
     pub fn step(&mut self) {
-        let middle = self.time() + 0.5 * self.h;
-        if middle >= self.until || self.until == f64::NEG_INFINITY {
+        let middle = self.middle();
+        if self.is_over(middle) {
             self.refresh(middle);
             self.present = None;
         }

@@ -63,6 +63,15 @@ impl Signal {
         }
     }
 
+    /// Whether speeds enter its value.
+    pub(crate) fn depends_on_speed(&self) -> bool {
+        match self {
+            Self::Expression { speeds, .. } => !speeds.is_empty(),
+            Self::Product(of) => of.iter().any(|s| s.depends_on_speed()),
+            _ => false,
+        }
+    }
+
     /// Rate of change in time at `t`, speeds held, in the piece that holds `inside`.
     pub(crate) fn rate(&self, t: f64, inside: f64, speed: &dyn Fn(MemberId) -> f64) -> f64 {
         match self {
