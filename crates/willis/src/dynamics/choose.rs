@@ -365,7 +365,7 @@ impl Engine {
                         }
                         let a = factor * dot(&slip[g * p..(g + 1) * p], &tau);
                         let torque = torque_of(j, &tau, e.factors);
-                        let loss = e.loss(0.0);
+                        let loss = if e.law.is_some() { self.loss(j) } else { e.loss(0.0) };
                         let upper =
                             (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
                         let lower =
@@ -380,7 +380,7 @@ impl Engine {
                 }
                 for (j, e) in self.system.elements.iter().enumerate() {
                     if e.varies() && mode.element_slip(&self.system, j) != 0 {
-                        let loss = e.loss(dot(&e.row, &self.speed).abs());
+                        let loss = self.loss(j);
                         let torque = torque_of(j, &tau, e.factors);
                         tau[e.port] = super::mode::slope(loss, mode.side[j]) * torque + self.tau[e.port];
                     }
@@ -401,7 +401,7 @@ impl Engine {
                     continue;
                 }
                 let torque = torque_of(j, &tau, e.factors);
-                let loss = e.loss(dot(&e.row, &self.speed).abs());
+                let loss = self.loss(j);
                 let sign = if sign == 0.0 {
                     let (g, factor) = e.group.expect("checked");
                     (rates[g] * factor).signum()
