@@ -1,0 +1,159 @@
+//! A physical train in motion follows the laws of its operating points.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use willis::analysis::{Selection, SolutionReport, analyze};
+use willis::dynamics::{FixedStep, Options, Outcome, Recorder, RunReport, Sample, simulate};
+use willis::train::Train;
+
+/// Moments of inertia and motions for the example of a stage with everything that costs power.
+fn text(scenarios: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/fva-planetary-stage.toml");
+    let text = fs::read_to_string(path).expect("the example");
+    let inertias = "\ninertias = { sun = \"0.02 kg m^2\", carrier = \"0.4 kg m^2\" }\n";
+    text.replace("\nterminals =", &format!("{inertias}terminals =")) + scenarios
+}
+
+fn train(scenarios: &str) -> Train {
+    Train::from_toml(&text(scenarios)).expect("a train")
+}
+
+fn solution(train: &Train, operation: &str) -> SolutionReport {
+    let all = analyze(train, &Selection::default()).expect("operating points");
+    let point = all.operations.iter().find(|o| o.name == operation).expect("the operation");
+    point.solutions[0].clone()
+}
+
+/// The last row of a run.
+#[derive(Default)]
+struct Last(Vec<f64>);
+
+impl Recorder for Last {
+    fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
+        self.0 = sample.values.to_vec();
+        ControlFlow::Continue(())
+    }
+}
+
+fn run(train: &Train, scenario: &str) -> (RunReport, Vec<f64>) {
+    let mut last = Last::default();
+    let report = simulate(train, scenario, &Options::default(), &mut last).expect("a run");
+    assert_eq!(report.outcome, Outcome::Finished);
+    let energy = &report.energy;
+    let residual = energy.residual_j.abs() / energy.turned_over_j;
+    assert!(residual < 1e-9, "{scenario}: the energy closes to {residual:e}");
+    (report, last.0)
+}
+
+/// Losses of an operating point in the words of motion, W.
+fn by_source(solution: &SolutionReport) -> BTreeMap<String, f64> {
+    let mut all = BTreeMap::new();
+    for s in &solution.sources {
+        let kind = format!("{:?}", s.kind).to_lowercase();
+        let kind = if kind == "sliding" { "mesh".into() } else { kind };
+        *all.entry(format!("{kind} {}", s.name)).or_insert(0.0) += s.loss_w;
+    }
+    all
+}
+
+/// Losses of a run, J.
+fn by_cause(report: &RunReport) -> BTreeMap<String, f64> {
+    let mut all = BTreeMap::new();
+    for l in &report.energy.losses {
+        let name = l.name.split(" rolling on ").next().expect("a name");
+        let name = name.trim_end_matches(" windage").trim_end_matches(" churning");
+        *all.entry(format!("{} {name}", l.kind)).or_insert(0.0) += l.energy_j;
+    }
+    all
+}
+
+fn close(what: &str, ours: f64, theirs: f64, tolerance: f64) {
+    let error = (ours - theirs).abs() / theirs.abs();
+    assert!(error < tolerance, "{what}: {ours}, not {theirs}: {error:e}");
+}
+
+fn held(load: f64) -> String {
+    format!(
+        "
+[[scenario]]
+name = \"held\"
+duration = \"1 s\"
+
+[[scenario.source]]
+name = \"motor\"
+member = \"sun\"
+speed = \"1500 rpm\"
+
+[[scenario.source]]
+name = \"load\"
+member = \"carrier\"
+torque = \"{load} N m\"
+"
+    )
+}
+
+/// At steady speed every loss of motion is that of the operating point: the laws are the same and nothing is left out.
+#[test]
+fn val_steady_motion_is_the_operating_point() {
+    for operation in ["rated", "a tenth of the torque", "coasting"] {
+        let point = solution(&train(""), operation);
+        let load = point.members.get("carrier").and_then(|m| m.torque_n_m).expect("a torque");
+        let (report, last) = run(&train(&held(load)), "held");
+        let (theirs, ours) = (by_source(&point), by_cause(&report));
+        assert_eq!(ours.keys().collect::<Vec<_>>(), theirs.keys().collect::<Vec<_>>());
+        for (name, loss) in &theirs {
+            close(&format!("{operation}, {name}"), ours[name], *loss, 1e-8);
+        }
+        close(operation, report.energy.efficiency.expect("steady"), point.efficiency.expect("one"), 1e-9);
+        assert!(last.iter().take(5).all(|x| x.is_finite()));
+    }
+}
+
+/// Between torques alone the train runs up to the operating point that has them.
+#[test]
+fn val_motion_settles_at_the_operating_point() {
+    let point = solution(&train(""), "rated");
+    let carrier = point.members.get("carrier").expect("a member");
+    let (load, about) = (carrier.torque_n_m.expect("a torque"), carrier.speed_rad_s.expect("a speed"));
+    let scenario = format!(
+        "
+[[scenario]]
+name = \"settles\"
+duration = \"2 s\"
+
+[[scenario.source]]
+member = \"sun\"
+torque = \"1591.549 N m\"
+
+[[scenario.source]]
+member = \"carrier\"
+linear = {{ torque = \"{load} N m\", slope = \"100 N m s/rad\", about = \"{about} rad/s\" }}
+"
+    );
+    let (report, _) = run(&train(&scenario), "settles");
+    let sun = report.final_speeds_rad_s.get("sun").copied().expect("a speed");
+    close("speed", sun, 1500.0 * std::f64::consts::PI / 30.0, 1e-9);
+}
+
+/// Run down from speed the train comes to rest under the torque of its seals and bearings, and stays.
+#[test]
+fn coasting_down_ends_at_rest() {
+    let scenario = "
+[[scenario]]
+name = \"down\"
+duration = \"60 s\"
+initial_speeds = { sun = \"1500 rpm\" }
+";
+    let (report, _) = run(&train(scenario), "down");
+    assert!(report.final_speeds_rad_s.iter().all(|(_, w)| *w == 0.0), "{:?}", report.final_speeds_rad_s);
+    assert!(report.assumptions.iter().any(|a| a.contains("with oil of constant 60 °C")), "{:?}", report.assumptions);
+}
+
+#[test]
+fn fixed_steps_refuse_laws() {
+    let wrong = FixedStep::new(&train(&held(-5000.0)), "held", 1e-4).err().expect("refused");
+    assert!(wrong.to_string().contains("follow laws"), "{wrong}");
+}
