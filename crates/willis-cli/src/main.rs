@@ -232,8 +232,8 @@ enum Command {
     },
     /// Simulate a scenario: how the train accelerates, sticks, slips and shifts, and where the energy goes.
     ///
-    /// A run that jams, has several solutions or ends otherwise before the scenario is an answer too:
-    /// the outcome says so, with exit status 3. Ctrl-C ends the run where it is, with exit status 130.
+    /// A run that jams, has several solutions or ends otherwise before the scenario is an answer:
+    /// exit status 0, and the outcome says so. Ctrl-C ends the run where it is, with exit status 130.
     /// In both cases what was computed is written and told.
     ///
     /// Rows are in SI units; where a value is not determined the field is empty (CSV) or null. Modes
@@ -698,7 +698,9 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 simulate::Failure::Input(wrong) => job.failure(wrong),
                 simulate::Failure::Told(text) => text,
             })?;
-            *status = run.status();
+            if run.interrupted() {
+                *status = 130;
+            }
             Ok(match format {
                 SimulateFormat::Text => simulate::text(&run),
                 SimulateFormat::Json => simulate::json(&run),

@@ -52,13 +52,9 @@ pub struct Run {
 }
 
 impl Run {
-    /// The exit status: 0 at the end of the scenario, 130 after Ctrl-C, 3 where the run ended before.
-    pub fn status(&self) -> u8 {
-        match self.report.outcome {
-            Outcome::Finished => 0,
-            Outcome::Interrupted => 130,
-            _ => 3,
-        }
+    /// Whether Ctrl-C ended the run.
+    pub fn interrupted(&self) -> bool {
+        self.report.outcome == Outcome::Interrupted
     }
 }
 

@@ -138,6 +138,33 @@ linear = {{ torque = \"{load} N m\", slope = \"100 N m s/rad\", about = \"{about
     close("speed", sun, 1500.0 * std::f64::consts::PI / 30.0, 1e-9);
 }
 
+/// Driven up from rest by a prescribed speed the losses begin with the motion.
+#[test]
+fn a_prescribed_speed_moves_off_from_rest() {
+    let scenario = "
+[[scenario]]
+name = \"up\"
+duration = \"2 s\"
+
+[[scenario.source]]
+member = \"sun\"
+speed = { type = \"ramp\", height = \"1500 rpm\", at = \"0.5 s\", duration = \"1 s\" }
+
+[[scenario.source]]
+name = \"load\"
+member = \"carrier\"
+torque = \"-5000 N m\"
+";
+    let (report, last) = run(&train(scenario), "up");
+    let (_, steady) = run(&train(&held(-5000.0)), "held");
+    let lost: f64 = report.energy.losses.iter().map(|l| l.energy_j).sum();
+    assert!(lost > 1000.0, "{lost} J");
+    // Speed, acceleration and torque of the end are those of steady motion; angles and energies are not.
+    for k in [1, 2, 3, 7, 8, 9, 10, 11] {
+        assert!((last[k] - steady[k]).abs() <= 1e-9 * steady[k].abs().max(1e-3), "{k}: {} {}", last[k], steady[k]);
+    }
+}
+
 /// Run down from speed the train comes to rest under the torque of its seals and bearings, and stays.
 #[test]
 fn coasting_down_ends_at_rest() {

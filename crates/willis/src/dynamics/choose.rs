@@ -11,7 +11,10 @@ use std::collections::HashSet;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::train::SourceKind;
+
 use super::engine::{Engine, Margin, NOISE, Watch};
+use super::event::short;
 use super::mode::{Mode, Side, dot, dot_size};
 
 /// Why there is no one mode.
@@ -21,13 +24,10 @@ pub(super) enum Trouble {
     Impact(String),
     /// No mode agrees with itself.
     None(String),
+    /// None was found, and there are too many to try them all.
+    NotFound(String),
     /// Several do; the first of them.
     Several(String, Mode),
-}
-
-/// A number with six decimals at most.
-fn short(x: f64) -> f64 {
-    (x * 1e6).round() / 1e6
 }
 
 /// Modes that are tried one by one, at most.
@@ -133,17 +133,19 @@ impl Engine {
                     )));
                 }
             } else if self.system.groups[g].driven {
-                start.slip[g] = 0;
+                start.slip[g] = self.departure(g);
             }
         }
         let found = self.pivot(t, x, at_rest, &start).or_else(|| {
             let balanced = self.balance_guess(t, x, at_rest, &start);
             self.pivot(t, x, at_rest, &balanced)
         });
-        let certified = self.is_certified();
-        if found.is_some() && (certified || self.combinations(at_rest) > MOST_TRIED) {
-            return Ok(found.expect("some"));
-        }
+        let untried = self.combinations(at_rest) > MOST_TRIED;
+        let found = match found {
+            Some(mode) if untried || self.is_certified() => return Ok(mode),
+            None if untried => return Err(Trouble::NotFound(Self::not_found())),
+            other => other,
+        };
         let all = self.try_all(t, x, at_rest, &start);
         match (all.len(), found) {
             (0, Some(mode)) => Ok(mode),
@@ -158,6 +160,22 @@ impl Engine {
                 Err(Trouble::Several(why, all.into_iter().next().expect("several")))
             }
         }
+    }
+
+    /// Direction in which prescribed speeds move a group at rest off, by their rates or, where those are zero too,
+    /// by where they are in the middle of the smooth piece; 0 if they leave it at rest.
+    fn departure(&self, g: usize) -> i8 {
+        let s = &self.system;
+        let row = &s.groups[g].row[s.free..];
+        let mut ahead = vec![0.0; s.prescribed];
+        for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
+            if let (Some(i), SourceKind::Speed(signal)) = (driver.prescribed, &source.kind) {
+                ahead[i] = signal.value(self.inside, self.inside, &|_| 0.0);
+            }
+        }
+        let moves = [&self.acceleration[s.free..], &ahead[..]].into_iter().map(|rates| (dot(row, rates), rates));
+        let first = moves.into_iter().find(|(slip, rates)| slip.abs() > 1e-11 * dot_size(row, rates));
+        first.map_or(0, |(slip, _)| if slip > 0.0 { 1 } else { -1 })
     }
 
     fn accelerations_of(&mut self, t: f64, x: &[f64], mode: &Mode) -> String {
@@ -180,6 +198,13 @@ impl Engine {
         let still = if still.is_empty() { String::new() } else { format!(" with {} at rest", still.join("; ")) };
         format!(
             "no accelerations and tooth forces agree with each other{still}: friction grows with the force it causes"
+        )
+    }
+
+    fn not_found() -> String {
+        format!(
+            "no accelerations and tooth forces were found that agree with each other; more than {MOST_TRIED} \
+             combinations of sticking and driving are too many to try them all"
         )
     }
 

@@ -26,13 +26,13 @@ pub(super) struct Meshing {
 }
 
 impl Engine {
-    /// Number of energies that are integrated: of sources (net and in), of frictions, shafts, meshes.
+    /// Number of energies that are integrated: of sources, frictions, shafts, meshes.
     pub fn energies(&self) -> usize {
         if !self.counts {
             return 0;
         }
         let s = &self.system;
-        2 * s.drivers.len() + s.frictions.len() + s.elastic.len() + s.train.meshes().len()
+        s.drivers.len() + s.frictions.len() + s.elastic.len() + s.train.meshes().len()
     }
 
     /// The whole torque of a source, at the state solved last.
@@ -122,11 +122,9 @@ impl Engine {
         let s = &self.system;
         let sources = s.drivers.len();
         for k in 0..sources {
-            let power = self.applied_torque(k, t) * self.member_speed(s.drivers[k].member);
-            out[k] = power;
-            out[sources + k] = power.max(0.0);
+            out[k] = self.applied_torque(k, t) * self.member_speed(s.drivers[k].member);
         }
-        let mut at = 2 * sources;
+        let mut at = sources;
         for k in 0..s.frictions.len() {
             if !matches!(s.frictions[k].what, Rubs::Rolling(_)) {
                 out[at + k] = self.rubbing(k, t).loss;
@@ -146,7 +144,7 @@ impl Engine {
             if let (Some(mesh), Some(laws)) = (s.elements[j].law, &s.laws) {
                 let mut teeth = loss;
                 for (friction, part) in laws.bearing_parts(mesh) {
-                    out[2 * sources + friction] += loss * part;
+                    out[sources + friction] += loss * part;
                     teeth -= loss * part;
                 }
                 loss = teeth;
@@ -165,23 +163,24 @@ impl Engine {
         kinetic + twisted
     }
 
-    /// The report at the end of a run. `stored` and the energies: at the start, at the end.
-    pub fn energy_report(&self, stored: [f64; 2], energies: &[f64]) -> EnergyReport {
+    /// The report at the end of a run: `stored` at the start and at the end, the energies, and of those of the
+    /// sources what came in.
+    pub fn energy_report(&self, stored: [f64; 2], energies: &[f64], came_in: &[f64]) -> EnergyReport {
         let s = &self.system;
         let n = s.drivers.len();
-        let none = vec![f64::NAN; 2 * n + s.frictions.len() + s.elastic.len() + s.train.meshes().len()];
+        let none = vec![f64::NAN; n + s.frictions.len() + s.elastic.len() + s.train.meshes().len()];
         let energies = if self.counts { energies } else { &none };
         let sources: Vec<SourceEnergy> = (0..n)
             .map(|k| SourceEnergy {
                 name: s.scenario.sources[k].name.clone(),
                 member: s.train.member_name(s.drivers[k].member).to_owned(),
                 energy_j: energies[k],
-                in_j: energies[n + k],
-                out_j: energies[n + k] - energies[k],
+                in_j: if self.counts { came_in[k] } else { f64::NAN },
+                out_j: if self.counts { (came_in[k] - energies[k]).max(0.0) } else { f64::NAN },
             })
             .collect();
         let mut losses = Vec::new();
-        let mut at = 2 * n;
+        let mut at = n;
         for (k, f) in s.frictions.iter().enumerate() {
             if !f.open && !matches!(f.what, Rubs::Rolling(_)) {
                 losses.push(EnergyLoss { name: f.name.clone(), kind: self.kind(k), energy_j: energies[at + k] });

@@ -93,6 +93,9 @@ pub(crate) struct Engine {
     pub scales: Vec<f64>,
     /// Room for port torques.
     pub spare: Vec<f64>,
+    /// By how many times its round-off a force has to be beyond its limit before that counts as an event: what
+    /// the integrator leaves open.
+    pub slack: f64,
 }
 
 impl Engine {
@@ -115,6 +118,7 @@ impl Engine {
             scales: vec![LEAST_SCALE; system.free + system.all() + system.integrals],
             spare: vec![0.0; system.ports],
             agrees: true,
+            slack: 1.0,
             counts: true,
             certified: system.rolling_is_unique() == Some(true) && system.sticking_is_unique() == Some(true),
             system,
@@ -214,11 +218,16 @@ impl Engine {
         0.5 * shaft.stiffness * beyond * beyond
     }
 
-    /// Torque of spring and damper, as if in contact.
+    /// Torque of the spring, and of the damper as if in contact. Without a kink within a mode: a contact goes on
+    /// beyond its end, a gap beyond its contact.
     pub fn shaft_parts(&self, k: usize, x: &[f64]) -> (f64, f64) {
         let shaft = &self.system.train.shafts()[k];
-        let twist = self.twist(k, x);
-        let beyond = twist.signum() * (twist.abs() - shaft.backlash / 2.0).max(0.0);
+        let half = shaft.backlash / 2.0;
+        let beyond = match self.touch[k] {
+            _ if half == 0.0 => self.twist(k, x),
+            Touch::Gap => 0.0,
+            Touch::On(side) | Touch::Limited(side) | Touch::Parting(side) => self.twist(k, x) - f64::from(side) * half,
+        };
         (shaft.stiffness * beyond, shaft.damping * self.twist_rate(k))
     }
 
@@ -242,8 +251,8 @@ impl Engine {
         if outside < 0.0 || (outside == 0.0 && !arriving) {
             return Touch::Gap;
         }
-        let (spring, damper) = self.shaft_parts(k, x);
         let along = f64::from(side);
+        let (spring, damper) = (shaft.stiffness * outside * along, shaft.damping * rate);
         if (spring + damper) * along < 0.0 {
             Touch::Parting(side)
         } else if shaft.contact == Contact::Soft && damper * along > spring * along {
@@ -418,6 +427,13 @@ impl Engine {
         }
     }
 
+    /// Whether an element, at the state solved last, carries no more than what the integrator leaves open.
+    pub fn is_between_sides(&self, j: usize) -> bool {
+        let (torque, size) = self.element_torque(j);
+        let (value, noise) = self.side_margin(j, &self.mode, torque, size);
+        value.abs() <= 1e3 * self.slack * noise
+    }
+
     /// Torques of all elements at their first gears, at the state solved last, and their round-off.
     pub fn element_torques(&self) -> Vec<(f64, f64)> {
         (0..self.system.elements.len()).map(|j| self.element_torque(j)).collect()
@@ -458,7 +474,7 @@ impl Engine {
             if self.mode.element_slip(&self.system, j) != 0 {
                 let (torque, size) = self.element_torque(j);
                 let (value, noise) = self.side_margin(j, &self.mode, torque, size);
-                out.push(Margin { watch: Watch::Side(j), value, noise });
+                out.push(Margin { watch: Watch::Side(j), value, noise: self.slack * noise });
             }
         }
         for k in 0..self.system.elastic.len() {
@@ -515,7 +531,8 @@ impl Engine {
             for (sign, most) in [(1, capacity.forward), (-1, capacity.backward)] {
                 if most.is_finite() {
                     let value = most + f64::from(sign) * force;
-                    out.push(Margin { watch: Watch::Hold(g, sign), value, noise: noise + NOISE * most });
+                    let noise = self.slack * (noise + NOISE * most);
+                    out.push(Margin { watch: Watch::Hold(g, sign), value, noise });
                 }
             }
             return;
@@ -523,7 +540,7 @@ impl Engine {
         for (sign, most) in [(1, capacity.forward), (-1, capacity.backward)] {
             if most.is_finite() {
                 let (value, noise) = self.breakaway(g, sign, t, x);
-                out.push(Margin { watch: Watch::Hold(g, sign), value, noise });
+                out.push(Margin { watch: Watch::Hold(g, sign), value, noise: self.slack * noise });
             }
         }
     }

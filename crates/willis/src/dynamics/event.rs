@@ -107,6 +107,11 @@ fn verb(train: &Train, name: &str, before: ModeLabel, now: ModeLabel) -> Verb {
     }
 }
 
+/// A number for a sentence: six decimals at most.
+pub(super) fn short(x: f64) -> f64 {
+    (x * 1e6).round() / 1e6
+}
+
 /// Letters of names in a sentence.
 const LONG: usize = 36;
 

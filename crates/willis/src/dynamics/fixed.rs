@@ -48,6 +48,7 @@ pub(super) struct Rub {
     pub factor: f64,
     /// Holds any torque, or none.
     pub is_rigid: bool,
+    peak: f64,
     /// At this step: its viscous torque, and the torques with which it opposes slip of its group forward and
     /// backward.
     viscous: f64,
@@ -155,6 +156,7 @@ pub struct FixedStep {
     at_start: (Vec<f64>, Vec<f64>, Vec<i8>),
     /// Energies as the engine counts them; empty unless asked for.
     pub(super) energies: Vec<f64>,
+    pub(super) came_in: Vec<f64>,
     /// Losses of the elements and torques behind prescribed speeds, when balanced by sweeps.
     losses: Vec<f64>,
     reactions: Vec<f64>,
@@ -209,6 +211,7 @@ impl FixedStep {
                             port: friction.port,
                             factor: friction.group.expect("of this group").1,
                             is_rigid: friction.rigid || friction.blocks.is_some(),
+                            peak: friction.peak,
                             viscous: 0.0,
                             opposes: [0.0; 2],
                         }
@@ -286,6 +289,7 @@ impl FixedStep {
             ends: vec![],
             keeps_angles: true,
             energies: vec![],
+            came_in: vec![],
             losses: vec![0.0; e],
             reactions: vec![0.0; s.prescribed],
             swept: false,
@@ -338,6 +342,7 @@ impl FixedStep {
         self.sign.copy_from_slice(sign);
         self.side.fill(Side::Drive);
         self.energies.fill(0.0);
+        self.came_in.fill(0.0);
         (self.count, self.unsettled, self.impacts) = (0, 0, 0);
         (self.present, self.last, self.until) = (None, None, f64::NEG_INFINITY);
     }
@@ -577,9 +582,10 @@ impl FixedStep {
         }
     }
 
-    /// Torques of what slides, and the losses of teeth that do not depend on load, in the present mode.
+    /// Torques of what slides, and the losses of teeth that do not depend on load, in the present mode; at their
+    /// peak in the group that is breaking away.
     #[inline]
-    fn rub(&mut self) {
+    fn rub(&mut self, breaking: Option<usize>) {
         for (g, group) in self.groups.iter().enumerate() {
             let sign = self.sign[g];
             for rub in &group.rubs {
@@ -589,6 +595,7 @@ impl FixedStep {
                     _ => rub.opposes[1],
                 };
                 let opposes = if opposes.abs() >= LEAST_UNBOUNDED { 0.0 } else { opposes };
+                let opposes = if breaking == Some(g) { opposes * rub.peak } else { opposes };
                 self.tau[rub.port] = rub.viscous + if rub.factor < 0.0 { -opposes } else { opposes };
             }
             for &(j, port, [drive, coast]) in &group.constants {
@@ -676,7 +683,7 @@ impl FixedStep {
             // Sides that agree: the last ones, else each turned once.
             for _ in 0..=self.groups[g].elements.len() {
                 let Some(map) = self.map(self.key()) else { break };
-                self.rub();
+                self.rub(Some(g));
                 let map = &self.maps[map as usize];
                 let rows = &map.rows;
                 let turned = (map.moving.iter().zip(rows[(free + map.held.len()) * cols..].chunks_exact(cols)))
@@ -694,7 +701,7 @@ impl FixedStep {
                 self.side[j] = side;
             }
             let Some(map) = self.map(self.key()) else { continue };
-            self.rub();
+            self.rub(Some(g));
             let rows = &self.maps[map as usize].rows;
             let rate: f64 = (0..free)
                 .map(|i| self.groups[g].row[i] * dot(&rows[i * cols..(i + 1) * cols], &self.tau))
@@ -721,7 +728,7 @@ impl FixedStep {
     #[inline]
     fn solve(&mut self, free: usize, cols: usize) -> Option<u32> {
         let map = self.map(self.key())?;
-        self.rub();
+        self.rub(None);
         let rows = &self.maps[map as usize].rows;
         for (i, row) in rows[..free * cols].chunks_exact(cols).enumerate() {
             self.next[i] = self.v[i] + self.h * dot(row, &self.tau);
@@ -992,6 +999,7 @@ impl FixedStep {
     /// Begins to count energies.
     pub(super) fn with_energies(&mut self) {
         self.energies = vec![0.0; self.engine.energies()];
+        self.came_in = vec![0.0; self.engine.system.drivers.len()];
     }
 
     /// Work of the step's torques at the mean of the speeds before and after it.
@@ -1007,7 +1015,6 @@ impl FixedStep {
             tau[self.groups[usize::from(g)].lead.0] += dot(row, &self.tau);
         }
         let mean: Vec<f64> = self.v.iter().zip(&self.next).map(|(a, b)| 0.5 * (a + b)).collect();
-        let n = s.drivers.len();
         for (k, (driver, source)) in s.drivers.iter().zip(&s.scenario.sources).enumerate() {
             let row = &s.speeds[driver.member.index()];
             let mut torque = match driver.prescribed {
@@ -1028,9 +1035,9 @@ impl FixedStep {
             }
             let work = torque * dot(row, &mean) * self.h;
             self.energies[k] += work;
-            self.energies[n + k] += work.max(0.0);
+            self.came_in[k] += work.max(0.0);
         }
-        let mut at = 2 * n;
+        let mut at = s.drivers.len();
         for (k, f) in s.frictions.iter().enumerate() {
             if !matches!(f.what, super::system::Rubs::Rolling(_)) {
                 self.energies[at + k] -= tau[f.port] * dot(&f.row, &mean) * self.h;

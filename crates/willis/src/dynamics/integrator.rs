@@ -59,8 +59,8 @@ pub(crate) trait Stepper {
     /// Value of a component within the last step.
     fn interpolate_component(&self, t: f64, k: usize) -> f64;
 
-    /// Goes back to `t` within the last step. Its rate is then that of the interpolation.
-    fn truncate(&mut self, t: f64);
+    /// Goes back to `t` within the last step, which then ends there: nothing that lies beyond has a part in it.
+    fn shorten<S: Smooth>(&mut self, sys: &mut S, t: f64);
 
     /// State within the last step.
     fn interpolate(&self, t: f64, out: &mut [f64]) {
@@ -98,6 +98,7 @@ pub(crate) trait Stepper {
     }
 
     /// What it took so far.
+    #[cfg(test)]
     fn counts(&self) -> Counts {
         self.track().counts
     }
@@ -228,6 +229,13 @@ impl Track {
     fn is_too_short(&self, wanted: f64, t_end: f64) -> bool {
         let left = t_end - self.t;
         wanted < left && wanted < (1e-14 * self.t.abs()).max(1e-100)
+    }
+
+    /// Takes the last step back.
+    fn back(&mut self) {
+        self.t = self.t_old;
+        std::mem::swap(&mut self.x, &mut self.x_old);
+        std::mem::swap(&mut self.rate, &mut self.rate_old);
     }
 
     /// Takes the step of length `h`: `x` and `rate`, if given, are those at its end and are exchanged

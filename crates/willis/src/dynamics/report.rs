@@ -142,7 +142,7 @@ pub enum Outcome {
     SeveralSolutions(String),
     /// More changes of mode than allowed within a short time.
     TooManyEvents(String),
-    /// The integrator could not keep the tolerance.
+    /// The integrator could not keep the tolerance, or no forces were found.
     NotConverged(String),
     /// A speed would have to change at once: members joined, or a prescribed speed that jumps.
     Impact(String),

@@ -9,8 +9,8 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{MemberId, Train};
 
 use super::choose::Trouble;
-use super::engine::{Engine, Margin, Watch};
-use super::event::{Why, event};
+use super::engine::{Engine, Margin, NOISE, Watch};
+use super::event::{Why, event, short};
 use super::fixed::FixedStep;
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
@@ -57,6 +57,8 @@ pub struct Simulation {
     t: f64,
     /// States and energies.
     x: Vec<f64>,
+    /// Of the energies of the sources what came in, in steps that are over.
+    came_in: Vec<f64>,
     segment: f64,
     at_rest: Vec<bool>,
     labels: Vec<(String, ModeLabel)>,
@@ -100,13 +102,14 @@ impl Simulation {
         let system = System::new(train, scenario)?;
         let mut engine = Engine::new(system);
         engine.counts = options.energies;
+        engine.slack = (0.1 * options.tolerance / NOISE).max(1.0);
         let start = engine.system.scenario.start;
         let x = initial_state(&mut engine)?;
         let stored_at_start = engine.stored(&x);
         let columns = engine.columns();
         let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
         let (states, quadratures) = (engine.states(), engine.quadratures());
-        let groups = engine.system.groups.len();
+        let (groups, drivers) = (engine.system.groups.len(), engine.system.drivers.len());
         let notes = uniqueness(&engine, options.method).into_iter().collect();
         Ok(Self {
             options: options.clone(),
@@ -116,6 +119,7 @@ impl Simulation {
             rolling: false,
             t: start,
             x,
+            came_in: vec![0.0; if options.energies { drivers } else { 0 }],
             segment: start,
             at_rest: vec![false; groups],
             labels: vec![],
@@ -235,7 +239,9 @@ impl Simulation {
             let s = &self.engine.system;
             let name = s.train.member_name(s.coordinates[free + k]);
             let why = format!(
-                "the speed prescribed for {name} jumps from {from} to {to} rad/s, which takes an infinite torque; use a ramp"
+                "the speed prescribed for {name} jumps from {} to {} rad/s, which takes an infinite torque; use a ramp",
+                short(*from),
+                short(*to)
             );
             // What is told is the state before.
             self.engine.inside = inside;
@@ -256,7 +262,17 @@ impl Simulation {
             }
         }
         let mode = match self.engine.choose(self.t, &x, &at_rest, &guess) {
-            Ok(mode) => mode,
+            // Where the drive of a mesh reverses, both sides agree to within what the integrator leaves open: the other
+            // one goes on.
+            Ok(mut mode) => {
+                if let Some(Why::Watch(Watch::Side(j))) = self.why
+                    && mode == guess
+                    && self.engine.is_between_sides(j)
+                {
+                    mode.side[j] = mode.side[j].other();
+                }
+                mode
+            }
             Err(Trouble::Several(why, first)) if self.options.continue_when_ambiguous => {
                 let (_, times) = self.ambiguous.get_or_insert((format!("at t = {} s {why}", self.t), 0));
                 *times += 1;
@@ -268,6 +284,7 @@ impl Simulation {
                 return Err(match trouble {
                     Trouble::Impact(why) => Outcome::Impact(why),
                     Trouble::None(why) => Outcome::NoSolution(why),
+                    Trouble::NotFound(why) => Outcome::NotConverged(why),
                     Trouble::Several(why, _) => Outcome::SeveralSolutions(why),
                 });
             }
@@ -336,7 +353,7 @@ impl Simulation {
                 if let ControlFlow::Break(last) = self.emit_samples(t, recorder) {
                     return self.stop(last);
                 }
-                self.truncate(t);
+                self.shorten(t);
                 return self.event(t, watch, recorder);
             }
             if t_new >= target && target < self.segment {
@@ -344,7 +361,7 @@ impl Simulation {
                 if let ControlFlow::Break(last) = self.emit_samples(target, recorder) {
                     return self.stop(last);
                 }
-                self.truncate(target);
+                self.shorten(target);
                 self.take_state(target);
                 self.rolling = false;
                 self.why = None;
@@ -411,26 +428,32 @@ impl Simulation {
         if self.stiff { (self.implicit.t_old(), self.implicit.t()) } else { (self.explicit.t_old(), self.explicit.t()) }
     }
 
-    fn truncate(&mut self, t: f64) {
+    fn shorten(&mut self, t: f64) {
         if self.stiff {
-            self.implicit.truncate(t);
+            self.implicit.shorten(&mut self.engine, t);
         } else {
-            self.explicit.truncate(t);
+            self.explicit.shorten(&mut self.engine, t);
         }
     }
 
     /// The end where the recorder wants no more, within the last step.
     fn stop(&mut self, t: f64) -> Stretch {
         if t > self.t {
-            self.truncate(t);
+            self.shorten(t);
             self.take_state(t);
         }
         Stretch::Ended(Outcome::Interrupted)
     }
 
     fn take_state(&mut self, t: f64) {
-        let x = if self.stiff { self.implicit.x() } else { self.explicit.x() };
-        self.x.copy_from_slice(x);
+        let states = self.engine.states();
+        if self.stiff {
+            take_in(&self.implicit, states, &mut self.came_in);
+            self.x.copy_from_slice(self.implicit.x());
+        } else {
+            take_in(&self.explicit, states, &mut self.came_in);
+            self.x.copy_from_slice(self.explicit.x());
+        }
         self.engine.rescale(&self.x);
         self.t = t;
     }
@@ -604,7 +627,11 @@ impl Simulation {
             steps: self.steps,
             events: self.events,
             final_speeds_rad_s: final_speeds.collect(),
-            energy: self.engine.energy_report([self.stored_at_start, self.engine.stored(&self.x)], &self.x[states..]),
+            energy: self.engine.energy_report(
+                [self.stored_at_start, self.engine.stored(&self.x)],
+                &self.x[states..],
+                &self.came_in,
+            ),
             assumptions: s.assumptions.clone(),
             notes,
         }
@@ -623,9 +650,35 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     };
     let done = match method {
         Method::Adaptive => "every change of mode was searched for all of them",
-        Method::Fixed(_) => "steps of fixed length go on with what they find first, and do not notice where there is none",
+        Method::Fixed(_) => {
+            "steps of fixed length go on with what they find first, and do not notice where there is none"
+        }
     };
     Some(format!("{what}: {done}"))
+}
+
+/// Adds what the sources put in during the last step. A power that changes its sign is parted where it does.
+fn take_in(stepper: &impl Stepper, states: usize, came_in: &mut [f64]) {
+    let (t_old, t) = (stepper.t_old(), stepper.t());
+    for (k, sum) in came_in.iter_mut().enumerate() {
+        let at = states + k;
+        let (from, to) = (stepper.x_old()[at], stepper.x()[at]);
+        let (first, last) = (stepper.rate_old()[at], stepper.rate()[at]);
+        if first * last >= 0.0 {
+            *sum += (to - from).max(0.0);
+            continue;
+        }
+        // The work has an extreme within the step: golden sections.
+        const RATIO: f64 = 0.618_033_988_749_894_8;
+        let value = |t: f64| if first > 0.0 { stepper.interpolate_component(t, at) } else { -stepper.interpolate_component(t, at) };
+        let (mut low, mut high) = (t_old, t);
+        for _ in 0..40 {
+            let (a, b) = (high - RATIO * (high - low), low + RATIO * (high - low));
+            if value(a) < value(b) { low = a } else { high = b }
+        }
+        let turn = stepper.interpolate_component(0.5 * (low + high), at);
+        *sum += (turn - from).max(0.0) + (to - turn).max(0.0);
+    }
 }
 
 /// Runs a scenario from its start to its end and hands rows and events to a recorder as they come.
@@ -677,13 +730,23 @@ fn fixed(
         let sampled =
             run.next_sample < run.samples && (t >= run.sample_time(run.next_sample) - 0.5 * h || step == steps);
         let changed = key != Some(stepper.state_of_modes());
-        if sampled || changed {
+        // No step has chosen the mode of the start yet.
+        if step == 0 {
+            if let Err(outcome) = run.choose(recorder) {
+                run.outcome = Some(outcome);
+            } else {
+                run.next_sample = 1;
+                run.row();
+                if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
+                    run.outcome = Some(Outcome::Interrupted);
+                }
+            }
+        } else if sampled || changed {
             key = Some(stepper.state_of_modes());
             stepper.copy_to_engine(&mut x);
             let labels = stepper.engine.labels();
-            if step == 0 || !run.labels.is_empty() && run.labels != labels {
-                let why = (step == 0).then_some(Why::Start);
-                let event = event(&stepper.engine, t, why, &run.labels, &labels);
+            if run.labels != labels {
+                let event = event(&stepper.engine, t, None, &run.labels, &labels);
                 run.events += 1;
                 if event.is_some_and(|e| recorder.event(&e).is_break()) {
                     run.outcome = Some(Outcome::Interrupted);
@@ -691,7 +754,7 @@ fn fixed(
             }
             run.labels = labels;
         }
-        if sampled {
+        if sampled && step > 0 {
             while run.next_sample < run.samples && t >= run.sample_time(run.next_sample) - 0.5 * h {
                 run.next_sample += 1;
             }
@@ -727,6 +790,7 @@ fn fixed(
         ));
     }
     run.x = x;
+    run.came_in = stepper.came_in;
     run.engine = stepper.engine;
     Ok(run.report())
 }
@@ -804,8 +868,13 @@ fn lagged(
             run.engine.rate(t + part * h, &at, &mut rate);
             k[stage] = rate;
         }
+        let states = run.engine.states();
         for i in 0..n {
-            x[i] += h / 6.0 * (k[0][i] + 2.0 * k[1][i] + 2.0 * k[2][i] + k[3][i]);
+            let change = h / 6.0 * (k[0][i] + 2.0 * k[1][i] + 2.0 * k[2][i] + k[3][i]);
+            x[i] += change;
+            if let Some(sum) = i.checked_sub(states).and_then(|i| run.came_in.get_mut(i)) {
+                *sum += change.max(0.0);
+            }
         }
         run.engine.solve(t + h, &x);
         torques = run.engine.element_torques();
@@ -874,8 +943,8 @@ fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostic> 
             let name = s.train.member_name(*m);
             let message = format!(
                 "`{name}` cannot start at {} rad/s: the gears and the other speeds given make it {} rad/s",
-                w + prescribed(row),
-                is + prescribed(row)
+                short(w + prescribed(row)),
+                short(is + prescribed(row))
             );
             let place = format!("{}.initial_speeds.{name}", s.scenario.place);
             return Err(Diagnostic::new(Code::ContradictorySpeeds, place, message).hint("leave out one of the speeds"));

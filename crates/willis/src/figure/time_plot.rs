@@ -458,7 +458,7 @@ pub fn outcome_in_words(outcome: &Outcome) -> &'static str {
         Outcome::NoSolution(_) => "jammed: no tooth forces fit the motion",
         Outcome::SeveralSolutions(_) => "stopped where several motions are possible",
         Outcome::TooManyEvents(_) => "stopped: modes change too often",
-        Outcome::NotConverged(_) => "stopped: the tolerance could not be kept",
+        Outcome::NotConverged(_) => "stopped: the equations could not be solved",
         Outcome::Impact(_) => "stopped at an impact: a speed would have to change at once",
     }
 }

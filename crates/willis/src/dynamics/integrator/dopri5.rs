@@ -226,23 +226,18 @@ impl Stepper for Dopri5 {
         x_old[k] + theta * (c1[k] + rest * (c2[k] + theta * (c3[k] + rest * c4[k])))
     }
 
-    fn truncate(&mut self, t: f64) {
+    fn shorten<S: Smooth>(&mut self, sys: &mut S, t: f64) {
         if t >= self.track.t {
             return;
         }
-        for k in 0..self.track.x.len() {
-            self.new[k] = self.interpolate_component(t, k);
+        let h = (t - self.track.t_old).max(0.0);
+        self.track.back();
+        if h > 0.0 {
+            // Shorter than a step that was within the tolerance: nothing to control.
+            self.try_step(sys, h);
+            self.track.accept(h, t, &mut self.new, Some(&mut self.last));
+            self.track.t = t;
+            self.prepare_dense(h);
         }
-        let theta = (t - self.track.t_old).max(0.0) / self.span;
-        let rest = 1.0 - theta;
-        let slope = 1.0 - 2.0 * theta;
-        let [c1, c2, c3, c4] = &self.dense;
-        for k in 0..self.track.x.len() {
-            self.track.x[k] = self.new[k];
-            self.track.rate[k] =
-                (c1[k] + slope * c2[k] + theta * (2.0 - 3.0 * theta) * c3[k] + 2.0 * theta * rest * slope * c4[k])
-                    / self.span;
-        }
-        self.track.t = t.max(self.track.t_old);
     }
 }
