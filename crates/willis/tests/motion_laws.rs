@@ -112,6 +112,14 @@ fn val_steady_motion_is_the_operating_point() {
     }
 }
 
+/// At a small load drags take their part, at a large one tooth friction grows with it.
+#[test]
+fn efficiency_depends_on_load() {
+    let efficiency = |load: f64| run(&train(&held(load)), "held").0.energy.efficiency.expect("steady");
+    let [low, middle, high] = [-100.0, -1000.0, -7000.0].map(efficiency);
+    assert!(low + 0.01 < middle && high + 0.001 < middle, "{low} {middle} {high}");
+}
+
 /// Between torques alone the train runs up to the operating point that has them.
 #[test]
 fn val_motion_settles_at_the_operating_point() {

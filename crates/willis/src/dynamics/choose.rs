@@ -390,7 +390,7 @@ impl Engine {
                         }
                         let a = factor * dot(&slip[g * p..(g + 1) * p], &tau);
                         let torque = torque_of(j, &tau, e.factors);
-                        let loss = if e.law.is_some() { self.loss(j) } else { e.loss(0.0) };
+                        let loss = self.loss_at(j, 0.0);
                         let upper =
                             (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
                         let lower =

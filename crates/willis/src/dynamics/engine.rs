@@ -75,7 +75,7 @@ pub(crate) struct Engine {
     /// A time within the smooth piece of all signals.
     pub inside: f64,
     pub map: Option<Arc<Map>>,
-    /// Whether the map follows the speed.
+    /// Whether the map follows speed or load.
     pub varying: bool,
     /// At the state looked at last: speeds of the coordinates, their rates, torques of the ports.
     pub speed: Vec<f64>,

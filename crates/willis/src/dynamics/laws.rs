@@ -14,7 +14,7 @@ use crate::train::{MeshId, Train};
 
 use super::engine::Engine;
 use super::mode::{Map, Mode, Side, dot, slope};
-use super::system::{Loss, Rubs};
+use super::system::{Loss, MOST_LOST, Rubs};
 
 /// Change in a round that counts as none, over the sum of the losses as torques.
 const AGREEMENT: f64 = 1e-11;
@@ -76,19 +76,34 @@ impl Laws {
         self.step.bearing_parts(mesh, &self.places).map(|(place, part)| (self.first + place, part))
     }
 
+    /// The loss of a mesh in proportion to its load.
+    fn loss(&self, mesh: MeshId) -> Loss {
+        let lost = self.step.lost(mesh);
+        Loss { drive: lost, coast: 1.0 - 1.0 / (1.0 - lost), drive_torque: 0.0, coast_torque: 0.0 }
+    }
+
     /// What is followed, and what is not.
-    pub fn assumptions(&self) -> Vec<String> {
-        let (friction, rolling) = self.physics.tooth_laws();
-        let rolling = rolling.map_or(String::new(), |law| format!(", rolling `{law}`"));
-        let oil = self.physics.temperature().map_or("without oil".into(), |t| format!("with oil of constant {:.0} °C", t - 273.15));
+    pub fn assumptions(&self, train: &Train) -> Vec<String> {
+        let mut all: Vec<String> = Vec::new();
+        if train.meshes().iter().any(|m| m.computed) {
+            all.push(format!("tooth friction `{}`", self.physics.friction_law()));
+        }
+        for place in &self.places {
+            if all.iter().all(|known| known != place.label()) {
+                all.push(place.label().to_owned());
+            }
+        }
+        let oil = match self.physics.temperature() {
+            Some(t) => format!("with oil of constant {:.0} °C", t - 273.15),
+            None => "without oil".to_owned(),
+        };
         vec![
+            format!("losses follow the laws of operating points at every speed and load, {oil}: {}", all.join(", ")),
             format!(
-                "losses follow the laws of the operating points at every speed and load, {oil}: tooth friction `{friction}`{rolling}, \
-                 bearings, seals, gears and rotors in their fluid"
-            ),
-            format!(
-                "relative speeds below {LEAST_SPEED} rad/s count as that in a loss; ranges of the laws are not watched in motion; \
-                 inertia forces of planets but the centrifugal one do not load their bearings"
+                "relative speeds below {LEAST_SPEED} rad/s count as that in a law, whose range is not watched in motion; planets \
+                 load their bearings by tooth and centrifugal forces only; that forces are unique is proved for meshes that lose \
+                 up to {:.0} %",
+                100.0 * MOST_LOST
             ),
         ]
     }
@@ -111,13 +126,15 @@ impl Place {
 impl Engine {
     /// Loss of an element at the speeds looked at; where it follows a law, as the forces found last have it.
     pub fn loss(&self, j: usize) -> Loss {
+        self.loss_at(j, dot(&self.system.elements[j].row, &self.speed).abs())
+    }
+
+    /// The same where only tables take another speed.
+    pub fn loss_at(&self, j: usize, speed: f64) -> Loss {
         let e = &self.system.elements[j];
         match (e.law, &self.system.laws) {
-            (Some(mesh), Some(laws)) => {
-                let lost = laws.step.lost(mesh);
-                Loss { drive: lost, coast: 1.0 - 1.0 / (1.0 - lost), drive_torque: 0.0, coast_torque: 0.0 }
-            }
-            _ => e.loss(dot(&e.row, &self.speed).abs()),
+            (Some(mesh), Some(laws)) => laws.loss(mesh),
+            _ => e.loss(speed),
         }
     }
 
@@ -170,15 +187,14 @@ impl Engine {
             let side = mode.side[j];
             let own = match e.law {
                 Some(mesh) if sign != 0 => {
-                    let part = laws.step.lost(mesh);
                     size += a.abs() * map.size(row, tau);
-                    slope(Loss { drive: part, coast: 1.0 - 1.0 / (1.0 - part), drive_torque: 0.0, coast_torque: 0.0 }, side) * torque
+                    slope(laws.loss(mesh), side) * torque
                 }
                 _ => 0.0,
             };
             lost += own.abs();
             let flow = &mut laws.flow.meshes[link.mesh.index()];
-            // The elements follow from the Willis equation `a ω_p + b ω_q = 0` relative to the carrier.
+            // Of the second gear by the Willis equation: relative to the carrier a ω_p + b ω_q = 0.
             let other = b / a * (torque - own);
             flow.torques = [torque, other, -torque - other];
             let speed = dot(&e.row, &self.speed);

@@ -30,9 +30,9 @@ use super::laws::Laws;
 /// Standard acceleration of free fall, m/s² (ISO 80000-3).
 const GRAVITY: f64 = 9.80665;
 
-/// Part of its power that a mesh under a law loses at most for the certificates of unique forces: several times
-/// what good gears lose.
-const MOST_LOST: f64 = 0.1;
+/// Part of its power up to which the certificates of unique forces let a mesh under a law lose: several times what
+/// good gears do.
+pub(super) const MOST_LOST: f64 = 0.1;
 
 /// A mesh element: one gear pair, or a chain of them.
 pub(super) struct Element {
@@ -502,7 +502,7 @@ impl System {
                     port: port(a, b),
                 }
             }));
-            assumptions.extend(laws.assumptions());
+            assumptions.extend(laws.assumptions(train));
         }
         let elastic: Vec<Elastic> = (train.shafts().iter().enumerate())
             .map(|(k, s)| Elastic {

@@ -68,9 +68,9 @@ impl Physics<'static> {
         self.oil.as_ref().map(|(_, state)| state.temperature)
     }
 
-    /// Names of the laws of tooth friction and rolling in force.
-    pub fn tooth_laws(&self) -> (&'static str, Option<&'static str>) {
-        (self.friction.meta().id, self.rolling.map(|r| r.meta().id))
+    /// Name of the law of tooth friction in force.
+    pub fn friction_law(&self) -> &'static str {
+        self.friction.meta().id
     }
 }
 
