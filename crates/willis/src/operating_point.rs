@@ -289,12 +289,7 @@ impl<'t> Physics<'t> {
         (flow.speeds[a.0] - flow.speeds[b.0]).abs().max(self.least_speed)
     }
 
-    fn evaluate(
-        &self,
-        flow: &Flow,
-        known: &dyn Fn(MemberId) -> bool,
-        beyond: &mut Option<Vec<Extrapolation>>,
-    ) -> Step {
+    fn evaluate(&self, flow: &Flow, known: &dyn Fn(MemberId) -> bool, beyond: &mut Option<Vec<Extrapolation>>) -> Step {
         let mut step = Step::lossless(&self.train);
         let mut drag = |source: Source, members: [MemberId; 2], torque: f64| {
             let relative = flow.speeds[members[0].0] - flow.speeds[members[1].0];

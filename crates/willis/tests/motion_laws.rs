@@ -137,7 +137,9 @@ fn val_every_law_is_followed() {
 /// The same for other trains: two stages with a closed path of power, and a slow stage with a carrier that drives.
 #[test]
 fn val_other_trains_are_followed() {
-    for (name, input, output) in [("wang-herringbone-physical", "sun2", "output"), ("nrel-5mw-stage-1", "carrier", "sun")] {
+    for (name, input, output) in
+        [("wang-herringbone-physical", "sun2", "output"), ("nrel-5mw-stage-1", "carrier", "sun")]
+    {
         let inertias = format!("\n[inertias]\n{input} = \"1 kg m^2\"\n{output} = \"1 kg m^2\"\n");
         let point = solution(&example(name, &inertias), "");
         let speed = point.members.get(input).and_then(|m| m.speed_rad_s).expect("a speed");

@@ -49,8 +49,7 @@ impl Laws {
             efficiency: 1.0,
             loss: 0.0,
         });
-        let flow =
-            Flow { speeds: vec![0.0; train.members().len()], meshes: meshes.collect(), ..Flow::default() };
+        let flow = Flow { speeds: vec![0.0; train.members().len()], meshes: meshes.collect(), ..Flow::default() };
         let step = physics.follow(&flow);
         let torques = places.iter().map(|p| step.drag(p)).collect();
         Some(Self { physics, places, first: 0, flow, step, torques })
@@ -208,7 +207,8 @@ impl Engine {
         let mut change = 0.0;
         for e in &self.system.elements {
             if let Some(mesh) = e.law {
-                change += (next.lost(mesh) - laws.step.lost(mesh)).abs() * laws.flow.meshes[mesh.index()].torques[0].abs();
+                change +=
+                    (next.lost(mesh) - laws.step.lost(mesh)).abs() * laws.flow.meshes[mesh.index()].torques[0].abs();
             }
         }
         for (new, old) in torques.iter().zip(&laws.torques) {

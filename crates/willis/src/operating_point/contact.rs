@@ -162,7 +162,8 @@ impl Loaded<'_> {
         let sum = pair.sum_speed_per_speed(s) * self.speed;
         let modulus = self.teeth.reduced_modulus();
         let pressure = (line_load * modulus / (std::f64::consts::TAU * radius)).sqrt();
-        let film = self.physics.oil.as_ref().map_or(0.0, |(_, oil)| self.film(oil, line_load, radius, sliding, sum, pressure));
+        let film =
+            self.physics.oil.as_ref().map_or(0.0, |(_, oil)| self.film(oil, line_load, radius, sliding, sum, pressure));
         Point { line_load, sliding, sum, radius, pressure, film }
     }
 

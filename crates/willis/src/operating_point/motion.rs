@@ -77,7 +77,8 @@ impl Physics<'static> {
 impl Step {
     /// Amount of the drag at a place, N m.
     pub fn drag(&self, place: &Place) -> f64 {
-        let found = self.sources.iter().zip(&self.drags).find(|(s, d)| **s == place.source && d.members == place.members);
+        let found =
+            self.sources.iter().zip(&self.drags).find(|(s, d)| **s == place.source && d.members == place.members);
         found.map_or(0.0, |(_, d)| d.torque.abs())
     }
 
