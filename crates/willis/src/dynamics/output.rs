@@ -24,10 +24,10 @@ fn number(label: ModeLabel) -> f64 {
 }
 
 impl Engine {
-    /// Whether the slip of a law's friction element would not be told of by another of its group.
+    /// Whether a law's friction element can hold, and its slip is not told of by another of its group.
     fn speaks(&self, k: usize) -> bool {
         let group = self.system.frictions[k].group.map(|(g, _)| &self.system.groups[g]);
-        group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
+        matches!(self.kind(k), "bearing" | "seal") && group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
     }
 
     /// Everything that has a mode, and the mode.
