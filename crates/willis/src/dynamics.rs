@@ -14,6 +14,7 @@ mod event;
 mod fixed;
 mod fused;
 mod integrator;
+mod laws;
 mod mode;
 mod modes;
 pub mod offset;

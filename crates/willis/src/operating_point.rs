@@ -23,6 +23,9 @@
 mod bearing;
 mod body;
 mod contact;
+mod motion;
+
+use std::borrow::Cow;
 
 use serde::Serialize;
 
@@ -34,6 +37,7 @@ use crate::train::{Efficiency, Gear, Lubrication, MemberId, Operation, Train};
 
 pub use bearing::BearingReport;
 pub use contact::{ContactReport, Regime};
+pub(crate) use motion::{LEAST_SPEED, Place};
 
 /// The error that is left, over the loss.
 const ACCURACY: f64 = 1e-9;
@@ -170,11 +174,13 @@ struct OilState {
 /// All losses of a train that an operating point can compute.
 #[derive(Debug)]
 pub(crate) struct Physics<'t> {
-    train: &'t Train,
-    oil: Option<(&'t Lubrication, OilState)>,
+    train: Cow<'t, Train>,
+    oil: Option<(Lubrication, OilState)>,
     friction: MeshFriction,
     rolling: Option<Rolling>,
     bodies: Vec<body::Body>,
+    /// Amounts of relative speed below it count as this, rad/s.
+    least_speed: f64,
 }
 
 /// Losses of one mesh as parts of its potential power.
@@ -183,7 +189,8 @@ struct MeshLoss {
     sliding: f64,
     /// Bearing, and its part.
     bearings: Vec<(usize, f64)>,
-    contact: Option<ContactReport>,
+    /// Mean coefficient of friction of the teeth.
+    friction: Option<f64>,
 }
 
 impl MeshLoss {
@@ -226,8 +233,12 @@ impl Step {
 impl<'t> Physics<'t> {
     /// Everything that does not depend on the load.
     pub fn new(train: &'t Train, operation: &Operation) -> Self {
-        let oil = train.lubrication.as_ref().map(|l| {
-            let temperature = operation.temperature.unwrap_or(l.temperature);
+        Self::at(Cow::Borrowed(train), operation.temperature)
+    }
+
+    fn at(train: Cow<'t, Train>, temperature: Option<f64>) -> Self {
+        let oil = train.lubrication.clone().map(|l| {
+            let temperature = temperature.unwrap_or(l.temperature);
             let state = OilState {
                 temperature,
                 dynamic_viscosity: l.oil.dynamic_viscosity(temperature),
@@ -241,7 +252,8 @@ impl<'t> Physics<'t> {
         });
         let friction = train.laws.mesh_friction(oil.is_some());
         let rolling = train.laws.rolling(&friction).filter(|_| oil.is_some());
-        Self { train, oil, friction, rolling, bodies: body::bodies(train) }
+        let bodies = body::bodies(&train);
+        Self { train, oil, friction, rolling, bodies, least_speed: 0.0 }
     }
 
     /// Members on which a drag acts: the statics must see them, planets too.
@@ -262,22 +274,26 @@ impl<'t> Physics<'t> {
 
     /// The losses that the laws give for the torques and speeds of a flow.
     pub fn step(&self, flow: &Flow, motion: &Motion) -> Step {
-        self.evaluate(flow, motion, &mut None)
+        self.evaluate(flow, &|m| motion.speeds[m.0].is_some(), &mut None)
     }
 
     /// Where the laws were used outside their ranges.
     pub fn extrapolations(&self, flow: &Flow, motion: &Motion) -> Vec<Extrapolation> {
         let mut found = Some(vec![]);
-        self.evaluate(flow, motion, &mut found);
+        self.evaluate(flow, &|m| motion.speeds[m.0].is_some(), &mut found);
         found.unwrap_or_default()
     }
 
-    fn evaluate(&self, flow: &Flow, motion: &Motion, beyond: &mut Option<Vec<Extrapolation>>) -> Step {
-        let mut step = Step::lossless(self.train);
-        let known = |m: MemberId| motion.speeds[m.0].is_some();
+    /// Amount of the speed of two members relative to each other.
+    fn slip(&self, flow: &Flow, [a, b]: [MemberId; 2]) -> f64 {
+        (flow.speeds[a.0] - flow.speeds[b.0]).abs().max(self.least_speed)
+    }
+
+    fn evaluate(&self, flow: &Flow, known: &dyn Fn(MemberId) -> bool, beyond: &mut Option<Vec<Extrapolation>>) -> Step {
+        let mut step = Step::lossless(&self.train);
         let mut drag = |source: Source, members: [MemberId; 2], torque: f64| {
             let relative = flow.speeds[members[0].0] - flow.speeds[members[1].0];
-            if torque > LEAST_DRAG && relative != 0.0 && members.iter().all(|m| known(*m)) {
+            if torque > LEAST_DRAG && self.slip(flow, members) > 0.0 && members.iter().all(|m| known(*m)) {
                 step.sources.push(source);
                 step.drags.push(Drag { members, torque: -torque * relative.signum() });
             }
@@ -289,21 +305,24 @@ impl<'t> Physics<'t> {
                 losses.push(MeshLoss::default());
                 continue;
             };
-            let (contact, rolling) = self.contact(mesh, teeth, m, beyond);
+            if beyond.is_some() {
+                self.contact(mesh, teeth, m, beyond);
+            }
+            let tooth = self.tooth(mesh, teeth, m);
             // Rolling resists on both gears; each takes half of its power.
             for k in 0..2 {
                 let speed = m.relative_speeds[k].abs();
                 if speed > 0.0 && mesh.computed {
-                    drag(Source::Rolling(m.mesh.0), [mesh.gears[k].member, mesh.carrier], 0.5 * rolling / speed);
+                    drag(Source::Rolling(m.mesh.0), [mesh.gears[k].member, mesh.carrier], 0.5 * tooth.rolling / speed);
                 }
             }
-            let sliding = match (&contact.friction, mesh.computed, m.driver) {
-                (Some(mu), true, Some(_)) => (mu * contact.loss_factor).clamp(0.0, MOST_LOST),
+            let sliding = match (tooth.friction, mesh.computed, m.driver) {
+                (Some(mu), true, Some(_)) => (mu * tooth.loss_factor).clamp(0.0, MOST_LOST),
                 // Idle or at rest: nothing is lost, but friction may hold; the nominal value.
                 (_, true, _) => 1.0 - mesh.efficiency.forward.to_f64(),
                 _ => 0.0,
             };
-            losses.push(MeshLoss { sliding, bearings: vec![], contact: Some(contact) });
+            losses.push(MeshLoss { sliding, bearings: vec![], friction: tooth.friction });
         }
         let mut reports = Vec::with_capacity(self.train.bearings.len());
         for (k, mount) in self.train.bearings.iter().enumerate() {
@@ -412,7 +431,7 @@ impl<'t> Physics<'t> {
 
     /// Every loss of a solved step by its source, largest first; their sum is the flow's loss.
     pub fn sources(&self, step: &Step, flow: &Flow) -> Vec<LossSource> {
-        let train = self.train;
+        let train = &self.train;
         let mut all: Vec<LossSource> = Vec::new();
         let mut add = |name: &str, kind: LossKind, law: &'static str, loss_w: f64| match all
             .iter_mut()
@@ -469,10 +488,10 @@ impl<'t> Physics<'t> {
         let mut all = Vec::new();
         for (m, own) in flow.meshes.iter().zip(&step.meshes) {
             let mesh = &self.train.meshes[m.mesh.0];
-            let (Some(solved), Some(teeth)) = (&own.contact, &mesh.teeth) else { continue };
+            let Some(teeth) = &mesh.teeth else { continue };
             // Loads of this flow, with the friction it was solved with.
-            let (mut contact, _) = self.contact(mesh, teeth, m, &mut None);
-            contact.friction = solved.friction;
+            let mut contact = self.contact(mesh, teeth, m, &mut None);
+            contact.friction = own.friction;
             let bearings: f64 = own.bearings.iter().map(|b| b.1).sum();
             contact.sliding_loss_w = (m.loss - m.potential_power * bearings).max(0.0);
             let rolling = step.sources.iter().zip(&flow.drag_losses);
@@ -504,7 +523,7 @@ impl<'t> Physics<'t> {
 
     /// Every torque between two members beside those of the teeth.
     pub fn drags(&self, step: &Step, flow: &Flow) -> Vec<DragReport> {
-        let train = self.train;
+        let train = &self.train;
         let members = |m: [MemberId; 2]| m.map(|m| train.member_name(m).to_owned());
         let mut all = Vec::new();
         for ((source, drag), loss_w) in step.sources.iter().zip(&step.drags).zip(&flow.drag_losses) {

@@ -46,7 +46,7 @@ pub struct Circulation {
 }
 
 /// The power flow of one equilibrium.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Flow {
     /// External torque on each member, N m, reactions of brakes and holds included; `None` where
     /// brakes share a load indeterminately.

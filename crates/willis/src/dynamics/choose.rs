@@ -11,6 +11,8 @@ use std::collections::HashSet;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::train::SourceKind;
+
 use super::engine::{Engine, Margin, NOISE, Watch};
 use super::event::short;
 use super::mode::{Mode, Side, dot, dot_size};
@@ -131,7 +133,7 @@ impl Engine {
                     )));
                 }
             } else if self.system.groups[g].driven {
-                start.slip[g] = 0;
+                start.slip[g] = self.departure(g);
             }
         }
         let found = self.pivot(t, x, at_rest, &start).or_else(|| {
@@ -158,6 +160,22 @@ impl Engine {
                 Err(Trouble::Several(why, all.into_iter().next().expect("several")))
             }
         }
+    }
+
+    /// Direction in which prescribed speeds move a group at rest off, by their rates or, where those are zero too,
+    /// by where they are in the middle of the smooth piece; 0 if they leave it at rest.
+    fn departure(&self, g: usize) -> i8 {
+        let s = &self.system;
+        let row = &s.groups[g].row[s.free..];
+        let mut ahead = vec![0.0; s.prescribed];
+        for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
+            if let (Some(i), SourceKind::Speed(signal)) = (driver.prescribed, &source.kind) {
+                ahead[i] = signal.value(self.inside, self.inside, &|_| 0.0);
+            }
+        }
+        let moves = [&self.acceleration[s.free..], &ahead[..]].into_iter().map(|rates| (dot(row, rates), rates));
+        let first = moves.into_iter().find(|(slip, rates)| slip.abs() > 1e-11 * dot_size(row, rates));
+        first.map_or(0, |(slip, _)| if slip > 0.0 { 1 } else { -1 })
     }
 
     fn accelerations_of(&mut self, t: f64, x: &[f64], mode: &Mode) -> String {
@@ -372,7 +390,7 @@ impl Engine {
                         }
                         let a = factor * dot(&slip[g * p..(g + 1) * p], &tau);
                         let torque = torque_of(j, &tau, e.factors);
-                        let loss = e.loss(0.0);
+                        let loss = self.loss_at(j, 0.0);
                         let upper =
                             (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
                         let lower =
@@ -387,7 +405,7 @@ impl Engine {
                 }
                 for (j, e) in self.system.elements.iter().enumerate() {
                     if e.varies() && mode.element_slip(&self.system, j) != 0 {
-                        let loss = e.loss(dot(&e.row, &self.speed).abs());
+                        let loss = self.loss(j);
                         let torque = torque_of(j, &tau, e.factors);
                         tau[e.port] = super::mode::slope(loss, mode.side[j]) * torque + self.tau[e.port];
                     }
@@ -408,7 +426,7 @@ impl Engine {
                     continue;
                 }
                 let torque = torque_of(j, &tau, e.factors);
-                let loss = e.loss(dot(&e.row, &self.speed).abs());
+                let loss = self.loss(j);
                 let sign = if sign == 0.0 {
                     let (g, factor) = e.group.expect("checked");
                     (rates[g] * factor).signum()

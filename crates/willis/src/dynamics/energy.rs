@@ -99,7 +99,7 @@ impl Engine {
             return Meshing { torque: if open { f64::NAN } else { torque }, loss: 0.0 };
         }
         let w = dot(&e.row, &self.speed);
-        let loss = e.loss(w.abs());
+        let loss = self.loss(j);
         let side = self.mode.side[j];
         let constant = match side {
             Side::Drive => loss.drive_torque,
@@ -140,7 +140,15 @@ impl Engine {
             if s.elements[j].group.is_none() {
                 continue;
             }
-            let loss = self.meshing(j).loss;
+            let mut loss = self.meshing(j).loss;
+            if let (Some(mesh), Some(laws)) = (s.elements[j].law, &s.laws) {
+                let mut teeth = loss;
+                for (friction, part) in laws.bearing_parts(mesh) {
+                    out[sources + friction] += loss * part;
+                    teeth -= loss * part;
+                }
+                loss = teeth;
+            }
             for &(mesh, part) in self.shares(j) {
                 out[at + mesh] += loss * part;
             }

@@ -75,7 +75,7 @@ pub(crate) struct Engine {
     /// A time within the smooth piece of all signals.
     pub inside: f64,
     pub map: Option<Arc<Map>>,
-    /// Whether the map follows the speed.
+    /// Whether the map follows speed or load.
     pub varying: bool,
     /// At the state looked at last: speeds of the coordinates, their rates, torques of the ports.
     pub speed: Vec<f64>,
@@ -85,6 +85,8 @@ pub(crate) struct Engine {
     pub away: Vec<[Vec<Side>; 2]>,
     /// Whether one solution is certain in every state.
     pub certified: bool,
+    /// Whether forces and laws agreed at the state solved last.
+    pub agrees: bool,
     /// Whether energies are counted.
     pub counts: bool,
     /// Sizes of the states, against which errors are measured where a state is small.
@@ -115,6 +117,7 @@ impl Engine {
             away,
             scales: vec![LEAST_SCALE; system.free + system.all() + system.integrals],
             spare: vec![0.0; system.ports],
+            agrees: true,
             slack: 1.0,
             counts: true,
             certified: system.rolling_is_unique() == Some(true) && system.sticking_is_unique() == Some(true),
@@ -270,6 +273,9 @@ impl Engine {
         if friction.rigid {
             return if engaged >= 0.5 { -f64::from(sign) * f64::INFINITY } else { 0.0 };
         }
+        if let (Rubs::Law(place), Some(laws)) = (friction.what, &self.system.laws) {
+            return -f64::from(sign) * laws.torque(place);
+        }
         let factor = engaged.clamp(0.0, 1.0) * if peak { friction.peak } else { 1.0 };
         -f64::from(sign) * friction.torque.at(w.abs()) * factor
     }
@@ -331,7 +337,7 @@ impl Engine {
     }
 
     /// Torque of a sliding friction element on its first member, its viscous part excluded; 0 while it holds.
-    fn friction_torque(&self, k: usize, mode: &Mode, peak: bool, t: f64) -> f64 {
+    pub fn friction_torque(&self, k: usize, mode: &Mode, peak: bool, t: f64) -> f64 {
         let f = &self.system.frictions[k];
         let Some((g, factor)) = f.group else { return 0.0 };
         match mode.slip[g] * factor.signum() as i8 {
@@ -345,12 +351,11 @@ impl Engine {
 
     /// The part of an element's loss that does not depend on its load.
     fn constant_loss(&self, j: usize, mode: &Mode) -> f64 {
-        let e = &self.system.elements[j];
         let sign = mode.element_slip(&self.system, j);
         if sign == 0 {
             return 0.0;
         }
-        let loss = e.loss(dot(&e.row, &self.speed).abs());
+        let loss = self.loss(j);
         f64::from(sign)
             * match mode.side[j] {
                 Side::Drive => loss.drive_torque,
@@ -362,10 +367,7 @@ impl Engine {
     pub fn map_of(&mut self, mode: &Mode) -> Option<Arc<Map>> {
         let varying: Vec<(usize, f64)> = (0..self.system.elements.len())
             .filter(|&j| self.system.elements[j].varies() && mode.element_slip(&self.system, j) != 0)
-            .map(|j| {
-                let e = &self.system.elements[j];
-                (j, slope(e.loss(dot(&e.row, &self.speed).abs()), mode.side[j]))
-            })
+            .map(|j| (j, slope(self.loss(j), mode.side[j])))
             .collect();
         if varying.is_empty() {
             return self.maps.find(&self.system, mode);
@@ -390,6 +392,9 @@ impl Engine {
             let mode = self.mode.clone();
             self.map = self.map_of(&mode);
         }
+        if self.system.laws.is_some() {
+            self.agree(t, x);
+        }
         match &self.map {
             Some(map) => {
                 for i in 0..self.system.free {
@@ -410,9 +415,8 @@ impl Engine {
 
     /// How much the present side of an element is the right one: positive if it is.
     fn side_margin(&self, j: usize, mode: &Mode, torque: f64, size: f64) -> (f64, f64) {
-        let e = &self.system.elements[j];
         let sign = f64::from(mode.element_slip(&self.system, j));
-        let loss = e.loss(dot(&e.row, &self.speed).abs());
+        let loss = self.loss(j);
         let spread = loss.drive - loss.coast;
         let extra = loss.drive_torque - loss.coast_torque;
         let value = sign * spread * torque + extra;
@@ -554,6 +558,7 @@ impl Engine {
         }
         let mut tau = std::mem::take(&mut self.spare);
         let mut answer = (f64::NAN, 0.0);
+        let held = self.system.laws.as_ref().map(|laws| laws.found());
         // First from the sides of the last time, flipping what disagrees; then all.
         let tries = 6 + (1usize << members.len().min(10));
         for attempt in 0..tries {
@@ -569,7 +574,7 @@ impl Engine {
             for &j in &members {
                 tau[self.system.elements[j].port] = self.constant_loss(j, &mode);
             }
-            let Some(map) = self.map_of(&mode) else { continue };
+            let Some(map) = self.agreed_map(&mode, t, &mut tau) else { continue };
             let group = &self.system.groups[g];
             let mut value = 0.0;
             let mut size = 0.0;
@@ -604,6 +609,9 @@ impl Engine {
             }
         }
         self.spare = tau;
+        if let (Some(laws), Some(held)) = (&mut self.system.laws, held) {
+            laws.recall(held);
+        }
         answer
     }
 }
@@ -619,6 +627,10 @@ impl Smooth for Engine {
 
     fn rate(&mut self, t: f64, x: &[f64], rate: &mut [f64]) {
         self.solve(t, x);
+        if !self.agrees {
+            rate.fill(f64::NAN);
+            return;
+        }
         let (free, all) = (self.system.free, self.system.all());
         rate[..free].copy_from_slice(&self.acceleration[..free]);
         rate[free..free + all].copy_from_slice(&self.speed);
@@ -647,6 +659,7 @@ impl Engine {
             Rubs::Drag(_) => "drag",
             Rubs::Shift(_) => "shift-element",
             Rubs::Rolling(_) => "source",
+            Rubs::Law(place) => self.system.laws.as_ref().map_or("drag", |laws| laws.places[place].label()),
         }
     }
 }

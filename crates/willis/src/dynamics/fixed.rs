@@ -188,6 +188,10 @@ impl FixedStep {
             );
             return Err(fail(message, "use the adaptive method"));
         }
+        if system.laws.is_some() {
+            let message = "the losses of this train follow laws of speed and load".to_owned();
+            return Err(fail(message, "steps of fixed length take constant efficiencies; use the adaptive method"));
+        }
         if let Some(j) = system.elements.iter().position(|e| e.varies()) {
             let name = super::system::element_name(train, &system.elements[j].links);
             let message = format!("the efficiency of {name} depends on its speed");

@@ -24,12 +24,21 @@ fn number(label: ModeLabel) -> f64 {
 }
 
 impl Engine {
+    /// Whether a law's friction element can hold, and its slip is not told of by another of its group.
+    fn speaks(&self, k: usize) -> bool {
+        let group = self.system.frictions[k].group.map(|(g, _)| &self.system.groups[g]);
+        matches!(self.kind(k), "bearing" | "seal") && group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
+    }
+
     /// Everything that has a mode, and the mode.
     pub fn labels(&self) -> Vec<(String, ModeLabel)> {
         let s = &self.system;
         let mut all = Vec::new();
         for (k, f) in s.frictions.iter().enumerate() {
             let shift = matches!(f.what, Rubs::Shift(_));
+            if matches!(f.what, Rubs::Law(_)) && !self.speaks(k) {
+                continue;
+            }
             match f.group {
                 Some((g, factor)) => {
                     let slip = self.mode.slip[g] * factor.signum() as i8;

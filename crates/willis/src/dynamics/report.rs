@@ -165,9 +165,9 @@ impl Outcome {
 /// Energy that went into one cause of loss.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EnergyLoss {
-    /// Mesh, drag, shift element, shaft.
+    /// Mesh, drag, shift element, shaft; place of a loss that follows a law.
     pub name: String,
-    /// `mesh`, `drag`, `shift-element`, `shaft`
+    /// `mesh`, `drag`, `shift-element`, `shaft`; by laws `rolling`, `bearing`, `windage`, `churning`, `seal`
     pub kind: &'static str,
     /// J
     pub energy_j: f64,

@@ -336,6 +336,9 @@ impl Simulation {
                     return Stretch::Again;
                 }
                 return Stretch::Ended(Outcome::NotConverged(match error {
+                    StepError::NotFinite if !self.engine.agrees => {
+                        format!("at t = {} s losses and forces do not agree: friction grows with the force it causes", self.t)
+                    }
                     StepError::NotFinite => format!(
                         "accelerations are not finite at t = {} s: a formula leaves its domain, or the equations lose their \
                          unique solution",

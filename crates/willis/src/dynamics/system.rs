@@ -22,19 +22,28 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Link};
 use crate::train::{
-    Curve, Engagement, LossRow, MemberId, Scenario, ShiftElementKind, Signal, SourceKind, Train,
+    Curve, Engagement, LossRow, MemberId, MeshId, Scenario, ShiftElementKind, Signal, SourceKind, Train,
 };
+
+use super::laws::Laws;
 
 /// Standard acceleration of free fall, m/s² (ISO 80000-3).
 const GRAVITY: f64 = 9.80665;
+
+/// Part of its power up to which the certificates of unique forces let a mesh under a law lose: several times what
+/// good gears do.
+pub(super) const MOST_LOST: f64 = 0.1;
 
 /// A mesh element: one gear pair, or a chain of them.
 pub(super) struct Element {
     pub links: Vec<Link>,
     /// `a` and `b` of its Willis equation.
     pub factors: [f64; 2],
-    /// Rows of losses by amount of speed; one row where they are constant.
+    /// Rows of losses by amount of speed; one row where they are constant, and where they follow a law, as the
+    /// most that it may lose.
     pub rows: Vec<LossRow>,
+    /// Its mesh, if its loss follows a law.
+    pub law: Option<MeshId>,
     /// Speed of the first gear relative to the carrier over the coordinates.
     pub row: Vec<f64>,
     /// Its group and its speed over that of the group; `None` if it loses nothing or never moves.
@@ -80,9 +89,9 @@ impl Element {
         })
     }
 
-    /// Whether its slopes depend on its speed.
+    /// Whether its slopes depend on its speed or load.
     pub fn varies(&self) -> bool {
-        self.rows.windows(2).any(|w| (w[0].forward, w[0].backward) != (w[1].forward, w[1].backward))
+        self.law.is_some() || self.rows.windows(2).any(|w| (w[0].forward, w[0].backward) != (w[1].forward, w[1].backward))
     }
 
     /// Losses at an amount of speed: straight between rows, continued beyond the last.
@@ -121,6 +130,8 @@ pub(super) enum Rubs {
     Shift(usize),
     /// Rolling resistance of the vehicle that a source describes.
     Rolling(usize),
+    /// A place of the laws.
+    Law(usize),
 }
 
 /// A friction element between two members.
@@ -200,6 +211,8 @@ pub(crate) struct System {
     pub drivers: Vec<Driver>,
     /// Number of controller integrals.
     pub integrals: usize,
+    /// Laws that losses follow.
+    pub laws: Option<Box<Laws>>,
     pub ports: usize,
     /// First port of the prescribed accelerations.
     pub port_of_prescribed: usize,
@@ -285,6 +298,7 @@ impl System {
             .filter(|s| matches!(s.kind, SourceKind::Speed(_)))
             .map(|s| s.member)
             .collect();
+        let laws = Laws::of(train);
         // Whatever has inertia, rubs or is driven stays visible; other planets vanish in chains.
         let keep: Vec<MemberId> = (train.inertias().iter().filter(|i| i.value > 0.0))
             .flat_map(|i| [i.member, i.reference])
@@ -294,6 +308,11 @@ impl System {
             .chain(train.loss_tables().iter().flat_map(|t| {
                 let mesh = &train.meshes()[t.mesh.index()];
                 [mesh.gears[0].member, mesh.gears[1].member]
+            }))
+            // The laws load each mesh with teeth by itself.
+            .chain(laws.iter().flat_map(|laws| laws.places.iter().flat_map(|p| p.members)))
+            .chain(train.meshes().iter().filter(|m| laws.is_some() && m.teeth.is_some()).flat_map(|m| {
+                [m.gears[0].member, m.gears[1].member]
             }))
             .filter(|m| m.index() != 0)
             .collect();
@@ -316,7 +335,7 @@ impl System {
             let message = format!("the gears tie the prescribed speeds of {} together", names.join(", "));
             fail(Diagnostic::new(Code::ContradictorySpeeds, place.clone(), message).hint("prescribe one of them"))
         })?;
-        Self::assemble(train, scenario, &c, coordinates, prescribed.len()).map_err(fail)
+        Self::assemble(train, scenario, &c, coordinates, prescribed.len(), laws).map_err(fail)
     }
 
     fn assemble(
@@ -325,6 +344,7 @@ impl System {
         c: &Configuration<'_>,
         coordinates: Coordinates,
         prescribed: usize,
+        mut laws: Option<Laws>,
     ) -> Result<Self, Diagnostic> {
         let Coordinates { chosen, speeds, exact } = coordinates;
         let free = chosen.len() - prescribed;
@@ -463,6 +483,27 @@ impl System {
                 port: port(a, b),
             });
         }
+        if let Some(laws) = &mut laws {
+            laws.first = frictions.len();
+            frictions.extend(laws.places.iter().enumerate().map(|(k, place)| {
+                let [a, b] = place.members;
+                Friction {
+                    what: Rubs::Law(k),
+                    name: place.name.clone(),
+                    torque: Curve::constant(0.0),
+                    peak: 1.0,
+                    viscous: 0.0,
+                    rigid: false,
+                    blocks: None,
+                    engagement: None,
+                    open: false,
+                    row: difference(a, b),
+                    group: None,
+                    port: port(a, b),
+                }
+            }));
+            assumptions.extend(laws.assumptions(train));
+        }
         let elastic: Vec<Elastic> = (train.shafts().iter().enumerate())
             .map(|(k, s)| Elastic {
                 row: difference(s.members[0], s.members[1]),
@@ -493,10 +534,15 @@ impl System {
                 [Link { mesh, .. }] => train.loss_tables().iter().find(|t| t.mesh == mesh),
                 _ => None,
             };
+            let law = match e.links[..] {
+                [Link { mesh, .. }] => Some(mesh).filter(|m| laws.is_some() && train.meshes()[m.index()].computed),
+                _ => None,
+            };
+            let nominal = |efficiency: &Rational| if law.is_some() { 1.0 - MOST_LOST } else { efficiency.to_f64() };
             let constant = LossRow {
                 speed: 0.0,
-                forward: e.forward.to_f64(),
-                backward: e.backward.to_f64(),
+                forward: nominal(&e.forward),
+                backward: nominal(&e.backward),
                 forward_torque: 0.0,
                 backward_torque: 0.0,
             };
@@ -504,6 +550,7 @@ impl System {
                 links: e.links.clone(),
                 factors: [a, b],
                 rows: table.map_or_else(|| vec![constant], |t| t.rows.clone()),
+                law,
                 row: difference(e.p, e.carrier),
                 group: None,
                 port: columns.len() - 1,
@@ -548,8 +595,9 @@ impl System {
                 Rubs::Drag(k) => train.drags()[k].members,
                 Rubs::Shift(k) => train.shift_elements()[k].members,
                 Rubs::Rolling(k) => [scenario.sources[k].member, frame],
+                Rubs::Law(k) => laws.as_ref().expect("of these laws").places[k].members,
             };
-            let rubs = f.rigid || f.torque.points().iter().any(|p| p[1] > 0.0);
+            let rubs = f.rigid || matches!(f.what, Rubs::Law(_)) || f.torque.points().iter().any(|p| p[1] > 0.0);
             if rubs && !f.open {
                 f.group = join(exact_difference(a, b), &f.name, f.port, 1.0);
             }
@@ -603,6 +651,7 @@ impl System {
             elastic,
             drivers,
             integrals,
+            laws: laws.map(Box::new),
             ports: columns.len(),
             port_of_prescribed,
             energy,

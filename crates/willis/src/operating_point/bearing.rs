@@ -57,9 +57,9 @@ impl Physics<'_> {
         oil: &OilState,
         beyond: &mut Option<Vec<Extrapolation>>,
     ) -> (BearingReport, f64, f64, Vec<(usize, f64)>) {
-        let train = self.train;
+        let train = &self.train;
         let [a, b] = mount.members;
-        let speed = (flow.speeds[a.0] - flow.speeds[b.0]).abs();
+        let speed = self.slip(flow, mount.members);
         let planet = train.planets.iter().find(|p| mount.members.contains(&p.member));
         let (load, loading) = match planet {
             Some(planet) => self.planet_load(planet, flow),
@@ -173,7 +173,7 @@ impl Physics<'_> {
     /// Load of one planet's bearings: the tangential forces of its meshes add up, the radial ones
     /// cancel as far as the pressure angles agree, and the planet itself pulls outward.
     fn planet_load(&self, planet: &PlanetBody, flow: &Flow) -> (Load, Vec<(usize, f64)>) {
-        let train = self.train;
+        let train = &self.train;
         let mut load = Load {
             centrifugal: planet.mass * flow.speeds[planet.carrier.0].powi(2) * planet.orbit_radius,
             ..Load::default()
@@ -218,7 +218,7 @@ impl Physics<'_> {
     /// from a single pair; axial forces of single helices. Forces of several pairs on one shaft are
     /// added as if they pointed in one direction.
     fn central_load(&self, member: MemberId, flow: &Flow) -> (Load, Vec<(usize, f64)>) {
-        let train = self.train;
+        let train = &self.train;
         let mut load = Load::default();
         let mut loading = Vec::new();
         for (j, m) in flow.meshes.iter().enumerate() {

@@ -109,7 +109,7 @@ impl Physics<'_> {
 
     /// Drag of a gear (all of its count), N m.
     pub(super) fn body(&self, body: &Body, flow: &Flow, beyond: &mut Option<Vec<Extrapolation>>) -> f64 {
-        let speed = (flow.speeds[body.member.0] - flow.speeds[body.against.0]).abs();
+        let speed = self.slip(flow, [body.member, body.against]);
         let (Some((lubrication, oil)), true) = (&self.oil, speed > 0.0) else { return 0.0 };
         let laws = &self.train.laws;
         let mesh = &self.train.meshes[body.mesh];
@@ -171,7 +171,7 @@ impl Physics<'_> {
 
     /// Drag of a seal, N m.
     pub(super) fn seal(&self, seal: &SealMount, flow: &Flow, beyond: &mut Option<Vec<Extrapolation>>) -> f64 {
-        let speed = (flow.speeds[seal.members[0].0] - flow.speeds[seal.members[1].0]).abs();
+        let speed = self.slip(flow, seal.members);
         if speed == 0.0 {
             return 0.0;
         }
@@ -183,7 +183,7 @@ impl Physics<'_> {
             diameter: seal.diameter,
             speed,
             temperature: self.oil.as_ref().map_or(333.15, |o| o.1.temperature),
-            viscosity_40: self.oil.as_ref().map_or(VG_100, |o| cold(o.0)),
+            viscosity_40: self.oil.as_ref().map_or(VG_100, |o| cold(&o.0)),
             material: seal.material,
         };
         let law = self.train.laws.seal;
@@ -193,7 +193,7 @@ impl Physics<'_> {
 
     /// Drag of a rotor, N m.
     pub(super) fn rotor(&self, rotor: &Rotor, flow: &Flow, beyond: &mut Option<Vec<Extrapolation>>) -> f64 {
-        let speed = flow.speeds[rotor.member.0].abs();
+        let speed = self.slip(flow, [rotor.member, FRAME]);
         if speed == 0.0 {
             return 0.0;
         }

@@ -105,17 +105,49 @@ struct Point {
     film: f64,
 }
 
+/// What the laws give for the teeth of a mesh.
+pub(super) struct Tooth {
+    /// Mean coefficient of friction; none when the efficiency is given, or nothing is loaded.
+    pub friction: Option<f64>,
+    pub loss_factor: f64,
+    /// Rolling loss of all pairs in parallel, W.
+    pub rolling: f64,
+}
+
 /// One mesh at one load.
 struct Loaded<'a> {
     physics: &'a Physics<'a>,
     teeth: &'a Teeth,
+    /// Torque of the driving gear of one pair in parallel, N m, and what follows from it at the base circle, N.
+    torque: f64,
+    base_force: f64,
     /// Normal force of one pair in parallel, N.
     normal_force: f64,
+    /// Speed at the operating pitch circle relative to the carrier, m/s.
+    pitch_line_speed: f64,
     /// Speed of the first gear relative to the carrier, ≥ 0, rad/s.
     speed: f64,
 }
 
 impl Loaded<'_> {
+    /// Where a tooth pair more or less is in contact: whole base pitches from both ends, and C.
+    fn breaks(&self) -> [f64; 2 * MOST_PAIRS + 1] {
+        let pair = &self.teeth.pair;
+        let [start, end] = pair.path();
+        let mut breaks = [0.0; 2 * MOST_PAIRS + 1];
+        for k in 0..MOST_PAIRS {
+            breaks[2 * k] = (start + k as f64 * pair.base_pitch).min(end);
+            breaks[2 * k + 1] = (end - k as f64 * pair.base_pitch).max(start);
+        }
+        breaks.sort_by(f64::total_cmp);
+        breaks
+    }
+
+    /// Whether the teeth are pressed together and move.
+    fn works(&self) -> bool {
+        self.base_force > 0.0 && self.pitch_line_speed > 0.0
+    }
+
     fn point(&self, s: f64) -> Point {
         let pair = &self.teeth.pair;
         let place = ToothLoad {
@@ -130,7 +162,8 @@ impl Loaded<'_> {
         let sum = pair.sum_speed_per_speed(s) * self.speed;
         let modulus = self.teeth.reduced_modulus();
         let pressure = (line_load * modulus / (std::f64::consts::TAU * radius)).sqrt();
-        let film = self.physics.oil.map_or(0.0, |(_, oil)| self.film(&oil, line_load, radius, sliding, sum, pressure));
+        let film =
+            self.physics.oil.as_ref().map_or(0.0, |(_, oil)| self.film(oil, line_load, radius, sliding, sum, pressure));
         Point { line_load, sliding, sum, radius, pressure, film }
     }
 
@@ -143,6 +176,21 @@ impl Loaded<'_> {
             conductivity: oil.conductivity,
             hertz_pressure: pressure,
             reduced_modulus: self.teeth.reduced_modulus(),
+        }
+    }
+
+    fn rolling_contact(&self, oil: &OilState, p: &Point) -> RollingContact<f64> {
+        let pair = &self.teeth.pair;
+        RollingContact {
+            sum_speed: p.sum,
+            radius: p.radius,
+            normal_force: self.normal_force / pair.contact_ratio,
+            length: pair.total_width() / pair.base_helix.cos(),
+            dynamic_viscosity: oil.dynamic_viscosity,
+            pressure_viscosity: oil.pressure_viscosity,
+            reduced_modulus: self.teeth.reduced_modulus(),
+            film_reduction: (self.physics.train.laws.film_reduction)
+                .eval(&self.inlet(oil, p.sliding, p.sum, p.pressure)),
         }
     }
 
@@ -167,35 +215,94 @@ impl Loaded<'_> {
     }
 }
 
+/// Rms roughness of both flanks together.
+fn composite(teeth: &Teeth) -> f64 {
+    RMS * (teeth.roughness[0].powi(2) + teeth.roughness[1].powi(2)).sqrt()
+}
+
 impl Physics<'_> {
-    /// The contact of a mesh, and the rolling loss of all its pairs, W.
+    fn loaded<'a>(&'a self, mesh: &Mesh, teeth: &'a Teeth, flow: &MeshFlow) -> Loaded<'a> {
+        let pair = &teeth.pair;
+        let driver = flow.driver.unwrap_or(0);
+        let torque = flow.torques[driver].abs() / f64::from(mesh.count);
+        let base_force = torque / pair.gears[driver].base_radius;
+        Loaded {
+            physics: self,
+            teeth,
+            torque,
+            base_force,
+            normal_force: base_force / pair.base_helix.cos(),
+            pitch_line_speed: flow.relative_speeds[driver].abs() * pair.gears[driver].operating_radius,
+            speed: flow.relative_speeds[0].abs(),
+        }
+    }
+
+    /// Friction and rolling loss of a mesh.
+    pub(super) fn tooth(&self, mesh: &Mesh, teeth: &Teeth, flow: &MeshFlow) -> Tooth {
+        let pair = &teeth.pair;
+        let loss_factor = self.train.laws.loss_factor.eval(&Path::of(pair));
+        let loaded = self.loaded(mesh, teeth, flow);
+        let mut tooth = Tooth { friction: None, loss_factor, rolling: 0.0 };
+        if !loaded.works() || !mesh.computed {
+            return tooth;
+        }
+        let [start, end] = pair.path();
+        let state = |p: &Point| self.state(mesh, &loaded, p, loss_factor);
+        let mu = if self.friction.meta().tags.contains(&Tag::Local) {
+            let (mut friction, mut weight) = (0.0, 0.0);
+            let breaks = loaded.breaks();
+            for k in 0..breaks.len() - 1 {
+                let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
+                let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
+                if half <= 0.0 {
+                    continue;
+                }
+                for (node, w) in GAUSS.into_iter().flat_map(|(node, w)| [(node, w), (-node, w)]) {
+                    let p = loaded.point(middle + half * node);
+                    let own = w * half * p.line_load * p.sliding;
+                    weight += own;
+                    friction += own * self.friction.eval(&state(&p));
+                }
+            }
+            if weight > 0.0 { friction / weight } else { 0.0 }
+        } else {
+            self.friction.eval(&state(&loaded.point(0.0)))
+        };
+        if mu.is_finite() {
+            tooth.friction = Some(mu.max(0.0));
+        }
+
+        if let (Some(law), Some((_, oil))) = (&self.rolling, &self.oil) {
+            // Mean over the path: away from the pitch point sliding heats the inlet and thins the film.
+            let (middle, half) = ((start + end) / 2.0, (end - start) / 2.0);
+            let mean: f64 = GAUSS
+                .into_iter()
+                .flat_map(|(node, w)| [(node, w), (-node, w)])
+                .map(|(node, w)| 0.5 * w * law.eval(&loaded.rolling_contact(oil, &loaded.point(middle + half * node))))
+                .sum();
+            let rolling = mean * pair.contact_ratio * f64::from(mesh.count);
+            tooth.rolling = if rolling.is_finite() { rolling.max(0.0) } else { 0.0 };
+        }
+        tooth
+    }
+
+    /// The contact of a mesh.
     pub(super) fn contact(
         &self,
         mesh: &Mesh,
         teeth: &Teeth,
         flow: &MeshFlow,
         beyond: &mut Option<Vec<Extrapolation>>,
-    ) -> (ContactReport, f64) {
+    ) -> ContactReport {
         let pair = &teeth.pair;
         let laws = &self.train.laws;
         let path = Path::of(pair);
         let loss_factor = laws.loss_factor.eval(&path);
-        let parallel = f64::from(mesh.count);
+        let loaded = self.loaded(mesh, teeth, flow);
         let driver = flow.driver.unwrap_or(0);
-        let torque = flow.torques[driver].abs() / parallel;
-        let base_force = torque / pair.gears[driver].base_radius;
-        let normal_force = base_force / pair.base_helix.cos();
-        let pitch_line_speed = flow.relative_speeds[driver].abs() * pair.gears[driver].operating_radius;
-        let loaded = Loaded { physics: self, teeth, normal_force, speed: flow.relative_speeds[0].abs() };
         let pitch = loaded.point(0.0);
         let [start, end] = pair.path();
-        // Where a tooth pair more or less is in contact: whole base pitches from both ends, and C.
-        let mut breaks = [0.0; 2 * MOST_PAIRS + 1];
-        for k in 0..MOST_PAIRS {
-            breaks[2 * k] = (start + k as f64 * pair.base_pitch).min(end);
-            breaks[2 * k + 1] = (end - k as f64 * pair.base_pitch).max(start);
-        }
-        breaks.sort_by(f64::total_cmp);
+        let breaks = loaded.breaks();
 
         // Extremes: at the ends of each part of the path, just inside.
         let mut worst = Point { film: f64::INFINITY, ..pitch };
@@ -212,18 +319,18 @@ impl Physics<'_> {
             }
         }
         let film = self.oil.is_some().then_some(if worst.film.is_finite() { worst.film } else { pitch.film });
-        let composite = RMS * (teeth.roughness[0].powi(2) + teeth.roughness[1].powi(2)).sqrt();
-        let film_ratio = film.filter(|_| composite > 0.0 && base_force > 0.0).map(|h| h / composite);
+        let composite = composite(teeth);
+        let film_ratio = film.filter(|_| composite > 0.0 && loaded.base_force > 0.0).map(|h| h / composite);
 
-        let mut report = ContactReport {
+        let report = ContactReport {
             friction: None,
             loss_factor,
             contact_ratio: pair.contact_ratio,
             overlap_ratio: pair.overlap_ratio,
             operating_pressure_angle_rad: pair.operating_pressure_angle,
-            tangential_force_n: torque / pair.gears[driver].operating_radius,
-            line_load_n_per_m: base_force / pair.total_width(),
-            pitch_line_speed_m_s: pitch_line_speed,
+            tangential_force_n: loaded.torque / pair.gears[driver].operating_radius,
+            line_load_n_per_m: loaded.base_force / pair.total_width(),
+            pitch_line_speed_m_s: loaded.pitch_line_speed,
             sum_speed_m_s: pitch.sum,
             sliding_speed_m_s: worst.sliding,
             pitch_pressure_pa: pitch.pressure,
@@ -251,8 +358,8 @@ impl Physics<'_> {
             };
             note(beyond, "load_sharing", laws.load_sharing.meta().id, laws.load_sharing.outside(&place));
         }
-        if base_force <= 0.0 || pitch_line_speed <= 0.0 {
-            return (report, 0.0);
+        if !loaded.works() {
+            return report;
         }
         if let (true, Some((_, oil)), true) = (beyond.is_some(), &self.oil, mesh.computed) {
             let contact = loaded.film_contact(oil, pitch.line_load, pitch.radius, pitch.sum);
@@ -260,86 +367,31 @@ impl Physics<'_> {
             let inlet = loaded.inlet(oil, pitch.sliding, pitch.sum, pitch.pressure);
             note(beyond, "film_reduction", laws.film_reduction.meta().id, laws.film_reduction.outside(&inlet));
         }
-        if !mesh.computed {
-            return (report, 0.0);
+        if beyond.is_none() || !mesh.computed {
+            return report;
         }
-
-        let state = |p: &Point| self.state(mesh, teeth, p, base_force, pitch_line_speed, loss_factor, composite);
-        let mu = if self.friction.meta().tags.contains(&Tag::Local) {
-            let (mut friction, mut weight) = (0.0, 0.0);
-            for k in 0..breaks.len() - 1 {
-                let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
-                let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
-                if half <= 0.0 {
-                    continue;
-                }
-                for (node, w) in GAUSS.into_iter().flat_map(|(node, w)| [(node, w), (-node, w)]) {
-                    let p = loaded.point(middle + half * node);
-                    let own = w * half * p.line_load * p.sliding;
-                    weight += own;
-                    friction += own * self.friction.eval(&state(&p));
-                }
-            }
-            if weight > 0.0 { friction / weight } else { 0.0 }
-        } else {
-            self.friction.eval(&state(&pitch))
-        };
-        if beyond.is_some() {
-            let id = self.friction.meta().id;
-            let mut outside = self.friction.outside(&state(&pitch));
-            if self.friction.meta().tags.contains(&Tag::Local) {
-                // Away from the pitch point, where it slides.
-                outside = self.friction.outside(&state(&loaded.point(0.7 * end)));
-                outside.extend(self.friction.outside(&state(&loaded.point(0.7 * start))));
-                outside.dedup_by_key(|o| o.symbol);
-                outside.sort_by_key(|o| o.symbol);
-                outside.dedup_by_key(|o| o.symbol);
-            }
-            note(beyond, "mesh_friction", id, outside);
+        let state = |p: &Point| self.state(mesh, &loaded, p, loss_factor);
+        let id = self.friction.meta().id;
+        let mut outside = self.friction.outside(&state(&pitch));
+        if self.friction.meta().tags.contains(&Tag::Local) {
+            // Away from the pitch point, where it slides.
+            outside = self.friction.outside(&state(&loaded.point(0.7 * end)));
+            outside.extend(self.friction.outside(&state(&loaded.point(0.7 * start))));
+            outside.dedup_by_key(|o| o.symbol);
+            outside.sort_by_key(|o| o.symbol);
+            outside.dedup_by_key(|o| o.symbol);
         }
-        if mu.is_finite() {
-            report.friction = Some(mu.max(0.0));
-        }
-
-        let mut rolling = 0.0;
+        note(beyond, "mesh_friction", id, outside);
         if let (Some(law), Some((_, oil))) = (&self.rolling, &self.oil) {
-            let contact = |p: &Point| RollingContact {
-                sum_speed: p.sum,
-                radius: p.radius,
-                normal_force: normal_force / pair.contact_ratio,
-                length: pair.total_width() / pair.base_helix.cos(),
-                dynamic_viscosity: oil.dynamic_viscosity,
-                pressure_viscosity: oil.pressure_viscosity,
-                reduced_modulus: teeth.reduced_modulus(),
-                film_reduction: laws.film_reduction.eval(&loaded.inlet(oil, p.sliding, p.sum, p.pressure)),
-            };
-            if beyond.is_some() {
-                note(beyond, "rolling", law.meta().id, law.outside(&contact(&pitch)));
-            }
-            // Mean over the path: away from the pitch point sliding heats the inlet and thins the film.
-            let (middle, half) = ((start + end) / 2.0, (end - start) / 2.0);
-            let mean: f64 = GAUSS
-                .into_iter()
-                .flat_map(|(node, w)| [(node, w), (-node, w)])
-                .map(|(node, w)| 0.5 * w * law.eval(&contact(&loaded.point(middle + half * node))))
-                .sum();
-            rolling = mean * pair.contact_ratio * parallel;
+            note(beyond, "rolling", law.meta().id, law.outside(&loaded.rolling_contact(oil, &pitch)));
         }
-        (report, if rolling.is_finite() { rolling.max(0.0) } else { 0.0 })
+        report
     }
 
-    #[allow(clippy::too_many_arguments)]
-    fn state(
-        &self,
-        mesh: &Mesh,
-        teeth: &Teeth,
-        p: &Point,
-        base_force: f64,
-        pitch_line_speed: f64,
-        loss_factor: f64,
-        composite: f64,
-    ) -> MeshContact<f64> {
+    fn state(&self, mesh: &Mesh, loaded: &Loaded<'_>, p: &Point, loss_factor: f64) -> MeshContact<f64> {
+        let Loaded { teeth, base_force, normal_force, pitch_line_speed, .. } = *loaded;
         let pair = &teeth.pair;
+        let composite = composite(teeth);
         // The smaller wheel first.
         let small = usize::from(pair.data.wheels[1].teeth < pair.data.wheels[0].teeth);
         let teeth_of = |k: usize| pair.data.wheels[k].teeth;
@@ -352,7 +404,7 @@ impl Physics<'_> {
         let oil = |get: fn(&OilState) -> f64| self.oil.as_ref().map_or(f64::NAN, |o| get(&o.1));
         MeshContact {
             line_load: base_force / width,
-            normal_force: base_force / pair.base_helix.cos(),
+            normal_force,
             pitch_sum_speed: 2.0 * pitch_line_speed * pair.operating_pressure_angle.sin(),
             pitch_line_speed,
             pitch_radius_transverse: pair.reduced_radius_transverse(0.0),
@@ -370,8 +422,8 @@ impl Physics<'_> {
             roughness: (teeth.roughness[0] + teeth.roughness[1]) / 2.0,
             composite_roughness: composite,
             peak_roughness: PEAK * (teeth.roughness[0] + teeth.roughness[1]),
-            base: self.oil.map_or(crate::catalogue::oil::Base::Mineral, |o| o.0.oil.base),
-            lubricant_factor: self.oil.and_then(|o| o.0.oil.lubricant_factor),
+            base: self.oil.as_ref().map_or(crate::catalogue::oil::Base::Mineral, |o| o.0.oil.base),
+            lubricant_factor: self.oil.as_ref().and_then(|o| o.0.oil.lubricant_factor),
             k_factor: tangential / (width * 2.0 * pinion.operating_radius) * sum / z_2,
             teeth: [z_1, z_2],
             internal: pair.internal(),
