@@ -531,9 +531,11 @@ impl Simulation {
         let mut at_low: Vec<Margin> = vec![];
         let mut halve = false;
         let mut first = true;
+        let step = high - low;
         loop {
             let width = high - low;
-            let least = 4.0 * f64::EPSILON * high.abs().max(low.abs());
+            // A later change of mode matters as much as an error of the step.
+            let least = (4.0 * f64::EPSILON * high.abs().max(low.abs())).max(1e-3 * self.options.tolerance * step);
             if width <= least {
                 break;
             }
