@@ -109,8 +109,11 @@ fn report(outcome: Outcome, end: f64) -> RunReport {
 /// A launch in which the brake slips, sticks, and the direction of drive reverses.
 fn launch(plot: &mut TimePlotBuilder, end: f64, rows: usize) {
     let _ = plot.columns(&columns());
-    let event =
-        |t: f64, cause: &str| Event { time_s: t, cause: cause.into(), modes: Named(vec![("B".into(), ModeLabel::Stuck)]) };
+    let event = |t: f64, cause: &str| Event {
+        time_s: t,
+        cause: cause.into(),
+        modes: Named(vec![("B".into(), ModeLabel::Stuck)]),
+    };
     let mut causes = [
         (0.0, "start"),
         (0.8, "brake B comes to rest"),
@@ -219,8 +222,11 @@ fn many_members_many_events_and_tiny_times() {
         values.extend((0..30).map(|m| if m < 8 { f64::from((k / 50 * (m + 1)) % 4 - 1) } else { 0.0 }));
         let _ = plot.sample(Sample { time: t, values: &values });
         if k % 7 == 1 {
-            let _ =
-                plot.event(&Event { time_s: t, cause: format!("brake B breaks away & sticks < {k}"), modes: Named::default() });
+            let _ = plot.event(&Event {
+                time_s: t,
+                cause: format!("brake B breaks away & sticks < {k}"),
+                modes: Named::default(),
+            });
         }
     }
     let plot = plot.finish(&report(Outcome::TooManyEvents("1001 within 2 µs".into()), 2e-3));

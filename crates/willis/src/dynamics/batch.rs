@@ -220,7 +220,8 @@ impl Batch {
             let mut alone = 0;
             while left != 0 {
                 let present = block.present[left.trailing_zeros() as usize];
-                let alike = (0..lanes).filter(|lane| block.present[*lane] == present).map(|lane| 1 << lane).sum::<u32>();
+                let alike =
+                    (0..lanes).filter(|lane| block.present[*lane] == present).map(|lane| 1 << lane).sum::<u32>();
                 alone |= match present {
                     Some(k) if !twists => {
                         block.glide(one, k, alike & left, middle, &self.common, self.arch, &mut self.ends)

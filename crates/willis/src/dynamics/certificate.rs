@@ -13,8 +13,7 @@ impl System {
     /// corners decide for everything between (theory of the W-property; Galvagno's paper does not ask).
     /// `None`: too many meshes to look at all corners.
     pub fn rolling_is_unique(&self) -> Option<bool> {
-        let lossy: Vec<usize> =
-            (0..self.elements.len()).filter(|&j| !self.elements[j].is_lossless()).collect();
+        let lossy: Vec<usize> = (0..self.elements.len()).filter(|&j| !self.elements[j].is_lossless()).collect();
         if lossy.len() > 14 || 1usize << lossy.len() > MOST_PATTERNS {
             return None;
         }
@@ -41,8 +40,7 @@ impl System {
     /// that turns friction torques into slip accelerations are positive (or zero, where one holds what
     /// others hold already), in every rolling pattern. `None`: too many to look at.
     pub fn sticking_is_unique(&self) -> Option<bool> {
-        let lossy: Vec<usize> =
-            (0..self.elements.len()).filter(|&j| !self.elements[j].is_lossless()).collect();
+        let lossy: Vec<usize> = (0..self.elements.len()).filter(|&j| !self.elements[j].is_lossless()).collect();
         let groups: Vec<usize> = (0..self.groups.len()).filter(|&g| !self.groups[g].driven).collect();
         if lossy.len() + groups.len() > 14 {
             return None;

@@ -76,7 +76,7 @@ impl Engine {
         let alone = group.elements.is_empty() && holding.len() == 1;
         let torque = match (&self.map, can_hold(k)) {
             (_, false) => viscous,
-            (Some(map), _) if alone && !map.is_redundant() && !group.driven => {
+            (Some(map), _) if alone && !map.open_groups[g] && !group.driven => {
                 group.lead.1 * map.held(g, &self.tau) / factor + viscous
             }
             _ => f64::NAN,
@@ -94,7 +94,7 @@ impl Engine {
             let open = e.group.is_some_and(|(g, _)| {
                 let group = &self.system.groups[g];
                 group.elements.len() + group.frictions.len() > 1
-                    || self.map.as_ref().is_some_and(|m| m.is_redundant())
+                    || self.map.as_ref().is_some_and(|m| m.open_unknowns[self.system.all() + j])
             });
             return Meshing { torque: if open { f64::NAN } else { torque }, loss: 0.0 };
         }

@@ -462,7 +462,9 @@ impl Engine {
                 0 if map.is_redundant() => {}
                 0 => self.hold_margins(g, t, x, &map, out),
                 sign => {
-                    let noise = NOISE * 1e-3 * self.system.groups[g].row.iter().zip(&self.speed).map(|(a, b)| (a * b).abs()).sum::<f64>();
+                    let noise = NOISE
+                        * 1e-3
+                        * self.system.groups[g].row.iter().zip(&self.speed).map(|(a, b)| (a * b).abs()).sum::<f64>();
                     out.push(Margin { watch: Watch::Slip(g), value: f64::from(sign) * slip, noise });
                 }
             }

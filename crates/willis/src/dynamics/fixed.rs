@@ -247,7 +247,8 @@ impl FixedStep {
             })
             .collect();
         let inputs = s.drivers.len() + s.frictions.len() + s.elastic.len() + 1;
-        let engagement_signals = (0..s.scenario.engagements.len()).map(|k| signals - s.scenario.engagements.len() + k).collect();
+        let engagement_signals =
+            (0..s.scenario.engagements.len()).map(|k| signals - s.scenario.engagements.len() + k).collect();
         Ok(Self {
             h,
             start: s.scenario.start,
@@ -534,7 +535,13 @@ impl FixedStep {
             };
             return match self.flat[f] {
                 _ if friction.group.is_none() || friction.blocks.is_some() => 0.0,
-                _ if friction.rigid => if engaged >= 0.5 { UNBOUNDED } else { 0.0 },
+                _ if friction.rigid => {
+                    if engaged >= 0.5 {
+                        UNBOUNDED
+                    } else {
+                        0.0
+                    }
+                }
                 Some(torque) => torque * engaged.clamp(0.0, 1.0),
                 None => friction.torque.at(w.abs()) * engaged.clamp(0.0, 1.0),
             };
@@ -726,8 +733,8 @@ impl FixedStep {
                         let j = usize::from(j);
                         let (_, factor, loss) = self.teeth[j];
                         let along = f64::from(sign) * factor.signum();
-                        let value =
-                            along * (loss.drive - loss.coast) * dot(row, &self.tau) + loss.drive_torque - loss.coast_torque;
+                        let value = along * (loss.drive - loss.coast) * dot(row, &self.tau) + loss.drive_torque
+                            - loss.coast_torque;
                         let side = if value >= 0.0 { Side::Drive } else { Side::Coast };
                         (side != self.side[j]).then_some((j, side))
                     });
@@ -737,9 +744,8 @@ impl FixedStep {
             let Some(map) = self.map(self.key()) else { continue };
             self.rub(Some(g));
             let rows = &self.maps[map as usize].rows;
-            let rate: f64 = (0..free)
-                .map(|i| self.groups[g].row[i] * dot(&rows[i * cols..(i + 1) * cols], &self.tau))
-                .sum();
+            let rate: f64 =
+                (0..free).map(|i| self.groups[g].row[i] * dot(&rows[i * cols..(i + 1) * cols], &self.tau)).sum();
             let end = self.slip[g] + self.h * rate;
             // Others may hold it as well: then nothing but round-off is left.
             let size = dot_size(&self.groups[g].row, &self.v) + self.slip[g].abs();
@@ -910,6 +916,25 @@ impl FixedStep {
         middle >= self.until || self.until == f64::NEG_INFINITY
     }
 
+    /// Counts prescribed speeds that jump, which takes an impact.
+    fn count_jumps(&mut self, middle: f64) {
+        let s = &self.engine.system;
+        let start = self.time();
+        for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
+            if let (Some(i), SourceKind::Speed(signal)) = (driver.prescribed, &source.kind)
+                && self.count > 0
+            {
+                let (before, after) = (self.v[s.free + i], signal.value(start, middle, &|_| 0.0));
+                self.impacts += u64::from((after - before).abs() > 1e-6 * (after.abs() + before.abs()));
+            }
+        }
+    }
+
+    /// Whether all speeds are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.v.iter().all(|v| v.is_finite())
+    }
+
     /// Whether an input that is not level depends on speeds, not on time alone.
     pub(super) fn depends_on_speed(&self, k: usize) -> bool {
         let s = &self.engine.system;
@@ -933,6 +958,7 @@ impl FixedStep {
         let middle = self.middle();
         if self.is_over(middle) {
             self.refresh(middle);
+            self.count_jumps(middle);
             self.present = None;
         }
         if !self.glide(middle) {
@@ -1024,11 +1050,19 @@ impl FixedStep {
             for (g, group) in self.groups.iter().enumerate() {
                 let end = dot(&group.row, &self.next);
                 let rest = still(end, group, &self.v) && still(end, group, &self.next);
-                self.sign[g] = if rest && !group.driven { 0 } else if end < 0.0 { -1 } else { 1 };
+                self.sign[g] = if rest && !group.driven {
+                    0
+                } else if end < 0.0 {
+                    -1
+                } else {
+                    1
+                };
                 for &j in &group.elements {
                     let (_, factor, loss) = self.teeth[j];
-                    let torque = s.elements[j].factors[0] * dot(&wide.response[(all + j) * cols..(all + j + 1) * cols], tau);
-                    let along = f64::from(if self.sign[g] == 0 { mode.slip[g] } else { self.sign[g] }) * factor.signum();
+                    let torque =
+                        s.elements[j].factors[0] * dot(&wide.response[(all + j) * cols..(all + j + 1) * cols], tau);
+                    let along =
+                        f64::from(if self.sign[g] == 0 { mode.slip[g] } else { self.sign[g] }) * factor.signum();
                     let value = along * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
                     let side = if value >= 0.0 { Side::Drive } else { Side::Coast };
                     turned |= side != self.side[j] && mode.slip[g] != 0;
@@ -1198,10 +1232,8 @@ fn step_map(s: &System, mode: &Mode, pattern: &Pattern) -> Option<StepMap> {
             rows.extend_from_slice(&torque);
         }
     }
-    let still = (held.iter())
-        .flat_map(|&g| &s.groups[usize::from(g)].elements)
-        .map(|&j| (j as u16, torque_row(j)))
-        .collect();
+    let still =
+        (held.iter()).flat_map(|&g| &s.groups[usize::from(g)].elements).map(|&j| (j as u16, torque_row(j))).collect();
     let redundant = map.is_redundant();
     let reactions = map.response[s.free * cols..s.all() * cols].to_vec();
     Some(StepMap { rows, held, moving, still, redundant, reactions })

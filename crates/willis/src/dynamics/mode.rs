@@ -69,6 +69,10 @@ pub(super) struct Map {
     pub holding: Vec<f64>,
     /// Groups held by others: their own share is not determined.
     pub carried: Vec<bool>,
+    /// Groups whose share is open for that reason: those, and others that could take over from them.
+    pub open_groups: Vec<bool>,
+    /// Unknowns that depend on how such groups share.
+    pub open_unknowns: Vec<bool>,
 }
 
 impl Map {
@@ -252,8 +256,7 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
             right
         })
         .collect();
-    let mut matrix: Vec<Vec<f64>> =
-        rows.iter().map(|row| unknown.iter().map(|&port| row[port]).collect()).collect();
+    let mut matrix: Vec<Vec<f64>> = rows.iter().map(|row| unknown.iter().map(|&port| row[port]).collect()).collect();
     // Gauss–Jordan; a condition that others fulfil already has nothing left to be solved for.
     let mut carried = vec![false; system.groups.len()];
     let mut solved = vec![false; count];
@@ -285,6 +288,23 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
             }
         }
     }
+    // What a torque of a group that carries nothing would change.
+    let mut open_groups = carried.clone();
+    let mut open_unknowns = vec![false; n];
+    for c in (0..count).filter(|&c| !solved[c]) {
+        let taken: Vec<f64> = (0..count)
+            .map(|i| if solved[i] { -matrix[i][c] / matrix[i][i] } else { f64::from(u8::from(i == c)) })
+            .collect();
+        let most = taken.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        for (i, share) in taken.iter().enumerate().skip(varying.len()) {
+            open_groups[held[i - varying.len()]] |= share.abs() > 1e-9 * most;
+        }
+        for (row, open) in open_unknowns.iter_mut().enumerate() {
+            let parts = unknown.iter().zip(&taken).map(|(&port, share)| pattern.response[row * p + port] * share);
+            let (sum, size) = parts.fold((0.0, 0.0f64), |(sum, size), x| (sum + x, size + x.abs()));
+            *open |= sum.abs() > 1e-9 * size;
+        }
+    }
     let mut holding = vec![0.0; system.groups.len() * p];
     let mut response = pattern.response.clone();
     // Columns of unknown ports act through their solution only.
@@ -306,6 +326,6 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
             }
         }
     }
-    let map = Map { ports: p, response, holding, carried };
+    let map = Map { ports: p, response, holding, carried, open_groups, open_unknowns };
     map.response.iter().all(|x| x.is_finite()).then_some(map)
 }

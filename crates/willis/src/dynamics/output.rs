@@ -27,7 +27,8 @@ impl Engine {
     /// Whether a law's friction element can hold, and its slip is not told of by another of its group.
     fn speaks(&self, k: usize) -> bool {
         let group = self.system.frictions[k].group.map(|(g, _)| &self.system.groups[g]);
-        matches!(self.kind(k), "bearing" | "seal") && group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
+        matches!(self.kind(k), "bearing" | "seal")
+            && group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
     }
 
     /// Everything that has a mode, and the mode.

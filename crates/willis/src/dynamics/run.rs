@@ -337,7 +337,10 @@ impl Simulation {
                 }
                 return Stretch::Ended(Outcome::NotConverged(match error {
                     StepError::NotFinite if !self.engine.agrees => {
-                        format!("at t = {} s losses and forces do not agree: friction grows with the force it causes", self.t)
+                        format!(
+                            "at t = {} s losses and forces do not agree: friction grows with the force it causes",
+                            self.t
+                        )
                     }
                     StepError::NotFinite => format!(
                         "accelerations are not finite at t = {} s: a formula leaves its domain, or the equations lose their \
@@ -675,7 +678,9 @@ fn take_in(stepper: &impl Stepper, states: usize, came_in: &mut [f64]) {
         }
         // The work has an extreme within the step: golden sections.
         const RATIO: f64 = 0.618_033_988_749_894_8;
-        let value = |t: f64| if first > 0.0 { stepper.interpolate_component(t, at) } else { -stepper.interpolate_component(t, at) };
+        let value = |t: f64| {
+            if first > 0.0 { stepper.interpolate_component(t, at) } else { -stepper.interpolate_component(t, at) }
+        };
         let (mut low, mut high) = (t_old, t);
         for _ in 0..40 {
             let (a, b) = (high - RATIO * (high - low), low + RATIO * (high - low));
@@ -770,6 +775,12 @@ fn fixed(
         }
         if step % 256 == 0 && recorder.progress(t).is_break() {
             run.outcome = Some(Outcome::Interrupted);
+        }
+        if step % 256 == 0 && !stepper.is_finite() {
+            let why = format!(
+                "speeds are no longer finite at t = {t} s: a formula leaves its domain, or the step is too long"
+            );
+            run.outcome = Some(Outcome::NotConverged(why));
         }
         if step == steps || run.outcome != Some(Outcome::Finished) {
             break;
@@ -899,14 +910,14 @@ pub(super) fn initial_state(engine: &mut Engine) -> Result<Vec<f64>, Diagnostics
     let start = engine.system.scenario.start;
     engine.inside = start;
     let mut x = vec![0.0; engine.states() + engine.quadratures()];
-    initial_speeds(engine, &mut x).map_err(|d| [d].into_iter().collect::<Diagnostics>())?;
+    initial_speeds(engine, &mut x)?;
     engine.look(start, &x);
     engine.rescale(&x);
     Ok(x)
 }
 
 /// Sets the speeds of the start: those given, others at rest as far as the gears leave them free.
-fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostic> {
+fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostics> {
     let start = engine.system.scenario.start;
     engine.look(start, x);
     let s = &engine.system;
@@ -952,7 +963,8 @@ fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostic> 
                 short(is + prescribed(row))
             );
             let place = format!("{}.initial_speeds.{name}", s.scenario.place);
-            return Err(Diagnostic::new(Code::ContradictorySpeeds, place, message).hint("leave out one of the speeds"));
+            let error = Diagnostic::new(Code::ContradictorySpeeds, place, message);
+            return Err(error.hint("leave out one of the speeds").into());
         }
     }
     Ok(())

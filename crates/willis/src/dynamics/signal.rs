@@ -77,7 +77,11 @@ impl Signal {
         match self {
             Self::Constant(_) | Self::Step { .. } | Self::Pulse { .. } => 0.0,
             Self::Ramp { height, at, duration, .. } => {
-                if inside >= *at && inside < at + duration { height / duration } else { 0.0 }
+                if inside >= *at && inside < at + duration {
+                    height / duration
+                } else {
+                    0.0
+                }
             }
             Self::Sine { amplitude, frequency, phase, at, decay, .. } => {
                 if inside < *at {
@@ -88,9 +92,7 @@ impl Signal {
                 amplitude * (-decay * since).exp() * (w * c - decay * s)
             }
             Self::Table { points, hold } => match segment(points, inside) {
-                Segment::Between(k) if !hold => {
-                    (points[k + 1][1] - points[k][1]) / (points[k + 1][0] - points[k][0])
-                }
+                Segment::Between(k) if !hold => (points[k + 1][1] - points[k][1]) / (points[k + 1][0] - points[k][0]),
                 _ => 0.0,
             },
             Self::Product(of) => {

@@ -84,14 +84,15 @@ pub(super) struct Loss {
 
 impl Element {
     pub fn is_lossless(&self) -> bool {
-        self.rows.iter().all(|r| {
-            r.forward == 1.0 && r.backward == 1.0 && r.forward_torque == 0.0 && r.backward_torque == 0.0
-        })
+        self.rows
+            .iter()
+            .all(|r| r.forward == 1.0 && r.backward == 1.0 && r.forward_torque == 0.0 && r.backward_torque == 0.0)
     }
 
     /// Whether its slopes depend on its speed or load.
     pub fn varies(&self) -> bool {
-        self.law.is_some() || self.rows.windows(2).any(|w| (w[0].forward, w[0].backward) != (w[1].forward, w[1].backward))
+        self.law.is_some()
+            || self.rows.windows(2).any(|w| (w[0].forward, w[0].backward) != (w[1].forward, w[1].backward))
     }
 
     /// Losses at an amount of speed: straight between rows, continued beyond the last.
@@ -237,7 +238,11 @@ struct Coordinates {
     exact: Vec<Vec<Rational>>,
 }
 
-fn coordinates(c: &Configuration<'_>, prescribed: &[MemberId], wish: &[MemberId]) -> Result<Coordinates, Vec<MemberId>> {
+fn coordinates(
+    c: &Configuration<'_>,
+    prescribed: &[MemberId],
+    wish: &[MemberId],
+) -> Result<Coordinates, Vec<MemberId>> {
     let freedoms = c.degrees_of_freedom();
     let mut chosen: Vec<MemberId> = Vec::new();
     let independent = |set: &[MemberId]| c.transfer(set).conflicts.is_empty();
@@ -279,7 +284,7 @@ impl System {
     /// Speeds that contradict each other, coordinates without inertia, meshes whose forces are not
     /// determined.
     pub fn new(train: &Train, name: &str) -> Result<Self, Diagnostics> {
-        let fail = |d: Diagnostic| [d].into_iter().collect::<Diagnostics>();
+        let fail = Diagnostics::from;
         let Some(scenario) = train.scenario(name) else {
             let known: Vec<&str> = train.scenarios().iter().map(|s| s.name.as_str()).collect();
             let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("there is no scenario `{name}`"))
@@ -294,10 +299,8 @@ impl System {
         };
         let place = scenario.place.clone();
         let held = &scenario.fixed;
-        let prescribed: Vec<MemberId> = (scenario.sources.iter())
-            .filter(|s| matches!(s.kind, SourceKind::Speed(_)))
-            .map(|s| s.member)
-            .collect();
+        let prescribed: Vec<MemberId> =
+            (scenario.sources.iter()).filter(|s| matches!(s.kind, SourceKind::Speed(_))).map(|s| s.member).collect();
         let laws = Laws::of(train);
         // Whatever has inertia, rubs or is driven stays visible; other planets vanish in chains.
         let keep: Vec<MemberId> = (train.inertias().iter().filter(|i| i.value > 0.0))
@@ -311,9 +314,13 @@ impl System {
             }))
             // The laws load each mesh with teeth by itself.
             .chain(laws.iter().flat_map(|laws| laws.places.iter().flat_map(|p| p.members)))
-            .chain(train.meshes().iter().filter(|m| laws.is_some() && m.teeth.is_some()).flat_map(|m| {
-                [m.gears[0].member, m.gears[1].member]
-            }))
+            .chain(
+                train
+                    .meshes()
+                    .iter()
+                    .filter(|m| laws.is_some() && m.teeth.is_some())
+                    .flat_map(|m| [m.gears[0].member, m.gears[1].member]),
+            )
             .filter(|m| m.index() != 0)
             .collect();
         let c = Configuration::new(train, &[], held, &keep);
@@ -335,7 +342,7 @@ impl System {
             let message = format!("the gears tie the prescribed speeds of {} together", names.join(", "));
             fail(Diagnostic::new(Code::ContradictorySpeeds, place.clone(), message).hint("prescribe one of them"))
         })?;
-        Self::assemble(train, scenario, &c, coordinates, prescribed.len(), laws).map_err(fail)
+        Self::assemble(train, scenario, &c, coordinates, prescribed.len(), laws)
     }
 
     fn assemble(
@@ -345,7 +352,7 @@ impl System {
         coordinates: Coordinates,
         prescribed: usize,
         mut laws: Option<Laws>,
-    ) -> Result<Self, Diagnostic> {
+    ) -> Result<Self, Diagnostics> {
         let Coordinates { chosen, speeds, exact } = coordinates;
         let free = chosen.len() - prescribed;
         let all = chosen.len();
@@ -398,8 +405,7 @@ impl System {
         let mut drivers = Vec::new();
         let (mut integrals, mut prescribed_seen) = (0, 0);
         for (k, s) in scenario.sources.iter().enumerate() {
-            let mut driver =
-                Driver { member: s.member, port: None, integral: None, prescribed: None, rolling: None };
+            let mut driver = Driver { member: s.member, port: None, integral: None, prescribed: None, rolling: None };
             match &s.kind {
                 SourceKind::Speed(_) => {
                     driver.prescribed = Some(prescribed_seen);
@@ -770,7 +776,7 @@ fn massless(
     speeds: &[Vec<f64>],
     train: &Train,
     scenario: &Scenario,
-) -> Result<(), Diagnostic> {
+) -> Result<(), Diagnostics> {
     let free = reduced.nrows();
     if free == 0 {
         return Ok(());
@@ -783,8 +789,7 @@ fn massless(
             let scaled = DMatrix::from_fn(free, free, |i, j| reduced[(i, j)] / (scale[i] * scale[j]));
             let eigen = scaled.symmetric_eigen();
             let k = eigen.eigenvalues.imin();
-            (eigen.eigenvalues[k] < 1e-13)
-                .then(|| (0..free).map(|i| eigen.eigenvectors[(i, k)] / scale[i]).collect())
+            (eigen.eigenvalues[k] < 1e-13).then(|| (0..free).map(|i| eigen.eigenvectors[(i, k)] / scale[i]).collect())
         }
     };
     let Some(direction) = weakest else { return Ok(()) };
@@ -795,13 +800,18 @@ fn massless(
         .map(|m| train.members()[m].name.as_str())
         .take(8)
         .collect();
-    let message = format!(
-        "{} can move together without any inertia, so {} acceleration is not determined",
-        moving.join(", "),
-        if moving.len() == 1 { "its" } else { "their" },
-    );
-    Err(Diagnostic::new(Code::NoInertia, scenario.place.clone(), message).hint(format!(
+    let message = match moving[..] {
+        [one] => {
+            format!("`{one}` has no inertia and its speed is not prescribed, so its acceleration is not determined")
+        }
+        _ => format!(
+            "{} can move together without any inertia and without a prescribed speed, so their acceleration is not determined",
+            moving.join(", ")
+        ),
+    };
+    let hint = format!(
         "give one of them a moment of inertia, [inertias] {} = \"0.01 kg m^2\"; or prescribe its speed, or hold it in `fixed`",
         moving.first().copied().unwrap_or("member"),
-    )))
+    );
+    Err(Diagnostic::new(Code::NoInertia, scenario.place.clone(), message).hint(hint).into())
 }
