@@ -325,3 +325,152 @@ proptest! {
         }
     }
 }
+
+/// A rotor of 0.5 kg m² in a bearing of 3 N m, driven by a torque.
+fn rotor(torque: &str) -> String {
+    format!(
+        r#"format = 1
+        name = "rotor"
+        members = ["a"]
+        inertias = {{ a = "0.5 kg m^2" }}
+        [[drag]]
+        name = "bearing"
+        members = ["a"]
+        coulomb = "3 N m"
+        [[scenario]]
+        name = "run"
+        duration = "2 s"
+        [[scenario.source]]
+        name = "motor"
+        member = "a"
+        torque = {torque}
+        "#
+    )
+}
+
+/// Where all is held nothing limits a step but what the signals do.
+#[test]
+fn a_short_excess_breaks_away() {
+    for amplitude in [3.001, 3.01, 3.2, 4.4] {
+        let sine = format!(r#"{{ type = "sine", amplitude = "{amplitude} N m", frequency = "1 Hz" }}"#);
+        let (rows, _) = run(&rotor(&sine), &Options::default());
+        let expected = (3.0f64 / amplitude).asin() / std::f64::consts::TAU;
+        let first = &rows.events[1];
+        assert!((first.time_s - expected).abs() < 1e-9, "{amplitude}: {first:?}, not {expected}");
+        assert!(rows.events.len() >= 8, "{amplitude}: {:?}", rows.events);
+    }
+    let pulse = r#"{ type = "expression", formula = "4/(1+((t-1.3)/0.05)^2)" }"#;
+    let (rows, _) = run(&rotor(pulse), &Options::default());
+    let expected = 1.3 - 0.05 * (1.0f64 / 3.0).sqrt();
+    assert!((rows.events[1].time_s - expected).abs() < 1e-9, "{:?}", rows.events);
+    let product = r#"{ type = "product", of = [
+        { type = "ramp", height = "12.8 N m", at = "0 s", duration = "1 s" },
+        { type = "ramp", offset = 1, height = -1, at = "0 s", duration = "1 s" } ] }"#;
+    let (rows, _) = run(&rotor(&product.replace('\n', " ")), &Options::default());
+    let expected = 0.5 - (0.25f64 - 3.0 / 12.8).sqrt();
+    assert!((rows.events[1].time_s - expected).abs() < 1e-9, "{:?}", rows.events);
+}
+
+/// The work of a torque over time is controlled like a state: t² on 0.5 kg m² alone does 64/9 J in 2 s.
+#[test]
+fn work_is_as_exact_as_motion() {
+    let text = rotor(r#"{ type = "expression", formula = "t^2" }"#).replace("3 N m", "0 N m");
+    let (_, report) = run(&text, &Options::default());
+    let work = report.energy.sources[0].energy_j;
+    assert!((work - 64.0 / 9.0).abs() < 1e-8, "{work}");
+    assert!(open_part(&report) < 1e-9);
+}
+
+/// A speed told by a formula has its derivative, also late.
+#[test]
+fn a_prescribed_formula_has_its_acceleration() {
+    let text = rotor("\"0 N m\"")
+        .replace("3 N m", "0 N m")
+        .replace("torque = \"0 N m\"", r#"speed = { type = "expression", formula = "100+sin(100*t)" }"#)
+        .replace("duration = \"2 s\"", "start = \"1000 s\"\nend = \"1000.1 s\"");
+    let (rows, report) = run(&text, &Options::default());
+    let torque = rows.of("torque.motor").next().unwrap();
+    let expected = 0.5 * 100.0 * (100.0 * 1000.0f64).cos();
+    assert!((torque - expected).abs() < 1e-6 * expected.abs(), "{torque}, not {expected}");
+    assert!(open_part(&report) < 1e-9, "{}", open_part(&report));
+}
+
+/// A pair of 60 % with a drag that holds more than it slides with: both hold it, and it breaks away at
+/// `3/(3 · 0.6) + 1.3` N m.
+#[test]
+fn teeth_and_friction_hold_together_in_fixed_steps() {
+    let text = r#"format = 1
+        name = "pair"
+        members = ["a", "b"]
+        terminals = ["a", "b"]
+        inertias = { a = "0.01 kg m^2", b = "0.05 kg m^2" }
+        [[mesh]]
+        name = "m"
+        gears = [ { member = "a", teeth = 20 }, { member = "b", teeth = 60 } ]
+        efficiency = 0.6
+        [[drag]]
+        name = "d"
+        members = ["a"]
+        coulomb = "1 N m"
+        peak = 1.3
+        [[scenario]]
+        name = "run"
+        duration = "4 s"
+        [[scenario.source]]
+        member = "a"
+        torque = { type = "ramp", height = "4 N m", at = "0 s", duration = "4 s" }
+        [[scenario.source]]
+        member = "b"
+        torque = "3 N m"
+        "#;
+    let expected = 3.0 / (3.0 * 0.6) + 1.3;
+    for (method, within) in [(Method::Adaptive, 1e-9), (Method::Fixed(1e-3), 2e-3), (Method::Fixed(1e-4), 2e-4)] {
+        let (rows, _) = run(text, &Options { method, ..Options::default() });
+        let first = &rows.events[1];
+        assert!((first.time_s - expected).abs() < within, "{method:?}: {first:?}, not {expected}");
+    }
+}
+
+/// Where prescribed speeds alone move a friction, it turns round with them.
+#[test]
+fn friction_follows_a_prescribed_speed_in_fixed_steps() {
+    let text = r#"format = 1
+        name = "driven set"
+        members = ["s", "c"]
+        terminals = ["s", "c"]
+        inertias = { c = "0.4 kg m^2" }
+        [[set]]
+        name = "P"
+        sun = { member = "s", teeth = 30 }
+        planet = { teeth = 20 }
+        ring = { member = "frame", teeth = 70 }
+        carrier = "c"
+        mesh_efficiency = 0.9
+        [[drag]]
+        name = "seal"
+        members = ["c"]
+        coulomb = "2 N m"
+        [[scenario]]
+        name = "run"
+        duration = "2 s"
+        [[scenario.source]]
+        member = "s"
+        speed = { type = "table", points = [["0 s", "10 rad/s"], ["1 s", "-10 rad/s"], ["2 s", "-10 rad/s"]] }
+        [[scenario.source]]
+        member = "c"
+        torque = "30 N m"
+        "#;
+    let (_, exact) = run(text, &Options::default());
+    let (_, steps) = run(text, &Options { method: Method::Fixed(1e-4), ..Options::default() });
+    for (a, b) in exact.energy.losses.iter().zip(&steps.energy.losses) {
+        assert_eq!(a.name, b.name);
+        assert!((a.energy_j - b.energy_j).abs() < 2e-3 * a.energy_j, "{}: {} and {} J", a.name, a.energy_j, b.energy_j);
+    }
+}
+
+#[test]
+fn what_cannot_move_is_refused() {
+    let text = rotor("\"4 N m\"").replace("duration = \"2 s\"", "duration = \"2 s\"\nfixed = [\"a\"]");
+    let error = simulate(&train(&text), "run", &Options::default(), &mut ()).unwrap_err();
+    assert!(error.to_string().contains("nothing can move"), "{error}");
+}

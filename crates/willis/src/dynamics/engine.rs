@@ -65,6 +65,9 @@ pub(super) const NOISE: f64 = 1e-12;
 /// Size below which a speed, rad/s, or an angle, rad, counts as small at the start of a run.
 const LEAST_SCALE: f64 = 1e-3;
 
+/// The same for an energy, J.
+const LEAST_ENERGY: f64 = 1e-6;
+
 /// A system in a mode.
 pub(crate) struct Engine {
     pub system: System,
@@ -91,6 +94,8 @@ pub(crate) struct Engine {
     pub counts: bool,
     /// Sizes of the states, against which errors are measured where a state is small.
     pub scales: Vec<f64>,
+    /// Size of the energies, J, likewise.
+    pub energy_scale: f64,
     /// Room for port torques.
     pub spare: Vec<f64>,
     /// By how many times its round-off a force has to be beyond its limit before that counts as an event: what
@@ -116,6 +121,7 @@ impl Engine {
             tau: vec![0.0; system.ports],
             away,
             scales: vec![LEAST_SCALE; system.free + system.all() + system.integrals],
+            energy_scale: LEAST_ENERGY,
             spare: vec![0.0; system.ports],
             agrees: true,
             slack: 1.0,
@@ -125,8 +131,9 @@ impl Engine {
         }
     }
 
-    /// Remembers how large the states become.
+    /// Remembers how large the states and the energies become.
     pub fn rescale(&mut self, x: &[f64]) {
+        self.energy_scale = x[self.scales.len()..].iter().fold(self.energy_scale, |m, e| m.max(e.abs()));
         for (scale, x) in self.scales.iter_mut().zip(x) {
             *scale = scale.max(0.1 * x.abs());
         }
@@ -650,7 +657,7 @@ impl Smooth for Engine {
     }
 
     fn scale(&self, state: usize) -> f64 {
-        self.scales[state]
+        self.scales.get(state).copied().unwrap_or(self.energy_scale)
     }
 }
 

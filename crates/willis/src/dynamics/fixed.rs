@@ -3,7 +3,7 @@
 //! Semi-implicit stepping with set-valued friction: within a step the mode is one whose torques agree with the
 //! speeds at the *end* of the step, so that what sticks has exactly zero slip and nothing chatters. With the maps of the
 //! modes kept, a step is a small matrix–vector product and a check. First order in the step; the energies close to
-//! round-off all the same, because `½ ω⁺ᵀMω⁺ − ½ ωᵀMω` is the work of the step's torques at the mean of both
+//! round-off all the same (those of elastic shafts excepted), because `½ ω⁺ᵀMω⁺ − ½ ωᵀMω` is the work of the step's torques at the mean of both
 //! speeds. Sources: Moreau's time stepping, as in Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical
 //! Systems*, 2008, ch. 10.
 
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{MemberId, Signal, SourceKind, Train};
 
-use super::engine::Engine;
+use super::engine::{Engine, Touch};
 use super::fused::{Exactly, Fused, NOISE, add_column};
 use super::mode::{Mode, Pattern, Side, compose, dot, dot_size};
 use super::run::initial_state;
@@ -613,8 +613,13 @@ impl FixedStep {
                 }
             }
             self.capacity[g] = holds;
-            // What has no friction has no mode, and what cannot slide that way is held.
-            if slides == [0.0; 2] && group.elements.is_empty() {
+            // What prescribed speeds alone move follows them; what has no friction has no mode, and what cannot slide
+            // that way is held.
+            if group.driven {
+                if slip != 0.0 {
+                    self.sign[g] = if slip < 0.0 { -1 } else { 1 };
+                }
+            } else if slides == [0.0; 2] && group.elements.is_empty() {
                 self.sign[g] = 1;
             } else if self.sign[g] != 0 && slides[usize::from(self.sign[g] < 0)] >= LEAST_UNBOUNDED {
                 self.impacts += u64::from(slip * f64::from(self.sign[g]) > 1e-9);
@@ -670,6 +675,11 @@ impl FixedStep {
                 continue;
             }
             let force = group.lead.1 * dot(rows.next().expect("a row for each"), &self.tau);
+            if group.shares && !map.redundant {
+                // What teeth hold follows from the torque in them once they slide: that is tried.
+                teeth.by_ref().nth(group.elements.len() - 1);
+                continue;
+            }
             let [mut forward, mut backward] = self.capacity[g];
             // Teeth at rest hold by the forces in them.
             for &j in &group.elements {
@@ -1180,10 +1190,17 @@ impl FixedStep {
     }
 
     /// What labels depend on.
-    pub(super) fn state_of_modes(&self) -> (u64, u64, f64) {
+    pub(super) fn state_of_modes(&self) -> (u64, u64, u64, f64) {
         let held = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s == 0) << g).sum();
         let forward = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s > 0) << g).sum();
-        (held, forward, self.until)
+        let code = |touch: &Touch| match touch {
+            Touch::Gap => 0,
+            Touch::On(side) => 1 + i64::from(*side),
+            Touch::Limited(side) => 4 + i64::from(*side),
+            Touch::Parting(side) => 7 + i64::from(*side),
+        };
+        let touch = self.engine.touch.iter().fold(0u64, |sum, t| sum.wrapping_mul(9).wrapping_add(code(t) as u64));
+        (held, forward, touch, self.until)
     }
 
     /// Brings the engine to the state and mode reached.
@@ -1197,7 +1214,9 @@ impl FixedStep {
         self.engine.inside = t;
         self.engine.look(t, x);
         let mode = Mode {
-            slip: self.sign.iter().enumerate().map(|(g, s)| if self.groups[g].driven { 0 } else { *s }).collect(),
+            slip: (self.sign.iter().enumerate())
+                .map(|(g, s)| if self.groups[g].driven && self.slip[g] == 0.0 { 0 } else { *s })
+                .collect(),
             side: self.side.clone(),
         };
         for k in 0..self.engine.engaged.len() {

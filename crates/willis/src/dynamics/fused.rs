@@ -115,7 +115,7 @@ impl Fused {
             rows.push(row);
         }
         for (g, group) in groups.iter().enumerate() {
-            if group.driven || Exactly::has(mode.held, g) || Exactly::has(mode.idle, g) {
+            if Exactly::has(mode.held, g) || Exactly::has(mode.idle, g) {
                 continue;
             }
             let mut row = vec![0.0; width];

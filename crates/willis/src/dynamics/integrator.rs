@@ -16,7 +16,8 @@ pub(crate) use implicit::Implicit;
 /// A smooth system of ordinary differential equations with quadratures beside it.
 ///
 /// The state is `x[..states()]`; after it stand `quadratures()` integrals whose rates depend on the
-/// state but on which nothing depends (energies). Their error does not control the step.
+/// state but on which nothing depends (energies). Their error
+/// controls the step where the method is explicit.
 pub(crate) trait Smooth {
     /// Number of states, whose error is controlled.
     fn states(&self) -> usize;

@@ -60,6 +60,8 @@ pub struct Simulation {
     /// Of the energies of the sources what came in, in steps that are over.
     came_in: Vec<f64>,
     segment: f64,
+    /// The longest step that sees what the signals do.
+    longest: f64,
     at_rest: Vec<bool>,
     labels: Vec<(String, ModeLabel)>,
     /// Why the mode is chosen anew.
@@ -80,6 +82,8 @@ pub struct Simulation {
     /// The first of several solutions was taken: why the first time, and how often.
     ambiguous: Option<(String, usize)>,
     margins: Vec<Margin>,
+    at_middle: Vec<Margin>,
+    at_end: Vec<Margin>,
     state: Vec<f64>,
 }
 
@@ -106,6 +110,7 @@ impl Simulation {
         let start = engine.system.scenario.start;
         let x = initial_state(&mut engine)?;
         let stored_at_start = engine.stored(&x);
+        engine.energy_scale = engine.energy_scale.max(stored_at_start);
         let columns = engine.columns();
         let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
         let (states, quadratures) = (engine.states(), engine.quadratures());
@@ -121,6 +126,7 @@ impl Simulation {
             x,
             came_in: vec![0.0; if options.energies { drivers } else { 0 }],
             segment: start,
+            longest: f64::INFINITY,
             at_rest: vec![false; groups],
             labels: vec![],
             why: Some(Why::Start),
@@ -138,6 +144,8 @@ impl Simulation {
             notes,
             ambiguous: None,
             margins: vec![],
+            at_middle: vec![],
+            at_end: vec![],
             state: vec![0.0; states + quadratures],
             engine,
         })
@@ -306,6 +314,10 @@ impl Simulation {
             }
             self.told = event.cause;
         }
+        let s = &self.engine.system;
+        let patience = (s.scenario.end - s.scenario.start) / LOOKS;
+        let inside = self.engine.inside;
+        self.longest = s.signals().map(|s| s.longest_step(inside, patience)).fold(f64::INFINITY, f64::min);
         let tolerance = self.options.tolerance;
         let (t, segment, hint) = (self.t, self.segment, self.last_step);
         if segment > t {
@@ -323,7 +335,7 @@ impl Simulation {
     /// Steps until something happens.
     fn stretch(&mut self, target: f64, recorder: &mut dyn Recorder) -> Stretch {
         loop {
-            let goal = self.segment;
+            let goal = self.segment.min(self.t + self.longest);
             let taken = if self.stiff {
                 self.implicit.step(&mut self.engine, goal)
             } else {
@@ -514,16 +526,77 @@ impl Simulation {
 
     /// The first event of the last step: just after it, and what it was.
     fn find_event(&mut self, t_old: f64, t_new: f64) -> Option<(f64, Watch)> {
-        let mut low = t_old;
-        for part in [0.5, 1.0] {
-            let t = if part == 1.0 { t_new } else { t_old + part * (t_new - t_old) };
-            self.margins_at(t);
-            if self.margins.iter().any(Margin::is_broken) {
-                return Some(self.bracket(low, t));
-            }
-            low = t;
+        let half = 0.5 * (t_old + t_new);
+        self.margins_at(half);
+        if self.margins.iter().any(Margin::is_broken) {
+            return Some(self.bracket(t_old, half));
         }
-        None
+        let mut middle = std::mem::take(&mut self.at_middle);
+        middle.clone_from(&self.margins);
+        self.margins_at(t_new);
+        let broken = self.margins.iter().any(Margin::is_broken);
+        let mut at_end = std::mem::take(&mut self.at_end);
+        at_end.clone_from(&self.margins);
+        // What leaves its limit and comes back within the step: near the lowest point of a parabola.
+        let dip = match broken {
+            true => None,
+            false => self.dip(t_old, t_new, &middle, &at_end),
+        };
+        (self.at_middle, self.at_end) = (middle, at_end);
+        match dip {
+            _ if broken => {
+                self.margins_at(t_new);
+                Some(self.bracket(half, t_new))
+            }
+            Some(t) if t > half => Some(self.bracket(half, t)),
+            Some(t) => Some(self.bracket(t_old, t)),
+            None => None,
+        }
+    }
+
+    /// A time within the step at which some margin is broken, though none is in its middle nor at its end. The
+    /// margins are then those of that time.
+    fn dip(&mut self, t_old: f64, t_new: f64, middle: &[Margin], end: &[Margin]) -> Option<f64> {
+        let reaches =
+            |m: &Margin, e: &Margin| m.watch == e.watch && m.value.min(e.value) < 8.0 * (m.value - e.value).abs();
+        if !middle.iter().zip(end).any(|(m, e)| reaches(m, e)) {
+            return None;
+        }
+        self.margins_at(t_old);
+        let start = std::mem::take(&mut self.margins);
+        let mut found = None;
+        let candidates: Vec<(Watch, [f64; 3])> = (start.iter().zip(middle).zip(end))
+            .filter(|((s, m), e)| s.watch == m.watch && m.watch == e.watch)
+            .map(|((s, m), e)| (s.watch, [s.value, m.value, e.value]))
+            .collect();
+        self.margins = start;
+        for (watch, values) in candidates {
+            let (mut t, mut y) = ([t_old, 0.5 * (t_old + t_new), t_new], values);
+            for _ in 0..4 {
+                let Some(lowest) = vertex(t, y).filter(|v| *v > t[0] && *v < t[2] && *v != t[1]) else { break };
+                self.margins_at(lowest);
+                let Some(m) = self.margins.iter().find(|m| m.watch == watch) else { break };
+                if m.is_broken() {
+                    found = Some(lowest);
+                    break;
+                }
+                // Round the lowest of the points so far.
+                let (value, k) = (m.value, usize::from(lowest > t[1]));
+                if value >= y[1] {
+                    break;
+                }
+                if k == 1 {
+                    (t[0], y[0]) = (t[1], y[1]);
+                } else {
+                    (t[2], y[2]) = (t[1], y[1]);
+                }
+                (t[1], y[1]) = (lowest, value);
+            }
+            if found.is_some() {
+                break;
+            }
+        }
+        found
     }
 
     /// The first time at which a margin is broken, between one at which none is and one at which some is.
@@ -665,6 +738,16 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     Some(format!("{what}: {done}"))
 }
 
+/// How often in a run what a formula does to a held element is looked at, at least.
+const LOOKS: f64 = 1000.0;
+
+/// The lowest point of the parabola through three points; none if it opens downward.
+fn vertex(t: [f64; 3], y: [f64; 3]) -> Option<f64> {
+    let first = (y[1] - y[0]) / (t[1] - t[0]);
+    let second = ((y[2] - y[1]) / (t[2] - t[1]) - first) / (t[2] - t[0]);
+    (second > 0.0).then(|| 0.5 * (t[0] + t[1]) - 0.5 * first / second)
+}
+
 /// Adds what the sources put in during the last step. A power that changes its sign is parted where it does.
 fn take_in(stepper: &impl Stepper, states: usize, came_in: &mut [f64]) {
     let (t_old, t) = (stepper.t_old(), stepper.t());
@@ -743,7 +826,10 @@ fn fixed(
         // No step has chosen the mode of the start yet.
         if step == 0 {
             if let Err(outcome) = run.choose(recorder) {
-                run.outcome = Some(outcome);
+                // Fixed steps go on after an impact, also after one at the start.
+                if !matches!(outcome, Outcome::Impact(_)) {
+                    run.outcome = Some(outcome);
+                }
             } else {
                 run.next_sample = 1;
                 run.row();

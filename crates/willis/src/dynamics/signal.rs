@@ -99,11 +99,7 @@ impl Signal {
                 of[0].rate(t, inside, speed) * of[1].value(t, inside, speed)
                     + of[0].value(t, inside, speed) * of[1].rate(t, inside, speed)
             }
-            Self::Expression { formula, speeds } => {
-                let h = 1e-6 * t.abs().max(1.0);
-                let at = |t| expression(formula, speeds, t, speed);
-                (at(t + h) - at(t - h)) / (2.0 * h)
-            }
+            Self::Expression { formula, speeds } => derivative(|t| expression(formula, speeds, t, speed), t),
         }
     }
 
@@ -127,6 +123,17 @@ impl Signal {
         }
     }
 
+    /// The longest step that sees what it does within the piece that holds `inside`, s: an eighth of a period. A
+    /// formula tells nothing of itself; it is looked at as often as `patience`, s, asks.
+    pub(crate) fn longest_step(&self, inside: f64, patience: f64) -> f64 {
+        match self {
+            Self::Sine { frequency, at, .. } if inside >= *at => 0.125 / frequency.abs(),
+            Self::Product(of) => of[0].longest_step(inside, patience).min(of[1].longest_step(inside, patience)),
+            Self::Expression { .. } => patience,
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Whether it may become zero at a time that is not known beforehand.
     pub(crate) fn crosses_unannounced(&self) -> bool {
         match self {
@@ -147,6 +154,32 @@ fn expression(formula: &Formula, speeds: &[MemberId], t: f64, speed: &dyn Fn(Mem
     }
     let all: Vec<f64> = speeds.iter().map(|m| speed(*m)).collect();
     formula.value(t, &all)
+}
+
+/// Derivative by central differences, extrapolated to a step of zero (Ridders 1982): differences with ever shorter
+/// steps, of which the one that changes least is taken.
+fn derivative(f: impl Fn(f64) -> f64, t: f64) -> f64 {
+    const LEVELS: usize = 10;
+    const RATIO: f64 = 2.0;
+    let mut table = [[0.0f64; LEVELS]; LEVELS];
+    let (mut best, mut error) = (f64::NAN, f64::INFINITY);
+    let mut h = 1e-2;
+    for i in 0..LEVELS {
+        // Exactly what lies between both points.
+        let (later, earlier) = (t + h, t - h);
+        table[0][i] = (f(later) - f(earlier)) / (later - earlier);
+        let mut weight = RATIO * RATIO;
+        for j in 1..=i {
+            table[j][i] = (table[j - 1][i] * weight - table[j - 1][i - 1]) / (weight - 1.0);
+            weight *= RATIO * RATIO;
+            let change = (table[j][i] - table[j - 1][i]).abs().max((table[j][i] - table[j - 1][i - 1]).abs());
+            if change <= error {
+                (best, error) = (table[j][i], change);
+            }
+        }
+        h /= RATIO;
+    }
+    best
 }
 
 enum Segment {

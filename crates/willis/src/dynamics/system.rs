@@ -34,6 +34,9 @@ const GRAVITY: f64 = 9.80665;
 /// good gears do.
 pub(super) const MOST_LOST: f64 = 0.1;
 
+/// Pulses of one signal in a scenario; each of them stops the integrator twice.
+const MOST_PULSES: f64 = 1e6;
+
 /// A mesh element: one gear pair, or a chain of them.
 pub(super) struct Element {
     pub links: Vec<Link>,
@@ -331,6 +334,25 @@ impl System {
                 names.join(", ")
             );
             return Err(fail(Diagnostic::new(Code::Unfit, place, message).hint("leave out one of them")));
+        }
+        if c.degrees_of_freedom() == 0 {
+            let message = "nothing can move: what is held in `fixed` holds all members".to_owned();
+            return Err(fail(Diagnostic::new(Code::Unfit, place, message).hint("leave one of them out of `fixed`")));
+        }
+        for signal in (scenario.sources.iter().flat_map(|s| signals_of(&s.kind)))
+            .chain(scenario.engagements.iter().map(|e| &e.signal))
+        {
+            if let Signal::Pulse { period, .. } = signal
+                && (scenario.end - scenario.start) / period > MOST_PULSES
+            {
+                let message = format!(
+                    "a pulse of period {period} s comes {:.1e} times in this scenario, more than {MOST_PULSES:.0e}",
+                    (scenario.end - scenario.start) / period
+                );
+                return Err(fail(
+                    Diagnostic::new(Code::Unfit, place, message).hint("take its mean, or a shorter scenario"),
+                ));
+            }
         }
         let wish: Vec<MemberId> = (train.inertias().iter().map(|i| i.member))
             .filter(|m| train.terminals().contains(m))

@@ -238,6 +238,109 @@ pub struct Formula {
     variables: Vec<Option<usize>>,
 }
 
+/// A formula with the brackets that the usual order of operations means: powers before signs and from the right,
+/// `-t^2` is `-(t^2)` and `2^3^2` is `2^(3^2)`. The library takes signs first and powers from the left.
+fn usual_order(text: &str) -> String {
+    let tokens: Vec<&str> = tokens(text);
+    let mut out = String::new();
+    let mut at = 0;
+    while at < tokens.len() {
+        signed(&tokens, &mut at, &mut out);
+    }
+    out
+}
+
+/// Numbers, names and single characters.
+fn tokens(text: &str) -> Vec<&str> {
+    let mut tokens = Vec::new();
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let part = |more: &dyn Fn(char) -> bool| rest.find(|c| !more(c)).unwrap_or(rest.len());
+        let length = if first.is_ascii_digit() || first == '.' {
+            let mantissa = part(&|c| c.is_ascii_digit() || c == '.');
+            // An exponent belongs to the number.
+            let exponent = rest[mantissa..].strip_prefix(['e', 'E']).map(|e| e.strip_prefix(['+', '-']).unwrap_or(e));
+            match exponent.filter(|e| e.starts_with(|c: char| c.is_ascii_digit())) {
+                Some(e) => rest.len() - e.trim_start_matches(|c: char| c.is_ascii_digit()).len(),
+                None => mantissa,
+            }
+        } else if first.is_alphanumeric() || first == '_' {
+            part(&|c| c.is_alphanumeric() || c == '_')
+        } else {
+            first.len_utf8()
+        };
+        let (token, left) = rest.split_at(length);
+        if !token.trim().is_empty() {
+            tokens.push(token);
+        }
+        rest = left;
+    }
+    tokens
+}
+
+/// A sign with the power that follows it, a power, or a single operator.
+fn signed(tokens: &[&str], at: &mut usize, out: &mut String) {
+    let after_value = |out: &str| out.ends_with(|c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | ')' | '}'));
+    match tokens[*at] {
+        "-" | "+" if !after_value(out) && *at + 1 < tokens.len() => {
+            let minus = tokens[*at] == "-";
+            *at += 1;
+            out.push_str(if minus { "(0-" } else { "(" });
+            let mut operand = String::new();
+            signed(tokens, at, &mut operand);
+            out.push_str(&operand);
+            out.push(')');
+        }
+        _ => power(tokens, at, out),
+    }
+}
+
+fn power(tokens: &[&str], at: &mut usize, out: &mut String) {
+    let mut base = String::new();
+    primary(tokens, at, &mut base);
+    if tokens.get(*at) == Some(&"^") && *at + 1 < tokens.len() {
+        *at += 1;
+        let mut exponent = String::new();
+        signed(tokens, at, &mut exponent);
+        out.push_str(&format!("(({base})^({exponent}))"));
+    } else {
+        out.push_str(&base);
+    }
+}
+
+/// A number, a name with its arguments, something in brackets; or whatever else stands there.
+fn primary(tokens: &[&str], at: &mut usize, out: &mut String) {
+    let name = tokens[*at];
+    // The library knows no exponents of ten.
+    match name.parse::<f64>() {
+        Ok(number) if name.contains(['e', 'E']) && number.is_finite() => out.push_str(&number.to_string()),
+        _ => out.push_str(name),
+    }
+    *at += 1;
+    let is_call = name.starts_with(|c: char| c.is_alphabetic()) && tokens.get(*at) == Some(&"(");
+    if is_call {
+        out.push('(');
+        *at += 1;
+    }
+    if is_call || name == "(" {
+        while *at < tokens.len() && tokens[*at] != ")" {
+            signed(tokens, at, out);
+        }
+        if *at < tokens.len() {
+            out.push(')');
+            *at += 1;
+        }
+    } else if is_call_without_brackets(name, tokens.get(*at)) {
+        out.push(' ');
+    }
+}
+
+/// `sin t`: a name before a name or a number.
+fn is_call_without_brackets(name: &str, next: Option<&&str>) -> bool {
+    let word = |s: &str| s.starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == '.');
+    word(name) && next.is_some_and(|n| word(n))
+}
+
 impl PartialEq for Formula {
     fn eq(&self, other: &Self) -> bool {
         self.text == other.text
@@ -250,7 +353,7 @@ impl Formula {
     /// # Errors
     /// What is wrong with the text, in words.
     pub fn parse(text: &str) -> Result<(Self, Vec<String>), String> {
-        let expression = exmex::parse::<f64>(text).map_err(|e| e.to_string())?;
+        let expression = exmex::parse::<f64>(&usual_order(text)).map_err(|e| e.to_string())?;
         let mut speeds = Vec::new();
         let mut variables = Vec::new();
         for name in expression.var_names() {
@@ -407,4 +510,46 @@ pub struct Scenario {
     /// How many rows of output, evenly spaced in time.
     pub samples: usize,
     pub(crate) place: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_are_read_in_the_usual_order() {
+        let value = |text: &str| match Formula::parse(text) {
+            Ok((formula, _)) => formula.value(3.0, &[2.0]),
+            Err(e) => panic!("{text}: {}: {e}", usual_order(text)),
+        };
+        let cases = [
+            ("-t^2", -9.0),
+            ("2^3^2", 512.0),
+            ("2^-1", 0.5),
+            ("1/-t^2", -1.0 / 9.0),
+            ("4 - -t^2*2", 22.0),
+            ("-(t+1)^2 + +2", -14.0),
+            ("exp(-((t-1)/2)^2)", (-1.0f64).exp()),
+            ("1e-3*t - 2.5E+1", 0.003 - 25.0),
+            ("-w_a^2*t", -12.0),
+            ("-sin(t)^2", -(3.0f64.sin().powi(2))),
+            ("60 + 200*sin(2*t) - 3*w_a", 60.0 + 200.0 * 6.0f64.sin() - 6.0),
+            ("-2^2", -4.0),
+            ("2*-3", -6.0),
+        ];
+        for (text, expected) in cases {
+            let is = value(text);
+            assert!((is - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{text}: {is}, not {expected}");
+        }
+    }
+
+    #[test]
+    fn damaged_formulas_are_refused() {
+        for text in ["", "-", "2^", "(t", "t)", "sin(", "^2", "1 +", "* 3", "t t", "é", "w_"] {
+            assert!(
+                Formula::parse(text).is_err() || Formula::parse(text).unwrap().0.value(1.0, &[1.0; 8]).is_finite(),
+                "{text}"
+            );
+        }
+    }
 }

@@ -26,7 +26,7 @@ const D: [f64; 6] = [
 /// dense output of fourth order (Hairer, Nørsett, Wanner I, sections II.5 and II.6), step control
 /// by error and its last change (II.4, IV.2 with β = 0.04).
 ///
-/// Quadratures use the same weights; with no state at all, nothing controls the step.
+/// Quadratures use the same weights, and their errors count as those of states do.
 #[derive(Clone, Debug)]
 pub(crate) struct Dopri5 {
     track: Track,
@@ -119,9 +119,15 @@ impl Dopri5 {
             let e = E[0] * k1[i] + E[1] * k3[i] + E[2] * k4[i] + E[3] * k5[i] + E[4] * k6[i] + E[5] * last[i];
             sum += (e / (x[i].abs().max(new[i].abs()) + sys.scale(i))).powi(2);
         }
-        // A quadrature that is not finite makes the error so, too.
-        let finite: f64 = new[n..].iter().chain(&last[n..]).map(|q| q * 0.0).sum();
-        h / tolerance * (sum / n.max(1) as f64).sqrt() + finite
+        // The largest error of a quadrature; one that is not finite makes the error so, too.
+        let (mut largest, mut finite) = (0.0f64, 0.0);
+        for i in n..all {
+            let e = E[0] * k1[i] + E[1] * k3[i] + E[2] * k4[i] + E[3] * k5[i] + E[4] * k6[i] + E[5] * last[i];
+            largest = largest.max(e.abs() / (x[i].abs().max(new[i].abs()) + sys.scale(i)));
+            finite += 0.0 * (new[i] + last[i]);
+        }
+        let states = (sum / n.max(1) as f64).sqrt();
+        h / tolerance * if largest > states { largest } else { states } + finite
     }
 
     fn prepare_dense(&mut self, h: f64) {
