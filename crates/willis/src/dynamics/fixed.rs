@@ -236,7 +236,7 @@ impl FixedStep {
         let signal_of = (s.scenario.sources.iter())
             .scan(0, |at, source| {
                 let first = *at;
-                *at += signals_of(&source.kind).len();
+                *at += signals_of(&source.kind).count();
                 Some(first)
             })
             .collect();
@@ -479,7 +479,7 @@ impl FixedStep {
         let s = &self.engine.system;
         let engagement = |f: usize| s.frictions.get(f).and_then(|f| f.engagement);
         match k.checked_sub(s.drivers.len()) {
-            None => signals_of(&s.scenario.sources[k].kind).iter().any(|s| s.depends_on_speed()),
+            None => signals_of(&s.scenario.sources[k].kind).any(|s| s.depends_on_speed()),
             Some(f) => match engagement(f) {
                 Some(e) => s.scenario.engagements[e].signal.depends_on_speed(),
                 None => f >= s.frictions.len(),
@@ -954,13 +954,13 @@ impl FixedStep {
             for i in 0..all {
                 self.rest[i] += self.h * self.next[i];
             }
-            for (k, driver) in self.engine.system.drivers.iter().enumerate() {
-                if let (Some(i), SourceKind::Controller { setpoint, .. }) =
-                    (driver.integral, &self.engine.system.scenario.sources[k].kind)
-                {
+        }
+        if self.engine.system.integrals > 0 {
+            let s = &self.engine.system;
+            for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
+                if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
                     let set = setpoint.value(middle, middle, &|_| 0.0);
-                    self.rest[all + i] +=
-                        self.h * (set - dot(&self.engine.system.speeds[driver.member.index()], &self.next));
+                    self.rest[s.all() + i] += self.h * (set - dot(&s.speeds[driver.member.index()], &self.next));
                 }
             }
         }
