@@ -34,13 +34,14 @@ const TASKS: &[Task] = &[
     ("eight-speed-text-to-answer", 1, cold),
     ("set-fixed-step", 20_000, |n| steps(&trains::set(), "pulses", 20_000, n)),
     ("automatic-fixed-step", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, n)),
-    ("set-batch", RUNS * BATCH_STEPS, batch),
+    ("set-batch", RUNS * BATCH_STEPS, |n| batch(&trains::set(), "pulses", n)),
+    ("automatic-batch", RUNS * BATCH_STEPS, |n| batch(&trains::automatic(), "through the gears", n)),
 ];
 
 /// Points of one repetition.
 const POINTS: usize = 4096;
 
-/// Runs of a batch, and their steps in one repetition: whole periods.
+/// Runs of a batch, and their steps in one repetition: whole periods of the set, a gear of the automatic.
 const RUNS: usize = 64;
 const BATCH_STEPS: usize = 2000;
 
@@ -138,8 +139,8 @@ fn steps(train: &Train, scenario: &str, steps: u64, n: usize) {
     }
 }
 
-fn batch(n: usize) {
-    let mut runs = Batch::new(&trains::set(), "pulses", 1e-3, RUNS).unwrap();
+fn batch(train: &Train, scenario: &str, n: usize) {
+    let mut runs = Batch::new(train, scenario, 1e-3, RUNS).unwrap();
     for k in 0..RUNS {
         runs.scale(k, "engine", 1.0 + 0.0025 * k as f64).unwrap();
     }

@@ -174,6 +174,11 @@ fn longest(_: &mut Criterion) {
     ];
     record("automatic-longest-step", 16_000.0, &sums);
     println!("automatic-longest-step: {sums:.0?}");
+    let mut order: Vec<usize> = (0..known.len()).collect();
+    order.sort_by(|a, b| known[*b].total_cmp(&known[*a]));
+    for k in &order[..8] {
+        println!("step {k}: {:.0} ns", ns(known[*k]));
+    }
 }
 
 criterion_group!(benches, adaptive, fixed, batch, longest);

@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostics;
 use crate::train::{SourceKind, Train};
 
 use super::fixed::{FixedStep, UNBOUNDED};
-use super::fused::Fused;
+use super::fused::BLOCK;
 use super::mode::{Side, dot};
 
 /// Runs in a block.
@@ -76,6 +76,10 @@ pub struct Batch {
     ends: Vec<Lanes>,
     /// Inputs that are not level, and their values where all runs have the same.
     common: Vec<Option<f64>>,
+    /// Steps of modes as blocks take them, in the order of the modes met; empty until one does.
+    packed: Vec<Vec<f64>>,
+    /// Room for what changes from step to step: speeds, and inputs that are not level.
+    terms: Vec<Lanes>,
     unsettled: u64,
     impacts: u64,
 }
@@ -107,6 +111,8 @@ impl Batch {
             arch: pulp::Arch::new(),
             ends: vec![],
             common: vec![],
+            packed: vec![],
+            terms: vec![],
             unsettled: 0,
             impacts: 0,
             one,
@@ -200,6 +206,7 @@ impl Batch {
         let middle = self.one.middle();
         if self.one.is_over(middle) {
             self.one.refresh(middle);
+            self.packed.iter_mut().for_each(Vec::clear);
             for block in &mut self.blocks {
                 block.present = [None; LANES];
                 block.uniform = true;
@@ -222,7 +229,15 @@ impl Batch {
                 // The torque of a shaft follows from its twist, which only a single run knows.
                 alone |= match present {
                     Some(k) if one.engine.system.elastic.is_empty() => {
-                        block.glide(one, k, alike, middle, &self.common, self.arch, &mut self.ends)
+                        let at = k as usize;
+                        if self.packed.len() <= at {
+                            self.packed.resize(at + 1, vec![]);
+                        }
+                        if self.packed[at].is_empty() {
+                            one.fused[at].pack(one.v.len(), &one.varying, &mut self.packed[at]);
+                        }
+                        let room = (&mut self.terms, &mut self.ends);
+                        block.glide(one, k, alike, middle, &self.common, &self.packed[at], self.arch, room)
                     }
                     _ => alike,
                 };
@@ -313,14 +328,17 @@ impl Block {
         alike: u8,
         middle: f64,
         common: &[Option<f64>],
+        packed: &[f64],
         arch: pulp::Arch,
-        ends: &mut Vec<Lanes>,
+        (terms, ends): (&mut Vec<Lanes>, &mut Vec<Lanes>),
     ) -> u8 {
         let (drivers, frictions) = {
             let s = &one.engine.system;
             (s.drivers.len(), s.frictions.len())
         };
         let mut alone = 0;
+        terms.clear();
+        terms.extend_from_slice(&self.v);
         for (at, common) in common.iter().enumerate() {
             let k = one.varying[at];
             let mut u = self.factors[k];
@@ -340,16 +358,15 @@ impl Block {
                 }
             }
             write(&mut self.inputs[k], &u, alike);
+            terms.push(u);
         }
         let fused = &one.fused[k as usize];
         if ends.len() < fused.rows {
             ends.resize(fused.rows, [0.0; LANES]);
         }
         let glide = Glide {
-            fused,
-            v: &self.v,
-            inputs: &self.inputs,
-            varying: &one.varying,
+            packed,
+            terms,
             base: &self.base[..fused.rows],
             least: &self.least[..fused.rows],
             ends: &mut ends[..fused.rows],
@@ -439,10 +456,8 @@ fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
 
 /// The product of a fused step with the states of a block, and which runs break a margin.
 struct Glide<'a> {
-    fused: &'a Fused,
-    v: &'a [Lanes],
-    inputs: &'a [Lanes],
-    varying: &'a [usize],
+    packed: &'a [f64],
+    terms: &'a [Lanes],
     base: &'a [Lanes],
     least: &'a [Lanes],
     ends: &'a mut [Lanes],
@@ -453,31 +468,29 @@ impl pulp::WithSimd for Glide<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> u8 {
-        // A row waits for each of its additions, so that four are under way at once.
-        const ROWS: usize = 4;
-        let Self { fused, v, inputs, varying, base, least, ends } = self;
-        let parts = LANES / S::F64_LANES;
+        let Self { packed, terms, base, least, ends } = self;
         let mut least_margins = [f64::INFINITY; LANES];
         let (worst, _) = S::as_mut_simd_f64s(&mut least_margins);
-        for (first, ((base, least), ends)) in
-            base.chunks_exact(ROWS).zip(least.chunks_exact(ROWS)).zip(ends.chunks_exact_mut(ROWS)).enumerate()
-        {
-            for part in 0..parts {
-                let of = |x: &Lanes| S::as_simd_f64s(x).0[part];
-                let mut sums = [of(&base[0]), of(&base[1]), of(&base[2]), of(&base[3])];
-                let mut add = |column: &[f64], x: &Lanes| {
+        for (part, worst) in worst.iter_mut().enumerate() {
+            let of = |x: &Lanes| S::as_simd_f64s(x).0[part];
+            let mut margin = *worst;
+            let rows = base.chunks_exact(BLOCK).zip(least.chunks_exact(BLOCK)).zip(ends.chunks_exact_mut(BLOCK));
+            for (((base, least), ends), weights) in rows.zip(packed.chunks_exact(BLOCK * terms.len())) {
+                // A row waits for each of its additions, so that several are under way at once.
+                let [mut a, mut b, mut c, mut d] = [of(&base[0]), of(&base[1]), of(&base[2]), of(&base[3])];
+                for (w, x) in weights.chunks_exact(BLOCK).zip(terms) {
                     let x = of(x);
-                    for (sum, weight) in sums.iter_mut().zip(&column[ROWS * first..ROWS * first + ROWS]) {
-                        *sum = simd.add_f64s(*sum, simd.mul_f64s(simd.splat_f64s(*weight), x));
-                    }
-                };
-                v.iter().enumerate().for_each(|(k, x)| add(fused.column(k), x));
-                varying.iter().for_each(|&k| add(fused.column(v.len() + k), &inputs[k]));
-                for row in 0..ROWS {
-                    worst[part] = simd.min_f64s(worst[part], simd.sub_f64s(sums[row], of(&least[row])));
-                    S::as_mut_simd_f64s(&mut ends[row]).0[part] = sums[row];
+                    a = simd.add_f64s(a, simd.mul_f64s(simd.splat_f64s(w[0]), x));
+                    b = simd.add_f64s(b, simd.mul_f64s(simd.splat_f64s(w[1]), x));
+                    c = simd.add_f64s(c, simd.mul_f64s(simd.splat_f64s(w[2]), x));
+                    d = simd.add_f64s(d, simd.mul_f64s(simd.splat_f64s(w[3]), x));
+                }
+                for (k, sum) in [a, b, c, d].into_iter().enumerate() {
+                    margin = simd.min_f64s(margin, simd.sub_f64s(sum, of(&least[k])));
+                    S::as_mut_simd_f64s(&mut ends[k]).0[part] = sum;
                 }
             }
+            *worst = margin;
         }
         least_margins.iter().enumerate().map(|(lane, margin)| u8::from(*margin < 0.0) << lane).sum()
     }

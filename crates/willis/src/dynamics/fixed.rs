@@ -7,13 +7,11 @@
 //! speeds. Sources: Moreau's time stepping, as in Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical
 //! Systems*, 2008, ch. 10.
 
-use std::collections::HashMap;
-
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{MemberId, Signal, SourceKind, Train};
 
 use super::engine::Engine;
-use super::fused::{Exactly, Fused, NOISE, add_column};
+use super::fused::{ByKey, Exactly, Fused, NOISE, add_column};
 use super::mode::{Mode, Pattern, Side, compose, dot, dot_size};
 use super::run::initial_state;
 use super::system::{System, signals_of, slope_force};
@@ -129,7 +127,7 @@ pub struct FixedStep {
     /// The state at the start of the step, where shafts need it.
     state: Vec<f64>,
     maps: Vec<StepMap>,
-    by_key: HashMap<Key, u32>,
+    by_key: ByKey<Key>,
     /// The map of the last step and its key.
     last: Option<(Key, u32)>,
     /// Values of signals that are level until `until`.
@@ -146,7 +144,7 @@ pub struct FixedStep {
     pub(super) factors: Vec<f64>,
     /// Steps of modes met before, and the present one with its part of level inputs and its round-off.
     pub(super) fused: Vec<Fused>,
-    by_exact_key: HashMap<Exactly, u32>,
+    by_exact_key: ByKey<Exactly>,
     pub(super) present: Option<u32>,
     pub(super) base: Vec<f64>,
     pub(super) least: Vec<f64>,
@@ -271,7 +269,7 @@ impl FixedStep {
             state: vec![],
             groups,
             maps: Vec::with_capacity(64),
-            by_key: HashMap::with_capacity(64),
+            by_key: ByKey::with_capacity_and_hasher(64, Default::default()),
             last: None,
             level: vec![None; signals],
             until: f64::NEG_INFINITY,
@@ -282,7 +280,7 @@ impl FixedStep {
             varying: Vec::with_capacity(inputs),
             factors: vec![1.0; inputs],
             fused: Vec::with_capacity(64),
-            by_exact_key: HashMap::with_capacity(64),
+            by_exact_key: ByKey::with_capacity_and_hasher(64, Default::default()),
             present: None,
             base: vec![],
             least: vec![],
