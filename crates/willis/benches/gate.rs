@@ -4,12 +4,15 @@
 //! Counts are those of the AVX2 (or narrower) code, since valgrind emulates no AVX-512.
 //! `WILLIS_WRITE=1 cargo bench -p willis --bench gate` records new counts; say why in the commit.
 
+mod trains;
+
 use std::hint::black_box;
 use std::path::Path;
 use std::process::Command;
 
 use willis::analysis::{Selection, analyze};
 use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
+use willis::dynamics::{Batch, FixedStep};
 use willis::train::{SetSpec, Train};
 
 /// More than this above the recorded count fails.
@@ -29,10 +32,18 @@ const TASKS: &[Task] = &[
     ("automatic-load-gear-5", POINTS, |n| automatic("5", true, n)),
     ("automatic-load-one-point", POINTS, |n| one_point(true, n)),
     ("eight-speed-text-to-answer", 1, cold),
+    ("set-fixed-step", 20_000, |n| steps(&trains::set(), "pulses", 20_000, n)),
+    ("automatic-fixed-step", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, n)),
+    ("set-batch", RUNS * BATCH_STEPS, |n| batch(&trains::set(), "pulses", n)),
+    ("automatic-batch", RUNS * BATCH_STEPS, |n| batch(&trains::automatic(), "through the gears", n)),
 ];
 
 /// Points of one repetition.
 const POINTS: usize = 4096;
+
+/// Runs of a batch, and their steps in one repetition: whole periods of the set, a gear of the automatic.
+const RUNS: usize = 64;
+const BATCH_STEPS: usize = 2000;
 
 fn inputs(ranges: [(f64, f64); 3]) -> [Vec<f64>; 3] {
     let mut s = 88172645463325252u64;
@@ -117,6 +128,25 @@ fn cold(n: usize) {
     }
 }
 
+/// Whole runs in steps of 1 ms, modes known.
+fn steps(train: &Train, scenario: &str, steps: u64, n: usize) {
+    let mut run = FixedStep::new(train, scenario, 1e-3).unwrap();
+    run.without_angles();
+    run.rehearse();
+    for _ in 0..n {
+        run.reset();
+        run.run(black_box(steps));
+    }
+}
+
+fn batch(train: &Train, scenario: &str, n: usize) {
+    let mut runs = Batch::new(train, scenario, 1e-3, RUNS).unwrap();
+    for k in 0..RUNS {
+        runs.scale(k, "engine", 1.0 + 0.0025 * k as f64).unwrap();
+    }
+    runs.run(black_box((n * BATCH_STEPS) as u64));
+}
+
 /// Instructions of this program running a task so many times.
 fn count(task: &str, times: usize) -> Option<f64> {
     let own = std::env::current_exe().ok()?;
@@ -146,7 +176,7 @@ fn main() {
     let recorded: toml::Table = std::fs::read_to_string(&file).unwrap_or_default().parse().unwrap();
     let write = std::env::var_os("WILLIS_WRITE").is_some();
     let mut text = String::from(
-        "# Instructions per point (per train for text-to-answer), callgrind, no AVX-512.\n\
+        "# Instructions per point (per train for text-to-answer, per step of motion), callgrind, no AVX-512.\n\
          # Written by `WILLIS_WRITE=1 cargo bench -p willis --bench gate`.\n",
     );
     let mut failed = false;

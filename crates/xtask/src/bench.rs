@@ -1,6 +1,7 @@
-//! `cargo xtask bench`: the compiled train beside numpy and numba, in one run, as ratios.
+//! `cargo xtask bench`: the compiled train beside numpy and numba, and motion beside scipy, in one run, as ratios.
 //!
-//! A ratio is printed only between programs whose checksums agree.
+//! A ratio is printed only between programs whose checksums agree; the smoothed friction of the scripts in scipy ends
+//! elsewhere, so that each side checks its own end.
 
 use std::fs;
 use std::path::Path;
@@ -41,6 +42,25 @@ const COLD: &[(&str, f64)] = &[
     ("eight-speed-compile-one-gear", 1e-3),
 ];
 
+/// Motion beside a peer, or beside itself step by step: task, peer or task, ratio asked for.
+const MOTION_RATIOS: &[(&str, &str, Option<f64>)] = &[
+    ("set-adaptive", "scipy-lsoda", Some(30.0)),
+    ("set-adaptive", "scipy-lsoda-numba", None),
+    ("set-batch", "set-fixed-1e-3", Some(5.0)),
+    ("automatic-batch", "automatic-fixed-1e-3", Some(5.0)),
+];
+
+/// Steps of motion in a second: task, fewest.
+const STEPS: &[(&str, f64)] = &[
+    ("set-fixed-1e-3", 1.3e7),
+    ("set-fixed-1e-4", 1.3e7),
+    ("automatic-fixed-1e-3", 7e6),
+    ("automatic-fixed-1e-4", 7e6),
+];
+
+/// The longest step of the automatic, modes known, at most, ns.
+const LONGEST_STEP: f64 = 1000.0;
+
 /// Runs everything and prints the table. `Err` when a program failed or checksums differ.
 pub fn run(root: &Path) -> Result<(), String> {
     let folder = root.join("target/willis-bench");
@@ -49,19 +69,24 @@ pub fn run(root: &Path) -> Result<(), String> {
     let _ = fs::remove_file(&checksums);
     let venv = folder.join("venv");
     let python = venv.join("bin/python");
-    if !python.exists() {
+    let requirements = root.join("benches/baselines/requirements.txt");
+    let installed = venv.join("requirements.txt");
+    let wanted = fs::read(&requirements).map_err(|e| e.to_string())?;
+    if fs::read(&installed).ok().as_ref() != Some(&wanted) {
         command(Command::new("python3").args(["-m", "venv"]).arg(&venv))?;
-        let requirements = root.join("benches/baselines/requirements.txt");
-        command(Command::new(&python).args(["-m", "pip", "install", "--quiet", "-r"]).arg(requirements))?;
+        command(Command::new(&python).args(["-m", "pip", "install", "--quiet", "-r"]).arg(&requirements))?;
+        fs::write(&installed, wanted).map_err(|e| e.to_string())?;
     }
     println!("Willis …");
-    let criterion = ["bench", "-p", "willis", "--bench", "compiled", "--", "--noplot"];
+    let criterion = ["bench", "-p", "willis", "--bench", "compiled", "--bench", "motion", "--", "--noplot"];
     command(Command::new("cargo").current_dir(root).args(criterion))?;
     let mut peers = Vec::new();
-    for (script, points) in [("map.py", "10000000"), ("automatic.py", "100000")] {
+    let scripts: [(&str, &[&str]); 3] =
+        [("map.py", &["--points", "10000000"]), ("automatic.py", &["--points", "100000"]), ("motion.py", &[])];
+    for (script, arguments) in scripts {
         println!("{script} …");
         let mut c = Command::new(&python);
-        c.current_dir(root.join("benches/baselines")).args([script, "--json", "--points", points]);
+        c.current_dir(root.join("benches/baselines")).args([script, "--json"]).args(arguments);
         c.env("OMP_NUM_THREADS", "1").env("OPENBLAS_NUM_THREADS", "1").env("PYTHONDONTWRITEBYTECODE", "1");
         let out = c.output().map_err(|e| e.to_string())?;
         if !out.status.success() {
@@ -92,11 +117,7 @@ pub fn run(root: &Path) -> Result<(), String> {
         let speed = points / best(root, task)?;
         let peer_speed = theirs["points_per_s"].as_f64().unwrap_or(f64::NAN);
         let ratio = speed / peer_speed;
-        let goal = match goal {
-            None => String::new(),
-            Some(g) if ratio >= *g => format!("{g} ok"),
-            Some(g) => format!("{g} MISS"),
-        };
+        let goal = verdict(ratio, *goal);
         println!("{task:24} {peer:20} {:12.2} {:12.2} {ratio:8.2} {goal:>8}", peer_speed / 1e6, speed / 1e6);
     }
     for task in ["automatic-one-point", "automatic-load-one-point"] {
@@ -107,12 +128,47 @@ pub fn run(root: &Path) -> Result<(), String> {
         let verdict = if seconds <= *most { "ok" } else { "MISS" };
         println!("{task:34} {:9.3} ms, at most {} ms: {verdict}", 1e3 * seconds, 1e3 * most);
     }
+    motion(root, &own, &peers)?;
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
+}
+
+/// Motion: seconds of the scenario, or steps, in a second.
+fn motion(root: &Path, own: &[Value], peers: &[Value]) -> Result<(), String> {
+    let ours = |task: &str| own.iter().find(|v| v["task"] == task).ok_or_else(|| format!("{task}: no result"));
+    let rate = |task: &str| Ok::<f64, String>(ours(task)?["points"].as_f64().unwrap_or(f64::NAN) / best(root, task)?);
+    println!("\n{:24} {:20} {:>12} {:>12} {:>8} {:>8}", "task", "peer", "peer 1/s", "Willis 1/s", "ratio", "goal");
+    for (task, peer, goal) in MOTION_RATIOS {
+        let theirs = match peers.iter().find(|v| v["task"] == *task && v["peer"] == *peer) {
+            Some(v) => v["points_per_s"].as_f64().unwrap_or(f64::NAN),
+            None => rate(peer)?,
+        };
+        let speed = rate(task)?;
+        let (ratio, goal) = (speed / theirs, verdict(speed / theirs, *goal));
+        println!("{task:24} {peer:20} {theirs:12.3e} {speed:12.3e} {ratio:8.2} {goal:>8}");
+    }
+    for (task, fewest) in STEPS {
+        let speed = rate(task)?;
+        println!("{task:24} {:20} {:>12} {speed:12.3e} {:>8} {:>8}", "", "", "", verdict(speed, Some(*fewest)));
+    }
+    let ns =
+        |key: &str| Ok::<f64, String>(ours("automatic-longest-step")?["checksum"][key].as_f64().unwrap_or(f64::NAN));
+    let (longest, median, first) = (ns("longest_ns")?, ns("median_ns")?, ns("first_ns")?);
+    let verdict = if longest <= LONGEST_STEP { "ok" } else { "MISS" };
+    println!("automatic-longest-step {longest:.0} ns, at most {LONGEST_STEP} ns: {verdict}");
+    println!("median {median:.0} ns; the longest that meets a mode for the first time {:.1} us", 1e-3 * first);
+    Ok(())
+}
+
+/// Whether as much as asked for was reached.
+fn verdict(value: f64, goal: Option<f64>) -> String {
+    let Some(goal) = goal else { return String::new() };
+    let number = if goal < 1e4 { goal.to_string() } else { format!("{goal:.1e}") };
+    format!("{number} {}", if value >= goal { "ok" } else { "MISS" })
 }
 
 /// Seconds of the best sample of a criterion task.
 fn best(root: &Path, task: &str) -> Result<f64, String> {
-    for group in ["map", "automatic", "cold"] {
+    for group in ["map", "automatic", "cold", "motion"] {
         let file = root.join(format!("target/criterion/{group}/{task}/new/sample.json"));
         let Ok(text) = fs::read_to_string(file) else { continue };
         let v: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;

@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostics;
 use crate::train::{SourceKind, Train};
 
 use super::fixed::{FixedStep, UNBOUNDED};
-use super::fused::Fused;
+use super::fused::BLOCK;
 use super::mode::{Side, dot};
 
 /// Runs in a block.
@@ -20,8 +20,6 @@ struct Block {
     /// Speeds of the coordinates, and angles with integrals.
     v: Vec<Lanes>,
     rest: Vec<Lanes>,
-    /// The speeds before the step.
-    before: Vec<Lanes>,
     /// What enters a step, and by what that is multiplied.
     inputs: Vec<Lanes>,
     factors: Vec<Lanes>,
@@ -32,6 +30,8 @@ struct Block {
     sign: Vec<i8>,
     side: Vec<Side>,
     present: [Option<u32>; LANES],
+    /// Whether that is the same in all of them.
+    uniform: bool,
 }
 
 /// Several runs of a scenario in steps of fixed length, which differ in initial speeds and in the size of torques.
@@ -76,6 +76,10 @@ pub struct Batch {
     ends: Vec<Lanes>,
     /// Inputs that are not level, and their values where all runs have the same.
     common: Vec<Option<f64>>,
+    /// Steps of modes as blocks take them, in the order of the modes met; empty until one does.
+    packed: Vec<Vec<f64>>,
+    /// Room for what changes from step to step: speeds, and inputs that are not level.
+    terms: Vec<Lanes>,
     unsettled: u64,
     impacts: u64,
 }
@@ -92,7 +96,6 @@ impl Batch {
         let block = || Block {
             v: spread(&one.v),
             rest: spread(&one.rest),
-            before: spread(&one.v),
             inputs: spread(&one.inputs),
             factors: vec![[1.0; LANES]; one.inputs.len()],
             base: vec![],
@@ -100,6 +103,7 @@ impl Batch {
             sign: one.sign.repeat(LANES),
             side: one.side.repeat(LANES),
             present: [None; LANES],
+            uniform: true,
         };
         Ok(Self {
             blocks: (0..runs.div_ceil(LANES)).map(|_| block()).collect(),
@@ -107,6 +111,8 @@ impl Batch {
             arch: pulp::Arch::new(),
             ends: vec![],
             common: vec![],
+            packed: vec![],
+            terms: vec![],
             unsettled: 0,
             impacts: 0,
             one,
@@ -200,8 +206,10 @@ impl Batch {
         let middle = self.one.middle();
         if self.one.is_over(middle) {
             self.one.refresh(middle);
+            self.packed.iter_mut().for_each(Vec::clear);
             for block in &mut self.blocks {
                 block.present = [None; LANES];
+                block.uniform = true;
             }
         }
         let one = &mut self.one;
@@ -210,25 +218,33 @@ impl Batch {
             self.common.push((!one.depends_on_speed(k)).then(|| one.input(k, middle)));
         }
         let count = one.count;
-        // The torque of a shaft follows from its twist, which only a single run knows.
-        let twists = !one.engine.system.elastic.is_empty();
         for (b, block) in self.blocks.iter_mut().enumerate() {
             let lanes = (self.len - b * LANES).min(LANES);
-            block.before.copy_from_slice(&block.v);
             // Those in the same mode go together; those that leave it, alone.
-            let mut left = (1u32 << lanes) - 1;
+            let mut left = ((1u32 << lanes) - 1) as u8;
             let mut alone = 0;
             while left != 0 {
                 let present = block.present[left.trailing_zeros() as usize];
-                let alike =
-                    (0..lanes).filter(|lane| block.present[*lane] == present).map(|lane| 1 << lane).sum::<u32>();
+                let alike = if block.uniform { left } else { left & block.alike(present) };
+                // The torque of a shaft follows from its twist, which only a single run knows.
                 alone |= match present {
-                    Some(k) if !twists => {
-                        block.glide(one, k, alike & left, middle, &self.common, self.arch, &mut self.ends)
+                    Some(k) if one.engine.system.elastic.is_empty() => {
+                        let at = k as usize;
+                        if self.packed.len() <= at {
+                            self.packed.resize(at + 1, vec![]);
+                        }
+                        if self.packed[at].is_empty() {
+                            one.fused[at].pack(one.v.len(), &one.varying, &mut self.packed[at]);
+                        }
+                        let room = (&mut self.terms, &mut self.ends);
+                        block.glide(one, k, alike, middle, &self.common, &self.packed[at], self.arch, room)
                     }
-                    _ => alike & left,
+                    _ => alike,
                 };
                 left &= !alike;
+            }
+            if alone == 0 {
+                continue;
             }
             for lane in (0..lanes).filter(|lane| alone >> lane & 1 == 1) {
                 block.step_alone(one, lane);
@@ -236,6 +252,7 @@ impl Batch {
                 self.impacts += std::mem::take(&mut one.impacts);
                 one.count = count;
             }
+            block.uniform = block.present[..lanes].iter().all(|p| *p == block.present[0]);
         }
         one.count = count + 1;
     }
@@ -244,42 +261,92 @@ impl Batch {
 impl Block {
     fn forget(&mut self, lane: usize) {
         self.present[lane] = None;
+        self.uniform = false;
+    }
+
+    /// Runs in a mode, as bits.
+    fn alike(&self, mode: Option<u32>) -> u8 {
+        self.present.iter().enumerate().map(|(lane, p)| u8::from(*p == mode) << lane).sum()
+    }
+
+    /// The speed or slip that an input may follow, in each run.
+    #[inline]
+    fn followed(&self, row: &[f64]) -> Lanes {
+        // In the order of `dot`.
+        let (fours, rest) = (row.chunks_exact(4), row.chunks_exact(4).remainder());
+        let sum = |k: usize, row: &[f64]| {
+            let mut sum = [0.0; LANES];
+            for (x, v) in row.iter().step_by(4).zip(self.v[k..].iter().step_by(4)) {
+                (0..LANES).for_each(|lane| sum[lane] += x * v[lane]);
+            }
+            sum
+        };
+        let mut last = [0.0; LANES];
+        for (x, v) in rest.iter().zip(&self.v[row.len() - rest.len()..]) {
+            (0..LANES).for_each(|lane| last[lane] += x * v[lane]);
+        }
+        let whole = 4 * fours.len();
+        if whole == 0 {
+            return last;
+        }
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| sum(k, &row[k..whole]));
+        std::array::from_fn(|lane| (a[lane] + c[lane]) + (b[lane] + d[lane]) + last[lane])
+    }
+
+    /// An input that differs between runs, but for its factor.
+    #[inline]
+    fn inputs_at(&self, one: &mut FixedStep, k: usize, middle: f64) -> Lanes {
+        let w = self.followed(one.row_of_input(k));
+        match one.engine.system.scenario.sources.get(k).map(|source| &source.kind) {
+            Some(SourceKind::Linear { torque, about, slope }) => w.map(|w| torque - slope * (w - about)),
+            Some(SourceKind::Quadratic { torque, about, factor, even: true }) => {
+                w.map(|w| torque - factor * ((w - about) * (w - about)))
+            }
+            Some(SourceKind::Quadratic { torque, about, factor, even: false }) => {
+                w.map(|w| torque - factor * ((w - about) * (w - about).abs()))
+            }
+            _ => {
+                let integral = one.integral_of(k).map(|i| self.rest[i]).unwrap_or_default();
+                let needs_all = one.needs_all_speeds(k);
+                std::array::from_fn(|lane| {
+                    if needs_all {
+                        copy_lane(&self.v, lane, &mut one.v);
+                    }
+                    one.input_at(k, middle, w[lane], integral[lane])
+                })
+            }
+        }
     }
 
     /// Steps the runs of `alike` in the mode they share; bits of those that do not go on in it, and have not moved.
     #[allow(clippy::too_many_arguments)]
+    #[inline]
     fn glide(
         &mut self,
         one: &mut FixedStep,
         k: u32,
-        alike: u32,
+        alike: u8,
         middle: f64,
         common: &[Option<f64>],
+        packed: &[f64],
         arch: pulp::Arch,
-        ends: &mut Vec<Lanes>,
-    ) -> u32 {
+        (terms, ends): (&mut Vec<Lanes>, &mut Vec<Lanes>),
+    ) -> u8 {
         let (drivers, frictions) = {
             let s = &one.engine.system;
             (s.drivers.len(), s.frictions.len())
         };
         let mut alone = 0;
-        let varying = std::mem::take(&mut one.varying);
-        for (&k, common) in varying.iter().zip(common) {
+        terms.clear();
+        terms.extend_from_slice(&self.v);
+        for (at, common) in common.iter().enumerate() {
+            let k = one.varying[at];
             let mut u = self.factors[k];
             match common {
                 Some(value) => u.iter_mut().for_each(|u| *u *= value),
                 None => {
-                    let mut w = [0.0; LANES];
-                    for (x, v) in one.row_of_input(k).iter().zip(&self.before) {
-                        (0..LANES).for_each(|lane| w[lane] += x * v[lane]);
-                    }
-                    for (lane, u) in u.iter_mut().enumerate() {
-                        if one.needs_all_speeds(k) {
-                            copy_lane(&self.before, lane, &mut one.v);
-                        }
-                        let sum = one.integral_of(k).map_or(0.0, |i| self.rest[i][lane]);
-                        *u *= one.input_at(k, middle, w[lane], sum);
-                    }
+                    let own = self.inputs_at(one, k, middle);
+                    u.iter_mut().zip(own).for_each(|(u, own)| *u *= own);
                 }
             }
             // What opens, closes or locks is more than a change of torque.
@@ -290,47 +357,41 @@ impl Block {
                     }
                 }
             }
-            for lane in (0..LANES).filter(|lane| alike >> lane & 1 == 1) {
-                self.inputs[k][lane] = u[lane];
-            }
+            write(&mut self.inputs[k], &u, alike);
+            terms.push(u);
         }
-        one.varying = varying;
         let fused = &one.fused[k as usize];
-        ends.resize(fused.rows, [0.0; LANES]);
+        if ends.len() < fused.rows {
+            ends.resize(fused.rows, [0.0; LANES]);
+        }
         let glide = Glide {
-            fused,
-            v: &self.before,
-            inputs: &self.inputs,
-            varying: &one.varying,
-            base: &self.base,
-            least: &self.least,
-            ends,
+            packed,
+            terms,
+            base: &self.base[..fused.rows],
+            least: &self.least[..fused.rows],
+            ends: &mut ends[..fused.rows],
         };
         alone |= arch.dispatch(glide);
         alone &= alike;
         let going = alike & !alone;
         let free = fused.free;
-        let moved = |v: &mut Lanes, end: &Lanes| {
-            for lane in 0..LANES {
-                v[lane] = if going >> lane & 1 == 1 { end[lane] } else { v[lane] };
-            }
-        };
-        self.v.iter_mut().zip(ends.iter()).take(free).for_each(|(v, end)| moved(v, end));
-        for (driver, u) in one.engine.system.drivers.iter().zip(&self.inputs) {
-            if let Some(i) = driver.prescribed {
-                moved(&mut self.v[free + i], u);
+        self.v[..free].iter_mut().zip(ends.iter()).for_each(|(v, end)| write(v, end, going));
+        let s = &one.engine.system;
+        if s.prescribed > 0 {
+            for (driver, u) in s.drivers.iter().zip(&self.inputs) {
+                if let Some(i) = driver.prescribed {
+                    write(&mut self.v[free + i], u, going);
+                }
             }
         }
-        if one.engine.system.integrals > 0 {
-            let s = &one.engine.system;
+        if s.integrals > 0 {
             for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
                 if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
                     let set = setpoint.value(middle, middle, &|_| 0.0);
-                    let row = &s.speeds[driver.member.index()];
-                    for lane in (0..LANES).filter(|lane| going >> lane & 1 == 1) {
-                        let w: f64 = row.iter().zip(&self.v).map(|(r, v)| r * v[lane]).sum();
-                        self.rest[s.all() + i][lane] += one.h * (set - w);
-                    }
+                    let w = self.followed(&s.speeds[driver.member.index()]);
+                    let mut sum = self.rest[s.all() + i];
+                    sum.iter_mut().zip(w).for_each(|(sum, w)| *sum += one.h * (set - w));
+                    write(&mut self.rest[s.all() + i], &sum, going);
                 }
             }
         }
@@ -347,6 +408,16 @@ impl Block {
         one.sign.copy_from_slice(&self.sign[lane * groups..(lane + 1) * groups]);
         one.side.copy_from_slice(&self.side[lane * elements..(lane + 1) * elements]);
         one.present = None;
+        // Where runs never go together, each goes on in its own mode.
+        if let (Some(k), false) = (self.present[lane], one.engine.system.elastic.is_empty()) {
+            let rows = one.fused[k as usize].rows;
+            for (from, to) in [(&self.base, &mut one.base), (&self.least, &mut one.least), (&self.least, &mut one.ends)]
+            {
+                to.resize(rows, 0.0);
+                copy_lane(from, lane, to);
+            }
+            one.present = Some(k);
+        }
         one.step();
         paste_lane(&one.v, lane, &mut self.v);
         paste_lane(&one.rest, lane, &mut self.rest);
@@ -374,40 +445,54 @@ fn paste_lane(from: &[f64], lane: usize, to: &mut [Lanes]) {
     to.iter_mut().zip(from).for_each(|(to, from)| to[lane] = *from);
 }
 
+/// Writes the runs of a mask.
+#[inline]
+fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
+    if mask == u8::MAX {
+        *to = *from;
+    } else {
+        (0..LANES).filter(|lane| mask >> lane & 1 == 1).for_each(|lane| to[lane] = from[lane]);
+    }
+}
+
 /// The product of a fused step with the states of a block, and which runs break a margin.
 struct Glide<'a> {
-    fused: &'a Fused,
-    v: &'a [Lanes],
-    inputs: &'a [Lanes],
-    varying: &'a [usize],
+    packed: &'a [f64],
+    terms: &'a [Lanes],
     base: &'a [Lanes],
     least: &'a [Lanes],
     ends: &'a mut [Lanes],
 }
 
 impl pulp::WithSimd for Glide<'_> {
-    type Output = u32;
+    type Output = u8;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, simd: S) -> u32 {
-        let Self { fused, v, inputs, varying, base, least, ends } = self;
-        let rows = fused.rows;
-        let mut worst = [f64::INFINITY; LANES];
-        let (worst_parts, _) = S::as_mut_simd_f64s(&mut worst);
-        for (part, worst) in worst_parts.iter_mut().enumerate() {
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> u8 {
+        let Self { packed, terms, base, least, ends } = self;
+        let mut least_margins = [f64::INFINITY; LANES];
+        let (worst, _) = S::as_mut_simd_f64s(&mut least_margins);
+        for (part, worst) in worst.iter_mut().enumerate() {
             let of = |x: &Lanes| S::as_simd_f64s(x).0[part];
-            for row in 0..rows {
-                let mut sum = of(&base[row]);
-                let mut add = |k: usize, x: &Lanes| {
-                    let weight = simd.splat_f64s(fused.column(k)[row]);
-                    sum = simd.add_f64s(sum, simd.mul_f64s(weight, of(x)));
-                };
-                v.iter().enumerate().for_each(|(k, x)| add(k, x));
-                varying.iter().for_each(|&k| add(v.len() + k, &inputs[k]));
-                *worst = simd.min_f64s(*worst, simd.sub_f64s(sum, of(&least[row])));
-                S::as_mut_simd_f64s(&mut ends[row]).0[part] = sum;
+            let mut margin = *worst;
+            let rows = base.chunks_exact(BLOCK).zip(least.chunks_exact(BLOCK)).zip(ends.chunks_exact_mut(BLOCK));
+            for (((base, least), ends), weights) in rows.zip(packed.chunks_exact(BLOCK * terms.len())) {
+                // A row waits for each of its additions, so that several are under way at once.
+                let [mut a, mut b, mut c, mut d] = [of(&base[0]), of(&base[1]), of(&base[2]), of(&base[3])];
+                for (w, x) in weights.chunks_exact(BLOCK).zip(terms) {
+                    let x = of(x);
+                    a = simd.add_f64s(a, simd.mul_f64s(simd.splat_f64s(w[0]), x));
+                    b = simd.add_f64s(b, simd.mul_f64s(simd.splat_f64s(w[1]), x));
+                    c = simd.add_f64s(c, simd.mul_f64s(simd.splat_f64s(w[2]), x));
+                    d = simd.add_f64s(d, simd.mul_f64s(simd.splat_f64s(w[3]), x));
+                }
+                for (k, sum) in [a, b, c, d].into_iter().enumerate() {
+                    margin = simd.min_f64s(margin, simd.sub_f64s(sum, of(&least[k])));
+                    S::as_mut_simd_f64s(&mut ends[k]).0[part] = sum;
+                }
             }
+            *worst = margin;
         }
-        worst.iter().enumerate().map(|(lane, w)| u32::from(*w < 0.0) << lane).sum()
+        least_margins.iter().enumerate().map(|(lane, margin)| u8::from(*margin < 0.0) << lane).sum()
     }
 }

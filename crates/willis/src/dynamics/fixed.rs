@@ -7,13 +7,11 @@
 //! speeds. Sources: Moreau's time stepping, as in Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical
 //! Systems*, 2008, ch. 10.
 
-use std::collections::HashMap;
-
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{MemberId, Signal, SourceKind, Train};
 
 use super::engine::{Engine, Touch};
-use super::fused::{Exactly, Fused, NOISE, add_column};
+use super::fused::{ByKey, Exactly, Fused, NOISE, add_column};
 use super::mode::{Mode, Pattern, Side, compose, dot, dot_size};
 use super::run::initial_state;
 use super::system::{System, signals_of, slope_force};
@@ -129,7 +127,7 @@ pub struct FixedStep {
     /// The state at the start of the step, where shafts need it.
     state: Vec<f64>,
     maps: Vec<StepMap>,
-    by_key: HashMap<Key, u32>,
+    by_key: ByKey<Key>,
     /// The map of the last step and its key.
     last: Option<(Key, u32)>,
     /// Values of signals that are level until `until`.
@@ -146,7 +144,7 @@ pub struct FixedStep {
     pub(super) factors: Vec<f64>,
     /// Steps of modes met before, and the present one with its part of level inputs and its round-off.
     pub(super) fused: Vec<Fused>,
-    by_exact_key: HashMap<Exactly, u32>,
+    by_exact_key: ByKey<Exactly>,
     pub(super) present: Option<u32>,
     pub(super) base: Vec<f64>,
     pub(super) least: Vec<f64>,
@@ -236,7 +234,7 @@ impl FixedStep {
         let signal_of = (s.scenario.sources.iter())
             .scan(0, |at, source| {
                 let first = *at;
-                *at += signals_of(&source.kind).len();
+                *at += signals_of(&source.kind).count();
                 Some(first)
             })
             .collect();
@@ -272,7 +270,7 @@ impl FixedStep {
             state: vec![],
             groups,
             maps: Vec::with_capacity(64),
-            by_key: HashMap::with_capacity(64),
+            by_key: ByKey::with_capacity_and_hasher(64, Default::default()),
             last: None,
             level: vec![None; signals],
             until: f64::NEG_INFINITY,
@@ -283,7 +281,7 @@ impl FixedStep {
             varying: Vec::with_capacity(inputs),
             factors: vec![1.0; inputs],
             fused: Vec::with_capacity(64),
-            by_exact_key: HashMap::with_capacity(64),
+            by_exact_key: ByKey::with_capacity_and_hasher(64, Default::default()),
             present: None,
             base: vec![],
             least: vec![],
@@ -480,7 +478,7 @@ impl FixedStep {
         let s = &self.engine.system;
         let engagement = |f: usize| s.frictions.get(f).and_then(|f| f.engagement);
         match k.checked_sub(s.drivers.len()) {
-            None => signals_of(&s.scenario.sources[k].kind).iter().any(|s| s.depends_on_speed()),
+            None => signals_of(&s.scenario.sources[k].kind).any(|s| s.depends_on_speed()),
             Some(f) => match engagement(f) {
                 Some(e) => s.scenario.engagements[e].signal.depends_on_speed(),
                 None => f >= s.frictions.len(),
@@ -990,13 +988,13 @@ impl FixedStep {
             for i in 0..all {
                 self.rest[i] += self.h * self.next[i];
             }
-            for (k, driver) in self.engine.system.drivers.iter().enumerate() {
-                if let (Some(i), SourceKind::Controller { setpoint, .. }) =
-                    (driver.integral, &self.engine.system.scenario.sources[k].kind)
-                {
+        }
+        if self.engine.system.integrals > 0 {
+            let s = &self.engine.system;
+            for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
+                if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
                     let set = setpoint.value(middle, middle, &|_| 0.0);
-                    self.rest[all + i] +=
-                        self.h * (set - dot(&self.engine.system.speeds[driver.member.index()], &self.next));
+                    self.rest[s.all() + i] += self.h * (set - dot(&s.speeds[driver.member.index()], &self.next));
                 }
             }
         }

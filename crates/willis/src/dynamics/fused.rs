@@ -9,7 +9,7 @@ use super::mode::Side;
 use super::system::{Loss, System};
 
 /// Rows come in blocks of as many, so that the product runs without a remainder.
-const BLOCK: usize = 4;
+pub(super) const BLOCK: usize = 4;
 
 /// Round-off of a margin, relative to the sum of amounts.
 pub(super) const NOISE: f64 = 1e-11;
@@ -32,6 +32,25 @@ pub(super) struct Exactly {
     pub idle: u64,
     pub coast: u64,
 }
+
+/// Mixes the words of a key: the few modes of a train need no defence against chosen keys.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Mix(u64);
+
+impl std::hash::Hasher for Mix {
+    fn finish(&self) -> u64 {
+        self.0 ^ self.0 >> 32
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|b| self.write_u64(u64::from(*b)));
+    }
+    fn write_u64(&mut self, word: u64) {
+        self.0 = (self.0.rotate_left(25) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+}
+
+/// By key of a mode.
+pub(super) type ByKey<K> = std::collections::HashMap<K, u32, std::hash::BuildHasherDefault<Mix>>;
 
 impl Exactly {
     fn has(word: u64, k: usize) -> bool {
@@ -191,6 +210,16 @@ impl Fused {
     #[inline]
     pub fn column(&self, k: usize) -> &[f64] {
         &self.columns[k * self.rows..(k + 1) * self.rows]
+    }
+
+    /// The columns of speeds and of inputs that are not level, each block of rows in one piece.
+    pub fn pack(&self, speeds: usize, varying: &[usize], packed: &mut Vec<f64>) {
+        packed.clear();
+        for row in (0..self.rows).step_by(BLOCK) {
+            for k in (0..speeds).chain(varying.iter().map(|k| speeds + k)) {
+                packed.extend_from_slice(&self.column(k)[row..row + BLOCK]);
+            }
+        }
     }
 
     /// The part of level inputs, and for each row how negative it may be from round-off.

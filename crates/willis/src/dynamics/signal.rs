@@ -113,7 +113,7 @@ impl Signal {
             Self::Pulse { period, width, at, .. } => {
                 let k = ((t - at) / period).floor().max(0.0);
                 let edge = |n: f64| [at + n * period, at + (n + width) * period];
-                first(&[edge(k), edge(k + 1.0)].concat())
+                first([edge(k), edge(k + 1.0)].as_flattened())
             }
             Self::Table { points, .. } => {
                 let k = points.partition_point(|p| p[0] <= t);

@@ -767,14 +767,15 @@ impl System {
     }
 }
 
-pub(super) fn signals_of(kind: &SourceKind) -> Vec<&Signal> {
-    match kind {
-        SourceKind::Torque(s) | SourceKind::Speed(s) => vec![s],
-        SourceKind::Controller { setpoint, feed_forward, .. } => vec![setpoint, feed_forward],
-        SourceKind::Vehicle { grade, .. } => vec![grade],
-        SourceKind::Motor { throttle, .. } => vec![throttle],
-        SourceKind::Linear { .. } | SourceKind::Quadratic { .. } => vec![],
-    }
+pub(super) fn signals_of(kind: &SourceKind) -> impl Iterator<Item = &Signal> {
+    let [first, second] = match kind {
+        SourceKind::Torque(s) | SourceKind::Speed(s) => [Some(s), None],
+        SourceKind::Controller { setpoint, feed_forward, .. } => [Some(setpoint), Some(feed_forward)],
+        SourceKind::Vehicle { grade, .. } => [Some(grade), None],
+        SourceKind::Motor { throttle, .. } => [Some(throttle), None],
+        SourceKind::Linear { .. } | SourceKind::Quadratic { .. } => [None, None],
+    };
+    first.into_iter().chain(second)
 }
 
 /// What a vehicle on a slope weighs against its wheel.

@@ -1,0 +1,97 @@
+//! Trains in motion that benchmarks and tests share.
+
+use willis::train::Train;
+
+/// Scenario `pulses`, 20 s: a planetary set whose ring brake slips twice a period.
+pub const SET: &str = r#"
+format = 1
+name = "planetary set with a slipping ring brake"
+members = ["sun", "ring", "carrier"]
+terminals = ["sun", "carrier"]
+inertias = { sun = "0.05 kg m^2", ring = "0.2 kg m^2", carrier = "0.4 kg m^2" }
+
+[[set]]
+name = "P"
+sun = { member = "sun", teeth = 30 }
+planet = { teeth = 20, count = 4 }
+ring = { member = "ring", teeth = 70 }
+carrier = "carrier"
+mesh_efficiency = { external = 0.985, internal = 0.99 }
+
+[[shift_element]]
+name = "brake"
+kind = "brake"
+members = ["ring"]
+capacity = "400 N m"
+
+[[drag]]
+name = "bearing"
+members = ["carrier"]
+coulomb = "0.5 N m"
+viscous = "3 N m s/rad"
+
+[[scenario]]
+name = "pulses"
+duration = "20 s"
+initial_speeds = { sun = "100 rad/s", carrier = "0 rad/s" }
+
+[[scenario.source]]
+name = "engine"
+member = "sun"
+torque = { type = "sine", offset = "60 N m", amplitude = "200 N m", frequency = "2 Hz" }
+
+[[scenario.engagement]]
+element = "brake"
+value = 1
+"#;
+
+/// What the eight-speed automatic of the examples lacks to move: scenario `through the gears`, 16 s.
+const INERTIAS: &str = r#"
+[inertias]
+s12 = "0.02 kg m^2"
+r1 = "0.02 kg m^2"
+c1r4 = "0.03 kg m^2"
+input = "0.05 kg m^2"
+r2s3 = "0.02 kg m^2"
+r3s4 = "0.02 kg m^2"
+c3 = "0.03 kg m^2"
+output = "20 kg m^2"
+
+[[set]]"#;
+
+const SCENARIO: &str = r#"
+[[scenario]]
+name = "through the gears"
+duration = "16 s"
+gears = [["0 s", "1"], ["2 s", "2"], ["4 s", "3"], ["6 s", "4"], ["8 s", "5"], ["10 s", "6"], ["12 s", "7"], ["14 s", "8"]]
+
+[[scenario.source]]
+name = "engine"
+member = "input"
+torque = "150 N m"
+
+[[scenario.source]]
+name = "road"
+member = "output"
+quadratic = { torque = "-20 N m", factor = "0.02 N m s^2/rad^2" }
+"#;
+
+/// The set.
+pub fn set() -> Train {
+    Train::from_toml(SET).unwrap()
+}
+
+/// The text of the automatic.
+pub fn automatic_text() -> String {
+    let text = include_str!("../../../../examples/zf-8hp70.toml")
+        .replacen("[[set]]", INERTIAS, 1)
+        .replace("external = 0.98,", "external = 0.985,")
+        .replace("kind = \"brake\"", "kind = \"brake\"\ncapacity = \"2000 N m\"")
+        .replace("kind = \"clutch\"", "kind = \"clutch\"\ncapacity = \"2000 N m\"");
+    text + SCENARIO
+}
+
+/// The automatic.
+pub fn automatic() -> Train {
+    Train::from_toml(&automatic_text()).unwrap()
+}
