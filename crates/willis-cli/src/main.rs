@@ -263,6 +263,7 @@ enum Command {
         tolerance: Option<f64>,
         /// Advance in steps of this length, each of bounded cost: '1 ms'.
         #[arg(long, value_name = "TIME", conflicts_with = "tolerance")]
+        #[arg(allow_hyphen_values = true)]
         fixed_step: Option<String>,
         /// Take the sign of each tooth force from the step before, as in Galvagno 2010, to show the
         /// error of that.
@@ -273,7 +274,8 @@ enum Command {
         continue_when_ambiguous: bool,
         /// The most changes of mode within a thousandth of the scenario [default: 1000].
         #[arg(long, value_name = "N", conflicts_with = "fixed_step")]
-        most_events: Option<usize>,
+        #[arg(value_parser = clap::value_parser!(u64).range(1..))]
+        most_events: Option<u64>,
         /// What to print.
         #[arg(long, value_enum, default_value = "text")]
         format: SimulateFormat,
@@ -388,7 +390,7 @@ enum RegimesFormat {
 enum LocateFormat {
     /// For eyes.
     Text,
-    /// The results contract `willis-location-1`.
+    /// The results contract: `willis-location-1`, `willis-validation-1`.
     Json,
 }
 
@@ -678,7 +680,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 ..Options::default()
             };
             options.tolerance = tolerance.unwrap_or(options.tolerance);
-            options.most_events = most_events.unwrap_or(options.most_events);
+            options.most_events = most_events.map_or(options.most_events, |n| n as usize);
             if let Some(text) = fixed_step {
                 let step = values("--fixed-step", std::slice::from_ref(text), Dimension::TIME)?[0].si();
                 if step <= 0.0 {

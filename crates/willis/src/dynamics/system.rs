@@ -662,8 +662,11 @@ impl System {
             add(&mut column, chosen[free + i], -1.0);
             left.set_column(free + i, &column);
         }
-        if scenario.fixed.is_empty() && prescribed == 0 && train.inertias().is_empty() {
-            assumptions.push("no inertia is given".into());
+        for source in scenario.sources.iter().filter(|s| matches!(s.kind, SourceKind::Vehicle { .. })) {
+            assumptions.push(format!(
+                "{}: its rolling resistance (that of a level road) and air drag are part of what it takes, not losses of the train",
+                source.name
+            ));
         }
         Ok(Self {
             train: train.clone(),

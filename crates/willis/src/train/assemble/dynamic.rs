@@ -180,7 +180,7 @@ impl Assembler<'_> {
                 }
                 if body.mass.is_none() && body.inertia.is_none() {
                     if moving && !own {
-                        self.assume(&name, "neither mass nor inertia given, left out of motions");
+                        self.assume(&name, "neither its `mass` nor its `inertia` is given: what it weighs does not resist acceleration");
                     }
                     continue;
                 }
