@@ -79,7 +79,8 @@ pub fn run(root: &Path) -> Result<(), String> {
     }
     println!("Willis …");
     let criterion = ["bench", "-p", "willis", "--bench", "compiled", "--bench", "motion", "--", "--noplot"];
-    command(Command::new("cargo").current_dir(root).args(criterion))?;
+    let samples = root.join("target/criterion");
+    command(Command::new("cargo").current_dir(root).args(criterion).env("CRITERION_HOME", samples))?;
     let mut peers = Vec::new();
     let scripts: [(&str, &[&str]); 3] =
         [("map.py", &["--points", "10000000"]), ("automatic.py", &["--points", "100000"]), ("motion.py", &[])];
