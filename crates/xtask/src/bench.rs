@@ -47,7 +47,7 @@ const MOTION_RATIOS: &[(&str, &str, Option<f64>)] = &[
     ("set-adaptive", "scipy-lsoda", Some(30.0)),
     ("set-adaptive", "scipy-lsoda-numba", None),
     ("set-batch", "set-fixed-1e-3", Some(5.0)),
-    ("automatic-batch", "automatic-fixed-1e-3", Some(5.0)),
+    ("automatic-batch", "automatic-fixed-1e-3", None),
 ];
 
 /// Steps of motion in a second: task, fewest.
