@@ -102,7 +102,7 @@ fn fixed(c: &mut Criterion) {
     group.finish();
 }
 
-/// Runs side by side that differ in a torque; a point is a step of a run. Without preparation, each mode met once.
+/// Runs side by side that differ in a torque; a point is a step of a run. Modes are met on the way.
 fn batch(c: &mut Criterion) {
     let mut group = c.benchmark_group("motion");
     group.sample_size(20);
@@ -174,11 +174,6 @@ fn longest(_: &mut Criterion) {
     ];
     record("automatic-longest-step", 16_000.0, &sums);
     println!("automatic-longest-step: {sums:.0?}");
-    let mut order: Vec<usize> = (0..known.len()).collect();
-    order.sort_by(|a, b| known[*b].total_cmp(&known[*a]));
-    for k in &order[..8] {
-        println!("step {k}: {:.0} ns", ns(known[*k]));
-    }
 }
 
 criterion_group!(benches, adaptive, fixed, batch, longest);

@@ -19,18 +19,24 @@ fn turn() -> MutexGuard<'static, ()> {
     TURN.lock().unwrap_or_else(|e| e.into_inner())
 }
 
-/// Steps that allocate in a whole rehearsed run.
+/// Steps that allocate in a whole rehearsed run, each time it is run: what the test runner allocates meanwhile is counted
+/// as well, but not at the same step again.
 fn steps_that_allocate(train: &Train, scenario: &str, steps: usize) -> Vec<usize> {
     let mut run = FixedStep::new(train, scenario, 1e-3).unwrap();
     run.rehearse();
-    let mut found = Vec::with_capacity(steps);
-    for k in 0..steps {
-        let region = Region::new(ALLOCATOR);
-        run.step();
-        let change = region.change();
-        if change.allocations + change.reallocations > 0 {
-            found.push(k);
+    let mut found: Vec<usize> = (0..steps).collect();
+    for _ in 0..3 {
+        run.reset();
+        let mut again = Vec::with_capacity(steps);
+        for k in 0..steps {
+            let region = Region::new(ALLOCATOR);
+            run.step();
+            let change = region.change();
+            if change.allocations + change.reallocations > 0 && found.binary_search(&k).is_ok() {
+                again.push(k);
+            }
         }
+        found = again;
     }
     found
 }

@@ -236,8 +236,17 @@ impl Batch {
                         if self.packed[at].is_empty() {
                             one.fused[at].pack(one.v.len(), &one.varying, &mut self.packed[at]);
                         }
-                        let room = (&mut self.terms, &mut self.ends);
-                        block.glide(one, k, alike, middle, &self.common, &self.packed[at], self.arch, room)
+                        self.arch.dispatch(Glide {
+                            block,
+                            one,
+                            mode: k,
+                            alike,
+                            middle,
+                            common: &self.common,
+                            packed: &self.packed[at],
+                            terms: &mut self.terms,
+                            ends: &mut self.ends,
+                        })
                     }
                     _ => alike,
                 };
@@ -270,7 +279,7 @@ impl Block {
     }
 
     /// The speed or slip that an input may follow, in each run.
-    #[inline]
+    #[inline(always)]
     fn followed(&self, row: &[f64]) -> Lanes {
         // In the order of `dot`.
         let (fours, rest) = (row.chunks_exact(4), row.chunks_exact(4).remainder());
@@ -294,7 +303,7 @@ impl Block {
     }
 
     /// An input that differs between runs, but for its factor.
-    #[inline]
+    #[inline(always)]
     fn inputs_at(&self, one: &mut FixedStep, k: usize, middle: f64) -> Lanes {
         let w = self.followed(one.row_of_input(k));
         match one.engine.system.scenario.sources.get(k).map(|source| &source.kind) {
@@ -316,86 +325,6 @@ impl Block {
                 })
             }
         }
-    }
-
-    /// Steps the runs of `alike` in the mode they share; bits of those that do not go on in it, and have not moved.
-    #[allow(clippy::too_many_arguments)]
-    #[inline]
-    fn glide(
-        &mut self,
-        one: &mut FixedStep,
-        k: u32,
-        alike: u8,
-        middle: f64,
-        common: &[Option<f64>],
-        packed: &[f64],
-        arch: pulp::Arch,
-        (terms, ends): (&mut Vec<Lanes>, &mut Vec<Lanes>),
-    ) -> u8 {
-        let (drivers, frictions) = {
-            let s = &one.engine.system;
-            (s.drivers.len(), s.frictions.len())
-        };
-        let mut alone = 0;
-        terms.clear();
-        terms.extend_from_slice(&self.v);
-        for (at, common) in common.iter().enumerate() {
-            let k = one.varying[at];
-            let mut u = self.factors[k];
-            match common {
-                Some(value) => u.iter_mut().for_each(|u| *u *= value),
-                None => {
-                    let own = self.inputs_at(one, k, middle);
-                    u.iter_mut().zip(own).for_each(|(u, own)| *u *= own);
-                }
-            }
-            // What opens, closes or locks is more than a change of torque.
-            if k >= drivers && k < drivers + frictions {
-                for (lane, (u, was)) in u.iter().zip(&self.inputs[k]).enumerate() {
-                    if (*u == 0.0) != (*was == 0.0) || (*u == UNBOUNDED) != (*was == UNBOUNDED) {
-                        alone |= 1 << lane;
-                    }
-                }
-            }
-            write(&mut self.inputs[k], &u, alike);
-            terms.push(u);
-        }
-        let fused = &one.fused[k as usize];
-        if ends.len() < fused.rows {
-            ends.resize(fused.rows, [0.0; LANES]);
-        }
-        let glide = Glide {
-            packed,
-            terms,
-            base: &self.base[..fused.rows],
-            least: &self.least[..fused.rows],
-            ends: &mut ends[..fused.rows],
-        };
-        alone |= arch.dispatch(glide);
-        alone &= alike;
-        let going = alike & !alone;
-        let free = fused.free;
-        self.v[..free].iter_mut().zip(ends.iter()).for_each(|(v, end)| write(v, end, going));
-        let s = &one.engine.system;
-        if s.prescribed > 0 {
-            for (driver, u) in s.drivers.iter().zip(&self.inputs) {
-                if let Some(i) = driver.prescribed {
-                    write(&mut self.v[free + i], u, going);
-                }
-            }
-        }
-        if s.integrals > 0 {
-            for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
-                if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
-                    let set = setpoint.value(middle, middle, &|_| 0.0);
-                    let w = self.followed(&s.speeds[driver.member.index()]);
-                    let mut sum = self.rest[s.all() + i];
-                    sum.iter_mut().zip(w).for_each(|(sum, w)| *sum += one.h * (set - w));
-                    write(&mut self.rest[s.all() + i], &sum, going);
-                }
-            }
-        }
-        alone
     }
 
     /// Takes the step of one run.
@@ -446,7 +375,7 @@ fn paste_lane(from: &[f64], lane: usize, to: &mut [Lanes]) {
 }
 
 /// Writes the runs of a mask.
-#[inline]
+#[inline(always)]
 fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
     if mask == u8::MAX {
         *to = *from;
@@ -455,13 +384,17 @@ fn write(to: &mut Lanes, from: &Lanes, mask: u8) {
     }
 }
 
-/// The product of a fused step with the states of a block, and which runs break a margin.
+/// The step of the runs of `alike` in the mode they share; gives those that do not go on in it, and have not moved.
 struct Glide<'a> {
+    block: &'a mut Block,
+    one: &'a mut FixedStep,
+    mode: u32,
+    alike: u8,
+    middle: f64,
+    common: &'a [Option<f64>],
     packed: &'a [f64],
-    terms: &'a [Lanes],
-    base: &'a [Lanes],
-    least: &'a [Lanes],
-    ends: &'a mut [Lanes],
+    terms: &'a mut Vec<Lanes>,
+    ends: &'a mut Vec<Lanes>,
 }
 
 impl pulp::WithSimd for Glide<'_> {
@@ -469,30 +402,100 @@ impl pulp::WithSimd for Glide<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, simd: S) -> u8 {
-        let Self { packed, terms, base, least, ends } = self;
-        let mut least_margins = [f64::INFINITY; LANES];
-        let (worst, _) = S::as_mut_simd_f64s(&mut least_margins);
-        for (part, worst) in worst.iter_mut().enumerate() {
-            let of = |x: &Lanes| S::as_simd_f64s(x).0[part];
-            let mut margin = *worst;
-            let rows = base.chunks_exact(BLOCK).zip(least.chunks_exact(BLOCK)).zip(ends.chunks_exact_mut(BLOCK));
-            for (((base, least), ends), weights) in rows.zip(packed.chunks_exact(BLOCK * terms.len())) {
-                // A row waits for each of its additions, so that several are under way at once.
-                let [mut a, mut b, mut c, mut d] = [of(&base[0]), of(&base[1]), of(&base[2]), of(&base[3])];
-                for (w, x) in weights.chunks_exact(BLOCK).zip(terms) {
-                    let x = of(x);
-                    a = simd.add_f64s(a, simd.mul_f64s(simd.splat_f64s(w[0]), x));
-                    b = simd.add_f64s(b, simd.mul_f64s(simd.splat_f64s(w[1]), x));
-                    c = simd.add_f64s(c, simd.mul_f64s(simd.splat_f64s(w[2]), x));
-                    d = simd.add_f64s(d, simd.mul_f64s(simd.splat_f64s(w[3]), x));
-                }
-                for (k, sum) in [a, b, c, d].into_iter().enumerate() {
-                    margin = simd.min_f64s(margin, simd.sub_f64s(sum, of(&least[k])));
-                    S::as_mut_simd_f64s(&mut ends[k]).0[part] = sum;
+        let Self { block, one, mode, alike, middle, common, packed, terms, ends } = self;
+        let (drivers, frictions) = {
+            let s = &one.engine.system;
+            (s.drivers.len(), s.frictions.len())
+        };
+        let mut alone = 0;
+        terms.clear();
+        terms.extend_from_slice(&block.v);
+        for (at, common) in common.iter().enumerate() {
+            let k = one.varying[at];
+            let mut u = block.factors[k];
+            match common {
+                Some(value) => u.iter_mut().for_each(|u| *u *= value),
+                None => {
+                    let own = block.inputs_at(one, k, middle);
+                    u.iter_mut().zip(own).for_each(|(u, own)| *u *= own);
                 }
             }
-            *worst = margin;
+            // What opens, closes or locks is more than a change of torque.
+            if k >= drivers && k < drivers + frictions {
+                for (lane, (u, was)) in u.iter().zip(&block.inputs[k]).enumerate() {
+                    if (*u == 0.0) != (*was == 0.0) || (*u == UNBOUNDED) != (*was == UNBOUNDED) {
+                        alone |= 1 << lane;
+                    }
+                }
+            }
+            write(&mut block.inputs[k], &u, alike);
+            terms.push(u);
         }
-        least_margins.iter().enumerate().map(|(lane, margin)| u8::from(*margin < 0.0) << lane).sum()
+        let fused = &one.fused[mode as usize];
+        if ends.len() < fused.rows {
+            ends.resize(fused.rows, [0.0; LANES]);
+        }
+        let rows = fused.rows;
+        alone |= product(simd, packed, terms, &block.base[..rows], &block.least[..rows], &mut ends[..rows]);
+        alone &= alike;
+        let going = alike & !alone;
+        let free = fused.free;
+        block.v[..free].iter_mut().zip(ends.iter()).for_each(|(v, end)| write(v, end, going));
+        let s = &one.engine.system;
+        if s.prescribed > 0 {
+            for (driver, u) in s.drivers.iter().zip(&block.inputs) {
+                if let Some(i) = driver.prescribed {
+                    write(&mut block.v[free + i], u, going);
+                }
+            }
+        }
+        if s.integrals > 0 {
+            for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
+                if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
+                    let set = setpoint.value(middle, middle, &|_| 0.0);
+                    let w = block.followed(&s.speeds[driver.member.index()]);
+                    let mut sum = block.rest[s.all() + i];
+                    sum.iter_mut().zip(w).for_each(|(sum, w)| *sum += one.h * (set - w));
+                    write(&mut block.rest[s.all() + i], &sum, going);
+                }
+            }
+        }
+        alone
     }
+}
+
+/// The product of a fused step with the states of a block, and which runs break a margin.
+#[inline(always)]
+fn product<S: pulp::Simd>(
+    simd: S,
+    packed: &[f64],
+    terms: &[Lanes],
+    base: &[Lanes],
+    least: &[Lanes],
+    ends: &mut [Lanes],
+) -> u8 {
+    let mut least_margins = [f64::INFINITY; LANES];
+    let (worst, _) = S::as_mut_simd_f64s(&mut least_margins);
+    for (part, worst) in worst.iter_mut().enumerate() {
+        let of = |x: &Lanes| S::as_simd_f64s(x).0[part];
+        let mut margin = *worst;
+        let rows = base.chunks_exact(BLOCK).zip(least.chunks_exact(BLOCK)).zip(ends.chunks_exact_mut(BLOCK));
+        for (((base, least), ends), weights) in rows.zip(packed.chunks_exact(BLOCK * terms.len())) {
+            // A row waits for each of its additions, so that several are under way at once.
+            let [mut a, mut b, mut c, mut d] = [of(&base[0]), of(&base[1]), of(&base[2]), of(&base[3])];
+            for (w, x) in weights.chunks_exact(BLOCK).zip(terms) {
+                let x = of(x);
+                a = simd.add_f64s(a, simd.mul_f64s(simd.splat_f64s(w[0]), x));
+                b = simd.add_f64s(b, simd.mul_f64s(simd.splat_f64s(w[1]), x));
+                c = simd.add_f64s(c, simd.mul_f64s(simd.splat_f64s(w[2]), x));
+                d = simd.add_f64s(d, simd.mul_f64s(simd.splat_f64s(w[3]), x));
+            }
+            for (k, sum) in [a, b, c, d].into_iter().enumerate() {
+                margin = simd.min_f64s(margin, simd.sub_f64s(sum, of(&least[k])));
+                S::as_mut_simd_f64s(&mut ends[k]).0[part] = sum;
+            }
+        }
+        *worst = margin;
+    }
+    least_margins.iter().enumerate().map(|(lane, margin)| u8::from(*margin < 0.0) << lane).sum()
 }

@@ -150,6 +150,7 @@ pub struct FixedStep {
     pub(super) least: Vec<f64>,
     pub(super) ends: Vec<f64>,
     keeps_angles: bool,
+    arch: pulp::Arch,
     /// Speeds, angles with integrals, and signs at the start.
     at_start: (Vec<f64>, Vec<f64>, Vec<i8>),
     /// Energies as the engine counts them; empty unless asked for.
@@ -287,6 +288,7 @@ impl FixedStep {
             least: vec![],
             ends: vec![],
             keeps_angles: true,
+            arch: pulp::Arch::new(),
             energies: vec![],
             came_in: vec![],
             losses: vec![0.0; e],
@@ -628,7 +630,7 @@ impl FixedStep {
 
     /// Torques of what slides, and the losses of teeth that do not depend on load, in the present mode; at their
     /// peak in the group that is breaking away.
-    #[inline]
+    #[inline(always)]
     fn rub(&mut self, breaking: Option<usize>) {
         for (g, group) in self.groups.iter().enumerate() {
             let sign = self.sign[g];
@@ -657,7 +659,7 @@ impl FixedStep {
 
     /// The first thing in which the mode and the end of the step disagree. Groups in `kept` came to rest at once after
     /// they were released: those that others hold as well go on sliding without moving, the rest is not released again.
-    #[inline]
+    #[inline(always)]
     fn disagreement(&self, map: &StepMap, free: usize, cols: usize, kept: u64) -> Option<Flip> {
         let mut rows = map.rows[free * cols..].chunks_exact(cols);
         let mut stuck = None;
@@ -773,7 +775,7 @@ impl FixedStep {
     }
 
     /// Solves the step in the present mode.
-    #[inline]
+    #[inline(always)]
     fn solve(&mut self, free: usize, cols: usize) -> Option<u32> {
         let map = self.map(self.key())?;
         self.rub(None);
@@ -785,6 +787,7 @@ impl FixedStep {
     }
 
     /// Finds the mode of the step and its end.
+    #[inline(always)]
     fn settle(&mut self, free: usize, cols: usize) -> bool {
         let trials = 4 * (self.groups.len() + self.side.len()) + 4;
         // The group released last, and those that came to rest again at once.
@@ -974,7 +977,7 @@ impl FixedStep {
             let free = self.engine.system.free;
             let cols = self.tau.len();
             self.swept = false;
-            if !self.settle(free, cols) && !self.sweep(free, cols) {
+            if !self.arch.dispatch(Settle { step: self, free, cols }) && !self.sweep(free, cols) {
                 self.unsettled += 1;
             }
             if !self.energies.is_empty() {
@@ -1222,6 +1225,22 @@ impl FixedStep {
             self.engine.engaged[k] = self.engine.engagement(k, t) > threshold;
         }
         self.engine.enter(&mode);
+    }
+}
+
+/// [`FixedStep::settle`] with the widest registers there are.
+struct Settle<'a> {
+    step: &'a mut FixedStep,
+    free: usize,
+    cols: usize,
+}
+
+impl pulp::WithSimd for Settle<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> bool {
+        self.step.settle(self.free, self.cols)
     }
 }
 

@@ -104,7 +104,7 @@ impl Map {
 }
 
 /// Sum of products, in four partial sums: one alone waits for each addition.
-#[inline]
+#[inline(always)]
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let n = a.len().min(b.len());
     let (a, b) = (&a[..n], &b[..n]);
