@@ -60,8 +60,17 @@ pub fn run(context: &Context) -> Result<String, String> {
 
 /// The first line that does not follow those before it.
 fn first_missing<'a>(shown: &'a [String], printed: &str) -> Option<&'a String> {
-    let mut rest = printed.lines().map(str::trim_end);
-    shown.iter().find(|line| !rest.any(|l| l == line.trim_end()))
+    let mut rest = printed.lines().map(without_round_off);
+    shown.iter().find(|line| !rest.any(|l| l == without_round_off(line)))
+}
+
+/// A line without the number that is round-off, which no two processors have alike.
+fn without_round_off(line: &str) -> String {
+    const BEFORE: &str = "closes to ";
+    match line.trim_end().split_once(BEFORE) {
+        Some((head, tail)) => format!("{head}{BEFORE}{}", tail.trim_start_matches(|c: char| c != ' ')),
+        None => line.trim_end().to_owned(),
+    }
 }
 
 /// Commands in the blocks of a page.
