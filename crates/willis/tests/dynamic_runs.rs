@@ -474,3 +474,34 @@ fn what_cannot_move_is_refused() {
     let error = simulate(&train(&text), "run", &Options::default(), &mut ()).unwrap_err();
     assert!(error.to_string().contains("nothing can move"), "{error}");
 }
+
+/// What lies beyond a formula's domain, and what signals may not follow.
+#[test]
+fn formulas_beyond_their_domain_end_the_run() {
+    let root = r#"{ type = "expression", formula = "sqrt(0.5 - t)" }"#;
+    let motor = format!(
+        "{}\n[[scenario.source]]\nmember = \"a\"\nlinear = {{ torque = \"0 N m\", slope = \"1 N m s/rad\" }}",
+        rotor(root)
+    );
+    for method in [Method::Adaptive, Method::Fixed(1e-3)] {
+        let (_, report) = run(&motor, &Options { method, ..Options::default() });
+        assert!(matches!(report.outcome, Outcome::NotConverged(_)), "{method:?}: {:?}", report.outcome);
+    }
+    let follows =
+        rotor("\"0 N m\"").replace("torque = \"0 N m\"", r#"speed = { type = "expression", formula = "10 + w_a" }"#);
+    let error = simulate(&train(&follows), "run", &Options::default(), &mut ()).unwrap_err();
+    assert!(error.to_string().contains("cannot follow the speeds"), "{error}");
+}
+
+/// The lost energy of the rows is that of the report.
+#[test]
+fn the_rows_end_with_the_losses_of_the_report() {
+    let (rows, report) =
+        run(&rotor(r#"{ type = "sine", amplitude = "9 N m", frequency = "1 Hz" }"#), &Options::default());
+    let lost: f64 = report.energy.losses.iter().map(|l| l.energy_j).sum();
+    let last = rows.of("lost_energy").last().unwrap();
+    assert!(lost > 1.0 && (last - lost).abs() < 1e-9 * lost, "{last} and {lost}");
+    let quiet = Options { energies: false, method: Method::Fixed(1e-3), ..Options::default() };
+    let (_, report) = run(&rotor("\"4 N m\""), &quiet);
+    assert!(report.energy.residual_j.is_nan() && report.outcome == Outcome::Finished);
+}

@@ -159,10 +159,12 @@ impl Batch {
         Ok(())
     }
 
-    /// Multiplies what a source does, or the friction of a drag or a shift element, in a run.
+    /// Multiplies the torque of a source (of a vehicle all but its rolling resistance), or the friction of a drag or a
+    /// shift element (not the viscous part), in a run.
     ///
     /// # Errors
-    /// If there is no such source, drag or shift element.
+    /// If there is no such source, drag or shift element; if it prescribes a speed, controls one, or is a one-way clutch;
+    /// if the factor of a friction is negative.
     pub fn scale(&mut self, run: usize, name: &str, factor: f64) -> Result<(), String> {
         let s = &self.one.engine.system;
         let drivers = s.drivers.len();
@@ -174,6 +176,17 @@ impl Batch {
             let known: Vec<&str> = sources.chain(frictions).collect();
             return Err(format!("there is no source or friction `{name}`; there are: {}", known.join(", ")));
         };
+        let refused = match s.scenario.sources.get(k).map(|source| &source.kind) {
+            Some(SourceKind::Speed(_)) => Some("a prescribed speed"),
+            Some(SourceKind::Controller { .. }) => Some("a controller"),
+            Some(_) => None,
+            None if s.frictions[k - drivers].blocks.is_some() => Some("a one-way clutch"),
+            None if factor < 0.0 => return Err(format!("the friction of `{name}` cannot be multiplied by {factor}")),
+            None => None,
+        };
+        if let Some(what) = refused {
+            return Err(format!("`{name}` is {what}, which has no size to multiply"));
+        }
         let block = self.block(run, factor)?;
         block.factors[k][run % LANES] = factor;
         block.forget(run % LANES);
@@ -195,6 +208,11 @@ impl Batch {
         self.unsettled
     }
 
+    /// Steps, over all runs, in which parts of different speed were joined at once, as in an inelastic impact.
+    pub fn impacts(&self) -> u64 {
+        self.impacts
+    }
+
     /// Takes steps.
     pub fn run(&mut self, steps: u64) {
         for _ in 0..steps {
@@ -205,7 +223,10 @@ impl Batch {
     fn step(&mut self) {
         let middle = self.one.middle();
         if self.one.is_over(middle) {
+            let ended = self.one.until;
             self.one.refresh(middle);
+            self.one.count_jumps(ended, middle);
+            self.impacts += std::mem::take(&mut self.one.impacts) * self.len as u64;
             self.packed.iter_mut().for_each(Vec::clear);
             for block in &mut self.blocks {
                 block.present = [None; LANES];
@@ -228,7 +249,7 @@ impl Batch {
                 let alike = if block.uniform { left } else { left & block.alike(present) };
                 // The torque of a shaft follows from its twist, which only a single run knows.
                 alone |= match present {
-                    Some(k) if one.engine.system.elastic.is_empty() => {
+                    Some(k) if !one.needs_itself() => {
                         let at = k as usize;
                         if self.packed.len() <= at {
                             self.packed.resize(at + 1, vec![]);
@@ -338,7 +359,7 @@ impl Block {
         one.side.copy_from_slice(&self.side[lane * elements..(lane + 1) * elements]);
         one.present = None;
         // Where runs never go together, each goes on in its own mode.
-        if let (Some(k), false) = (self.present[lane], one.engine.system.elastic.is_empty()) {
+        if let (Some(k), true) = (self.present[lane], one.needs_itself()) {
             let rows = one.fused[k as usize].rows;
             for (from, to) in [(&self.base, &mut one.base), (&self.least, &mut one.least), (&self.least, &mut one.ends)]
             {

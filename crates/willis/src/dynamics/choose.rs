@@ -112,8 +112,9 @@ impl Engine {
             let threshold = if self.system.frictions[k].rigid { 0.5 } else { 0.0 };
             let above = self.engagement(k, t) - threshold;
             // Just at the threshold the direction decides.
-            let above = if above.abs() <= 1e-12 { self.engagement_rate(k, t) } else { above };
-            self.engaged[k] = above > 0.0;
+            let rate = self.engagement_rate(k, t);
+            let locks = self.system.frictions[k].rigid && rate == 0.0 && above >= 0.0;
+            self.engaged[k] = if above.abs() <= 1e-12 { rate > 0.0 || locks } else { above > 0.0 };
         }
         for k in 0..self.touch.len() {
             self.touch[k] = self.touch_now(k, x);
@@ -142,7 +143,10 @@ impl Engine {
         });
         let untried = self.combinations(at_rest) > MOST_TRIED;
         let found = match found {
-            Some(mode) if untried || self.is_certified() => return Ok(mode),
+            Some(mode) if untried || self.is_certified() => {
+                self.unsearched += usize::from(!self.is_certified());
+                return Ok(mode);
+            }
             None if untried => return Err(Trouble::NotFound(Self::not_found())),
             other => other,
         };

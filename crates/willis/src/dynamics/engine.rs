@@ -94,6 +94,8 @@ pub(crate) struct Engine {
     pub counts: bool,
     /// Sizes of the states, against which errors are measured where a state is small.
     pub scales: Vec<f64>,
+    /// Choices in which there were too many combinations to search for other solutions.
+    pub unsearched: usize,
     /// Size of the energies, J, likewise.
     pub energy_scale: f64,
     /// Room for port torques.
@@ -122,6 +124,7 @@ impl Engine {
             away,
             scales: vec![LEAST_SCALE; system.free + system.all() + system.integrals],
             energy_scale: LEAST_ENERGY,
+            unsearched: 0,
             spare: vec![0.0; system.ports],
             agrees: true,
             slack: 1.0,

@@ -132,7 +132,7 @@ pub struct FixedStep {
     last: Option<(Key, u32)>,
     /// Values of signals that are level until `until`.
     level: Vec<Option<f64>>,
-    until: f64,
+    pub(super) until: f64,
     engagement_signals: Vec<usize>,
     /// The first signal of each source.
     signal_of: Vec<usize>,
@@ -928,17 +928,25 @@ impl FixedStep {
     }
 
     /// Counts prescribed speeds that jump, which takes an impact.
-    fn count_jumps(&mut self, middle: f64) {
+    pub(super) fn count_jumps(&mut self, at: f64, middle: f64) {
         let s = &self.engine.system;
-        let start = self.time();
         for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
-            if let (Some(i), SourceKind::Speed(signal)) = (driver.prescribed, &source.kind)
-                && self.count > 0
+            if let (Some(_), SourceKind::Speed(signal)) = (driver.prescribed, &source.kind)
+                && at.is_finite()
             {
-                let (before, after) = (self.v[s.free + i], signal.value(start, middle, &|_| 0.0));
+                let [before, after] = [middle - self.h, middle].map(|inside| signal.value(at, inside, &|_| 0.0));
                 self.impacts += u64::from((after - before).abs() > 1e-6 * (after.abs() + before.abs()));
             }
         }
+    }
+
+    /// Whether what a run takes in follows from more than what a batch knows of it: twists of shafts, set points that
+    /// follow speeds.
+    pub(super) fn needs_itself(&self) -> bool {
+        let s = &self.engine.system;
+        let follows =
+            |kind: &SourceKind| matches!(kind, SourceKind::Controller { setpoint, .. } if setpoint.depends_on_speed());
+        !s.elastic.is_empty() || s.scenario.sources.iter().any(|source| follows(&source.kind))
     }
 
     /// Whether all speeds are finite.
@@ -968,8 +976,9 @@ impl FixedStep {
     pub fn step(&mut self) {
         let middle = self.middle();
         if self.is_over(middle) {
+            let ended = self.until;
             self.refresh(middle);
-            self.count_jumps(middle);
+            self.count_jumps(ended, middle);
             self.present = None;
         }
         if !self.glide(middle) {
@@ -996,7 +1005,7 @@ impl FixedStep {
             let s = &self.engine.system;
             for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
                 if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
-                    let set = setpoint.value(middle, middle, &|_| 0.0);
+                    let set = setpoint.value(middle, middle, &|m: MemberId| dot(&s.speeds[m.index()], &self.next));
                     self.rest[s.all() + i] += self.h * (set - dot(&s.speeds[driver.member.index()], &self.next));
                 }
             }
@@ -1221,8 +1230,9 @@ impl FixedStep {
             side: self.side.clone(),
         };
         for k in 0..self.engine.engaged.len() {
-            let threshold = if self.engine.system.frictions[k].rigid { 0.5 } else { 0.0 };
-            self.engine.engaged[k] = self.engine.engagement(k, t) > threshold;
+            let engaged = self.engine.engagement(k, t);
+            let is_rigid = self.engine.system.frictions[k].rigid;
+            self.engine.engaged[k] = if is_rigid { engaged >= 0.5 } else { engaged > 0.0 };
         }
         self.engine.enter(&mode);
     }

@@ -174,7 +174,7 @@ impl Engine {
         out.push(loss);
         out.push(self.stored(x));
         let states = self.integrals() + s.integrals;
-        out.push(x.get(states + 2 * s.drivers.len()..).filter(|_| self.counts).map_or(f64::NAN, |e| e.iter().sum()));
+        out.push(x.get(states + s.drivers.len()..).filter(|_| self.counts).map_or(f64::NAN, |e| e.iter().sum()));
         let came_in: f64 = powers.iter().filter(|p| **p > 0.0).sum();
         let went_out: f64 = -powers.iter().filter(|p| **p < 0.0).sum::<f64>();
         out.push(if came_in > 0.0 { went_out / came_in } else { f64::NAN });

@@ -174,11 +174,22 @@ impl Simulation {
         Some(super::mode::dot(&s.speeds[m.index()], &self.x[s.free..s.free + s.all()]))
     }
 
-    /// Replaces what a source does from now on by a constant torque, N m, or speed, rad/s, as its kind is.
+    /// Replaces what a source does from now on by a constant: torque, N m; set point, rad/s; throttle or grade.
     ///
     /// # Errors
-    /// If there is no such source or it is neither a torque nor a speed.
+    /// If there is no such source, if it is a load that follows the speed, or if it prescribes a speed that would
+    /// jump.
     pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
+        let s = &self.engine.system;
+        let jump = (s.drivers.iter().zip(&s.scenario.sources)).find_map(|(driver, of)| {
+            let now = self.engine.speed[s.free + driver.prescribed?];
+            (of.name == source && (value - now).abs() > 1e-9 * (value.abs() + now.abs())).then_some(now)
+        });
+        if let Some(now) = jump {
+            return Err(format!(
+                "`{source}` prescribes a speed of {now} rad/s, which cannot jump to {value} rad/s; use a torque or a controller"
+            ));
+        }
         self.engine.system.set_input(source, value)?;
         self.rolling = false;
         Ok(())
@@ -201,7 +212,7 @@ impl Simulation {
             return self.outcome.clone();
         }
         let end = self.engine.system.scenario.end;
-        let target = until.min(end);
+        let target = if until.is_nan() { self.t } else { until.min(end) };
         let outcome = loop {
             if !self.rolling
                 && let Err(trouble) = self.choose(recorder)
@@ -238,7 +249,10 @@ impl Simulation {
         self.engine.inside = if self.segment > self.t { 0.5 * (self.t + self.segment) } else { self.t };
         let mut x = std::mem::take(&mut self.x);
         let free = self.engine.system.free;
+        let ahead = std::mem::replace(&mut self.engine.inside, inside);
+        self.engine.look(self.t, &x);
         let before: Vec<f64> = self.engine.speed[free..].to_vec();
+        self.engine.inside = ahead;
         self.engine.look(self.t, &x);
         let jump = (before.iter().zip(&self.engine.speed[free..]).enumerate())
             .find(|(_, (a, b))| (*a - *b).abs() > 1e-9 * (a.abs() + b.abs()))
@@ -689,6 +703,13 @@ impl Simulation {
         let final_speeds = (s.train.members().iter().enumerate().skip(1))
             .map(|(m, member)| (member.name.clone(), self.engine.member_speed(MemberId(m))));
         let mut notes = self.notes.clone();
+        if self.engine.unsearched > 0 {
+            notes.push(format!(
+                "{} times too many things were at rest to search for other motions: whether the one taken is the only one is \
+                 not known",
+                self.engine.unsearched
+            ));
+        }
         if let Some((why, times)) = &self.ambiguous {
             let again = if *times > 1 { format!("; so {} times more", times - 1) } else { String::new() };
             notes.push(format!("{why}; the first was taken{again}"));
@@ -807,6 +828,7 @@ fn fixed(
 ) -> Result<RunReport, Diagnostics> {
     let mut run = Simulation::new(train, scenario, options)?;
     let mut stepper = FixedStep::new(train, scenario, h)?;
+    stepper.engine.counts = options.energies;
     if options.energies {
         stepper.with_energies();
     }
@@ -862,7 +884,7 @@ fn fixed(
         if step % 256 == 0 && recorder.progress(t).is_break() {
             run.outcome = Some(Outcome::Interrupted);
         }
-        if step % 256 == 0 && !stepper.is_finite() {
+        if (step % 256 == 0 || step == steps) && !stepper.is_finite() {
             let why = format!(
                 "speeds are no longer finite at t = {t} s: a formula leaves its domain, or the step is too long"
             );
@@ -911,6 +933,11 @@ fn lagged(
     if recorder.columns(&run.columns).is_break() {
         return Ok(run.report());
     }
+    if !(h > 0.0 && h.is_finite()) {
+        return Err(Diagnostic::new(Code::Unfit, "", format!("a step of {h} s"))
+            .hint("a step is longer than zero")
+            .into());
+    }
     let groups = run.engine.system.groups.len();
     let n = run.x.len();
     let mut x = run.x.clone();
@@ -955,6 +982,9 @@ fn lagged(
                 at[i] = x[i] + if stage == 0 { 0.0 } else { part * h * k[from][i] };
             }
             run.engine.look(t + part * h, &at);
+            for k in 0..run.engine.touch.len() {
+                run.engine.touch[k] = run.engine.touch_now(k, &at);
+            }
             for g in 0..groups {
                 let slip = run.engine.group_slip(g);
                 if slip != 0.0 {
@@ -981,6 +1011,13 @@ fn lagged(
         run.engine.solve(t + h, &x);
         torques = run.engine.element_torques();
         run.steps += 1;
+        if x.iter().any(|x| !x.is_finite()) {
+            let why = format!(
+                "the motion is no longer finite at t = {} s: a formula leaves its domain, or the step is too long",
+                t + h
+            );
+            run.outcome = Some(Outcome::NotConverged(why));
+        }
     }
     run.engine.look(run.t, &x);
     run.x = x;

@@ -160,10 +160,11 @@ fn expression(formula: &Formula, speeds: &[MemberId], t: f64, speed: &dyn Fn(Mem
 /// steps, of which the one that changes least is taken.
 fn derivative(f: impl Fn(f64) -> f64, t: f64) -> f64 {
     const LEVELS: usize = 10;
-    const RATIO: f64 = 2.0;
+    const RATIO: f64 = 1.43;
     let mut table = [[0.0f64; LEVELS]; LEVELS];
     let (mut best, mut error) = (f64::NAN, f64::INFINITY);
-    let mut h = 1e-2;
+    // Neither start nor ratio is round, so that no period of the signal is met twice.
+    let mut h = 9.37e-3;
     for i in 0..LEVELS {
         // Exactly what lies between both points.
         let (later, earlier) = (t + h, t - h);
@@ -178,6 +179,12 @@ fn derivative(f: impl Fn(f64) -> f64, t: f64) -> f64 {
             }
         }
         h /= RATIO;
+    }
+    if best.is_nan() {
+        // At the edge of its domain, from the side that is in it.
+        let h = 1e-7 * t.abs().max(1.0);
+        let forward = (4.0 * f(t + h) - f(t + 2.0 * h) - 3.0 * f(t)) / (2.0 * h);
+        best = if forward.is_nan() { (3.0 * f(t) - 4.0 * f(t - h) + f(t - 2.0 * h)) / (2.0 * h) } else { forward };
     }
     best
 }

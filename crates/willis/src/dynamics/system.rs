@@ -37,6 +37,14 @@ pub(super) const MOST_LOST: f64 = 0.1;
 /// Pulses of one signal in a scenario; each of them stops the integrator twice.
 const MOST_PULSES: f64 = 1e6;
 
+fn shortest_pulse(signal: &Signal) -> Option<f64> {
+    match signal {
+        Signal::Pulse { period, .. } => Some(*period),
+        Signal::Product(of) => of.iter().filter_map(shortest_pulse).min_by(f64::total_cmp),
+        _ => None,
+    }
+}
+
 /// A mesh element: one gear pair, or a chain of them.
 pub(super) struct Element {
     pub links: Vec<Link>,
@@ -98,7 +106,7 @@ impl Element {
             || self.rows.windows(2).any(|w| (w[0].forward, w[0].backward) != (w[1].forward, w[1].backward))
     }
 
-    /// Losses at an amount of speed: straight between rows, continued beyond the last.
+    /// Losses at an amount of speed: straight between rows; those of the last row beyond it.
     pub fn loss(&self, speed: f64) -> Loss {
         let rows = &self.rows;
         let row = if rows.len() == 1 {
@@ -106,7 +114,7 @@ impl Element {
         } else {
             let k = rows.partition_point(|r| r.speed <= speed).clamp(1, rows.len() - 1);
             let (a, b) = (rows[k - 1], rows[k]);
-            let part = ((speed - a.speed) / (b.speed - a.speed)).max(0.0);
+            let part = ((speed - a.speed) / (b.speed - a.speed)).clamp(0.0, 1.0);
             let mix = |x: f64, y: f64| x + part * (y - x);
             LossRow {
                 speed,
@@ -342,7 +350,7 @@ impl System {
         for signal in (scenario.sources.iter().flat_map(|s| signals_of(&s.kind)))
             .chain(scenario.engagements.iter().map(|e| &e.signal))
         {
-            if let Signal::Pulse { period, .. } = signal
+            if let Some(period) = shortest_pulse(signal)
                 && (scenario.end - scenario.start) / period > MOST_PULSES
             {
                 let message = format!(
@@ -353,6 +361,21 @@ impl System {
                     Diagnostic::new(Code::Unfit, place, message).hint("take its mean, or a shorter scenario"),
                 ));
             }
+        }
+        for source in &scenario.sources {
+            let what = match &source.kind {
+                SourceKind::Speed(signal) if signal.depends_on_speed() => "a prescribed speed",
+                SourceKind::Controller { setpoint, derivative, .. }
+                    if *derivative != 0.0 && setpoint.depends_on_speed() =>
+                {
+                    "the set point of a controller with a derivative part"
+                }
+                _ => continue,
+            };
+            let message = format!("`{}`: {what} cannot follow the speeds of members", source.name);
+            return Err(fail(
+                Diagnostic::new(Code::Unfit, place, message).hint("let it follow the time, or use a torque"),
+            ));
         }
         let wish: Vec<MemberId> = (train.inertias().iter().map(|i| i.member))
             .filter(|m| train.terminals().contains(m))

@@ -45,6 +45,9 @@ impl Curve {
     /// Value at an abscissa.
     #[inline]
     pub fn at(&self, x: f64) -> f64 {
+        if x.is_nan() {
+            return x;
+        }
         let p = &self.0;
         if p.len() == 1 || x <= p[0][0] {
             return p[0][1];
@@ -332,6 +335,7 @@ fn primary(tokens: &[&str], at: &mut usize, out: &mut String) {
         }
     } else if is_call_without_brackets(name, tokens.get(*at)) {
         out.push(' ');
+        primary(tokens, at, out);
     }
 }
 
