@@ -375,7 +375,7 @@ fn what_is_assumed_of_planets_is_told() {
     told("P.planet: orbit not known, its mass is left out of motions (give orbit_radius)");
     // The planet of the bevel set has an inertia in [inertias]; those of no set are without any.
     let bare = good(&with("\"D.planet\" = \"1e-4 kg m^2\"\n", ""));
-    assert!(bare.assumptions().iter().any(|a| a.contains("D.planet: neither mass nor inertia given")));
+    assert!(bare.assumptions().iter().any(|a| a.contains("D.planet: neither its `mass` nor its `inertia` is given")));
     assert!(!train.assumptions().iter().any(|a| a.contains("neither mass nor inertia")), "{:?}", train.assumptions());
 }
 

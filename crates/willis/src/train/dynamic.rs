@@ -253,13 +253,15 @@ fn usual_order(text: &str) -> String {
     out
 }
 
-/// Numbers, names and single characters.
+/// Numbers, names (those of any characters in braces) and single characters.
 fn tokens(text: &str) -> Vec<&str> {
     let mut tokens = Vec::new();
     let mut rest = text;
     while let Some(first) = rest.chars().next() {
         let part = |more: &dyn Fn(char) -> bool| rest.find(|c| !more(c)).unwrap_or(rest.len());
-        let length = if first.is_ascii_digit() || first == '.' {
+        let length = if first == '{' {
+            rest.find('}').map_or(rest.len(), |end| end + 1)
+        } else if first.is_ascii_digit() || first == '.' {
             let mantissa = part(&|c| c.is_ascii_digit() || c == '.');
             // An exponent belongs to the number.
             let exponent = rest[mantissa..].strip_prefix(['e', 'E']).map(|e| e.strip_prefix(['+', '-']).unwrap_or(e));
@@ -342,7 +344,7 @@ fn primary(tokens: &[&str], at: &mut usize, out: &mut String) {
 /// `sin t`: a name before a name or a number.
 fn is_call_without_brackets(name: &str, next: Option<&&str>) -> bool {
     let word = |s: &str| s.starts_with(|c: char| c.is_alphanumeric() || c == '_' || c == '.');
-    word(name) && next.is_some_and(|n| word(n))
+    word(name) && next.is_some_and(|n| word(n) || n.starts_with('{'))
 }
 
 impl PartialEq for Formula {
@@ -539,6 +541,8 @@ mod tests {
             ("-sin(t)^2", -(3.0f64.sin().powi(2))),
             ("60 + 200*sin(2*t) - 3*w_a", 60.0 + 200.0 * 6.0f64.sin() - 6.0),
             ("-2^2", -4.0),
+            ("-{w_a}^2", -4.0),
+            ("-sin t", -(3.0f64.sin())),
             ("2*-3", -6.0),
         ];
         for (text, expected) in cases {
