@@ -14,6 +14,7 @@ mod event;
 mod fixed;
 mod fused;
 mod integrator;
+mod lagged;
 mod laws;
 mod mode;
 mod modes;

@@ -10,6 +10,7 @@ mod describe;
 mod dynamic;
 mod expand;
 mod format;
+mod formula;
 mod physical;
 
 use std::fmt;
@@ -32,10 +33,11 @@ pub use describe::{
     TrainBuilder,
 };
 pub use dynamic::{
-    Contact, Curve, DragMount, Engagement, Formula, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal,
-    Source, SourceKind,
+    Contact, Curve, DragMount, Engagement, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal, Source,
+    SourceKind,
 };
 pub use format::{Reading, schema};
+pub use formula::Formula;
 pub use physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
 
 /// A member's number within its train. The frame is number 0.

@@ -6,7 +6,7 @@ use crate::train::{Contact, MemberId, SourceKind};
 
 use super::integrator::Smooth;
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
-use super::system::{Rubs, System, slope_force};
+use super::system::{Rubs, System, source_torque};
 
 /// What a backlash does.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -175,32 +175,15 @@ impl Engine {
     /// acceleration.
     pub fn source_torque(&self, k: usize, t: f64, x: &[f64]) -> f64 {
         let driver = &self.system.drivers[k];
-        let w = self.member_speed(driver.member);
         let speed = |m: MemberId| self.member_speed(m);
-        let value = |s: &crate::train::Signal| s.value(t, self.inside, &speed);
-        match &self.system.scenario.sources[k].kind {
-            SourceKind::Torque(s) => value(s),
-            SourceKind::Speed(_) => 0.0,
-            SourceKind::Controller { setpoint, feed_forward, proportional, integral, derivative } => {
-                let sum = driver.integral.map_or(0.0, |i| x[self.integrals() + i]);
-                let rate = if *derivative == 0.0 { 0.0 } else { setpoint.rate(t, self.inside, &speed) };
-                value(feed_forward) + proportional * (value(setpoint) - w) + integral * sum + derivative * rate
-            }
-            SourceKind::Linear { torque, about, slope } => torque - slope * (w - about),
-            SourceKind::Quadratic { torque, about, factor, even } => {
-                let d = w - about;
-                torque - factor * if *even { d * d } else { d * d.abs() }
-            }
-            SourceKind::Vehicle { mass, wheel_radius, final_drive, drag_area, air_density, grade, .. } => {
-                let arm = wheel_radius / final_drive;
-                let v = w * arm;
-                -(0.5 * air_density * drag_area * v * v.abs() + slope_force(*mass, value(grade))) * arm
-            }
-            SourceKind::Motor { full_load, closed, throttle } => {
-                let (low, high) = (closed.at(w), full_load.at(w));
-                low + value(throttle).clamp(0.0, 1.0) * (high - low)
-            }
-        }
+        let sum = driver.integral.map_or(0.0, |i| x[self.integrals() + i]);
+        source_torque(
+            &self.system.scenario.sources[k].kind,
+            speed(driver.member),
+            sum,
+            |_, signal| signal.value(t, self.inside, &speed),
+            |signal| signal.rate(t, self.inside, &speed),
+        )
     }
 
     /// Torque of an elastic shaft on its first member.
@@ -292,13 +275,20 @@ impl Engine {
 
     /// How far a friction element is engaged.
     pub fn engagement(&self, f: usize, t: f64) -> f64 {
-        self.system.engaged(&self.system.frictions[f], t, self.inside, &|m| self.member_speed(m))
+        let speed = |m: MemberId| self.member_speed(m);
+        self.system.engaged(&self.system.frictions[f], |signal| signal.value(t, self.inside, &speed))
     }
 
     /// How fast that changes, 1/s.
     pub fn engagement_rate(&self, f: usize, t: f64) -> f64 {
-        let signal = self.system.frictions[f].engagement.map(|k| &self.system.scenario.engagements[k].signal);
-        signal.map_or(0.0, |s| s.rate(t, self.inside, &|m| self.member_speed(m)))
+        let Some(k) = self.system.frictions[f].engagement else { return 0.0 };
+        let signal = &self.system.scenario.engagements[k].signal;
+        let speed = |m: MemberId| self.member_speed(m);
+        if signal.has_rate() {
+            return signal.rate(t, self.inside, &speed);
+        }
+        // Where it goes from here.
+        signal.value(self.inside, self.inside, &speed) - signal.value(t, self.inside, &speed)
     }
 
     /// Torque with which the friction elements of a group oppose its slip.

@@ -1,5 +1,7 @@
 //! From start to end: smooth motion, changes of mode, rows and events.
 
+mod locate;
+
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
@@ -11,10 +13,14 @@ use crate::train::{MemberId, Train};
 use super::choose::Trouble;
 use super::engine::{Engine, Margin, NOISE, Watch};
 use super::event::{Why, event, short};
-use super::fixed::FixedStep;
+use super::fixed::fixed;
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
+use super::lagged::lagged;
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
 use super::system::System;
+
+/// How often in a run what a formula does to a held element is looked at, at least.
+const LOOKS: f64 = 1000.0;
 
 /// A scenario that is being run.
 ///
@@ -47,38 +53,38 @@ use super::system::System;
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub struct Simulation {
-    engine: Engine,
+    pub(super) engine: Engine,
     options: Options,
     explicit: Dopri5,
     implicit: Implicit,
     stiff: bool,
     /// Whether the integrator stands at the present state in the present mode.
     rolling: bool,
-    t: f64,
+    pub(super) t: f64,
     /// States and energies.
-    x: Vec<f64>,
+    pub(super) x: Vec<f64>,
     /// Of the energies of the sources what came in, in steps that are over.
-    came_in: Vec<f64>,
+    pub(super) came_in: Vec<f64>,
     segment: f64,
     /// The longest step that sees what the signals do.
     longest: f64,
     at_rest: Vec<bool>,
-    labels: Vec<(String, ModeLabel)>,
+    pub(super) labels: Vec<(String, ModeLabel)>,
     /// Why the mode is chosen anew.
     why: Option<Why>,
     /// The last event.
     told: String,
-    columns: Vec<Column>,
-    row: Vec<f64>,
-    next_sample: usize,
+    pub(super) columns: Vec<Column>,
+    pub(super) row: Vec<f64>,
+    pub(super) next_sample: usize,
     samples: usize,
     recent: VecDeque<f64>,
     last_step: Option<f64>,
-    steps: usize,
-    events: usize,
+    pub(super) steps: usize,
+    pub(super) events: usize,
     stored_at_start: f64,
-    outcome: Option<Outcome>,
-    notes: Vec<String>,
+    pub(super) outcome: Option<Outcome>,
+    pub(super) notes: Vec<String>,
     /// The first of several solutions was taken: why the first time, and how often.
     ambiguous: Option<(String, usize)>,
     margins: Vec<Margin>,
@@ -241,7 +247,7 @@ impl Simulation {
     }
 
     /// Chooses the mode at the present state and tells of the change.
-    fn choose(&mut self, recorder: &mut dyn Recorder) -> Result<(), Outcome> {
+    pub(super) fn choose(&mut self, recorder: &mut dyn Recorder) -> Result<(), Outcome> {
         let end = self.engine.system.scenario.end;
         let inside = self.engine.inside;
         let next = self.engine.system.signals().map(|s| s.next_break(self.t)).fold(f64::INFINITY, f64::min);
@@ -527,145 +533,6 @@ impl Simulation {
         self.before_break(recorder)
     }
 
-    /// Margins at a time within the last step.
-    fn margins_at(&mut self, t: f64) {
-        self.interpolate(t);
-        let x = std::mem::take(&mut self.state);
-        self.engine.solve(t, &x);
-        let mut margins = std::mem::take(&mut self.margins);
-        self.engine.margins(t, &x, &mut margins);
-        self.margins = margins;
-        self.state = x;
-    }
-
-    /// The first event of the last step: just after it, and what it was.
-    fn find_event(&mut self, t_old: f64, t_new: f64) -> Option<(f64, Watch)> {
-        let half = 0.5 * (t_old + t_new);
-        self.margins_at(half);
-        if self.margins.iter().any(Margin::is_broken) {
-            return Some(self.bracket(t_old, half));
-        }
-        let mut middle = std::mem::take(&mut self.at_middle);
-        middle.clone_from(&self.margins);
-        self.margins_at(t_new);
-        let broken = self.margins.iter().any(Margin::is_broken);
-        let mut at_end = std::mem::take(&mut self.at_end);
-        at_end.clone_from(&self.margins);
-        // What leaves its limit and comes back within the step: near the lowest point of a parabola.
-        let dip = match broken {
-            true => None,
-            false => self.dip(t_old, t_new, &middle, &at_end),
-        };
-        (self.at_middle, self.at_end) = (middle, at_end);
-        match dip {
-            _ if broken => {
-                self.margins_at(t_new);
-                Some(self.bracket(half, t_new))
-            }
-            Some(t) if t > half => Some(self.bracket(half, t)),
-            Some(t) => Some(self.bracket(t_old, t)),
-            None => None,
-        }
-    }
-
-    /// A time within the step at which some margin is broken, though none is in its middle nor at its end. The
-    /// margins are then those of that time.
-    fn dip(&mut self, t_old: f64, t_new: f64, middle: &[Margin], end: &[Margin]) -> Option<f64> {
-        let reaches =
-            |m: &Margin, e: &Margin| m.watch == e.watch && m.value.min(e.value) < 8.0 * (m.value - e.value).abs();
-        if !middle.iter().zip(end).any(|(m, e)| reaches(m, e)) {
-            return None;
-        }
-        self.margins_at(t_old);
-        let start = std::mem::take(&mut self.margins);
-        let mut found = None;
-        let candidates: Vec<(Watch, [f64; 3])> = (start.iter().zip(middle).zip(end))
-            .filter(|((s, m), e)| s.watch == m.watch && m.watch == e.watch)
-            .map(|((s, m), e)| (s.watch, [s.value, m.value, e.value]))
-            .collect();
-        self.margins = start;
-        for (watch, values) in candidates {
-            let (mut t, mut y) = ([t_old, 0.5 * (t_old + t_new), t_new], values);
-            for _ in 0..4 {
-                let Some(lowest) = vertex(t, y).filter(|v| *v > t[0] && *v < t[2] && *v != t[1]) else { break };
-                self.margins_at(lowest);
-                let Some(m) = self.margins.iter().find(|m| m.watch == watch) else { break };
-                if m.is_broken() {
-                    found = Some(lowest);
-                    break;
-                }
-                // Round the lowest of the points so far.
-                let (value, k) = (m.value, usize::from(lowest > t[1]));
-                if value >= y[1] {
-                    break;
-                }
-                if k == 1 {
-                    (t[0], y[0]) = (t[1], y[1]);
-                } else {
-                    (t[2], y[2]) = (t[1], y[1]);
-                }
-                (t[1], y[1]) = (lowest, value);
-            }
-            if found.is_some() {
-                break;
-            }
-        }
-        found
-    }
-
-    /// The first time at which a margin is broken, between one at which none is and one at which some is.
-    fn bracket(&mut self, mut low: f64, mut high: f64) -> (f64, Watch) {
-        let broken =
-            |margins: &[Margin]| -> Vec<Margin> { margins.iter().copied().filter(Margin::is_broken).collect() };
-        let mut at_high = broken(&self.margins);
-        let mut at_low: Vec<Margin> = vec![];
-        let mut halve = false;
-        let mut first = true;
-        let step = high - low;
-        loop {
-            let width = high - low;
-            // A later change of mode matters as much as an error of the step.
-            let least = (4.0 * f64::EPSILON * high.abs().max(low.abs())).max(1e-3 * self.options.tolerance * step);
-            if width <= least {
-                break;
-            }
-            if first {
-                self.margins_at(low);
-                at_low.clone_from(&self.margins);
-                first = false;
-            }
-            // The earliest root by the secants of those broken at the end, a little past it; every other time
-            // that does not halve the interval, its middle.
-            let guess = if halve {
-                0.5 * (low + high)
-            } else {
-                let mut t = high;
-                for m in &at_high {
-                    let before = at_low.iter().find(|l| l.watch == m.watch).map_or(0.0, |l| l.value.max(0.0));
-                    t = t.min(low + width * (before / (before - m.value)));
-                }
-                t + (1e-3 * width * ((t - low).min(high - t) / width)).max(least)
-            };
-            let guess = guess.clamp(low + 0.5 * least, high - 0.5 * least);
-            if guess <= low || guess >= high {
-                break;
-            }
-            self.margins_at(guess);
-            let found = broken(&self.margins);
-            if found.is_empty() {
-                low = guess;
-                at_low.clone_from(&self.margins);
-            } else {
-                high = guess;
-                at_high = found;
-            }
-            halve = !halve && high - low > 0.5 * width;
-        }
-        let first =
-            at_high.iter().min_by(|a, b| (a.value / a.noise.max(1e-300)).total_cmp(&(b.value / b.noise.max(1e-300))));
-        (high, first.expect("broken at the end").watch)
-    }
-
     fn sample_time(&self, k: usize) -> f64 {
         let s = &self.engine.system.scenario;
         if k + 1 == self.samples { s.end } else { s.start + (s.end - s.start) * k as f64 / (self.samples - 1) as f64 }
@@ -694,6 +561,15 @@ impl Simulation {
             }
         }
         ControlFlow::Continue(())
+    }
+
+    /// Whether a row is due at the end of a step of length `h`, at `t`; rows of the grid up to there count as one.
+    pub(super) fn is_row_due(&mut self, t: f64, h: f64) -> bool {
+        let before = self.next_sample;
+        while self.next_sample < self.samples && t >= self.sample_time(self.next_sample) - 0.5 * h {
+            self.next_sample += 1;
+        }
+        self.next_sample > before
     }
 
     /// What there is to say about the run so far.
@@ -759,16 +635,6 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     Some(format!("{what}: {done}"))
 }
 
-/// How often in a run what a formula does to a held element is looked at, at least.
-const LOOKS: f64 = 1000.0;
-
-/// The lowest point of the parabola through three points; none if it opens downward.
-fn vertex(t: [f64; 3], y: [f64; 3]) -> Option<f64> {
-    let first = (y[1] - y[0]) / (t[1] - t[0]);
-    let second = ((y[2] - y[1]) / (t[2] - t[1]) - first) / (t[2] - t[0]);
-    (second > 0.0).then(|| 0.5 * (t[0] + t[1]) - 0.5 * first / second)
-}
-
 /// Adds what the sources put in during the last step. A power that changes its sign is parted where it does.
 fn take_in(stepper: &impl Stepper, states: usize, came_in: &mut [f64]) {
     let (t_old, t) = (stepper.t_old(), stepper.t());
@@ -816,216 +682,6 @@ pub fn simulate(
             Ok(run.report())
         }
     }
-}
-
-/// A run in steps of fixed length.
-fn fixed(
-    train: &Train,
-    scenario: &str,
-    options: &Options,
-    h: f64,
-    recorder: &mut dyn Recorder,
-) -> Result<RunReport, Diagnostics> {
-    let mut run = Simulation::new(train, scenario, options)?;
-    let mut stepper = FixedStep::new(train, scenario, h)?;
-    stepper.engine.counts = options.energies;
-    if options.energies {
-        stepper.with_energies();
-    }
-    if recorder.columns(&run.columns).is_break() {
-        return Ok(run.report());
-    }
-    let end = run.engine.system.scenario.end;
-    let mut x = Vec::new();
-    let mut key = None;
-    let steps = ((end - run.t) / h - 1e-9).ceil() as u64;
-    run.outcome = Some(Outcome::Finished);
-    for step in 0..=steps {
-        let t = stepper.time();
-        let sampled =
-            run.next_sample < run.samples && (t >= run.sample_time(run.next_sample) - 0.5 * h || step == steps);
-        let changed = key != Some(stepper.state_of_modes());
-        // No step has chosen the mode of the start yet.
-        if step == 0 {
-            if let Err(outcome) = run.choose(recorder) {
-                // Fixed steps go on after an impact, also after one at the start.
-                if !matches!(outcome, Outcome::Impact(_)) {
-                    run.outcome = Some(outcome);
-                }
-            } else {
-                run.next_sample = 1;
-                run.row();
-                if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
-                    run.outcome = Some(Outcome::Interrupted);
-                }
-            }
-        } else if sampled || changed {
-            key = Some(stepper.state_of_modes());
-            stepper.copy_to_engine(&mut x);
-            let labels = stepper.engine.labels();
-            if run.labels != labels {
-                let event = event(&stepper.engine, t, None, &run.labels, &labels);
-                run.events += 1;
-                if event.is_some_and(|e| recorder.event(&e).is_break()) {
-                    run.outcome = Some(Outcome::Interrupted);
-                }
-            }
-            run.labels = labels;
-        }
-        if sampled && step > 0 {
-            while run.next_sample < run.samples && t >= run.sample_time(run.next_sample) - 0.5 * h {
-                run.next_sample += 1;
-            }
-            stepper.engine.row(t, &x, &mut run.row);
-            if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
-                run.outcome = Some(Outcome::Interrupted);
-            }
-        }
-        if step % 256 == 0 && recorder.progress(t).is_break() {
-            run.outcome = Some(Outcome::Interrupted);
-        }
-        if (step % 256 == 0 || step == steps) && !stepper.is_finite() {
-            let why = format!(
-                "speeds are no longer finite at t = {t} s: a formula leaves its domain, or the step is too long"
-            );
-            run.outcome = Some(Outcome::NotConverged(why));
-        }
-        if step == steps || run.outcome != Some(Outcome::Finished) {
-            break;
-        }
-        stepper.step();
-        run.steps += 1;
-    }
-    stepper.copy_to_engine(&mut x);
-    run.t = stepper.time();
-    run.notes.push(format!("steps of {h} s: first order in the step"));
-    if run.t > end + 1e-9 * h {
-        run.notes.push(format!("the last step ends at t = {} s, past the end of the scenario", run.t));
-    }
-    let (unsettled, impacts) = (stepper.unsettled_steps(), stepper.impacts());
-    let in_steps = |n: u64| if n == 1 { "in one step".to_owned() } else { format!("in {n} steps") };
-    if unsettled > 0 {
-        run.notes.push(format!("{} the mode was not settled within the bounded number of trials", in_steps(unsettled)));
-    }
-    if impacts > 0 {
-        run.notes.push(format!(
-            "{} parts of different speed were joined at once, as in an inelastic impact",
-            in_steps(impacts)
-        ));
-    }
-    run.x = x;
-    run.came_in = stepper.came_in;
-    run.engine = stepper.engine;
-    Ok(run.report())
-}
-
-/// The method of the paper: classical Runge–Kutta steps in which the side of each tooth force is that of
-/// the step before, and Coulomb friction follows the sign of the speed without ever sticking. It is wrong for
-/// one step after each reversal and chatters at rest; kept to show how much.
-fn lagged(
-    train: &Train,
-    scenario: &str,
-    options: &Options,
-    h: f64,
-    recorder: &mut dyn Recorder,
-) -> Result<RunReport, Diagnostics> {
-    let mut run = Simulation::new(train, scenario, options)?;
-    if recorder.columns(&run.columns).is_break() {
-        return Ok(run.report());
-    }
-    if !(h > 0.0 && h.is_finite()) {
-        return Err(Diagnostic::new(Code::Unfit, "", format!("a step of {h} s"))
-            .hint("a step is longer than zero")
-            .into());
-    }
-    let groups = run.engine.system.groups.len();
-    let n = run.x.len();
-    let mut x = run.x.clone();
-    let mut mode = run.engine.mode.clone();
-    run.engine.look(run.t, &x);
-    for g in 0..groups {
-        mode.slip[g] = if run.engine.group_slip(g) < 0.0 { -1 } else { 1 };
-    }
-    let (start, end) = (run.t, run.engine.system.scenario.end);
-    let steps = ((end - start) / h - 1e-9).ceil() as u64;
-    let mut k = vec![vec![0.0; n]; 4];
-    let mut at = vec![0.0; n];
-    run.outcome = Some(Outcome::Finished);
-    // The first step has no step before: the sides that agree with the start.
-    let mut torques = vec![];
-    for _ in 0..8 {
-        run.engine.enter(&mode);
-        run.engine.solve(run.t, &x);
-        torques = run.engine.element_torques();
-        run.engine.turn_sides(&mut mode, &torques);
-    }
-    for step in 0..=steps {
-        let t = start + step as f64 * h;
-        run.t = t;
-        while run.next_sample < run.samples && t >= run.sample_time(run.next_sample) - 0.5 * h {
-            run.next_sample += 1;
-            run.engine.row(t, &x, &mut run.row);
-            if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
-                run.outcome = Some(Outcome::Interrupted);
-            }
-        }
-        if recorder.progress(t).is_break() {
-            run.outcome = Some(Outcome::Interrupted);
-        }
-        if step == steps || run.outcome != Some(Outcome::Finished) {
-            break;
-        }
-        run.engine.inside = t + 0.5 * h;
-        for stage in 0..4 {
-            let (part, from) = [(0.0, 0), (0.5, 0), (0.5, 1), (1.0, 2)][stage];
-            for i in 0..n {
-                at[i] = x[i] + if stage == 0 { 0.0 } else { part * h * k[from][i] };
-            }
-            run.engine.look(t + part * h, &at);
-            for k in 0..run.engine.touch.len() {
-                run.engine.touch[k] = run.engine.touch_now(k, &at);
-            }
-            for g in 0..groups {
-                let slip = run.engine.group_slip(g);
-                if slip != 0.0 {
-                    mode.slip[g] = if slip < 0.0 { -1 } else { 1 };
-                }
-            }
-            // Old forces, new speeds: where the speed reverses, so does the drive.
-            run.engine.turn_sides(&mut mode, &torques);
-            if mode != run.engine.mode {
-                run.engine.enter(&mode);
-            }
-            let mut rate = std::mem::take(&mut k[stage]);
-            run.engine.rate(t + part * h, &at, &mut rate);
-            k[stage] = rate;
-        }
-        let states = run.engine.states();
-        for i in 0..n {
-            let change = h / 6.0 * (k[0][i] + 2.0 * k[1][i] + 2.0 * k[2][i] + k[3][i]);
-            x[i] += change;
-            if let Some(sum) = i.checked_sub(states).and_then(|i| run.came_in.get_mut(i)) {
-                *sum += change.max(0.0);
-            }
-        }
-        run.engine.solve(t + h, &x);
-        torques = run.engine.element_torques();
-        run.steps += 1;
-        if x.iter().any(|x| !x.is_finite()) {
-            let why = format!(
-                "the motion is no longer finite at t = {} s: a formula leaves its domain, or the step is too long",
-                t + h
-            );
-            run.outcome = Some(Outcome::NotConverged(why));
-        }
-    }
-    run.engine.look(run.t, &x);
-    run.x = x;
-    run.notes.push(format!(
-        "compatibility: steps of {h} s with the tooth forces' directions of the step before (Galvagno 2010); wrong after \
-         each reversal, and nothing sticks"
-    ));
-    Ok(run.report())
 }
 
 /// The state at the start, without energies; the engine looks at it.

@@ -4,7 +4,7 @@
 //! an integrator that touches the end of the piece sees the value before a jump: `inside` is a time
 //! inside the piece that says which one it is.
 
-use crate::train::{Formula, MemberId, Signal};
+use crate::train::{MemberId, Signal};
 
 impl Signal {
     /// Value at `t` in the piece that holds `inside`; `speed` tells the speed of a member.
@@ -44,7 +44,7 @@ impl Signal {
                 }
             },
             Self::Product(of) => of[0].value(t, inside, speed) * of[1].value(t, inside, speed),
-            Self::Expression { formula, speeds } => expression(formula, speeds, t, speed),
+            Self::Expression { formula, speeds } => expression(speeds, speed, |speeds| formula.value(t, speeds)),
         }
     }
 
@@ -60,6 +60,15 @@ impl Signal {
             },
             Self::Product(of) => of.iter().any(|s| s.moves(inside)),
             Self::Expression { .. } => true,
+        }
+    }
+
+    /// Whether its rate tells how it moves; that of a formula with jumps does not.
+    pub(crate) fn has_rate(&self) -> bool {
+        match self {
+            Self::Expression { formula, .. } => !formula.jumps(),
+            Self::Product(of) => of.iter().all(|s| s.has_rate()),
+            _ => true,
         }
     }
 
@@ -99,7 +108,7 @@ impl Signal {
                 of[0].rate(t, inside, speed) * of[1].value(t, inside, speed)
                     + of[0].value(t, inside, speed) * of[1].rate(t, inside, speed)
             }
-            Self::Expression { formula, speeds } => derivative(|t| expression(formula, speeds, t, speed), t),
+            Self::Expression { formula, speeds } => expression(speeds, speed, |speeds| formula.rate(t, speeds)),
         }
     }
 
@@ -145,48 +154,16 @@ impl Signal {
     }
 }
 
-fn expression(formula: &Formula, speeds: &[MemberId], t: f64, speed: &dyn Fn(MemberId) -> f64) -> f64 {
+/// What a formula says at the speeds of its members.
+fn expression(speeds: &[MemberId], speed: &dyn Fn(MemberId) -> f64, say: impl Fn(&[f64]) -> f64) -> f64 {
     const FEW: usize = 8;
     if speeds.len() <= FEW {
         let mut few = [0.0; FEW];
         few.iter_mut().zip(speeds).for_each(|(x, m)| *x = speed(*m));
-        return formula.value(t, &few[..speeds.len()]);
+        return say(&few[..speeds.len()]);
     }
     let all: Vec<f64> = speeds.iter().map(|m| speed(*m)).collect();
-    formula.value(t, &all)
-}
-
-/// Derivative by central differences, extrapolated to a step of zero (Ridders 1982): differences with ever shorter
-/// steps, of which the one that changes least is taken.
-fn derivative(f: impl Fn(f64) -> f64, t: f64) -> f64 {
-    const LEVELS: usize = 10;
-    const RATIO: f64 = 1.43;
-    let mut table = [[0.0f64; LEVELS]; LEVELS];
-    let (mut best, mut error) = (f64::NAN, f64::INFINITY);
-    // Neither start nor ratio is round, so that no period of the signal is met twice.
-    let mut h = 9.37e-3;
-    for i in 0..LEVELS {
-        // Exactly what lies between both points.
-        let (later, earlier) = (t + h, t - h);
-        table[0][i] = (f(later) - f(earlier)) / (later - earlier);
-        let mut weight = RATIO * RATIO;
-        for j in 1..=i {
-            table[j][i] = (table[j - 1][i] * weight - table[j - 1][i - 1]) / (weight - 1.0);
-            weight *= RATIO * RATIO;
-            let change = (table[j][i] - table[j - 1][i]).abs().max((table[j][i] - table[j - 1][i - 1]).abs());
-            if change <= error {
-                (best, error) = (table[j][i], change);
-            }
-        }
-        h /= RATIO;
-    }
-    if best.is_nan() {
-        // At the edge of its domain, from the side that is in it.
-        let h = 1e-7 * t.abs().max(1.0);
-        let forward = (4.0 * f(t + h) - f(t + 2.0 * h) - 3.0 * f(t)) / (2.0 * h);
-        best = if forward.is_nan() { (3.0 * f(t) - 4.0 * f(t - h) + f(t - 2.0 * h)) / (2.0 * h) } else { forward };
-    }
-    best
+    say(&all)
 }
 
 enum Segment {

@@ -163,6 +163,8 @@ pub(super) struct Friction {
     pub engagement: Option<usize>,
     /// Never engaged in this scenario.
     pub open: bool,
+    /// The vehicle among the sources that presses on it by its weight.
+    pub rolls: Option<usize>,
     /// Slip over the coordinates.
     pub row: Vec<f64>,
     pub group: Option<(usize, f64)>,
@@ -363,19 +365,23 @@ impl System {
             }
         }
         for source in &scenario.sources {
-            let what = match &source.kind {
-                SourceKind::Speed(signal) if signal.depends_on_speed() => "a prescribed speed",
-                SourceKind::Controller { setpoint, derivative, .. }
-                    if *derivative != 0.0 && setpoint.depends_on_speed() =>
-                {
-                    "the set point of a controller with a derivative part"
+            // What is derived by the time.
+            let (what, signal) = match &source.kind {
+                SourceKind::Speed(signal) => ("a prescribed speed", signal),
+                SourceKind::Controller { setpoint, derivative, .. } if *derivative != 0.0 => {
+                    ("the set point of a controller with a derivative part", setpoint)
                 }
                 _ => continue,
             };
-            let message = format!("`{}`: {what} cannot follow the speeds of members", source.name);
-            return Err(fail(
-                Diagnostic::new(Code::Unfit, place, message).hint("let it follow the time, or use a torque"),
-            ));
+            let (fault, hint) = if signal.depends_on_speed() {
+                ("cannot follow the speeds of members", "let it follow the time, or use a torque")
+            } else if !signal.has_rate() {
+                ("cannot follow a formula with jumps, as `floor` and `signum` have", "use ramps or a table")
+            } else {
+                continue;
+            };
+            let message = format!("`{}`: {what} {fault}", source.name);
+            return Err(fail(Diagnostic::new(Code::Unfit, place, message).hint(hint)));
         }
         let wish: Vec<MemberId> = (train.inertias().iter().map(|i| i.member))
             .filter(|m| train.terminals().contains(m))
@@ -482,6 +488,7 @@ impl System {
                                     blocks: None,
                                     engagement: None,
                                     open: false,
+                                    rolls: Some(k),
                                     row: speeds[s.member.0].clone(),
                                     group: None,
                                     port: port(s.member, frame),
@@ -506,6 +513,7 @@ impl System {
                 blocks: None,
                 engagement: None,
                 open: false,
+                rolls: None,
                 row: difference(a, b),
                 group: None,
                 port: port(a, b),
@@ -529,6 +537,7 @@ impl System {
                 blocks: one_way.then_some(e.blocks),
                 engagement,
                 open: !one_way && engagement.is_none(),
+                rolls: None,
                 row: difference(a, b),
                 group: None,
                 port: port(a, b),
@@ -548,6 +557,7 @@ impl System {
                     blocks: None,
                     engagement: None,
                     open: false,
+                    rolls: None,
                     row: difference(a, b),
                     group: None,
                     port: port(a, b),
@@ -687,7 +697,7 @@ impl System {
         }
         for source in scenario.sources.iter().filter(|s| matches!(s.kind, SourceKind::Vehicle { .. })) {
             assumptions.push(format!(
-                "{}: its rolling resistance (that of a level road) and air drag are part of what it takes, not losses of the train",
+                "{}: its rolling resistance and air drag are part of what it takes, not losses of the train",
                 source.name
             ));
         }
@@ -754,12 +764,30 @@ impl System {
         self.matrix(slopes).lu().determinant() / self.matrix(&lossless).lu().determinant()
     }
 
-    /// How far a friction element is engaged, 0 to 1.
-    pub fn engaged(&self, f: &Friction, t: f64, inside: f64, speed: &dyn Fn(MemberId) -> f64) -> f64 {
-        match f.engagement {
+    /// What governs how far a friction element is engaged, if anything does: the position among the signals, and
+    /// the signal.
+    pub fn governor(&self, f: &Friction) -> Option<(usize, &Signal)> {
+        let first =
+            |k: usize| -> usize { self.scenario.sources[..k].iter().map(|s| signals_of(&s.kind).count()).sum() };
+        if let Some(k) = f.rolls {
+            let grade = signals_of(&self.scenario.sources[k].kind).next().expect("a vehicle has a grade");
+            return Some((first(k), grade));
+        }
+        let k = f.engagement?;
+        Some((first(self.scenario.sources.len()) + k, &self.scenario.engagements[k].signal))
+    }
+
+    /// How far a friction element is engaged, 0 to 1; `value` tells what its governor is worth.
+    #[inline]
+    pub fn engaged(&self, f: &Friction, value: impl Fn(&Signal) -> f64) -> f64 {
+        match (f.rolls, f.engagement) {
             _ if f.open => 0.0,
-            None => 1.0,
-            Some(k) => self.scenario.engagements[k].signal.value(t, inside, speed),
+            (Some(k), _) => match &self.scenario.sources[k].kind {
+                SourceKind::Vehicle { grade, .. } => upright(value(grade)),
+                _ => unreachable!("only a vehicle rolls"),
+            },
+            (None, None) => 1.0,
+            (None, Some(k)) => value(&self.scenario.engagements[k].signal),
         }
     }
 
@@ -804,9 +832,46 @@ pub(super) fn signals_of(kind: &SourceKind) -> impl Iterator<Item = &Signal> {
     first.into_iter().chain(second)
 }
 
-/// What a vehicle on a slope weighs against its wheel.
-pub(super) fn slope_force(mass: f64, grade: f64) -> f64 {
-    mass * GRAVITY * grade / grade.hypot(1.0)
+/// Torque of a source whose member turns at `w` and whose error has the integral `sum`. `value` tells what its first or
+/// second signal is worth, `rate` how fast one changes. A prescribed speed has no torque of its own: 0. The derivative of
+/// a controller's speed is not in it: it acts through the acceleration.
+#[inline]
+pub(super) fn source_torque(
+    kind: &SourceKind,
+    w: f64,
+    sum: f64,
+    value: impl Fn(usize, &Signal) -> f64,
+    rate: impl Fn(&Signal) -> f64,
+) -> f64 {
+    match kind {
+        SourceKind::Torque(signal) => value(0, signal),
+        SourceKind::Speed(_) => 0.0,
+        SourceKind::Controller { setpoint, feed_forward, proportional, integral, derivative } => {
+            let rate = if *derivative == 0.0 { 0.0 } else { rate(setpoint) };
+            value(1, feed_forward) + proportional * (value(0, setpoint) - w) + integral * sum + derivative * rate
+        }
+        SourceKind::Linear { torque, about, slope } => torque - slope * (w - about),
+        SourceKind::Quadratic { torque, about, factor, even } => {
+            let d = w - about;
+            torque - factor * if *even { d * d } else { d * d.abs() }
+        }
+        SourceKind::Vehicle { mass, wheel_radius, final_drive, drag_area, air_density, grade, .. } => {
+            let arm = wheel_radius / final_drive;
+            let v = w * arm;
+            let grade = value(0, grade);
+            let weight = mass * GRAVITY * grade * upright(grade);
+            -(0.5 * air_density * drag_area * v * v.abs() + weight) * arm
+        }
+        SourceKind::Motor { full_load, closed, throttle } => {
+            let (low, high) = (closed.at(w), full_load.at(w));
+            low + value(0, throttle).clamp(0.0, 1.0) * (high - low)
+        }
+    }
+}
+
+/// Cosine of a slope whose tangent is `grade`: the part of a weight that presses on it.
+pub(super) fn upright(grade: f64) -> f64 {
+    1.0 / grade.hypot(1.0)
 }
 
 /// The name of a mesh, or of the set of a chain.

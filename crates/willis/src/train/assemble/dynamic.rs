@@ -9,8 +9,9 @@ use crate::train::describe::dynamic::{
 };
 use crate::train::describe::{EfficiencySpec, MeshSpec, Parts, SetSpec};
 use crate::train::dynamic::{
-    Curve, DragMount, Engagement, Formula, Friction, Inertia, LossRow, Scenario, Shaft, Signal, Source, SourceKind,
+    Curve, DragMount, Engagement, Friction, Inertia, LossRow, Scenario, Shaft, Signal, Source, SourceKind,
 };
+use crate::train::formula::Formula;
 use crate::train::physical::PlanetBody;
 use crate::train::{Efficiency, FRAME, MemberId, MemberKind, Set, ShiftElementId, ShiftElementKind, State};
 

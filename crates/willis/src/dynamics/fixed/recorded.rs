@@ -1,0 +1,147 @@
+//! A run in steps of fixed length that is recorded.
+
+use crate::diagnostic::Diagnostics;
+use crate::dynamics::engine::Touch;
+use crate::dynamics::event::event;
+use crate::dynamics::mode::Mode;
+use crate::dynamics::report::{Options, Outcome, Recorder, RunReport, Sample};
+use crate::dynamics::run::Simulation;
+use crate::train::Train;
+
+use super::FixedStep;
+
+/// A run in steps of fixed length.
+pub(in crate::dynamics) fn fixed(
+    train: &Train,
+    scenario: &str,
+    options: &Options,
+    h: f64,
+    recorder: &mut dyn Recorder,
+) -> Result<RunReport, Diagnostics> {
+    let mut run = Simulation::new(train, scenario, options)?;
+    let mut stepper = FixedStep::new(train, scenario, h)?;
+    stepper.engine.counts = options.energies;
+    if options.energies {
+        stepper.with_energies();
+    }
+    if recorder.columns(&run.columns).is_break() {
+        return Ok(run.report());
+    }
+    let end = run.engine.system.scenario.end;
+    let mut x = Vec::new();
+    let mut key = None;
+    let steps = stepper.steps();
+    run.outcome = Some(Outcome::Finished);
+    for step in 0..=steps {
+        let t = stepper.time();
+        let sampled = run.is_row_due(t, h);
+        let changed = key != Some(stepper.state_of_modes());
+        // No step has chosen the mode of the start yet.
+        if step == 0 {
+            if let Err(outcome) = run.choose(recorder) {
+                // Fixed steps go on after an impact, also after one at the start.
+                if !matches!(outcome, Outcome::Impact(_)) {
+                    run.outcome = Some(outcome);
+                }
+            } else {
+                run.row();
+                if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
+                    run.outcome = Some(Outcome::Interrupted);
+                }
+            }
+        } else if sampled || changed {
+            key = Some(stepper.state_of_modes());
+            stepper.copy_to_engine(&mut x);
+            let labels = stepper.engine.labels();
+            if run.labels != labels {
+                let event = event(&stepper.engine, t, None, &run.labels, &labels);
+                run.events += 1;
+                if event.is_some_and(|e| recorder.event(&e).is_break()) {
+                    run.outcome = Some(Outcome::Interrupted);
+                }
+            }
+            run.labels = labels;
+        }
+        if sampled && step > 0 {
+            stepper.engine.row(t, &x, &mut run.row);
+            if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
+                run.outcome = Some(Outcome::Interrupted);
+            }
+        }
+        if step % 256 == 0 && recorder.progress(t).is_break() {
+            run.outcome = Some(Outcome::Interrupted);
+        }
+        if (step % 256 == 0 || step == steps) && !stepper.is_finite() {
+            let why = format!(
+                "speeds are no longer finite at t = {t} s: a formula leaves its domain, or the step is too long"
+            );
+            run.outcome = Some(Outcome::NotConverged(why));
+        }
+        if step == steps || run.outcome != Some(Outcome::Finished) {
+            break;
+        }
+        stepper.step();
+        run.steps += 1;
+    }
+    stepper.copy_to_engine(&mut x);
+    run.t = stepper.time();
+    run.notes.push(format!("steps of {h} s: first order in the step"));
+    if run.t > end + 1e-9 * h {
+        run.notes.push(format!("the last step ends at t = {} s, past the end of the scenario", run.t));
+    }
+    let (unsettled, impacts) = (stepper.unsettled_steps(), stepper.impacts());
+    let in_steps = |n: u64| if n == 1 { "in one step".to_owned() } else { format!("in {n} steps") };
+    if unsettled > 0 {
+        run.notes.push(format!("{} the mode was not settled within the bounded number of trials", in_steps(unsettled)));
+    }
+    if impacts > 0 {
+        run.notes.push(format!(
+            "{} parts of different speed were joined at once, as in an inelastic impact",
+            in_steps(impacts)
+        ));
+    }
+    run.x = x;
+    run.came_in = stepper.came_in;
+    run.engine = stepper.engine;
+    Ok(run.report())
+}
+
+impl FixedStep {
+    /// What labels depend on.
+    fn state_of_modes(&self) -> (u64, u64, u64, f64) {
+        let held = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s == 0) << g).sum();
+        let forward = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s > 0) << g).sum();
+        let code = |touch: &Touch| match touch {
+            Touch::Gap => 0,
+            Touch::On(side) => 1 + i64::from(*side),
+            Touch::Limited(side) => 4 + i64::from(*side),
+            Touch::Parting(side) => 7 + i64::from(*side),
+        };
+        let touch = self.engine.touch.iter().fold(0u64, |sum, t| sum.wrapping_mul(9).wrapping_add(code(t) as u64));
+        (held, forward, touch, self.until)
+    }
+
+    /// Brings the engine to the state and mode reached.
+    fn copy_to_engine(&mut self, x: &mut Vec<f64>) {
+        let free = self.engine.system.free;
+        x.clear();
+        x.extend_from_slice(&self.v[..free]);
+        x.extend_from_slice(&self.rest);
+        x.extend_from_slice(&self.energies);
+        let t = self.time();
+        self.engine.inside = t;
+        self.engine.look(t, x);
+        let mode = Mode {
+            slip: (self.sign.iter().enumerate())
+                .map(|(g, s)| if self.groups[g].driven && self.slip[g] == 0.0 { 0 } else { *s })
+                .collect(),
+            side: self.side.clone(),
+        };
+        for k in 0..self.engine.engaged.len() {
+            let engaged = self.engine.engagement(k, t);
+            let is_rigid = self.engine.system.frictions[k].rigid;
+            self.engine.engaged[k] = if is_rigid { engaged >= 0.5 } else { engaged > 0.0 };
+        }
+        self.engine.enter(&mode);
+    }
+}

@@ -1,0 +1,509 @@
+//! The mode of a step: one that agrees with the speeds at its end.
+
+use crate::dynamics::fused::NOISE;
+use crate::dynamics::mode::{Mode, Pattern, Side, compose, dot, dot_size, slope};
+use crate::dynamics::system::System;
+
+use super::{FixedStep, GroupStep, LEAST_UNBOUNDED};
+
+/// The map of a mode, flat: rows over ports and slips.
+pub(in crate::dynamics) struct StepMap {
+    /// Accelerations of the free coordinates, then holding torques of `held`, then torques of `moving`.
+    pub rows: Vec<f64>,
+    pub held: Vec<u16>,
+    pub moving: Vec<u16>,
+    /// Torques at the first gears of the elements of held groups, in the order of `held`.
+    pub still: Vec<(u16, Vec<f64>)>,
+    /// Where some of what is held is held several times over: slip accelerations of `held` with nothing held yet.
+    slips: Option<Vec<f64>>,
+    /// Torques behind prescribed speeds.
+    pub reactions: Vec<f64>,
+}
+
+impl StepMap {
+    /// Whether some of what is held is held several times over.
+    pub fn is_redundant(&self) -> bool {
+        self.slips.is_some()
+    }
+}
+
+/// Key of a map: which groups are held, and the sides of what moves.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub(super) struct Key {
+    held: u64,
+    coast: u64,
+}
+
+impl Key {
+    /// A mode of that key; which way things slide does not matter to its map.
+    fn mode(self, s: &System) -> Mode {
+        Mode {
+            slip: (0..s.groups.len()).map(|g| i8::from(self.held >> g & 1 == 0)).collect(),
+            side: (0..s.elements.len())
+                .map(|j| if self.coast >> j & 1 == 1 { Side::Coast } else { Side::Drive })
+                .collect(),
+        }
+    }
+}
+
+impl FixedStep {
+    /// The map of a mode, made if it was not met before: the only place that takes more than bounded time.
+    #[inline]
+    fn map(&mut self, key: Key) -> Option<u32> {
+        if let Some((k, map)) = self.last
+            && k == key
+        {
+            return Some(map);
+        }
+        let found = match self.by_key.get(&key) {
+            Some(&k) => (k != u32::MAX).then_some(k),
+            None => self.make(key),
+        };
+        if let Some(map) = found {
+            self.last = Some((key, map));
+        }
+        found
+    }
+
+    fn make(&mut self, key: Key) -> Option<u32> {
+        let s = &self.engine.system;
+        let mode = key.mode(s);
+        let made = self.engine.maps.pattern(s, &mode).and_then(|pattern| step_map(s, &mode, pattern));
+        let k = match made {
+            Some(map) => {
+                self.maps.push(map);
+                self.maps.len() as u32 - 1
+            }
+            None => u32::MAX,
+        };
+        self.by_key.insert(key, k);
+        (k != u32::MAX).then_some(k)
+    }
+
+    /// The map of a mode with nothing held yet; made if it was not met before.
+    fn wide(&mut self, key: Key) -> Option<usize> {
+        if let Some(&k) = self.by_wide_key.get(&key) {
+            return (k != u32::MAX).then_some(k as usize);
+        }
+        let s = &self.engine.system;
+        let made = self.engine.maps.pattern(s, &key.mode(s)).map(|pattern| pattern.with_slips(self.groups.len()));
+        let k = match made {
+            Some(wide) => {
+                self.wides.push(wide);
+                self.wides.len() as u32 - 1
+            }
+            None => u32::MAX,
+        };
+        self.by_wide_key.insert(key, k);
+        (k != u32::MAX).then_some(k as usize)
+    }
+
+    /// Which groups are held and which sides drive: the key of the present mode.
+    #[inline]
+    fn key(&self) -> Key {
+        let mut key = Key { held: 0, coast: 0 };
+        for (g, group) in self.groups.iter().enumerate() {
+            if self.sign[g] == 0 && !group.driven {
+                key.held |= 1 << g;
+            } else {
+                for &j in &group.elements {
+                    key.coast |= u64::from(self.side[j] == Side::Coast) << j;
+                }
+            }
+        }
+        key
+    }
+
+    /// Torques of what slides, and the losses of teeth that do not depend on load, in the present mode; at their
+    /// peak in the group that is breaking away.
+    #[inline(always)]
+    fn rub(&mut self, breaking: Option<usize>) {
+        for (g, group) in self.groups.iter().enumerate() {
+            let sign = self.sign[g];
+            for rub in &group.rubs {
+                let opposes = match sign {
+                    0 => 0.0,
+                    1 => -rub.opposes[0],
+                    _ => rub.opposes[1],
+                };
+                let opposes = if opposes.abs() >= LEAST_UNBOUNDED { 0.0 } else { opposes };
+                let opposes = if breaking == Some(g) { opposes * rub.peak } else { opposes };
+                self.tau[rub.port] = rub.viscous + if rub.factor < 0.0 { -opposes } else { opposes };
+            }
+            for &(j, port, [drive, coast]) in &group.constants {
+                let (_, factor) = self.engine.system.elements[j].group.expect("of this group");
+                let torque = if self.side[j] == Side::Drive { drive } else { coast };
+                self.tau[port] = f64::from(sign) * factor.signum() * torque;
+            }
+        }
+    }
+
+    /// Round-off of the slip of a group at the end of the step.
+    fn round_off(&self, g: usize) -> f64 {
+        NOISE * (dot_size(&self.groups[g].row, &self.next) + self.slip[g].abs())
+    }
+
+    /// The first thing in which the mode and the end of the step disagree. Groups in `kept` came to rest at once after
+    /// they were released: those that others hold as well go on sliding without moving, the rest is not released again.
+    #[inline(always)]
+    fn disagreement(&self, trial: &mut [f64], map: &StepMap, free: usize, cols: usize, kept: u64) -> Option<Flip> {
+        let mut rows = map.rows[free * cols..].chunks_exact(cols);
+        let mut stuck = None;
+        let mut split = None;
+        let mut teeth = map.still.iter();
+        for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
+            if self.sign[g] != 0 {
+                let end = dot(&group.row, &self.next) * f64::from(self.sign[g]);
+                let may_hold = self.capacity[g] != [0.0; 2] || !group.elements.is_empty();
+                let noise = self.round_off(g);
+                // What others hold as well has no slip whatever it does: it is held with them.
+                let stays = end <= noise && self.slip[g].abs() <= noise;
+                let slides_at_its_limit = kept >> g & 1 == 1 && end >= -noise;
+                if (end < 0.0 || stays) && may_hold && !slides_at_its_limit {
+                    return Some(Flip::Group(g, 0));
+                }
+                continue;
+            }
+            let force = group.lead.1 * dot(rows.next().expect("a row for each"), &self.tau);
+            if group.shares && !map.is_redundant() {
+                // What teeth hold follows from the torque in them once they slide: that is tried.
+                teeth.by_ref().nth(group.elements.len() - 1);
+                continue;
+            }
+            let [mut forward, mut backward] = self.capacity[g];
+            // Teeth at rest hold by the forces in them.
+            for &j in &group.elements {
+                let (_, row) = teeth.next().expect("a row for each");
+                let (_, factor, loss) = self.teeth[j];
+                let torque = dot(row, &self.tau);
+                let upper = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
+                let lower = (loss.drive * torque - loss.drive_torque).min(loss.coast * torque - loss.coast_torque);
+                let (along, against) = if factor > 0.0 { (upper, -lower) } else { (lower, -upper) };
+                forward += factor * along;
+                backward += factor * against;
+            }
+            let noise = 1e-12 * (force.abs() + 1e-300);
+            let sign = match (forward + force < -noise, backward - force < -noise) {
+                (true, _) => 1,
+                (_, true) => -1,
+                _ => continue,
+            };
+            // Where several hold together, some other split of the torques among them may do.
+            if *split.get_or_insert_with(|| self.splits(map, trial, cols)) {
+                continue;
+            }
+            if kept >> g & 1 == 0 {
+                return Some(Flip::Group(g, sign));
+            }
+            stuck = Some(Flip::Stuck);
+        }
+        for (&j, row) in map.moving.iter().zip(rows) {
+            let j = usize::from(j);
+            let (g, factor, loss) = self.teeth[j];
+            if self.sign[g] == 0 {
+                continue;
+            }
+            let sign = f64::from(self.sign[g]) * factor.signum();
+            let torque = dot(row, &self.tau);
+            let value = sign * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
+            let value = if self.side[j] == Side::Drive { value } else { -value };
+            // A mesh that carries nothing keeps its side.
+            if value < 0.0 && value < -NOISE * (loss.drive - loss.coast) * dot_size(row, &self.tau) {
+                return Some(Flip::Side(j));
+            }
+        }
+        stuck
+    }
+
+    /// Whether groups that are held several times over stay held: friction is balanced by projected sweeps, each element
+    /// within what it holds at most; teeth at rest do not help.
+    fn splits(&self, map: &StepMap, trial: &mut [f64], cols: usize) -> bool {
+        const MOST_SWEEPS: usize = 200;
+        let Some(slips) = &map.slips else { return false };
+        trial.copy_from_slice(&self.tau);
+        let rows = || map.held.iter().map(|g| &self.groups[usize::from(*g)]).zip(slips.chunks_exact(cols));
+        for _ in 0..MOST_SWEEPS {
+            let mut change = 0.0f64;
+            for (group, row) in rows() {
+                for rub in &group.rubs {
+                    let [low, high] = rub.range(rub.peak);
+                    let old = trial[rub.port] - rub.viscous;
+                    let next = (old - dot(row, trial) / row[rub.port]).clamp(low, high);
+                    change = change.max((next - old).abs() / (next.abs() + 1e-300));
+                    trial[rub.port] = next + rub.viscous;
+                }
+            }
+            if change <= 1e-12 {
+                break;
+            }
+        }
+        rows().all(|(_, row)| dot(row, trial).abs() <= 1e-9 * dot_size(row, trial))
+    }
+
+    /// Whether a held group whose parts share in holding would slide off: tried in both directions.
+    fn breaks_away(&mut self, g: usize) -> Option<i8> {
+        let sides: u64 = self.coasting();
+        let p = self.engine.system.ports;
+        let (free, cols) = (self.engine.system.free, p + self.groups.len());
+        for sign in [1i8, -1] {
+            if self.capacity[g][usize::from(sign < 0)] >= LEAST_UNBOUNDED {
+                continue;
+            }
+            self.sign[g] = sign;
+            // Sides that agree: the last ones, else each turned once.
+            for _ in 0..=self.groups[g].elements.len() {
+                let Some(map) = self.map(self.key()) else { break };
+                self.rub(Some(g));
+                let map = &self.maps[map as usize];
+                let rows = &map.rows;
+                let turned = (map.moving.iter().zip(rows[(free + map.held.len()) * cols..].chunks_exact(cols)))
+                    .filter(|(j, _)| self.teeth[usize::from(**j)].0 == g)
+                    .find_map(|(&j, row)| {
+                        let j = usize::from(j);
+                        let (_, factor, loss) = self.teeth[j];
+                        let along = f64::from(sign) * factor.signum();
+                        let value = along * (loss.drive - loss.coast) * dot(row, &self.tau) + loss.drive_torque
+                            - loss.coast_torque;
+                        let side = if value >= 0.0 { Side::Drive } else { Side::Coast };
+                        (side != self.side[j]).then_some((j, side))
+                    });
+                let Some((j, side)) = turned else { break };
+                self.side[j] = side;
+            }
+            let Some(map) = self.map(self.key()) else { continue };
+            self.rub(Some(g));
+            let rows = &self.maps[map as usize].rows;
+            let rate: f64 =
+                (0..free).map(|i| self.groups[g].row[i] * dot(&rows[i * cols..(i + 1) * cols], &self.tau)).sum();
+            let end = self.slip[g] + self.h * rate;
+            // Others may hold it as well: then nothing but round-off is left.
+            let size = dot_size(&self.groups[g].row, &self.v) + self.slip[g].abs();
+            if end * f64::from(sign) > 1e-11 * size {
+                return Some(sign);
+            }
+        }
+        self.sign[g] = 0;
+        for (j, side) in self.side.iter_mut().enumerate() {
+            *side = if sides >> j & 1 == 1 { Side::Coast } else { Side::Drive };
+        }
+        None
+    }
+
+    pub(super) fn coasting(&self) -> u64 {
+        self.side.iter().enumerate().map(|(j, s)| u64::from(*s == Side::Coast) << j).sum()
+    }
+
+    /// Solves the step in the present mode.
+    #[inline(always)]
+    fn solve(&mut self, free: usize, cols: usize) -> Option<u32> {
+        let map = self.map(self.key())?;
+        self.rub(None);
+        let rows = &self.maps[map as usize].rows;
+        for (i, row) in rows[..free * cols].chunks_exact(cols).enumerate() {
+            self.next[i] = self.v[i] + self.h * dot(row, &self.tau);
+        }
+        Some(map)
+    }
+
+    /// Finds the mode of the step and its end.
+    #[inline(always)]
+    fn settle(&mut self, free: usize, cols: usize) -> bool {
+        let trials = 4 * (self.groups.len() + self.side.len()) + 4;
+        // The group released last, and those that came to rest again at once.
+        let (mut released, mut kept) = (None, 0u64);
+        for _ in 0..trials {
+            let Some(map) = self.solve(free, cols) else { return false };
+            let mut trial = std::mem::take(&mut self.trial);
+            let mut flip = self.disagreement(&mut trial, &self.maps[map as usize], free, cols, kept);
+            self.trial = trial;
+            if flip.is_none() && self.shares && !self.maps[map as usize].is_redundant() {
+                for g in 0..self.groups.len() {
+                    if self.sign[g] == 0
+                        && self.groups[g].shares
+                        && let Some(sign) = self.breaks_away(g)
+                    {
+                        flip = Some(Flip::Group(g, sign));
+                        break;
+                    }
+                }
+                if flip.is_none() {
+                    self.solve(free, cols);
+                }
+            }
+            match flip {
+                None => return true,
+                Some(Flip::Group(g, sign)) => {
+                    let again = sign == 0 && released == Some(g) && kept >> g & 1 == 0;
+                    if again {
+                        kept |= 1 << g;
+                    }
+                    released = (sign != 0).then_some(g);
+                    if !again || dot(&self.groups[g].row, &self.next).abs() > self.round_off(g) {
+                        self.sign[g] = sign;
+                    }
+                }
+                Some(Flip::Side(j)) => self.side[j] = self.side[j].other(),
+                Some(Flip::Stuck) => return false,
+            }
+        }
+        false
+    }
+
+    /// Balances the friction of clutches, brakes and drags by projected sweeps, where flipping single modes does not
+    /// settle: each takes the torque that brings its slip to rest by the end of the step, within what it can
+    /// hold. Teeth that move lose what they lose on their present sides; teeth at rest are taken to follow
+    /// what holds the shafts around them, without friction of their own. True if that converged.
+    #[cold]
+    pub(super) fn sweep(&mut self, free: usize, cols: usize) -> bool {
+        const MOST_SWEEPS: usize = 2000;
+        const ROUNDS: usize = 8;
+        let still = |slip: f64, group: &GroupStep, v: &[f64]| slip.abs() <= 1e-9 * dot_size(&group.row, v);
+        let mut converged = false;
+        for _ in 0..ROUNDS {
+            let mut key = Key { held: 0, coast: 0 };
+            for (g, group) in self.groups.iter().enumerate() {
+                self.direction[g] = if self.slip[g] < 0.0 { -1 } else { 1 };
+                if still(self.slip[g], group, &self.v) && !group.driven {
+                    self.direction[g] = 0;
+                    key.held |= 1 << g;
+                    continue;
+                }
+                for &j in &group.elements {
+                    key.coast |= u64::from(self.side[j] == Side::Coast) << j;
+                }
+            }
+            let Some(wide) = self.wide(key) else { return false };
+            let (s, wide, direction) = (&self.engine.system, &self.wides[wide], &self.direction);
+            let tau = &mut self.tau;
+            for (g, group) in self.groups.iter().enumerate() {
+                group.rubs.iter().for_each(|r| tau[r.port] = r.viscous);
+                for &(j, port, [drive, coast]) in &group.constants {
+                    let along = f64::from(direction[g]) * self.teeth[j].1.signum();
+                    tau[port] = along * if self.side[j] == Side::Drive { drive } else { coast };
+                }
+            }
+            converged = false;
+            for _ in 0..MOST_SWEEPS {
+                let (mut change, mut largest) = (0.0f64, 0.0f64);
+                for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
+                    let row = &wide.slip[g * cols..(g + 1) * cols];
+                    for rub in &group.rubs {
+                        let [low, high] = rub.range(1.0);
+                        let old = tau[rub.port] - rub.viscous;
+                        let next = (old - dot(row, tau) / row[rub.port]).clamp(low, high);
+                        change = change.max((next - old).abs());
+                        largest = largest.max(next.abs());
+                        tau[rub.port] = next + rub.viscous;
+                    }
+                }
+                if change <= 1e-13 * largest {
+                    converged = true;
+                    break;
+                }
+            }
+            for i in 0..free {
+                self.next[i] = self.v[i] + self.h * dot(&wide.response[i * cols..(i + 1) * cols], tau);
+            }
+            // The losses stand beside the ports, for the count of energies.
+            let all = s.all();
+            for (j, e) in s.elements.iter().enumerate() {
+                self.losses[j] = match e.group {
+                    Some((g, _)) if direction[g] != 0 => {
+                        let row = &wide.response[(all + j) * cols..(all + j + 1) * cols];
+                        slope(self.teeth[j].2, self.side[j]) * e.factors[0] * dot(row, tau) + tau[e.port]
+                    }
+                    _ => 0.0,
+                };
+            }
+            for i in 0..s.prescribed {
+                self.reactions[i] = dot(&wide.response[(free + i) * cols..(free + i + 1) * cols], tau);
+            }
+            // Sides of what moves.
+            let mut turned = false;
+            for (g, group) in self.groups.iter().enumerate() {
+                let end = dot(&group.row, &self.next);
+                let rest = still(end, group, &self.v) && still(end, group, &self.next);
+                self.sign[g] = if rest && !group.driven {
+                    0
+                } else if end < 0.0 {
+                    -1
+                } else {
+                    1
+                };
+                for &j in &group.elements {
+                    let (_, factor, loss) = self.teeth[j];
+                    let torque =
+                        s.elements[j].factors[0] * dot(&wide.response[(all + j) * cols..(all + j + 1) * cols], tau);
+                    let along =
+                        f64::from(if self.sign[g] == 0 { direction[g] } else { self.sign[g] }) * factor.signum();
+                    let value = along * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
+                    let side = if value >= 0.0 { Side::Drive } else { Side::Coast };
+                    turned |= side != self.side[j] && direction[g] != 0;
+                    self.side[j] = side;
+                }
+            }
+            if !turned {
+                break;
+            }
+        }
+        self.swept = true;
+        converged
+    }
+}
+
+/// [`FixedStep::settle`] with the widest registers there are.
+pub(super) struct Settle<'a> {
+    pub step: &'a mut FixedStep,
+    pub free: usize,
+    pub cols: usize,
+}
+
+impl pulp::WithSimd for Settle<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> bool {
+        self.step.settle(self.free, self.cols)
+    }
+}
+
+/// The flat map of a mode.
+fn step_map(s: &System, mode: &Mode, pattern: &Pattern) -> Option<StepMap> {
+    let wide = pattern.with_slips(s.groups.len());
+    let map = compose(s, mode, &wide, &[])?;
+    let cols = wide.ports;
+    let torque_row = |j: usize| -> Vec<f64> {
+        let row = &map.response[(s.all() + j) * cols..(s.all() + j + 1) * cols];
+        row.iter().map(|x| x * s.elements[j].factors[0]).collect()
+    };
+    let mut rows: Vec<f64> = map.response[..s.free * cols].to_vec();
+    let held: Vec<u16> =
+        (0..s.groups.len()).filter(|&g| mode.slip[g] == 0 && !s.groups[g].driven).map(|g| g as u16).collect();
+    for &g in &held {
+        rows.extend_from_slice(&map.holding[usize::from(g) * cols..(usize::from(g) + 1) * cols]);
+    }
+    let mut moving = Vec::new();
+    for (j, e) in s.elements.iter().enumerate() {
+        let Some((g, _)) = e.group else { continue };
+        let torque = torque_row(j);
+        if mode.slip[g] != 0 || s.groups[g].driven {
+            moving.push(j as u16);
+            rows.extend_from_slice(&torque);
+        }
+    }
+    let still =
+        (held.iter()).flat_map(|&g| &s.groups[usize::from(g)].elements).map(|&j| (j as u16, torque_row(j))).collect();
+    let slips = map.is_redundant().then(|| {
+        let row = |g: &u16| wide.slip[usize::from(*g) * cols..][..cols].iter().copied();
+        held.iter().flat_map(row).collect()
+    });
+    let reactions = map.response[s.free * cols..s.all() * cols].to_vec();
+    Some(StepMap { rows, held, moving, still, slips, reactions })
+}
+
+enum Flip {
+    Group(usize, i8),
+    Side(usize),
+    /// Only groups that are kept would have to be released.
+    Stuck,
+}
