@@ -18,7 +18,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
 use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource};
 use crate::statics::Certificate;
-use crate::train::{Efficiency, ShiftElementId, ShiftElementKind, Train};
+use crate::train::{Efficiency, Operation, ShiftElementId, ShiftElementKind, Train};
 
 /// What can be said of a load case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -478,8 +478,19 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
     })
 }
 
+/// Analyses one operating point that need not stand in the file; [`analyze`] says the same of one that does. Beside
+/// the answer, its warnings and notes.
+///
+/// # Errors
+/// What the operation prescribes makes no question: contradictory speeds, loads missing or too many.
+pub fn operate(train: &Train, operation: &Operation) -> Result<(OperationReport, Diagnostics), Diagnostics> {
+    let mut notes = Diagnostics::default();
+    let report = operation::report(train, operation, &mut notes)?;
+    Ok((report, notes))
+}
+
 /// What the model leaves out, then what stands in for missing data.
-fn assumptions(train: &Train) -> Vec<String> {
+pub fn assumptions(train: &Train) -> Vec<String> {
     let mut all = vec!["steady state: no inertia".to_owned()];
     if train.meshes.iter().any(|m| !m.computed && m.efficiency != Efficiency::lossless()) {
         all.push("given mesh efficiencies are constants: independent of load, speed and temperature".into());

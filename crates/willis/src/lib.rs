@@ -63,6 +63,7 @@ pub mod dynamics;
 pub mod analysis;
 pub mod hypergraph;
 pub mod regimes;
+pub mod study;
 pub mod figure;
 pub mod casebook;
 
