@@ -1,1 +1,17 @@
 //! Many operating points: maps, trends, what matters most, how sure it is, and files for other programs.
+//!
+//! A [`Subject`] is a train file whose quantities can be set anew; a [`Question`] says what is prescribed and what is
+//! held while quantities vary; an [`Axis`] is one quantity and its values. A [`Sweep`] puts them together: a grid of
+//! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
+
+mod axis;
+mod question;
+mod subject;
+mod sweep;
+mod target;
+
+pub use axis::Axis;
+pub use question::{Hold, Question, Trains};
+pub use subject::Subject;
+pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};
+pub use target::{Target, Who};

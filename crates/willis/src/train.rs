@@ -36,7 +36,7 @@ pub use dynamic::{
     Contact, Curve, DragMount, Engagement, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal, Source,
     SourceKind,
 };
-pub use format::{Reading, schema};
+pub use format::{Document, Key, Measure, Reading, schema};
 pub use formula::Formula;
 pub use physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
 

@@ -129,6 +129,9 @@ codes! {
     /// gears, without any of them having a moment of inertia, so that no acceleration follows. Give
     /// one of them an inertia in `[inertias]`, prescribe a speed, or hold one of them.
     E209 NoInertia: "inertia is missing";
+    /// An axis of a study is a quantity and its values, `input.speed=500 rpm..12000 rpm:100`. Ranges run upwards, say how
+    /// many values they have or how far apart, and are written in a unit of the quantity.
+    E210 BadAxis: "the values of an axis cannot be used";
     /// Profile shift (or another number of planet teeth) has to close a difference of one or two
     /// teeth between ring and sun plus planets. Ratios and efficiencies do not depend on it.
     W301 NearlyCoaxial: "the set closes only with profile shift";

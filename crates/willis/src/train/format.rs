@@ -7,6 +7,7 @@
 
 mod csv;
 mod dynamic;
+mod edit;
 mod keys;
 mod physical;
 mod reader;
@@ -22,6 +23,7 @@ use super::describe::{
 use super::{Load, assemble};
 use reader::Fields;
 
+pub use edit::{Document, Key, Measure};
 pub use schema::schema;
 
 /// What reading a train file gave.

@@ -1,0 +1,346 @@
+//! What is asked at every point of a study: the operating point that the settings of a point mean.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use crate::analysis;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
+use crate::kinematics::Configuration;
+use crate::train::{Load, MemberId, Operation, Train};
+use crate::units::{Dimension, Quantity};
+
+use super::Subject;
+use super::target::{Target, Who, quantity};
+
+/// What stays the same while other quantities vary.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Hold {
+    /// The loads as the operation gives them, torques as torques and powers as powers.
+    #[default]
+    AsGiven,
+    /// The torques of the loads.
+    Torque,
+    /// The powers of the loads.
+    Power,
+    /// The torque at the output, as it is in the operation.
+    Output,
+}
+
+/// Most trains that are kept.
+const MOST_TRAINS: usize = 64;
+
+/// The operating point from which a study starts, and what is held.
+#[derive(Clone, Debug)]
+pub struct Question<'s> {
+    subject: &'s Subject,
+    /// Without loads where nothing is held.
+    base: Operation,
+    hold: Hold,
+}
+
+/// Trains that differ in quantities of their file, kept for the next point.
+#[derive(Debug, Default)]
+pub struct Trains(HashMap<Vec<String>, Result<Arc<Train>, Diagnostics>>);
+
+fn refuse(code: Code, message: String, hint: &str) -> Diagnostics {
+    let d = Diagnostic::new(code, "", message);
+    Diagnostics::from_iter([if hint.is_empty() { d } else { d.hint(hint) }])
+}
+
+impl<'s> Question<'s> {
+    /// The operation of that name, else the file's only or first one (of the state, where one is named), else an
+    /// operating point in which nothing is prescribed yet.
+    ///
+    /// # Errors
+    /// No such operation or state; an operation whose loads cannot be held as asked.
+    pub fn new(
+        subject: &'s Subject,
+        operation: Option<&str>,
+        state: Option<&str>,
+        hold: Hold,
+    ) -> Result<Self, Diagnostics> {
+        let train = subject.train();
+        let unknown = |what: &str, name: &str, known: Vec<&str>| {
+            let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no {what} `{name}`"));
+            let d = d.suggest(name, known.iter().copied());
+            Diagnostics::from_iter([d.hint(format!("its {what}s are: {}", known.join(", ")))])
+        };
+        let state =
+            match state {
+                None => None,
+                Some(name) => {
+                    Some(train.states.iter().position(|s| s.name == name).ok_or_else(|| {
+                        unknown("state", name, train.states.iter().map(|s| s.name.as_str()).collect())
+                    })?)
+                }
+            };
+        let found = match operation {
+            Some(name) => Some(train.operations.iter().find(|o| o.name == name).ok_or_else(|| {
+                unknown("operation", name, train.operations.iter().map(|o| o.name.as_str()).collect())
+            })?),
+            None => match state {
+                Some(k) => train.operations.iter().find(|o| o.state == Some(k)),
+                None => train.operations.first(),
+            },
+        };
+        let mut base = found.cloned().unwrap_or_else(|| Operation {
+            name: "study".into(),
+            state: None,
+            speeds: vec![],
+            fixed: vec![],
+            loads: vec![],
+            temperature: None,
+            place: String::new(),
+        });
+        base.state = state.or(base.state);
+        let mut question = Self { subject, base, hold };
+        question.settle()?;
+        Ok(question)
+    }
+
+    /// The train of the study.
+    pub fn subject(&self) -> &'s Subject {
+        self.subject
+    }
+
+    /// The operating point from which the study starts.
+    pub fn base(&self) -> &Operation {
+        &self.base
+    }
+
+    /// What is held.
+    pub fn hold(&self) -> Hold {
+        self.hold
+    }
+
+    /// Puts the loads of the base into the form that is held.
+    fn settle(&mut self) -> Result<(), Diagnostics> {
+        let train = self.subject.train();
+        if matches!(self.hold, Hold::AsGiven) || self.base.loads.is_empty() {
+            return match self.hold {
+                Hold::Output => Err(refuse(
+                    Code::Unfit,
+                    "there is no operation whose output could be held".into(),
+                    "name one with --operation, or prescribe `output.torque` itself",
+                )),
+                _ => Ok(()),
+            };
+        }
+        if self.hold == Hold::Output {
+            let output = self.role(train, &self.base, Who::Output)?;
+            let (report, _) = analysis::operate(train, &self.base)?;
+            let name = train.member_name(output);
+            let torque = match &report.solutions[..] {
+                [one] => one.members.get(name).and_then(|m| m.torque_n_m),
+                _ => None,
+            };
+            let Some(torque) = torque.and_then(Rational::from_f64) else {
+                let why = report.reason.unwrap_or_else(|| "its torque is not determined".into());
+                let message = format!("operation `{}` has no one torque at the output to hold: {why}", self.base.name);
+                return Err(refuse(Code::Unfit, message, ""));
+            };
+            let torque = Quantity { value: torque, pi_power: 0, dimension: Dimension::TORQUE };
+            if self.base.loads.len() > 1 && !self.base.loads.iter().any(|l| l.0 == output) {
+                let message =
+                    format!("operation `{}` has several loads; which one `{name}` replaces is open", self.base.name);
+                return Err(refuse(Code::Unfit, message, "give the loads at the output in the operation"));
+            }
+            match self.base.loads.iter_mut().find(|l| l.0 == output) {
+                Some(load) => load.1 = Load::Torque(torque),
+                None => self.base.loads = vec![(output, Load::Torque(torque))],
+            }
+            return Ok(());
+        }
+        let speeds = self.speeds(train, &self.base);
+        for (member, load) in &mut self.base.loads {
+            let speed = || {
+                speeds(*member).filter(|w| !w.value.is_zero()).ok_or_else(|| {
+                    let name = train.member_name(*member);
+                    refuse(
+                        Code::Unfit,
+                        format!("`{name}` has no speed at which torque and power could be exchanged"),
+                        "",
+                    )
+                })
+            };
+            *load = match (self.hold, &*load) {
+                (Hold::Torque, Load::Power(p)) => {
+                    let w = speed()?;
+                    let (value, pi_power) = (&p.value / &w.value, p.pi_power - w.pi_power);
+                    Load::Torque(Quantity { value, pi_power, dimension: Dimension::TORQUE })
+                }
+                (Hold::Power, Load::Torque(t)) => {
+                    let w = speed()?;
+                    let (value, pi_power) = (&t.value * &w.value, t.pi_power + w.pi_power);
+                    Load::Power(Quantity { value, pi_power, dimension: Dimension::POWER })
+                }
+                (_, same) => same.clone(),
+            };
+        }
+        Ok(())
+    }
+
+    /// Speeds of members in an operation, where they are determined.
+    fn speeds<'a>(&self, train: &'a Train, operation: &Operation) -> impl Fn(MemberId) -> Option<Quantity> + use<'a> {
+        let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
+        let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
+        let c = Configuration::new(train, engaged, &operation.fixed, &prescribed);
+        let motion = c.motion(&operation.speeds).ok();
+        move |m| {
+            let motion = motion.as_ref()?;
+            let value = motion.speeds[m.0].clone()?;
+            Some(Quantity { value, pi_power: motion.pi_power, dimension: Dimension::ANGULAR_SPEED })
+        }
+    }
+
+    pub(super) fn role(&self, train: &Train, operation: &Operation, who: Who) -> Result<MemberId, Diagnostics> {
+        let own = operation.state.map(|k| &train.states[k]);
+        let (found, what) = match who {
+            Who::Member(m) => return Ok(m),
+            Who::Input => (own.and_then(|s| s.input).or(train.input), "input"),
+            Who::Output => (own.and_then(|s| s.output).or(train.output), "output"),
+        };
+        found.ok_or_else(|| {
+            let hint = "name two `terminals`, or `input` and `output`; or call the member by its name";
+            refuse(Code::NothingAsked, format!("the train has no {what}"), hint)
+        })
+    }
+
+    /// The train and the operating point that these settings mean.
+    ///
+    /// # Errors
+    /// A train that cannot be built so; a speed or load of which it is open what it replaces.
+    pub fn at(
+        &self,
+        settings: &[(&Target, String)],
+        trains: &mut Trains,
+    ) -> Result<(Arc<Train>, Operation), Diagnostics> {
+        let train = self.train(settings, trains)?;
+        let operation = self.operation(&train, settings)?;
+        Ok((train, operation))
+    }
+
+    fn train(&self, settings: &[(&Target, String)], trains: &mut Trains) -> Result<Arc<Train>, Diagnostics> {
+        let of_train: Vec<(&Target, String)> =
+            settings.iter().filter(|s| s.0.is_of_train()).map(|(t, v)| (*t, v.clone())).collect();
+        let key: Vec<String> = of_train.iter().map(|s| s.1.clone()).collect();
+        if let Some(known) = trains.0.get(&key) {
+            return known.clone();
+        }
+        if trains.0.len() >= MOST_TRAINS {
+            trains.0.clear();
+        }
+        let train = self.subject.with(&of_train).map(Arc::new);
+        trains.0.insert(key, train.clone());
+        train
+    }
+
+    /// The operating point on a train.
+    fn operation(&self, train: &Train, settings: &[(&Target, String)]) -> Result<Operation, Diagnostics> {
+        let mut operation = self.base.clone();
+        let wrong = |message: String| refuse(Code::BadAxis, message, "");
+        // The state first: input and output are its.
+        for (target, value) in settings {
+            match target {
+                Target::State => {
+                    let state = train.states.iter().position(|s| s.name == *value);
+                    operation.state = Some(state.ok_or_else(|| wrong(format!("the train has no state `{value}`")))?);
+                }
+                Target::Temperature => {
+                    let t = quantity(value, Dimension::TEMPERATURE).map_err(wrong)?;
+                    operation.temperature = Some(t.si());
+                }
+                _ => {}
+            }
+        }
+        let mut speeds = vec![];
+        for (target, value) in settings {
+            if let Target::Speed(who) = target {
+                let member = self.role(train, &operation, *who)?;
+                speeds.push((member, quantity(value, Dimension::ANGULAR_SPEED).map_err(wrong)?));
+            }
+        }
+        operation.speeds = replaced(train, "speed", &operation.speeds, speeds)?;
+        let mut loads = vec![];
+        for (target, value) in settings {
+            let (who, load) = match target {
+                Target::Torque(who) => (who, Load::Torque(quantity(value, Dimension::TORQUE).map_err(wrong)?)),
+                Target::Power(who) => (who, Load::Power(quantity(value, Dimension::POWER).map_err(wrong)?)),
+                _ => continue,
+            };
+            let member = self.role(train, &operation, *who)?;
+            loads.push((member, *who, load));
+        }
+        if loads.is_empty() {
+            return Ok(operation);
+        }
+        let with_role = loads.iter().any(|l| matches!((l.1, &l.2), (Who::Input | Who::Output, Load::Torque(_))));
+        let turning = with_role.then(|| self.speeds(train, &operation));
+        let new = loads.into_iter().map(|(member, who, load)| {
+            let backwards = turning.as_ref().and_then(|w| w(member)).is_some_and(|w| w.value.sign() < 0);
+            // Power of the load is positive into the train.
+            let turn = match (&load, who) {
+                (_, Who::Member(_)) => false,
+                (Load::Torque(_), Who::Input) => backwards,
+                (Load::Torque(_), Who::Output) => !backwards,
+                (Load::Power(_), Who::Input) => false,
+                (Load::Power(_), Who::Output) => true,
+            };
+            let sign = |q: Quantity| if turn { Quantity { value: -q.value, ..q } } else { q };
+            let load = match load {
+                Load::Torque(q) => Load::Torque(sign(q)),
+                Load::Power(q) => Load::Power(sign(q)),
+            };
+            (member, load)
+        });
+        operation.loads = replaced(train, "load", &operation.loads, new.collect())?;
+        Ok(operation)
+    }
+}
+
+/// What the base prescribes, with new values: of the same member in its place, else of the only one that is left.
+fn replaced<T: Clone>(
+    train: &Train,
+    what: &str,
+    base: &[(MemberId, T)],
+    new: Vec<(MemberId, T)>,
+) -> Result<Vec<(MemberId, T)>, Diagnostics> {
+    if let Some(k) = (1..new.len()).find(|&k| new[..k].iter().any(|n| n.0 == new[k].0)) {
+        let message = format!("the {what} of `{}` is set twice", train.member_name(new[k].0));
+        return Err(refuse(Code::BadAxis, message, "input and output may be the members that are named too"));
+    }
+    let mut all: Vec<(MemberId, T)> = base.to_vec();
+    let (mut others, mut again) = (vec![], vec![]);
+    for (member, value) in new {
+        match all.iter_mut().find(|a| a.0 == member) {
+            Some(own) => {
+                own.1 = value;
+                again.push(member);
+            }
+            None => others.push((member, value)),
+        }
+    }
+    if others.is_empty() {
+        return Ok(all);
+    }
+    let is_set = |m: &MemberId| !base.iter().any(|b| b.0 == *m) || again.contains(m);
+    let left: Vec<MemberId> = all.iter().map(|a| a.0).filter(|m| !is_set(m)).collect();
+    if others.len() >= left.len() {
+        // As many new ones as are left: they take their places.
+        all.retain(|a| is_set(&a.0));
+        all.extend(others);
+        return Ok(all);
+    }
+    let set: Vec<MemberId> = others.iter().map(|o| o.0).collect();
+    let names = |m: &[MemberId]| m.iter().map(|m| train.member_name(*m)).collect::<Vec<_>>().join(", ");
+    let message = format!(
+        "the operation prescribes a {what} of {}; which one that of {} replaces is open",
+        names(&left),
+        names(&set)
+    );
+    Err(refuse(Code::Unfit, message, "vary as many as are to be replaced, or those that the operation prescribes"))
+}
