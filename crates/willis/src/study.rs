@@ -5,12 +5,14 @@
 //! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
 
 mod axis;
+mod compiled;
 mod question;
 mod subject;
 mod sweep;
 mod target;
 
 pub use axis::Axis;
+pub use compiled::{CompiledSweep, Room};
 pub use question::{Hold, Question, Trains};
 pub use subject::Subject;
 pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};

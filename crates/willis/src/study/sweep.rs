@@ -1,5 +1,6 @@
 //! A grid of operating points, one row a point.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -17,7 +18,7 @@ pub const VERDICTS: [&str; 6] = ["unique", "multiple", "locked", "unloaded", "un
 
 /// What a column holds.
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum What {
+pub(super) enum What {
     Axis(usize),
     Verdict,
     Best,
@@ -56,7 +57,7 @@ pub enum Cells {
     /// Numbers; NaN where there is none, and the verdict says why.
     Numbers(Vec<f64>),
     /// Texts; empty where there is none.
-    Texts(Vec<String>),
+    Texts(Vec<Cow<'static, str>>),
 }
 
 /// Some rows, column by column.
@@ -124,7 +125,7 @@ impl Extent {
 pub struct Seen {
     /// At how many points.
     pub count: u64,
-    /// What it says at the first of them.
+    /// What it says at the first of them that was looked at.
     pub message: String,
     /// The number of that point.
     pub point: u64,
@@ -172,7 +173,7 @@ impl Summary {
         }
     }
 
-    fn see(&mut self, code: &str, message: &str, point: u64) {
+    pub(super) fn see(&mut self, code: &str, message: &str, point: u64) {
         match self.seen.get_mut(code) {
             Some(own) => own.count += 1,
             None => drop(self.seen.insert(code.into(), Seen { count: 1, message: message.into(), point })),
@@ -238,6 +239,10 @@ impl Answer {
     }
 }
 
+pub(super) fn yes_or_no(is: bool) -> &'static str {
+    if is { "yes" } else { "no" }
+}
+
 const LOSS_KINDS: [&str; 5] = ["mesh", "bearing", "windage", "churning", "seal"];
 
 fn loss_of(l: &Losses, kind: usize) -> f64 {
@@ -279,9 +284,9 @@ fn loss_of(l: &Losses, kind: usize) -> f64 {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sweep<'s> {
-    question: Question<'s>,
-    axes: Vec<Axis>,
-    columns: Vec<(Column, What)>,
+    pub(super) question: Question<'s>,
+    pub(super) axes: Vec<Axis>,
+    pub(super) columns: Vec<(Column, What)>,
     points: u64,
 }
 
@@ -463,13 +468,13 @@ impl<'s> Sweep<'s> {
             Cells::Texts(all) => all,
         };
         texts.push(match what {
-            What::Axis(k) => self.axes[*k].setting(place[*k]),
+            What::Axis(k) => self.axes[*k].setting(place[*k]).into(),
             What::Verdict => answer.verdict.into(),
-            What::Best => if is_best { "yes" } else { "no" }.into(),
-            What::Reason => answer.reason.clone(),
+            What::Best => yes_or_no(is_best).into(),
+            What::Reason => answer.reason.clone().into(),
             What::Warnings => {
                 let all: Vec<String> = answer.warnings.iter().map(|(c, m)| format!("{} {m}", c.as_str())).collect();
-                all.join("; ")
+                all.join("; ").into()
             }
             _ => unreachable!("all others are numbers"),
         });

@@ -1,0 +1,536 @@
+//! Sweeps through the [compiled train](crate::compiled), for maps of millions of points.
+//!
+//! A train with given efficiencies whose speeds and torques vary needs no elimination at a point. The numbers are
+//! those of [`Sweep::rows`] to a part in 10¹², not to the last bit; points that are not plainly unique are asked the
+//! long way, so that verdicts and their words are the same.
+
+use std::borrow::Cow;
+
+use crate::compiled::{CompiledTrain, Duty, Output, Points, Workspace};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::kinematics::Configuration;
+use crate::train::{Load, MemberId};
+use crate::units;
+
+use super::question::{Hold, Trains};
+use super::sweep::{Cells, Column, Extent, Rows, Summary, Sweep, What, yes_or_no};
+use super::target::{Target, Who};
+
+/// Most trains and states that are compiled.
+const MOST_CASES: usize = 4096;
+/// Points worked off at a time: what they need stays in the second-level cache.
+const BLOCK: usize = 4096;
+
+/// Where a prescribed quantity comes from.
+#[derive(Clone, Debug)]
+enum Input {
+    Constant(f64),
+    /// An axis, and what one of its unit is in SI.
+    Axis(usize, f64),
+    /// Likewise, the torque turned so that it drives: its sign, and how the member's speed follows from those
+    /// prescribed.
+    Role(usize, f64, Vec<f64>),
+}
+
+/// One train in one state.
+#[derive(Clone, Debug)]
+struct Case {
+    train: CompiledTrain,
+    speeds: Vec<Input>,
+    torques: Vec<Input>,
+}
+
+/// A sweep whose points are answered by compiled trains.
+#[derive(Clone, Debug)]
+pub struct CompiledSweep<'a, 's> {
+    sweep: &'a Sweep<'s>,
+    cases: Vec<Case>,
+    /// Axes that choose the case, and how many cases one step of each is.
+    choosing: Vec<(usize, usize)>,
+    columns: Vec<(Column, What)>,
+    /// The output that each number column takes.
+    output: Vec<Option<usize>>,
+}
+
+/// Work arrays; one for each thread.
+#[derive(Debug, Default)]
+pub struct Room {
+    trains: Trains,
+    work: Vec<Option<Workspace>>,
+    inputs: Vec<Vec<f64>>,
+    outputs: Vec<Vec<f64>>,
+}
+
+fn refuse(message: &str, hint: &str) -> Diagnostics {
+    Diagnostics::from_iter([Diagnostic::new(Code::Unfit, "", message).hint(hint)])
+}
+
+impl<'s> Sweep<'s> {
+    /// Compiles the sweep.
+    ///
+    /// # Errors
+    /// Losses that are computed, loads that are powers, axes other than speeds, torques, states and a few values of
+    /// the train file; and what [`Train::compile`](crate::Train::compile) refuses.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::study::{Axis, Hold, Question, Subject, Sweep};
+    ///
+    /// let text = r#"
+    ///     format = 1
+    ///     name = "reducer"
+    ///     members = ["s", "c"]
+    ///     terminals = ["s", "c"]
+    ///     [[set]]
+    ///     name = "P1"
+    ///     sun = { member = "s", teeth = 30 }
+    ///     ring = { member = "frame", teeth = 70 }
+    ///     carrier = "c"
+    ///     mesh_efficiency = 0.99
+    /// "#;
+    /// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+    /// let axes = ["input.speed=1 rpm..2000 rpm:2000", "input.torque=1 N m..100 N m:500"];
+    /// let axes = axes.iter().map(|a| Axis::parse(a, &subject)).collect::<Result<_, _>>()?;
+    /// let sweep = Sweep::new(Question::new(&subject, None, None, Hold::AsGiven).unwrap(), axes, &[]).unwrap();
+    /// let map = sweep.compile().unwrap().summary(0, sweep.len(), &mut Default::default());
+    /// assert_eq!(map.verdicts["unique"], 1_000_000);
+    /// assert!((map.efficiency.least.0 - 0.98607).abs() < 1e-9);
+    /// # Ok::<(), Box<willis::diagnostic::Diagnostic>>(())
+    /// ```
+    pub fn compile(&self) -> Result<CompiledSweep<'_, 's>, Diagnostics> {
+        let axes = &self.axes;
+        let with_hold = "sweep without --fast";
+        if self.question.subject().train().is_physical() {
+            return Err(refuse("losses of this train are computed from load and speed; they cannot be compiled", with_hold));
+        }
+        if let Some(a) = axes.iter().find(|a| matches!(a.target, Target::Power(_) | Target::Temperature | Target::Law(_)))
+        {
+            let message = format!("`{}` cannot vary in a compiled sweep", a.name);
+            return Err(refuse(&message, "vary speeds, torques, states or values of the train file; or leave out --fast"));
+        }
+        if self.question.hold() == Hold::Power {
+            return Err(refuse("a held power is no torque that could be compiled", with_hold));
+        }
+        // The states first in memory order: the last case axis runs fastest.
+        let mut choosing = vec![];
+        let mut count = 1usize;
+        for (k, axis) in axes.iter().enumerate().rev() {
+            if !matches!(axis.target, Target::Speed(_) | Target::Torque(_)) {
+                choosing.push((k, count));
+                count = count.saturating_mul(axis.len());
+            }
+        }
+        if count > MOST_CASES {
+            let message = format!("{count} different trains are too many to compile; {MOST_CASES} are not");
+            return Err(refuse(&message, with_hold));
+        }
+        let (columns, outputs, output) = self.compiled_columns()?;
+        let mut trains = Trains::default();
+        let cases = (0..count).map(|case| self.case(case, &choosing, &outputs, &mut trains));
+        let cases = cases.collect::<Result<Vec<_>, _>>()?;
+        Ok(CompiledSweep { sweep: self, cases, choosing, columns, output })
+    }
+
+    /// Columns of a compiled sweep, the outputs they need, and which column takes which.
+    #[expect(clippy::type_complexity, reason = "three parallel lists, taken apart at once")]
+    fn compiled_columns(&self) -> Result<(Vec<(Column, What)>, Vec<Output>, Vec<Option<usize>>), Diagnostics> {
+        let mut outputs = vec![Output::Efficiency, Output::Loss];
+        let (mut columns, mut output) = (vec![], vec![]);
+        for (column, what) in &self.columns {
+            let wanted = match what {
+                What::Efficiency => Some(Output::Efficiency),
+                What::Loss => Some(Output::Loss),
+                What::Speed(m) => Some(Output::Speed(m.clone())),
+                What::Torque(m) => Some(Output::Torque(m.clone())),
+                What::ElementTorque(e) => Some(Output::ShiftElementTorque(e.clone())),
+                What::Axis(_) | What::Verdict | What::Best | What::Reason => None,
+                // Not of every point at little cost; the long way has them.
+                What::InputPower | What::OutputPower | What::LossOf(_) | What::Warnings => continue,
+                _ => {
+                    let message = format!("`{}` is no column of a compiled sweep", column.name);
+                    return Err(refuse(&message, "ask for speeds and torques; or leave out --fast"));
+                }
+            };
+            output.push(wanted.map(|w| {
+                outputs.iter().position(|o| *o == w).unwrap_or_else(|| {
+                    outputs.push(w);
+                    outputs.len() - 1
+                })
+            }));
+            columns.push((column.clone(), what.clone()));
+        }
+        Ok((columns, outputs, output))
+    }
+
+    fn case(
+        &self,
+        case: usize,
+        choosing: &[(usize, usize)],
+        outputs: &[Output],
+        trains: &mut Trains,
+    ) -> Result<Case, Diagnostics> {
+        let value = |k: usize| choosing.iter().find(|c| c.0 == k).map_or(0, |&(k, step)| case / step % self.axes[k].len());
+        let settings: Vec<(&Target, String)> =
+            self.axes.iter().enumerate().map(|(k, a)| (&a.target, a.setting(value(k)))).collect();
+        let (train, operation) = self.question.at(&settings, trains)?;
+        let prescribed: Vec<MemberId> = operation.speeds.iter().map(|s| s.0).collect();
+        let si = |k: usize| {
+            let axis = &self.axes[k];
+            let dimension = match axis.target {
+                Target::Speed(_) => units::Dimension::ANGULAR_SPEED,
+                _ => units::Dimension::TORQUE,
+            };
+            units::parse(&format!("1 {}", axis.unit), dimension).map_or(f64::NAN, |q| q.si())
+        };
+        let axis_of = |member: MemberId, speed: bool| -> Result<Option<(usize, Who)>, Diagnostics> {
+            for (k, axis) in self.axes.iter().enumerate() {
+                let who = match axis.target {
+                    Target::Speed(who) if speed => who,
+                    Target::Torque(who) if !speed => who,
+                    _ => continue,
+                };
+                if self.question.role(&train, &operation, who)? == member {
+                    return Ok(Some((k, who)));
+                }
+            }
+            Ok(None)
+        };
+        let mut speeds = vec![];
+        for (member, q) in &operation.speeds {
+            speeds.push(match axis_of(*member, true)? {
+                Some((k, _)) => Input::Axis(k, si(k)),
+                None => Input::Constant(q.si()),
+            });
+        }
+        let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
+        let c = Configuration::new(&train, engaged, &operation.fixed, &prescribed);
+        let transfer = c.transfer(&prescribed);
+        let mut torques = vec![];
+        for (member, load) in &operation.loads {
+            let Load::Torque(q) = load else {
+                return Err(refuse("a load is a power; compiled sweeps take torques", "add --hold torque"));
+            };
+            torques.push(match axis_of(*member, false)? {
+                None => Input::Constant(q.si()),
+                Some((k, Who::Member(_))) => Input::Axis(k, si(k)),
+                Some((k, who)) => {
+                    let sign = if who == Who::Input { 1.0 } else { -1.0 };
+                    let follows = transfer.speeds[member.0].as_ref().map(|f| f.iter().map(|x| x.to_f64()).collect());
+                    Input::Role(k, sign * si(k), follows.unwrap_or_default())
+                }
+            });
+        }
+        let name = |m: &MemberId| train.member_name(*m).to_owned();
+        let names: (Vec<String>, Vec<String>) =
+            (prescribed.iter().map(name).collect(), operation.loads.iter().map(|l| name(&l.0)).collect());
+        let mut duty = Duty::new(names.0.iter().map(String::as_str), names.1.iter().map(String::as_str));
+        if let Some(k) = operation.state {
+            duty = duty.state(&train.states[k].name);
+        }
+        for m in &operation.fixed {
+            duty = duty.fixed(train.member_name(*m));
+        }
+        for output in outputs {
+            duty = duty.output(output.clone());
+        }
+        Ok(Case { train: train.compile(&duty)?, speeds, torques })
+    }
+}
+
+/// Runs of one axis value in consecutive points.
+fn fill(sweep: &Sweep<'_>, axis: usize, factor: f64, from: u64, out: &mut [f64]) {
+    let stride: u64 = sweep.axes[axis + 1..].iter().map(|a| a.len() as u64).product();
+    let own = &sweep.axes[axis];
+    let n = own.len() as u64;
+    let (mut point, mut at) = (from, 0);
+    while at < out.len() {
+        let k = (point / stride % n) as usize;
+        if stride == 1 {
+            // A row of the map.
+            let run = (own.len() - k).min(out.len() - at);
+            for (i, o) in out[at..at + run].iter_mut().enumerate() {
+                *o = own.number(k + i) * factor;
+            }
+            (point, at) = (point + run as u64, at + run);
+        } else {
+            let run = ((stride - point % stride) as usize).min(out.len() - at);
+            out[at..at + run].fill(own.number(k) * factor);
+            (point, at) = (point + run as u64, at + run);
+        }
+    }
+}
+
+impl CompiledSweep<'_, '_> {
+    /// The columns of the rows.
+    pub fn columns(&self) -> impl ExactSizeIterator<Item = &Column> {
+        self.columns.iter().map(|c| &c.0)
+    }
+
+    fn case_of(&self, point: u64) -> usize {
+        let place = self.sweep.place(point);
+        self.choosing.iter().map(|&(k, step)| place[k] * step).sum()
+    }
+
+    /// Fills the outputs of a case at some points. Returns the points that are not plainly unique.
+    fn evaluate(&self, case: usize, points: &Span<'_>, room: &mut Room) -> usize {
+        let own = &self.cases[case];
+        let n = points.len();
+        room.work.resize_with(self.cases.len(), || None);
+        let work = room.work[case].get_or_insert_with(|| own.train.workspace());
+        room.inputs.resize_with(own.speeds.len() + own.torques.len(), Vec::new);
+        room.outputs.resize_with(own.train.outputs(), Vec::new);
+        room.inputs.iter_mut().chain(&mut room.outputs).for_each(|v| v.resize(n, 0.0));
+        let set = |input: &Input, speeds: &[Vec<f64>], out: &mut [f64]| match input {
+            Input::Constant(x) => out.fill(*x),
+            Input::Axis(k, factor) => points.axis(self.sweep, *k, *factor, out),
+            Input::Role(k, factor, follows) => {
+                points.axis(self.sweep, *k, *factor, out);
+                for (i, o) in out.iter_mut().enumerate() {
+                    let speed: f64 = follows.iter().zip(speeds).map(|(f, s)| f * s[i]).sum();
+                    if speed < 0.0 {
+                        *o = -*o;
+                    }
+                }
+            }
+        };
+        let (speeds, torques) = room.inputs.split_at_mut(own.speeds.len());
+        for (input, out) in own.speeds.iter().zip(speeds.iter_mut()) {
+            set(input, &[], out);
+        }
+        for (input, out) in own.torques.iter().zip(torques.iter_mut()) {
+            set(input, speeds, out);
+        }
+        let speeds: Vec<&[f64]> = speeds.iter().map(Vec::as_slice).collect();
+        let torques: Vec<&[f64]> = torques.iter().map(Vec::as_slice).collect();
+        let mut outputs: Vec<&mut [f64]> = room.outputs.iter_mut().map(Vec::as_mut_slice).collect();
+        own.train.evaluate_batch(&Points { speeds: &speeds, torques: &torques }, work, &mut outputs)
+    }
+
+    /// What the points from `from` up to `to` say together; no row is made.
+    pub fn summary(&self, from: u64, to: u64, room: &mut Room) -> Summary {
+        let mut summary = Summary::default();
+        let mut point = from;
+        while point < to {
+            let n = (to - point).min(BLOCK as u64) as usize;
+            self.block(point, n, room, &mut summary, None);
+            point += n as u64;
+        }
+        summary
+    }
+
+    /// The rows of the points from `from` up to `to`, whole [groups](Sweep::group).
+    pub fn rows(&self, from: u64, to: u64, room: &mut Room) -> Rows {
+        let n = (to - from) as usize;
+        let blank = self.columns.iter().map(|(c, _)| match c.is_text {
+            true => Cells::Texts(Vec::with_capacity(n)),
+            false => Cells::Numbers(Vec::with_capacity(n)),
+        });
+        let mut rows = Rows { columns: blank.collect(), summary: Summary::default() };
+        let step = (BLOCK as u64 / self.sweep.group()).max(1) * self.sweep.group();
+        let mut point = from;
+        while point < to {
+            let n = (to - point).min(step) as usize;
+            let mut summary = std::mem::take(&mut rows.summary);
+            self.block(point, n, room, &mut summary, Some(&mut rows.columns));
+            rows.summary = summary;
+            point += n as u64;
+        }
+        rows
+    }
+
+    fn block(&self, from: u64, n: usize, room: &mut Room, summary: &mut Summary, cells: Option<&mut Vec<Cells>>) {
+        let to = from + n as u64;
+        let single = self.cases.len() == 1;
+        if single && cells.is_none() && self.evaluate(0, &Span::Run(from, n), room) == 0 && plain(&room.outputs[0]) {
+            // All unique and driving: nothing to look at one by one.
+            summary.points += n as u64;
+            *summary.verdicts.entry("unique".into()).or_default() += n as u64;
+            summary.efficiency.join(&extent(&room.outputs[0], from));
+            summary.loss_w.join(&extent(&room.outputs[1], from));
+            return;
+        }
+        // Number columns by point, and whether the point is to be asked the long way.
+        let outputs = self.cases[0].train.outputs();
+        let mut values = vec![vec![0.0; n]; outputs];
+        let mut doubtful = vec![false; n];
+        for case in 0..self.cases.len() {
+            let own: Vec<u64> = match single {
+                true => vec![],
+                false => (from..to).filter(|p| self.case_of(*p) == case).collect(),
+            };
+            let span = if single { Span::Run(from, n) } else { Span::List(&own) };
+            if span.len() == 0 {
+                continue;
+            }
+            let odd = self.evaluate(case, &span, room);
+            for i in 0..span.len() {
+                let at = (span.point(i) - from) as usize;
+                for (all, own) in values.iter_mut().zip(&room.outputs) {
+                    all[at] = own[i];
+                }
+                // Where nothing enters or nothing leaves, and where a pattern is not the only one, words are needed.
+                doubtful[at] = odd > 0 || !(room.outputs[0][i] > 0.0) || !room.outputs[1][i].is_finite();
+            }
+        }
+        let mut answers: Vec<Option<super::Answer>> = vec![None; n];
+        for i in (0..n).filter(|i| doubtful[*i]) {
+            let answer = self.sweep.answer(from + i as u64, &mut room.trains);
+            values[0][i] = answer.efficiency();
+            values[1][i] = answer.loss();
+            answers[i] = Some(answer);
+        }
+        self.tell(from, n, &values, &answers, summary, cells);
+    }
+
+    fn tell(
+        &self,
+        from: u64,
+        n: usize,
+        values: &[Vec<f64>],
+        answers: &[Option<super::Answer>],
+        summary: &mut Summary,
+        cells: Option<&mut Vec<Cells>>,
+    ) {
+        let sweep = self.sweep;
+        let group = sweep.group() as usize;
+        let verdict = |i: usize| answers[i].as_ref().map_or("unique", |a| a.verdict);
+        let efficiency = |i: usize| if verdict(i) == "unique" { values[0][i] } else { f64::NAN };
+        let mut best = vec![false; if group > 1 { n } else { 0 }];
+        if group > 1 {
+            for first in (0..n).step_by(group) {
+                let all = first..(first + group).min(n);
+                let most = all.filter(|i| efficiency(*i) > 0.0);
+                if let Some(i) = most.max_by(|a, b| efficiency(*a).total_cmp(&efficiency(*b)).then(b.cmp(a))) {
+                    best[i] = true;
+                }
+            }
+        }
+        summary.points += n as u64;
+        let texts: Vec<usize> = (0..sweep.axes.len()).filter(|k| sweep.axes[*k].is_text()).collect();
+        let mut by_verdict: Vec<(&'static str, u64)> = vec![];
+        let (mut all_efficiency, mut all_loss) = (Extent::default(), Extent::default());
+        for i in 0..n {
+            let point = from + i as u64;
+            match by_verdict.iter_mut().find(|v| v.0 == verdict(i)) {
+                Some(v) => v.1 += 1,
+                None => by_verdict.push((verdict(i), 1)),
+            }
+            all_efficiency.add(efficiency(i), point);
+            all_loss.add(values[1][i], point);
+            if !texts.is_empty() {
+                let place = sweep.place(point);
+                for &k in &texts {
+                    let value = sweep.axes[k].setting(place[k]);
+                    if best.get(i) == Some(&true) && sweep.axes[k].is_state() {
+                        *summary.best.entry(value.clone()).or_default() += 1;
+                    }
+                    let text = format!("{} = {value}", sweep.axes[k].name);
+                    summary.by_text.entry(text).or_default().add(efficiency(i), point);
+                }
+            }
+            if let Some(a) = &answers[i] {
+                if !a.reason.is_empty() {
+                    summary.see(&format!("reason: {}", a.verdict), &a.reason, point);
+                }
+                for (code, message) in &a.warnings {
+                    summary.see(code.as_str(), message, point);
+                }
+            }
+        }
+        for (verdict, count) in by_verdict {
+            *summary.verdicts.entry(verdict.into()).or_default() += count;
+        }
+        summary.efficiency.join(&all_efficiency);
+        summary.loss_w.join(&all_loss);
+        let Some(cells) = cells else { return };
+        for ((cells, (_, what)), output) in cells.iter_mut().zip(&self.columns).zip(&self.output) {
+            match cells {
+                Cells::Numbers(all) => match (what, output) {
+                    (What::Axis(k), _) => {
+                        let at = all.len();
+                        all.resize(at + n, 0.0);
+                        fill(sweep, *k, 1.0, from, &mut all[at..]);
+                    }
+                    (_, Some(o)) => {
+                        // A point without an answer has no numbers.
+                        let has = |i: usize| answers[i].as_ref().is_none_or(|a| a.solution.is_some());
+                        all.extend((0..n).map(|i| if has(i) { values[*o][i] } else { f64::NAN }));
+                    }
+                    _ => unreachable!("numbers are axes or outputs"),
+                },
+                Cells::Texts(all) => all.extend((0..n).map(|i| -> Cow<'static, str> {
+                    match what {
+                        What::Axis(k) => sweep.axes[*k].setting(sweep.place(from + i as u64)[*k]).into(),
+                        What::Verdict => verdict(i).into(),
+                        What::Best => yes_or_no(best[i]).into(),
+                        _ => answers[i].as_ref().map_or("".into(), |a| a.reason.clone().into()),
+                    }
+                })),
+            }
+        }
+    }
+}
+
+/// Points of a block.
+enum Span<'a> {
+    Run(u64, usize),
+    List(&'a [u64]),
+}
+
+impl Span<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Run(_, n) => *n,
+            Self::List(all) => all.len(),
+        }
+    }
+
+    fn point(&self, i: usize) -> u64 {
+        match self {
+            Self::Run(from, _) => from + i as u64,
+            Self::List(all) => all[i],
+        }
+    }
+
+    /// Values of an axis at the points, SI.
+    fn axis(&self, sweep: &Sweep<'_>, axis: usize, factor: f64, out: &mut [f64]) {
+        match self {
+            Self::Run(from, _) => fill(sweep, axis, factor, *from, out),
+            Self::List(all) => {
+                let stride: u64 = sweep.axes[axis + 1..].iter().map(|a| a.len() as u64).product();
+                let own = &sweep.axes[axis];
+                for (o, p) in out.iter_mut().zip(*all) {
+                    *o = own.number((p / stride % own.len() as u64) as usize) * factor;
+                }
+            }
+        }
+    }
+}
+
+/// Whether every efficiency is above zero, so that power enters and leaves.
+fn plain(efficiency: &[f64]) -> bool {
+    // Counted, not searched: a loop without an exit is vectorised.
+    efficiency.iter().map(|x| u32::from(*x > 0.0)).sum::<u32>() as usize == efficiency.len()
+}
+
+/// Of numbers none of which is NaN.
+fn extent(values: &[f64], first: u64) -> Extent {
+    const LANES: usize = 8;
+    let (mut sum, mut least, mut most) = ([0.0; LANES], [f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    let chunks = values.chunks_exact(LANES);
+    let rest = chunks.remainder();
+    for c in chunks {
+        for k in 0..LANES {
+            sum[k] += c[k];
+            least[k] = if c[k] < least[k] { c[k] } else { least[k] };
+            most[k] = if c[k] > most[k] { c[k] } else { most[k] };
+        }
+    }
+    let mut all = Extent { count: values.len() as u64, sum: 0.0, ..Extent::default() };
+    let low = least.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
+    let high = most.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max);
+    all.sum = sum.iter().chain(rest).sum();
+    let at = |x: f64| first + values.iter().position(|v| *v == x).unwrap_or(0) as u64;
+    (all.least, all.most) = ((low, at(low)), (high, at(high)));
+    all
+}
