@@ -332,15 +332,19 @@ impl Writer {
             if k > 0 {
                 self.0.push(',');
             }
-            let field = field.as_ref();
-            if field.contains([',', '"', '\n', '\r']) {
-                self.0.push('"');
-                self.0 += &field.replace('"', "\"\"");
-                self.0.push('"');
-            } else {
-                self.0 += field;
-            }
+            self::field(&mut self.0, field.as_ref());
         }
         self.0.push('\n');
+    }
+}
+
+/// A field, in quotes where it needs them.
+pub fn field(out: &mut String, text: &str) {
+    if text.contains([',', '"', '\n', '\r']) {
+        out.push('"');
+        *out += &text.replace('"', "\"\"");
+        out.push('"');
+    } else {
+        *out += text;
     }
 }

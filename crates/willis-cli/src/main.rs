@@ -3,14 +3,17 @@
 mod csv;
 mod flow;
 mod input;
+mod interrupt;
 mod losses;
 mod modes;
 mod output;
 mod regimes;
 mod simulate;
+mod sweep;
 mod text;
 
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
@@ -19,6 +22,7 @@ use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::dynamics::{Method, Options};
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
+use willis::study::{Hold, Subject};
 use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
 use willis::units::{self, Dimension, Quantity};
@@ -67,6 +71,76 @@ enum Command {
         /// Put a law into force: mesh_friction=niemann. Several times for several families.
         #[arg(long, value_name = "FAMILY=LAW")]
         law: Vec<String>,
+    },
+    /// Evaluate a train at many points: maps, trends, every gear at once.
+    ///
+    /// Any quantity of the train file or of the operating point can vary, along as many axes as wanted:
+    ///
+    ///   --over "input.speed=500 rpm..12000 rpm:100"   --over "output.torque=10..400 N m:80"
+    ///   --over state=all   --over P1.planet.count=3,4,6   --over "oil.temperature=20..100 degC:9"
+    ///
+    /// `…:100` are so many values, ends included; `…:31:log` a constant ratio; `…:step 500 rpm` every so much.
+    /// Torque and power of `input` and `output` are positive where they drive; of a member called by its name they
+    /// are those ON it, as in the train file. Every point is that of `analyze`; a point that is locked or has several
+    /// solutions is a row that says so. Without --out a summary is all there is. An interrupted sweep goes on when the
+    /// same command is given again.
+    Sweep {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// An axis, QUANTITY=VALUES; several times for several axes, the last runs fastest.
+        #[arg(long, value_name = "AXIS")]
+        over: Vec<String>,
+        /// A [[study]] of the train file.
+        #[arg(long, value_name = "NAME")]
+        study: Option<String>,
+        /// The operation from which the sweep starts. Default: the file's first.
+        #[arg(long)]
+        operation: Option<String>,
+        /// The state of the shift table.
+        #[arg(long)]
+        state: Option<String>,
+        /// What stays the same while other quantities vary.
+        #[arg(long, value_enum, default_value_t = HoldArgument::AsGiven)]
+        hold: HoldArgument,
+        /// More columns: members, meshes, elements, sources, all, or single ones such as carrier.torque_n_m.
+        #[arg(long, value_delimiter = ',', value_name = "COLUMN")]
+        columns: Vec<String>,
+        /// A law to use instead of that of the file: family=law.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
+        /// Table to write, one row a point: .csv, .jsonl or .parquet; what was done stands beside it in .json.
+        #[arg(short, long, value_name = "FILE")]
+        out: Option<PathBuf>,
+        /// Replace a table that exists.
+        #[arg(long)]
+        force: bool,
+        /// Go, however long it takes and however large it gets.
+        #[arg(long)]
+        yes: bool,
+        /// Only this part of the sweep, 3/16; `willis merge` puts the parts together.
+        #[arg(long, value_name = "K/N", value_parser = shard)]
+        shard: Option<(u64, u64)>,
+        /// Threads. Default: as many as there are cores.
+        #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+        threads: Option<u16>,
+        /// Compile the train, for maps of millions of points: given efficiencies, axes of speed, torque and state.
+        /// Numbers agree with `analyze` to a part in 10^12.
+        #[arg(long)]
+        fast: bool,
+        /// How to print the summary.
+        #[arg(long, value_enum, default_value_t = PlainFormat::Text)]
+        format: PlainFormat,
+    },
+    /// Put the shards of a sweep together, after checking that they belong together.
+    Merge {
+        /// The table to write.
+        out: PathBuf,
+        /// The shards, in any order; what was written beside them must be there too.
+        #[arg(required = true)]
+        shards: Vec<PathBuf>,
+        /// Replace a table that exists.
+        #[arg(long)]
+        force: bool,
     },
     /// Tell where every watt goes, at a few speeds, loads and temperatures, or law beside law.
     ///
@@ -450,6 +524,47 @@ impl From<Language> for Notation {
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum HoldArgument {
+    /// The loads as the operation gives them.
+    AsGiven,
+    /// The torques of the loads.
+    Torque,
+    /// The powers of the loads.
+    Power,
+    /// The torque at the output.
+    Output,
+}
+
+impl From<HoldArgument> for Hold {
+    fn from(h: HoldArgument) -> Self {
+        match h {
+            HoldArgument::AsGiven => Self::AsGiven,
+            HoldArgument::Torque => Self::Torque,
+            HoldArgument::Power => Self::Power,
+            HoldArgument::Output => Self::Output,
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum PlainFormat {
+    /// For eyes.
+    Text,
+    /// For programs.
+    Json,
+}
+
+/// `3/16`
+fn shard(text: &str) -> Result<(u64, u64), String> {
+    let parts = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+    match parts {
+        Some((k, n)) if k >= 1 && k <= n && n <= 1_000_000 => Ok((k, n)),
+        Some((k, n)) => Err(format!("there is no part {k} of {n}; parts count from 1")),
+        None => Err("write which of how many, as in 3/16".into()),
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum RatiosArgument {
     /// One symbol for the basic ratio of each set.
     Basic,
@@ -513,6 +628,54 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 Format::Csv => csv::analysis(&analysis, *table),
             })
         }
+        Command::Sweep {
+            file,
+            over,
+            study,
+            operation,
+            state,
+            hold,
+            columns,
+            law,
+            out,
+            force,
+            yes,
+            shard,
+            threads,
+            fast,
+            format,
+        } => {
+            let _ = study;
+            let job = Job::read(file)?;
+            let subject = job.subject(law)?;
+            let request = sweep::Request {
+                over: over.clone(),
+                operation: operation.clone(),
+                state: state.clone(),
+                hold: (*hold).into(),
+                columns: columns.clone(),
+                out: out.clone(),
+                force: *force,
+                yes: *yes,
+                shard: *shard,
+                threads: threads.map(usize::from),
+                fast: *fast,
+            };
+            let report = match sweep::run(&subject, &job.text, law, &request) {
+                Ok(report) => report,
+                Err(sweep::Failure::Input(wrong)) => return Err(job.failure(wrong)),
+                Err(sweep::Failure::Told(text)) => return Err(text),
+                Err(sweep::Failure::Interrupted(text)) => {
+                    *status = 130;
+                    return Ok(text);
+                }
+            };
+            Ok(match format {
+                PlainFormat::Text => sweep::text(&report),
+                PlainFormat::Json => serde_json::to_string_pretty(&report).expect("plain data") + "\n",
+            })
+        }
+        Command::Merge { out, shards, force } => sweep::merge(out, shards, *force).map(|r| sweep::text(&r)),
         Command::Losses { file, operation, speeds, powers, torques, temperature, compare, law, format } => {
             let job = Job::read(file)?.with_laws(law)?;
             let temperature = values("--temperature", temperature, Dimension::TEMPERATURE)?;
@@ -841,6 +1004,9 @@ fn pair(names: Option<&[String]>) -> Result<Option<[String; 2]>, String> {
 
 /// A train read from somewhere, with what is needed to tell where things stand in its text.
 struct Job {
+    /// As given.
+    path: String,
+    /// As shown.
     file: String,
     text: String,
     reading: Reading,
@@ -853,7 +1019,7 @@ impl Job {
         let text = input::read(file).map_err(|d| d.render(name, "", color()))?;
         let mut reading = Train::read_toml_with(&text, &mut input::tables_beside(file));
         match reading.train.take() {
-            Some(train) => Ok(Self { file: name.to_owned(), text, reading, train }),
+            Some(train) => Ok(Self { path: file.to_owned(), file: name.to_owned(), text, reading, train }),
             None => Err(failure(&reading.diagnostics, name, &text)),
         }
     }
@@ -870,6 +1036,19 @@ impl Job {
             }
         }
         Ok(self)
+    }
+
+    /// The train with quantities that can vary.
+    fn subject(&self, laws: &[String]) -> Result<Subject, String> {
+        let mut pairs = vec![];
+        for text in laws {
+            let Some((family, law)) = text.split_once('=') else {
+                return Err(format!("--law {text}: write family=law, as in --law mesh_friction=niemann\n"));
+            };
+            pairs.push((family.trim().to_owned(), law.trim().to_owned()));
+        }
+        let read = Subject::new(&self.text, &pairs, &mut input::tables_beside(&self.path));
+        read.map_err(|reading| failure(&reading.diagnostics, &self.file, &self.text))
     }
 
     fn analyze(&self, selection: &Selection) -> Result<Analysis, String> {

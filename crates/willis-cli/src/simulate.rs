@@ -13,7 +13,6 @@ use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -21,6 +20,8 @@ use serde_json::{Value, json};
 use willis::dynamics::{Column, Event, Options, Outcome, Recorder, RunReport, Sample};
 use willis::figure::{TimePlotBuilder, outcome_in_words};
 use willis::train::Train;
+
+use crate::interrupt::{interrupted, listen};
 
 pub use text::text;
 
@@ -75,28 +76,14 @@ impl From<String> for Failure {
 /// Rows that are kept in memory for an answer.
 const MOST_ROWS: usize = 1_000_000;
 
-/// Set by Ctrl-C.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 /// The unfinished file, for a second Ctrl-C.
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
 
-/// Whether Ctrl-C was pressed.
-fn interrupted() -> bool {
-    INTERRUPTED.load(Ordering::Relaxed)
-}
-
-/// The first Ctrl-C ends the run where it is, the second the program.
-fn listen() {
-    let pressed = || {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            if let Ok(Some(path)) = UNFINISHED.lock().as_deref() {
-                let _ = std::fs::remove_file(path);
-            }
-            std::process::exit(130);
-        }
-    };
-    // Without it the system's own handling stays: the program ends at once.
-    let _ = ctrlc::set_handler(pressed);
+/// Leaves no unfinished file behind.
+fn clear() {
+    if let Ok(Some(path)) = UNFINISHED.lock().as_deref() {
+        let _ = std::fs::remove_file(path);
+    }
 }
 
 /// Runs a scenario with the engine.
@@ -123,7 +110,7 @@ pub fn run(train: &Train, request: &Request) -> Result<Run, Failure> {
             format!("{rows} rows are too many for one JSON document; stream them with --out run.csv or run.parquet\n");
         return Err(Failure::Told(why));
     }
-    listen();
+    listen(clear);
     let engine = |recorder: &mut dyn Recorder| {
         willis::dynamics::simulate(train, &scenario.name, &request.options, recorder).map_err(Failure::Input)
     };

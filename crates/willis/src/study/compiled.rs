@@ -101,12 +101,19 @@ impl<'s> Sweep<'s> {
         let axes = &self.axes;
         let with_hold = "sweep without --fast";
         if self.question.subject().train().is_physical() {
-            return Err(refuse("losses of this train are computed from load and speed; they cannot be compiled", with_hold));
+            return Err(refuse(
+                "losses of this train are computed from load and speed; they cannot be compiled",
+                with_hold,
+            ));
         }
-        if let Some(a) = axes.iter().find(|a| matches!(a.target, Target::Power(_) | Target::Temperature | Target::Law(_)))
+        if let Some(a) =
+            axes.iter().find(|a| matches!(a.target, Target::Power(_) | Target::Temperature | Target::Law(_)))
         {
             let message = format!("`{}` cannot vary in a compiled sweep", a.name);
-            return Err(refuse(&message, "vary speeds, torques, states or values of the train file; or leave out --fast"));
+            return Err(refuse(
+                &message,
+                "vary speeds, torques, states or values of the train file; or leave out --fast",
+            ));
         }
         if self.question.hold() == Hold::Power {
             return Err(refuse("a held power is no torque that could be compiled", with_hold));
@@ -169,7 +176,8 @@ impl<'s> Sweep<'s> {
         outputs: &[Output],
         trains: &mut Trains,
     ) -> Result<Case, Diagnostics> {
-        let value = |k: usize| choosing.iter().find(|c| c.0 == k).map_or(0, |&(k, step)| case / step % self.axes[k].len());
+        let value =
+            |k: usize| choosing.iter().find(|c| c.0 == k).map_or(0, |&(k, step)| case / step % self.axes[k].len());
         let settings: Vec<(&Target, String)> =
             self.axes.iter().enumerate().map(|(k, a)| (&a.target, a.setting(value(k)))).collect();
         let (train, operation) = self.question.at(&settings, trains)?;
@@ -369,7 +377,7 @@ impl CompiledSweep<'_, '_> {
                     all[at] = own[i];
                 }
                 // Where nothing enters or nothing leaves, and where a pattern is not the only one, words are needed.
-                doubtful[at] = odd > 0 || !(room.outputs[0][i] > 0.0) || !room.outputs[1][i].is_finite();
+                doubtful[at] = odd > 0 || !plain(&room.outputs[0][i..=i]) || !room.outputs[1][i].is_finite();
             }
         }
         let mut answers: Vec<Option<super::Answer>> = vec![None; n];

@@ -80,6 +80,11 @@ impl Subject {
         &self.document
     }
 
+    /// The tables that the file names, with their texts, as far as they could be read.
+    pub fn files(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.files.iter().filter_map(|(name, text)| Some((name.as_str(), text.as_deref().ok()?)))
+    }
+
     /// The train with other values.
     ///
     /// # Errors

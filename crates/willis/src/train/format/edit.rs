@@ -113,10 +113,10 @@ fn place<'a>(item: Option<&'a Item>, kind: &'static Kind) -> Place<'a> {
     }
 }
 
-fn entries<'a>(
-    item: Option<&'a Item>,
+fn entries(
+    item: Option<&Item>,
     table_of: impl Fn(&dyn TableLike) -> &'static Table,
-) -> Vec<(Option<String>, &'a dyn TableLike, &'static Table)> {
+) -> Vec<(Option<String>, &dyn TableLike, &'static Table)> {
     let tables: Vec<&dyn TableLike> = match item {
         Some(Item::ArrayOfTables(all)) => all.iter().map(|t| t as &dyn TableLike).collect(),
         Some(Item::Value(Value::Array(all))) => {
