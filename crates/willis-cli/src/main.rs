@@ -22,7 +22,7 @@ use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::dynamics::{Method, Options};
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
-use willis::study::{Hold, Subject};
+use willis::study::{Hold, Subject, Sweep};
 use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
 use willis::units::{self, Dimension, Quantity};
@@ -91,7 +91,7 @@ enum Command {
         #[arg(long, value_name = "AXIS")]
         over: Vec<String>,
         /// A [[study]] of the train file.
-        #[arg(long, value_name = "NAME")]
+        #[arg(long, value_name = "NAME", conflicts_with_all = ["over", "operation", "state", "hold", "columns"])]
         study: Option<String>,
         /// The operation from which the sweep starts. Default: the file's first.
         #[arg(long)]
@@ -645,10 +645,10 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             fast,
             format,
         } => {
-            let _ = study;
             let job = Job::read(file)?;
             let subject = job.subject(law)?;
             let request = sweep::Request {
+                study: study.clone(),
                 over: over.clone(),
                 operation: operation.clone(),
                 state: state.clone(),
@@ -889,6 +889,16 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
         Command::Check { file } => {
             let job = Job::read(file)?;
             let analysis = job.analyze(&Selection::default())?;
+            if !job.train.studies().is_empty() {
+                let subject = job.subject(&[])?;
+                let mut wrong = Diagnostics::default();
+                for study in job.train.studies() {
+                    wrong.extend(Sweep::of_file(&subject, &study.name).err().unwrap_or_default());
+                }
+                if wrong.has_errors() {
+                    return Err(job.failure(wrong));
+                }
+            }
             let (train, notes) = (&job.train, job.notes(&analysis.diagnostics));
             let warnings = analysis.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
             let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });

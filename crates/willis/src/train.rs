@@ -30,7 +30,7 @@ pub use describe::physical::{
 };
 pub use describe::{
     EfficiencySpec, GearSpec, MeshSpec, OperationSpec, SetEfficiencySpec, SetSpec, ShiftElementSpec, StateSpec,
-    TrainBuilder,
+    StudySpec, TrainBuilder,
 };
 pub use dynamic::{
     Contact, Curve, DragMount, Engagement, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal, Source,
@@ -266,6 +266,7 @@ pub struct Train {
     pub(crate) terminals: Vec<MemberId>,
     pub(crate) input: Option<MemberId>,
     pub(crate) output: Option<MemberId>,
+    pub(crate) studies: Vec<StudySpec>,
     pub(crate) warnings: Vec<Diagnostic>,
     pub(crate) assumptions: Vec<String>,
     pub(crate) lubrication: Option<Lubrication>,
@@ -388,6 +389,11 @@ impl Train {
     /// Where power leaves when driving, if the state does not say otherwise.
     pub fn output(&self) -> Option<MemberId> {
         self.output
+    }
+
+    /// Sweeps that the file describes.
+    pub fn studies(&self) -> &[StudySpec] {
+        &self.studies
     }
 
     /// Warnings about the train itself: assembly conditions, nominal planets, loose members.

@@ -5,6 +5,7 @@
 //! long way, so that verdicts and their words are the same.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use crate::compiled::{CompiledTrain, Duty, Output, Points, Workspace};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -25,11 +26,51 @@ const BLOCK: usize = 4096;
 #[derive(Clone, Debug)]
 enum Input {
     Constant(f64),
-    /// An axis, and what one of its unit is in SI.
-    Axis(usize, f64),
-    /// Likewise, the torque turned so that it drives: its sign, and how the member's speed follows from those
-    /// prescribed.
-    Role(usize, f64, Vec<f64>),
+    /// An axis, its values in SI.
+    Axis(Values),
+    /// Likewise, the torque turned so that it drives: how the member's speed follows from those prescribed.
+    Role(Values, Vec<f64>),
+}
+
+/// The values of an axis in SI; made once, unless there are very many.
+#[derive(Clone, Debug)]
+struct Values {
+    axis: usize,
+    factor: f64,
+    si: Arc<[f64]>,
+}
+
+impl Values {
+    fn new(sweep: &Sweep<'_>, axis: usize, factor: f64) -> Self {
+        const MOST_KEPT: usize = 1 << 20;
+        let own = &sweep.axes[axis];
+        let kept = if own.len() <= MOST_KEPT { own.len() } else { 0 };
+        Self { axis, factor, si: (0..kept).map(|k| own.number(k) * factor).collect() }
+    }
+
+    fn at(&self, sweep: &Sweep<'_>, k: usize) -> f64 {
+        self.si.get(k).copied().unwrap_or_else(|| sweep.axes[self.axis].number(k) * self.factor)
+    }
+
+    /// At the points from `from` on.
+    fn fill(&self, sweep: &Sweep<'_>, from: u64, out: &mut [f64]) {
+        let stride = sweep.stride(self.axis);
+        let n = sweep.axes[self.axis].len() as u64;
+        let (mut point, mut at) = (from, 0);
+        while at < out.len() {
+            let k = (point / stride % n) as usize;
+            let run = if stride == 1 { n as usize - k } else { (stride - point % stride) as usize };
+            let run = run.min(out.len() - at);
+            let out = &mut out[at..at + run];
+            match self.si.get(k..k + run) {
+                // A row of the map.
+                Some(row) if stride == 1 => out.copy_from_slice(row),
+                _ if stride == 1 => out.iter_mut().enumerate().for_each(|(i, o)| *o = self.at(sweep, k + i)),
+                _ => out.fill(self.at(sweep, k)),
+            }
+            (point, at) = (point + run as u64, at + run);
+        }
+    }
 }
 
 /// One train in one state.
@@ -50,6 +91,7 @@ pub struct CompiledSweep<'a, 's> {
     columns: Vec<(Column, What)>,
     /// The output that each number column takes.
     output: Vec<Option<usize>>,
+    arch: pulp::Arch,
 }
 
 /// Work arrays; one for each thread.
@@ -135,7 +177,7 @@ impl<'s> Sweep<'s> {
         let mut trains = Trains::default();
         let cases = (0..count).map(|case| self.case(case, &choosing, &outputs, &mut trains));
         let cases = cases.collect::<Result<Vec<_>, _>>()?;
-        Ok(CompiledSweep { sweep: self, cases, choosing, columns, output })
+        Ok(CompiledSweep { sweep: self, cases, choosing, columns, output, arch: pulp::Arch::new() })
     }
 
     /// Columns of a compiled sweep, the outputs they need, and which column takes which.
@@ -206,7 +248,7 @@ impl<'s> Sweep<'s> {
         let mut speeds = vec![];
         for (member, q) in &operation.speeds {
             speeds.push(match axis_of(*member, true)? {
-                Some((k, _)) => Input::Axis(k, si(k)),
+                Some((k, _)) => Input::Axis(Values::new(self, k, si(k))),
                 None => Input::Constant(q.si()),
             });
         }
@@ -220,11 +262,11 @@ impl<'s> Sweep<'s> {
             };
             torques.push(match axis_of(*member, false)? {
                 None => Input::Constant(q.si()),
-                Some((k, Who::Member(_))) => Input::Axis(k, si(k)),
+                Some((k, Who::Member(_))) => Input::Axis(Values::new(self, k, si(k))),
                 Some((k, who)) => {
                     let sign = if who == Who::Input { 1.0 } else { -1.0 };
                     let follows = transfer.speeds[member.0].as_ref().map(|f| f.iter().map(|x| x.to_f64()).collect());
-                    Input::Role(k, sign * si(k), follows.unwrap_or_default())
+                    Input::Role(Values::new(self, k, sign * si(k)), follows.unwrap_or_default())
                 }
             });
         }
@@ -242,29 +284,6 @@ impl<'s> Sweep<'s> {
             duty = duty.output(output.clone());
         }
         Ok(Case { train: train.compile(&duty)?, speeds, torques })
-    }
-}
-
-/// Runs of one axis value in consecutive points.
-fn fill(sweep: &Sweep<'_>, axis: usize, factor: f64, from: u64, out: &mut [f64]) {
-    let stride: u64 = sweep.axes[axis + 1..].iter().map(|a| a.len() as u64).product();
-    let own = &sweep.axes[axis];
-    let n = own.len() as u64;
-    let (mut point, mut at) = (from, 0);
-    while at < out.len() {
-        let k = (point / stride % n) as usize;
-        if stride == 1 {
-            // A row of the map.
-            let run = (own.len() - k).min(out.len() - at);
-            for (i, o) in out[at..at + run].iter_mut().enumerate() {
-                *o = own.number(k + i) * factor;
-            }
-            (point, at) = (point + run as u64, at + run);
-        } else {
-            let run = ((stride - point % stride) as usize).min(out.len() - at);
-            out[at..at + run].fill(own.number(k) * factor);
-            (point, at) = (point + run as u64, at + run);
-        }
     }
 }
 
@@ -290,9 +309,9 @@ impl CompiledSweep<'_, '_> {
         room.inputs.iter_mut().chain(&mut room.outputs).for_each(|v| v.resize(n, 0.0));
         let set = |input: &Input, speeds: &[Vec<f64>], out: &mut [f64]| match input {
             Input::Constant(x) => out.fill(*x),
-            Input::Axis(k, factor) => points.axis(self.sweep, *k, *factor, out),
-            Input::Role(k, factor, follows) => {
-                points.axis(self.sweep, *k, *factor, out);
+            Input::Axis(values) => points.axis(self.sweep, values, out),
+            Input::Role(values, follows) => {
+                points.axis(self.sweep, values, out);
                 for (i, o) in out.iter_mut().enumerate() {
                     let speed: f64 = follows.iter().zip(speeds).map(|(f, s)| f * s[i]).sum();
                     if speed < 0.0 {
@@ -349,13 +368,19 @@ impl CompiledSweep<'_, '_> {
     fn block(&self, from: u64, n: usize, room: &mut Room, summary: &mut Summary, cells: Option<&mut Vec<Cells>>) {
         let to = from + n as u64;
         let single = self.cases.len() == 1;
-        if single && cells.is_none() && self.evaluate(0, &Span::Run(from, n), room) == 0 && plain(&room.outputs[0]) {
-            // All unique and driving: nothing to look at one by one.
-            summary.points += n as u64;
-            *summary.verdicts.entry("unique".into()).or_default() += n as u64;
-            summary.efficiency.join(&extent(&room.outputs[0], from));
-            summary.loss_w.join(&extent(&room.outputs[1], from));
-            return;
+        if single && self.evaluate(0, &Span::Run(from, n), room) == 0 {
+            let [efficiency, loss, ..] = &room.outputs[..] else { unreachable!("always asked for") };
+            if plain(self.arch, efficiency) {
+                // All unique and driving: nothing to look at one by one.
+                summary.points += n as u64;
+                *summary.verdicts.entry("unique".into()).or_default() += n as u64;
+                extend(self.arch, &mut summary.efficiency, efficiency, from);
+                extend(self.arch, &mut summary.loss_w, loss, from);
+                if let Some(cells) = cells {
+                    self.plain_rows(from, n, &room.outputs, cells);
+                }
+                return;
+            }
         }
         // Number columns by point, and whether the point is to be asked the long way.
         let outputs = self.cases[0].train.outputs();
@@ -377,17 +402,45 @@ impl CompiledSweep<'_, '_> {
                     all[at] = own[i];
                 }
                 // Where nothing enters or nothing leaves, and where a pattern is not the only one, words are needed.
-                doubtful[at] = odd > 0 || !plain(&room.outputs[0][i..=i]) || !room.outputs[1][i].is_finite();
+                let drives = room.outputs[0][i].partial_cmp(&0.0).is_some_and(|o| o.is_gt());
+                doubtful[at] = odd > 0 || !drives;
             }
         }
-        let mut answers: Vec<Option<super::Answer>> = vec![None; n];
+        // Boxed: hardly any point has one.
+        let mut answers: Vec<Option<Box<super::Answer>>> = vec![None; n];
         for i in (0..n).filter(|i| doubtful[*i]) {
             let answer = self.sweep.answer(from + i as u64, &mut room.trains);
             values[0][i] = answer.efficiency();
             values[1][i] = answer.loss();
-            answers[i] = Some(answer);
+            answers[i] = Some(Box::new(answer));
         }
         self.tell(from, n, &values, &answers, summary, cells);
+    }
+
+    /// The column of an axis, in its own unit.
+    fn axis_column(&self, axis: usize, from: u64, n: usize, out: &mut Vec<f64>) {
+        let (stride, own) = (self.sweep.stride(axis), &self.sweep.axes[axis]);
+        let to = from + n as u64;
+        let mut point = from;
+        while point < to {
+            let k = (point / stride % own.len() as u64) as usize;
+            let run = (stride - point % stride).min(to - point);
+            out.resize(out.len() + run as usize, own.number(k));
+            point += run;
+        }
+    }
+
+    /// Rows of points that are all unique.
+    fn plain_rows(&self, from: u64, n: usize, outputs: &[Vec<f64>], cells: &mut [Cells]) {
+        for ((cells, (_, what)), output) in cells.iter_mut().zip(&self.columns).zip(&self.output) {
+            match (cells, what, output) {
+                (Cells::Numbers(all), What::Axis(k), _) => self.axis_column(*k, from, n, all),
+                (Cells::Numbers(all), _, Some(o)) => all.extend_from_slice(&outputs[*o]),
+                (Cells::Texts(all), What::Verdict, _) => all.resize(all.len() + n, "unique".into()),
+                (Cells::Texts(all), What::Reason, _) => all.resize(all.len() + n, "".into()),
+                _ => unreachable!("a single train has no axis of texts"),
+            }
+        }
     }
 
     fn tell(
@@ -395,7 +448,7 @@ impl CompiledSweep<'_, '_> {
         from: u64,
         n: usize,
         values: &[Vec<f64>],
-        answers: &[Option<super::Answer>],
+        answers: &[Option<Box<super::Answer>>],
         summary: &mut Summary,
         cells: Option<&mut Vec<Cells>>,
     ) {
@@ -454,11 +507,7 @@ impl CompiledSweep<'_, '_> {
         for ((cells, (_, what)), output) in cells.iter_mut().zip(&self.columns).zip(&self.output) {
             match cells {
                 Cells::Numbers(all) => match (what, output) {
-                    (What::Axis(k), _) => {
-                        let at = all.len();
-                        all.resize(at + n, 0.0);
-                        fill(sweep, *k, 1.0, from, &mut all[at..]);
-                    }
+                    (What::Axis(k), _) => self.axis_column(*k, from, n, all),
                     (_, Some(o)) => {
                         // A point without an answer has no numbers.
                         let has = |i: usize| answers[i].as_ref().is_none_or(|a| a.solution.is_some());
@@ -501,14 +550,13 @@ impl Span<'_> {
     }
 
     /// Values of an axis at the points, SI.
-    fn axis(&self, sweep: &Sweep<'_>, axis: usize, factor: f64, out: &mut [f64]) {
+    fn axis(&self, sweep: &Sweep<'_>, values: &Values, out: &mut [f64]) {
         match self {
-            Self::Run(from, _) => fill(sweep, axis, factor, *from, out),
+            Self::Run(from, _) => values.fill(sweep, *from, out),
             Self::List(all) => {
-                let stride: u64 = sweep.axes[axis + 1..].iter().map(|a| a.len() as u64).product();
-                let own = &sweep.axes[axis];
+                let (stride, n) = (sweep.stride(values.axis), sweep.axes[values.axis].len() as u64);
                 for (o, p) in out.iter_mut().zip(*all) {
-                    *o = own.number((p / stride % own.len() as u64) as usize) * factor;
+                    *o = values.at(sweep, (p / stride % n) as usize);
                 }
             }
         }
@@ -516,29 +564,39 @@ impl Span<'_> {
 }
 
 /// Whether every efficiency is above zero, so that power enters and leaves.
-fn plain(efficiency: &[f64]) -> bool {
+fn plain(arch: pulp::Arch, efficiency: &[f64]) -> bool {
     // Counted, not searched: a loop without an exit is vectorised.
-    efficiency.iter().map(|x| u32::from(*x > 0.0)).sum::<u32>() as usize == efficiency.len()
+    arch.dispatch(|| efficiency.iter().map(|x| u64::from(*x > 0.0)).sum::<u64>()) as usize == efficiency.len()
 }
 
-/// Of numbers none of which is NaN.
-fn extent(values: &[f64], first: u64) -> Extent {
-    const LANES: usize = 8;
-    let (mut sum, mut least, mut most) = ([0.0; LANES], [f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
-    let chunks = values.chunks_exact(LANES);
-    let rest = chunks.remainder();
-    for c in chunks {
-        for k in 0..LANES {
-            sum[k] += c[k];
-            least[k] = if c[k] < least[k] { c[k] } else { least[k] };
-            most[k] = if c[k] > most[k] { c[k] } else { most[k] };
-        }
-    }
-    let mut all = Extent { count: values.len() as u64, sum: 0.0, ..Extent::default() };
-    let low = least.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
-    let high = most.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max);
-    all.sum = sum.iter().chain(rest).sum();
+/// Adds values none of which is NaN, those of the points from `first` on.
+fn extend(arch: pulp::Arch, extent: &mut Extent, values: &[f64], first: u64) {
+    const LANES: usize = 16;
+    let (sum, low, high) = arch.dispatch(
+        #[inline(always)]
+        || {
+            let (mut sum, mut least, mut most) = ([0.0; LANES], [f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+            let chunks = values.chunks_exact(LANES);
+            let rest = chunks.remainder();
+            for c in chunks {
+                for k in 0..LANES {
+                    sum[k] += c[k];
+                    least[k] = if c[k] < least[k] { c[k] } else { least[k] };
+                    most[k] = if c[k] > most[k] { c[k] } else { most[k] };
+                }
+            }
+            let low = least.iter().chain(rest).copied().fold(f64::INFINITY, f64::min);
+            let high = most.iter().chain(rest).copied().fold(f64::NEG_INFINITY, f64::max);
+            (sum.iter().chain(rest).sum::<f64>(), low, high)
+        },
+    );
     let at = |x: f64| first + values.iter().position(|v| *v == x).unwrap_or(0) as u64;
-    (all.least, all.most) = ((low, at(low)), (high, at(high)));
-    all
+    extent.count += values.len() as u64;
+    extent.sum += sum;
+    if low < extent.least.0 {
+        extent.least = (low, at(low));
+    }
+    if high > extent.most.0 {
+        extent.most = (high, at(high));
+    }
 }

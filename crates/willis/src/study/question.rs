@@ -30,6 +30,19 @@ pub enum Hold {
     Output,
 }
 
+impl Hold {
+    /// By its name in the train file.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "as-given" => Some(Self::AsGiven),
+            "torque" => Some(Self::Torque),
+            "power" => Some(Self::Power),
+            "output" => Some(Self::Output),
+            _ => None,
+        }
+    }
+}
+
 /// Most trains that are kept.
 const MOST_TRAINS: usize = 64;
 

@@ -9,8 +9,9 @@ use crate::analysis::{self, Losses, SolutionReport, Verdict};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::train::{Operation, Train};
 
+use super::Subject;
 use super::axis::Axis;
-use super::question::{Question, Trains};
+use super::question::{Hold, Question, Trains};
 use super::target::Target;
 
 /// What can be said of a point: the [verdicts](Verdict) of an operating point, and one for a point that makes none.
@@ -324,6 +325,49 @@ impl<'s> Sweep<'s> {
         Ok(sweep)
     }
 
+    /// The sweep that a [`study`](crate::train::StudySpec) of the train file describes.
+    ///
+    /// # Errors
+    /// No study of that name; all that is wrong with it, at its place in the file.
+    pub fn of_file(subject: &'s Subject, name: &str) -> Result<Self, Diagnostics> {
+        let studies = subject.train().studies();
+        let Some(k) = studies.iter().position(|s| s.name == name) else {
+            let known: Vec<&str> = studies.iter().map(|s| s.name.as_str()).collect();
+            let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no study `{name}`"));
+            let d = d.suggest(name, known.iter().copied());
+            return Err(Diagnostics::from_iter([d.hint(match known.is_empty() {
+                true => "add a [[study]] with a name and `over`".to_owned(),
+                false => format!("its studies are: {}", known.join(", ")),
+            })]));
+        };
+        let study = &studies[k];
+        let mut wrong = Diagnostics::default();
+        let mut axes = vec![];
+        for (j, over) in study.over.iter().enumerate() {
+            match Axis::parse(over, subject) {
+                Ok(axis) => axes.push(axis),
+                Err(mut d) => {
+                    d.place = format!("study[{k}].over[{j}]");
+                    wrong.push(*d);
+                }
+            }
+        }
+        let at = |what: Diagnostics, key: &str| {
+            what.into_iter().map(move |d| Diagnostic { place: format!("study[{k}].{key}"), ..d }).collect::<Vec<_>>()
+        };
+        let hold = study.hold.as_deref().and_then(Hold::named).unwrap_or_default();
+        match Question::new(subject, study.operation.as_deref(), study.state.as_deref(), hold) {
+            Ok(question) if !wrong.has_errors() => {
+                Self::new(question, axes, &study.columns).map_err(|w| at(w, "over").into_iter().collect())
+            }
+            Ok(_) => Err(wrong),
+            Err(more) => {
+                wrong.extend(at(more, "hold"));
+                Err(wrong)
+            }
+        }
+    }
+
     /// How many points.
     pub fn len(&self) -> u64 {
         self.points
@@ -352,6 +396,11 @@ impl<'s> Sweep<'s> {
     /// How many rows belong together: the states of one point.
     pub fn group(&self) -> u64 {
         self.axes.last().filter(|a| a.is_state()).map_or(1, |a| a.len() as u64)
+    }
+
+    /// Points from one value of an axis to its next.
+    pub(super) fn stride(&self, axis: usize) -> u64 {
+        self.axes[axis + 1..].iter().map(|a| a.len() as u64).product()
     }
 
     /// The positions on the axes of a point.

@@ -320,6 +320,20 @@ impl Assembler<'_> {
         State { name: spec.name.clone(), engaged, input, output }
     }
 
+    /// Names in studies; their axes are read where they are used.
+    fn studies(&mut self, spec: &TrainBuilder) {
+        let states: Vec<&str> = spec.states.iter().map(|s| s.name.as_str()).collect();
+        let operations: Vec<&str> = spec.operations.iter().map(|o| o.name.as_str()).collect();
+        for (k, study) in spec.studies.iter().enumerate() {
+            if let Some(name) = &study.state {
+                self.position("state", "state", name, format!("study[{k}].state"), &states);
+            }
+            if let Some(name) = &study.operation {
+                self.position("operation", "operation", name, format!("study[{k}].operation"), &operations);
+            }
+        }
+    }
+
     fn operation(&mut self, spec: &OperationSpec, states: &[StateSpec], place: String) -> Operation {
         let known: Vec<&str> = states.iter().map(|s| s.name.as_str()).collect();
         let of = |name: &String| self.position("state", "state", name, format!("{place}.state"), &known);
@@ -536,6 +550,8 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
     unique(&mut a, "drag", "drag", spec.drags.iter().map(|d| d.name.as_str()));
     unique(&mut a, "shaft", "shaft", spec.shafts.iter().map(|s| s.name.as_str()));
     unique(&mut a, "scenario", "scenario", spec.scenarios.iter().map(|s| s.name.as_str()));
+    unique(&mut a, "study", "study", spec.studies.iter().map(|s| s.name.as_str()));
+    a.studies(&spec);
     let drags: Vec<_> = spec.drags.iter().enumerate().filter_map(|(k, d)| a.drag(d, &format!("drag[{k}]"))).collect();
     let shafts: Vec<_> =
         spec.shafts.iter().enumerate().filter_map(|(k, s)| a.shaft(s, &format!("shaft[{k}]"))).collect();
@@ -613,6 +629,7 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         shafts,
         loss_tables,
         scenarios,
+        studies: spec.studies,
     })
 }
 

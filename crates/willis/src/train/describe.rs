@@ -412,6 +412,23 @@ impl SetSpec {
     }
 }
 
+/// A sweep as the train file describes it; [`study`](crate::study) reads its axes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StudySpec {
+    /// What it is called.
+    pub name: String,
+    /// Axes, `QUANTITY=VALUES`.
+    pub over: Vec<String>,
+    /// The operation from which it starts.
+    pub operation: Option<String>,
+    /// The state of the shift table.
+    pub state: Option<String>,
+    /// What is held: `as-given`, `torque`, `power` or `output`.
+    pub hold: Option<String>,
+    /// More columns than the usual ones.
+    pub columns: Vec<String>,
+}
+
 /// A clutch, brake or one-way clutch.
 #[derive(Clone, Debug)]
 pub struct ShiftElementSpec {
@@ -555,6 +572,7 @@ pub struct TrainBuilder {
     pub(crate) drags: Vec<DragSpec>,
     pub(crate) shafts: Vec<ShaftSpec>,
     pub(crate) scenarios: Vec<ScenarioSpec>,
+    pub(crate) studies: Vec<StudySpec>,
 }
 
 impl TrainBuilder {
@@ -582,6 +600,7 @@ impl TrainBuilder {
             drags: vec![],
             shafts: vec![],
             scenarios: vec![],
+            studies: vec![],
         }
     }
 

@@ -18,7 +18,7 @@ use crate::train::{ShiftElementKind, Train};
 
 use super::describe::{
     GearSpec, MeshSpec, OperationSpec, Parts, PlanetSpec, SetEfficiencySpec, SetSpec, ShiftElementSpec, StateSpec,
-    TrainBuilder,
+    StudySpec, TrainBuilder,
 };
 use super::{Load, assemble};
 use reader::Fields;
@@ -123,6 +123,7 @@ fn builder(root: &Fields) -> TrainBuilder {
     b.drags = root.tables("drag").iter().map(dynamic::drag).collect();
     b.shafts = root.tables("shaft").iter().map(dynamic::shaft).collect();
     b.scenarios = root.tables("scenario").iter().map(dynamic::scenario).collect();
+    b.studies = root.tables("study").iter().map(study).collect();
     b
 }
 
@@ -226,6 +227,17 @@ fn state(t: &Fields) -> StateSpec {
         engaged: t.names("engaged"),
         input: t.optional_text("input"),
         output: t.optional_text("output"),
+    }
+}
+
+fn study(t: &Fields) -> StudySpec {
+    StudySpec {
+        name: t.text("name"),
+        over: t.names("over"),
+        operation: t.optional_text("operation"),
+        state: t.optional_text("state"),
+        hold: t.optional_text("hold"),
+        columns: t.names("columns"),
     }
 }
 

@@ -115,6 +115,7 @@ pub(super) static FILE: Table = Table {
         may("drag", Kind::Tables(&DRAG, 0), "Friction that does not depend on tooth loads, in motion."),
         may("shaft", Kind::Tables(&SHAFT, 0), "Elastic shafts."),
         may("scenario", Kind::Tables(&SCENARIO, 0), "Motions to simulate."),
+        may("study", Kind::Tables(&STUDY, 0), "Sweeps over many operating points: `willis sweep FILE --study NAME`."),
     ],
 };
 
@@ -613,6 +614,26 @@ static OPERATION: Table = Table {
             Kind::Quantity(Dimension::TEMPERATURE),
             "Oil temperature in this operating point. Default: that of the oil.",
         ),
+    ],
+};
+
+static STUDY: Table = Table {
+    doc: "A sweep over many operating points.",
+    keys: &[
+        must("name", Kind::Text, "What it is called."),
+        must(
+            "over",
+            Kind::Names,
+            "Axes, QUANTITY=VALUES: \"input.speed=500 rpm..12000 rpm:100\", \"state=all\", \"P1.planet.count=3,4,6\".",
+        ),
+        may("operation", Kind::Name, "The operation from which it starts. Default: the first."),
+        may("state", Kind::Name, "The state of the shift table. Default: that of the operation."),
+        may(
+            "hold",
+            Kind::Choice(&["as-given", "torque", "power", "output"]),
+            "What stays the same: the loads as given (the default), their torques, their powers, or the torque at the output.",
+        ),
+        may("columns", Kind::Names, "More columns: members, meshes, elements, sources, all, or single ones."),
     ],
 };
 
