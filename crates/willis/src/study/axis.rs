@@ -7,7 +7,7 @@ use crate::exact::Rational;
 use crate::train::Measure;
 
 use super::Subject;
-use super::target::Target;
+use super::target::{Target, Who};
 
 /// Values up to so many are made once.
 const MOST_KEPT: usize = 1 << 20;
@@ -149,12 +149,20 @@ impl Axis {
         }
     }
 
-    /// Name of its column in a table, its unit included: `input.speed_rpm`.
+    /// Name of its column in a table, its unit included: `sun.speed_rpm`. What is the input's or the output's by its role
+    /// is `output_torque_n_m`: a member may be called `output`, and the torque on it has the other sign.
     pub fn column(&self) -> String {
+        let by_role = matches!(
+            self.target,
+            Target::Speed(Who::Input | Who::Output)
+                | Target::Torque(Who::Input | Who::Output)
+                | Target::Power(Who::Input | Who::Output)
+        );
+        let name = if by_role { self.name.replace('.', "_") } else { self.name.clone() };
         let unit: String = self.unit.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
         match unit.trim_matches('_') {
-            "" => self.name.clone(),
-            unit => format!("{}_{}", self.name, unit.replace("__", "_").to_lowercase()),
+            "" => name,
+            unit => format!("{name}_{}", unit.replace("__", "_").to_lowercase()),
         }
     }
 
@@ -212,11 +220,13 @@ fn numbers(whole: &str, values: &str, measure: Measure) -> Result<(Values, Strin
         None => (rest, ""),
     };
     let ((a, first), (b, second)) = (split(from), split(to));
+    // `nan rpm` has no number either.
+    let (from, to) =
+        (read(if a.is_empty() { from.trim() } else { a })?, read(if b.is_empty() { to.trim() } else { b })?);
     if !first.is_empty() && !second.is_empty() && first != second {
         return Err(fault(whole, format!("two units, `{first}` and `{second}`: write both ends in one")));
     }
     let unit = if first.is_empty() { second } else { first };
-    let (from, to) = (read(a)?, read(b)?);
     integer(&from)?;
     integer(&to)?;
     if from == to {
