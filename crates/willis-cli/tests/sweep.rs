@@ -1,0 +1,274 @@
+//! Sweeps as processes: killed and taken up again, shared among machines, refused.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// A folder of its own for each test.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("willis-sweep-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn file(&self, name: &str) -> String {
+        self.0.join(name).to_str().unwrap().to_owned()
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).unwrap();
+        let mut all: Vec<String> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        all.sort();
+        all
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn command(arguments: &[&str]) -> Command {
+    let mut c = Command::new(env!("CARGO_BIN_EXE_willis"));
+    c.current_dir(root()).args(arguments);
+    c
+}
+
+fn willis(arguments: &[&str]) -> Output {
+    command(arguments).output().unwrap()
+}
+
+fn fine(arguments: &[&str]) -> String {
+    let out = willis(arguments);
+    assert!(out.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&out.stderr));
+    String::from_utf8(out.stdout).unwrap()
+}
+
+fn refused(arguments: &[&str]) -> String {
+    let out = willis(arguments);
+    assert_eq!(out.status.code(), Some(1), "{arguments:?}: {}", String::from_utf8_lossy(&out.stdout));
+    String::from_utf8(out.stderr).unwrap()
+}
+
+const FVA: &str = "examples/fva-planetary-stage.toml";
+const AXES: [&str; 4] = ["--over", "sun.speed=100..3000 rpm:40", "--over", "sun.torque=-800..1600 N m:31"];
+
+fn sweep<'a>(out: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    let mut all = vec!["sweep", FVA];
+    all.extend(AXES);
+    all.extend(["--out", out]);
+    all.extend(more);
+    all
+}
+
+#[test]
+fn killed_at_any_moment_it_goes_on_to_the_same_bytes() {
+    for form in ["csv", "jsonl", "parquet"] {
+        let folder = Folder::new(&format!("kill-{form}"));
+        let (whole, killed) = (folder.file(&format!("whole.{form}")), folder.file(&format!("killed.{form}")));
+        fine(&sweep(&whole, &[]));
+        // Moments that differ from run to run; what is found must not.
+        let (mut wait, mut kills) = (Duration::from_millis(3), 0);
+        loop {
+            let mut child = command(&sweep(&killed, &[])).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+            std::thread::sleep(wait);
+            if child.try_wait().unwrap().is_some_and(|s| s.success()) {
+                break;
+            }
+            let _ = child.kill();
+            let ended = child.wait().unwrap();
+            if ended.success() {
+                break;
+            }
+            kills += 1;
+            wait = wait * 3 / 2;
+            assert!(kills < 60, "it never ends");
+            // Never half a table.
+            assert!(!Path::new(&killed).exists() || fs::read(&killed).unwrap() == fs::read(&whole).unwrap());
+        }
+        assert!(kills > 2, "{form}: killed {kills} times");
+        if !Path::new(&killed).exists() {
+            fine(&sweep(&killed, &[]));
+        }
+        assert_eq!(fs::read(&killed).unwrap(), fs::read(&whole).unwrap(), "{form}");
+        let told = [&whole, &killed].map(|f| fs::read_to_string(format!("{f}.json")).unwrap());
+        assert_eq!(told[0], told[1], "{form}");
+        let left: Vec<String> =
+            folder.names().into_iter().filter(|n| n.contains("parts") || n.contains("new")).collect();
+        assert!(left.is_empty(), "{left:?}");
+    }
+}
+
+#[test]
+fn shards_make_the_whole_and_nothing_else_does() {
+    for form in ["csv", "jsonl", "parquet"] {
+        let folder = Folder::new(&format!("shards-{form}"));
+        let file = |name: &str| folder.file(&format!("{name}.{form}"));
+        let (whole, merged) = (file("whole"), file("merged"));
+        fine(&sweep(&whole, &["--threads", "1"]));
+        let shards: Vec<String> = (1..=3).map(|k| file(&format!("part{k}"))).collect();
+        for (k, shard) in shards.iter().enumerate() {
+            fine(&sweep(shard, &["--shard", &format!("{}/3", k + 1), "--threads", "2"]));
+        }
+        let merge = |parts: &[&String], out: &str| {
+            let mut all = vec!["merge", out];
+            all.extend(parts.iter().map(|p| p.as_str()));
+            all.into_iter().map(str::to_owned).collect::<Vec<_>>()
+        };
+        let run = |parts: &[&String], out: &str| {
+            let all = merge(parts, out);
+            willis(&all.iter().map(String::as_str).collect::<Vec<_>>())
+        };
+        let out = run(&[&shards[2], &shards[0], &shards[1]], &merged);
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        assert_eq!(fs::read(&merged).unwrap(), fs::read(&whole).unwrap(), "{form}");
+        let told = [&whole, &merged].map(|f| {
+            let text = fs::read_to_string(format!("{f}.json")).unwrap();
+            let mut told: serde_json::Value = serde_json::from_str(&text).unwrap();
+            // Sums in another order.
+            for quantity in ["efficiency", "loss_w"] {
+                told["summary"][quantity]["sum"] = serde_json::Value::Null;
+            }
+            told
+        });
+        assert_eq!(told[0], told[1]);
+
+        let fails = |parts: &[&String], says: &str| {
+            let out = run(parts, &file("no"));
+            let told = String::from_utf8(out.stderr).unwrap();
+            assert!(out.status.code() == Some(1) && told.contains(says), "{told}");
+            assert!(!Path::new(&file("no")).exists());
+        };
+        fails(&[&shards[0], &shards[1]], "missing: shard 3 of 3");
+        fails(&[&shards[0], &shards[1], &shards[1], &shards[2]], "given twice: shard 2");
+        fails(&[&whole], "is a whole sweep, no shard");
+        let other = file("other");
+        fine(&sweep(&other, &["--shard", "3/3", "--law", "mesh_friction=niemann"]));
+        fails(&[&shards[0], &shards[1], &other], "is of another sweep");
+        fine(&sweep(&other, &["--shard", "3/4", "--force"]));
+        fails(&[&shards[0], &shards[1], &other], "is shard 3 of 4");
+        assert!(String::from_utf8(run(&[&shards[0]], &merged).stderr).unwrap().contains("--force"));
+    }
+}
+
+#[test]
+fn what_cannot_be_done_is_told_and_leaves_nothing() {
+    let folder = Folder::new("refused");
+    let out = folder.file("map.csv");
+    fine(&sweep(&out, &[]));
+    let bytes = fs::read(&out).unwrap();
+    assert!(refused(&sweep(&out, &[])).contains("exists already; add --force"));
+    assert_eq!(fs::read(&out).unwrap(), bytes);
+    fine(&sweep(&out, &["--force"]));
+    let at = |name: &str, says: &str| {
+        let told = refused(&sweep(&folder.file(name), &[]));
+        assert!(told.contains(says), "{told}");
+    };
+    at("map.xlsx", "end the name with .csv, .jsonl or .parquet");
+    at("nowhere/map.csv", "its folder does not exist");
+    fs::create_dir(folder.file("folder.csv")).unwrap();
+    at("folder.csv", "is a directory");
+    let long = |over: &[&str], says: &[&str]| {
+        let mut all = vec!["sweep", FVA];
+        all.extend(over.iter().flat_map(|o| ["--over", *o]));
+        let told = refused(&all);
+        assert!(says.iter().all(|s| told.contains(s)), "{told}");
+    };
+    long(
+        &["sun.speed=100..3000 rpm:1000000", "sun.torque=1..1000 N m:1000000"],
+        &["1,000,000,000,000 points would take about", "--yes"],
+    );
+    long(
+        &["sun.sped=1..2 rpm:2", "sun.torque=5 N m..1 N m:2"],
+        &["did you mean `sun.speed`", "runs backwards", "2 errors"],
+    );
+    long(&["sun.speed=1..2 rpm:2", "sun.speed=3..4 rpm:2"], &["varies along two axes"]);
+    long(&[], &["nothing varies"]);
+    long(&["carrier.speed=1..2 rpm:2", "sun.speed=1..2 rpm:2"], &["E201"]);
+    let told = refused(&["sweep", FVA, "--over", "sun.speed=1..2 rpm:2", "--columns", "sun.torqe_n_m"]);
+    assert!(told.contains("did you mean `sun.torque_n_m`"), "{told}");
+    let told = refused(&["sweep", FVA, "--over", "sun.speed=1..2 rpm:2", "--fast"]);
+    assert!(told.contains("cannot be compiled"), "{told}");
+    let told = refused(&["sweep", FVA, "--study", "maps"]);
+    assert!(told.contains("no study `maps`"), "{told}");
+    // Pieces of another sweep are not taken for one's own.
+    let other = folder.file("other.csv");
+    fs::create_dir(format!("{other}.parts")).unwrap();
+    fs::write(format!("{other}.parts/study.json"), "{}").unwrap();
+    assert!(refused(&sweep(&other, &[])).contains("pieces of another sweep"));
+    fine(&sweep(&other, &["--force"]));
+    assert_eq!(fs::read(&other).unwrap(), bytes);
+    assert!(folder.names().iter().all(|n| !n.ends_with(".parts") && !n.ends_with(".new")), "{:?}", folder.names());
+}
+
+/// Every disk is full at some point: a table that cannot be written is told, and what is finished stays.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told() {
+    let folder = Folder::new("full");
+    let out = folder.file("map.csv");
+    // A limit on the size of files stands for the end of the disk.
+    let line = format!("ulimit -f 8; trap '' XFSZ; exec {} {}", env!("CARGO_BIN_EXE_willis"), {
+        let all: Vec<String> = sweep(&out, &["--columns", "all"]).iter().map(|a| format!("'{a}'")).collect();
+        all.join(" ")
+    });
+    let done = Command::new("bash").current_dir(root()).args(["-c", &line]).output().unwrap();
+    let told = String::from_utf8(done.stderr).unwrap();
+    assert_eq!(done.status.code(), Some(1), "{told}");
+    assert!(told.contains("large") || told.contains("space"), "{told}");
+    assert!(told.contains("the same command goes on from there"), "{told}");
+    assert!(!Path::new(&out).exists());
+    fine(&sweep(&out, &["--columns", "all"]));
+}
+
+#[test]
+fn the_tables_say_the_same() {
+    let folder = Folder::new("forms");
+    let over = ["--over", "output.torque=-20,20 N m", "--over", "state=all"];
+    let file = |name: &str| folder.file(name);
+    for name in ["a.csv", "a.jsonl", "a.parquet"] {
+        let out = file(name);
+        let mut all = vec!["sweep", "examples/zf-8hp70.toml", "--out", &out, "--columns", "members"];
+        all.extend(over);
+        fine(&all);
+    }
+    let csv = fs::read_to_string(file("a.csv")).unwrap();
+    let header: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    let lines = fs::read_to_string(file("a.jsonl")).unwrap();
+    let read = parquet::file::reader::SerializedFileReader::new(fs::File::open(file("a.parquet")).unwrap()).unwrap();
+    use parquet::file::reader::FileReader;
+    let rows: Vec<_> = read.get_row_iter(None).unwrap().map(|r| r.unwrap()).collect();
+    assert_eq!((csv.lines().count() - 1, lines.lines().count()), (18, 18));
+    assert_eq!(rows.len(), 18);
+    let unique: std::collections::HashSet<_> = header.iter().collect();
+    assert_eq!(unique.len(), header.len(), "{header:?}");
+    for ((row, json), columns) in csv.lines().skip(1).zip(lines.lines()).zip(&rows) {
+        let json: serde_json::Map<String, serde_json::Value> = serde_json::from_str(json).unwrap();
+        assert_eq!(json.keys().map(String::as_str).collect::<Vec<_>>(), header);
+        for ((cell, value), (name, field)) in row.split(',').zip(json.values()).zip(columns.get_column_iter()) {
+            let shown = match value {
+                serde_json::Value::String(s) => s.clone(),
+                serde_json::Value::Null => String::new(),
+                number => number.to_string(),
+            };
+            let same = cell == shown || cell.parse::<f64>().ok() == shown.parse::<f64>().ok();
+            assert!(same, "{name}: {cell} and {shown}");
+            match field {
+                parquet::record::Field::Double(x) => assert_eq!(cell.parse::<f64>().unwrap(), *x, "{name}"),
+                parquet::record::Field::Str(s) => assert_eq!(cell, s, "{name}"),
+                parquet::record::Field::Null => assert_eq!(cell, "", "{name}"),
+                other => panic!("{name}: {other:?}"),
+            }
+        }
+    }
+}
