@@ -1,0 +1,96 @@
+//! `willis export`: files for other programs, whole or not at all.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use willis::exact::Rational;
+use willis::study::export::{Export, KINDS};
+use willis::units::{self, Dimension, Quantity};
+
+use crate::output;
+
+/// The formats, one line each.
+pub fn list() -> String {
+    KINDS.iter().map(|k| format!("{:<21}{}\n", k.id, k.about)).collect()
+}
+
+/// The most values of one axis.
+const MOST: u32 = 100_000;
+
+/// Values of an option: `500rpm..12000rpm:24`, both ends among the 24, or `500rpm,1000rpm`.
+pub fn axis(option: &str, text: Option<&str>, dimension: Dimension) -> Result<Vec<Quantity>, String> {
+    let Some(text) = text else { return Ok(vec![]) };
+    let (kind, example) = dimension.describe();
+    let one = |part: &str| {
+        units::parse(part, dimension)
+            .map_err(|why| format!("{option} {text}: `{part}`: {why}; give {kind}, as in '{example}'\n"))
+    };
+    let Some((low, rest)) = text.split_once("..") else {
+        return text.split(',').map(|part| one(part.trim())).collect();
+    };
+    let say = |why: &str| Err(format!("{option} {text}: {why}; write first..last:count, both with their unit\n"));
+    let Some((high, count)) = rest.rsplit_once(':') else { return say("how many values is missing") };
+    let (low, high) = (one(low.trim())?, one(high.trim())?);
+    let Ok(count) = count.trim().parse::<u32>() else { return say("the count is no whole number") };
+    if !(2..=MOST).contains(&count) {
+        return say(&format!("the count must be from 2 to {MOST}"));
+    }
+    if low.si() >= high.si() {
+        return say("the range is empty or reversed");
+    }
+    // Exact where both ends are in one unit of angle.
+    let zero = |q: &Quantity| q.value.is_zero();
+    let pi_power = if zero(&low) { high.pi_power } else { low.pi_power };
+    let mixed = !zero(&low) && !zero(&high) && low.pi_power != high.pi_power;
+    let value =
+        |q: &Quantity| if mixed { Rational::from_f64(q.si()).unwrap_or(Rational::ZERO) } else { q.value.clone() };
+    let pi_power = if mixed { 0 } else { pi_power };
+    let (from, to) = (value(&low), value(&high));
+    let steps = i64::from(count) - 1;
+    let at = |k: i64| &from + &(&(&to - &from) * &Rational::new(k, steps));
+    Ok((0..=steps).map(|k| Quantity { value: at(k), pi_power, dimension }).collect())
+}
+
+/// Writes what came out, or gives it back where no place is named. Notes go to standard error.
+pub fn deliver(export: &Export, place: Option<&Path>, force: bool) -> Result<String, String> {
+    let one = match export.files.as_slice() {
+        [one] => Some(one),
+        _ => None,
+    };
+    let Some(place) = place else {
+        let Some(one) = one else {
+            let n = export.files.len();
+            return Err(format!("this makes {n} files, one a state: name a folder for them with -o\n"));
+        };
+        tell(&export.notes);
+        return Ok(one.text.clone());
+    };
+    let folder = one.is_none() || place.is_dir() || place.as_os_str().to_string_lossy().ends_with(['/', '\\']);
+    let paths: Vec<PathBuf> = match folder {
+        true => export.files.iter().map(|f| place.join(&f.name)).collect(),
+        false => vec![place.to_owned()],
+    };
+    for (k, path) in paths.iter().enumerate() {
+        if paths[..k].contains(path) {
+            return Err(format!("{}: two states make a file of this name; export them one by one\n", path.display()));
+        }
+        if path.exists() && !force {
+            return Err(format!("{}: is there already; --force writes over it\n", path.display()));
+        }
+    }
+    if folder {
+        std::fs::create_dir_all(place).map_err(|e| format!("{}: {e}\n", place.display()))?;
+    }
+    let mut said = String::new();
+    for (path, file) in paths.iter().zip(&export.files) {
+        output::write(path, file.text.as_bytes())?;
+        said += &format!("{}: {}\n", path.display(), file.about);
+    }
+    tell(&export.notes);
+    Ok(said)
+}
+
+fn tell(notes: &[String]) {
+    let text: String = notes.iter().map(|n| crate::text::wrap(n, "note: ") + "\n").collect();
+    let _ = anstream::stderr().write_all(text.as_bytes());
+}
