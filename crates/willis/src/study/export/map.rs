@@ -355,7 +355,7 @@ fn check(train: &Train, request: &ExportRequest) -> Result<(), Diagnostics> {
         let message = "a temperature is given, but the train has no oil";
         return Err(wrong(Code::MissingKey, message, "add [oil] with a name of the catalogue, or its viscosities"));
     }
-    for t in request.temperatures.iter().filter(|t| !(200.0..=600.0).contains(*t)) {
+    if let Some(t) = request.temperatures.iter().find(|t| !(200.0..=600.0).contains(*t)) {
         let message = format!("an oil temperature of {:.1} °C is none that a gearbox has", t - 273.15);
         return Err(wrong(Code::OutOfRange, message, "from -73 to 327 °C is computed"));
     }

@@ -64,7 +64,7 @@ pub fn file(train: &str, state: Option<&str>, ending: &str) -> String {
 pub fn identifier(text: &str, reserved: &[&str]) -> String {
     let mut out: String = text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !out.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        out.insert_str(0, "x");
+        out.insert(0, 'x');
     }
     out.truncate(50);
     if reserved.contains(&out.as_str()) {

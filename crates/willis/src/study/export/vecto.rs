@@ -93,7 +93,11 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
     let low = &map.rows[0][0];
     let constant = !gear.is_physical();
     notes.push(match constant {
-        true => format!("{}: the loss is a constant share of the torque at every speed", gear.title()),
+        true => format!(
+            "{}: the loss is a constant share of the torque: the file has no losses without load (bearings, oil, open \
+             clutches)",
+            gear.title()
+        ),
         false => format!(
             "{}: the row of 0 rpm repeats that of {} rpm, the lowest computed",
             gear.title(),
@@ -106,12 +110,14 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
         &format!("# {}: ratio {} = {} (input speed over output speed)\n", gear.title(), gear.exact, number(gear.ratio));
     text +=
         &format!("# input: {}, output: {}; output torque = (input torque - loss) * ratio\n", gear.input, gear.output);
-    if let (Some(t), Some(_)) = (temperature, train.lubrication()) {
-        text += &format!("# oil temperature {} degC\n", short(t - 273.15));
+    if let (true, Some(oil)) = (gear.is_physical(), train.lubrication()) {
+        text += &format!("# oil temperature {} degC\n", short(temperature.unwrap_or(oil.temperature) - 273.15));
     }
     if constant {
         let [drive, coast] = [&gear.drive, &gear.coast].map(|d| d.efficiency.map_or("-".into(), percent));
-        text += &format!("# efficiency driving {drive}, coasting {coast}, at every speed and torque\n");
+        text += &format!(
+            "# efficiency driving {drive}, coasting {coast}, at every speed and torque; no losses without load\n"
+        );
         about += &format!(", {drive} driving, {coast} coasting");
     } else {
         text += &format!("# the rows of 0 rpm repeat those of {} rpm\n", short(low.speed_rpm));
