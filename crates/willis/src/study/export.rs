@@ -109,7 +109,7 @@ pub const KINDS: &[Kind] = &[
 ///     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4).mesh_efficiency(0.99))
 ///     .build()?;
 /// let table = export(&train, "modelica-loss-table", &ExportRequest::default())?;
-/// assert!(table.files[0].text.contains("[0, 0.98607, "));
+/// assert!(table.files[0].text.contains("ratio = 10/3 "));
 /// assert!(export(&train, "vekto", &ExportRequest::default()).unwrap_err().to_string().contains("did you mean `vecto`?"));
 /// # Ok::<(), willis::diagnostic::Diagnostics>(())
 /// ```
