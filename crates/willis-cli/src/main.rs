@@ -1,6 +1,7 @@
 //! `willis`: reads files, calls the library, prints.
 
 mod csv;
+mod export;
 mod flow;
 mod input;
 mod interrupt;
@@ -22,6 +23,7 @@ use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::dynamics::{Method, Options};
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
+use willis::study::export::ExportRequest;
 use willis::study::{Hold, Subject, Sweep};
 use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
@@ -373,6 +375,45 @@ enum Command {
         #[arg(long, value_enum, default_value = "text")]
         format: ModesFormat,
     },
+    /// Write loss maps, efficiency tables, models and actuator blocks for other programs.
+    ///
+    /// Without a kind it lists the kinds. Numbers are those of `analyze`, at every point of the
+    /// ranges; without ranges they are taken from the operations of the file, and told. What a
+    /// format cannot say (a lock, several solutions, a dependence on load) stands in the comments
+    /// of the file and on standard error; a point without an answer gets no number.
+    Export {
+        /// The format: vecto, modelica-loss-table, ...; or list.
+        kind: Option<String>,
+        /// Train file (TOML), or - for standard input.
+        file: Option<String>,
+        /// This state of the shift table.
+        #[arg(long, conflicts_with = "all_states")]
+        state: Option<String>,
+        /// Every state that can be exported.
+        #[arg(long)]
+        all_states: bool,
+        /// Take state and ranges from this operation of the file.
+        #[arg(long, conflicts_with = "all_states")]
+        operation: Option<String>,
+        /// Speeds of the input: 200rpm..2200rpm:11 are 11 values; or 500rpm,1000rpm.
+        #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
+        speeds: Option<String>,
+        /// Torques on the input, positive driving, negative coasting: '-500 N m..500 N m:21'.
+        #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
+        torques: Option<String>,
+        /// Oil temperatures: 40degC,90degC. Most formats take one.
+        #[arg(long, value_delimiter = ',', value_name = "TEMPERATURE")]
+        temperature: Vec<String>,
+        /// Put a law into force: mesh_friction=niemann. Several times for several families.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
+        /// Write into this file, or into this folder where there are several files.
+        #[arg(short, long, value_name = "FILE|FOLDER")]
+        output: Option<std::path::PathBuf>,
+        /// Write over files that are there already.
+        #[arg(long)]
+        force: bool,
+    },
     /// Compare published numbers with ours: what agrees, what does not, and why.
     ///
     /// Without a case it lists the cases. Exit status 0 also where a number differs: that is an
@@ -594,6 +635,12 @@ fn main() -> ExitCode {
     if let Command::Analyze { format: Format::Text | Format::Json, table: Some(_), .. } = &arguments.command {
         let kind = clap::error::ErrorKind::ArgumentConflict;
         Arguments::command().error(kind, "--table belongs to --format csv").exit();
+    }
+    if let Command::Export { kind: Some(kind), file: None, .. } = &arguments.command
+        && kind != "list"
+    {
+        let kind = clap::error::ErrorKind::MissingRequiredArgument;
+        Arguments::command().error(kind, "name a train file after the kind of export").exit();
     }
     let mut status = 0;
     match run(&arguments.command, &mut status) {
@@ -884,6 +931,33 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 ModesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
                 ModesFormat::Csv => modes::csv(&all),
             })
+        }
+        Command::Export {
+            kind,
+            file,
+            state,
+            all_states,
+            operation,
+            speeds,
+            torques,
+            temperature,
+            law,
+            output,
+            force,
+        } => {
+            let (Some(kind), Some(file)) = (kind, file) else { return Ok(export::list()) };
+            let temperature = values("--temperature", temperature, Dimension::TEMPERATURE)?;
+            let request = ExportRequest {
+                state: state.clone(),
+                all_states: *all_states,
+                operation: operation.clone(),
+                speeds: export::axis("--speeds", speeds.as_deref(), Dimension::ANGULAR_SPEED)?,
+                torques: export::axis("--torques", torques.as_deref(), Dimension::TORQUE)?,
+                temperatures: temperature.iter().map(Quantity::si).collect(),
+            };
+            let job = Job::read(file)?.with_laws(law)?;
+            let done = willis::study::export::export(&job.train, kind, &request).map_err(|wrong| job.failure(wrong))?;
+            export::deliver(&done, output.as_deref(), *force)
         }
         Command::Validate { case, format, data } => validate(case.as_deref(), *format, data.as_deref()),
         Command::Check { file } => {

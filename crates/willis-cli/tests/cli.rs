@@ -606,6 +606,106 @@ fn regress_check_bad() {
     snapshot!(refused(&output, 1));
 }
 
+// ---- export ---------------------------------------------------------------------------------
+
+#[test]
+fn regress_export_list() {
+    let list = answered(&["export", "list"]);
+    assert_eq!(list, answered(&["export"]));
+    snapshot!(list);
+}
+
+/// Standard output and notes of an export that answers.
+fn exported(arguments: &[&str]) -> String {
+    let output = run(&[&["export"], arguments].concat());
+    assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+    let told = text(&output.stderr);
+    assert!(told.lines().all(|l| l.starts_with("note: ") || l.starts_with("      ")), "{told}");
+    format!("{}---\n{told}", text(&output.stdout))
+}
+
+#[test]
+fn regress_export_vecto() {
+    let grid = ["--speeds", "500rpm..1000rpm:2", "--torques=-100 N m..200 N m:4"];
+    snapshot!(exported(&[&["vecto", "examples/zf-8hp70.toml", "--state", "1"][..], &grid].concat()));
+}
+
+#[test]
+fn regress_export_loss_table() {
+    snapshot!(exported(&["modelica-loss-table", "examples/zf-8hp70.toml", "--all-states"]));
+}
+
+#[test]
+fn regress_export_blocks() {
+    let all = ["mujoco", "drake", "openfast", "simscape"].map(|kind| exported(&[kind, "examples/wolfrom-236.toml"]));
+    snapshot!(all.join("\n"));
+    snapshot!(exported(&["mujoco", "examples/wolfrom-498-self-locking.toml"]));
+}
+
+#[test]
+fn regress_export_modelica() {
+    snapshot!(exported(&["modelica", "examples/zf-8hp70.toml"]));
+}
+
+#[test]
+fn regress_export_csv() {
+    let grid = ["--speeds", "1000rpm,3000rpm", "--torques=-1 N m..1 N m:3"];
+    snapshot!(exported(&[&["csv", "examples/wolfrom-498-self-locking.toml"][..], &grid].concat()));
+}
+
+#[test]
+fn exports_are_whole_and_do_not_overwrite() {
+    let folder = folder("export");
+    let gears = folder.join("gears");
+    let all = ["export", "vecto", "examples/zf-8hp70.toml", "--all-states"];
+    let many = refused(&run(&all), 1);
+    assert!(many.contains("this makes 8 files"), "{many}");
+    let into = [&all[..], &["-o", path(&gears)]].concat();
+    let output = run(&into);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(text(&output.stdout).lines().count(), 8);
+    assert!(text(&output.stdout).contains("zf-8hp70-1.vtlm: state 1, gear ratio 4.69565"), "{}", text(&output.stdout));
+    assert_eq!(std::fs::read_dir(&gears).expect("the folder").count(), 8);
+    let there = refused(&run(&into), 1);
+    assert!(there.contains("is there already; --force writes over it"), "{there}");
+    assert_eq!(run(&[&into[..], &["--force"]].concat()).status.code(), Some(0));
+    let file = folder.join("gear.xml");
+    let one = ["export", "mujoco", "examples/wolfrom-236.toml", "-o", path(&file)];
+    assert_eq!(run(&one).status.code(), Some(0));
+    assert_eq!(std::fs::read_to_string(&file).expect("written"), text(&run(&one[..3]).stdout));
+    refused(&run(&one), 1);
+    let missing = folder.join("missing").join("gear.xml");
+    refused(&run(&[&one[..3], &["-o", path(&missing)]].concat()), 1);
+    assert!(!missing.exists());
+}
+
+#[test]
+fn regress_export_wrong_questions() {
+    let zf = "examples/zf-8hp70.toml";
+    let questions: [&[&str]; 12] = [
+        &["export", "vekto", zf, "--state", "1"],
+        &["export", "vecto", zf],
+        &["export", "vecto", zf, "--state", "9"],
+        &["export", "vecto", zf, "--state", "R"],
+        &["export", "vecto", "examples/wolfrom-498-self-locking.toml"],
+        &["export", "csv", "examples/galvagno.toml"],
+        &["export", "csv", zf, "--state", "1", "--speeds", "500..2000rpm:4"],
+        &["export", "csv", zf, "--state", "1", "--speeds", "500rpm..2000rpm"],
+        &["export", "csv", zf, "--state", "1", "--speeds", "2000rpm..500rpm:4"],
+        &["export", "csv", zf, "--state", "1", "--torques", "1Nm..2Nm:1"],
+        &["export", "csv", zf, "--state", "1", "--torques", "2Nm,1Nm"],
+        &["export", "csv", zf, "--state", "1", "--temperature", "60degC"],
+    ];
+    let mut all = String::new();
+    for question in questions {
+        let message = refused(&run(question), 1);
+        all += &format!("willis {}\n{message}\n", question.join(" "));
+    }
+    snapshot!(all);
+    let usage = refused(&run(&["export", "vecto"]), 2);
+    assert!(usage.contains("name a train file after the kind of export"), "{usage}");
+}
+
 #[test]
 fn regress_explain() {
     snapshot!(answered(&["explain", "E106"]));

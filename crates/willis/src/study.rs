@@ -6,12 +6,13 @@
 
 mod axis;
 mod compiled;
+pub mod export;
 mod question;
 mod subject;
 mod sweep;
 mod target;
 
-pub use axis::Axis;
+pub use axis::{Axis, values};
 pub use compiled::{CompiledSweep, Room};
 pub use question::{Hold, Question, Trains};
 pub use subject::Subject;

@@ -5,9 +5,10 @@ use std::collections::HashSet;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
 use crate::train::Measure;
+use crate::units::{Dimension, Quantity};
 
 use super::Subject;
-use super::target::{Target, Who};
+use super::target::{Target, Who, quantity};
 
 /// Values up to so many are made once.
 const MOST_KEPT: usize = 1 << 20;
@@ -188,6 +189,28 @@ fn split(text: &str) -> (&str, &str) {
         })
         .map_or(text.len(), |(at, _)| at);
     (text[..end].trim(), text[end..].trim())
+}
+
+/// Reads values alone, `500 rpm..12000 rpm:100` or `10 N m, 20 N m`.
+///
+/// # Errors
+/// What is wrong with them.
+///
+/// # Example
+/// ```
+/// use willis::units::Dimension;
+///
+/// let speeds = willis::study::values("500..1500 rpm:3", Dimension::ANGULAR_SPEED)?;
+/// assert_eq!(speeds[1].si(), willis::units::parse("1000 rpm", Dimension::ANGULAR_SPEED).unwrap().si());
+/// # Ok::<(), Box<willis::diagnostic::Diagnostic>>(())
+/// ```
+pub fn values(text: &str, dimension: Dimension) -> Result<Vec<Quantity>, Box<Diagnostic>> {
+    let (values, unit) = numbers(text, text, Measure::Quantity(dimension))?;
+    let axis = Axis { name: String::new(), target: Target::Temperature, unit, values, numbers: vec![] };
+    if axis.len() > MOST_KEPT {
+        return Err(fault(text, format!("{} values are too many", axis.len())));
+    }
+    (0..axis.len()).map(|k| quantity(&axis.setting(k), dimension).map_err(|what| fault(text, what))).collect()
 }
 
 fn numbers(whole: &str, values: &str, measure: Measure) -> Result<(Values, String), Box<Diagnostic>> {
