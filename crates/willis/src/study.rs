@@ -5,12 +5,24 @@
 //! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
 
 mod axis;
+mod compare;
+mod cycle;
+mod profile;
 mod question;
 mod subject;
 mod sweep;
 mod target;
 
 pub use axis::Axis;
+pub use compare::{
+    Band, CompareRequest, Compared, Comparison, Datum, Difference, MapComparison, MapDifference, MapPair, MapPlace,
+    TextDifference, Variant, compare,
+};
+pub use cycle::{
+    Cycle, CyclePart, CyclePoint, CycleReport, Energies, Said, SourceEnergy, TerminalEnergy, VerdictTime, Way, Worst,
+    WorstRow, cycle,
+};
+pub use profile::{Basis, Profile, ProfileRow};
 pub use question::{Hold, Question, Trains};
 pub use subject::Subject;
 pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};
