@@ -220,8 +220,9 @@ fn weight_unit(name: &str, basis: Basis, unit: Option<&str>) -> Result<f64, Stri
     }
 }
 
-fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Diagnostic> {
-    let fault = |message: String| Diagnostic::new(Code::BadTable, "", message);
+fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Box<Diagnostic>> {
+    let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
+    let hinted = |message: String, hint: String| Box::new(fault(message).hint(hint));
     let (name, unit) = bracketed(header).map_or((header, None), |(n, u)| (n, Some(u)));
     let cut = |name: &'_ str| name.split_once('_').map(|(n, u)| (n.to_owned(), u.to_owned()));
     let weighed = match (weight(name), unit, cut(name)) {
@@ -242,14 +243,16 @@ fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Diagnostic> {
                 Err(why) => {
                     let (kind, example) = dimension.describe();
                     let good = example.split_once(' ').map_or("", |e| e.1);
-                    Err(fault(format!("the unit `{unit}` is not that of {kind}: {why}"))
-                        .hint(format!("write `{name} [{good}]`")))
+                    Err(hinted(
+                        format!("the unit `{unit}` is not that of {kind}: {why}"),
+                        format!("write `{name} [{good}]`"),
+                    ))
                 }
             },
             (Measure::Quantity(dimension), None) => {
                 let example = dimension.describe().1;
                 let unit = example.split_once(' ').map_or("", |e| e.1);
-                Err(fault(format!("`{name}` has no unit")).hint(format!("write it in the header: `{name} [{unit}]`")))
+                Err(hinted(format!("`{name}` has no unit"), format!("write it in the header: `{name} [{unit}]`")))
             }
             (_, None | Some("" | "-")) => Ok(setting(target, String::new())),
             (_, Some(unit)) => Err(fault(format!("`{name}` has no unit, and here stands `{unit}`"))),
@@ -265,12 +268,14 @@ fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Diagnostic> {
                     None => {
                         let (kind, example) = dimension.describe();
                         let good = example.split_once(' ').map_or("", |e| e.1);
-                        Err(fault(format!("`{suffix}` is not the unit of {kind}"))
-                            .hint(format!("write `{} [{good}]`", &name[..at])))
+                        Err(hinted(
+                            format!("`{suffix}` is not the unit of {kind}"),
+                            format!("write `{} [{good}]`", &name[..at]),
+                        ))
                     }
                 };
             }
-            let mut d = *unknown;
+            let mut d = unknown;
             d.message = d.message.replace("` to vary", "` to set");
             Err(d)
         }
@@ -357,7 +362,7 @@ impl Profile {
                         true => "commas separate columns",
                         false => "",
                     };
-                    wrong.push(d, span.clone(), hint);
+                    wrong.push(*d, span.clone(), hint);
                 }
             }
         }
@@ -432,7 +437,7 @@ impl Profile {
                         is_good = false;
                     }
                     None => {
-                        let value = setting.read(cell, subject).map_err(Box::new);
+                        let value = setting.read(cell, subject);
                         known[position].insert(cell, value.clone());
                         match value {
                             Ok(value) => condition[position] = value,
@@ -604,8 +609,8 @@ impl Profile {
 
 impl Setting {
     /// The position of a cell's value among those known, checked where it is new.
-    fn read(&mut self, cell: &str, subject: &Subject) -> Result<u32, Diagnostic> {
-        let fault = |message: String| Diagnostic::new(Code::BadTable, "", message);
+    fn read(&mut self, cell: &str, subject: &Subject) -> Result<u32, Box<Diagnostic>> {
+        let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
         let value = match self.target.measure(subject) {
             Measure::Text | Measure::Flag => cell.to_owned(),
             measure => {
@@ -621,7 +626,7 @@ impl Setting {
         self.target.check(subject, std::slice::from_ref(&text)).map_err(|mut d| {
             // A cell is one value.
             d.hints.iter_mut().for_each(|h| *h = h.replace("; `all` takes them all", ""));
-            *d
+            d
         })?;
         if self.target == Target::Temperature
             && units::parse(&text, Dimension::TEMPERATURE).is_ok_and(|t| t.si() <= 0.0)
