@@ -42,6 +42,15 @@ pub fn read(file: &str) -> Result<String, Diagnostics> {
     text.map_err(|(message, hint)| [Diagnostic::new(Code::Unreadable, "", message).hint(hint)].into_iter().collect())
 }
 
+/// Reads a table that is named on the command line.
+pub fn table(file: &str) -> Result<String, Diagnostics> {
+    let text = match file {
+        "-" => text_of(std::io::stdin(), "standard input", &TABLE),
+        _ => open(Path::new(file), file, &TABLE),
+    };
+    text.map_err(|(message, hint)| [Diagnostic::new(Code::Unreadable, "", message).hint(hint)].into_iter().collect())
+}
+
 /// Reads the tables that a train file names, seen from its folder.
 pub fn tables_beside(file: &str) -> impl FnMut(&str) -> Result<String, String> {
     let folder = Path::new(file).parent().map(Path::to_path_buf).unwrap_or_default();

@@ -51,7 +51,8 @@ pub fn of_solution(s: &SolutionReport) -> String {
     out + &contacts(&s.contacts) + &bearings(&s.bearings)
 }
 
-fn bar(part: f64) -> String {
+/// A bar of that part of the full length.
+pub fn bar(part: f64) -> String {
     let eighths = (part * (BAR * 8) as f64).round() as usize;
     let rest = [' ', '▏', '▎', '▍', '▌', '▋', '▊', '▉'][eighths % 8];
     let mut text = "█".repeat(eighths / 8);

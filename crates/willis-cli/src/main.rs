@@ -1,7 +1,9 @@
 //! `willis`: reads files, calls the library, prints.
 
+mod compare;
 mod csv;
 mod export;
+mod cycle;
 mod flow;
 mod input;
 mod interrupt;
@@ -355,6 +357,66 @@ enum Command {
         /// What to print.
         #[arg(long, value_enum, default_value = "text")]
         format: SimulateFormat,
+    },
+    /// Tell what a duty cycle or a load spectrum costs: energies by source, state and direction, the worst rows.
+    ///
+    /// Each row of the profile, a CSV file, is one operating condition. A column weighs the rows in time: `time [s]`
+    /// of a trace (each row holds until the next), or `duration [s]`, `hours` or `share` of a spectrum. The other
+    /// columns set quantities, with the unit in the header: input.speed [rpm], output.torque [N m],
+    /// oil.temperature [degC], state, or any quantity of the train file. Rows without an answer are told with
+    /// their reason, and the energies say which part of the time they cover.
+    Cycle {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// The profile (CSV), or - for standard input.
+        #[arg(long, value_name = "FILE.csv")]
+        profile: String,
+        /// The operation that gives what no column sets; else the file's first.
+        #[arg(long)]
+        operation: Option<String>,
+        /// State of the shift table, where no column gives it.
+        #[arg(long)]
+        state: Option<String>,
+        /// Put a law into force: mesh_friction=niemann. Several times for several families.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: Format,
+        /// Write every row with its answer into this CSV file.
+        #[arg(long, value_name = "FILE.csv")]
+        rows: Option<std::path::PathBuf>,
+        /// Write what is printed into this file.
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<std::path::PathBuf>,
+        /// Replace files that are there already.
+        #[arg(long)]
+        force: bool,
+    },
+    /// Lay variants of a train side by side: what the files differ in, and what that changes.
+    ///
+    /// Keys that differ come first, then states and operations by the size of their differences, then in a line
+    /// what is equal. Operations of one name that prescribe different things are compared and marked. With --over
+    /// the same axes are applied to every variant: where which is better, and by how much.
+    Compare {
+        /// Train files (TOML), two or more.
+        #[arg(required = true, num_args = 2.., value_name = "FILE")]
+        files: Vec<String>,
+        /// Only this operation.
+        #[arg(long)]
+        operation: Option<String>,
+        /// Only this state, and operations in it.
+        #[arg(long)]
+        state: Option<String>,
+        /// A quantity and its values: 'input.speed=500 rpm..6000 rpm:12'. Several times for a grid.
+        #[arg(long, value_name = "QUANTITY=VALUES")]
+        over: Vec<String>,
+        /// Put a law into force in all variants: mesh_friction=niemann. Several times for several families.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: Format,
     },
     /// List torsional natural frequencies: shapes, damping, where the energy is.
     ///
@@ -916,6 +978,43 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             Ok(match format {
                 SimulateFormat::Text => simulate::text(&run),
                 SimulateFormat::Json => simulate::json(&run),
+            })
+        }
+        Command::Cycle { file, profile, operation, state, law, format, rows, output, force } => {
+            if file == "-" && profile == "-" {
+                return Err("standard input is either the train file or the profile\n".into());
+            }
+            if let Some(path) = output {
+                cycle::free(path, *force)?;
+            }
+            let studied = cycle::Studied::read(file, law)?;
+            let request = cycle::Request {
+                profile,
+                operation: operation.as_deref(),
+                state: state.as_deref(),
+                rows: rows.as_deref(),
+                force: *force,
+            };
+            let report = cycle::run(&studied, &request)?;
+            let text = match format {
+                Format::Text => cycle::text(&report, profile),
+                Format::Json => serde_json::to_string_pretty(&report).expect("plain data") + "\n",
+                Format::Csv => cycle::csv(&report),
+            };
+            cycle::deliver(text, output.as_ref(), *force)
+        }
+        Command::Compare { files, operation, state, over, law, format } => {
+            let studied = files.iter().map(|f| cycle::Studied::read(f, law)).collect::<Result<Vec<_>, _>>()?;
+            let request = willis::study::CompareRequest {
+                operation: operation.clone(),
+                state: state.clone(),
+                over: over.clone(),
+            };
+            let all = compare::run(&studied, &request)?;
+            Ok(match format {
+                Format::Text => compare::text(&all),
+                Format::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
+                Format::Csv => compare::csv(&all),
             })
         }
         Command::Modes { file, state, fixed, plot, format } => {

@@ -149,6 +149,9 @@ fn regress_analyze_one_operation_of_one_state() {
 fn regress_no_round_off_but_the_residual() {
     for entry in std::fs::read_dir(root().join("examples")).expect("examples") {
         let file = entry.expect("an entry").path();
+        if file.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
         let shown = mask_residual(&answered(&["analyze", path(&file)]));
         let found = shown.split_whitespace().find(|w| round_off(w));
         assert_eq!(found, None, "{}", file.display());
@@ -1378,4 +1381,155 @@ fn formula_modes_of_two_bodies() {
     assert_eq!(answer["rigid_body_modes"].as_array().map(Vec::len), Some(1));
     let none = ROTORS.split("[[shaft]]").next().expect("a train").replace("inertias", "# inertias");
     assert!(refused(&piped(&["modes", "-"], none.as_bytes()), 1).contains("moments of inertia"));
+}
+
+// ---- duty cycles -----------------------------------------------------------------------------
+
+const CYCLE: [&str; 4] = ["cycle", "examples/zf-8hp70.toml", "--profile", "examples/cycle-8hp70.csv"];
+
+#[test]
+fn regress_cycle_of_a_car() {
+    snapshot!(mask(&answered(&CYCLE)));
+}
+
+#[test]
+fn regress_cycle_of_a_wind_turbine() {
+    let spectrum = "examples/spectrum-nrel-5mw.csv";
+    snapshot!(mask(&answered(&["cycle", "examples/nrel-5mw-stage-1.toml", "--profile", spectrum])));
+}
+
+#[test]
+fn regress_cycle_with_rows_that_have_no_answer() {
+    let folder = folder("cycle");
+    let profile = folder.join("profile.csv");
+    let text = "hours,input.speed [rpm],output.torque [N m]\n1,1000,50\n3,1000,-50\n2,1000,-40\n0.5,0,0\n";
+    std::fs::write(&profile, text).expect("written");
+    let shown = answered(&["cycle", "examples/wolfrom-498-self-locking.toml", "--profile", path(&profile)]);
+    snapshot!(mask(&shown.replace(path(&profile), "profile.csv")));
+}
+
+#[test]
+fn regress_cycle_wrong_profile() {
+    let folder = folder("cycle-wrong");
+    let profile = folder.join("profile.csv");
+    let text = "time [s],input.sped [rpm],input.torque [N m],state\n0,900,5,1\n2,900,,9\n1,900,nan,1\n";
+    std::fs::write(&profile, text).expect("written");
+    let told = wrong(&["cycle", "examples/zf-8hp70.toml", "--profile", path(&profile)]);
+    snapshot!(told.replace(path(&profile), "profile.csv"));
+}
+
+#[test]
+fn every_format_of_a_cycle_says_the_same() {
+    let all = parsed(&[&CYCLE[..], &["--format", "json"]].concat());
+    assert_eq!(all["format"], "willis-cycle-1");
+    let csv = answered(&[&CYCLE[..], &["--format", "csv"]].concat());
+    let efficiency = format!("\nefficiency,{}\n", all["efficiency"]);
+    assert!(csv.contains(&efficiency), "{csv}");
+    for table in ["cycle", "directions", "states", "sources", "terminals", "verdicts", "worst"] {
+        assert!(csv.contains(&format!("# {table}\n")), "{table}");
+    }
+}
+
+#[test]
+fn rows_of_a_cycle_are_written_once_and_replaced_only_by_force() {
+    let folder = folder("cycle-rows");
+    let (rows, report) = (folder.join("rows.csv"), folder.join("report.json"));
+    let arguments = [&CYCLE[..], &["--rows", path(&rows), "--format", "json", "-o", path(&report)]].concat();
+    assert_eq!(answered(&arguments), "");
+    let text = std::fs::read_to_string(&rows).expect("rows");
+    let all: Vec<Vec<&str>> = text.lines().map(|l| l.split(',').collect()).collect();
+    // A header, and a row a line without the one that ends the trace.
+    assert_eq!(all.len(), 542);
+    let at = |name: &str| all[0].iter().position(|h| *h == name).unwrap_or_else(|| panic!("{name}: {:?}", all[0]));
+    let sum: f64 = all[1..].iter().map(|r| r[at("energy_lost_j")].parse::<f64>().unwrap_or(0.0)).sum();
+    let json: Value = serde_json::from_str(&std::fs::read_to_string(&report).expect("a report")).expect("JSON");
+    let lost = json["energy_lost_j"].as_f64().expect("a number");
+    assert!((sum / lost - 1.0).abs() < 1e-12, "{sum} {lost}");
+    assert_eq!((all[1][at("line")], all[1][at("verdict")], all[1][at("in_state")]), ("5", "unloaded", "1"));
+    let told = wrong(&arguments);
+    assert!(told.contains("report.json: is there already; --force replaces it"), "{told}");
+    assert_eq!(answered(&[&arguments[..], &["--force"]].concat()), "");
+}
+
+#[test]
+fn wrong_questions_about_a_cycle_are_refused() {
+    let train = "examples/zf-8hp70.toml";
+    for (arguments, expected) in [
+        (&["cycle", train, "--profile", "no-such.csv"][..], "no-such.csv"),
+        (&["cycle", train, "--profile", "examples"], "examples is a directory"),
+        (&["cycle", "-", "--profile", "-"], "either the train file or the profile"),
+        (&[&CYCLE[..], &["--operation", "launch"]].concat(), "no operation `launch`"),
+        (&[&CYCLE[..], &["--state", "9"]].concat(), "no state `9`"),
+        (&[&CYCLE[..], &["--law", "niemann"]].concat(), "write family=law"),
+    ] {
+        let told = wrong(arguments);
+        assert!(told.contains(expected), "{arguments:?}: {told}");
+    }
+}
+
+// ---- variants --------------------------------------------------------------------------------
+
+/// A variant of the 8HP70: better external meshes, another sun, one operation more and one of another load.
+fn variant(name: &str) -> (PathBuf, PathBuf) {
+    let folder = folder(name);
+    let text = std::fs::read_to_string(root().join("examples/zf-8hp70.toml")).expect("an example");
+    let text = text
+        .replace("external = 0.98", "external = 0.985")
+        .replace("teeth = 23", "teeth = 24")
+        .replace("{ input = \"150 N m\" }", "{ input = \"120 N m\" }");
+    let more = "\n[[operation]]\nname = \"reverse\"\nstate = \"R\"\nspeeds = { input = \"1000 rpm\" }\n\
+                torques = { input = \"100 N m\" }\n";
+    let file = folder.join("variant.toml");
+    std::fs::write(&file, text + more).expect("written");
+    (folder, file)
+}
+
+#[test]
+fn regress_compare_two_variants() {
+    let (_folder, file) = variant("compare");
+    let shown = answered(&["compare", "examples/zf-8hp70.toml", path(&file)]);
+    snapshot!(mask(&shown.replace(path(&file), "variant.toml")));
+}
+
+#[test]
+fn regress_compare_over_axes() {
+    let (_folder, file) = variant("compare-over");
+    let over = ["--over", "input.speed=500 rpm..5000 rpm:10", "--over", "state=1,2,8"];
+    let operation = ["--operation", "motorway cruise", "--state", "8"];
+    let shown = answered(&[&["compare", "examples/zf-8hp70.toml", path(&file)], &over[..], &operation[..]].concat());
+    snapshot!(mask(&shown.replace(path(&file), "variant.toml")));
+}
+
+#[test]
+fn equal_files_are_said_to_be_equal() {
+    let file = "examples/prius-p112.toml";
+    let shown = answered(&["compare", file, file, file]);
+    assert!(shown.contains("The files say the same"), "{shown}");
+    let json = parsed(&["compare", file, file, "--format", "json"]);
+    assert_eq!((&json["format"], &json["identical"]), (&Value::from("willis-compare-1"), &Value::from(true)));
+}
+
+#[test]
+fn variants_are_compared_as_tables_too() {
+    let (_folder, file) = variant("compare-csv");
+    let csv = answered(&["compare", "examples/zf-8hp70.toml", path(&file), "--format", "csv"]);
+    assert!(csv.contains("\nP4.sun.teeth,23,24\n"), "{csv}");
+    assert!(csv.contains("\nreverse,missing in A\n"), "{csv}");
+}
+
+#[test]
+fn wrong_questions_about_variants_are_refused() {
+    let file = "examples/zf-8hp70.toml";
+    assert_eq!(run(&["compare", file]).status.code(), Some(2));
+    for (arguments, expected) in [
+        (&["compare", file, "no-such.toml"][..], "no-such.toml"),
+        (&["compare", file, file, "--operation", "launch"], "no variant has the operation `launch`"),
+        (
+            &["compare", file, "examples/prius-p112.toml", "--over", "state=all"],
+            "`state` takes other values in B than in A",
+        ),
+    ] {
+        let told = wrong(arguments);
+        assert!(told.contains(expected), "{arguments:?}: {told}");
+    }
 }

@@ -7,13 +7,25 @@
 mod axis;
 mod compiled;
 pub mod export;
+mod compare;
+mod cycle;
+mod profile;
 mod question;
 mod subject;
 mod sweep;
 mod target;
 
 pub use axis::{Axis, values};
+pub use compare::{
+    Band, CompareRequest, Compared, Comparison, Datum, Difference, MapComparison, MapDifference, MapPair, MapPlace,
+    TextDifference, Variant, compare,
+};
 pub use compiled::{CompiledSweep, Room};
+pub use cycle::{
+    Cycle, CyclePart, CyclePoint, CycleReport, Energies, Said, SourceEnergy, TerminalEnergy, VerdictTime, Way, Worst,
+    WorstRow, cycle,
+};
+pub use profile::{Basis, Profile, ProfileRow};
 pub use question::{Hold, Question, Trains};
 pub use subject::Subject;
 pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};

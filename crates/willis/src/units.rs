@@ -10,7 +10,7 @@ use std::fmt;
 use crate::exact::Rational;
 
 /// Exponents of metre, kilogram, second, radian and kelvin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dimension([i8; 5]);
 
 impl Dimension {

@@ -142,7 +142,7 @@ fn a_point_is_what_analyze_says_of_it() {
     same_bits(
         "fva-planetary-stage.toml",
         &["P1.planet.count=2,3,4", "P1.geometry.roughness=0.2..1.2 um:3", "sun bearing.radial_load=0,2 kN"],
-        &|_| "speeds = { sun = \"1500 rpm\" }\npowers = { sun = \"250 kW\" }".into(),
+        &|_| "speeds = { sun = \"1500 rpm\" }\ntorques = { sun = \"1591.549 N m\" }".into(),
         &|document, values| {
             for (path, value) in
                 ["P1.planet.count", "P1.geometry.roughness", "sun bearing.radial_load"].iter().zip(values)
@@ -156,7 +156,7 @@ fn a_point_is_what_analyze_says_of_it() {
     same_bits(
         "fva-planetary-stage.toml",
         &["law.mesh_friction=schlenk,niemann,iso-14179-1"],
-        &|_| "speeds = { sun = \"1500 rpm\" }\npowers = { sun = \"250 kW\" }".into(),
+        &|_| "speeds = { sun = \"1500 rpm\" }\ntorques = { sun = \"1591.549 N m\" }".into(),
         &|document, values| {
             let key = document.find("laws.mesh_friction").unwrap();
             document.set(&key, &values[0]).unwrap();

@@ -26,6 +26,13 @@ pub fn run(context: &Context) -> Result<String, String> {
     for file in example_files(context)? {
         fs::copy(context.root.join(&file), folder.join(&file)).map_err(fail)?;
     }
+    // Profiles stand beside the trains.
+    for entry in fs::read_dir(context.root.join("examples")).map_err(fail)? {
+        let file = entry.map_err(fail)?.path();
+        if let (Some(name), true) = (file.file_name(), file.extension().is_some_and(|e| e == "csv")) {
+            fs::copy(&file, folder.join("examples").join(name)).map_err(fail)?;
+        }
+    }
     let mut pages = vec!["README.md".to_owned()];
     let chapters = fs::read_dir(context.root.join("book/src")).map_err(fail)?;
     let names = chapters.filter_map(|c| c.ok()?.file_name().into_string().ok());

@@ -96,7 +96,9 @@ codes! {
     /// A table of points is empty, its first column does not rise, or a CSV file that a signal names
     /// has no such column, an empty cell or a cell that is no finite number. Points of a curve lie
     /// at different abscissae; in a signal two points of the same time are a jump. A CSV file has a
-    /// header row, commas between columns, decimal points, and values in SI units.
+    /// header row, commas between columns, decimal points, and values in SI units. A profile of a
+    /// duty cycle names the units in its header, `input.speed [rpm]`, has one column that weighs the
+    /// rows in time, and its times rise.
     E112 BadTable: "a table of values cannot be used";
     /// A formula cannot be read, or uses a name that is neither the time `t` nor the speed of a
     /// member, `w_sun`. Names with other characters than letters, digits and `_` stand in braces:

@@ -200,7 +200,12 @@ impl Answer {
     pub fn of(train: &Train, operation: &Operation) -> Self {
         let (report, notes) = match analysis::operate(train, operation) {
             Ok(answer) => answer,
-            Err(wrong) => return Self::refused(wrong),
+            Err(wrong) => {
+                let title = format!("operation `{}`: ", operation.name);
+                let mut answer = Self::refused(wrong);
+                answer.reason = answer.reason.replace(&title, "");
+                return answer;
+            }
         };
         let verdict = match report.verdict {
             Verdict::Unique => "unique",

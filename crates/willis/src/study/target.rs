@@ -8,7 +8,7 @@ use crate::units::{self, Dimension, Quantity};
 use super::Subject;
 
 /// Whose speed or load it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Who {
     /// Where power enters when driving, in the state at hand.
     Input,
@@ -19,7 +19,7 @@ pub enum Who {
 }
 
 /// A quantity that can be set.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Target {
     /// A prescribed speed.
     Speed(Who),

@@ -10,7 +10,7 @@ use crate::units::{self, Dimension};
 use super::keys::{FILE, Kind, Table};
 
 /// What the value of a key is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Measure {
     /// A number with a unit.
@@ -26,14 +26,14 @@ pub enum Measure {
 }
 
 /// One step from a table to what is in it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Step {
     Key(String),
     Entry(usize),
 }
 
 /// A key of a train file that was found by its path.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Key {
     steps: Vec<Step>,
     /// What its value is.

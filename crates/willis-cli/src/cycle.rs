@@ -1,0 +1,459 @@
+//! `willis cycle`: what a duty cycle or a load spectrum costs.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use willis::Diagnostics;
+use willis::study::{
+    Basis, Cycle, CyclePart, CycleReport, Energies, Hold, Profile, Question, Said, Subject, Trains, WorstRow,
+};
+
+use crate::csv::Writer;
+use crate::text::{bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
+use crate::{input, losses, output};
+
+/// A train file that is studied, with its text for messages.
+pub struct Studied {
+    pub file: String,
+    text: String,
+    pub subject: Subject,
+}
+
+impl Studied {
+    /// Reads a train file and puts laws into force, `family=law`.
+    pub fn read(file: &str, laws: &[String]) -> Result<Self, String> {
+        let name = if file == "-" { "standard input" } else { file };
+        let mut pairs = vec![];
+        for text in laws {
+            match text.split_once('=') {
+                Some((family, law)) => pairs.push((family.trim().to_owned(), law.trim().to_owned())),
+                None => {
+                    return Err(format!("--law {text}: write family=law, as in --law mesh_friction=niemann\n"));
+                }
+            }
+        }
+        let text = input::read(file).map_err(|d| d.render(name, "", crate::color()))?;
+        match Subject::new(&text, &pairs, &mut input::tables_beside(file)) {
+            Ok(subject) => Ok(Self { file: name.to_owned(), text, subject }),
+            Err(reading) => Err(crate::failure(&reading.diagnostics, name, &text)),
+        }
+    }
+
+    /// What is wrong with a question to it.
+    pub fn failure(&self, wrong: &Diagnostics) -> String {
+        crate::failure(wrong, &self.file, &self.text)
+    }
+}
+
+/// What is asked.
+pub struct Request<'a> {
+    pub profile: &'a str,
+    pub operation: Option<&'a str>,
+    pub state: Option<&'a str>,
+    pub rows: Option<&'a Path>,
+    pub force: bool,
+}
+
+/// Writes a file that is not there yet, or that may be replaced.
+pub fn write(path: &Path, bytes: &[u8], force: bool) -> Result<(), String> {
+    free(path, force)?;
+    output::write(path, bytes)
+}
+
+/// Refuses a file that is there already.
+pub fn free(path: &Path, force: bool) -> Result<(), String> {
+    match path.is_file() && !force {
+        true => Err(format!("{}: is there already; --force replaces it\n", path.display())),
+        false => Ok(()),
+    }
+}
+
+/// Puts a profile to a train.
+pub fn run(studied: &Studied, request: &Request<'_>) -> Result<CycleReport, String> {
+    if let Some(path) = request.rows {
+        free(path, request.force)?;
+    }
+    let text = input::table(request.profile).map_err(|d| d.render(request.profile, "", crate::color()))?;
+    let profile = Profile::parse(&text, &studied.subject).map_err(|wrong| refused(&wrong, request.profile, &text))?;
+    let question = Question::new(&studied.subject, request.operation, request.state, Hold::AsGiven)
+        .map_err(|wrong| studied.failure(&wrong))?;
+    let cycle = Cycle::new(question, &profile);
+    let parts = compute(&cycle);
+    if let Some(path) = request.rows {
+        write(path, rows(&studied.subject, &profile, &parts).as_bytes(), request.force)?;
+    }
+    Ok(cycle.report(&parts))
+}
+
+/// What is wrong with a profile, underlined where the text is not too long to be shown.
+fn refused(wrong: &Diagnostics, file: &str, text: &str) -> String {
+    const MOST: usize = 1 << 20;
+    let source = if text.len() > MOST { "" } else { text };
+    crate::failure(wrong, file, source)
+}
+
+/// All parts, in order, by as many threads as there are processors.
+fn compute(cycle: &Cycle<'_>) -> Vec<CyclePart> {
+    let ranges: Vec<(usize, usize)> = cycle.ranges().collect();
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(ranges.len()).max(1);
+    let next = AtomicUsize::new(0);
+    let done: Mutex<Vec<Option<CyclePart>>> = Mutex::new(vec![None; ranges.len()]);
+    let finished = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                let mut trains = Trains::default();
+                while let Some(&(from, to)) = ranges.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let part = cycle.part(from, to, &mut trains);
+                    done.lock().expect("no panic in a part")[from / (ranges[0].1).max(1)] = Some(part);
+                    finished.fetch_add(1, Ordering::Relaxed);
+                }
+            });
+        }
+        if std::io::stderr().is_terminal() {
+            watch(&finished, ranges.len(), cycle.profile().conditions());
+        }
+    });
+    let done = done.into_inner().expect("no panic in a part");
+    done.into_iter().map(|part| part.expect("every range was computed")).collect()
+}
+
+/// A bar on standard error, where that takes its time.
+fn watch(finished: &AtomicUsize, parts: usize, conditions: usize) {
+    let bar = ProgressBar::with_draw_target(Some(parts as u64), ProgressDrawTarget::hidden());
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
+    bar.set_style(style.expect("a good template"));
+    bar.set_message(plural(conditions, "condition", "conditions"));
+    let mut rounds = 0;
+    loop {
+        let so_far = finished.load(Ordering::Relaxed);
+        if so_far >= parts {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+        rounds += 1;
+        if rounds == 25 {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        if rounds % 5 == 0 {
+            bar.set_position(so_far as u64);
+        }
+    }
+    bar.finish_and_clear();
+}
+
+/// One row of the profile a line, with its answer.
+fn rows(subject: &Subject, profile: &Profile, parts: &[CyclePart]) -> String {
+    let points: Vec<_> = parts.iter().flat_map(|p| &p.points).collect();
+    let mut out = Writer::default();
+    let is_trace = profile.basis() == Basis::Trace;
+    let mut header = vec!["line"];
+    if is_trace {
+        header.push("time_s");
+    }
+    header.push("duration_s");
+    header.extend(profile.columns());
+    header.extend([
+        "in_state",
+        "verdict",
+        "direction",
+        "efficiency",
+        "input_power_w",
+        "output_power_w",
+        "loss_w",
+        "energy_lost_j",
+        "reason",
+    ]);
+    out.row(&header);
+    // What is the same in every row of a condition is written once.
+    let number = |x: f64| if x.is_nan() { String::new() } else { format!("{:?}", x + 0.0) };
+    for row in profile.rows() {
+        let k = row.condition as usize;
+        let p = points[k];
+        let mut all = vec![row.line.to_string()];
+        if is_trace {
+            all.push(number(row.time_s));
+        }
+        all.push(number(row.duration_s));
+        all.extend(profile.cells(k).map(str::to_owned));
+        all.push(p.state.and_then(|s| subject.train().states().get(s)).map_or(String::new(), |s| s.name.clone()));
+        all.extend([p.verdict.to_owned(), p.way.map_or("", |w| w.name()).to_owned()]);
+        all.extend([p.efficiency, p.input_power_w, p.output_power_w, p.loss_w].map(number));
+        all.extend([number(p.loss_w * row.duration_s), p.reason.to_string()]);
+        out.row(&all);
+    }
+    out.0
+}
+
+/// Units in which a report is easy to read.
+struct Scale {
+    time: (&'static str, f64),
+    energy: (&'static str, f64),
+}
+
+impl Scale {
+    fn of(r: &CycleReport) -> Self {
+        let hours = r.time_s > 7200.0 || r.basis == Basis::Shares;
+        let time = match r.time_s {
+            _ if hours => ("h", 3600.0),
+            t if t > 600.0 => ("min", 60.0),
+            _ => ("s", 1.0),
+        };
+        let most = r.energy_in_j.max(r.energy_lost_j);
+        let steps: &[(&str, f64)] = match hours {
+            true => &[("GWh", 3.6e12), ("MWh", 3.6e9), ("kWh", 3.6e6), ("Wh", 3600.0)],
+            false => &[("GJ", 1e9), ("MJ", 1e6), ("kJ", 1e3), ("J", 1.0)],
+        };
+        let energy = steps.iter().find(|s| most >= 5.0 * s.1).unwrap_or(&steps[3]);
+        Self { time, energy: *energy }
+    }
+
+    fn time(&self, s: f64) -> String {
+        significant(s / self.time.1, 4)
+    }
+
+    fn energy(&self, j: f64) -> String {
+        if j == 0.0 { "-".into() } else { significant(j / self.energy.1, 5) }
+    }
+}
+
+/// The report for eyes.
+pub fn text(r: &CycleReport, profile: &str) -> String {
+    let scale = Scale::of(r);
+    let (hour, joule) = (scale.time.0, scale.energy.0);
+    let mut out = format!("{} over {profile}\n", bold(&r.train));
+    let mut facts = vec![plural(r.rows as usize, "row", "rows")];
+    if r.conditions != r.rows {
+        facts.push(format!("{} different", r.conditions));
+    }
+    facts.push(format!("{} {hour}", scale.time(r.time_s)));
+    facts.push(r.rule.to_owned());
+    out += &(wrap(&facts.join(" · "), "") + "\n");
+    if let (Some(operation), false) = (&r.operation, r.held.is_empty()) {
+        out += &(wrap(&format!("held from operation `{operation}`: {}", r.held.join(", ")), "") + "\n");
+    } else if !r.held.is_empty() {
+        out += &(wrap(&format!("held: {}", r.held.join(", ")), "") + "\n");
+    }
+    for note in &r.notes {
+        out += &(wrap(note, "  ! ") + "\n");
+    }
+    out.push('\n');
+    let or_none = |e: Option<f64>| e.map_or("-".into(), percent);
+    match r.efficiency {
+        Some(e) => {
+            let time = r.time_mean_efficiency.map_or(String::new(), |m| format!("; mean over time {}", percent(m)));
+            out += &format!("  efficiency   {}, energy out over energy in{time}\n", bold(&percent(e)));
+        }
+        None => out += "  efficiency   none: no energy goes in\n",
+    }
+    out += &format!(
+        "  energy       in {} {joule}, out {} {joule}, lost {} {joule}; every row's balance closes to {:.1e} W\n",
+        scale.energy(r.energy_in_j),
+        scale.energy(r.energy_out_j),
+        scale.energy(r.energy_lost_j),
+        r.power_residual_w
+    );
+    if let Some(w) = r.mean_loss_w {
+        out += &format!("  mean loss    {} W\n", significant(w, 5));
+    }
+    if r.coverage < 1.0 {
+        out += &format!(
+            "  {}\n",
+            bold(&format!("coverage     {} of the time has an answer; energies are those of it", percent(r.coverage)))
+        );
+    }
+
+    let parts = |head: &str, all: &willis::analysis::Named<Energies>| {
+        let mut t = table();
+        let (time, energy) = (format!("time {hour}"), ["in", "out", "lost"].map(|w| format!("{w} {joule}")));
+        set_header(&mut t, &[head, "rows", &time, "of the time", &energy[0], &energy[1], &energy[2], "lost", "η"]);
+        for (name, e) in all.iter() {
+            let lost = if r.energy_lost_j > 0.0 { percent(e.energy_lost_j / r.energy_lost_j) } else { "-".into() };
+            t.add_row([
+                name.clone(),
+                e.rows.to_string(),
+                scale.time(e.time_s),
+                percent(e.time_s / r.time_s),
+                scale.energy(e.energy_in_j),
+                scale.energy(e.energy_out_j),
+                scale.energy(e.energy_lost_j),
+                lost,
+                or_none(e.efficiency),
+            ]);
+        }
+        right(&mut t, 1..9);
+        format!("\n{}", show(&t))
+    };
+    if !r.ways.is_empty() {
+        out += &parts("direction", &r.ways);
+    }
+    if r.states.iter().count() > 1 {
+        out += &parts("state", &r.states);
+    }
+    if !r.terminals.is_empty() {
+        let mut t = table();
+        set_header(&mut t, &["at", &format!("into the train {joule}"), &format!("out of it {joule}")]);
+        for (name, e) in r.terminals.iter() {
+            t.add_row([name.clone(), scale.energy(e.energy_in_j), scale.energy(e.energy_out_j)]);
+        }
+        right(&mut t, 1..3);
+        out += &format!("\n{}", show(&t));
+    }
+    let lossy: Vec<_> = r.sources.iter().filter(|s| s.energy_j > 0.0).collect();
+    if let Some(first) = lossy.first() {
+        let mut t = table();
+        set_header(&mut t, &["lost in", "kind", "law", joule, "share", ""]);
+        for s in &lossy {
+            t.add_row([
+                s.name.clone(),
+                s.kind.to_owned(),
+                s.law.to_owned(),
+                significant(s.energy_j / scale.energy.1, 4),
+                percent(s.share),
+                losses::bar(s.energy_j / first.energy_j),
+            ]);
+        }
+        right(&mut t, 3..5);
+        out += &format!("\n{}", show(&t));
+    }
+    out += &verdicts(r, &scale);
+    for (title, all) in
+        [("by loss", &r.worst.loss), ("by efficiency", &r.worst.efficiency), ("by energy lost", &r.worst.energy)]
+    {
+        out += &worst(title, all, &scale);
+    }
+    for (k, (code, all)) in r.warnings.iter().enumerate() {
+        out += if k == 0 { "\n" } else { "" };
+        for w in all {
+            let head = format!("  {code} ");
+            let text = format!("line {}{}: {}", w.line, more(w), w.message);
+            out += &(dim(&wrap(&text, &head)) + "\n");
+        }
+    }
+    out
+}
+
+fn more(s: &Said) -> String {
+    if s.rows > 1 { format!(" and {}", plural(s.rows as usize - 1, "other row", "other rows")) } else { String::new() }
+}
+
+fn verdicts(r: &CycleReport, scale: &Scale) -> String {
+    let mut t = table();
+    set_header(&mut t, &["verdict", "rows", &format!("time {}", scale.time.0), "of the time"]);
+    let mut reasons = String::new();
+    for (name, v) in r.verdicts.iter() {
+        let word = if name == "multiple" { "several solutions" } else { name };
+        t.add_row([word.to_owned(), v.rows.to_string(), scale.time(v.time_s), percent(v.share_of_time)]);
+        for s in &v.reasons {
+            reasons += &(wrap(&format!("line {}{}: {}", s.line, more(s), s.message), &format!("  {word}  ")) + "\n");
+        }
+    }
+    right(&mut t, 1..4);
+    format!("\n{}{reasons}", show(&t))
+}
+
+fn worst(title: &str, all: &[WorstRow], scale: &Scale) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut t = table();
+    let lost = format!("lost {}", scale.energy.0);
+    set_header(&mut t, &[&format!("worst {title}"), "line", "rows", "loss W", "η", &lost, "direction"]);
+    for w in all {
+        t.add_row([
+            w.condition.clone(),
+            w.line.to_string(),
+            w.rows.to_string(),
+            significant(w.loss_w, 5),
+            w.efficiency.map_or("-".into(), percent),
+            significant(w.energy_lost_j / scale.energy.1, 4),
+            w.way.map_or("", |way| way.name()).to_owned(),
+        ]);
+    }
+    right(&mut t, 1..6);
+    format!("\n{}", show(&t))
+}
+
+/// The tables of a report as CSV, one under the other.
+pub fn csv(r: &CycleReport) -> String {
+    let number = |x: f64| format!("{:?}", x + 0.0);
+    let option = |x: Option<f64>| x.map_or(String::new(), number);
+    let mut out = Writer::default();
+    out.0 += "# cycle\n";
+    out.row(["quantity", "value"]);
+    for (name, value) in [
+        ("rows", r.rows.to_string()),
+        ("conditions", r.conditions.to_string()),
+        ("time_s", number(r.time_s)),
+        ("covered_s", number(r.covered_s)),
+        ("coverage", number(r.coverage)),
+        ("energy_in_j", number(r.energy_in_j)),
+        ("energy_out_j", number(r.energy_out_j)),
+        ("energy_lost_j", number(r.energy_lost_j)),
+        ("energy_residual_j", number(r.energy_residual_j)),
+        ("power_residual_w", number(r.power_residual_w)),
+        ("efficiency", option(r.efficiency)),
+        ("time_mean_efficiency", option(r.time_mean_efficiency)),
+        ("mean_loss_w", option(r.mean_loss_w)),
+    ] {
+        out.row([name, value.as_str()]);
+    }
+    for (title, all) in [("directions", &r.ways), ("states", &r.states)] {
+        out.0 += &format!("\n# {title}\n");
+        out.row(["name", "rows", "time_s", "energy_in_j", "energy_out_j", "energy_lost_j", "efficiency"]);
+        for (name, e) in all.iter() {
+            let energies = [e.time_s, e.energy_in_j, e.energy_out_j, e.energy_lost_j].map(number);
+            let head = [name.clone(), e.rows.to_string()];
+            out.row(head.into_iter().chain(energies).chain([option(e.efficiency)]));
+        }
+    }
+    out.0 += "\n# sources\n";
+    out.row(["source", "kind", "law", "energy_j", "share"]);
+    for s in &r.sources {
+        out.row([&s.name, s.kind, s.law, &number(s.energy_j), &number(s.share)]);
+    }
+    out.0 += "\n# terminals\n";
+    out.row(["member", "energy_in_j", "energy_out_j"]);
+    for (name, e) in r.terminals.iter() {
+        out.row([name, &number(e.energy_in_j), &number(e.energy_out_j)]);
+    }
+    out.0 += "\n# verdicts\n";
+    out.row(["verdict", "rows", "time_s", "share_of_time", "reason"]);
+    for (name, v) in r.verdicts.iter() {
+        let reason = v.reasons.first().map_or("", |s| s.message.as_str());
+        out.row([name, &v.rows.to_string(), &number(v.time_s), &number(v.share_of_time), reason]);
+    }
+    out.0 += "\n# worst\n";
+    out.row(["by", "line", "rows", "time_s", "condition", "efficiency", "loss_w", "energy_lost_j"]);
+    for (by, all) in [("loss", &r.worst.loss), ("efficiency", &r.worst.efficiency), ("energy", &r.worst.energy)] {
+        for w in all {
+            out.row([
+                by,
+                &w.line.to_string(),
+                &w.rows.to_string(),
+                &number(w.time_s),
+                &w.condition,
+                &option(w.efficiency),
+                &number(w.loss_w),
+                &number(w.energy_lost_j),
+            ]);
+        }
+    }
+    out.0
+}
+
+/// Where an answer goes: the terminal, or a file.
+pub fn deliver(text: String, to: Option<&PathBuf>, force: bool) -> Result<String, String> {
+    match to {
+        None => Ok(text),
+        // A file takes no colours.
+        Some(path) => {
+            let plain = anstream::adapter::strip_str(&text).to_string();
+            write(path, plain.as_bytes(), force).map(|()| String::new())
+        }
+    }
+}

@@ -1,0 +1,658 @@
+//! What a duty cycle or a load spectrum costs: energies by source, state and direction, and the worst rows.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::analysis::SolutionReport;
+use crate::named::Named;
+use crate::operating_point::LossKind;
+use crate::train::{Load, Operation, Train};
+
+use super::profile::{Basis, Held, Profile};
+use super::question::{Question, Trains};
+use super::sweep::{Answer, VERDICTS};
+use super::target::{Target, Who};
+
+/// How many of the worst are told.
+const MOST_WORST: usize = 5;
+/// How many reasons of a verdict, and warnings of a kind, are told.
+const MOST_REASONS: usize = 5;
+
+/// Which way power goes through the train.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Way {
+    /// Power enters at the input and leaves at the output.
+    Driving,
+    /// Power enters at the output and leaves at the input: the engine brakes, or power is recuperated.
+    Coasting,
+    /// Power enters and none leaves.
+    Dissipating,
+    /// No power goes through.
+    Idle,
+    /// Power goes otherwise, or the train names no input and output.
+    Other,
+}
+
+const WAYS: [(Way, &str); 5] = [
+    (Way::Driving, "driving"),
+    (Way::Coasting, "coasting"),
+    (Way::Dissipating, "dissipating"),
+    (Way::Idle, "idle"),
+    (Way::Other, "other"),
+];
+
+impl Way {
+    /// Its name in tables.
+    pub fn name(self) -> &'static str {
+        WAYS.iter().find(|w| w.0 == self).map_or("", |w| w.1)
+    }
+}
+
+/// The answer for one condition of a profile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CyclePoint {
+    /// One of [`VERDICTS`].
+    pub verdict: &'static str,
+    /// Why there is no answer; empty where there is one.
+    pub reason: Box<str>,
+    /// Which way power goes, where there is an answer.
+    pub way: Option<Way>,
+    /// The state of the shift table, by its position.
+    pub state: Option<usize>,
+    /// Output over input power; NaN where there is none.
+    pub efficiency: f64,
+    /// Power in, W; NaN without an answer.
+    pub input_power_w: f64,
+    /// Power out, W.
+    pub output_power_w: f64,
+    /// All losses, W.
+    pub loss_w: f64,
+    /// Input less output less losses, W.
+    pub residual_w: f64,
+}
+
+/// The answers for some conditions, and what they say together.
+#[derive(Clone, Debug, Default)]
+pub struct CyclePart {
+    /// One for each condition.
+    pub points: Vec<CyclePoint>,
+    /// By name and kind: law, energy.
+    sources: BTreeMap<(String, &'static str), (&'static str, f64)>,
+    kinds: [f64; 5],
+    /// By member: energy in, energy out.
+    terminals: BTreeMap<String, [f64; 2]>,
+    warnings: BTreeMap<&'static str, Vec<Told>>,
+}
+
+#[derive(Clone, Debug)]
+struct Told {
+    message: String,
+    rows: u64,
+    time_s: f64,
+    line: u32,
+}
+
+/// Energies of some rows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Energies {
+    /// Rows with an answer.
+    pub rows: u64,
+    /// Their time, s.
+    pub time_s: f64,
+    /// Energy in, J.
+    pub energy_in_j: f64,
+    /// Energy out, J.
+    pub energy_out_j: f64,
+    /// Energy lost, J.
+    pub energy_lost_j: f64,
+    /// Energy out over energy in; absent where none goes in.
+    pub efficiency: Option<f64>,
+}
+
+impl Energies {
+    fn add(&mut self, held: Held, p: &CyclePoint) {
+        self.rows += u64::from(held.rows);
+        self.time_s += held.time_s;
+        self.energy_in_j += p.input_power_w * held.time_s;
+        self.energy_out_j += p.output_power_w * held.time_s;
+        self.energy_lost_j += p.loss_w * held.time_s;
+    }
+
+    fn close(&mut self) {
+        self.efficiency = (self.energy_in_j > 0.0).then(|| self.energy_out_j / self.energy_in_j);
+    }
+}
+
+/// Energy lost by a source.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SourceEnergy {
+    /// What loses it; a mesh where losses are given by efficiencies.
+    pub name: String,
+    /// What kind of loss it is.
+    pub kind: &'static str,
+    /// The law that it was last computed by; `given` for a given efficiency.
+    pub law: &'static str,
+    /// The energy, J.
+    pub energy_j: f64,
+    /// The part of all losses.
+    pub share: f64,
+}
+
+/// Energy that crosses a member.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TerminalEnergy {
+    /// Energy that enters the train here, J.
+    pub energy_in_j: f64,
+    /// Energy that leaves it here, J.
+    pub energy_out_j: f64,
+}
+
+/// Rows that say the same.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Said {
+    /// What they say, at the first of them.
+    pub message: String,
+    /// How many rows.
+    pub rows: u64,
+    /// Their time, s.
+    pub time_s: f64,
+    /// Line of the first of them.
+    pub line: u32,
+}
+
+/// Rows of a verdict.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct VerdictTime {
+    /// How many rows.
+    pub rows: u64,
+    /// Their time, s.
+    pub time_s: f64,
+    /// The part of the whole time.
+    pub share_of_time: f64,
+    /// Why, longest first; the first few of them.
+    pub reasons: Vec<Said>,
+}
+
+/// A condition that is among the worst.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorstRow {
+    /// Line of its first row.
+    pub line: u32,
+    /// How many rows say the same.
+    pub rows: u32,
+    /// Their time, s.
+    pub time_s: f64,
+    /// What they prescribe.
+    pub condition: String,
+    /// Which way power goes.
+    pub way: Option<Way>,
+    /// Output over input power.
+    pub efficiency: Option<f64>,
+    /// Loss, W.
+    pub loss_w: f64,
+    /// Energy lost in all of these rows, J.
+    pub energy_lost_j: f64,
+}
+
+/// The worst rows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Worst {
+    /// By loss power.
+    pub loss: Vec<WorstRow>,
+    /// By efficiency, of the rows in which power is meant to go through.
+    pub efficiency: Vec<WorstRow>,
+    /// By energy lost.
+    pub energy: Vec<WorstRow>,
+}
+
+/// What a profile costs. Serialised it is the contract `willis-cycle-1`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CycleReport {
+    /// `willis-cycle-1`.
+    pub format: &'static str,
+    /// Name of the train.
+    pub train: String,
+    /// The operation from which the question starts, where the file has one.
+    pub operation: Option<String>,
+    /// What the operation prescribes and no column sets.
+    pub held: Vec<String>,
+    /// How rows weigh.
+    pub basis: Basis,
+    /// The same in a sentence.
+    pub rule: &'static str,
+    /// Rows of the profile.
+    pub rows: u64,
+    /// Different conditions among them.
+    pub conditions: u64,
+    /// Time of the profile, s.
+    pub time_s: f64,
+    /// Time of the rows that have an answer, s; energies are those of these rows.
+    pub covered_s: f64,
+    /// The part of the time that they cover.
+    pub coverage: f64,
+    /// Energy in, J.
+    pub energy_in_j: f64,
+    /// Energy out, J.
+    pub energy_out_j: f64,
+    /// Energy lost, J.
+    pub energy_lost_j: f64,
+    /// Energy in less energy out less energy lost, J.
+    pub energy_residual_j: f64,
+    /// The largest power that does not balance in any row, W.
+    pub power_residual_w: f64,
+    /// Energy out over energy in.
+    pub efficiency: Option<f64>,
+    /// Mean over time of the efficiencies of the rows that have one; another number than `efficiency`, in which hours
+    /// of high power count more.
+    pub time_mean_efficiency: Option<f64>,
+    /// Mean loss power over the covered time, W.
+    pub mean_loss_w: Option<f64>,
+    /// Energy lost by kind, J.
+    pub losses_j: Named<f64>,
+    /// Energy lost by source, largest first.
+    pub sources: Vec<SourceEnergy>,
+    /// By which way power goes.
+    pub ways: Named<Energies>,
+    /// By state of the shift table.
+    pub states: Named<Energies>,
+    /// By terminal through which power passes.
+    pub terminals: Named<TerminalEnergy>,
+    /// By verdict, with the reasons of those without an answer.
+    pub verdicts: Named<VerdictTime>,
+    /// The worst rows.
+    pub worst: Worst,
+    /// Warnings by their code.
+    pub warnings: Named<Vec<Said>>,
+    /// What is remarkable about the profile.
+    pub notes: Vec<String>,
+}
+
+/// A profile put to a train.
+#[derive(Clone, Debug)]
+pub struct Cycle<'a> {
+    question: Question<'a>,
+    profile: &'a Profile,
+}
+
+/// What a profile costs.
+///
+/// # Example
+/// ```
+/// use willis::study::{Hold, Profile, Question, Subject, cycle};
+///
+/// let text = r#"
+///     format = 1
+///     name = "reducer"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+///     mesh_efficiency = 0.99
+/// "#;
+/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let spectrum = "hours,input.speed [rad/s],input.torque [N m]\n1,100,50\n3,100,10\n";
+/// let profile = Profile::parse(spectrum, &subject)?;
+/// let report = cycle(Question::new(&subject, None, None, Hold::AsGiven)?, &profile);
+/// assert!((report.energy_in_j - (5000.0 + 3.0 * 1000.0) * 3600.0).abs() < 1e-6);
+/// assert!((report.efficiency.unwrap() - 0.98607).abs() < 1e-9);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn cycle(question: Question<'_>, profile: &Profile) -> CycleReport {
+    let cycle = Cycle::new(question, profile);
+    let mut trains = Trains::default();
+    let parts: Vec<CyclePart> = cycle.ranges().map(|(from, to)| cycle.part(from, to, &mut trains)).collect();
+    cycle.report(&parts)
+}
+
+impl<'a> Cycle<'a> {
+    /// Conditions that are computed together.
+    const AT_ONCE: usize = 64;
+
+    /// The rows of a profile as questions.
+    pub fn new(question: Question<'a>, profile: &'a Profile) -> Self {
+        Self { question, profile }
+    }
+
+    /// The profile.
+    pub fn profile(&self) -> &'a Profile {
+        self.profile
+    }
+
+    /// Ranges of conditions, each a [part](Self::part); the report is the same whoever computes them.
+    pub fn ranges(&self) -> impl ExactSizeIterator<Item = (usize, usize)> + use<> {
+        let n = self.profile.conditions();
+        (0..n.div_ceil(Self::AT_ONCE)).map(move |k| (k * Self::AT_ONCE, ((k + 1) * Self::AT_ONCE).min(n)))
+    }
+
+    /// The answers for the conditions from `from` up to `to`.
+    pub fn part(&self, from: usize, to: usize, trains: &mut Trains) -> CyclePart {
+        let mut part = CyclePart::default();
+        for condition in from..to {
+            let point = self.point(condition, trains, &mut part);
+            part.points.push(point);
+        }
+        part
+    }
+
+    fn point(&self, condition: usize, trains: &mut Trains, part: &mut CyclePart) -> CyclePoint {
+        let held = self.profile.held(condition);
+        let settings = self.profile.settings(condition);
+        let states = self.question.subject().train().states();
+        let named = settings.iter().find(|s| *s.0 == Target::State);
+        let state = match named {
+            Some((_, name)) => states.iter().position(|s| s.name == *name),
+            None => self.question.base().state,
+        };
+        let asked = self.question.at(&settings, trains);
+        let (answer, way) = match &asked {
+            Ok((train, operation)) => {
+                let answer = Answer::of(train, operation);
+                let way = answer.solution.as_ref().map(|s| self.way(train, operation, s));
+                (answer, way)
+            }
+            Err(wrong) => (Answer::refused(wrong.clone()), None),
+        };
+        for (code, message) in &answer.warnings {
+            let told = part.warnings.entry(code.as_str()).or_default();
+            tell(told, message, held);
+        }
+        let mut point = CyclePoint {
+            verdict: answer.verdict,
+            reason: answer.reason.replace(&format!("operation `{}`: ", self.question.base().name), "").into(),
+            way,
+            state,
+            efficiency: answer.efficiency(),
+            input_power_w: f64::NAN,
+            output_power_w: f64::NAN,
+            loss_w: f64::NAN,
+            residual_w: f64::NAN,
+        };
+        let Some(s) = &answer.solution else { return point };
+        point.input_power_w = s.input_power_w;
+        point.output_power_w = s.output_power_w;
+        point.loss_w = s.loss_w;
+        point.residual_w = s.power_residual_w;
+        let l = &s.losses_w;
+        for (sum, power) in part.kinds.iter_mut().zip([l.mesh, l.bearing, l.windage, l.churning, l.seal]) {
+            *sum += power * held.time_s;
+        }
+        let mut lose = |name: &str, kind, law, power: f64| {
+            let own = part.sources.entry((name.to_owned(), kind)).or_insert((law, 0.0));
+            own.1 += power * held.time_s;
+        };
+        match s.sources.is_empty() {
+            true => s.meshes.iter().for_each(|(name, m)| lose(name, "mesh", "given", m.loss_w)),
+            false => s.sources.iter().for_each(|x| lose(&x.name, kind(x.kind), x.law, x.loss_w)),
+        }
+        for (name, m) in s.members.iter() {
+            let energy = m.power_w.unwrap_or(0.0) * held.time_s;
+            if energy != 0.0 {
+                let own = part.terminals.entry(name.clone()).or_default();
+                own[usize::from(energy < 0.0)] += energy.abs();
+            }
+        }
+        point
+    }
+
+    fn way(&self, train: &Train, operation: &Operation, s: &SolutionReport) -> Way {
+        // What is round-off beside the power that enters is nothing.
+        let least = 1e-12 * s.input_power_w.abs();
+        if s.output_power_w <= least {
+            return if s.input_power_w > 0.0 { Way::Dissipating } else { Way::Idle };
+        }
+        let power = |who| {
+            let member = self.question.role(train, operation, who).ok()?;
+            s.members.get(train.member_name(member))?.power_w
+        };
+        match (power(Who::Input), power(Who::Output)) {
+            (Some(i), Some(o)) if i > least && o < -least => Way::Driving,
+            (Some(i), Some(o)) if i < -least && o > least => Way::Coasting,
+            _ => Way::Other,
+        }
+    }
+
+    /// What the operation prescribes and the profile does not set.
+    fn base(&self) -> Vec<String> {
+        let settings = self.profile.settings(0);
+        let Ok((train, operation)) = self.question.at(&settings, &mut Trains::default()) else { return vec![] };
+        let set = |member, is_speed: bool| {
+            settings.iter().any(|(target, _)| {
+                let who = match target {
+                    Target::Speed(who) if is_speed => who,
+                    Target::Torque(who) | Target::Power(who) if !is_speed => who,
+                    _ => return false,
+                };
+                self.question.role(&train, &operation, *who).ok() == Some(member)
+            })
+        };
+        let mut all = vec![];
+        if let (Some(k), false) = (operation.state, settings.iter().any(|s| *s.0 == Target::State)) {
+            all.push(format!("state {}", train.states()[k].name));
+        }
+        for (member, speed) in operation.speeds.iter().filter(|s| !set(s.0, true)) {
+            let rpm = speed.si() * 30.0 / std::f64::consts::PI;
+            all.push(format!("speed of {} {} rpm", train.member_name(*member), short(rpm)));
+        }
+        for (member, load) in operation.loads.iter().filter(|l| !set(l.0, false)) {
+            let name = train.member_name(*member);
+            all.push(match load {
+                Load::Torque(q) => format!("torque on {name} {} N m", short(q.si())),
+                Load::Power(q) => format!("power at {name} {} W", short(q.si())),
+            });
+        }
+        all
+    }
+
+    /// What all [parts](Self::part) say together, in the order of their [ranges](Self::ranges).
+    ///
+    /// # Panics
+    /// When parts are missing.
+    pub fn report(&self, parts: &[CyclePart]) -> CycleReport {
+        let profile = self.profile;
+        let points: Vec<&CyclePoint> = parts.iter().flat_map(|p| &p.points).collect();
+        assert_eq!(points.len(), profile.conditions(), "a report needs every part of the cycle");
+        let train = self.question.subject().train();
+        let mut whole = Energies::default();
+        let mut ways: BTreeMap<Way, Energies> = BTreeMap::new();
+        let mut states: Vec<Energies> = vec![Energies::default(); train.states().len() + 1];
+        let mut verdicts: BTreeMap<&str, (VerdictTime, Vec<Told>)> = BTreeMap::new();
+        let (mut mean, mut mean_time, mut residual) = (0.0, 0.0, 0.0f64);
+        // The condition in which a trace ends may have no row.
+        let held = |k: usize| Some(profile.held(k)).filter(|h| h.rows > 0);
+        for (k, p) in points.iter().enumerate() {
+            let Some(held) = held(k) else { continue };
+            let verdict = verdicts.entry(p.verdict).or_default();
+            verdict.0.rows += u64::from(held.rows);
+            verdict.0.time_s += held.time_s;
+            let Some(way) = p.way else {
+                tell(&mut verdict.1, &p.reason, held);
+                continue;
+            };
+            if !p.reason.is_empty() {
+                tell(&mut verdict.1, &p.reason, held);
+            }
+            whole.add(held, p);
+            ways.entry(way).or_default().add(held, p);
+            states[p.state.unwrap_or(train.states().len())].add(held, p);
+            residual = residual.max(p.residual_w.abs());
+            if !p.efficiency.is_nan() {
+                mean += p.efficiency * held.time_s;
+                mean_time += held.time_s;
+            }
+        }
+        whole.close();
+        let mut sources: BTreeMap<&(String, &'static str), (&'static str, f64)> = BTreeMap::new();
+        let mut terminals: BTreeMap<&str, TerminalEnergy> = BTreeMap::new();
+        let mut kinds = [0.0; 5];
+        let mut warnings: BTreeMap<&str, Vec<Told>> = BTreeMap::new();
+        for part in parts {
+            for (key, (law, energy)) in &part.sources {
+                sources.entry(key).or_insert((law, 0.0)).1 += energy;
+            }
+            for (name, energy) in &part.terminals {
+                let own = terminals.entry(name).or_default();
+                own.energy_in_j += energy[0];
+                own.energy_out_j += energy[1];
+            }
+            kinds.iter_mut().zip(part.kinds).for_each(|(sum, own)| *sum += own);
+            for (code, all) in &part.warnings {
+                join(warnings.entry(code).or_default(), all);
+            }
+        }
+        let mut sources: Vec<SourceEnergy> = sources
+            .into_iter()
+            .map(|((name, kind), (law, energy_j))| {
+                let share = if whole.energy_lost_j > 0.0 { energy_j / whole.energy_lost_j } else { 0.0 };
+                SourceEnergy { name: name.clone(), kind, law, energy_j, share }
+            })
+            .collect();
+        sources.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));
+        let energies = |mut e: Energies| {
+            e.close();
+            e
+        };
+        let of_state = |k: usize| train.states().get(k).map_or("as drawn".to_owned(), |s| s.name.clone());
+        let named: Vec<(String, Energies)> =
+            states.into_iter().enumerate().map(|(k, e)| (of_state(k), energies(e))).filter(|s| s.1.rows > 0).collect();
+        let time_s = profile.total_s();
+        let verdicts = VERDICTS.iter().filter_map(|name| {
+            let (mut own, told) = verdicts.remove(name)?;
+            own.share_of_time = own.time_s / time_s;
+            own.reasons = said(told);
+            Some(((*name).to_owned(), own))
+        });
+        let base = self.question.base();
+        let is_own = train.operations().iter().any(|o| o.name == base.name);
+        CycleReport {
+            format: "willis-cycle-1",
+            train: train.name().to_owned(),
+            operation: is_own.then(|| base.name.clone()),
+            held: self.base(),
+            basis: profile.basis(),
+            rule: profile.basis().rule(),
+            rows: profile.rows().len() as u64,
+            conditions: (0..points.len()).filter(|k| held(*k).is_some()).count() as u64,
+            time_s,
+            covered_s: whole.time_s,
+            coverage: if points.iter().enumerate().all(|(k, p)| held(k).is_none() || p.way.is_some()) {
+                1.0
+            } else {
+                whole.time_s / time_s
+            },
+            energy_in_j: whole.energy_in_j,
+            energy_out_j: whole.energy_out_j,
+            energy_lost_j: whole.energy_lost_j,
+            energy_residual_j: whole.energy_in_j - whole.energy_out_j - whole.energy_lost_j,
+            power_residual_w: residual,
+            efficiency: whole.efficiency,
+            time_mean_efficiency: (mean_time > 0.0).then(|| mean / mean_time),
+            mean_loss_w: (whole.time_s > 0.0).then(|| whole.energy_lost_j / whole.time_s),
+            losses_j: ["mesh", "bearing", "windage", "churning", "seal"]
+                .map(str::to_owned)
+                .into_iter()
+                .zip(kinds)
+                .collect(),
+            sources,
+            ways: WAYS.iter().filter_map(|(w, n)| Some(((*n).to_owned(), energies(ways.remove(w)?)))).collect(),
+            states: named.into_iter().collect(),
+            terminals: (train.members().iter())
+                .filter_map(|m| Some((m.name.clone(), terminals.remove(m.name.as_str())?)))
+                .collect(),
+            verdicts: verdicts.collect(),
+            worst: self.worst(&points),
+            warnings: warnings.into_iter().map(|(code, told)| (code.to_owned(), said(told))).collect(),
+            notes: profile.notes().to_vec(),
+        }
+    }
+
+    fn worst(&self, points: &[&CyclePoint]) -> Worst {
+        let held = |k: usize| self.profile.held(k);
+        let answered: Vec<usize> =
+            (0..points.len()).filter(|k| points[*k].way.is_some() && held(*k).rows > 0).collect();
+        let row = |k: usize| WorstRow {
+            line: held(k).first_line,
+            rows: held(k).rows,
+            time_s: held(k).time_s,
+            condition: self.profile.describe(k),
+            way: points[k].way,
+            efficiency: Some(points[k].efficiency).filter(|e| !e.is_nan()),
+            loss_w: points[k].loss_w,
+            energy_lost_j: points[k].loss_w * held(k).time_s,
+        };
+        let largest = |by: &dyn Fn(usize) -> f64| -> Vec<WorstRow> {
+            let mut all: Vec<(usize, f64)> = answered.iter().map(|k| (*k, by(*k))).filter(|x| !x.1.is_nan()).collect();
+            // Stable: of equal ones those that stand first.
+            all.sort_by(|a, b| b.1.total_cmp(&a.1));
+            all.into_iter().take(MOST_WORST).map(|x| row(x.0)).collect()
+        };
+        let is_some = |x: f64| if x > 0.0 { x } else { f64::NAN };
+        Worst {
+            loss: largest(&|k| is_some(points[k].loss_w)),
+            efficiency: largest(&|k| -points[k].efficiency),
+            energy: largest(&|k| is_some(points[k].loss_w * held(k).time_s)),
+        }
+    }
+}
+
+/// A number for a sentence.
+fn short(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    rounded.to_string()
+}
+
+fn kind(kind: LossKind) -> &'static str {
+    match kind {
+        LossKind::Sliding => "sliding",
+        LossKind::Rolling => "rolling",
+        LossKind::Bearing => "bearing",
+        LossKind::Windage => "windage",
+        LossKind::Churning => "churning",
+        LossKind::Seal => "seal",
+    }
+}
+
+/// A sentence without its numbers: what differs from row to row only in them is the same.
+fn gist(message: &str) -> String {
+    message.chars().filter(|c| !c.is_ascii_digit() && !matches!(c, '.' | '-')).collect()
+}
+
+fn tell(all: &mut Vec<Told>, message: &str, held: Held) {
+    if held.rows == 0 {
+        return;
+    }
+    join(
+        all,
+        &[Told { message: message.to_owned(), rows: held.rows.into(), time_s: held.time_s, line: held.first_line }],
+    );
+}
+
+fn join(all: &mut Vec<Told>, more: &[Told]) {
+    /// Kinds of sentences that are kept apart; others count with the last.
+    const MOST: usize = 50;
+    for new in more {
+        let key = gist(&new.message);
+        let full = all.len() >= MOST;
+        let same = match all.iter().position(|t| t.message == new.message || gist(&t.message) == key) {
+            None if full => Some(all.len() - 1),
+            same => same,
+        };
+        match same {
+            Some(k) => {
+                all[k].rows += new.rows;
+                all[k].time_s += new.time_s;
+            }
+            None => all.push(new.clone()),
+        }
+    }
+}
+
+fn said(mut all: Vec<Told>) -> Vec<Said> {
+    all.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));
+    let all = all.into_iter().filter(|t| !t.message.is_empty()).take(MOST_REASONS);
+    all.map(|t| Said { message: t.message, rows: t.rows, time_s: t.time_s, line: t.line }).collect()
+}

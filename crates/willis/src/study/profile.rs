@@ -1,0 +1,639 @@
+//! Operating conditions over time, read from a table: a duty cycle or a load spectrum.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use serde::Serialize;
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::train::Measure;
+use crate::units::{self, Dimension};
+
+use super::Subject;
+use super::target::Target;
+
+/// More errors than these are counted, not kept.
+const MOST_ERRORS: usize = 1000;
+
+/// How rows of a profile weigh in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Basis {
+    /// A recorded trace: each row holds from its time until that of the next; the last row only ends it.
+    Trace,
+    /// A load spectrum: each row has a duration.
+    Durations,
+    /// A load spectrum in parts of the whole; the whole is taken as one hour.
+    Shares,
+}
+
+impl Basis {
+    /// The rule in a sentence.
+    pub fn rule(self) -> &'static str {
+        match self {
+            Self::Trace => "each row holds from its time until that of the next row; the last row ends the trace",
+            Self::Durations => "each row holds for the duration that it gives",
+            Self::Shares => "each row holds for its share of the whole; energies are those of one hour",
+        }
+    }
+}
+
+/// A row of a profile.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfileRow {
+    /// Its line in the text, counted from 1.
+    pub line: u32,
+    /// Its time in a trace, s; NaN in a spectrum.
+    pub time_s: f64,
+    /// How long it holds, s.
+    pub duration_s: f64,
+    /// The number of its condition.
+    pub condition: u32,
+}
+
+/// A column that sets a quantity.
+#[derive(Clone, Debug)]
+struct Setting {
+    /// The header as it stands in the text.
+    header: String,
+    target: Target,
+    unit: String,
+    /// Values, each once.
+    values: Vec<String>,
+}
+
+/// Rows that say the same.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Held {
+    pub rows: u32,
+    pub first_line: u32,
+    pub time_s: f64,
+}
+
+/// A duty cycle or a load spectrum: each row one operating condition, with a weight in time.
+///
+/// # Format
+/// Commas between columns, decimal points; empty lines and lines that begin with `#` are skipped; the first line left
+/// is the header. A column is a quantity with its unit, `input.speed [rpm]`, `output.torque [N m]`,
+/// `carrier.speed_rpm`, or a text, `state`; names are those of [`Target::parse`]. One column weighs the rows:
+///
+/// | header | row |
+/// |---|---|
+/// | `time [s]` | of a trace: holds until the time of the next row; times rise; the last row ends the trace |
+/// | `duration [min]`, `hours` | holds so long |
+/// | `share`, `share [%]` | holds for this part of the whole, which is taken as one hour |
+///
+/// # Example
+/// ```
+/// use willis::study::{Basis, Profile, Subject};
+///
+/// let text = r#"
+///     format = 1
+///     name = "reducer"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+/// "#;
+/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let profile = Profile::parse("time [s],input.speed [rpm]\n0,900\n2,1000\n3,0\n", &subject)?;
+/// assert_eq!((profile.basis(), profile.rows().len(), profile.total_s()), (Basis::Trace, 2, 3.0));
+/// assert_eq!(profile.describe(1), "input.speed = 1000 rpm");
+/// let wrong = Profile::parse("time [s],input.sped [rpm]\n0,900\n2,1000\n", &subject).unwrap_err();
+/// assert!(wrong.to_string().contains("did you mean `input.speed`"));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Profile {
+    basis: Basis,
+    settings: Vec<Setting>,
+    rows: Vec<ProfileRow>,
+    /// For each condition the position of each setting's value.
+    conditions: Vec<Box<[u32]>>,
+    held: Vec<Held>,
+    total_s: f64,
+    notes: Vec<String>,
+}
+
+/// What a column is for.
+enum Purpose {
+    Weight(Basis, f64),
+    Setting(Setting),
+}
+
+/// Errors with their places.
+struct Wrong {
+    all: Diagnostics,
+    more: usize,
+}
+
+impl Wrong {
+    fn at(&mut self, place: String, span: Range<usize>, message: String, hint: &str) {
+        self.push(Diagnostic::new(Code::BadTable, place, message), span, hint);
+    }
+
+    fn push(&mut self, mut d: Diagnostic, span: Range<usize>, hint: &str) {
+        if self.all.len() >= MOST_ERRORS {
+            self.more += 1;
+            return;
+        }
+        // What is underlined is replaced by hints only where that is the whole cell.
+        d.replacement = None;
+        d.span = Some(span);
+        self.all.push(if hint.is_empty() { d } else { d.hint(hint) });
+    }
+}
+
+/// Cells of a line that begins at `at`, without blanks and quotes around them.
+fn cells(line: &str, at: usize) -> Vec<(&str, Range<usize>)> {
+    let mut all = vec![];
+    let (mut from, mut quoted) = (0, false);
+    let mut push = |from: usize, to: usize| {
+        let raw = &line[from..to];
+        let inner = raw.trim();
+        let start = from + (raw.len() - raw.trim_start().len());
+        let (inner, start) = match inner.strip_prefix('"').and_then(|c| c.strip_suffix('"')) {
+            Some(bare) => (bare.trim(), start + 1),
+            None => (inner, start),
+        };
+        all.push((inner, at + start..at + start + inner.len()));
+    };
+    for (k, b) in line.bytes().enumerate() {
+        match b {
+            b'"' => quoted = !quoted,
+            b',' if !quoted => {
+                push(from, k);
+                from = k + 1;
+            }
+            _ => {}
+        }
+    }
+    push(from, line.len());
+    all
+}
+
+/// Name and unit of a header: `input.speed [rpm]`, `input.speed (rpm)`.
+fn bracketed(header: &str) -> Option<(&str, &str)> {
+    let (open, close) = if header.ends_with(']') { ('[', ']') } else { ('(', ')') };
+    let (name, unit) = header.strip_suffix(close)?.rsplit_once(open)?;
+    Some((name.trim(), unit.trim()))
+}
+
+/// The unit that the end of a name stands for: `rpm`, `rad_s`, `n_m`.
+fn spelt(suffix: &str, dimension: Dimension) -> Option<String> {
+    const SMALL: [(&str, &str); 7] =
+        [("nm", "N m"), ("n_m", "N m"), ("kn_m", "kN m"), ("w", "W"), ("kw", "kW"), ("degc", "degC"), ("k", "K")];
+    let small = SMALL.iter().find(|s| s.0 == suffix).map(|s| s.1.to_owned());
+    let tries = [suffix.to_owned(), suffix.replace('_', "/"), suffix.replace('_', " ")];
+    tries.into_iter().chain(small).find(|unit| units::parse(&format!("1 {unit}"), dimension).is_ok())
+}
+
+fn weight(name: &str) -> Option<Basis> {
+    match name.to_ascii_lowercase().as_str() {
+        "time" | "t" => Some(Basis::Trace),
+        "duration" | "hours" => Some(Basis::Durations),
+        "share" => Some(Basis::Shares),
+        _ => None,
+    }
+}
+
+/// Seconds (or the whole) in one of a weight's unit.
+fn weight_unit(name: &str, basis: Basis, unit: Option<&str>) -> Result<f64, String> {
+    if basis == Basis::Shares {
+        return match unit {
+            None | Some("" | "-" | "1") => Ok(1.0),
+            Some("%" | "percent") => Ok(0.01),
+            Some(other) => Err(format!("`{other}` is no unit of a share; write `share` or `share [%]`")),
+        };
+    }
+    let unit = match (unit, name.eq_ignore_ascii_case("hours")) {
+        (None, true) => "h",
+        (None, false) => return Err(format!("`{name}` has no unit; write `{name} [s]`")),
+        (Some(unit), _) => unit,
+    };
+    match units::parse(&format!("1 {unit}"), Dimension::TIME) {
+        Ok(one) => Ok(one.si()),
+        Err(_) => Err(format!("`{unit}` is no unit of time; write `{name} [s]`, `[min]` or `[h]`")),
+    }
+}
+
+fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Box<Diagnostic>> {
+    let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
+    let hinted = |message: String, hint: String| Box::new(fault(message).hint(hint));
+    let (name, unit) = bracketed(header).map_or((header, None), |(n, u)| (n, Some(u)));
+    let cut = |name: &'_ str| name.split_once('_').map(|(n, u)| (n.to_owned(), u.to_owned()));
+    let weighed = match (weight(name), unit, cut(name)) {
+        (Some(basis), ..) => Some((name.to_owned(), basis, unit.map(str::to_owned))),
+        (None, None, Some((n, u))) => weight(&n).map(|basis| (n, basis, Some(u))),
+        _ => None,
+    };
+    if let Some((name, basis, unit)) = weighed {
+        return weight_unit(&name, basis, unit.as_deref()).map(|f| Purpose::Weight(basis, f)).map_err(fault);
+    }
+    let setting = |target: Target, unit: String| {
+        Purpose::Setting(Setting { header: header.to_owned(), target, unit, values: vec![] })
+    };
+    match Target::parse(name, subject) {
+        Ok(target) => match (target.measure(subject), unit) {
+            (Measure::Quantity(dimension), Some(unit)) => match units::parse(&format!("1 {unit}"), dimension) {
+                Ok(_) => Ok(setting(target, unit.to_owned())),
+                Err(why) => {
+                    let (kind, example) = dimension.describe();
+                    let good = example.split_once(' ').map_or("", |e| e.1);
+                    Err(hinted(
+                        format!("the unit `{unit}` is not that of {kind}: {why}"),
+                        format!("write `{name} [{good}]`"),
+                    ))
+                }
+            },
+            (Measure::Quantity(dimension), None) => {
+                let example = dimension.describe().1;
+                let unit = example.split_once(' ').map_or("", |e| e.1);
+                Err(hinted(format!("`{name}` has no unit"), format!("write it in the header: `{name} [{unit}]`")))
+            }
+            (_, None | Some("" | "-")) => Ok(setting(target, String::new())),
+            (_, Some(unit)) => Err(fault(format!("`{name}` has no unit, and here stands `{unit}`"))),
+        },
+        Err(unknown) => {
+            // The unit may be a part of the name.
+            for (at, _) in name.match_indices('_').filter(|_| unit.is_none()) {
+                let Ok(target) = Target::parse(&name[..at], subject) else { continue };
+                let Measure::Quantity(dimension) = target.measure(subject) else { continue };
+                let suffix = &name[at + 1..];
+                return match spelt(suffix, dimension) {
+                    Some(unit) => Ok(setting(target, unit)),
+                    None => {
+                        let (kind, example) = dimension.describe();
+                        let good = example.split_once(' ').map_or("", |e| e.1);
+                        Err(hinted(
+                            format!("`{suffix}` is not the unit of {kind}"),
+                            format!("write `{} [{good}]`", &name[..at]),
+                        ))
+                    }
+                };
+            }
+            let mut d = unknown;
+            d.message = d.message.replace("` to vary", "` to set");
+            Err(d)
+        }
+    }
+}
+
+/// A finite number as the train file would write it.
+fn number(cell: &str) -> Result<f64, String> {
+    if cell.is_empty() {
+        return Err("the cell is empty".into());
+    }
+    let plain = cell.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'.' | b'+' | b'-' | b'e' | b'E'));
+    match cell.parse::<f64>() {
+        Ok(x) if plain && x.is_finite() => Ok(x),
+        _ => Err(format!("`{}` is no finite number", cell.chars().take(64).collect::<String>())),
+    }
+}
+
+impl Profile {
+    /// Reads a profile.
+    ///
+    /// # Errors
+    /// All that is wrong with it, each with its line and column: no column that weighs the rows or several, unknown
+    /// quantities (with the nearest) and states, units of another kind, empty cells and such that are no finite number,
+    /// times that do not rise, a profile without rows or that lasts no time.
+    pub fn parse(text: &str, subject: &Subject) -> Result<Self, Diagnostics> {
+        let mut wrong = Wrong { all: Diagnostics::default(), more: 0 };
+        let mut at = 0;
+        let mut lines = text.split_inclusive('\n').enumerate().filter_map(|(k, line)| {
+            let start = at;
+            at += line.len();
+            let skip = if start == 0 && line.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
+            let line = line[skip..].trim_end_matches(['\n', '\r']);
+            let is_row = !line.trim().is_empty() && !line.trim_start().starts_with('#');
+            is_row.then_some((k + 1, start + skip, line))
+        });
+        let Some((header_line, header_at, header)) = lines.next() else {
+            let d = Diagnostic::new(Code::BadTable, "", "the profile is empty");
+            return Err(d.hint("a header row comes first: `time [s],input.speed [rpm],output.torque [N m]`").into());
+        };
+        let header_cells = cells(header, header_at);
+        let mut profile = Self {
+            basis: Basis::Trace,
+            settings: vec![],
+            rows: vec![],
+            conditions: vec![],
+            held: vec![],
+            total_s: 0.0,
+            notes: vec![],
+        };
+        let mut weighing: Option<(usize, f64)> = None;
+        // For each column the position of its setting.
+        let mut of_column: Vec<Option<usize>> = vec![];
+        for (k, (name, span)) in header_cells.iter().enumerate() {
+            let place = format!("line {header_line}, column {}", k + 1);
+            of_column.push(None);
+            match purpose(name, subject) {
+                _ if name.is_empty() => {
+                    wrong.at(place, header_at..header_at + header.len(), "the column has no name".into(), "");
+                }
+                Ok(Purpose::Weight(basis, factor)) => match weighing {
+                    Some((other, _)) => {
+                        let message = format!("`{}` and `{name}` both weigh the rows", header_cells[other].0);
+                        wrong.at(place, span.clone(), message, "keep one of the two columns");
+                    }
+                    None => {
+                        weighing = Some((k, factor));
+                        profile.basis = basis;
+                    }
+                },
+                Ok(Purpose::Setting(setting)) => match profile.settings.iter().find(|s| s.target == setting.target) {
+                    Some(other) => {
+                        let message = format!("`{}` and `{name}` set the same quantity", other.header);
+                        wrong.at(place, span.clone(), message, "");
+                    }
+                    None => {
+                        of_column[k] = Some(profile.settings.len());
+                        profile.settings.push(setting);
+                    }
+                },
+                Err(mut d) => {
+                    d.place = place;
+                    let hint = match header_cells.len() == 1 && (name.contains(';') || name.contains('\t')) {
+                        true => "commas separate columns",
+                        false => "",
+                    };
+                    wrong.push(*d, span.clone(), hint);
+                }
+            }
+        }
+        let whole = header_at..header_at + header.len();
+        if weighing.is_none() {
+            let message = "no column weighs the rows in time".to_owned();
+            let hint = "add `time [s]` (a trace), or `duration [s]`, `hours` or `share` (a load spectrum)";
+            wrong.at(format!("line {header_line}"), whole.clone(), message, hint);
+        }
+        if profile.settings.is_empty() && wrong.all.is_empty() {
+            let message = "no column sets a quantity".to_owned();
+            wrong.at(format!("line {header_line}"), whole.clone(), message, "add one: `input.speed [rpm]`");
+        }
+
+        let mut known: Vec<HashMap<&str, Result<u32, Box<Diagnostic>>>> = vec![HashMap::new(); profile.settings.len()];
+        let mut conditions: HashMap<Box<[u32]>, u32> = HashMap::new();
+        let mut last: Option<(f64, usize)> = None;
+        let mut shares = 0.0;
+        for (line, line_at, row) in lines {
+            let all = cells(row, line_at);
+            if all.len() != header_cells.len() {
+                let message = format!("line {line} has {} cells, the header has {}", all.len(), header_cells.len());
+                wrong.at(format!("line {line}"), line_at..line_at + row.len(), message, "");
+                continue;
+            }
+            let mut weight = None;
+            let mut condition = vec![0u32; profile.settings.len()].into_boxed_slice();
+            let mut is_good = true;
+            for (k, (cell, span)) in all.iter().enumerate() {
+                let is_weight = weighing.is_some_and(|w| w.0 == k);
+                let setting = of_column[k];
+                if !is_weight && setting.is_none() {
+                    continue;
+                }
+                // An empty cell is underlined where it would stand.
+                let span = if span.is_empty() { line_at..line_at + row.len() } else { span.clone() };
+                let place = || format!("line {line}, column `{}`", header_cells[k].0);
+                let mut fail = |message: String| {
+                    wrong.at(place(), span.clone(), message, "");
+                    is_good = false;
+                };
+                if is_weight {
+                    let factor = weighing.map_or(1.0, |w| w.1);
+                    match number(cell) {
+                        Err(why) => fail(why),
+                        Ok(x) if profile.basis == Basis::Trace => {
+                            if let Some((before, other)) = last.filter(|l| x * factor <= l.0) {
+                                let word = if x * factor < before { "falls" } else { "does not rise" };
+                                fail(format!("the time {word}: {} s here, {} s in line {other}", x * factor, before));
+                            } else {
+                                last = Some((x * factor, line));
+                                weight = Some(x * factor);
+                            }
+                        }
+                        Ok(x) if x < 0.0 => fail(format!("`{cell}` is below zero, and this weighs a row")),
+                        Ok(x) => weight = Some(x * factor),
+                    }
+                    continue;
+                }
+                let position = setting.expect("checked above");
+                let setting = &mut profile.settings[position];
+                if cell.is_empty() {
+                    fail("the cell is empty".into());
+                    continue;
+                }
+                match known[position].get(cell) {
+                    Some(Ok(value)) => condition[position] = *value,
+                    Some(Err(d)) => {
+                        let mut d = d.as_ref().clone();
+                        d.place = place();
+                        wrong.push(d, span, "");
+                        is_good = false;
+                    }
+                    None => {
+                        let value = setting.read(cell, subject);
+                        known[position].insert(cell, value.clone());
+                        match value {
+                            Ok(value) => condition[position] = value,
+                            Err(mut d) => {
+                                d.place = place();
+                                wrong.push(*d, span, "");
+                                is_good = false;
+                            }
+                        }
+                    }
+                }
+            }
+            let (Some(weight), true) = (weight, is_good) else { continue };
+            let next = conditions.len() as u32;
+            let condition = match conditions.get(&condition) {
+                Some(known) => *known,
+                None => {
+                    conditions.insert(condition, next);
+                    next
+                }
+            };
+            shares += weight;
+            let (time_s, duration_s) = match profile.basis {
+                Basis::Trace => (weight, 0.0),
+                _ => (f64::NAN, weight),
+            };
+            profile.rows.push(ProfileRow { line: line as u32, time_s, duration_s, condition });
+        }
+        if wrong.all.is_empty() {
+            profile.weigh(shares, &mut wrong, whole);
+        }
+        if wrong.more > 0 {
+            let message = format!("{} more errors of these kinds", wrong.more);
+            wrong.all.push(Diagnostic::new(Code::BadTable, "", message));
+        }
+        if wrong.all.has_errors() {
+            return Err(wrong.all);
+        }
+        let mut numbered: Vec<(Box<[u32]>, u32)> = conditions.into_iter().collect();
+        numbered.sort_by_key(|c| c.1);
+        profile.conditions = numbered.into_iter().map(|c| c.0).collect();
+        profile.gather();
+        Ok(profile)
+    }
+
+    /// Durations of the rows, and what is remarkable about them.
+    fn weigh(&mut self, sum: f64, wrong: &mut Wrong, header: Range<usize>) {
+        let none = |message: &str, hint: &str| {
+            let d = Diagnostic::new(Code::BadTable, "", message);
+            if hint.is_empty() { d } else { d.hint(hint) }
+        };
+        if self.rows.is_empty() {
+            return wrong.push(none("there is no row below the header", ""), header, "");
+        }
+        match self.basis {
+            Basis::Trace => {
+                for k in 1..self.rows.len() {
+                    self.rows[k - 1].duration_s = self.rows[k].time_s - self.rows[k - 1].time_s;
+                }
+                // Its quantities were checked; it lasts no time.
+                self.rows.pop();
+                self.total_s = self.rows.iter().map(|r| r.duration_s).sum();
+                let mut lengths: Vec<f64> = self.rows.iter().map(|r| r.duration_s).collect();
+                lengths.sort_by(f64::total_cmp);
+                if let (Some(usual), Some(most)) = (lengths.get(lengths.len() / 2), lengths.last())
+                    && lengths.len() >= 10
+                    && *most > 20.0 * usual
+                {
+                    let row = self.rows.iter().find(|r| r.duration_s == *most).expect("it is one of them");
+                    self.notes.push(format!(
+                        "line {} holds for {most} s, where the usual step is {usual} s: the trace may have a gap there",
+                        row.line
+                    ));
+                }
+            }
+            Basis::Durations => self.total_s = sum,
+            Basis::Shares => {
+                const WHOLE: f64 = 3600.0;
+                if (sum - 1.0).abs() > 1e-6 && (sum - 100.0).abs() > 1e-4 {
+                    self.notes.push(format!("the shares add to {sum}; they are taken as parts of that"));
+                }
+                if sum > 0.0 {
+                    self.rows.iter_mut().for_each(|r| r.duration_s *= WHOLE / sum);
+                    self.total_s = WHOLE;
+                }
+            }
+        }
+        if self.total_s.is_nan() || self.total_s <= 0.0 {
+            let hint = if self.basis == Basis::Trace { "a trace has a second row, at which it ends" } else { "" };
+            wrong.push(none("the profile lasts no time", hint), header, "");
+        } else if !self.total_s.is_finite() {
+            wrong.push(none("the profile lasts longer than can be counted", ""), header, "");
+        }
+    }
+
+    fn gather(&mut self) {
+        self.held = vec![Held::default(); self.conditions.len()];
+        for row in &self.rows {
+            let held = &mut self.held[row.condition as usize];
+            if held.rows == 0 {
+                held.first_line = row.line;
+            }
+            held.rows += 1;
+            held.time_s += row.duration_s;
+        }
+    }
+
+    /// How its rows weigh.
+    pub fn basis(&self) -> Basis {
+        self.basis
+    }
+
+    /// Its rows in order, without the one that ends a trace.
+    pub fn rows(&self) -> &[ProfileRow] {
+        &self.rows
+    }
+
+    /// How long it lasts, s; one hour where rows have shares.
+    pub fn total_s(&self) -> f64 {
+        self.total_s
+    }
+
+    /// What is remarkable about it: a gap in a trace, shares that do not add to 1.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// How many conditions there are, each once.
+    pub fn conditions(&self) -> usize {
+        self.conditions.len()
+    }
+
+    /// The headers of its columns, without that of the weight.
+    pub fn columns(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.settings.iter().map(|s| s.header.as_str())
+    }
+
+    /// The cells of a condition as they stand in the text.
+    pub fn cells(&self, condition: usize) -> impl ExactSizeIterator<Item = &str> {
+        let values = &self.conditions[condition];
+        self.settings.iter().zip(values).map(|(s, v)| s.values[*v as usize].as_str())
+    }
+
+    /// What a condition sets, for [`Question::at`](super::Question::at).
+    pub fn settings(&self, condition: usize) -> Vec<(&Target, String)> {
+        let value = |s: &Setting, v: &str| if s.unit.is_empty() { v.to_owned() } else { format!("{v} {}", s.unit) };
+        self.settings.iter().zip(self.cells(condition)).map(|(s, v)| (&s.target, value(s, v))).collect()
+    }
+
+    /// A condition in words: `input.speed = 1000 rpm, state = 3`.
+    pub fn describe(&self, condition: usize) -> String {
+        let name = |s: &Setting| match (bracketed(&s.header), s.unit.is_empty()) {
+            (Some((name, _)), _) => name.to_owned(),
+            (None, true) => s.header.clone(),
+            // The unit is the end of the name.
+            (None, false) => {
+                let parts = s.unit.matches(['/', ' ']).count() + 1;
+                s.header.rsplitn(parts + 1, '_').last().unwrap_or(&s.header).to_owned()
+            }
+        };
+        let all = self.settings.iter().zip(self.settings(condition));
+        all.map(|(s, (_, value))| format!("{} = {value}", name(s))).collect::<Vec<_>>().join(", ")
+    }
+
+    pub(super) fn held(&self, condition: usize) -> Held {
+        self.held[condition]
+    }
+}
+
+impl Setting {
+    /// The position of a cell's value among those known, checked where it is new.
+    fn read(&mut self, cell: &str, subject: &Subject) -> Result<u32, Box<Diagnostic>> {
+        let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
+        let value = match self.target.measure(subject) {
+            Measure::Text | Measure::Flag => cell.to_owned(),
+            measure => {
+                let plain = cell.replace('\u{2212}', "-");
+                let x = number(&plain).map_err(fault)?;
+                if measure == Measure::Integer && x.fract() != 0.0 {
+                    return Err(fault(format!("`{cell}` is not a whole number, and this quantity is one")));
+                }
+                plain.strip_prefix('+').unwrap_or(&plain).to_owned()
+            }
+        };
+        let text = if self.unit.is_empty() { value.clone() } else { format!("{value} {}", self.unit) };
+        self.target.check(subject, std::slice::from_ref(&text)).map_err(|mut d| {
+            // A cell is one value.
+            d.hints.iter_mut().for_each(|h| *h = h.replace("; `all` takes them all", ""));
+            d
+        })?;
+        if self.target == Target::Temperature
+            && units::parse(&text, Dimension::TEMPERATURE).is_ok_and(|t| t.si() <= 0.0)
+        {
+            return Err(fault(format!("{text} is below absolute zero")));
+        }
+        self.values.push(value);
+        Ok(self.values.len() as u32 - 1)
+    }
+}
