@@ -32,7 +32,9 @@ fn operation(o: &OperationSensitivity) -> String {
     let loss = format!("{} W of {} W", significant(o.loss_w, 5), significant(o.input_power_w, 6));
     out += &format!("  {:<12} {efficiency}, {loss} lost\n", "efficiency");
     if let Some(margin) = &o.margin {
-        out += &margins(margin);
+        let near = margins(margin);
+        let none = format!("  {:<12} no other regime and no locking was found near\n", "margin");
+        out += if near.is_empty() { &none } else { &near };
     }
     if o.quantities.is_empty() {
         out += "  nothing that the file gives moves a loss here: the train is lossless, or unloaded\n";

@@ -117,7 +117,7 @@ fn worst(text: &str, o: &OperationSensitivity) -> (f64, String) {
         let size = 0.01 * o.loss_w.max(1e-6 * o.input_power_w) / q.step_size.abs();
         let mut note = |what: &str, ours: f64, theirs: f64, size: f64| {
             let off = (ours - theirs).abs() / (size + theirs.abs());
-            if !(off <= worst.0) {
+            if off.is_nan() || off > worst.0 {
                 worst = (off, format!("{} {what}: {ours} against {theirs}", q.name));
             }
         };
