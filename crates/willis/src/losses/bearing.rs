@@ -24,10 +24,12 @@ pub enum Supply<R = f64> {
 }
 
 /// State of a rolling bearing.
+///
+/// Loads and speed are numbers `D`; the sizes of the bearing are constants to their derivatives, `C`.
 #[derive(Clone, Copy, Debug)]
-pub struct BearingDuty<D: Real> {
+pub struct BearingDuty<D: Real, C = Inner<D>> {
     /// The numbers of the bearing.
-    pub bearing: Data<Inner<D>>,
+    pub bearing: Data<C>,
     /// Speed of one ring relative to the other, ≥ 0, rad/s.
     pub speed: D,
     /// Radial load, N.
@@ -42,7 +44,7 @@ pub struct BearingDuty<D: Real> {
     /// measured for the oil.
     pub sliding_friction: Option<[f64; 2]>,
     /// How it gets its oil.
-    pub supply: Supply<Inner<D>>,
+    pub supply: Supply<C>,
 }
 
 family! {
