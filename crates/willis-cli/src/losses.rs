@@ -62,7 +62,8 @@ pub fn bar(part: f64) -> String {
     text
 }
 
-fn kind(k: LossKind) -> &'static str {
+/// A kind of loss in words.
+pub fn kind(k: LossKind) -> &'static str {
     match k {
         LossKind::Sliding => "tooth sliding",
         LossKind::Rolling => "tooth rolling",

@@ -11,6 +11,7 @@ mod losses;
 mod modes;
 mod output;
 mod regimes;
+mod sensitivity;
 mod simulate;
 mod sweep;
 mod text;
@@ -171,6 +172,27 @@ enum Command {
         /// Compare all laws of this family: mesh_friction, bearing, windage, ...
         #[arg(long, value_name = "FAMILY")]
         compare: Option<String>,
+        /// Put a law into force: mesh_friction=niemann. Several times for several families.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
+        /// What to print.
+        #[arg(long, value_enum, default_value = "text")]
+        format: Format,
+    },
+    /// Rank the inputs by what they do to efficiency and losses: which loss to attack first.
+    ///
+    /// Exact derivatives (no differences are taken) of efficiency, of all losses and of each loss by every
+    /// continuous quantity of the file and of the operation, for a step of one percent (1 K, 1 degree, 0.01 of a
+    /// profile shift); and how far the point is from another driving end and from locking.
+    Sensitivity {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// Only this operation.
+        #[arg(long)]
+        operation: Option<String>,
+        /// Only operations that run in this state.
+        #[arg(long)]
+        state: Option<String>,
         /// Put a law into force: mesh_friction=niemann. Several times for several families.
         #[arg(long, value_name = "FAMILY=LAW")]
         law: Vec<String>,
@@ -801,6 +823,16 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 Format::Text => losses::points(&all),
                 Format::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
                 Format::Csv => losses::points_csv(&all),
+            })
+        }
+        Command::Sensitivity { file, operation, state, law, format } => {
+            let selection = Selection { state: state.clone(), operation: operation.clone() };
+            let job = Job::read(file)?.with_laws(law)?;
+            let all = willis::study::sensitivity(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+            Ok(match format {
+                Format::Text => sensitivity::text(&all) + &job.notes(&all.diagnostics),
+                Format::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
+                Format::Csv => sensitivity::table_csv(&all),
             })
         }
         Command::Laws { oils: true, .. } => Ok(losses::oils()),

@@ -2,7 +2,8 @@
 
 use comfy_table::{CellAlignment, Table, presets};
 use willis::analysis::{
-    Analysis, CertificateReport, Direction, MemberReport, OperationReport, Role, SolutionReport, StateReport, Verdict,
+    Analysis, CertificateReport, Direction, Margin, MemberReport, OperationReport, Role, SolutionReport, StateReport,
+    Verdict,
 };
 use willis::train::Train;
 
@@ -243,7 +244,7 @@ fn solution(s: &SolutionReport) -> String {
             out += &format!("  tooth power  {} times the input in {name}\n", significant(times, 4));
         }
     }
-    out += &margins(s);
+    out += &margins(&s.margin);
 
     let mut t = table();
     let relative = s.members.iter().any(|(_, m)| m.carrier.is_some());
@@ -305,9 +306,10 @@ fn solution(s: &SolutionReport) -> String {
     out + &crate::losses::of_solution(s)
 }
 
-fn margins(s: &SolutionReport) -> String {
+/// How far a solution is from another driving end, and from locking.
+pub fn margins(margin: &Margin) -> String {
     let mut lines = Vec::new();
-    if let Some(b) = &s.margin.torque {
+    if let Some(b) = &margin.torque {
         lines.push(format!(
             "load on {} vanishes when the torque on {} goes from {} to {} N m",
             b.mesh,
@@ -316,7 +318,7 @@ fn margins(s: &SolutionReport) -> String {
             significant(b.boundary, 5)
         ));
     }
-    if let Some(b) = &s.margin.speed {
+    if let Some(b) = &margin.speed {
         lines.push(format!(
             "relative motion in {} stops when the speed of {} goes from {} to {} rpm",
             b.mesh,
@@ -325,7 +327,7 @@ fn margins(s: &SolutionReport) -> String {
             significant(rpm(b.boundary), 5)
         ));
     }
-    if let Some(l) = &s.margin.lock {
+    if let Some(l) = &margin.lock {
         lines.push(format!(
             "locks when η of {} falls from {} to {}",
             l.meshes.join(", "),
@@ -333,7 +335,7 @@ fn margins(s: &SolutionReport) -> String {
             significant(l.threshold, 5)
         ));
     }
-    if let Some(f) = s.margin.lock_loss_factor {
+    if let Some(f) = margin.lock_loss_factor {
         lines.push(format!("locks when all losses grow {} times", significant(f, 4)));
     }
     let text: String =

@@ -185,6 +185,44 @@ fn regress_losses_law_beside_law() {
     snapshot!(answered(&["losses", file, "--operation", "rated", "--compare", "mesh_friction"]));
 }
 
+#[test]
+fn regress_sensitivity_of_a_stage() {
+    let args = ["sensitivity", "examples/fva-planetary-stage.toml", "--operation", "rated"];
+    snapshot!(mask(&answered(&args)));
+}
+
+#[test]
+fn regress_sensitivity_of_a_power_split_as_a_table() {
+    let file = "examples/prius-p112.toml";
+    let args = ["sensitivity", file, "--operation", "overdrive, mg1 motors", "--format", "csv"];
+    let shown = answered(&args);
+    let rows: Vec<&str> = shown.lines().collect();
+    assert!(rows[0].starts_with("operation,verdict,quantity,value,unit,assumed,step,step_size,efficiency_derivative"));
+    assert_eq!(rows.len(), 6);
+    assert!(rows[1].starts_with("\"overdrive, mg1 motors\",unique,P1.mesh_efficiency.external,0.98,-,false,+1 %,"));
+}
+
+#[test]
+fn regress_sensitivity_without_one_equilibrium() {
+    snapshot!(mask(&answered(&["sensitivity", "examples/two-efficiencies.toml"])));
+}
+
+#[test]
+fn sensitivity_answers_machines_and_refuses_what_is_not_there() {
+    let file = "examples/fva-planetary-stage.toml";
+    let all = parsed(&["sensitivity", file, "--law", "bearing=palmgren", "--format", "json"]);
+    assert_eq!(all["format"], "willis-sensitivity-1");
+    assert_eq!(all["operations"].as_array().map(Vec::len), Some(3));
+    let first = &all["operations"][0]["quantities"][0];
+    assert_eq!(first["name"], "P1.geometry.pressure_angle");
+    assert_eq!(first["unit"], "rad");
+    assert_eq!(first["step"], "degree");
+    assert!(first["loss_derivative_w"].as_f64().is_some_and(|x| x < 0.0));
+    assert!(wrong(&["sensitivity", file, "--operation", "ratd"]).contains("did you mean `rated`?"));
+    assert!(wrong(&["sensitivity", file, "--state", "1"]).contains("has no state `1`"));
+    assert!(wrong(&["sensitivity", "examples/zf-4hp22.toml"]).contains("sensitivities belong to an operating point"));
+}
+
 /// Answers of a command in JSON.
 fn parsed(arguments: &[&str]) -> Value {
     serde_json::from_str(&answered(arguments)).expect("JSON")

@@ -11,6 +11,7 @@ mod table;
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 
 pub use crate::named::Named;
+pub(crate) use operation::Point;
 
 use serde::Serialize;
 
@@ -393,36 +394,8 @@ pub const AS_DRAWN: &str = "as drawn";
 /// # Ok::<(), willis::diagnostic::Diagnostics>(())
 /// ```
 pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnostics> {
+    selection.check(train)?;
     let mut errors = Diagnostics::default();
-    if let Some(name) = &selection.state
-        && train.state(name).is_none()
-    {
-        let known = train.states.iter().map(|s| s.name.as_str());
-        let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
-        d = d.suggest(name, known.clone());
-        errors.push(d.hint(format!("its states are: {}", known.collect::<Vec<_>>().join(", "))));
-    }
-    if let Some(name) = &selection.operation {
-        let known = train.operations.iter().map(|o| o.name.as_str());
-        if !known.clone().any(|n| n == name) {
-            let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
-            d = d.suggest(name, known.clone());
-            errors.push(d.hint(format!("its operations are: {}", known.collect::<Vec<_>>().join(", "))));
-        }
-    }
-    if let (Some(state), Some(name), false) = (&selection.state, &selection.operation, errors.has_errors()) {
-        let operation = train.operations.iter().find(|o| o.name == *name);
-        let own = operation.and_then(|o| o.state).map(|k| train.states[k].name.as_str());
-        if own != Some(state) {
-            let runs = own.map_or("the train as drawn".to_owned(), |own| format!("state `{own}`"));
-            let text = format!("the operation `{name}` runs in {runs}, not in state `{state}`");
-            errors.push(Diagnostic::new(Code::UnknownSelection, "", text).hint("leave out one of the two"));
-        }
-    }
-    if errors.has_errors() {
-        return Err(errors);
-    }
-
     let mut diagnostics: Diagnostics = Diagnostics::default();
     diagnostics.extend(train.warnings.iter().cloned());
     let mut ratios = Named::default();
@@ -443,10 +416,7 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
 
     let mut operations = Vec::new();
     for operation in &train.operations {
-        let state = operation.state.map(|k| &train.states[k].name);
-        let wanted = selection.operation.as_ref().is_none_or(|o| *o == operation.name)
-            && selection.state.as_ref().is_none_or(|s| Some(s) == state);
-        if !wanted {
+        if !selection.wants(train, operation) {
             continue;
         }
         match operation::report(train, operation, &mut diagnostics) {
@@ -476,6 +446,56 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
         assumptions: assumptions(train),
         diagnostics: diagnostics.into_iter().collect(),
     })
+}
+
+impl Selection {
+    /// Whether the train has what is selected.
+    pub(crate) fn check(&self, train: &Train) -> Result<(), Diagnostics> {
+        let mut errors = Diagnostics::default();
+        if let Some(name) = &self.state
+            && train.state(name).is_none()
+        {
+            let known = train.states.iter().map(|s| s.name.as_str());
+            let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
+            d = d.suggest(name, known.clone());
+            errors.push(d.hint(format!("its states are: {}", known.collect::<Vec<_>>().join(", "))));
+        }
+        if let Some(name) = &self.operation {
+            let known = train.operations.iter().map(|o| o.name.as_str());
+            if !known.clone().any(|n| n == name) {
+                let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
+                d = d.suggest(name, known.clone());
+                errors.push(d.hint(format!("its operations are: {}", known.collect::<Vec<_>>().join(", "))));
+            }
+        }
+        if let (Some(state), Some(name), false) = (&self.state, &self.operation, errors.has_errors()) {
+            let operation = train.operations.iter().find(|o| o.name == *name);
+            let own = operation.and_then(|o| o.state).map(|k| train.states[k].name.as_str());
+            if own != Some(state) {
+                let runs = own.map_or("the train as drawn".to_owned(), |own| format!("state `{own}`"));
+                let text = format!("the operation `{name}` runs in {runs}, not in state `{state}`");
+                errors.push(Diagnostic::new(Code::UnknownSelection, "", text).hint("leave out one of the two"));
+            }
+        }
+        if errors.has_errors() { Err(errors) } else { Ok(()) }
+    }
+
+    /// Whether an operation is among what is selected.
+    pub(crate) fn wants(&self, train: &Train, operation: &Operation) -> bool {
+        let state = operation.state.map(|k| &train.states[k].name);
+        self.operation.as_ref().is_none_or(|o| *o == operation.name)
+            && self.state.as_ref().is_none_or(|s| Some(s) == state)
+    }
+}
+
+/// An operation with its equilibrium where there is exactly one.
+pub(crate) fn settle<'t>(
+    train: &'t Train,
+    operation: &Operation,
+) -> Result<(OperationReport, Option<Point<'t>>, Diagnostics), Diagnostics> {
+    let mut notes = Diagnostics::default();
+    let (report, point) = operation::settle(train, operation, &mut notes)?;
+    Ok((report, point, notes))
 }
 
 /// Analyses one operating point that need not stand in the file; [`analyze`] says the same of one that does. Beside

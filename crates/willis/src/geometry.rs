@@ -22,6 +22,8 @@ pub use planetary::{Chain, conjugate_shifts, least_mesh_angle, neighbour_clearan
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
+use crate::real::{self, Real};
+
 /// What is known of one wheel of a cylindrical pair.
 ///
 /// # Example
@@ -39,7 +41,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// assert!(ring.internal);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wheel {
+pub struct Wheel<R = f64> {
     /// Tooth count, positive.
     pub teeth: f64,
     /// Whether it is a ring gear.
@@ -47,64 +49,91 @@ pub struct Wheel {
     /// Profile shift coefficient x, −. Positive moves the tooth outward, also on a ring; where
     /// z_2 is written negative (DIN 3960, ISO 21771, KISSsoft) the shift of a ring has the other
     /// sign.
-    pub shift: f64,
+    pub shift: R,
     /// Where the tooth ends.
-    pub tip: Tip,
+    pub tip: Tip<R>,
     /// Dedendum coefficient of the basic rack, −; 1.25 is usual.
-    pub dedendum: f64,
+    pub dedendum: R,
 }
 
 /// Where a tooth ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Tip {
+pub enum Tip<R = f64> {
     /// By the basic rack: `r_a = r + (h_aP* + x) m_n + k m_n`, on a ring
     /// `r_a = r − (h_aP* − x) m_n − k m_n`.
     Addendum {
         /// Addendum coefficient `h_aP*`, −; 1 is usual.
-        coefficient: f64,
+        coefficient: R,
         /// Tip alteration `k m_n`, m. Negative shortens the tooth, also on a ring.
-        alteration: f64,
+        alteration: R,
     },
     /// Tip radius, m.
-    Radius(f64),
+    Radius(R),
 }
 
 /// What is known of a cylindrical pair.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PairData {
+pub struct PairData<R = f64> {
     /// Normal module `m_n`, m.
-    pub module: f64,
+    pub module: R,
     /// Normal pressure angle of the basic rack `α_n`, rad.
-    pub pressure_angle: f64,
+    pub pressure_angle: R,
     /// Helix angle at the reference circle `β`, rad, ≥ 0.
-    pub helix: f64,
+    pub helix: R,
     /// Whether the pair has two helices of opposite hand.
     pub double_helical: bool,
     /// Common face width `b`, m; of a double helical pair that of **one** helix.
-    pub width: f64,
+    pub width: R,
     /// Operating centre distance `a`, m. When not given it follows from the shifts, without
     /// backlash.
-    pub centre_distance: Option<f64>,
+    pub centre_distance: Option<R>,
     /// The two wheels. Either one may be the ring.
-    pub wheels: [Wheel; 2],
+    pub wheels: [Wheel<R>; 2],
+}
+
+impl PairData {
+    /// The same with another kind of numbers.
+    pub fn lift<R: Real>(&self) -> PairData<R> {
+        let wheel = |w: &Wheel| Wheel {
+            teeth: w.teeth,
+            internal: w.internal,
+            shift: R::from(w.shift),
+            tip: match w.tip {
+                Tip::Addendum { coefficient, alteration } => {
+                    Tip::Addendum { coefficient: R::from(coefficient), alteration: R::from(alteration) }
+                }
+                Tip::Radius(radius) => Tip::Radius(R::from(radius)),
+            },
+            dedendum: R::from(w.dedendum),
+        };
+        PairData {
+            module: R::from(self.module),
+            pressure_angle: R::from(self.pressure_angle),
+            helix: R::from(self.helix),
+            double_helical: self.double_helical,
+            width: R::from(self.width),
+            centre_distance: self.centre_distance.map(R::from),
+            wheels: [wheel(&self.wheels[0]), wheel(&self.wheels[1])],
+        }
+    }
 }
 
 /// One wheel of a pair, worked out.
 #[derive(Clone, Debug, PartialEq)]
-pub struct GearGeometry {
+pub struct GearGeometry<R = f64> {
     /// Reference radius `r = z m_t/2`, m.
-    pub reference_radius: f64,
+    pub reference_radius: R,
     /// Base radius `r_b = r cos α_t`, m.
-    pub base_radius: f64,
+    pub base_radius: R,
     /// Operating radius `r_w = r_b/cos α_wt`, m.
-    pub operating_radius: f64,
+    pub operating_radius: R,
     /// Tip radius `r_a`, m.
-    pub tip_radius: f64,
+    pub tip_radius: R,
     /// Root radius `r_f = r − (h_fP* − x) m_n`, on a ring `r + (h_fP* + x) m_n`, m.
-    pub root_radius: f64,
+    pub root_radius: R,
     /// Tooth thickness at the tip circle in the normal section `s_an`, m, of a tooth without
     /// backlash allowance.
-    pub tip_thickness: f64,
+    pub tip_thickness: R,
 }
 
 /// A cylindrical pair, worked out.
@@ -151,47 +180,47 @@ pub struct GearGeometry {
 /// assert!(pair.remarks().is_empty());
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pair {
+pub struct Pair<R = f64> {
     /// What it was made from.
-    pub data: PairData,
+    pub data: PairData<R>,
     /// Transverse module `m_t`, m.
-    pub transverse_module: f64,
+    pub transverse_module: R,
     /// Transverse pressure angle `α_t`, rad.
-    pub transverse_pressure_angle: f64,
+    pub transverse_pressure_angle: R,
     /// Helix angle at the base circle `β_b`, rad.
-    pub base_helix: f64,
+    pub base_helix: R,
     /// Operating transverse pressure angle `α_wt`, rad.
-    pub operating_pressure_angle: f64,
+    pub operating_pressure_angle: R,
     /// Helix angle at the operating circles `β_w`, rad.
-    pub operating_helix: f64,
+    pub operating_helix: R,
     /// Operating centre distance `a`, m.
-    pub centre_distance: f64,
+    pub centre_distance: R,
     /// Transverse base pitch `p_bt`, m.
-    pub base_pitch: f64,
+    pub base_pitch: R,
     /// Transverse circumferential backlash at the operating circles, m: 0 when the centre distance
     /// follows from the shifts.
-    pub backlash: f64,
+    pub backlash: R,
     /// The wheels, in the order of the data.
-    pub gears: [GearGeometry; 2],
+    pub gears: [GearGeometry<R>; 2],
     /// Addendum contact ratios `e_1`, `e_2`: the part of the path, in base pitches, from C to the
     /// end of this wheel's addendum. Negative when the tip does not reach C.
-    pub addendum_contact_ratios: [f64; 2],
+    pub addendum_contact_ratios: [R; 2],
     /// Transverse contact ratio `ε_α = e_1 + e_2`.
-    pub contact_ratio: f64,
+    pub contact_ratio: R,
     /// Overlap ratio `ε_β` of **one** helix.
-    pub overlap_ratio: f64,
+    pub overlap_ratio: R,
     remarks: Vec<Remark>,
 }
 
 /// Transverse quantities of the basic rack.
-struct Basis {
-    module: f64,
-    transverse_angle: f64,
-    base_helix: f64,
+struct Basis<R> {
+    module: R,
+    transverse_angle: R,
+    base_helix: R,
 }
 
-impl Basis {
-    fn new(normal_module: f64, pressure_angle: f64, helix: f64) -> Self {
+impl<R: Real> Basis<R> {
+    fn new(normal_module: R, pressure_angle: R, helix: R) -> Self {
         Self {
             module: normal_module / helix.cos(),
             transverse_angle: (pressure_angle.tan() / helix.cos()).atan(),
@@ -199,8 +228,8 @@ impl Basis {
         }
     }
     /// Sum or difference of the base radii.
-    fn base_distance(&self, teeth: f64) -> f64 {
-        teeth * self.module * self.transverse_angle.cos() / 2.0
+    fn base_distance(&self, teeth: f64) -> R {
+        self.module * teeth * self.transverse_angle.cos() / 2.0
     }
 }
 
@@ -212,7 +241,7 @@ const UNDERCUT_IGNORED: f64 = 0.02;
 /// Excess of tooth thickness over the module that rounded shifts explain.
 const BACKLASH_IGNORED: f64 = 1e-3;
 
-impl Pair {
+impl<R: Real> Pair<R> {
     /// Works a pair out.
     ///
     /// # Errors
@@ -244,7 +273,7 @@ impl Pair {
     /// assert_eq!(faults.len(), 4);
     /// assert_eq!(faults[0].to_string(), "module -2 mm: give a number from 0.000001 to 10000 mm");
     /// ```
-    pub fn new(data: &PairData) -> Result<Self, Vec<Fault>> {
+    pub fn new(data: &PairData<R>) -> Result<Self, Vec<Fault>> {
         let mut faults = scalar_faults(data);
         if !faults.is_empty() {
             return Err(faults);
@@ -262,23 +291,25 @@ impl Pair {
         };
         let closest = basis.base_distance(teeth);
         let (alpha_wt, centre_distance) = match data.centre_distance {
-            Some(a) if a >= closest => ((closest / a).acos(), a),
-            Some(a) => return Err(vec![Fault::CentreDistanceTooSmall { centre_distance: a, least: closest }]),
-            None => match inverse_involute(involute(alpha_t) + 2.0 * tan_n * shifts / teeth) {
+            Some(a) if a.re() >= closest.re() => (real::acos(closest / a), a),
+            Some(a) => {
+                return Err(vec![Fault::CentreDistanceTooSmall { centre_distance: a.re(), least: closest.re() }]);
+            }
+            None => match inverse_involute(involute(alpha_t) + tan_n * 2.0 * shifts / teeth) {
                 Some(angle) => (angle, closest / angle.cos()),
                 None => {
-                    let least = -involute(alpha_t) * teeth / (2.0 * tan_n);
-                    return Err(vec![Fault::NoOperatingAngle { shifts, least }]);
+                    let least = -involute(alpha_t.re()) * teeth / (2.0 * tan_n.re());
+                    return Err(vec![Fault::NoOperatingAngle { shifts: shifts.re(), least }]);
                 }
             },
         };
         let tan_w = alpha_wt.tan();
-        let base_pitch = PI * basis.module * alpha_t.cos();
-        let operating_module = 2.0 * centre_distance / teeth;
+        let base_pitch = basis.module * PI * alpha_t.cos();
+        let operating_module = centre_distance * 2.0 / teeth;
         let play =
-            2.0 * centre_distance * (involute(alpha_wt) - involute(alpha_t)) - 2.0 * operating_module * shifts * tan_n;
+            centre_distance * 2.0 * (involute(alpha_wt) - involute(alpha_t)) - operating_module * 2.0 * shifts * tan_n;
         let backlash = match (data.centre_distance, ring) {
-            (None, _) => 0.0,
+            (None, _) => R::from(0.0),
             (_, None) => play,
             (_, Some(_)) => -play,
         };
@@ -287,27 +318,29 @@ impl Pair {
         let gears = [0, 1].map(|k| gear(data, &basis, alpha_wt, k, &mut faults, &mut remarks));
 
         // Parts of the path beyond C, and what the mating involute leaves of them.
-        let mut e = [0.0; 2];
+        let mut e = [R::from(0.0); 2];
         for k in 0..2 {
             let g = &gears[k];
             let end = g.tip_radius * g.tip_radius - g.base_radius * g.base_radius;
-            let tip = match (wheels[k].internal, end > 0.0) {
-                (false, _) => (end.max(0.0).sqrt() - g.base_radius * tan_w) / base_pitch,
+            let infinite = R::from(f64::INFINITY);
+            let tip = match (wheels[k].internal, end.re() > 0.0) {
+                (false, true) => (end.sqrt() - g.base_radius * tan_w) / base_pitch,
+                (false, false) => (R::from(0.0) - g.base_radius * tan_w) / base_pitch,
                 (true, true) => (g.base_radius * tan_w - end.sqrt()) / base_pitch,
-                (true, false) => f64::INFINITY,
+                (true, false) => infinite,
             };
             let mate = &wheels[1 - k];
-            let limit = if mate.internal { f64::INFINITY } else { gears[1 - k].base_radius * tan_w / base_pitch };
-            e[k] = tip.min(limit);
-            if tip > limit * (1.0 + 1e-12) {
-                remarks.push(Remark::PathShortened { wheel: k, tip, used: limit });
+            let limit = if mate.internal { infinite } else { gears[1 - k].base_radius * tan_w / base_pitch };
+            e[k] = real::min(tip, limit);
+            if tip.re() > limit.re() * (1.0 + 1e-12) {
+                remarks.push(Remark::PathShortened { wheel: k, tip: tip.re(), used: limit.re() });
             }
             if !mate.internal {
-                let sin_t = alpha_t.sin();
-                let height = form_height(data, mate.dedendum) - mate.shift;
-                let form = gears[1 - k].reference_radius * sin_t - height * m_n / sin_t;
-                let contact = gears[1 - k].base_radius * tan_w - e[k] * base_pitch;
-                if contact < form - 1e-9 * m_n {
+                let sin_t = alpha_t.re().sin();
+                let height = form_height(data, mate.dedendum.re()) - mate.shift.re();
+                let form = gears[1 - k].reference_radius.re() * sin_t - height * m_n.re() / sin_t;
+                let contact = (gears[1 - k].base_radius * tan_w - e[k] * base_pitch).re();
+                if contact < form - 1e-9 * m_n.re() {
                     remarks.push(Remark::BelowForm { wheel: k, contact, form });
                 }
             }
@@ -316,30 +349,37 @@ impl Pair {
                 Some(r) if r == k => g.tip_radius - centre_distance - gears[1 - k].root_radius,
                 Some(_) => gears[1 - k].root_radius - centre_distance - g.tip_radius,
             };
-            if clearance <= 0.0 {
-                remarks.push(Remark::NoClearance { wheel: k, clearance });
+            if clearance.re() <= 0.0 {
+                remarks.push(Remark::NoClearance { wheel: k, clearance: clearance.re() });
             }
         }
         let contact_ratio = e[0] + e[1];
-        let overlap_ratio = data.width * data.helix.sin() / (PI * m_n);
+        let overlap_ratio = data.width * data.helix.sin() / (m_n * PI);
+        let ratios = (contact_ratio.re(), overlap_ratio.re());
         if faults.is_empty() {
-            if contact_ratio <= 0.0 {
-                faults.push(Fault::NoContact { contact_ratio });
-            } else if contact_ratio + overlap_ratio < 1.0 {
-                faults.push(Fault::Gap { contact_ratio, overlap_ratio });
+            if ratios.0 <= 0.0 {
+                faults.push(Fault::NoContact { contact_ratio: ratios.0 });
+            } else if ratios.0 + ratios.1 < 1.0 {
+                faults.push(Fault::Gap { contact_ratio: ratios.0, overlap_ratio: ratios.1 });
             }
         }
         if !faults.is_empty() {
             return Err(faults);
         }
-        if contact_ratio < 1.2 && overlap_ratio < 1.0 {
-            remarks.push(Remark::LowContactRatio { contact_ratio, overlap_ratio });
+        if ratios.0 < 1.2 && ratios.1 < 1.0 {
+            remarks.push(Remark::LowContactRatio { contact_ratio: ratios.0, overlap_ratio: ratios.1 });
         }
-        if backlash < -BACKLASH_IGNORED * m_n {
-            remarks.push(Remark::NegativeBacklash { backlash });
+        if backlash.re() < -BACKLASH_IGNORED * m_n.re() {
+            remarks.push(Remark::NegativeBacklash { backlash: backlash.re() });
         }
         if let Some(overlap) = ring.and_then(|r| {
-            tip_overlap(&gears[1 - r], &gears[r], wheels[1 - r].teeth / wheels[r].teeth, centre_distance, alpha_wt)
+            tip_overlap(
+                &gears[1 - r],
+                &gears[r],
+                wheels[1 - r].teeth / wheels[r].teeth,
+                centre_distance.re(),
+                alpha_wt.re(),
+            )
         }) {
             remarks.push(Remark::TipInterference { overlap });
         }
@@ -389,7 +429,7 @@ impl Pair {
     }
 
     /// Width that carries, m: both helices of a double helical pair.
-    pub fn total_width(&self) -> f64 {
+    pub fn total_width(&self) -> R {
         self.data.width * if self.data.double_helical { 2.0 } else { 1.0 }
     }
 
@@ -411,10 +451,10 @@ impl Pair {
     /// # }).unwrap();
     /// assert_eq!(format!("{:.5}", pair.factor()), "0.32725");
     /// ```
-    pub fn factor(&self) -> f64 {
+    pub fn factor(&self) -> R {
         let [first, second] = [0, 1].map(|k| 1.0 / self.data.wheels[k].teeth);
         let relative = if self.internal() { (first - second).abs() } else { first + second };
-        PI * relative / self.base_helix.cos()
+        R::from(PI * relative) / self.base_helix.cos()
     }
 
     /// The path of contact, m from C along the line of action: from the tip of wheel 1,
@@ -433,14 +473,14 @@ impl Pair {
     /// let [a, e] = pair.path();
     /// assert_eq!(format!("{:.3} {:.3}", a * 1e3, e * 1e3), "-9.676 9.752");
     /// ```
-    pub fn path(&self) -> [f64; 2] {
+    pub fn path(&self) -> [R; 2] {
         let [e_0, e_1] = self.addendum_contact_ratios;
         [-e_1 * self.base_pitch, e_0 * self.base_pitch]
     }
 
     /// Place on the path counted from A in base pitches, `x = (s − s_A)/p_bt`, −, as the laws of
     /// load sharing want it.
-    pub fn position(&self, s: f64) -> f64 {
+    pub fn position(&self, s: R) -> R {
         s / self.base_pitch + self.addendum_contact_ratios[1]
     }
 
@@ -449,7 +489,7 @@ impl Pair {
     ///
     /// # Source
     /// `[iso21771]`, radius of curvature of the involute.
-    pub fn curvature_radii(&self, s: f64) -> [f64; 2] {
+    pub fn curvature_radii(&self, s: R) -> [R; 2] {
         let tan = self.operating_pressure_angle.tan();
         let first = if self.data.wheels[0].internal { -s } else { s };
         // on a ring both centres of curvature lie on one side
@@ -460,9 +500,9 @@ impl Pair {
 
     /// Reduced radius of curvature in the transverse section, m, at the distance s from C, m:
     /// `ρ_1 ρ_2/(ρ_1 + ρ_2)`, for a ring `ρ_1 ρ_2/|ρ_1 − ρ_2|`.
-    pub fn reduced_radius_transverse(&self, s: f64) -> f64 {
+    pub fn reduced_radius_transverse(&self, s: R) -> R {
         let [first, second] = self.curvature_radii(s);
-        let sum = if self.internal() { (first - second).abs() } else { first + second };
+        let sum = if self.internal() { real::abs(first - second) } else { first + second };
         first * second / sum
     }
 
@@ -490,21 +530,21 @@ impl Pair {
     /// assert_eq!(format!("{:.3}", pair.reduced_radius(0.0) * 1e3), "24.227");
     /// assert_eq!(pair.total_width(), 0.16);
     /// ```
-    pub fn reduced_radius(&self, s: f64) -> f64 {
+    pub fn reduced_radius(&self, s: R) -> R {
         self.reduced_radius_transverse(s) / self.base_helix.cos()
     }
 
     /// Sliding speed over the speed of wheel 0 relative to the carrier, m: `|v_g|/|ω_1| =
     /// |s| (1 ± z_1/z_2)`, − for a ring. Zero at C.
-    pub fn sliding_per_speed(&self, s: f64) -> f64 {
+    pub fn sliding_per_speed(&self, s: R) -> R {
         let ratio = self.data.wheels[0].teeth / self.data.wheels[1].teeth;
-        s.abs() * if self.internal() { (1.0 - ratio).abs() } else { 1.0 + ratio }
+        real::abs(s) * if self.internal() { (1.0 - ratio).abs() } else { 1.0 + ratio }
     }
 
     /// Sum of the surface speeds of both flanks over the speed of wheel 0 relative to the carrier,
     /// m: `(u_1 + u_2)/|ω_1| = ρ_1 + ρ_2 z_1/z_2`, transverse section. At C it is
     /// `2 r_w1 sin α_wt`.
-    pub fn sum_speed_per_speed(&self, s: f64) -> f64 {
+    pub fn sum_speed_per_speed(&self, s: R) -> R {
         let [first, second] = self.curvature_radii(s);
         first + second * self.data.wheels[0].teeth / self.data.wheels[1].teeth
     }
@@ -512,9 +552,9 @@ impl Pair {
     /// The points A, B, C, D, E of the path, m from C: ends A and E, start B and end D of single
     /// contact when `1 ≤ ε_α ≤ 2`, `B = E − p_bt`, `D = A + p_bt`. In this order by name: for other
     /// contact ratios, and where an addendum contact ratio is above 1 or negative, not by place.
-    pub fn breakpoints(&self) -> [f64; 5] {
+    pub fn breakpoints(&self) -> [R; 5] {
         let [a, e] = self.path();
-        [a, e - self.base_pitch, 0.0, a + self.base_pitch, e]
+        [a, e - self.base_pitch, R::from(0.0), a + self.base_pitch, e]
     }
 
     /// Shortest total length of contact lines over the face width, −; the same for both helices
@@ -552,20 +592,21 @@ impl Pair {
     /// .unwrap();
     /// assert_eq!(format!("{:.4}", pair.shortest_contact_length_ratio()), "1.0555");
     /// ```
-    pub fn shortest_contact_length_ratio(&self) -> f64 {
+    pub fn shortest_contact_length_ratio(&self) -> R {
         let (alpha, beta) = (self.contact_ratio, self.overlap_ratio);
-        let (n_alpha, n_beta) = (alpha.fract(), beta.fract());
+        let [floor_a, floor_b] = [alpha, beta].map(|ratio| ratio.re().floor());
+        let (n_alpha, n_beta) = (alpha - floor_a, beta - floor_b);
         // ε_α ε_β less the products, written without the difference that ε_β → 0 would magnify
-        let shared = (n_alpha + n_beta - 1.0).max(0.0);
-        let least = if beta == 0.0 { alpha.floor() } else { alpha.floor() + (beta.floor() * n_alpha + shared) / beta };
+        let shared = real::max(n_alpha + n_beta - 1.0, R::from(0.0));
+        let least = if beta.re() == 0.0 { R::from(floor_a) } else { (n_alpha * floor_b + shared) / beta + floor_a };
         least / self.base_helix.cos()
     }
 }
 
 /// Faults of single quantities.
-fn scalar_faults(data: &PairData) -> Vec<Fault> {
+fn scalar_faults<R: Real>(data: &PairData<R>) -> Vec<Fault> {
     let mut faults = Vec::new();
-    let mut check = |quantity: Quantity, wheel, value| faults.extend(quantity.check(wheel, value));
+    let mut check = |quantity: Quantity, wheel, value: R| faults.extend(quantity.check(wheel, value.re()));
     check(Quantity::Module, None, data.module);
     check(Quantity::PressureAngle, None, data.pressure_angle);
     check(Quantity::Helix, None, data.helix);
@@ -574,7 +615,7 @@ fn scalar_faults(data: &PairData) -> Vec<Fault> {
         check(Quantity::CentreDistance, None, a);
     }
     for (k, w) in data.wheels.iter().enumerate() {
-        check(Quantity::Teeth, Some(k), w.teeth);
+        check(Quantity::Teeth, Some(k), R::from(w.teeth));
         check(Quantity::Shift, Some(k), w.shift);
         check(Quantity::Dedendum, Some(k), w.dedendum);
         match w.tip {
@@ -596,61 +637,61 @@ fn scalar_faults(data: &PairData) -> Vec<Fault> {
 }
 
 /// Height of the straight flank of the rack below its reference line, over the module.
-fn form_height(data: &PairData, dedendum: f64) -> f64 {
-    dedendum - RACK_TIP_RADIUS * (1.0 - data.pressure_angle.sin())
+fn form_height<R: Real>(data: &PairData<R>, dedendum: f64) -> f64 {
+    dedendum - RACK_TIP_RADIUS * (1.0 - data.pressure_angle.re().sin())
 }
 
 /// Radii of one wheel; its faults and remarks are added.
-fn gear(
-    data: &PairData,
-    basis: &Basis,
-    alpha_wt: f64,
+fn gear<R: Real>(
+    data: &PairData<R>,
+    basis: &Basis<R>,
+    alpha_wt: R,
     k: usize,
     faults: &mut Vec<Fault>,
     remarks: &mut Vec<Remark>,
-) -> GearGeometry {
+) -> GearGeometry<R> {
     let wheel = &data.wheels[k];
     let m_n = data.module;
     let alpha_t = basis.transverse_angle;
     let side = if wheel.internal { -1.0 } else { 1.0 };
-    let reference = wheel.teeth * basis.module / 2.0;
+    let reference = basis.module * wheel.teeth / 2.0;
     let base = reference * alpha_t.cos();
     let tip = match wheel.tip {
         Tip::Addendum { coefficient, alteration } => {
-            reference + wheel.shift * m_n + side * (coefficient * m_n + alteration)
+            reference + wheel.shift * m_n + (coefficient * m_n + alteration) * side
         }
         Tip::Radius(radius) => radius,
     };
-    let root = reference + wheel.shift * m_n - side * wheel.dedendum * m_n;
+    let root = reference + wheel.shift * m_n - wheel.dedendum * side * m_n;
 
-    if root <= 0.0 {
-        faults.push(Fault::NoRoot { wheel: k, root });
+    if root.re() <= 0.0 {
+        faults.push(Fault::NoRoot { wheel: k, root: root.re() });
     }
-    if tip <= 0.0 || side * (tip - root) <= 0.0 {
-        faults.push(Fault::NoHeight { wheel: k, tip, root });
+    if tip.re() <= 0.0 || side * (tip - root).re() <= 0.0 {
+        faults.push(Fault::NoHeight { wheel: k, tip: tip.re(), root: root.re() });
     }
-    let inside_base = tip <= base;
+    let inside_base = tip.re() <= base.re();
     match (inside_base, wheel.internal) {
-        (true, false) => faults.push(Fault::TipInsideBase { wheel: k, tip, base }),
-        (true, true) => remarks.push(Remark::RingTipInsideBase { wheel: k, tip, base }),
+        (true, false) => faults.push(Fault::TipInsideBase { wheel: k, tip: tip.re(), base: base.re() }),
+        (true, true) => remarks.push(Remark::RingTipInsideBase { wheel: k, tip: tip.re(), base: base.re() }),
         _ => {}
     }
     // Angle of an external tooth, and of the space of a ring, at the tip circle.
-    let at_tip = if inside_base { 0.0 } else { involute((base / tip).acos()) };
-    let angle =
-        2.0 * ((FRAC_PI_2 + 2.0 * wheel.shift * data.pressure_angle.tan()) / wheel.teeth + involute(alpha_t) - at_tip);
-    let thickness = tip * if wheel.internal { TAU / wheel.teeth - angle } else { angle };
+    let at_tip = if inside_base { R::from(0.0) } else { involute((base / tip).acos()) };
+    let half = (wheel.shift * 2.0 * data.pressure_angle.tan() + FRAC_PI_2) / wheel.teeth + involute(alpha_t) - at_tip;
+    let angle = half * 2.0;
+    let thickness = tip * if wheel.internal { -angle + TAU / wheel.teeth } else { angle };
     let tip_thickness = thickness * (data.helix.tan() * tip / reference).atan().cos();
-    if thickness <= 0.0 && (wheel.internal || !inside_base) {
-        faults.push(Fault::Pointed { wheel: k, thickness });
-    } else if tip_thickness < 0.2 * m_n {
-        remarks.push(Remark::ThinTip { wheel: k, thickness: tip_thickness, module: m_n });
+    if thickness.re() <= 0.0 && (wheel.internal || !inside_base) {
+        faults.push(Fault::Pointed { wheel: k, thickness: thickness.re() });
+    } else if tip_thickness.re() < 0.2 * m_n.re() {
+        remarks.push(Remark::ThinTip { wheel: k, thickness: tip_thickness.re(), module: m_n.re() });
     }
     if !wheel.internal {
-        let sin_t = alpha_t.sin();
-        let least = form_height(data, wheel.dedendum) - reference * sin_t * sin_t / m_n;
-        if wheel.shift < least - UNDERCUT_IGNORED {
-            remarks.push(Remark::Undercut { wheel: k, shift: wheel.shift, least });
+        let sin_t = alpha_t.re().sin();
+        let least = form_height(data, wheel.dedendum.re()) - reference.re() * sin_t * sin_t / m_n.re();
+        if wheel.shift.re() < least - UNDERCUT_IGNORED {
+            remarks.push(Remark::Undercut { wheel: k, shift: wheel.shift.re(), least });
         }
     }
     GearGeometry {
@@ -668,10 +709,16 @@ fn gear(
 ///
 /// While the pinion's tip turns from the flank contact to the crossing by θ_1, the ring's tip turns
 /// by θ_1 z_1/z_2 and must have left the place of the crossing, θ_2.
-fn tip_overlap(pinion: &GearGeometry, ring: &GearGeometry, ratio: f64, a: f64, alpha_wt: f64) -> Option<f64> {
-    let (r1, r2) = (pinion.tip_radius, ring.tip_radius);
-    let involute_at = |g: &GearGeometry| {
-        let cosine = g.base_radius / g.tip_radius;
+fn tip_overlap<R: Real>(
+    pinion: &GearGeometry<R>,
+    ring: &GearGeometry<R>,
+    ratio: f64,
+    a: f64,
+    alpha_wt: f64,
+) -> Option<f64> {
+    let (r1, r2) = (pinion.tip_radius.re(), ring.tip_radius.re());
+    let involute_at = |g: &GearGeometry<R>| {
+        let cosine = g.base_radius.re() / g.tip_radius.re();
         if cosine < 1.0 { involute(cosine.acos()) } else { 0.0 }
     };
     let at_pinion = (r2 * r2 - r1 * r1 - a * a) / (2.0 * a * r1);

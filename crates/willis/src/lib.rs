@@ -15,8 +15,9 @@
 //! 10. [`analysis`]: the whole answer, as every front end shows it;
 //! 11. [`hypergraph`]: where the power runs, as a graph of components and contacts;
 //! 12. [`regimes`]: every way a train can run, with closed formulas;
-//! 13. [`figure`]: charts and diagrams as data;
-//! 14. [`casebook`]: published losses beside ours.
+//! 13. [`study`]: what matters most at an operating point;
+//! 14. [`figure`]: charts and diagrams as data;
+//! 15. [`casebook`]: published losses beside ours.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
@@ -87,6 +88,8 @@ mod prose {
     struct ShiftTables;
     #[doc = include_str!("../../../book/src/losses.md")]
     struct WhereDoesEveryWattGo;
+    #[doc = include_str!("../../../book/src/which-loss-first.md")]
+    struct WhichLossFirst;
     #[doc = include_str!("../../../book/src/regimes.md")]
     struct EveryWayATrainCanRun;
     #[doc = include_str!("../../../book/src/power-split.md")]

@@ -24,6 +24,7 @@ mod bearing;
 mod body;
 mod contact;
 mod motion;
+mod numbers;
 
 use std::borrow::Cow;
 
@@ -32,12 +33,14 @@ use serde::Serialize;
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion};
 use crate::losses::{Outside, mesh_friction::MeshFriction, rolling::Rolling};
-use crate::power_flow::{Drag, Flow};
+use crate::power_flow::{Drag, Flow, MeshFlow};
+use crate::real::{self, Real};
 use crate::train::{Efficiency, Gear, Lubrication, MemberId, Operation, Train};
 
 pub use bearing::BearingReport;
 pub use contact::{ContactReport, Regime};
 pub(crate) use motion::{LEAST_SPEED, Place};
+pub(crate) use numbers::{MountNumbers, Numbers, OilState, RotorNumbers};
 
 /// The error that is left, over the loss.
 const ACCURACY: f64 = 1e-9;
@@ -159,23 +162,12 @@ enum Source {
     Rotor(usize),
 }
 
-/// State of the oil at the operating temperature.
-#[derive(Clone, Copy, Debug)]
-struct OilState {
-    temperature: f64,
-    dynamic_viscosity: f64,
-    kinematic_viscosity: f64,
-    density: f64,
-    pressure_viscosity: f64,
-    viscosity_slope: f64,
-    conductivity: f64,
-}
-
 /// All losses of a train that an operating point can compute.
 #[derive(Debug)]
-pub(crate) struct Physics<'t> {
+pub(crate) struct Physics<'t, R: Real = f64> {
     train: Cow<'t, Train>,
-    oil: Option<(Lubrication, OilState)>,
+    numbers: Numbers<R>,
+    oil: Option<(Lubrication, OilState<R>)>,
     friction: MeshFriction,
     rolling: Option<Rolling>,
     bodies: Vec<body::Body>,
@@ -184,35 +176,38 @@ pub(crate) struct Physics<'t> {
 }
 
 /// Losses of one mesh as parts of its potential power.
-#[derive(Clone, Debug, Default)]
-struct MeshLoss {
-    sliding: f64,
+#[derive(Clone, Debug)]
+struct MeshLoss<R = f64> {
+    sliding: R,
     /// Bearing, and its part.
-    bearings: Vec<(usize, f64)>,
+    bearings: Vec<(usize, R)>,
     /// Mean coefficient of friction of the teeth.
-    friction: Option<f64>,
+    friction: Option<R>,
 }
 
-impl MeshLoss {
-    fn total(&self) -> f64 {
-        self.sliding + self.bearings.iter().map(|b| b.1).sum::<f64>()
+impl<R: Real> MeshLoss<R> {
+    fn none() -> Self {
+        Self { sliding: R::from(0.0), bearings: vec![], friction: None }
+    }
+
+    fn total(&self) -> R {
+        self.sliding + self.bearings.iter().fold(R::from(0.0), |sum, b| sum + b.1)
     }
 }
 
 /// The losses of one round, in the form that the statics takes.
 #[derive(Clone, Debug)]
-pub(crate) struct Step {
-    meshes: Vec<MeshLoss>,
+pub(crate) struct Step<R = f64> {
+    meshes: Vec<MeshLoss<R>>,
     sources: Vec<Source>,
-    pub drags: Vec<Drag>,
+    pub drags: Vec<Drag<R>>,
     bearings: Vec<BearingReport>,
 }
 
 impl Step {
     /// The efficiencies of a train without any loss, and no drag.
     pub fn lossless(train: &Train) -> Self {
-        let meshes = vec![MeshLoss::default(); train.meshes.len()];
-        Self { meshes, sources: vec![], drags: vec![], bearings: vec![] }
+        Self::blank(train)
     }
 
     /// The configuration with the efficiencies of this round.
@@ -230,6 +225,23 @@ impl Step {
     }
 }
 
+impl<R: Real> Step<R> {
+    fn blank(train: &Train) -> Self {
+        Self { meshes: vec![MeshLoss::none(); train.meshes.len()], sources: vec![], drags: vec![], bearings: vec![] }
+    }
+
+    /// The efficiency in force in each mesh, first gear driving and second gear driving.
+    pub fn efficiencies(&self, train: &Train, given: &[[R; 2]]) -> Vec<[R; 2]> {
+        let all = self.meshes.iter().zip(&train.meshes).zip(given);
+        all.map(|((own, mesh), given)| {
+            let given = if mesh.computed { [R::from(1.0); 2] } else { *given };
+            let total = own.total();
+            if total.re() > 0.0 { given.map(|eta| eta * (-total + 1.0)) } else { given }
+        })
+        .collect()
+    }
+}
+
 impl<'t> Physics<'t> {
     /// Everything that does not depend on the load.
     pub fn new(train: &'t Train, operation: &Operation) -> Self {
@@ -237,23 +249,19 @@ impl<'t> Physics<'t> {
     }
 
     fn at(train: Cow<'t, Train>, temperature: Option<f64>) -> Self {
-        let oil = train.lubrication.clone().map(|l| {
-            let temperature = temperature.unwrap_or(l.temperature);
-            let state = OilState {
-                temperature,
-                dynamic_viscosity: l.oil.dynamic_viscosity(temperature),
-                kinematic_viscosity: l.oil.kinematic_viscosity(temperature),
-                density: l.oil.density(temperature),
-                pressure_viscosity: l.oil.pressure_viscosity(temperature),
-                viscosity_slope: l.oil.viscosity_slope(temperature),
-                conductivity: l.oil.conductivity(temperature),
-            };
-            (l, state)
-        });
+        let numbers = Numbers::of(&train, temperature);
+        Self::with_numbers(train, numbers)
+    }
+}
+
+impl<'t, R: Real> Physics<'t, R> {
+    /// A train with numbers of its own.
+    pub fn with_numbers(train: Cow<'t, Train>, numbers: Numbers<R>) -> Self {
+        let oil = train.lubrication.clone().zip(numbers.oil);
         let friction = train.laws.mesh_friction(oil.is_some());
         let rolling = train.laws.rolling(&friction).filter(|_| oil.is_some());
         let bodies = body::bodies(&train);
-        Self { train, oil, friction, rolling, bodies, least_speed: 0.0 }
+        Self { train, numbers, oil, friction, rolling, bodies, least_speed: 0.0 }
     }
 
     /// Members on which a drag acts: the statics must see them, planets too.
@@ -272,74 +280,64 @@ impl<'t> Physics<'t> {
         all
     }
 
-    /// The losses that the laws give for the torques and speeds of a flow.
-    pub fn step(&self, flow: &Flow, motion: &Motion) -> Step {
-        self.evaluate(flow, &|m| motion.speeds[m.0].is_some(), &mut None)
-    }
-
-    /// Where the laws were used outside their ranges.
-    pub fn extrapolations(&self, flow: &Flow, motion: &Motion) -> Vec<Extrapolation> {
-        let mut found = Some(vec![]);
-        self.evaluate(flow, &|m| motion.speeds[m.0].is_some(), &mut found);
-        found.unwrap_or_default()
-    }
-
     /// Amount of the speed of two members relative to each other.
-    fn slip(&self, flow: &Flow, [a, b]: [MemberId; 2]) -> f64 {
-        (flow.speeds[a.0] - flow.speeds[b.0]).abs().max(self.least_speed)
+    fn slip(&self, speeds: &[R], [a, b]: [MemberId; 2]) -> R {
+        real::max(real::abs(speeds[a.0] - speeds[b.0]), R::from(self.least_speed))
     }
 
-    fn evaluate(&self, flow: &Flow, known: &dyn Fn(MemberId) -> bool, beyond: &mut Option<Vec<Extrapolation>>) -> Step {
-        let mut step = Step::lossless(&self.train);
-        let mut drag = |source: Source, members: [MemberId; 2], torque: f64| {
-            let relative = flow.speeds[members[0].0] - flow.speeds[members[1].0];
-            if torque > LEAST_DRAG && self.slip(flow, members) > 0.0 && members.iter().all(|m| known(*m)) {
+    /// The losses that the laws give for torques and speeds; `known` are the members whose speed is settled.
+    pub fn evaluate(&self, speeds: &[R], meshes: &[MeshFlow<R>], known: &dyn Fn(MemberId) -> bool) -> Step<R> {
+        let mut step = Step::blank(&self.train);
+        let none = R::from(0.0);
+        let mut drag = |source: Source, members: [MemberId; 2], torque: R| {
+            let relative = (speeds[members[0].0] - speeds[members[1].0]).re();
+            if torque.re() > LEAST_DRAG && self.slip(speeds, members).re() > 0.0 && members.iter().all(|m| known(*m)) {
                 step.sources.push(source);
                 step.drags.push(Drag { members, torque: -torque * relative.signum() });
             }
         };
-        let mut losses: Vec<MeshLoss> = Vec::with_capacity(flow.meshes.len());
-        for m in &flow.meshes {
+        let mut losses: Vec<MeshLoss<R>> = Vec::with_capacity(meshes.len());
+        for m in meshes {
             let mesh = &self.train.meshes[m.mesh.0];
-            let Some(teeth) = &mesh.teeth else {
-                losses.push(MeshLoss::default());
+            let Some(teeth) = &self.numbers.teeth[m.mesh.0] else {
+                losses.push(MeshLoss::none());
                 continue;
             };
-            if beyond.is_some() {
-                self.contact(mesh, teeth, m, beyond);
-            }
             let tooth = self.tooth(mesh, teeth, m);
             // Rolling resists on both gears; each takes half of its power.
             for k in 0..2 {
-                let speed = m.relative_speeds[k].abs();
-                if speed > 0.0 && mesh.computed {
-                    drag(Source::Rolling(m.mesh.0), [mesh.gears[k].member, mesh.carrier], 0.5 * tooth.rolling / speed);
+                let speed = real::abs(m.relative_speeds[k]);
+                if speed.re() > 0.0 && mesh.computed {
+                    drag(Source::Rolling(m.mesh.0), [mesh.gears[k].member, mesh.carrier], tooth.rolling * 0.5 / speed);
                 }
             }
             let sliding = match (tooth.friction, mesh.computed, m.driver) {
-                (Some(mu), true, Some(_)) => (mu * tooth.loss_factor).clamp(0.0, MOST_LOST),
+                (Some(mu), true, Some(_)) => real::clamp(mu * tooth.loss_factor, none, R::from(MOST_LOST)),
                 // Idle or at rest: nothing is lost, but friction may hold; the nominal value.
-                (_, true, _) => 1.0 - mesh.efficiency.forward.to_f64(),
-                _ => 0.0,
+                (_, true, _) => -self.numbers.efficiencies[m.mesh.0][0] + 1.0,
+                _ => none,
             };
             losses.push(MeshLoss { sliding, bearings: vec![], friction: tooth.friction });
         }
         let mut reports = Vec::with_capacity(self.train.bearings.len());
         for (k, mount) in self.train.bearings.iter().enumerate() {
-            let Some((_, oil)) = &self.oil else { break };
-            let (report, mut torque, proportional, loading) = self.bearing(mount, flow, oil, beyond);
-            let speed = report.speed_rad_s;
+            if self.oil.is_none() {
+                break;
+            }
+            let bearing::Friction { report, speed, mut torque, proportional, loading } =
+                self.bearing(k, speeds, meshes, &mut |_, _| {});
             // The part that grows with the load belongs to the meshes that make the load.
-            let weight: f64 = loading.iter().map(|l| l.1).sum();
+            let weight = loading.iter().fold(none, |sum, l| sum + l.1);
             for (at, w) in loading {
-                let (m, own) = (&flow.meshes[at], &mut losses[at]);
+                let (m, own) = (&meshes[at], &mut losses[at]);
                 let mesh = &self.train.meshes[m.mesh.0];
                 let between =
                     |g: &Gear| mount.members == [g.member, mesh.carrier] || mount.members == [mesh.carrier, g.member];
-                if weight > 0.0 && speed > 0.0 && m.potential_power > 0.0 && mesh.gears.iter().any(between) {
-                    let most = (MOST_LOST - own.total()).max(0.0) * m.potential_power / speed;
-                    let part = (proportional * w / weight).min(most).min(torque);
-                    if part > 0.0 {
+                let loaded = weight.re() > 0.0 && speed.re() > 0.0 && m.potential_power.re() > 0.0;
+                if loaded && mesh.gears.iter().any(between) {
+                    let most = real::max(-own.total() + MOST_LOST, none) * m.potential_power / speed;
+                    let part = real::min(real::min(proportional * w / weight, most), torque);
+                    if part.re() > 0.0 {
                         own.bearings.push((k, part * speed / m.potential_power));
                         torque -= part;
                     }
@@ -349,17 +347,97 @@ impl<'t> Physics<'t> {
             reports.push(report);
         }
         for (k, seal) in self.train.seals.iter().enumerate() {
-            drag(Source::Seal(k), seal.members, self.seal(seal, flow, beyond));
+            drag(Source::Seal(k), seal.members, self.seal(k, speeds));
         }
         for (k, body) in self.bodies.iter().enumerate() {
-            drag(Source::Body(k), [body.member, body.against], self.body(body, flow, beyond));
+            drag(Source::Body(k), [body.member, body.against], self.body(body, speeds));
         }
         for (k, rotor) in self.train.rotors.iter().enumerate() {
-            drag(Source::Rotor(k), [rotor.member, crate::train::FRAME], self.rotor(rotor, flow, beyond));
+            drag(Source::Rotor(k), [rotor.member, crate::train::FRAME], self.rotor(k, speeds));
         }
         step.meshes = losses;
         step.bearings = reports;
         step
+    }
+
+    /// Every loss of a solved step: what loses it, what kind it is, its law, the power in W; what has one name, kind
+    /// and law is one loss.
+    pub fn parts(
+        &self,
+        step: &Step<R>,
+        meshes: &[MeshFlow<R>],
+        drag_losses: &[R],
+    ) -> Vec<(String, LossKind, &'static str, R)> {
+        let train = &self.train;
+        let mut all: Vec<(String, LossKind, &'static str, R)> = Vec::new();
+        let mut add = |name: &str, kind: LossKind, law: &'static str, loss: R| match all
+            .iter_mut()
+            .find(|s| s.0 == name && s.1 == kind && s.2 == law)
+        {
+            Some(s) => s.3 += loss,
+            None => all.push((name.to_owned(), kind, law, loss)),
+        };
+        for (m, own) in meshes.iter().zip(&step.meshes) {
+            let mesh = &train.meshes[m.mesh.0];
+            let mut teeth = m.loss;
+            for (bearing, part) in &own.bearings {
+                let loss = m.potential_power * *part;
+                teeth -= loss;
+                add(&train.bearings[*bearing].name, LossKind::Bearing, step.bearings[*bearing].law, loss);
+            }
+            let law = if mesh.computed { self.friction.meta().id } else { "given" };
+            add(&mesh.name, LossKind::Sliding, law, teeth);
+        }
+        for (source, loss) in step.sources.iter().zip(drag_losses) {
+            match *source {
+                Source::Rolling(k) => {
+                    let law = self.rolling.map_or("none", |r| r.meta().id);
+                    add(&train.meshes[k].name, LossKind::Rolling, law, *loss);
+                }
+                Source::Bearing(k) => {
+                    add(&train.bearings[k].name, LossKind::Bearing, step.bearings[k].law, *loss);
+                }
+                Source::Seal(k) => add(&train.seals[k].name, LossKind::Seal, train.laws.seal.meta().id, *loss),
+                Source::Body(k) => {
+                    let (kind, law) = self.bodies[k].kind(train);
+                    add(&self.bodies[k].name, kind, law, *loss);
+                }
+                Source::Rotor(k) => {
+                    let kind = match train.rotors[k].fluid {
+                        crate::train::Fluid::Oil => LossKind::Churning,
+                        _ => LossKind::Windage,
+                    };
+                    add(&train.rotors[k].name, kind, train.laws.rotor_drag.meta().id, *loss);
+                }
+            }
+        }
+        all
+    }
+}
+
+impl Physics<'_> {
+    /// The losses that the laws give for the torques and speeds of a flow.
+    pub fn step(&self, flow: &Flow, motion: &Motion) -> Step {
+        self.evaluate(&flow.speeds, &flow.meshes, &|m| motion.speeds[m.0].is_some())
+    }
+
+    /// Where the laws were used outside their ranges.
+    pub fn extrapolations(&self, flow: &Flow) -> Vec<Extrapolation> {
+        let mut found = Some(vec![]);
+        for m in &flow.meshes {
+            let mesh = &self.train.meshes[m.mesh.0];
+            if let Some(teeth) = &mesh.teeth {
+                self.contact(mesh, teeth, m, &mut found);
+            }
+        }
+        let mut found = found.unwrap_or_default();
+        for k in 0..self.train.bearings.len() {
+            if self.oil.is_some() {
+                self.bearing_extrapolations(k, &flow.speeds, &flow.meshes, &mut found);
+            }
+        }
+        self.wet_extrapolations(&flow.speeds, &mut found);
+        found
     }
 
     /// How far two rounds differ, in watts of this flow, and the loss.
@@ -431,49 +509,9 @@ impl<'t> Physics<'t> {
 
     /// Every loss of a solved step by its source, largest first; their sum is the flow's loss.
     pub fn sources(&self, step: &Step, flow: &Flow) -> Vec<LossSource> {
-        let train = &self.train;
-        let mut all: Vec<LossSource> = Vec::new();
-        let mut add = |name: &str, kind: LossKind, law: &'static str, loss_w: f64| match all
-            .iter_mut()
-            .find(|s| s.name == name && s.kind == kind && s.law == law)
-        {
-            Some(s) => s.loss_w += loss_w,
-            None => all.push(LossSource { name: name.to_owned(), kind, law, loss_w, share: 0.0 }),
-        };
-        for (m, own) in flow.meshes.iter().zip(&step.meshes) {
-            let mesh = &train.meshes[m.mesh.0];
-            let mut teeth = m.loss;
-            for (bearing, part) in &own.bearings {
-                let loss = m.potential_power * part;
-                teeth -= loss;
-                add(&train.bearings[*bearing].name, LossKind::Bearing, step.bearings[*bearing].law, loss);
-            }
-            let law = if mesh.computed { self.friction.meta().id } else { "given" };
-            add(&mesh.name, LossKind::Sliding, law, teeth);
-        }
-        for (source, loss) in step.sources.iter().zip(&flow.drag_losses) {
-            match *source {
-                Source::Rolling(k) => {
-                    let law = self.rolling.map_or("none", |r| r.meta().id);
-                    add(&train.meshes[k].name, LossKind::Rolling, law, *loss);
-                }
-                Source::Bearing(k) => {
-                    add(&train.bearings[k].name, LossKind::Bearing, step.bearings[k].law, *loss);
-                }
-                Source::Seal(k) => add(&train.seals[k].name, LossKind::Seal, train.laws.seal.meta().id, *loss),
-                Source::Body(k) => {
-                    let (kind, law) = self.bodies[k].kind(train);
-                    add(&self.bodies[k].name, kind, law, *loss);
-                }
-                Source::Rotor(k) => {
-                    let kind = match train.rotors[k].fluid {
-                        crate::train::Fluid::Oil => LossKind::Churning,
-                        _ => LossKind::Windage,
-                    };
-                    add(&train.rotors[k].name, kind, train.laws.rotor_drag.meta().id, *loss);
-                }
-            }
-        }
+        let parts = self.parts(step, &flow.meshes, &flow.drag_losses).into_iter();
+        let mut all: Vec<LossSource> =
+            parts.map(|(name, kind, law, loss_w)| LossSource { name, kind, law, loss_w, share: 0.0 }).collect();
         let total: f64 = all.iter().map(|s| s.loss_w).sum();
         for s in &mut all {
             s.loss_w += 0.0;
@@ -505,10 +543,12 @@ impl<'t> Physics<'t> {
     /// The bearings of a solved step, with their losses.
     pub fn bearings(&self, step: &Step, flow: &Flow) -> Vec<(String, BearingReport)> {
         let mut all = Vec::new();
-        for (k, (solved, mount)) in step.bearings.iter().zip(&self.train.bearings).enumerate() {
-            let Some((_, oil)) = &self.oil else { break };
+        for (k, solved) in step.bearings.iter().enumerate() {
+            if self.oil.is_none() {
+                break;
+            }
             // Loads of this flow, with the torque it was solved with.
-            let (mut report, ..) = self.bearing(mount, flow, oil, &mut None);
+            let mut report = self.bearing(k, &flow.speeds, &flow.meshes, &mut |_, _| {}).report;
             report.torque_n_m = solved.torque_n_m;
             let by_load = flow.meshes.iter().zip(&step.meshes).flat_map(|(m, own)| {
                 own.bearings.iter().filter(|b| b.0 == k).map(|b| b.1 * m.potential_power).collect::<Vec<_>>()

@@ -4,26 +4,27 @@
 use std::collections::BTreeMap;
 
 use crate::kinematics::{Configuration, Element, Motion};
+use crate::real::{self, Real};
 use crate::statics::Solution;
 use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train};
 
 /// Torques and powers at one mesh (all `count` of them together).
 #[derive(Clone, Debug)]
-pub struct MeshFlow {
+pub struct MeshFlow<R = f64> {
     /// The mesh.
     pub mesh: MeshId,
     /// Torques that first gear, second gear and carrier put into the mesh, N m.
-    pub torques: [f64; 3],
+    pub torques: [R; 3],
     /// Speeds of first and second gear relative to the carrier, rad/s.
-    pub relative_speeds: [f64; 2],
+    pub relative_speeds: [R; 2],
     /// Which gear drives (0 or 1), seen from the carrier; none when idle or at rest.
     pub driver: Option<usize>,
     /// Power that the driving gear puts in, seen from the carrier, W (potential power).
-    pub potential_power: f64,
+    pub potential_power: R,
     /// Efficiency in force, 1 when nothing drives.
-    pub efficiency: f64,
+    pub efficiency: R,
     /// Loss, W.
-    pub loss: f64,
+    pub loss: R,
 }
 
 /// Torque in an engaged shift element.
@@ -47,26 +48,26 @@ pub struct Circulation {
 
 /// The power flow of one equilibrium.
 #[derive(Clone, Debug, Default)]
-pub struct Flow {
+pub struct Flow<R = f64> {
     /// External torque on each member, N m, reactions of brakes and holds included; `None` where
     /// brakes share a load indeterminately.
-    pub torques: Vec<Option<f64>>,
+    pub torques: Vec<Option<R>>,
     /// Speed of each member, rad/s.
-    pub speeds: Vec<f64>,
+    pub speeds: Vec<R>,
     /// Every mesh.
-    pub meshes: Vec<MeshFlow>,
+    pub meshes: Vec<MeshFlow<R>>,
     /// Every engaged shift element.
     pub ties: Vec<TieFlow>,
     /// Power in at all inputs, W.
-    pub input_power: f64,
+    pub input_power: R,
     /// Power out at all outputs, W, positive.
-    pub output_power: f64,
+    pub output_power: R,
     /// Sum of all losses, W.
-    pub loss: f64,
+    pub loss: R,
     /// Loss of each drag, W, in the order in which they were given.
-    pub drag_losses: Vec<f64>,
+    pub drag_losses: Vec<R>,
     /// Input less output less losses, W: zero up to round-off.
-    pub residual: f64,
+    pub residual: R,
     /// Recirculating powers, largest first.
     pub circulations: Vec<Circulation>,
 }
@@ -82,11 +83,11 @@ pub(crate) struct External {
 /// A torque that two members exert on each other against their relative motion: a bearing, a seal,
 /// a gear in oil.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drag {
+pub struct Drag<R = f64> {
     /// The two members.
     pub members: [MemberId; 2],
     /// Torque on the first, N m; the second feels the opposite.
-    pub torque: f64,
+    pub torque: R,
 }
 
 impl Flow {
@@ -105,7 +106,11 @@ impl Flow {
         let mut meshes = Vec::with_capacity(train.meshes.len());
         let mut demand = vec![0.0; train.members.len()];
         for (j, e) in c.elements.iter().enumerate() {
-            walk(c, e, solution.forces[j] * scale, solution.driver[j], &speeds, &mut meshes);
+            let own = |mesh: MeshId, forward: bool| {
+                let own = &c.efficiencies[mesh.0];
+                if forward { own.forward.to_f64() } else { own.backward.to_f64() }
+            };
+            walk(train, e, solution.forces[j] * scale, solution.driver[j], &speeds, &own, &mut meshes);
         }
         meshes.sort_by_key(|m: &MeshFlow| m.mesh);
         for m in &meshes {
@@ -168,38 +173,33 @@ pub(crate) fn demand(c: &Configuration<'_>, s: &Solution) -> Vec<f64> {
     demand
 }
 
-/// Follows the force through a chain, mesh by mesh.
-fn walk(
-    c: &Configuration<'_>,
+/// Follows the force through a chain, mesh by mesh. `efficiency` gives that of a mesh when its first gear drives
+/// (`true`), or its second.
+pub(crate) fn walk<R: Real>(
+    train: &Train,
     e: &Element,
-    force: f64,
+    force: R,
     p_drives: Option<bool>,
-    speeds: &[f64],
-    out: &mut Vec<MeshFlow>,
+    speeds: &[R],
+    efficiency: &dyn Fn(MeshId, bool) -> R,
+    out: &mut Vec<MeshFlow<R>>,
 ) {
-    let train = c.train;
     let mut torque = force * e.a.to_f64();
     for link in &e.links {
         let mesh = &train.meshes[link.mesh.0];
-        let own = &c.efficiencies[link.mesh.0];
         let (enter, leave) = if link.along { (0, 1) } else { (1, 0) };
-        let efficiency = match p_drives {
-            None => 1.0,
-            // Power runs along the chain, or against it.
-            Some(true) if link.along => own.forward.to_f64(),
-            Some(true) => own.backward.to_f64(),
-            Some(false) if link.along => own.backward.to_f64(),
-            Some(false) => own.forward.to_f64(),
-        };
-        let rho = if p_drives == Some(false) { 1.0 / efficiency } else { efficiency };
+        // Power runs along the chain, or against it.
+        let efficiency = p_drives.map_or(R::from(1.0), |p| efficiency(link.mesh, p == link.along));
+        let rho = if p_drives == Some(false) { R::from(1.0) / efficiency } else { efficiency };
         let ratio = mesh.gears[leave].teeth.to_f64() / mesh.gears[enter].teeth.to_f64();
         let left = torque * ratio * if mesh.same_sense { -1.0 } else { 1.0 } * rho;
-        let mut torques = [0.0, 0.0, -(torque + left)];
+        let mut torques = [R::from(0.0), R::from(0.0), -(torque + left)];
         torques[enter] = torque;
         torques[leave] = left;
         let relative_speeds = [0, 1].map(|g: usize| speeds[mesh.gears[g].member.0] - speeds[mesh.carrier.0]);
         let driver = p_drives.map(|p| if p { enter } else { leave });
-        let potential_power = driver.map_or(0.0, |d| (torques[d] * relative_speeds[d]).max(0.0));
+        let none = R::from(0.0);
+        let potential_power = driver.map_or(none, |d| real::max(torques[d] * relative_speeds[d], none));
         out.push(MeshFlow {
             mesh: link.mesh,
             torques,
@@ -207,7 +207,7 @@ fn walk(
             driver,
             potential_power,
             efficiency,
-            loss: potential_power * (1.0 - efficiency),
+            loss: potential_power * (-efficiency + 1.0),
         });
         torque = -left;
     }

@@ -589,8 +589,26 @@ impl Equilibrium {
     }
 }
 
+/// One element of a solved problem: which end drives (none at rest), and (row, constant part, part times ρ).
+#[derive(Clone, Debug)]
+pub(crate) struct SolvedColumn {
+    pub element: usize,
+    pub p_drives: Option<bool>,
+    pub entries: Vec<(usize, f64, f64)>,
+}
+
 /// What a solution's pattern says beyond the solution itself.
 impl Equilibrium {
+    /// The linear equations that a solution obeys: the node of each row, and the columns.
+    pub(crate) fn solved(&self, solution: &Solution) -> (Vec<usize>, Vec<SolvedColumn>) {
+        let column = |(c, p): (&Column, &bool)| SolvedColumn {
+            element: c.element,
+            p_drives: (c.sigma != 0).then_some(*p),
+            entries: c.floats.clone(),
+        };
+        (self.rows.clone(), self.columns.iter().zip(&solution.pattern).map(column).collect())
+    }
+
     /// ρ of an element of the configuration in a solution, exactly.
     pub(crate) fn rho_of(&self, solution: &Solution, element: usize) -> Rational {
         let column = self.columns.iter().position(|c| c.element == element);

@@ -5,12 +5,13 @@
 //! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
 
 mod axis;
-mod compiled;
-pub mod export;
 mod compare;
+mod compiled;
 mod cycle;
+pub mod export;
 mod profile;
 mod question;
+mod sensitivity;
 mod subject;
 mod sweep;
 mod target;
@@ -27,6 +28,9 @@ pub use cycle::{
 };
 pub use profile::{Basis, Profile, ProfileRow};
 pub use question::{Hold, Question, Trains};
+pub use sensitivity::{
+    Checks, OperationSensitivity, QuantitySensitivity, Sensitivity, SourceChange, StepKind, sensitivity,
+};
 pub use subject::Subject;
 pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};
 pub use target::{Target, Who};

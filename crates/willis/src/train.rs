@@ -11,6 +11,7 @@ mod dynamic;
 mod expand;
 mod format;
 mod formula;
+mod input;
 mod physical;
 
 use std::fmt;
@@ -38,6 +39,8 @@ pub use dynamic::{
 };
 pub use format::{Document, Key, Measure, Reading, schema};
 pub use formula::Formula;
+pub(crate) use input::{BearingNumber, Input, RotorNumber, Slot};
+pub(crate) use physical::steel_mass;
 pub use physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
 
 /// A member's number within its train. The frame is number 0.
@@ -281,6 +284,7 @@ pub struct Train {
     pub(crate) shafts: Vec<Shaft>,
     pub(crate) loss_tables: Vec<LossTable>,
     pub(crate) scenarios: Vec<Scenario>,
+    pub(crate) inputs: Vec<Input>,
 }
 
 impl Train {

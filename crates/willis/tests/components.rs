@@ -363,7 +363,7 @@ fn regress_palmgren_and_drag_factor() {
     }
 }
 
-fn with_speed<D: willis::Real>(s: &BearingDuty<f64>, speed: D) -> BearingDuty<D> {
+fn with_speed<D: willis::Real<Constant = f64>>(s: &BearingDuty<f64>, speed: D) -> BearingDuty<D> {
     BearingDuty {
         bearing: s.bearing,
         speed,
@@ -627,11 +627,13 @@ proptest! {
         };
         for law in Churning::ALL {
             let s = bath(w);
+            let fixed = Dual64::from_re;
             let dual = law.eval(&Dip {
-                speed: w_d, kinematic_viscosity: Dual64::from(nu), density: Dual64::from(density), radius: s.radius,
-                tip_radius: s.tip_radius, root_radius: s.root_radius, width: s.width, module: s.module,
-                teeth: s.teeth, helix: s.helix, pressure_angle: s.pressure_angle, immersion: s.immersion,
-                oil_volume: s.oil_volume, gravity: s.gravity,
+                speed: w_d, kinematic_viscosity: fixed(nu), density: fixed(density), radius: fixed(s.radius),
+                tip_radius: fixed(s.tip_radius), root_radius: fixed(s.root_radius), width: fixed(s.width),
+                module: fixed(s.module), teeth: s.teeth, helix: fixed(s.helix),
+                pressure_angle: fixed(s.pressure_angle), immersion: fixed(s.immersion),
+                oil_volume: fixed(s.oil_volume), gravity: fixed(s.gravity),
             });
             same_slope(law.meta().id, dual, |w| law.eval(&bath(w)), w)?;
         }
@@ -640,9 +642,10 @@ proptest! {
         };
         for law in RotorDrag::ALL {
             let s = drum(w);
+            let fixed = Dual64::from_re;
             let dual = law.eval(&Drum {
-                speed: w_d, radius: s.radius, length: s.length, radial_gap: s.radial_gap, axial_gap: s.axial_gap,
-                density: s.density, viscosity: s.viscosity,
+                speed: w_d, radius: fixed(s.radius), length: fixed(s.length), radial_gap: fixed(s.radial_gap),
+                axial_gap: fixed(s.axial_gap), density: fixed(s.density), viscosity: fixed(s.viscosity),
             });
             same_slope(law.meta().id, dual, |w| law.eval(&drum(w)), w)?;
         }
@@ -651,8 +654,8 @@ proptest! {
         };
         for law in SealLoss::ALL {
             let dual = law.eval(&Lip {
-                diameter: r, speed: Dual64::from(w), temperature: Dual64::new(340.0, 1.0), viscosity_40: nu,
-                material: Material::Nbr,
+                diameter: Dual64::from(r), speed: Dual64::from(w), temperature: Dual64::new(340.0, 1.0),
+                viscosity_40: Dual64::from(nu), material: Material::Nbr,
             });
             same_slope(law.meta().id, dual, |t| law.eval(&lip(t)), 340.0)?;
         }
@@ -662,15 +665,15 @@ proptest! {
 fn disc_dual(s: &Disc<f64>) -> Disc<Dual64> {
     Disc {
         speed: Dual64::from_re(s.speed),
-        radius: s.radius,
-        root_radius: s.root_radius,
-        width: s.width,
-        module: s.module,
+        radius: Dual64::from_re(s.radius),
+        root_radius: Dual64::from_re(s.root_radius),
+        width: Dual64::from_re(s.width),
+        module: Dual64::from_re(s.module),
         teeth: s.teeth,
-        density: s.density,
-        viscosity: s.viscosity,
-        axial_gaps: s.axial_gaps,
-        enclosure: s.enclosure,
+        density: Dual64::from_re(s.density),
+        viscosity: Dual64::from_re(s.viscosity),
+        axial_gaps: s.axial_gaps.map(Dual64::from_re),
+        enclosure: Dual64::from_re(s.enclosure),
     }
 }
 

@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard};
 use num_dual::Dual64;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use willis::catalogue::oil::Base;
-use willis::losses::bearing::{BearingDuty, BearingTorque};
+use willis::losses::bearing::{BearingDuty, BearingTorque, Supply};
 use willis::losses::churning::{Churning, Dip};
 use willis::losses::film::{DowsonHigginson, DowsonHigginson1966, Film, FilmContact};
 use willis::losses::film_reduction::{FilmReduction, GuptaCheng, Inlet, MurchWilson};
@@ -18,7 +18,7 @@ use willis::losses::mesh_friction::{Agma6011, Agma6011PerPlanet, Law as _, MeshC
 use willis::losses::mesh_friction::{BenedictKelley, Fernandes, Matsumoto, Niemann, Schlenk, XuKahraman};
 use willis::losses::rolling::{Rolling, RollingContact};
 use willis::losses::rotor_drag::{Drum, RotorDrag};
-use willis::losses::seal::{Lip, SealLoss};
+use willis::losses::seal::{Lip, Material, SealLoss};
 use willis::losses::windage::{Disc, Windage};
 use willis::losses::{self, Entry, Tag, Trust, entries};
 
@@ -43,6 +43,41 @@ impl Random {
     }
 }
 
+/// A constant in another kind of number; what is no number stays.
+trait Lift<T> {
+    fn lift(self) -> T;
+}
+
+impl Lift<Dual64> for f64 {
+    fn lift(self) -> Dual64 {
+        Dual64::from(self)
+    }
+}
+
+impl Lift<[Dual64; 2]> for [f64; 2] {
+    fn lift(self) -> [Dual64; 2] {
+        self.map(Dual64::from)
+    }
+}
+
+impl Lift<Option<Dual64>> for Option<f64> {
+    fn lift(self) -> Option<Dual64> {
+        self.map(Dual64::from)
+    }
+}
+
+macro_rules! stays {
+    ($($kind:ty),*) => {
+        $(impl Lift<$kind> for $kind {
+            fn lift(self) -> $kind {
+                self
+            }
+        })*
+    };
+}
+
+stays!(f64, bool, [f64; 2], Option<[f64; 2]>, Base, willis::catalogue::bearing::Data, Supply, Material);
+
 /// The tests of one family: `module: Enum, State { fields that carry derivatives; other fields; of
 /// these the numbers on which ranges depend }`.
 macro_rules! every_law {
@@ -61,7 +96,7 @@ macro_rules! every_law {
             fn seeded(s: &State, by: &str) -> $state<Dual64> {
                 $state {
                     $($field: Dual64::new(s.$field, f64::from(u8::from(stringify!($field) == by))),)*
-                    $($plain: s.$plain,)*
+                    $($plain: s.$plain.lift(),)*
                 }
             }
 
@@ -268,7 +303,7 @@ fn every_loss_factor_is_documented_finite_and_has_its_derivative() {
         let dual = Path {
             teeth: path.teeth,
             internal: path.internal,
-            base_helix: path.base_helix,
+            base_helix: Dual64::from(path.base_helix),
             e: [Dual64::new(path.e[0], 1.0), Dual64::from(path.e[1])],
             overlap_ratio: Dual64::from(path.overlap_ratio),
         };

@@ -5,7 +5,7 @@ use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, common};
 use crate::operating_point::{Convergence, Extrapolation, Physics, Step};
 use crate::power_flow::{Drag, External, Flow};
-use crate::statics::{Answer, Certificate, Equilibrium, Solution, Unsolvable};
+use crate::statics::{Answer, Certificate, Equilibrium, Solution, SolvedColumn, Unsolvable};
 use crate::train::{FRAME, Load, MemberId, MemberKind, Operation, ShiftElementKind, Train};
 use crate::units::{Dimension, Quantity};
 
@@ -15,12 +15,36 @@ use super::{
     ShiftElementReport, SolutionReport, StictionRange, Verdict, names,
 };
 
+/// A unique equilibrium with what its numbers are computed from.
+#[derive(Clone, Debug)]
+pub(crate) struct Point<'t> {
+    /// With the efficiencies in force.
+    pub c: Configuration<'t>,
+    pub motion: Motion,
+    /// Node of each equation.
+    pub rows: Vec<usize>,
+    pub columns: Vec<SolvedColumn>,
+    /// Force of each element of the configuration, SI.
+    pub forces: Vec<f64>,
+    /// Terminals that balance the train.
+    pub open: Vec<MemberId>,
+}
+
 /// Analyses an operation; `Err` when what it prescribes makes no question.
 pub(super) fn report(
     train: &Train,
     operation: &Operation,
     diagnostics: &mut Diagnostics,
 ) -> Result<OperationReport, Diagnostics> {
+    settle(train, operation, diagnostics).map(|(report, _)| report)
+}
+
+/// The same, with the equilibrium where there is exactly one.
+pub(super) fn settle<'t>(
+    train: &'t Train,
+    operation: &Operation,
+    diagnostics: &mut Diagnostics,
+) -> Result<(OperationReport, Option<Point<'t>>), Diagnostics> {
     let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
     let physics = train.is_physical().then(|| Physics::new(train, operation));
     let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
@@ -56,7 +80,7 @@ pub(super) fn report(
         );
         report.verdict = Verdict::Locked;
         report.reason = Some(text);
-        return Ok(report);
+        return Ok((report, None));
     }
 
     let problem = Loads::new(&c, operation, &motion, &[])?;
@@ -113,7 +137,7 @@ pub(super) fn report(
             };
             diagnostics.push(d);
             report.reason = Some(text);
-            return Ok(report);
+            return Ok((report, None));
         }
     };
     if !loose.is_empty() {
@@ -275,14 +299,30 @@ pub(super) fn report(
     if let Some(physics) = &physics {
         for (branch, frame) in branches.iter().zip(&frames) {
             let flow = frame.flow(&branch.solution);
-            outside_laws(physics.extrapolations(&flow, &motion), place, &title, diagnostics);
+            outside_laws(physics.extrapolations(&flow), place, &title, diagnostics);
         }
     }
     for s in report.solutions.iter() {
         one_way_torques(train, s, place, &title, diagnostics);
         near_boundary(s, place, &title, diagnostics);
     }
-    Ok(report)
+    let point = match (report.verdict, &branches[..]) {
+        (Verdict::Unique, [branch]) => {
+            let scale = std::f64::consts::PI.powi(branch.problem.pi_power.into());
+            let (rows, columns) = branch.equilibrium.solved(&branch.solution);
+            let open = branch.problem.externals.iter().filter(|x| x.torque.is_none());
+            Some(Point {
+                c: c.with_efficiencies(branch.c.efficiencies.clone()),
+                rows,
+                columns,
+                forces: branch.solution.forces.iter().map(|f| f * scale).collect(),
+                open: open.map(|x| x.member).collect(),
+                motion: motion.clone(),
+            })
+        }
+        _ => None,
+    };
+    Ok((report, point))
 }
 
 /// Whether every terminal that is left to balance the train is at rest.

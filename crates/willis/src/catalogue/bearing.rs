@@ -14,6 +14,7 @@ use std::sync::OnceLock;
 use serde::Deserialize;
 
 use super::Trust;
+use crate::real::Real;
 
 /// Type of a rolling bearing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
@@ -208,23 +209,23 @@ pub struct Bearing {
 /// The numbers of a bearing that its friction laws read, copied out of a [`Bearing`] so that the
 /// state of a law stays plain data. SI, as there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Data {
+pub struct Data<R = f64> {
     /// Its type.
     pub kind: Kind,
     /// Bore, m.
-    pub bore: f64,
+    pub bore: R,
     /// Outside diameter, m.
-    pub outside_diameter: f64,
+    pub outside_diameter: R,
     /// Width, m.
-    pub width: f64,
+    pub width: R,
     /// Rows of rolling elements.
     pub rows: u8,
     /// Static load rating `C0`, N.
-    pub static_rating: Option<f64>,
+    pub static_rating: Option<R>,
     /// Axial factor `Y`.
-    pub axial_factor: Option<f64>,
+    pub axial_factor: Option<R>,
     /// Diameter of the rolling elements, m.
-    pub element_diameter: f64,
+    pub element_diameter: R,
     /// Rubbing seals.
     pub seal: Option<Seal>,
     /// Constants of the SKF model.
@@ -233,10 +234,29 @@ pub struct Data {
     pub palmgren: PalmgrenConstants,
 }
 
-impl Data {
+impl<R: Real> Data<R> {
     /// Mean diameter `d_m = (d + D)/2`, m.
-    pub fn mean_diameter(&self) -> f64 {
-        0.5 * (self.bore + self.outside_diameter)
+    pub fn mean_diameter(&self) -> R {
+        (self.bore + self.outside_diameter) * 0.5
+    }
+}
+
+impl Data {
+    /// The same with another kind of numbers.
+    pub fn lift<D: Real>(self) -> Data<D> {
+        Data {
+            kind: self.kind,
+            bore: D::from(self.bore),
+            outside_diameter: D::from(self.outside_diameter),
+            width: D::from(self.width),
+            rows: self.rows,
+            static_rating: self.static_rating.map(D::from),
+            axial_factor: self.axial_factor.map(D::from),
+            element_diameter: D::from(self.element_diameter),
+            seal: self.seal,
+            skf: self.skf,
+            palmgren: self.palmgren,
+        }
     }
 }
 

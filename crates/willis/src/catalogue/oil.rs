@@ -75,28 +75,28 @@ impl Base {
 
 /// How the viscosity of an oil depends on its temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Viscosity {
+pub enum Viscosity<R = f64> {
     /// ASTM D341: `log10 log10(ν + 0.7) = A − B log10 T`, ν in mm²/s, T in K. Meant for
     /// ν > 2 mm²/s; below, ASTM adds terms that are left out.
     Walther {
         /// `A`
-        a: f64,
+        a: R,
         /// `B`
-        b: f64,
+        b: R,
     },
     /// Vogel: `η = K exp(B/(t + C))`.
     Vogel {
         /// `K`, Pa s
-        k: f64,
+        k: R,
         /// `B`, K
-        b: f64,
+        b: R,
         /// `C` for t in °C, K
-        c: f64,
+        c: R,
     },
     /// One dynamic viscosity, the one at the operating temperature.
     Fixed {
         /// Dynamic viscosity, Pa s
-        dynamic: f64,
+        dynamic: R,
         /// `−(1/η) dη/dT` there, 1/K, for laws that ask for it
         slope: f64,
     },
@@ -136,10 +136,17 @@ pub struct Oil {
 const ZERO_CELSIUS: f64 = 273.15;
 
 /// `A` and `B` of ASTM D341 through two points: temperature in K, viscosity in m²/s.
-fn walther([t1, nu1]: [f64; 2], [t2, nu2]: [f64; 2]) -> Viscosity {
-    let z = |nu: f64| (nu * 1e6 + 0.7).log10().log10();
+fn walther<R: Real>((t1, nu1): (f64, R), (t2, nu2): (f64, R)) -> Viscosity<R> {
+    let z = |nu: R| (nu * 1e6 + 0.7).log10().log10();
     let b = (z(nu1) - z(nu2)) / (t2.log10() - t1.log10());
     Viscosity::Walther { a: z(nu1) + b * t1.log10(), b }
+}
+
+impl<R: Real> Viscosity<R> {
+    /// ASTM D341 through the kinematic viscosities at 40 and 100 °C, m²/s.
+    pub(crate) fn through(nu_40: R, nu_100: R) -> Self {
+        walther((40.0 + ZERO_CELSIUS, nu_40), (100.0 + ZERO_CELSIUS, nu_100))
+    }
 }
 
 impl Oil {
@@ -171,7 +178,7 @@ impl Oil {
     /// assert_eq!(format!("{:.2}", oil.kinematic_viscosity(353.15) * 1e6), "19.32");
     /// ```
     pub fn from_two_points(name: &str, base: Base, nu_40: f64, nu_100: f64, density_15: f64) -> Self {
-        let law = walther([40.0 + ZERO_CELSIUS, nu_40], [100.0 + ZERO_CELSIUS, nu_100]);
+        let law = Viscosity::through(nu_40, nu_100);
         Self::new(name, base, law, density_15, base.expansion(), [20.0, 120.0])
     }
 
@@ -200,11 +207,71 @@ impl Oil {
 
     /// Density `ρ`, kg/m³, at the temperature `T` in K: `ρ15 (1 + a (T − 288.15))`.
     pub fn density<D: Real>(&self, temperature: D) -> D {
-        ((temperature - (15.0 + ZERO_CELSIUS)) * self.expansion + 1.0) * self.density_15
+        self.curves().density(temperature)
     }
 
     /// Kinematic viscosity `ν`, m²/s, at the temperature `T` in K.
     pub fn kinematic_viscosity<D: Real>(&self, temperature: D) -> D {
+        self.curves().kinematic_viscosity(temperature)
+    }
+
+    /// Dynamic viscosity `η = ν ρ`, Pa s, at the temperature `T` in K.
+    pub fn dynamic_viscosity<D: Real>(&self, temperature: D) -> D {
+        self.curves().dynamic_viscosity(temperature)
+    }
+
+    /// Pressure-viscosity coefficient `α`, 1/Pa, at the temperature `T` in K: measured, or after Gold.
+    pub fn pressure_viscosity<D: Real>(&self, temperature: D) -> D {
+        self.curves().pressure_viscosity(temperature)
+    }
+
+    /// Slope of the viscosity `β = −(1/η) dη/dT`, 1/K, at the temperature `T` in K. For ASTM D341
+    /// it is `B (ν + 0.7) ln(ν + 0.7)/(ν T) − (1/ρ) dρ/dT`.
+    pub fn viscosity_slope<D: Real>(&self, temperature: D) -> D {
+        self.curves().viscosity_slope(temperature)
+    }
+
+    /// Thermal conductivity `k`, W/(m K), at the temperature `T` in K: measured, or
+    /// `0.120 (1 − 0.0005 t/3)/ρ` with t in °C and ρ in g/cm³.
+    pub fn conductivity<D: Real>(&self, temperature: D) -> D {
+        self.curves().conductivity(temperature)
+    }
+
+    /// What its state follows from.
+    pub(crate) fn curves<D: Real>(&self) -> Curves<D> {
+        Curves {
+            base: self.base,
+            viscosity: match self.viscosity {
+                Viscosity::Walther { a, b } => Viscosity::Walther { a: D::from(a), b: D::from(b) },
+                Viscosity::Vogel { k, b, c } => Viscosity::Vogel { k: D::from(k), b: D::from(b), c: D::from(c) },
+                Viscosity::Fixed { dynamic, slope } => Viscosity::Fixed { dynamic: D::from(dynamic), slope },
+            },
+            density_15: D::from(self.density_15),
+            expansion: self.expansion,
+            measured_pressure_viscosity: self.measured_pressure_viscosity.map(D::from),
+            measured_conductivity: self.measured_conductivity,
+        }
+    }
+}
+
+/// The numbers of an oil from which its state at a temperature follows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Curves<D> {
+    pub base: Base,
+    pub viscosity: Viscosity<D>,
+    pub density_15: D,
+    pub expansion: f64,
+    pub measured_pressure_viscosity: Option<D>,
+    pub measured_conductivity: Option<f64>,
+}
+
+/// Each as the method of [`Oil`] of the same name says.
+impl<D: Real> Curves<D> {
+    pub fn density(&self, temperature: D) -> D {
+        ((temperature - (15.0 + ZERO_CELSIUS)) * self.expansion + 1.0) * self.density_15
+    }
+
+    pub fn kinematic_viscosity(&self, temperature: D) -> D {
         match self.viscosity {
             Viscosity::Walther { a, b } => {
                 let log = (-temperature.log10() * b + a) * std::f64::consts::LN_10;
@@ -214,41 +281,35 @@ impl Oil {
         }
     }
 
-    /// Dynamic viscosity `η = ν ρ`, Pa s, at the temperature `T` in K.
-    pub fn dynamic_viscosity<D: Real>(&self, temperature: D) -> D {
+    pub fn dynamic_viscosity(&self, temperature: D) -> D {
         match self.viscosity {
             Viscosity::Walther { .. } => self.kinematic_viscosity(temperature) * self.density(temperature),
-            Viscosity::Vogel { k, b, c } => ((temperature - (ZERO_CELSIUS - c)).recip() * b).exp() * k,
-            Viscosity::Fixed { dynamic, .. } => D::from(dynamic),
+            Viscosity::Vogel { k, b, c } => ((temperature - (-c + ZERO_CELSIUS)).recip() * b).exp() * k,
+            Viscosity::Fixed { dynamic, .. } => dynamic,
         }
     }
 
-    /// Pressure-viscosity coefficient `α`, 1/Pa, at the temperature `T` in K: measured, or after Gold.
-    pub fn pressure_viscosity<D: Real>(&self, temperature: D) -> D {
+    pub fn pressure_viscosity(&self, temperature: D) -> D {
         match self.measured_pressure_viscosity {
-            Some(alpha) => D::from(alpha),
+            Some(alpha) => alpha,
             None => self.base.gold_pressure_viscosity(self.kinematic_viscosity(temperature)),
         }
     }
 
-    /// Slope of the viscosity `β = −(1/η) dη/dT`, 1/K, at the temperature `T` in K. For ASTM D341
-    /// it is `B (ν + 0.7) ln(ν + 0.7)/(ν T) − (1/ρ) dρ/dT`.
-    pub fn viscosity_slope<D: Real>(&self, temperature: D) -> D {
+    pub fn viscosity_slope(&self, temperature: D) -> D {
         match self.viscosity {
             Viscosity::Walther { b, .. } => {
                 let nu_mm2_s = self.kinematic_viscosity(temperature) * 1e6;
                 let sum = nu_mm2_s + 0.7;
-                let thermal = self.density(temperature).recip() * (self.expansion * self.density_15);
+                let thermal = self.density(temperature).recip() * (self.density_15 * self.expansion);
                 sum * sum.ln() * b / (nu_mm2_s * temperature) - thermal
             }
-            Viscosity::Vogel { b, c, .. } => (temperature - (ZERO_CELSIUS - c)).powi(-2) * b,
+            Viscosity::Vogel { b, c, .. } => (temperature - (-c + ZERO_CELSIUS)).powi(-2) * b,
             Viscosity::Fixed { slope, .. } => D::from(slope),
         }
     }
 
-    /// Thermal conductivity `k`, W/(m K), at the temperature `T` in K: measured, or
-    /// `0.120 (1 − 0.0005 t/3)/ρ` with t in °C and ρ in g/cm³.
-    pub fn conductivity<D: Real>(&self, temperature: D) -> D {
+    pub fn conductivity(&self, temperature: D) -> D {
         match self.measured_conductivity {
             Some(k) => D::from(k),
             None => {

@@ -1,3 +1,5 @@
+use crate::real::Real;
+
 /// The involute function `inv α = tan α − α` of a pressure angle, rad, 0 ≤ α < π/2.
 ///
 /// # Source
@@ -8,7 +10,7 @@
 /// let inv = willis::geometry::involute(20f64.to_radians());
 /// assert_eq!(format!("{inv:.6}"), "0.014904");
 /// ```
-pub fn involute(angle: f64) -> f64 {
+pub fn involute<R: Real>(angle: R) -> R {
     angle.tan() - angle
 }
 
@@ -25,12 +27,13 @@ pub fn involute(angle: f64) -> f64 {
 /// assert!((angle - 0.4).abs() < 1e-14);
 /// assert_eq!(inverse_involute(-0.001), None);
 /// ```
-pub fn inverse_involute(value: f64) -> Option<f64> {
+pub fn inverse_involute<R: Real>(value: R) -> Option<R> {
+    let (exact, value) = (value, value.re());
     if !value.is_finite() || value < 0.0 {
         return None;
     }
     if value == 0.0 {
-        return Some(0.0);
+        return Some(R::from(0.0));
     }
     let cube = (3.0 * value).cbrt();
     let mut t = (cube * (1.0 + 0.2 * cube * cube)).min(value + std::f64::consts::FRAC_PI_2);
@@ -41,5 +44,7 @@ pub fn inverse_involute(value: f64) -> Option<f64> {
             break;
         }
     }
+    // The derivative of the inverse: (1 + t²)/t² of the value's.
+    let t = (exact - value) * ((1.0 + t * t) / (t * t)) + t;
     Some(t.atan())
 }

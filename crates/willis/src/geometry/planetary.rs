@@ -109,7 +109,7 @@ impl Chain {
         Some(self.shifts[1] + teeth * needed / (2.0 * self.pressure_angle.tan()))
     }
 
-    fn basis(&self) -> Basis {
+    fn basis(&self) -> Basis<f64> {
         Basis::new(self.module, self.pressure_angle, self.helix)
     }
 

@@ -5,15 +5,15 @@
 
 use crate::catalogue::bearing::Data;
 use crate::catalogue::oil::Base;
-use crate::real::Real;
+use crate::real::{Inner, Real};
 
 /// How a bearing gets its oil.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Supply {
+pub enum Supply<R = f64> {
     /// Oil bath, with the oil level `H` above the lowest point of the outer raceway contact, m.
     Bath {
         /// Oil level over the lowest rolling element contact, m.
-        level: f64,
+        level: R,
     },
     /// Oil jet or circulating oil.
     Jet,
@@ -24,10 +24,12 @@ pub enum Supply {
 }
 
 /// State of a rolling bearing.
+///
+/// Loads and speed are numbers `D`; the sizes of the bearing are constants to their derivatives, `C`.
 #[derive(Clone, Copy, Debug)]
-pub struct BearingDuty<D> {
+pub struct BearingDuty<D: Real, C = Inner<D>> {
     /// The numbers of the bearing.
-    pub bearing: Data,
+    pub bearing: Data<C>,
     /// Speed of one ring relative to the other, ≥ 0, rad/s.
     pub speed: D,
     /// Radial load, N.
@@ -42,7 +44,7 @@ pub struct BearingDuty<D> {
     /// measured for the oil.
     pub sliding_friction: Option<[f64; 2]>,
     /// How it gets its oil.
-    pub supply: Supply,
+    pub supply: Supply<C>,
 }
 
 family! {
@@ -75,7 +77,4 @@ impl BearingDuty<f64> {
     }
 }
 
-/// `x^p` for `p > 0`, with 0 and no slope at and below 0.
-fn pow<D: Real>(x: D, p: f64) -> D {
-    if x.re() > 0.0 { x.powf(p) } else { D::from(0.0) }
-}
+use crate::real::power as pow;

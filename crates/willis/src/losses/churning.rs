@@ -6,31 +6,31 @@ pub struct Dip<D> {
     /// Absolute angular speed, ≥ 0, rad/s.
     pub speed: D,
     /// Pitch radius, m.
-    pub radius: f64,
+    pub radius: D,
     /// Tip radius, m.
-    pub tip_radius: f64,
+    pub tip_radius: D,
     /// Root radius, m.
-    pub root_radius: f64,
+    pub root_radius: D,
     /// Face width, m.
-    pub width: f64,
+    pub width: D,
     /// Normal module, m.
-    pub module: f64,
+    pub module: D,
     /// Tooth count.
     pub teeth: f64,
     /// Reference helix angle, rad.
-    pub helix: f64,
+    pub helix: D,
     /// Transverse pressure angle, rad.
-    pub pressure_angle: f64,
+    pub pressure_angle: D,
     /// Depth of immersion of the pitch circle, m.
-    pub immersion: f64,
+    pub immersion: D,
     /// Volume of oil, m³.
-    pub oil_volume: f64,
+    pub oil_volume: D,
     /// Kinematic viscosity, m²/s.
     pub kinematic_viscosity: D,
     /// Density of the oil, kg/m³.
     pub density: D,
     /// Acceleration that holds the oil down (gravity, or ω_c² a in a planetary oil ring), m/s².
-    pub gravity: f64,
+    pub gravity: D,
 }
 
 family! {

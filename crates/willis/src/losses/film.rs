@@ -14,7 +14,7 @@ pub struct FilmContact<D> {
     /// Pressure-viscosity coefficient, 1/Pa.
     pub pressure_viscosity: D,
     /// Reduced modulus `E' = 2/((1 - ν1²)/E1 + (1 - ν2²)/E2)`, Pa.
-    pub reduced_modulus: f64,
+    pub reduced_modulus: D,
 }
 
 family! {

@@ -12,11 +12,11 @@ pub struct Inlet<D> {
     /// Slide-roll ratio `|u_1 − u_2|/mean speed`.
     pub slide_ratio: D,
     /// Thermal conductivity of the oil, W/(m K).
-    pub conductivity: f64,
+    pub conductivity: D,
     /// Hertzian pressure, Pa.
     pub hertz_pressure: D,
     /// Reduced modulus `E'`, Pa.
-    pub reduced_modulus: f64,
+    pub reduced_modulus: D,
 }
 
 family! {

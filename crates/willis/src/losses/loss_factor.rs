@@ -13,7 +13,7 @@ pub struct Path<D> {
     /// Whether one wheel, that with more teeth, is a ring gear.
     pub internal: bool,
     /// Helix angle at the base circle `β_b`, rad.
-    pub base_helix: f64,
+    pub base_helix: D,
     /// Addendum contact ratios `e_1`, `e_2`: parts of the path beyond the pitch point, of the
     /// addendum of each wheel.
     pub e: [D; 2],
@@ -41,10 +41,10 @@ impl<D: crate::Real> Path<D> {
     ///
     /// assert_eq!(format!("{:.5}", Path::typical().factor()), "0.32760");
     /// ```
-    pub fn factor(&self) -> f64 {
+    pub fn factor(&self) -> D {
         let [first, second] = self.teeth.map(|z| 1.0 / z);
         let relative = if self.internal { (first - second).abs() } else { first + second };
-        std::f64::consts::PI * relative / self.base_helix.cos()
+        D::from(std::f64::consts::PI * relative) / self.base_helix.cos()
     }
 
     /// Transverse contact ratio `ε_α = e_1 + e_2`.
@@ -53,7 +53,7 @@ impl<D: crate::Real> Path<D> {
     }
 }
 
-impl Path<f64> {
+impl<D: crate::Real> Path<D> {
     /// The path of a pair of gears.
     ///
     /// # Example
@@ -76,7 +76,7 @@ impl Path<f64> {
     /// let h = LossFactor::default().eval(&Path::of(&pair));
     /// assert_eq!(format!("{h:.6}"), "0.213122");
     /// ```
-    pub fn of(pair: &Pair) -> Self {
+    pub fn of(pair: &Pair<D>) -> Self {
         Self {
             teeth: [pair.data.wheels[0].teeth, pair.data.wheels[1].teeth],
             internal: pair.internal(),
@@ -85,7 +85,9 @@ impl Path<f64> {
             overlap_ratio: pair.overlap_ratio,
         }
     }
+}
 
+impl Path<f64> {
     /// A spur pair 17/22 of standard proportions, for examples and tests.
     pub fn typical() -> Self {
         Self { teeth: [17.0, 22.0], internal: false, base_helix: 0.0, e: [0.7574, 0.790348], overlap_ratio: 0.0 }

@@ -52,7 +52,7 @@ pub struct MeshContact<D> {
     /// Base of the oil.
     pub base: Base,
     /// Factor of the lubricant `X_L`, where it was measured for this oil; otherwise by [`Self::base`].
-    pub lubricant_factor: Option<f64>,
+    pub lubricant_factor: Option<D>,
     /// Contact load factor `K` of ISO/TR 14179-1: `F_t/(b d_w1) · (z_2 ± z_1)/z_2`, Pa.
     pub k_factor: D,
     /// Tooth counts; first the smaller wheel.
@@ -60,9 +60,9 @@ pub struct MeshContact<D> {
     /// Whether the second wheel is a ring gear.
     pub internal: bool,
     /// Normal pressure angle of the basic rack, rad.
-    pub normal_pressure_angle: f64,
+    pub normal_pressure_angle: D,
     /// Operating helix angle, rad.
-    pub helix: f64,
+    pub helix: D,
     /// Reference diameter of the smaller wheel, m.
     pub pinion_diameter: D,
     /// Face width, m.

@@ -16,7 +16,7 @@ pub struct RollingContact<D> {
     /// Pressure-viscosity coefficient, 1/Pa.
     pub pressure_viscosity: D,
     /// Reduced modulus `E'`, Pa.
-    pub reduced_modulus: f64,
+    pub reduced_modulus: D,
     /// Factor of the thermal reduction of the film, 0 to 1.
     pub film_reduction: D,
 }

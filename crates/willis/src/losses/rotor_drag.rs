@@ -6,17 +6,17 @@ pub struct Drum<D> {
     /// Angular speed relative to its surroundings, ≥ 0, rad/s.
     pub speed: D,
     /// Outer radius, m.
-    pub radius: f64,
+    pub radius: D,
     /// Axial length of the rim, m.
-    pub length: f64,
+    pub length: D,
     /// Radial gap between rim and wall, m.
-    pub radial_gap: f64,
+    pub radial_gap: D,
     /// Axial gap between each face and the wall, m.
-    pub axial_gap: f64,
+    pub axial_gap: D,
     /// Density of the fluid, kg/m³.
-    pub density: f64,
+    pub density: D,
     /// Dynamic viscosity of the fluid, Pa s.
-    pub viscosity: f64,
+    pub viscosity: D,
 }
 
 family! {

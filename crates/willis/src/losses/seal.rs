@@ -13,13 +13,13 @@ pub enum Material {
 #[derive(Clone, Copy, Debug)]
 pub struct Lip<D> {
     /// Shaft diameter, m.
-    pub diameter: f64,
+    pub diameter: D,
     /// Speed of the shaft relative to the lip, ≥ 0, rad/s.
     pub speed: D,
     /// Oil temperature, K.
     pub temperature: D,
     /// Kinematic viscosity of the oil at 40 °C, m²/s.
-    pub viscosity_40: f64,
+    pub viscosity_40: D,
     /// Material of the lip.
     pub material: Material,
 }

@@ -6,24 +6,24 @@ pub struct Disc<D> {
     /// Absolute angular speed, ≥ 0, rad/s.
     pub speed: D,
     /// Pitch radius, m.
-    pub radius: f64,
+    pub radius: D,
     /// Root radius, m.
-    pub root_radius: f64,
+    pub root_radius: D,
     /// Face width, m.
-    pub width: f64,
+    pub width: D,
     /// Normal module, m.
-    pub module: f64,
+    pub module: D,
     /// Tooth count.
     pub teeth: f64,
     /// Density of the fluid around it, kg/m³.
-    pub density: f64,
+    pub density: D,
     /// Dynamic viscosity of the fluid around it, Pa s.
-    pub viscosity: f64,
+    pub viscosity: D,
     /// Axial distance to a flange or wall on both sides, as far as it is nearer than the free
     /// side of the disc, m.
-    pub axial_gaps: [f64; 2],
+    pub axial_gaps: [D; 2],
     /// Factor of the enclosure: 1 free, 0.6 to 0.7 in a large case, 0.5 in a fitting case.
-    pub enclosure: f64,
+    pub enclosure: D,
 }
 
 family! {
@@ -45,8 +45,8 @@ pub const AIR_PER_OIL: f64 = 34.25;
 ///
 /// assert_eq!(format!("{:.4}", mist(870.0, 1.2, AIR_PER_OIL)), "25.8468");
 /// ```
-pub fn mist<D: crate::real::Real>(oil: D, air: f64, air_per_oil: f64) -> D {
-    (oil + air * air_per_oil) / (1.0 + air_per_oil)
+pub fn mist<D: crate::real::Real>(oil: D, air: f64, air_per_oil: D) -> D {
+    (oil + air_per_oil * air) / (air_per_oil + 1.0)
 }
 
 impl Disc<f64> {

@@ -6,17 +6,16 @@ use crate::losses::churning::Dip;
 use crate::losses::rotor_drag::Drum;
 use crate::losses::seal::Lip;
 use crate::losses::windage::{AIR_PER_OIL, Disc, Windage, mist};
-use crate::power_flow::Flow;
-use crate::train::{FRAME, Fluid, MemberId, MemberKind, OilSupply, Rotor, SealMount, Train};
+use crate::real::{self, Real};
+use crate::train::{FRAME, Fluid, MemberId, MemberKind, OilSupply, Train};
 
+use super::numbers::{RotorNumbers, VG_100};
 use super::{Extrapolation, LossKind, Physics};
 
 /// Density of air, kg/m³, and its dynamic viscosity, Pa s, at 20 °C and 1013 hPa.
 const AIR: (f64, f64) = (1.204, 18.2e-6);
 /// Acceleration of free fall, m/s².
 const GRAVITY: f64 = 9.806_65;
-/// Viscosity of an oil at 40 °C where only the one at its temperature is known, m²/s.
-const VG_100: f64 = 100e-6;
 
 /// A gear that turns in air or oil.
 #[derive(Clone, Debug)]
@@ -78,50 +77,45 @@ impl Body {
 }
 
 /// Torque of a power at a speed.
-fn torque(power: f64, speed: f64) -> f64 {
+fn torque<R: Real>(power: R, speed: R) -> R {
     let t = power / speed;
-    if t.is_finite() { t.max(0.0) } else { 0.0 }
+    if t.re().is_finite() { real::max(t, R::from(0.0)) } else { R::from(0.0) }
 }
 
-impl Physics<'_> {
-    fn note(
-        &self,
-        beyond: &mut Option<Vec<Extrapolation>>,
-        (family, law, at): (&'static str, &'static str, &str),
-        outside: impl FnOnce() -> Vec<Outside>,
-    ) {
-        if let Some(all) = beyond {
-            all.extend(outside().into_iter().map(|outside| Extrapolation { family, law, at: at.to_owned(), outside }));
-        }
-    }
+/// A gear in the fluid around it.
+enum Wet<R> {
+    Dip(Dip<R>),
+    Disc(Disc<R>),
+}
 
+impl<R: Real> Physics<'_, R> {
     /// Density and viscosity of a fluid around the gears.
-    fn fluid(&self, fluid: Fluid) -> (f64, f64) {
+    fn fluid(&self, fluid: Fluid) -> (R, R) {
         match (fluid, &self.oil) {
             (Fluid::Oil, Some((_, oil))) => (oil.density, oil.dynamic_viscosity),
-            (Fluid::Mist, Some((l, oil))) => {
-                let parts = l.mist.unwrap_or(AIR_PER_OIL);
+            (Fluid::Mist, Some((_, oil))) => {
+                let parts = oil.mist.unwrap_or(R::from(AIR_PER_OIL));
                 (mist(oil.density, AIR.0, parts), mist(oil.dynamic_viscosity, AIR.1, parts))
             }
-            _ => AIR,
+            _ => (R::from(AIR.0), R::from(AIR.1)),
         }
     }
 
-    /// Drag of a gear (all of its count), N m.
-    pub(super) fn body(&self, body: &Body, flow: &Flow, beyond: &mut Option<Vec<Extrapolation>>) -> f64 {
-        let speed = self.slip(flow, [body.member, body.against]);
-        let (Some((lubrication, oil)), true) = (&self.oil, speed > 0.0) else { return 0.0 };
+    /// State of a gear in oil or air; none at rest.
+    fn wet(&self, body: &Body, speeds: &[R]) -> Option<Wet<R>> {
+        let speed = self.slip(speeds, [body.member, body.against]);
+        let (Some((_, oil)), true) = (&self.oil, speed.re() > 0.0) else { return None };
         let laws = &self.train.laws;
-        let mesh = &self.train.meshes[body.mesh];
-        let Some(teeth) = &mesh.teeth else { return 0.0 };
+        let teeth = self.numbers.teeth[body.mesh].as_ref()?;
         let (pair, gear) = (&teeth.pair, &teeth.pair.gears[body.gear]);
         let z = pair.data.wheels[body.gear].teeth;
-        let power = match body.immersion {
-            Some(immersion) => {
-                let orbit = self.train.planets.iter().find(|p| p.member == body.member);
+        Some(match body.immersion {
+            Some(still) => {
+                let immersion = teeth.immersion[body.gear].unwrap_or(R::from(still));
+                let orbit = self.train.planets.iter().zip(&self.numbers.planets).find(|(p, _)| p.member == body.member);
                 // Planets run through a ring of oil that turns with their carrier.
-                let spun = orbit.map_or(0.0, |p| flow.speeds[p.carrier.0].powi(2) * p.orbit_radius);
-                let dip = Dip {
+                let spun = orbit.map_or(R::from(0.0), |(p, [radius, _])| speeds[p.carrier.0].powi(2) * *radius);
+                Wet::Dip(Dip {
                     speed,
                     radius: gear.reference_radius,
                     tip_radius: gear.tip_radius,
@@ -131,25 +125,22 @@ impl Physics<'_> {
                     teeth: z,
                     helix: pair.data.helix,
                     pressure_angle: pair.transverse_pressure_angle,
-                    immersion: immersion.min(2.0 * gear.reference_radius),
-                    oil_volume: lubrication.volume.unwrap_or(1e-3),
+                    immersion: real::min(immersion, gear.reference_radius * 2.0),
+                    oil_volume: oil.volume.unwrap_or(R::from(1e-3)),
                     kinematic_viscosity: oil.kinematic_viscosity,
                     density: oil.density,
-                    gravity: spun.max(GRAVITY),
-                };
-                let law = laws.churning;
-                self.note(beyond, ("churning", law.meta().id, &body.name), || law.outside(&dip));
-                law.eval(&dip)
+                    gravity: real::max(spun, R::from(GRAVITY)),
+                })
             }
             None => {
                 // The mist of 34.25 parts of air belongs to the disc formula that was fitted with it; the
                 // other laws were measured in air.
                 let fitted = matches!(laws.windage, Windage::AndersonLoewenthal(_));
-                let fluid = if fitted || lubrication.mist.is_some() { Fluid::Mist } else { Fluid::Air };
+                let fluid = if fitted || oil.mist.is_some() { Fluid::Mist } else { Fluid::Air };
                 let (density, viscosity) = self.fluid(fluid);
                 let free = gear.reference_radius;
-                let gap = self.train.housing.axial_gap.map_or(free, |g| g.min(free));
-                let disc = Disc {
+                let gap = self.numbers.axial_gap.map_or(free, |g| real::min(g, free));
+                Wet::Disc(Disc {
                     speed,
                     radius: gear.reference_radius,
                     root_radius: gear.root_radius,
@@ -159,49 +150,84 @@ impl Physics<'_> {
                     density,
                     viscosity,
                     axial_gaps: [gap, gap],
-                    enclosure: self.train.housing.enclosure.unwrap_or(1.0),
-                };
-                let law = laws.windage;
-                self.note(beyond, ("windage", law.meta().id, &body.name), || law.outside(&disc));
-                law.eval(&disc)
+                    enclosure: self.numbers.enclosure.unwrap_or(R::from(1.0)),
+                })
             }
+        })
+    }
+
+    /// Drag of a gear (all of its count), N m.
+    pub(super) fn body(&self, body: &Body, speeds: &[R]) -> R {
+        let (power, speed) = match self.wet(body, speeds) {
+            None => return R::from(0.0),
+            Some(Wet::Dip(dip)) => (self.train.laws.churning.eval(&dip), dip.speed),
+            Some(Wet::Disc(disc)) => (self.train.laws.windage.eval(&disc), disc.speed),
         };
         torque(power, speed) * f64::from(body.count)
     }
 
-    /// Drag of a seal, N m.
-    pub(super) fn seal(&self, seal: &SealMount, flow: &Flow, beyond: &mut Option<Vec<Extrapolation>>) -> f64 {
-        let speed = self.slip(flow, seal.members);
-        if speed == 0.0 {
-            return 0.0;
-        }
-        let cold = |l: &crate::train::Lubrication| match l.oil.covers(313.15) {
-            true => l.oil.kinematic_viscosity(313.15),
-            false => VG_100,
-        };
-        let lip = Lip {
-            diameter: seal.diameter,
+    /// State of a seal; none at rest.
+    fn lip(&self, k: usize, speeds: &[R]) -> Option<Lip<R>> {
+        let seal = &self.train.seals[k];
+        let speed = self.slip(speeds, seal.members);
+        (speed.re() != 0.0).then(|| Lip {
+            diameter: self.numbers.seals[k],
             speed,
-            temperature: self.oil.as_ref().map_or(333.15, |o| o.1.temperature),
-            viscosity_40: self.oil.as_ref().map_or(VG_100, |o| cold(&o.0)),
+            temperature: self.oil.as_ref().map_or(R::from(333.15), |o| o.1.temperature),
+            viscosity_40: self.oil.as_ref().map_or(R::from(VG_100), |o| o.1.viscosity_40),
             material: seal.material,
-        };
-        let law = self.train.laws.seal;
-        self.note(beyond, ("seal", law.meta().id, &seal.name), || law.outside(&lip));
-        torque(law.eval(&lip), speed) * f64::from(seal.count)
+        })
+    }
+
+    /// Drag of a seal, N m.
+    pub(super) fn seal(&self, k: usize, speeds: &[R]) -> R {
+        let Some(lip) = self.lip(k, speeds) else { return R::from(0.0) };
+        torque(self.train.laws.seal.eval(&lip), lip.speed) * f64::from(self.train.seals[k].count)
+    }
+
+    /// State of a rotor; none at rest.
+    fn drum(&self, k: usize, speeds: &[R]) -> Option<Drum<R>> {
+        let rotor = &self.train.rotors[k];
+        let speed = self.slip(speeds, [rotor.member, FRAME]);
+        let (density, viscosity) = self.fluid(rotor.fluid);
+        let RotorNumbers { radius, length, radial_gap, axial_gap } = self.numbers.rotors[k];
+        (speed.re() != 0.0).then_some(Drum { speed, radius, length, radial_gap, axial_gap, density, viscosity })
     }
 
     /// Drag of a rotor, N m.
-    pub(super) fn rotor(&self, rotor: &Rotor, flow: &Flow, beyond: &mut Option<Vec<Extrapolation>>) -> f64 {
-        let speed = self.slip(flow, [rotor.member, FRAME]);
-        if speed == 0.0 {
-            return 0.0;
+    pub(super) fn rotor(&self, k: usize, speeds: &[R]) -> R {
+        let Some(drum) = self.drum(k, speeds) else { return R::from(0.0) };
+        torque(self.train.laws.rotor_drag.eval(&drum), drum.speed)
+    }
+}
+
+impl Physics<'_> {
+    /// Where the laws of seals, gears and rotors were used outside their ranges.
+    pub(super) fn wet_extrapolations(&self, speeds: &[f64], all: &mut Vec<Extrapolation>) {
+        let laws = &self.train.laws;
+        let mut note = |family, law, at: &str, outside: Vec<Outside>| {
+            all.extend(outside.into_iter().map(|outside| Extrapolation { family, law, at: at.to_owned(), outside }));
+        };
+        for (k, seal) in self.train.seals.iter().enumerate() {
+            if let Some(lip) = self.lip(k, speeds) {
+                note("seal", laws.seal.meta().id, &seal.name, laws.seal.outside(&lip));
+            }
         }
-        let (density, viscosity) = self.fluid(rotor.fluid);
-        let Rotor { radius, length, radial_gap, axial_gap, .. } = *rotor;
-        let drum = Drum { speed, radius, length, radial_gap, axial_gap, density, viscosity };
-        let law = self.train.laws.rotor_drag;
-        self.note(beyond, ("rotor_drag", law.meta().id, &rotor.name), || law.outside(&drum));
-        torque(law.eval(&drum), speed)
+        for body in &self.bodies {
+            match self.wet(body, speeds) {
+                Some(Wet::Dip(dip)) => {
+                    note("churning", laws.churning.meta().id, &body.name, laws.churning.outside(&dip));
+                }
+                Some(Wet::Disc(disc)) => {
+                    note("windage", laws.windage.meta().id, &body.name, laws.windage.outside(&disc));
+                }
+                None => {}
+            }
+        }
+        for (k, rotor) in self.train.rotors.iter().enumerate() {
+            if let Some(drum) = self.drum(k, speeds) {
+                note("rotor_drag", laws.rotor_drag.meta().id, &rotor.name, laws.rotor_drag.outside(&drum));
+            }
+        }
     }
 }

@@ -6,10 +6,11 @@ use crate::losses::film::FilmContact;
 use crate::losses::film_reduction::Inlet;
 use crate::losses::load_sharing::ToothLoad;
 use crate::losses::loss_factor::Path;
-use crate::losses::mesh_friction::MeshContact;
+use crate::losses::mesh_friction::{MeshContact, MeshFriction};
 use crate::losses::rolling::RollingContact;
 use crate::losses::{Outside, Tag};
 use crate::power_flow::MeshFlow;
+use crate::real::{self, Real};
 use crate::train::{Mesh, Teeth};
 
 use super::{Extrapolation, OilState, Physics};
@@ -96,59 +97,59 @@ const PEAK: f64 = 6.0;
 
 /// One point of the path of contact.
 #[derive(Clone, Copy)]
-struct Point {
-    line_load: f64,
-    sliding: f64,
-    sum: f64,
-    radius: f64,
-    pressure: f64,
-    film: f64,
+struct Point<R> {
+    line_load: R,
+    sliding: R,
+    sum: R,
+    radius: R,
+    pressure: R,
+    film: R,
 }
 
 /// What the laws give for the teeth of a mesh.
-pub(super) struct Tooth {
+pub(super) struct Tooth<R> {
     /// Mean coefficient of friction; none when the efficiency is given, or nothing is loaded.
-    pub friction: Option<f64>,
-    pub loss_factor: f64,
+    pub friction: Option<R>,
+    pub loss_factor: R,
     /// Rolling loss of all pairs in parallel, W.
-    pub rolling: f64,
+    pub rolling: R,
 }
 
 /// One mesh at one load.
-struct Loaded<'a> {
-    physics: &'a Physics<'a>,
-    teeth: &'a Teeth,
+struct Loaded<'a, R: Real> {
+    physics: &'a Physics<'a, R>,
+    teeth: &'a Teeth<R>,
     /// Torque of the driving gear of one pair in parallel, N m, and what follows from it at the base circle, N.
-    torque: f64,
-    base_force: f64,
+    torque: R,
+    base_force: R,
     /// Normal force of one pair in parallel, N.
-    normal_force: f64,
+    normal_force: R,
     /// Speed at the operating pitch circle relative to the carrier, m/s.
-    pitch_line_speed: f64,
+    pitch_line_speed: R,
     /// Speed of the first gear relative to the carrier, ≥ 0, rad/s.
-    speed: f64,
+    speed: R,
 }
 
-impl Loaded<'_> {
+impl<R: Real> Loaded<'_, R> {
     /// Where a tooth pair more or less is in contact: whole base pitches from both ends, and C.
-    fn breaks(&self) -> [f64; 2 * MOST_PAIRS + 1] {
+    fn breaks(&self) -> [R; 2 * MOST_PAIRS + 1] {
         let pair = &self.teeth.pair;
         let [start, end] = pair.path();
-        let mut breaks = [0.0; 2 * MOST_PAIRS + 1];
+        let mut breaks = [R::from(0.0); 2 * MOST_PAIRS + 1];
         for k in 0..MOST_PAIRS {
-            breaks[2 * k] = (start + k as f64 * pair.base_pitch).min(end);
-            breaks[2 * k + 1] = (end - k as f64 * pair.base_pitch).max(start);
+            breaks[2 * k] = real::min(pair.base_pitch * k as f64 + start, end);
+            breaks[2 * k + 1] = real::max(-(pair.base_pitch * k as f64) + end, start);
         }
-        breaks.sort_by(f64::total_cmp);
+        breaks.sort_by(|a, b| a.re().total_cmp(&b.re()));
         breaks
     }
 
     /// Whether the teeth are pressed together and move.
     fn works(&self) -> bool {
-        self.base_force > 0.0 && self.pitch_line_speed > 0.0
+        self.base_force.re() > 0.0 && self.pitch_line_speed.re() > 0.0
     }
 
-    fn point(&self, s: f64) -> Point {
+    fn point(&self, s: R) -> Point<R> {
         let pair = &self.teeth.pair;
         let place = ToothLoad {
             position: pair.position(s),
@@ -157,29 +158,33 @@ impl Loaded<'_> {
         };
         let share = self.physics.train.laws.load_sharing.eval(&place);
         let line_load = share * self.normal_force * pair.base_helix.cos() / pair.total_width();
-        let radius = pair.reduced_radius(s).max(1e-9);
+        let radius = real::max(pair.reduced_radius(s), R::from(1e-9));
         let sliding = pair.sliding_per_speed(s) * self.speed;
         let sum = pair.sum_speed_per_speed(s) * self.speed;
         let modulus = self.teeth.reduced_modulus();
-        let pressure = (line_load * modulus / (std::f64::consts::TAU * radius)).sqrt();
-        let film =
-            self.physics.oil.as_ref().map_or(0.0, |(_, oil)| self.film(oil, line_load, radius, sliding, sum, pressure));
+        let pressure = root(line_load * modulus / (radius * std::f64::consts::TAU));
+        let none = R::from(0.0);
+        let film = self
+            .physics
+            .oil
+            .as_ref()
+            .map_or(none, |(_, oil)| self.film(oil, line_load, radius, sliding, sum, pressure));
         Point { line_load, sliding, sum, radius, pressure, film }
     }
 
-    fn inlet(&self, oil: &OilState, sliding: f64, sum: f64, pressure: f64) -> Inlet<f64> {
+    fn inlet(&self, oil: &OilState<R>, sliding: R, sum: R, pressure: R) -> Inlet<R> {
         Inlet {
             dynamic_viscosity: oil.dynamic_viscosity,
             viscosity_slope: oil.viscosity_slope,
             mean_speed: sum / 2.0,
-            slide_ratio: if sum > 0.0 { 2.0 * sliding / sum } else { 0.0 },
+            slide_ratio: if sum.re() > 0.0 { sliding * 2.0 / sum } else { R::from(0.0) },
             conductivity: oil.conductivity,
             hertz_pressure: pressure,
             reduced_modulus: self.teeth.reduced_modulus(),
         }
     }
 
-    fn rolling_contact(&self, oil: &OilState, p: &Point) -> RollingContact<f64> {
+    fn rolling_contact(&self, oil: &OilState<R>, p: &Point<R>) -> RollingContact<R> {
         let pair = &self.teeth.pair;
         RollingContact {
             sum_speed: p.sum,
@@ -194,7 +199,7 @@ impl Loaded<'_> {
         }
     }
 
-    fn film_contact(&self, oil: &OilState, line_load: f64, radius: f64, sum: f64) -> FilmContact<f64> {
+    fn film_contact(&self, oil: &OilState<R>, line_load: R, radius: R, sum: R) -> FilmContact<R> {
         FilmContact {
             radius,
             mean_speed: sum / 2.0,
@@ -205,9 +210,9 @@ impl Loaded<'_> {
         }
     }
 
-    fn film(&self, oil: &OilState, line_load: f64, radius: f64, sliding: f64, sum: f64, pressure: f64) -> f64 {
-        if line_load <= 0.0 || sum <= 0.0 {
-            return 0.0;
+    fn film(&self, oil: &OilState<R>, line_load: R, radius: R, sliding: R, sum: R, pressure: R) -> R {
+        if line_load.re() <= 0.0 || sum.re() <= 0.0 {
+            return R::from(0.0);
         }
         let laws = &self.physics.train.laws;
         let h = laws.film.eval(&self.film_contact(oil, line_load, radius, sum));
@@ -216,15 +221,20 @@ impl Loaded<'_> {
 }
 
 /// Rms roughness of both flanks together.
-fn composite(teeth: &Teeth) -> f64 {
-    RMS * (teeth.roughness[0].powi(2) + teeth.roughness[1].powi(2)).sqrt()
+fn composite<R: Real>(teeth: &Teeth<R>) -> R {
+    root(teeth.roughness[0].powi(2) + teeth.roughness[1].powi(2)) * RMS
 }
 
-impl Physics<'_> {
-    fn loaded<'a>(&'a self, mesh: &Mesh, teeth: &'a Teeth, flow: &MeshFlow) -> Loaded<'a> {
+/// The square root of a number ≥ 0, without a slope at 0.
+fn root<R: Real>(x: R) -> R {
+    if x.re() == 0.0 { R::from(0.0) } else { x.sqrt() }
+}
+
+impl<R: Real> Physics<'_, R> {
+    fn loaded<'a>(&'a self, mesh: &Mesh, teeth: &'a Teeth<R>, flow: &MeshFlow<R>) -> Loaded<'a, R> {
         let pair = &teeth.pair;
         let driver = flow.driver.unwrap_or(0);
-        let torque = flow.torques[driver].abs() / f64::from(mesh.count);
+        let torque = real::abs(flow.torques[driver]) / f64::from(mesh.count);
         let base_force = torque / pair.gears[driver].base_radius;
         Loaded {
             physics: self,
@@ -232,60 +242,123 @@ impl Physics<'_> {
             torque,
             base_force,
             normal_force: base_force / pair.base_helix.cos(),
-            pitch_line_speed: flow.relative_speeds[driver].abs() * pair.gears[driver].operating_radius,
-            speed: flow.relative_speeds[0].abs(),
+            pitch_line_speed: real::abs(flow.relative_speeds[driver]) * pair.gears[driver].operating_radius,
+            speed: real::abs(flow.relative_speeds[0]),
         }
     }
 
     /// Friction and rolling loss of a mesh.
-    pub(super) fn tooth(&self, mesh: &Mesh, teeth: &Teeth, flow: &MeshFlow) -> Tooth {
+    pub(super) fn tooth(&self, mesh: &Mesh, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> Tooth<R> {
         let pair = &teeth.pair;
         let loss_factor = self.train.laws.loss_factor.eval(&Path::of(pair));
         let loaded = self.loaded(mesh, teeth, flow);
-        let mut tooth = Tooth { friction: None, loss_factor, rolling: 0.0 };
+        let none = R::from(0.0);
+        let mut tooth = Tooth { friction: None, loss_factor, rolling: none };
         if !loaded.works() || !mesh.computed {
             return tooth;
         }
         let [start, end] = pair.path();
-        let state = |p: &Point| self.state(mesh, &loaded, p, loss_factor);
+        let state = |p: &Point<R>| self.state(mesh, &loaded, p, loss_factor);
         let mu = if self.friction.meta().tags.contains(&Tag::Local) {
-            let (mut friction, mut weight) = (0.0, 0.0);
+            let (mut friction, mut weight) = (none, none);
             let breaks = loaded.breaks();
             for k in 0..breaks.len() - 1 {
-                let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
+                let (from, to) = (real::max(breaks[k], start), real::min(breaks[k + 1], end));
                 let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
-                if half <= 0.0 {
+                if half.re() <= 0.0 {
                     continue;
                 }
                 for (node, w) in GAUSS.into_iter().flat_map(|(node, w)| [(node, w), (-node, w)]) {
                     let p = loaded.point(middle + half * node);
-                    let own = w * half * p.line_load * p.sliding;
+                    let own = half * w * p.line_load * p.sliding;
                     weight += own;
-                    friction += own * self.friction.eval(&state(&p));
+                    friction += own * self.coefficient(&state(&p));
                 }
             }
-            if weight > 0.0 { friction / weight } else { 0.0 }
+            if weight.re() > 0.0 { friction / weight } else { none }
         } else {
-            self.friction.eval(&state(&loaded.point(0.0)))
+            self.coefficient(&state(&loaded.point(none)))
         };
-        if mu.is_finite() {
-            tooth.friction = Some(mu.max(0.0));
+        if mu.re().is_finite() {
+            tooth.friction = Some(real::max(mu, none));
         }
 
         if let (Some(law), Some((_, oil))) = (&self.rolling, &self.oil) {
             // Mean over the path: away from the pitch point sliding heats the inlet and thins the film.
             let (middle, half) = ((start + end) / 2.0, (end - start) / 2.0);
-            let mean: f64 = GAUSS
+            let mean = GAUSS
                 .into_iter()
                 .flat_map(|(node, w)| [(node, w), (-node, w)])
-                .map(|(node, w)| 0.5 * w * law.eval(&loaded.rolling_contact(oil, &loaded.point(middle + half * node))))
-                .sum();
+                .map(|(node, w)| {
+                    law.eval(&loaded.rolling_contact(oil, &loaded.point(middle + half * node))) * (0.5 * w)
+                })
+                .fold(none, |sum, x| sum + x);
             let rolling = mean * pair.contact_ratio * f64::from(mesh.count);
-            tooth.rolling = if rolling.is_finite() { rolling.max(0.0) } else { 0.0 };
+            tooth.rolling = if rolling.re().is_finite() { real::max(rolling, none) } else { none };
         }
         tooth
     }
 
+    /// The coefficient of friction that the law in force gives.
+    fn coefficient(&self, state: &MeshContact<R>) -> R {
+        match self.friction {
+            MeshFriction::Constant(_) => self.numbers.friction_coefficient,
+            law => law.eval(state),
+        }
+    }
+
+    fn state(&self, mesh: &Mesh, loaded: &Loaded<'_, R>, p: &Point<R>, loss_factor: R) -> MeshContact<R> {
+        let Loaded { teeth, base_force, normal_force, pitch_line_speed, .. } = *loaded;
+        let pair = &teeth.pair;
+        let composite = composite(teeth);
+        // The smaller wheel first.
+        let small = usize::from(pair.data.wheels[1].teeth < pair.data.wheels[0].teeth);
+        let teeth_of = |k: usize| pair.data.wheels[k].teeth;
+        let (z_1, z_2) = (teeth_of(small), teeth_of(1 - small));
+        let sum = if pair.internal() { z_2 - z_1 } else { z_2 + z_1 };
+        let pinion = &pair.gears[small];
+        let tangential = base_force * pinion.base_radius / pinion.operating_radius;
+        let width = pair.total_width();
+        // Laws that read the oil are in force only where there is one.
+        let oil = |get: fn(&OilState<R>) -> R| self.oil.as_ref().map_or(R::from(f64::NAN), |o| get(&o.1));
+        let zero = R::from(0.0);
+        MeshContact {
+            line_load: base_force / width,
+            normal_force,
+            pitch_sum_speed: pitch_line_speed * 2.0 * pair.operating_pressure_angle.sin(),
+            pitch_line_speed,
+            pitch_radius_transverse: pair.reduced_radius_transverse(zero),
+            pitch_radius: pair.reduced_radius(zero),
+            local_line_load: p.line_load,
+            sliding_speed: p.sliding,
+            sum_speed: p.sum,
+            radius: p.radius,
+            hertz_pressure: p.pressure,
+            film: p.film,
+            film_ratio: if composite.re() > 0.0 { p.film / composite } else { R::from(f64::INFINITY) },
+            dynamic_viscosity: oil(|o| o.dynamic_viscosity),
+            kinematic_viscosity: oil(|o| o.kinematic_viscosity),
+            pressure_viscosity: oil(|o| o.pressure_viscosity),
+            roughness: (teeth.roughness[0] + teeth.roughness[1]) / 2.0,
+            composite_roughness: composite,
+            peak_roughness: (teeth.roughness[0] + teeth.roughness[1]) * PEAK,
+            base: self.oil.as_ref().map_or(crate::catalogue::oil::Base::Mineral, |o| o.0.oil.base),
+            lubricant_factor: self.oil.as_ref().and_then(|o| o.1.lubricant_factor),
+            k_factor: tangential / (width * 2.0 * pinion.operating_radius) * sum / z_2,
+            teeth: [z_1, z_2],
+            internal: pair.internal(),
+            normal_pressure_angle: pair.data.pressure_angle,
+            helix: pair.operating_helix,
+            pinion_diameter: pinion.reference_radius * 2.0,
+            width,
+            contact_length_ratio: pair.shortest_contact_length_ratio(),
+            loss_factor,
+            parallel: f64::from(mesh.count),
+        }
+    }
+}
+
+impl Physics<'_> {
     /// The contact of a mesh.
     pub(super) fn contact(
         &self,
@@ -370,7 +443,7 @@ impl Physics<'_> {
         if beyond.is_none() || !mesh.computed {
             return report;
         }
-        let state = |p: &Point| self.state(mesh, &loaded, p, loss_factor);
+        let state = |p: &Point<f64>| self.state(mesh, &loaded, p, loss_factor);
         let id = self.friction.meta().id;
         let mut outside = self.friction.outside(&state(&pitch));
         if self.friction.meta().tags.contains(&Tag::Local) {
@@ -386,54 +459,5 @@ impl Physics<'_> {
             note(beyond, "rolling", law.meta().id, law.outside(&loaded.rolling_contact(oil, &pitch)));
         }
         report
-    }
-
-    fn state(&self, mesh: &Mesh, loaded: &Loaded<'_>, p: &Point, loss_factor: f64) -> MeshContact<f64> {
-        let Loaded { teeth, base_force, normal_force, pitch_line_speed, .. } = *loaded;
-        let pair = &teeth.pair;
-        let composite = composite(teeth);
-        // The smaller wheel first.
-        let small = usize::from(pair.data.wheels[1].teeth < pair.data.wheels[0].teeth);
-        let teeth_of = |k: usize| pair.data.wheels[k].teeth;
-        let (z_1, z_2) = (teeth_of(small), teeth_of(1 - small));
-        let sum = if pair.internal() { z_2 - z_1 } else { z_2 + z_1 };
-        let pinion = &pair.gears[small];
-        let tangential = base_force * pinion.base_radius / pinion.operating_radius;
-        let width = pair.total_width();
-        // Laws that read the oil are in force only where there is one.
-        let oil = |get: fn(&OilState) -> f64| self.oil.as_ref().map_or(f64::NAN, |o| get(&o.1));
-        MeshContact {
-            line_load: base_force / width,
-            normal_force,
-            pitch_sum_speed: 2.0 * pitch_line_speed * pair.operating_pressure_angle.sin(),
-            pitch_line_speed,
-            pitch_radius_transverse: pair.reduced_radius_transverse(0.0),
-            pitch_radius: pair.reduced_radius(0.0),
-            local_line_load: p.line_load,
-            sliding_speed: p.sliding,
-            sum_speed: p.sum,
-            radius: p.radius,
-            hertz_pressure: p.pressure,
-            film: p.film,
-            film_ratio: if composite > 0.0 { p.film / composite } else { f64::INFINITY },
-            dynamic_viscosity: oil(|o| o.dynamic_viscosity),
-            kinematic_viscosity: oil(|o| o.kinematic_viscosity),
-            pressure_viscosity: oil(|o| o.pressure_viscosity),
-            roughness: (teeth.roughness[0] + teeth.roughness[1]) / 2.0,
-            composite_roughness: composite,
-            peak_roughness: PEAK * (teeth.roughness[0] + teeth.roughness[1]),
-            base: self.oil.as_ref().map_or(crate::catalogue::oil::Base::Mineral, |o| o.0.oil.base),
-            lubricant_factor: self.oil.as_ref().and_then(|o| o.0.oil.lubricant_factor),
-            k_factor: tangential / (width * 2.0 * pinion.operating_radius) * sum / z_2,
-            teeth: [z_1, z_2],
-            internal: pair.internal(),
-            normal_pressure_angle: pair.data.pressure_angle,
-            helix: pair.operating_helix,
-            pinion_diameter: 2.0 * pinion.reference_radius,
-            width,
-            contact_length_ratio: pair.shortest_contact_length_ratio(),
-            loss_factor,
-            parallel: f64::from(mesh.count),
-        }
     }
 }

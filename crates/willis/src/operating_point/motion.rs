@@ -60,7 +60,7 @@ impl Physics<'static> {
 
     /// Losses at the speeds and torques of a flow.
     pub fn follow(&self, flow: &Flow) -> Step {
-        self.evaluate(flow, &|_| true, &mut None)
+        self.evaluate(&flow.speeds, &flow.meshes, &|_| true)
     }
 
     /// Temperature of the oil, K.

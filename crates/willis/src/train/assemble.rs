@@ -10,6 +10,7 @@ use crate::exact::Rational;
 use crate::losses::Laws;
 
 use super::describe::{EfficiencySpec, GearSpec, MeshSpec, OperationSpec, ShiftElementSpec, StateSpec, TrainBuilder};
+use super::input::{Assembled, Has, inputs};
 use super::{
     Efficiency, FRAME, Gear, LossTable, Member, MemberId, MemberKind, Mesh, MeshId, Operation, ShiftElement,
     ShiftElementId, ShiftElementKind, State, Train, expand,
@@ -393,7 +394,7 @@ impl Assembler<'_> {
 }
 
 /// Checks the whole description. `None` when an error was reported.
-pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Option<Train> {
+pub(super) fn assemble(spec: TrainBuilder, has: Has<'_>, diagnostics: &mut Diagnostics) -> Option<Train> {
     let before = diagnostics.len();
     for (what, is, most) in [
         ("meshes", spec.meshes.len() + 2 * spec.sets.len(), MOST_MESHES),
@@ -602,7 +603,16 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
 
     let failed = a.diagnostics.iter().skip(before).any(|d| d.severity == crate::diagnostic::Severity::Error);
     let assumptions = a.assumptions();
+    let set_planets: Vec<Vec<MemberId>> = sets.iter().map(|(_, planets)| planets.clone()).collect();
     let Assembler { diagnostics, members, meshes, laws, loss_tables, .. } = a;
+    let inputs = match failed {
+        true => vec![],
+        false => {
+            let lubrication = lubrication.as_ref();
+            let (bearings, planets, set_planets) = (&bearings[..], &planets[..], &set_planets[..]);
+            inputs(&spec, &Assembled { meshes: &meshes, lubrication, bearings, planets, set_planets }, has)
+        }
+    };
     (!failed).then(|| Train {
         name: spec.name,
         source: spec.source,
@@ -630,6 +640,7 @@ pub(super) fn assemble(spec: TrainBuilder, diagnostics: &mut Diagnostics) -> Opt
         loss_tables,
         scenarios,
         studies: spec.studies,
+        inputs,
     })
 }
 

@@ -716,6 +716,6 @@ impl TrainBuilder {
     /// Everything that is wrong, not only the first.
     pub fn build(self) -> Result<Train, Diagnostics> {
         let mut diagnostics = Diagnostics::default();
-        assemble::assemble(self, &mut diagnostics).ok_or(diagnostics)
+        assemble::assemble(self, None, &mut diagnostics).ok_or(diagnostics)
     }
 }

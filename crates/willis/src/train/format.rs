@@ -80,11 +80,11 @@ pub(super) fn read(text: &str, load: &mut reader::Load<'_>) -> Reading {
     dynamic::check_sources(&root, &mut diagnostics);
     let mut train = None;
     if !diagnostics.has_errors() {
-        train = assemble::assemble(builder(&root), &mut diagnostics);
+        train = assemble::assemble(builder(&root), Some(&|place| spans.has(place)), &mut diagnostics);
     } else if diagnostics.len() < 100 && !diagnostics.iter().any(|d| d.code == Code::Syntax) {
         // Names can be checked too where the shape is sound; what is missing was already reported.
         let mut more = Diagnostics::default();
-        assemble::assemble(builder(&root), &mut more);
+        assemble::assemble(builder(&root), None, &mut more);
         let reported: Vec<String> = diagnostics.iter().map(|d| d.place.clone()).collect();
         let doubtful = |d: &Diagnostic| {
             matches!(d.code, Code::MissingKey | Code::IncompleteSet | Code::Unconnected)

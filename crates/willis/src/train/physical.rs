@@ -4,29 +4,30 @@ use crate::catalogue::bearing::Bearing;
 use crate::catalogue::oil::{Oil, Viscosity};
 use crate::geometry::Pair;
 use crate::losses::seal::Material;
+use crate::real::{self, Real};
 
-use super::MemberId;
 use super::describe::physical::{Fluid, OilSupply};
+use super::{MemberId, Mesh, MeshId};
 
 /// Teeth of a mesh.
 #[derive(Clone, Debug)]
-pub struct Teeth {
+pub struct Teeth<R = f64> {
     /// The involute pair; its wheels stand in the order of the mesh's gears.
-    pub pair: Pair,
+    pub pair: Pair<R>,
     /// Arithmetic mean roughness of both flanks, m.
-    pub roughness: [f64; 2],
+    pub roughness: [R; 2],
     /// Depth of immersion of both gears at rest, m.
-    pub immersion: [Option<f64>; 2],
+    pub immersion: [Option<R>; 2],
     /// Young's modulus, Pa.
-    pub youngs_modulus: f64,
+    pub youngs_modulus: R,
     /// Poisson's ratio.
-    pub poisson_ratio: f64,
+    pub poisson_ratio: R,
 }
 
-impl Teeth {
+impl<R: Real> Teeth<R> {
     /// Reduced modulus `E' = E/(1 − ν²)` of two equal materials, Pa.
-    pub fn reduced_modulus(&self) -> f64 {
-        self.youngs_modulus / (1.0 - self.poisson_ratio * self.poisson_ratio)
+    pub fn reduced_modulus(&self) -> R {
+        self.youngs_modulus / (-(self.poisson_ratio * self.poisson_ratio) + 1.0)
     }
 }
 
@@ -144,4 +145,34 @@ pub struct PlanetBody {
     pub orbit_radius: f64,
     /// Mass of one, kg.
     pub mass: f64,
+    /// The mesh whose centre distance is the radius of the orbit.
+    pub(crate) mesh: MeshId,
+    /// Whether the mass was not given.
+    pub(crate) estimated: bool,
+}
+
+/// Density of steel, kg/m³.
+const STEEL: f64 = 7850.0;
+
+/// Mass of a planet as a steel cylinder of each gear's pitch circle and width around a hole, kg.
+pub(crate) fn steel_mass<R: Real>(
+    meshes: &[Mesh],
+    planet: MemberId,
+    hole_radius: R,
+    teeth: &dyn Fn(usize) -> Option<Teeth<R>>,
+) -> R {
+    let mut seen: Vec<(&crate::exact::Rational, R)> = Vec::new();
+    for (j, mesh) in meshes.iter().enumerate() {
+        for (k, g) in mesh.gears.iter().enumerate().filter(|(_, g)| g.member == planet) {
+            if seen.iter().any(|s| *s.0 == g.teeth) {
+                continue;
+            }
+            if let Some(t) = teeth(j) {
+                let r = t.pair.gears[k].reference_radius;
+                let area = real::max(r * r - hole_radius * hole_radius, R::from(0.0)) * std::f64::consts::PI;
+                seen.push((&g.teeth, area * STEEL * t.pair.total_width()));
+            }
+        }
+    }
+    seen.iter().fold(R::from(0.0), |sum, s| sum + s.1)
 }

@@ -1,7 +1,7 @@
 use super::{BearingDuty, Law, Palmgren};
 use crate::catalogue::bearing::Kind;
 use crate::losses::{Meta, Trust};
-use crate::real::{self, Real};
+use crate::real::{self, Inner, Real};
 
 /// Palmgren's torque with Harris' part for the flanges of axially loaded cylindrical rollers.
 ///
@@ -60,7 +60,7 @@ impl Law for Harris {
             s.bearing.kind,
             Kind::CylindricalRoller | Kind::FullComplementCylindricalRoller | Kind::NeedleRoller
         );
-        let flanges = if rollers { self.flange_friction * s.bearing.mean_diameter() } else { 0.0 };
-        Palmgren::DEFAULT.eval(s) + real::abs(s.axial_load) * flanges
+        let flanges = if rollers { s.bearing.mean_diameter() * self.flange_friction } else { Inner::<D>::from(0.0) };
+        Palmgren::DEFAULT.eval(s) + real::abs(s.axial_load) * D::constant(flanges)
     }
 }

@@ -1,8 +1,10 @@
+use num_dual::DualNum;
+
 use super::skf::{Mm, rpm};
 use super::{BearingDuty, Law, Supply, pow};
 use crate::catalogue::bearing::Kind;
 use crate::losses::{Meta, Trust};
-use crate::real::{self, Real};
+use crate::real::{self, Inner, Real};
 
 /// Frictional torque of a rolling bearing after Palmgren: a part of the oil and a part of the load.
 ///
@@ -84,16 +86,16 @@ impl Law for Palmgren {
         };
         let f0 = self.f0.unwrap_or(k.f0 * supply);
         let nu_n = s.kinematic_viscosity * rpm(s) * 1e6;
-        let m0 = if nu_n.re() >= 2000.0 { nu_n.powf(2.0 / 3.0) * 1e-7 } else { D::from(160e-7) } * (f0 * dm.powi(3));
+        let m0 = if nu_n.re() >= 2000.0 { nu_n.powf(2.0 / 3.0) * 1e-7 } else { D::from(160e-7) } * D::constant(dm.powi(3) * f0);
 
         let y = s.bearing.axial_factor;
         let (p0, p1) = match s.bearing.kind {
             Kind::DeepGrooveBall => (fr * 0.6 + fa * 0.5, fa * 3.0 - fr * 0.1),
             Kind::AngularContactBall | Kind::FourPointContactBall => (fr * 0.5 + fa * 0.26, fa - fr * 0.1),
             Kind::DoubleRowAngularContactBall => (fr * 0.5 + fa * 0.26, fa * 1.4 - fr * 0.1),
-            Kind::TaperedRoller => (fr, fa * (2.0 * y.unwrap_or(1.5))),
+            Kind::TaperedRoller => (fr, fa * D::constant(y.unwrap_or(Inner::<D>::from(1.5)) * 2.0)),
             Kind::SphericalRoller => {
-                let axial = fa * y.unwrap_or(2.5);
+                let axial = fa * D::constant(y.unwrap_or(Inner::<D>::from(2.5)));
                 let p1 = if fr.re() > axial.re() { fr + (axial / fr).powi(3) * fr * 0.35 } else { axial * 1.35 };
                 (fr + axial, p1)
             }
@@ -104,10 +106,10 @@ impl Law for Palmgren {
         let (p0, p1) = if axial_only { (p0, p1) } else { (real::max(p0, fr), real::max(p1, fr)) };
         let utilisation = match (k.exponent > 0.0, s.bearing.static_rating) {
             (false, _) => D::from(1.0),
-            (true, Some(c0)) => pow(p0 / c0, k.exponent),
+            (true, Some(c0)) => pow(p0.over(c0), k.exponent),
             (true, None) => D::from(0.1f64.powf(k.exponent)),
         };
-        let m1 = utilisation * p1 * (self.f1.unwrap_or(k.f1) * dm);
+        let m1 = utilisation * p1 * D::constant(dm * self.f1.unwrap_or(k.f1));
         real::max(m0 + m1, zero) * 1e-3
     }
 }

@@ -1,8 +1,10 @@
+use num_dual::{DualNum, DualStruct};
+
 use super::{BearingDuty, Law, Supply, pow};
 use crate::catalogue::bearing::{Data, Kind, Seal, SealKind, SkfConstants};
 use crate::catalogue::oil::Base;
 use crate::losses::{Meta, Trust};
-use crate::real::{self, Real};
+use crate::real::{self, Inner, Real};
 
 /// Frictional torque of a rolling bearing after SKF (catalogues of 2013 and 2018).
 ///
@@ -110,30 +112,31 @@ impl Skf {
     fn drag<D: Real>(&self, s: &BearingDuty<D>, k: &SkfConstants) -> D {
         let (level, jets) = match s.supply {
             Supply::Bath { level } => (level, 1.0),
-            Supply::Jet => (0.5 * s.bearing.element_diameter, 2.0),
+            Supply::Jet => (s.bearing.element_diameter * 0.5, 2.0),
             Supply::Mist | Supply::Grease => return D::from(0.0),
         };
         let Mm { d, big_d, b, dm } = Mm::of(&s.bearing);
-        let h = (level * 1e3).min(1.2 * dm);
-        if h <= 0.0 {
+        let fixed = |c: Inner<D>| D::constant(c);
+        let h = real::min(level * 1e3, dm * 1.2);
+        if h.re() <= 0.0 {
             return D::from(0.0);
         }
         let n = rpm(s);
         let nu_mm2_s = s.kinematic_viscosity * 1e6;
         let ratio = (big_d + d) / (big_d - d);
-        let v_m = self.drag_loss_factor.unwrap_or_else(|| interpolate(k.drag, h / dm));
+        let v_m = self.drag_loss_factor.map_or_else(|| interpolate(k.drag, h / dm), Inner::<D>::from);
         let first = if s.bearing.kind.is_ball() {
-            0.4 * v_m * (f64::from(s.bearing.rows) * k.k_z * ratio * 1e-12) * dm.powi(5)
+            v_m * 0.4 * (ratio * (f64::from(s.bearing.rows) * k.k_z) * 1e-12) * dm.powi(5)
         } else {
-            let l_d = 5.0 * k.k_l * b / dm;
-            let c_w = 2.789e-10 * l_d.powi(3) - 2.786e-4 * l_d.powi(2) + 0.0195 * l_d + 0.6439;
-            4.0 * v_m * (k.k_l * k.k_z * ratio * 1e-12) * c_w.max(0.0) * b * dm.powi(4)
+            let l_d = b * (5.0 * k.k_l) / dm;
+            let c_w = l_d.powi(3) * 2.789e-10 - l_d.powi(2) * 2.786e-4 + l_d * 0.0195 + 0.6439;
+            v_m * 4.0 * (ratio * (k.k_l * k.k_z) * 1e-12) * real::max(c_w, Inner::<D>::from(0.0)) * b * dm.powi(4)
         };
-        let t = 2.0 * ((0.6 * dm - h) / (0.6 * dm)).clamp(-1.0, 1.0).acos();
-        let f_t = if t <= std::f64::consts::PI { (0.5 * t).sin() } else { 1.0 };
-        let r_s = 0.36 * dm * dm * (t - t.sin()) * (0.05 * k.k_z * ratio);
-        let second = (n / nu_mm2_s * (dm * dm * f_t)).powf(-1.379) * (1.093e-7 * dm.powi(3) * r_s);
-        n * n * (second + first) * (jets * 1e-3)
+        let t = real::acos((dm * 0.6 - h) / (dm * 0.6)) * 2.0;
+        let f_t = if t.re() <= std::f64::consts::PI { (t * 0.5).sin() } else { Inner::<D>::from(1.0) };
+        let r_s = dm * 0.36 * dm * (t - t.sin()) * (ratio * (0.05 * k.k_z));
+        let second = (n / nu_mm2_s * fixed(dm * dm * f_t)).powf(-1.379) * fixed(dm.powi(3) * 1.093e-7 * r_s);
+        n * n * (second + fixed(first)) * (jets * 1e-3)
     }
 }
 
@@ -182,17 +185,17 @@ impl<D: Real> Parts<D> {
 }
 
 /// Lengths of a bearing in the unit of the source.
-pub(super) struct Mm {
-    pub d: f64,
-    pub big_d: f64,
-    pub b: f64,
-    pub dm: f64,
+pub(super) struct Mm<D> {
+    pub d: D,
+    pub big_d: D,
+    pub b: D,
+    pub dm: D,
 }
 
-impl Mm {
-    pub fn of(bearing: &Data) -> Self {
+impl<D: Real> Mm<D> {
+    pub fn of(bearing: &Data<D>) -> Self {
         let (d, big_d, b) = (bearing.bore * 1e3, bearing.outside_diameter * 1e3, bearing.width * 1e3);
-        Self { d, big_d, b, dm: 0.5 * (d + big_d) }
+        Self { d, big_d, b, dm: (d + big_d) * 0.5 }
     }
 }
 
@@ -224,18 +227,19 @@ pub(super) fn load_and_seals<D: Real>(
         _ => 0.04,
     };
     let [mu_bl, mu_ehl] = s.sliding_friction.unwrap_or([boundary_friction, full]);
-    let low = 0.5 * s.bearing.element_diameter * (1.0 + 1e-9);
+    let low = s.bearing.element_diameter.re() * 0.5 * (1.0 + 1e-9);
     let k_rs = starvation.unwrap_or(match s.supply {
-        Supply::Bath { level } if level > low => 0.0,
+        Supply::Bath { level } if level.re() > low => 0.0,
         Supply::Bath { .. } | Supply::Jet => 3e-8,
         Supply::Mist | Supply::Grease => 6e-8,
     });
     let one = D::from(1.0);
+    let fixed = |c: Inner<D>| D::constant(c);
     let (phi_ish, phi_rs, phi_bl, mu_sl) = if turns {
-        let phi_bl = (-n_nu.powf(1.4) * (2.6e-8 * dm)).exp();
+        let phi_bl = (-n_nu.powf(1.4) * fixed(dm * 2.6e-8)).exp();
         (
-            ((n * dm).powf(1.28) * nu_mm2_s.powf(0.64) * 1.84e-9 + 1.0).recip(),
-            (-n_nu * (k_rs * (d + big_d) * (k.k_z / (2.0 * (big_d - d))).sqrt())).exp(),
+            ((n * fixed(dm)).powf(1.28) * nu_mm2_s.powf(0.64) * 1.84e-9 + 1.0).recip(),
+            (-n_nu * fixed((d + big_d) * k_rs * (Inner::<D>::from(k.k_z) / ((big_d - d) * 2.0)).sqrt())).exp(),
             phi_bl,
             phi_bl * (mu_bl - mu_ehl) + mu_ehl,
         )
@@ -248,105 +252,107 @@ pub(super) fn load_and_seals<D: Real>(
         replenishment: phi_rs,
         boundary_share: phi_bl,
         sliding: g_sl * mu_sl * 1e-3,
-        seals: D::from(s.bearing.seal.map_or(0.0, |seal| seal_torque(&seal, s.bearing.kind, d, big_d)) * 1e-3),
+        seals: s.bearing.seal.map_or(D::from(0.0), |seal| fixed(seal_torque(&seal, s.bearing.kind, d, big_d) * 1e-3)),
         drag: D::from(0.0),
     }
 }
 
 /// `G_rr` and `G_sl`, in the units of the source.
-fn geometry<D: Real>(s: &BearingDuty<D>, k: &SkfConstants, dm: f64, n: D) -> (D, D) {
+fn geometry<D: Real>(s: &BearingDuty<D>, k: &SkfConstants, dm: Inner<D>, n: D) -> (D, D) {
     let [r1, r2, r3, r4] = k.rolling;
     let [s1, s2, s3, s4] = k.sliding;
     let (fr, fa) = (real::abs(s.radial_load), real::abs(s.axial_load));
-    let y = s.bearing.axial_factor.unwrap_or(1.5);
+    let fixed = |c: Inner<D>| D::constant(c);
+    let y = s.bearing.axial_factor.unwrap_or(Inner::<D>::from(1.5));
     let third = 1.0 / 3.0;
     match s.bearing.kind {
         Kind::DeepGrooveBall if fa.re() > 0.0 => {
             let sine = match s.bearing.static_rating {
-                Some(c0) => ((fa / c0).powf(0.24) * 24.6f64.to_radians()).sin(),
+                Some(c0) => (fa.over(c0).powf(0.24) * 24.6f64.to_radians()).sin(),
                 None => D::from(15f64.to_radians().sin()),
             };
             // beyond 90° the formula means nothing: the contact cannot be steeper
             let sine = if sine.re() > 0.0 { sine } else { D::from(1.0) };
             (
-                pow(fr + fa / sine * r2, 0.54) * (r1 * dm.powf(1.96)),
-                pow(fr.powi(5) + fa.powi(4) / sine * (s2 * dm.powf(1.5)), third) * (s1 * dm.powf(-0.145)),
+                pow(fr + fa / sine * r2, 0.54) * fixed(dm.powf(1.96) * r1),
+                pow(fr.powi(5) + fa.powi(4) / sine * fixed(dm.powf(1.5) * s2), third) * fixed(dm.powf(-0.145) * s1),
             )
         }
         Kind::DeepGrooveBall => {
-            (pow(fr, 0.54) * (r1 * dm.powf(1.96)), pow(fr, 5.0 * third) * (s1 * dm.powf(-0.26)))
+            (pow(fr, 0.54) * fixed(dm.powf(1.96) * r1), pow(fr, 5.0 * third) * fixed(dm.powf(-0.26) * s1))
         }
         Kind::AngularContactBall | Kind::DoubleRowAngularContactBall | Kind::FourPointContactBall => {
-            let whirl = n * n * dm.powi(4);
+            let whirl = n * n * fixed(dm.powi(4));
             (
-                pow(fr + whirl * r3 + fa * r2, 0.54) * (r1 * dm.powf(1.97)),
-                (pow(fr + whirl * s3, 4.0 * third) + pow(fa, 4.0 * third) * s2) * (s1 * dm.powf(0.26)),
+                pow(fr + whirl * r3 + fa * r2, 0.54) * fixed(dm.powf(1.97) * r1),
+                (pow(fr + whirl * s3, 4.0 * third) + pow(fa, 4.0 * third) * s2) * fixed(dm.powf(0.26) * s1),
             )
         }
         Kind::SelfAligningBall => {
-            let whirl = n * n * dm.powf(3.5);
+            let whirl = n * n * fixed(dm.powf(3.5));
             (
-                pow(fr + whirl * r3 + fa * r2, 0.54) * (r1 * dm.powi(2)),
-                (pow(fr + whirl * s3, 4.0 * third) + pow(fa, 4.0 * third) * s2) * (s1 * dm.powf(-0.12)),
+                pow(fr + whirl * r3 + fa * r2, 0.54) * fixed(dm.powi(2) * r1),
+                (pow(fr + whirl * s3, 4.0 * third) + pow(fa, 4.0 * third) * s2) * fixed(dm.powf(-0.12) * s1),
             )
         }
         Kind::TaperedRoller => (
-            pow(fr + fa * (r2 * y), 0.31) * (r1 * dm.powf(2.38)),
-            (fr + fa * (s2 * y)) * (s1 * dm.powf(0.82)),
+            pow(fr + fa * fixed(y * r2), 0.31) * fixed(dm.powf(2.38) * r1),
+            (fr + fa * fixed(y * s2)) * fixed(dm.powf(0.82) * s1),
         ),
         Kind::SphericalRoller => (
             real::min(
-                pow(fr + fa * r2, 0.54) * (r1 * dm.powf(1.85)),
-                pow(fr + fa * r4, 0.31) * (r3 * dm.powf(2.3)),
+                pow(fr + fa * r2, 0.54) * fixed(dm.powf(1.85) * r1),
+                pow(fr + fa * r4, 0.31) * fixed(dm.powf(2.3) * r3),
             ),
             real::min(
-                pow(fr.powi(4) + fa.powi(4) * s2, third) * (s1 * dm.powf(0.25)),
-                pow(fr.powi(3) + fa.powi(3) * s4, third) * (s3 * dm.powf(0.94)),
+                pow(fr.powi(4) + fa.powi(4) * s2, third) * fixed(dm.powf(0.25) * s1),
+                pow(fr.powi(3) + fa.powi(3) * s4, third) * fixed(dm.powf(0.94) * s3),
             ),
         ),
         Kind::ToroidalRoller => (
-            real::min(pow(fr, 0.54) * (r1 * dm.powf(1.97)), pow(fr, 0.31) * (r2 * dm.powf(2.37))),
-            real::min(pow(fr, 5.0 * third) * (s1 * dm.powf(-0.19)), fr * (s2 * dm.powf(1.05))),
+            real::min(pow(fr, 0.54) * fixed(dm.powf(1.97) * r1), pow(fr, 0.31) * fixed(dm.powf(2.37) * r2)),
+            real::min(pow(fr, 5.0 * third) * fixed(dm.powf(-0.19) * s1), fr * fixed(dm.powf(1.05) * s2)),
         ),
-        Kind::AxialBall => (pow(fa, 0.54) * (r1 * dm.powf(1.83)), pow(fa, 4.0 * third) * (s1 * dm.powf(0.05))),
-        Kind::AxialCylindricalRoller => (pow(fa, 0.31) * (r1 * dm.powf(2.38)), fa * (s1 * dm.powf(0.62))),
+        Kind::AxialBall => (pow(fa, 0.54) * fixed(dm.powf(1.83) * r1), pow(fa, 4.0 * third) * fixed(dm.powf(0.05) * s1)),
+        Kind::AxialCylindricalRoller => (pow(fa, 0.31) * fixed(dm.powf(2.38) * r1), fa * fixed(dm.powf(0.62) * s1)),
         Kind::CylindricalRoller | Kind::FullComplementCylindricalRoller | Kind::NeedleRoller => {
-            (pow(fr, 0.31) * (r1 * dm.powf(2.41)), fa * (s1 * dm.powf(0.9)) + fr * (s2 * dm))
+            (pow(fr, 0.31) * fixed(dm.powf(2.41) * r1), fa * fixed(dm.powf(0.9) * s1) + fr * fixed(dm * s2))
         }
     }
 }
 
 /// Torque of rubbing seals, N mm.
-fn seal_torque(seal: &Seal, kind: Kind, d: f64, big_d: f64) -> f64 {
+fn seal_torque<D: Real>(seal: &Seal, kind: Kind, d: D, big_d: D) -> D {
     let share = match seal.kind {
         SealKind::Rs1 => 0.32,
         SealKind::Rsl | SealKind::Rsh | SealKind::Cs => 0.25,
         SealKind::Ls => 0.8,
     };
-    let d_s = seal.diameter.map_or(d + share * (big_d - d), |x| x * 1e3);
+    let d_s = seal.diameter.map_or(d + (big_d - d) * share, |x| D::from(x * 1e3));
     let deep_groove = kind == Kind::DeepGrooveBall;
+    let size = big_d.re();
     let (k_s1, k_s2, beta) = match seal.kind {
         // Angular contact and self-aligning ball bearings have a row of their own.
         SealKind::Rs1 if kind.is_ball() && !deep_groove => (0.014, 10.0, 2.0),
-        SealKind::Rsl if big_d <= 25.0 => (0.0, 0.0, 0.0),
-        SealKind::Rsl if big_d <= 52.0 => (0.0018, 0.0, 2.25),
-        SealKind::Rsh if big_d <= 52.0 => (0.028, 2.0, 2.25),
+        SealKind::Rsl if size <= 25.0 => (0.0, 0.0, 0.0),
+        SealKind::Rsl if size <= 52.0 => (0.0018, 0.0, 2.25),
+        SealKind::Rsh if size <= 52.0 => (0.028, 2.0, 2.25),
         SealKind::Ls => (0.032, 50.0, 2.0),
         SealKind::Cs => (0.057, 50.0, 2.0),
-        _ if big_d <= 62.0 => (0.023, 2.0, 2.25),
-        _ if big_d <= 80.0 => (0.018, 20.0, 2.25),
-        _ if big_d <= 100.0 => (0.018, 15.0, 2.25),
+        _ if size <= 62.0 => (0.023, 2.0, 2.25),
+        _ if size <= 80.0 => (0.018, 20.0, 2.25),
+        _ if size <= 100.0 => (0.018, 15.0, 2.25),
         _ => (0.018, 0.0, 2.25),
     };
-    (k_s1 * d_s.powf(beta) + k_s2) * 0.5 * f64::from(seal.lips)
+    (d_s.powf(beta) * k_s1 + k_s2) * 0.5 * f64::from(seal.lips)
 }
 
 /// Linear between the points of a table that rises in its first column; its ends hold beyond.
-pub(super) fn interpolate(table: &[[f64; 2]], x: f64) -> f64 {
-    let above = table.partition_point(|p| p[0] < x);
+pub(super) fn interpolate<D: Real>(table: &[[f64; 2]], x: D) -> D {
+    let above = table.partition_point(|p| p[0] < x.re());
     match (above.checked_sub(1).and_then(|k| table.get(k)), table.get(above)) {
-        (Some([x0, y0]), Some([x1, y1])) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
-        (Some([_, y]), None) | (None, Some([_, y])) => *y,
-        (None, None) => 0.0,
+        (Some([x0, y0]), Some([x1, y1])) => (x - *x0) * (y1 - y0) / (x1 - x0) + *y0,
+        (Some([_, y]), None) | (None, Some([_, y])) => D::from(*y),
+        (None, None) => D::from(0.0),
     }
 }

@@ -1,7 +1,9 @@
+use num_dual::DualNum;
+
 use super::skf::{Mm, interpolate, load_and_seals, rpm};
 use super::{BearingDuty, Law, Parts, Supply};
 use crate::losses::{Meta, Tag, Trust};
-use crate::real::Real;
+use crate::real::{Inner, Real, min};
 
 /// Frictional torque of a rolling bearing after SKF's general catalogue 6000, with its old drag.
 ///
@@ -62,18 +64,20 @@ impl Skf6000 {
         let Mm { d, big_d, b, dm } = Mm::of(&s.bearing);
         let (level, jets) = match s.supply {
             Supply::Bath { level } => (level * 1e3, 1.0),
-            Supply::Jet => (500.0 * s.bearing.element_diameter, 2.0),
-            Supply::Mist | Supply::Grease => (0.0, 1.0),
+            Supply::Jet => (s.bearing.element_diameter * 500.0, 2.0),
+            Supply::Mist | Supply::Grease => (Inner::<D>::from(0.0), 1.0),
         };
-        let v_m = self.drag_loss_factor.unwrap_or_else(|| interpolate(k.drag, level.min(1.2 * dm) / dm));
-        let ratio = k.k_z * (d + big_d) / (big_d - d) * 1e-12;
+        let v_m = self
+            .drag_loss_factor
+            .map_or_else(|| interpolate(k.drag, min(level, dm * 1.2) / dm), Inner::<D>::from);
+        let ratio = (d + big_d) * k.k_z / (big_d - d) * 1e-12;
         let factor = if s.bearing.kind.is_ball() {
-            f64::from(s.bearing.rows) * ratio * dm.powi(5)
+            ratio * f64::from(s.bearing.rows) * dm.powi(5)
         } else {
-            10.0 * k.k_l * ratio * b * dm.powi(4)
+            ratio * (10.0 * k.k_l) * b * dm.powi(4)
         };
         let n = rpm(s);
-        Some(Parts { drag: n * n * (v_m * factor * jets * 1e-3), ..load_and_seals(s, &k, self.starvation, 0.15) })
+        Some(Parts { drag: n * n * D::constant(v_m * factor * jets * 1e-3), ..load_and_seals(s, &k, self.starvation, 0.15) })
     }
 }
 

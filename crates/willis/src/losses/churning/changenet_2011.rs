@@ -1,6 +1,6 @@
 use super::{Dip, Law};
 use crate::losses::{Meta, Range, Trust};
-use crate::real::Real;
+use crate::real::{Real, acos, min};
 
 /// Churning of one gear in an oil sump after Changenet, Leprince, Ville and Velex (2011).
 ///
@@ -76,22 +76,22 @@ impl Law for Changenet2011 {
 
     fn eval<D: Real>(&self, s: &Dip<D>) -> D {
         let (w, r, b, h) = (s.speed, s.radius, s.width, s.immersion);
-        if w.re() <= 0.0 || h <= 0.0 {
+        if w.re() <= 0.0 || h.re() <= 0.0 {
             return D::from(0.0);
         }
-        let d = 2.0 * r;
-        let theta = (1.0 - h / r).clamp(-1.0, 1.0).acos();
+        let d = r * 2.0;
+        let theta = acos(-(h / r) + 1.0);
         let h_t = s.tip_radius - s.root_radius;
-        let teeth = 2.0 * s.teeth * theta * h_t * b
-            / (std::f64::consts::PI * s.pressure_angle.cos() * s.helix.cos());
-        let s_m = r * r * (2.0 * theta - (2.0 * theta).sin()) + d * b * theta + teeth;
+        let teeth = theta * (2.0 * s.teeth) * h_t * b
+            / (s.pressure_angle.cos() * std::f64::consts::PI * s.helix.cos());
+        let s_m = r * r * (theta * 2.0 - (theta * 2.0).sin()) + d * b * theta + teeth;
 
         let fr = w * w * (r / s.gravity);
         let re = w / s.kinematic_viscosity * (r * b);
         // The limits of the regimes were found under gravity.
         let gamma = w * w * ((r * b * s.module).cbrt() * 9.806_65 / s.gravity);
         let viscous = re.re() < 4000.0;
-        let (depth, volume, slim) = ((h / d).min(1.0), s.oil_volume / d.powi(3), b / d);
+        let (depth, volume, slim) = (min(h / d, D::from(1.0)), s.oil_volume / d.powi(3), b / d);
         let regime = |laminar: f64, turbulent: f64, powers: [f64; 3], froude: f64| {
             let a = if viscous { re.powf(-0.21) * laminar } else { D::from(turbulent) };
             let shape = depth.powf(powers[0]) * volume.powf(powers[1]) * slim.powf(powers[2]);
@@ -106,6 +106,6 @@ impl Law for Changenet2011 {
         } else {
             slow + (fast - slow) * (gamma - 750.0) / 500.0
         };
-        w.powi(3) * s.density * c_m * (0.5 * r.powi(3) * s_m)
+        w.powi(3) * s.density * c_m * (r.powi(3) * 0.5 * s_m)
     }
 }

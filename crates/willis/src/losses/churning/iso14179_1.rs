@@ -1,6 +1,6 @@
 use super::{Dip, Law};
 use crate::losses::{Meta, Trust};
-use crate::real::Real;
+use crate::real::{Real, abs, clamp, max};
 
 /// Churning of one gear in an oil sump after ISO/TR 14179-1.
 ///
@@ -67,14 +67,14 @@ impl Law for Iso14179p1 {
 
     fn eval<D: Real>(&self, s: &Dip<D>) -> D {
         let dip = s.immersion + s.tip_radius - s.radius;
-        let f_g = (dip / (2.0 * s.tip_radius)).clamp(0.0, 1.0);
+        let f_g = clamp(dip / (s.tip_radius * 2.0), D::from(0.0), D::from(1.0));
         let n = s.speed * (30.0 / std::f64::consts::PI);
-        let (d_mm, f_mm) = (2e3 * s.tip_radius, 1e3 * s.width);
-        let m_t_mm = 1e3 * s.module / s.helix.cos();
-        let r_f = (7.93 - 4.648 / m_t_mm).max(0.0);
-        let helix = s.helix.abs().max(10f64.to_radians());
-        let sides = 1.474 * d_mm.powf(5.7);
-        let teeth = 7.37 * d_mm.powf(4.7) * f_mm * r_f / helix.tan().sqrt();
+        let (d_mm, f_mm) = (s.tip_radius * 2e3, s.width * 1e3);
+        let m_t_mm = s.module * 1e3 / s.helix.cos();
+        let r_f = max(-(D::from(4.648) / m_t_mm) + 7.93, D::from(0.0));
+        let helix = max(abs(s.helix), D::from(10f64.to_radians()));
+        let sides = d_mm.powf(5.7) * 1.474;
+        let teeth = d_mm.powf(4.7) * 7.37 * f_mm * r_f / helix.tan().sqrt();
         s.kinematic_viscosity * n.powi(3) * (f_g * (sides + teeth) * 1e6 / (self.arrangement * 1e26) * 1e3)
     }
 }

@@ -121,6 +121,6 @@ impl Law for Integrated {
             }
             from = to;
         }
-        sum * (2.0 * s.factor())
+        sum * (s.factor() * 2.0)
     }
 }

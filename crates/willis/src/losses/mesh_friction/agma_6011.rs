@@ -47,8 +47,10 @@ impl Agma6011 {
 }
 
 /// `0.01 · (22 − 0.8 α_n)`, with the angle not above 25°.
-pub(super) fn angle_factor(normal_pressure_angle: f64) -> f64 {
-    0.01 * (22.0 - 0.8 * min(normal_pressure_angle.to_degrees(), 25.0))
+pub(super) fn angle_factor<D: Real>(normal_pressure_angle: D) -> D {
+    // In the order in which `f64::to_degrees` computes.
+    let degrees = normal_pressure_angle * (180.0f64 / std::f64::consts::PI);
+    (-(min(degrees, D::from(25.0)) * 0.8) + 22.0) * 0.01
 }
 
 /// Where the estimate is used as it stands.

@@ -65,7 +65,7 @@ impl Law for Agma6011PerPlanet {
 
     fn eval<D: Real>(&self, s: &MeshContact<D>) -> D {
         let [z1, z2] = s.teeth;
-        let fraction = s.parallel * angle_factor(s.normal_pressure_angle) * (1.0 / z1 + 1.0 / z2);
+        let fraction = angle_factor(s.normal_pressure_angle) * s.parallel * (1.0 / z1 + 1.0 / z2);
         s.loss_factor.recip() * fraction
     }
 }

@@ -72,15 +72,12 @@ impl Law for Fernandes {
     };
 
     fn eval<D: Real>(&self, s: &MeshContact<D>) -> D {
-        let x_l = s.lubricant_factor.map_or_else(
-            || match s.base {
-                Base::Mineral => D::from(0.846),
-                Base::Pao | Base::Ester => D::from(0.65),
-                Base::Pag => D::from(0.585),
-                other => other.lubricant_factor(s.pitch_sum_speed),
-            },
-            D::from,
-        );
+        let x_l = s.lubricant_factor.unwrap_or_else(|| match s.base {
+            Base::Mineral => D::from(0.846),
+            Base::Pao | Base::Ester => D::from(0.65),
+            Base::Pag => D::from(0.585),
+            other => other.lubricant_factor(s.pitch_sum_speed),
+        });
         let s_p = s.pitch_sum_speed * s.dynamic_viscosity * (s.pressure_viscosity / s.normal_force).sqrt();
         let s_g = s.roughness / (s.width * s.contact_length_ratio * s.pitch_radius_transverse).sqrt();
         (s_g / s_p).powf(0.25) * x_l * 0.014

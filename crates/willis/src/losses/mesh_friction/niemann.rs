@@ -60,7 +60,7 @@ pub(super) fn smooth<D: Real>(s: &MeshContact<D>) -> D {
     let w_n_mm = s.line_load * 1e-3;
     let rho_mm = s.pitch_radius * 1e3;
     let eta_mpa_s = s.dynamic_viscosity * 1e3;
-    let x_l = s.lubricant_factor.map_or_else(|| s.base.lubricant_factor(s.pitch_sum_speed), D::from);
+    let x_l = s.lubricant_factor.unwrap_or_else(|| s.base.lubricant_factor(s.pitch_sum_speed));
     (w_n_mm / (s.pitch_sum_speed * rho_mm)).powf(0.2) * eta_mpa_s.powf(-0.05) * x_l * 0.045
 }
 

@@ -73,7 +73,7 @@ impl Law for Schlenk {
         let rho_mm = s.pitch_radius_transverse * 1e3;
         let eta_mpa_s = s.dynamic_viscosity * 1e3;
         let ra_um = s.roughness * 1e6;
-        let x_l = s.lubricant_factor.map_or_else(|| s.base.lubricant_factor(s.pitch_sum_speed), D::from);
+        let x_l = s.lubricant_factor.unwrap_or_else(|| s.base.lubricant_factor(s.pitch_sum_speed));
         (w_n_mm / (s.pitch_sum_speed * rho_mm)).powf(0.2) * eta_mpa_s.powf(-0.05) * ra_um.powf(0.25) * x_l * 0.048
     }
 }

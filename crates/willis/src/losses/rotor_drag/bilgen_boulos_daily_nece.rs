@@ -69,7 +69,7 @@ impl Law for BilgenBoulosDailyNece {
         let r = s.radius;
         let per_area = s.speed * (s.density / s.viscosity);
 
-        let gap = (s.radial_gap / r).max(1e-4);
+        let gap = real::max(s.radial_gap / r, D::from(1e-4));
         let re_t = per_area * (r * r * gap);
         let (factor, power) = match re_t.re() {
             x if x < 64.0 => (5.0, -1.0),
@@ -77,14 +77,14 @@ impl Law for BilgenBoulosDailyNece {
             x if x < 1e4 => (0.515, -0.5),
             _ => (0.0325, -0.2),
         };
-        let rim = re_t.powf(power) * (0.5 * std::f64::consts::PI * factor * gap.powf(0.3) * r.powi(4) * s.length);
+        let rim = re_t.powf(power) * (gap.powf(0.3) * (0.5 * std::f64::consts::PI * factor) * r.powi(4) * s.length);
 
-        let g = (s.axial_gap / r).max(1e-4);
+        let g = real::max(s.axial_gap / r, D::from(1e-4));
         let re = per_area * (r * r);
-        let laminar = real::max(re.recip() * (std::f64::consts::TAU / g), re.powf(-0.5) * (3.70 * g.powf(0.1)));
+        let laminar = real::max(re.recip() * (D::from(std::f64::consts::TAU) / g), re.powf(-0.5) * (g.powf(0.1) * 3.70));
         let turbulent =
-            real::max(re.powf(-0.25) * (0.08 * g.powf(-1.0 / 6.0)), re.powf(-0.2) * (0.102 * g.powf(0.1)));
-        let faces = real::max(laminar, turbulent) * (0.5 * r.powi(5));
+            real::max(re.powf(-0.25) * (g.powf(-1.0 / 6.0) * 0.08), re.powf(-0.2) * (g.powf(0.1) * 0.102));
+        let faces = real::max(laminar, turbulent) * (r.powi(5) * 0.5);
 
         (rim + faces) * s.speed.powi(3) * s.density
     }

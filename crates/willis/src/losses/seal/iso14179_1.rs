@@ -56,6 +56,6 @@ impl Law for Iso14179p1 {
             Material::Fkm => 3.737e-3,
             Material::Nbr => 2.429e-3,
         };
-        s.speed * (per_mm * d_mm)
+        s.speed * (d_mm * per_mm)
     }
 }

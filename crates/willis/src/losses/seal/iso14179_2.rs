@@ -52,6 +52,6 @@ impl Law for Iso14179p2 {
 
     fn eval<D: Real>(&self, s: &Lip<D>) -> D {
         let d_mm = s.diameter * 1e3;
-        s.speed * (7.69e-6 * d_mm * d_mm * 30.0 / std::f64::consts::PI)
+        s.speed * (d_mm * 7.69e-6 * d_mm * 30.0 / std::f64::consts::PI)
     }
 }

@@ -1,6 +1,6 @@
 use super::{Law, Lip};
 use crate::losses::{Meta, Trust};
-use crate::real::Real;
+use crate::real::{Real, max};
 
 /// Power lost by a lip seal after Simrit (ISO/TR 14179-2), with oil and temperature.
 ///
@@ -54,8 +54,8 @@ impl Law for Simrit {
     fn eval<D: Real>(&self, s: &Lip<D>) -> D {
         let d_mm = s.diameter * 1e3;
         let celsius = s.temperature - 273.15;
-        let oil = ((s.viscosity_40 * 1e6).max(2.0) + 0.8).log10().log10();
-        let bracket = -celsius * 1.6 + (145.0 + 350.0 * oil);
+        let oil = (max(s.viscosity_40 * 1e6, D::from(2.0)) + 0.8).log10().log10();
+        let bracket = -celsius * 1.6 + (oil * 350.0 + 145.0);
         if bracket.re() <= 0.0 {
             return D::from(0.0);
         }

@@ -71,7 +71,7 @@ impl Law for AndersonLoewenthal {
         }
         let r = s.radius;
         let re = s.speed * (s.density * r * r / s.viscosity);
-        let torque = s.speed.powi(2) * re.powf(-0.2) * (0.045 * s.density * r.powi(5) * (1.0 + 2.3 * s.width / r));
+        let torque = s.speed.powi(2) * re.powf(-0.2) * (s.density * 0.045 * r.powi(5) * (s.width * 2.3 / r + 1.0));
         torque * s.speed
     }
 }

@@ -64,8 +64,8 @@ impl Law for Dawson1984 {
             return D::from(0.0);
         }
         let n = s.speed * (30.0 / std::f64::consts::PI);
-        let (d_mm, f_mm, m_mm) = (2e3 * s.root_radius, 1e3 * s.width, 1e3 * s.module);
-        let size = 0.16 * d_mm.powf(3.9) + d_mm.powf(2.9) * f_mm.powf(0.75) * m_mm.powf(1.15);
+        let (d_mm, f_mm, m_mm) = (s.root_radius * 2e3, s.width * 1e3, s.module * 1e3);
+        let size = d_mm.powf(3.9) * 0.16 + d_mm.powf(2.9) * f_mm.powf(0.75) * m_mm.powf(1.15);
         n.powf(2.9) * (size * 1e-20 * self.mist_factor * s.enclosure * 1e3)
     }
 }

@@ -1,6 +1,6 @@
 use super::{Disc, Law};
 use crate::losses::{Meta, Range, Trust};
-use crate::real::Real;
+use crate::real::{Real, power};
 
 /// Windage of a spur gear after Diab, Ville and Velex, by dimensional analysis.
 ///
@@ -63,8 +63,9 @@ impl Law for Diab {
         }
         let r = s.radius;
         let re = s.speed * (s.density * r * r / s.viscosity);
-        let walls: f64 = s.axial_gaps.iter().map(|h| (h.max(0.0) / r).powf(0.56)).sum();
-        let c_t = re.powf(-0.25) * (60.0 * (s.width / r).powf(0.8) * s.teeth.powf(-0.4) * walls);
-        c_t * s.speed.powi(3) * (0.5 * s.density * r.powi(5))
+        let [first, second] = s.axial_gaps.map(|h| power(h / r, 0.56));
+        let walls = first + second;
+        let c_t = re.powf(-0.25) * ((s.width / r).powf(0.8) * 60.0 * s.teeth.powf(-0.4) * walls);
+        c_t * s.speed.powi(3) * (s.density * 0.5 * r.powi(5))
     }
 }

@@ -9,8 +9,8 @@ use crate::losses::loss_factor::Path;
 use crate::train::describe::physical::{
     BearingSpec, Fluid, GeometrySpec, HousingSpec, OilSpec, RotorSpec, SealSpec, ToothSpec,
 };
-use crate::train::physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
-use crate::train::{Efficiency, FRAME, MemberId, MemberKind};
+use crate::train::physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth, steel_mass};
+use crate::train::{Efficiency, FRAME, MemberId, MemberKind, MeshId};
 
 use super::{Assembler, clip, list};
 
@@ -20,8 +20,6 @@ const ROUGHNESS: f64 = 0.4e-6;
 const TEMPERATURE: f64 = 333.15;
 /// Temperature at which oils are classed, K.
 const COLD: f64 = 313.15;
-/// Density of steel, kg/m³.
-const STEEL: f64 = 7850.0;
 
 impl Assembler<'_> {
     /// A number that must be finite and above (or at) zero; reported and replaced where it is not.
@@ -463,7 +461,7 @@ impl Assembler<'_> {
         };
         let planets: Vec<bool> = (0..self.members.len()).map(|m| is_planet(MemberId(m))).collect();
         let mut all: Vec<PlanetBody> = Vec::new();
-        for mesh in &self.meshes {
+        for (j, mesh) in self.meshes.iter().enumerate() {
             for k in 0..2 {
                 let member = mesh.gears[k].member;
                 let other = mesh.gears[1 - k].member;
@@ -478,28 +476,19 @@ impl Assembler<'_> {
                     count: mesh.count,
                     orbit_radius: teeth.pair.centre_distance,
                     mass: 0.0,
+                    mesh: MeshId(j),
+                    estimated: true,
                 });
             }
         }
         for body in &mut all {
             let bearing = bearings.iter().find(|b| b.members.contains(&body.member));
-            // A steel cylinder of each gear's pitch circle and width around its bearing.
-            let estimate = || {
-                let hole = bearing.map_or(0.0, |b| b.bearing.outside_diameter / 2.0);
-                let mut seen: Vec<(Rational, f64)> = Vec::new();
-                for mesh in &self.meshes {
-                    for (k, g) in mesh.gears.iter().enumerate().filter(|(_, g)| g.member == body.member) {
-                        if let Some(t) = mesh.teeth.as_ref().filter(|_| seen.iter().all(|s| s.0 != g.teeth)) {
-                            let r = t.pair.gears[k].reference_radius;
-                            let area = std::f64::consts::PI * (r * r - hole * hole).max(0.0);
-                            seen.push((g.teeth.clone(), STEEL * area * t.pair.total_width()));
-                        }
-                    }
-                }
-                seen.iter().map(|s| s.1).sum::<f64>()
-            };
+            let hole = bearing.map_or(0.0, |b| b.bearing.outside_diameter / 2.0);
+            let teeth = |j: usize| self.meshes[j].teeth.as_deref().cloned();
+            let estimate = || steel_mass(&self.meshes, body.member, hole, &teeth);
             let given = masses.iter().find(|(m, _)| *m == body.member).map(|(_, mass)| *mass);
             body.mass = given.unwrap_or_else(estimate);
+            body.estimated = given.is_none();
             if given.is_none() && bearing.is_some() && body.carrier != FRAME {
                 let name = self.members[body.member.0].name.clone();
                 let text = format!(

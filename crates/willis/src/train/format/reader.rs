@@ -24,6 +24,11 @@ pub(super) type Load<'l> = dyn FnMut(&str) -> Result<String, String> + 'l;
 pub(super) struct Spans(HashMap<String, Range<usize>>);
 
 impl Spans {
+    /// Whether the text has something at a place.
+    pub fn has(&self, place: &str) -> bool {
+        self.0.contains_key(place)
+    }
+
     /// The span of a place, or of the smallest thing around it that has one.
     pub fn nearest(&self, place: &str) -> Option<Range<usize>> {
         let mut place = place;

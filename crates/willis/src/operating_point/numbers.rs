@@ -1,0 +1,141 @@
+//! Every continuous number that the laws read of a train, in any kind of number.
+
+use crate::catalogue::bearing::Data;
+use crate::catalogue::oil::Curves;
+use crate::losses::mesh_friction::{Constant, MeshFriction};
+use crate::real::Real;
+use crate::train::{BearingMount, Lubrication, Teeth, Train};
+
+/// Viscosity of an oil at 40 °C where only the one at its temperature is known, m²/s.
+pub(super) const VG_100: f64 = 100e-6;
+/// Temperature at which oils are classed, K.
+const COLD: f64 = 313.15;
+
+/// Every continuous number that the laws read of a train.
+#[derive(Clone, Debug)]
+pub(crate) struct Numbers<R> {
+    /// Given efficiency of each mesh, first gear driving and second gear driving; of a computed mesh the nominal one.
+    pub efficiencies: Vec<[R; 2]>,
+    pub teeth: Vec<Option<Teeth<R>>>,
+    pub oil: Option<OilState<R>>,
+    pub bearings: Vec<MountNumbers<R>>,
+    /// Diameter under each seal, m.
+    pub seals: Vec<R>,
+    pub rotors: Vec<RotorNumbers<R>>,
+    /// Radius of the orbit, m, and mass, kg.
+    pub planets: Vec<[R; 2]>,
+    pub enclosure: Option<R>,
+    /// Axial gap to the housing, m.
+    pub axial_gap: Option<R>,
+    /// What the law `constant` gives.
+    pub friction_coefficient: R,
+}
+
+/// Numbers of the bearings at one place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MountNumbers<R> {
+    pub data: Data<R>,
+    pub span: Option<R>,
+    pub radial_load: R,
+    pub axial_load: R,
+    pub level: Option<R>,
+}
+
+impl MountNumbers<f64> {
+    pub fn of(mount: &BearingMount) -> Self {
+        Self {
+            data: mount.bearing.data(),
+            span: mount.span,
+            radial_load: mount.radial_load,
+            axial_load: mount.axial_load,
+            level: mount.level,
+        }
+    }
+}
+
+/// Lengths of a rotor, m.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RotorNumbers<R> {
+    pub radius: R,
+    pub length: R,
+    pub radial_gap: R,
+    pub axial_gap: R,
+}
+
+/// State of the oil at the operating temperature.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OilState<R> {
+    pub temperature: R,
+    pub dynamic_viscosity: R,
+    pub kinematic_viscosity: R,
+    pub density: R,
+    pub pressure_viscosity: R,
+    pub viscosity_slope: R,
+    pub conductivity: R,
+    /// Kinematic viscosity at 40 °C, m²/s, or one that stands for it.
+    pub viscosity_40: R,
+    pub lubricant_factor: Option<R>,
+    /// Volume in the sump, m³.
+    pub volume: Option<R>,
+    /// Volumes of air to one of oil in the mist.
+    pub mist: Option<R>,
+}
+
+impl<R: Real> OilState<R> {
+    pub fn at(
+        lubrication: &Lubrication,
+        curves: &Curves<R>,
+        temperature: R,
+        [lubricant_factor, volume, mist]: [Option<R>; 3],
+    ) -> Self {
+        Self {
+            temperature,
+            dynamic_viscosity: curves.dynamic_viscosity(temperature),
+            kinematic_viscosity: curves.kinematic_viscosity(temperature),
+            density: curves.density(temperature),
+            pressure_viscosity: curves.pressure_viscosity(temperature),
+            viscosity_slope: curves.viscosity_slope(temperature),
+            conductivity: curves.conductivity(temperature),
+            viscosity_40: match lubrication.oil.covers(COLD) {
+                true => curves.kinematic_viscosity(R::from(COLD)),
+                false => R::from(VG_100),
+            },
+            lubricant_factor,
+            volume,
+            mist,
+        }
+    }
+}
+
+impl Numbers<f64> {
+    /// As the train has them, at the temperature of its oil unless another is given.
+    pub fn of(train: &Train, temperature: Option<f64>) -> Self {
+        Self {
+            efficiencies: (train.meshes.iter())
+                .map(|m| [m.efficiency.forward.to_f64(), m.efficiency.backward.to_f64()])
+                .collect(),
+            teeth: train.meshes.iter().map(|m| m.teeth.as_deref().cloned()).collect(),
+            oil: train.lubrication.as_ref().map(|l| {
+                let given = [l.oil.lubricant_factor, l.volume, l.mist];
+                OilState::at(l, &l.oil.curves(), temperature.unwrap_or(l.temperature), given)
+            }),
+            bearings: train.bearings.iter().map(MountNumbers::of).collect(),
+            seals: train.seals.iter().map(|s| s.diameter).collect(),
+            rotors: (train.rotors.iter())
+                .map(|r| RotorNumbers {
+                    radius: r.radius,
+                    length: r.length,
+                    radial_gap: r.radial_gap,
+                    axial_gap: r.axial_gap,
+                })
+                .collect(),
+            planets: train.planets.iter().map(|p| [p.orbit_radius, p.mass]).collect(),
+            enclosure: train.housing.enclosure,
+            axial_gap: train.housing.axial_gap,
+            friction_coefficient: match train.laws.mesh_friction(train.lubrication.is_some()) {
+                MeshFriction::Constant(constant) => constant.mu,
+                _ => train.laws.friction_coefficient.unwrap_or(Constant::DEFAULT.mu),
+            },
+        }
+    }
+}

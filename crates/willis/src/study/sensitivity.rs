@@ -1,0 +1,482 @@
+//! Which input moves efficiency and each loss most, by exact derivatives.
+//!
+//! Every continuous quantity of the train file and of an operation is moved in turn, as a dual number, through
+//! everything that follows from it: the geometry of the teeth, orbits and masses of planets, the state of the oil, the
+//! laws, and the agreement of losses and torques. No difference is taken.
+//!
+//! With `ρ` the efficiencies in force, torques obey `B(ρ) f = t + d`: loads `t`, drags `d`. Which end of each mesh
+//! drives is known at the point and does not change with an infinitesimal step, so the equations stay linear:
+//! `B f′ = t′ + d′ − B′ f`. Laws and these equations are repeated until the derivatives agree, as the operating point
+//! itself was.
+
+mod balance;
+mod seeded;
+
+use serde::Serialize;
+
+use crate::analysis::{self, Margin, Point, Selection, Verdict};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::losses::mesh_friction::MeshFriction;
+use crate::operating_point::LossKind;
+use crate::train::{FRAME, Load, Operation, Slot, Train};
+
+use balance::{Moved, Powers, powers};
+
+/// A loss is said to move with a quantity when it does so by this part of the largest change.
+const WORTH_TELLING: f64 = 1e-3;
+/// Derivatives of the loss below this part of it for a step are none.
+const NO_EFFECT: f64 = 1e-13;
+
+/// What every input does to efficiency and losses: the results contract `willis-sensitivity-1`.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct Sensitivity {
+    /// `willis-sensitivity-1`.
+    pub format: &'static str,
+    /// Name of the train.
+    pub train: String,
+    /// Every operation asked for.
+    pub operations: Vec<OperationSensitivity>,
+    /// Warnings and notes of the operations.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// What every input does at one operating point.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct OperationSensitivity {
+    /// Name of the operation.
+    pub name: String,
+    /// The state of the shift table, if not as drawn.
+    pub state: Option<String>,
+    /// What can be said of the operation. There are derivatives only where it is `unique`.
+    pub verdict: Verdict,
+    /// Why there are no derivatives.
+    pub reason: Option<String>,
+    /// Output over input power; absent where nothing comes in.
+    pub efficiency: Option<f64>,
+    /// Power in at all inputs, W.
+    pub input_power_w: f64,
+    /// All losses, W.
+    pub loss_w: f64,
+    /// Every quantity that moves a loss, the one with the largest effect first.
+    pub quantities: Vec<QuantitySensitivity>,
+    /// Quantities on which no loss depends here.
+    pub without_effect: Vec<String>,
+    /// Quantities without a derivative here, each with the reason.
+    pub without_derivative: Vec<(String, String)>,
+    /// How far the point is from another driving end, and from locking.
+    pub margin: Option<Margin>,
+    /// How far the derivatives are settled.
+    pub checks: Option<Checks>,
+    /// What must be known to read the numbers.
+    pub notes: Vec<String>,
+}
+
+/// How far derivatives are settled.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Checks {
+    /// Largest derivative of input less output less losses, over the largest of the three: round-off.
+    pub balance_residual: f64,
+    /// Most rounds of laws and statics that one quantity took.
+    pub rounds: usize,
+    /// Bound on the error that was left, over the largest derivative of a loss: the worst of all quantities.
+    pub error: f64,
+}
+
+/// The step of a quantity for which changes are told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum StepKind {
+    /// One percent of it.
+    Percent,
+    /// One kelvin.
+    Kelvin,
+    /// One degree.
+    Degree,
+    /// One hundredth: profile shifts, which may be zero, and plain numbers that are.
+    Hundredth,
+    /// One revolution per minute: speeds that are zero.
+    Rpm,
+    /// A tenth of a millimetre: lengths that are zero.
+    TenthMillimetre,
+    /// One SI unit: torques, powers, forces that are zero.
+    Unit,
+}
+
+impl StepKind {
+    /// For people: `+1 %`, `+1 K`.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Percent => "+1 %",
+            Self::Kelvin => "+1 K",
+            Self::Degree => "+1°",
+            Self::Hundredth => "+0.01",
+            Self::Rpm => "+1 rpm",
+            Self::TenthMillimetre => "+0.1 mm",
+            Self::Unit => "+1",
+        }
+    }
+}
+
+/// What one quantity does. Changes for a step are the derivative times the step: exact for small ones.
+#[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
+pub struct QuantitySensitivity {
+    /// Its path, as the file has it: `P1.geometry.module`, `bearing B1.radial_load`, `oil.temperature`, `speeds.sun`.
+    pub name: String,
+    /// Its value, SI.
+    pub value: f64,
+    /// SI unit of the value.
+    pub unit: &'static str,
+    /// Whether it is not given but taken.
+    pub assumed: bool,
+    /// The step for which changes are told.
+    pub step: StepKind,
+    /// That step, SI.
+    pub step_size: f64,
+    /// `dη/dq`, over the SI unit of the value.
+    pub efficiency_derivative: Option<f64>,
+    /// `dP_loss/dq`, W over the SI unit of the value.
+    pub loss_derivative_w: f64,
+    /// Change of the efficiency for the step.
+    pub efficiency_change: Option<f64>,
+    /// Change of all losses for the step, W.
+    pub loss_change_w: f64,
+    /// `(dP_loss/P_loss)/(dq/q)`: percent of loss for one percent of the quantity; absent for temperatures, angles and
+    /// shifts.
+    pub loss_elasticity: Option<f64>,
+    /// The losses that it moves, the one that changes most first.
+    pub sources: Vec<SourceChange>,
+}
+
+/// What a quantity does to one loss.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct SourceChange {
+    /// What loses it.
+    pub name: String,
+    /// What kind of loss it is.
+    pub kind: LossKind,
+    /// Its law.
+    pub law: &'static str,
+    /// Change for the step, W.
+    pub change_w: f64,
+}
+
+/// A quantity to move.
+struct Quantity {
+    name: String,
+    value: f64,
+    unit: &'static str,
+    assumed: bool,
+    slots: Vec<Slot>,
+    moved: Moved,
+}
+
+impl Quantity {
+    fn step(&self) -> (StepKind, f64) {
+        let shift = self.slots.iter().any(|s| matches!(s, Slot::Shift(..)));
+        match self.unit {
+            "K" => (StepKind::Kelvin, 1.0),
+            "rad" => (StepKind::Degree, 1f64.to_radians()),
+            _ if shift => (StepKind::Hundredth, 0.01),
+            "rad/s" if self.value == 0.0 => (StepKind::Rpm, std::f64::consts::PI / 30.0),
+            "m" if self.value == 0.0 => (StepKind::TenthMillimetre, 1e-4),
+            "-" if self.value == 0.0 => (StepKind::Hundredth, 0.01),
+            _ if self.value == 0.0 => (StepKind::Unit, 1.0),
+            _ => (StepKind::Percent, 0.01 * self.value),
+        }
+    }
+}
+
+/// Derivatives of efficiency and losses by every continuous quantity of the file, at the operations that are selected.
+///
+/// For a step `Δq` the changes are `Δη = dη/dq · Δq` and `ΔP = dP/dq · Δq`, in W; the elasticity is
+/// `dP/dq · q/P`. Integer inputs (teeth, planets, bearings side by side) have no derivative.
+///
+/// # Errors
+/// Unknown operation or state, a train without operations, or an operation that makes no question, as
+/// [`analyze`](crate::analyze) says it. A train that locks is no error: [`OperationSensitivity::reason`] says so.
+///
+/// # Example
+/// One set with the ring held has `η = (1 + z_r/z_s η_0)/(1 + z_r/z_s)`, and the basic efficiency is that of two equal
+/// meshes, `η_0 = η_m²`: `dη/dη_m = 2 η_m (70/30)/(1 + 70/30) = 1.386`.
+/// ```
+/// use willis::study::sensitivity;
+/// use willis::{Selection, Train};
+///
+/// let train = Train::from_toml(r#"
+///     format = 1
+///     name = "sun drives, ring held"
+///     members = ["sun", "carrier"]
+///     terminals = ["sun", "carrier"]
+///
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "sun", teeth = 30 }
+///     planet = { teeth = 20, count = 4 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "carrier"
+///     mesh_efficiency = 0.99
+///
+///     [[operation]]
+///     name = "rated"
+///     speeds = { sun = "1000 rpm" }
+///     torques = { sun = "100 N m" }
+/// "#)?;
+/// let all = sensitivity(&train, &Selection::default())?;
+/// let by_mesh = &all.operations[0].quantities[0];
+/// assert_eq!(by_mesh.name, "P1.mesh_efficiency");
+/// assert!((by_mesh.efficiency_derivative.unwrap() - 2.0 * 0.99 * 0.7).abs() < 1e-12);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn sensitivity(train: &Train, selection: &Selection) -> Result<Sensitivity, Diagnostics> {
+    selection.check(train)?;
+    let mut wrong = Diagnostics::default();
+    let chosen: Vec<&Operation> = train.operations.iter().filter(|o| selection.wants(train, o)).collect();
+    if chosen.is_empty() {
+        let text = match &selection.state {
+            Some(state) => format!("sensitivities belong to an operating point, and none runs in state `{state}`"),
+            None => "sensitivities belong to an operating point, and there is none".to_owned(),
+        };
+        let d = Diagnostic::new(Code::UnknownSelection, "", text);
+        wrong.push(d.hint("add an [[operation]] with speeds and torques or powers"));
+        return Err(wrong);
+    }
+    let mut notes = Diagnostics::default();
+    let mut operations = Vec::new();
+    for operation in chosen {
+        match of_operation(train, operation, &mut notes) {
+            Ok(found) => operations.push(found),
+            Err(more) => wrong.extend(more),
+        }
+    }
+    if wrong.has_errors() {
+        return Err(wrong);
+    }
+    Ok(Sensitivity {
+        format: "willis-sensitivity-1",
+        train: train.name.clone(),
+        operations,
+        diagnostics: notes.into_iter().collect(),
+    })
+}
+
+fn of_operation(
+    train: &Train,
+    operation: &Operation,
+    diagnostics: &mut Diagnostics,
+) -> Result<OperationSensitivity, Diagnostics> {
+    let (report, point, found) = analysis::settle(train, operation)?;
+    diagnostics.extend(found);
+    let mut all = OperationSensitivity {
+        name: report.name,
+        state: report.state,
+        verdict: report.verdict,
+        reason: None,
+        efficiency: None,
+        input_power_w: 0.0,
+        loss_w: 0.0,
+        quantities: vec![],
+        without_effect: vec![],
+        without_derivative: vec![],
+        margin: None,
+        checks: None,
+        notes: vec![],
+    };
+    let (Some(point), [solution]) = (&point, &report.solutions[..]) else {
+        let why = report.reason.unwrap_or_else(|| "there is no one equilibrium here".into());
+        all.reason = Some(format!("no derivatives: {why}"));
+        return Ok(all);
+    };
+    all.efficiency = solution.efficiency;
+    all.input_power_w = solution.input_power_w;
+    all.loss_w = solution.loss_w;
+    all.margin = Some(solution.margin.clone());
+    all.notes = notes(train, point);
+
+    let mut checks = Checks { balance_residual: 0.0, rounds: 0, error: 0.0 };
+    for quantity in quantities(train, operation) {
+        if let Some(mesh) = starts_to_move(train, operation, point, quantity.moved) {
+            let why = format!("{mesh} is loaded and at rest, and loses when it moves, whichever way");
+            all.without_derivative.push((quantity.name, why));
+            continue;
+        }
+        let numbers = seeded::numbers(train, operation.temperature, &quantity.slots);
+        let found = numbers.and_then(|n| powers(train, operation, point, n, quantity.moved));
+        let Some(found) = found else {
+            let why = "the geometry or the equilibrium stands on an edge of what is possible";
+            all.without_derivative.push((quantity.name, why.into()));
+            continue;
+        };
+        let finite = found.loss.eps.is_finite() && found.sources.iter().all(|s| s.3.eps.is_finite());
+        if !finite || found.error > 1e-6 {
+            let why = match finite {
+                true => format!("losses and torques did not agree: {:.1e} of the derivative is left", found.error),
+                false => "a law has no slope here".to_owned(),
+            };
+            all.without_derivative.push((quantity.name, why));
+            continue;
+        }
+        checks.balance_residual = checks.balance_residual.max(found.residual());
+        checks.rounds = checks.rounds.max(found.rounds);
+        checks.error = checks.error.max(found.error);
+        match told(quantity, &found) {
+            Ok(q) => all.quantities.push(q),
+            Err(name) => all.without_effect.push(name),
+        }
+    }
+    all.quantities.sort_by(|a, b| b.loss_change_w.abs().total_cmp(&a.loss_change_w.abs()));
+    all.checks = Some(checks);
+    Ok(all)
+}
+
+/// A loaded mesh at rest that a prescribed speed sets in motion: there the loss has a kink.
+fn starts_to_move(train: &Train, operation: &Operation, point: &Point<'_>, moved: Moved) -> Option<String> {
+    let Moved::Speed(k) = moved else { return None };
+    let prescribed: Vec<_> = operation.speeds.iter().map(|(m, _)| *m).collect();
+    let speeds = point.c.transfer(&prescribed).speeds;
+    point.columns.iter().filter(|c| c.p_drives.is_none() && point.forces[c.element] != 0.0).find_map(|c| {
+        let element = &point.c.elements[c.element];
+        let (p, carrier) = (speeds[element.p.index()].as_ref()?, speeds[element.carrier.index()].as_ref()?);
+        let mesh = element.links.first().map(|l| &train.meshes[l.mesh.index()])?;
+        (p[k] != carrier[k]).then(|| mesh.name.clone())
+    })
+}
+
+/// What a quantity does, in the form in which it is told; its name where it does nothing.
+fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, String> {
+    let (step, step_size) = quantity.step();
+    let size = NO_EFFECT * found.input.re.abs().max(found.loss.re.abs());
+    let moves = |x: f64| (x * step_size).abs() > size;
+    let efficiency = (found.input.re > 0.0).then(|| found.efficiency().eps);
+    let none = !moves(found.loss.eps)
+        && !found.sources.iter().any(|s| moves(s.3.eps))
+        && efficiency.is_none_or(|e| (e * step_size).abs() <= NO_EFFECT);
+    if none {
+        return Err(quantity.name);
+    }
+    let most = found.sources.iter().fold(0.0f64, |a, s| a.max(s.3.eps.abs()));
+    let mut sources: Vec<SourceChange> = (found.sources.iter())
+        .filter(|s| s.3.eps.abs() > WORTH_TELLING * most)
+        .map(|(name, kind, law, loss)| SourceChange {
+            name: name.clone(),
+            kind: *kind,
+            law,
+            change_w: loss.eps * step_size,
+        })
+        .collect();
+    sources.sort_by(|a, b| b.change_w.abs().total_cmp(&a.change_w.abs()));
+    let loss = found.loss;
+    Ok(QuantitySensitivity {
+        name: quantity.name,
+        value: quantity.value,
+        unit: quantity.unit,
+        assumed: quantity.assumed,
+        step,
+        step_size,
+        efficiency_derivative: efficiency,
+        loss_derivative_w: loss.eps,
+        efficiency_change: efficiency.map(|e| e * step_size),
+        loss_change_w: loss.eps * step_size,
+        loss_elasticity: (step == StepKind::Percent && loss.re > 0.0).then(|| loss.eps * quantity.value / loss.re),
+        sources,
+    })
+}
+
+/// Every continuous quantity of train and operation.
+fn quantities(train: &Train, operation: &Operation) -> Vec<Quantity> {
+    let mut all = Vec::new();
+    let friction = train.laws.mesh_friction(train.lubrication.is_some());
+    let constant = matches!(friction, MeshFriction::Constant(_));
+    for input in &train.inputs {
+        // The coefficient that stands in is read by one law only.
+        if input.assumed && !constant && input.slots == [Slot::FrictionCoefficient] {
+            continue;
+        }
+        let heat = input.slots.contains(&Slot::Temperature);
+        let (name, value, assumed) = match operation.temperature.filter(|_| heat) {
+            Some(own) => ("temperature".to_owned(), own, false),
+            None => (input.path.clone(), input.value, input.assumed),
+        };
+        let (unit, slots) = (input.unit, input.slots.clone());
+        all.push(Quantity { name, value, unit, assumed, slots, moved: Moved::Train });
+    }
+    let moving = |name: String, value: f64, unit: &'static str, moved: Moved| Quantity {
+        name,
+        value,
+        unit,
+        assumed: false,
+        slots: vec![],
+        moved,
+    };
+    for (k, (member, speed)) in operation.speeds.iter().enumerate() {
+        let name = format!("speeds.{}", train.member_name(*member));
+        all.push(moving(name, speed.si(), "rad/s", Moved::Speed(k)));
+    }
+    for (k, (member, load)) in operation.loads.iter().enumerate() {
+        let member = train.member_name(*member);
+        all.push(match load {
+            Load::Torque(q) => moving(format!("torques.{member}"), q.si(), "N m", Moved::Load(k)),
+            Load::Power(q) => moving(format!("powers.{member}"), q.si(), "W", Moved::Load(k)),
+        });
+    }
+    all
+}
+
+/// What must be known to read the numbers.
+fn notes(train: &Train, point: &Point<'_>) -> Vec<String> {
+    let mut all = Vec::new();
+    let names = |wanted: &dyn Fn(usize, Option<bool>) -> bool| {
+        let meshes =
+            point.columns.iter().filter(|c| wanted(c.element, c.p_drives)).flat_map(|c| {
+                point.c.elements[c.element].links.iter().map(|l| train.meshes[l.mesh.index()].name.clone())
+            });
+        meshes.collect::<Vec<_>>().join(", ")
+    };
+    let idle = names(&|e, drives| drives.is_some() && point.forces[e] == 0.0);
+    if !idle.is_empty() {
+        all.push(format!("{idle}: idle, so either end may drive after a step; the derivatives hold on one side only"));
+    }
+    let stuck = names(&|e, drives| drives.is_none() && point.forces[e] != 0.0);
+    if !stuck.is_empty() {
+        all.push(format!("{stuck}: loaded and at rest relative to the carrier, taken without friction"));
+    }
+    let mut left_out = vec!["numbers of teeth"];
+    if train.meshes.iter().any(|m| m.count > 1) {
+        left_out.push("planets");
+    }
+    if !train.bearings.is_empty() {
+        left_out.push("bearings");
+    }
+    let list = match left_out.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => left_out.concat(),
+    };
+    all.push(format!("whole numbers have no derivative: {list}; compare trains that differ by one"));
+    if train.is_physical() {
+        all.push("where a law changes its formula, the derivative is that of the formula in force".into());
+    }
+    let bearing = |b: &&crate::train::BearingMount| {
+        let path = format!("bearing {}.bore", b.name);
+        b.members != [FRAME; 2] && train.inputs.iter().all(|i| i.path != path)
+    };
+    let catalogue: Vec<&str> = train.bearings.iter().filter(bearing).map(|b| b.bearing.designation.as_str()).collect();
+    if !catalogue.is_empty() {
+        let mut names = catalogue;
+        names.dedup();
+        all.push(format!("{}: sizes are those of the designation and are not moved", names.join(", ")));
+    }
+    if let Some(l) = &train.lubrication
+        && train.inputs.iter().all(|i| !i.path.starts_with("oil.viscosity"))
+    {
+        all.push(format!("{}: viscosity is the catalogue's; its temperature moves it", l.oil.name));
+    }
+    for table in &train.loss_tables {
+        let name = &train.meshes[table.mesh.index()].name;
+        all.push(format!("{name}: the first row of its loss table is in force and is not moved"));
+    }
+    all
+}

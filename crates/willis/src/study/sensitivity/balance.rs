@@ -1,0 +1,280 @@
+//! The equilibrium of a train in dual numbers: which ends drive is known, so forces solve linear equations; losses and
+//! torques are repeated until derivatives too agree.
+
+use std::borrow::Cow;
+
+use num_dual::{Dual64, DualNum};
+
+use crate::analysis::Point;
+use crate::operating_point::{LossKind, Numbers, Physics, Step};
+use crate::power_flow::{self, Drag, MeshFlow};
+use crate::train::{Load, MemberId, Operation, Train};
+
+/// Most rounds of laws and statics.
+const MOST_ROUNDS: usize = 400;
+/// The error that is left in a derivative, over its size.
+const ACCURACY: f64 = 1e-11;
+
+/// What moves beside the numbers of the train.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Moved {
+    /// Nothing that the operation prescribes.
+    Train,
+    /// Its prescribed speed of this place.
+    Speed(usize),
+    /// Its prescribed torque or power of this place.
+    Load(usize),
+}
+
+/// Powers with their derivative by one quantity, W.
+pub(super) struct Powers {
+    pub input: Dual64,
+    pub output: Dual64,
+    pub loss: Dual64,
+    /// Name, kind, law, power of each loss.
+    pub sources: Vec<(String, LossKind, &'static str, Dual64)>,
+    pub rounds: usize,
+    /// Bound on the error of the derivatives that is left, over their size.
+    pub error: f64,
+}
+
+impl Powers {
+    pub fn efficiency(&self) -> Dual64 {
+        if self.loss.re == 0.0 && self.loss.eps == 0.0 { Dual64::from(1.0) } else { self.output / self.input }
+    }
+
+    /// Derivative of input less output less losses over that of the largest of them: zero up to round-off.
+    pub fn residual(&self) -> f64 {
+        let size = self.input.eps.abs().max(self.output.eps.abs()).max(self.loss.eps.abs());
+        let left = self.input.eps - self.output.eps - self.loss.eps;
+        if size == 0.0 { 0.0 } else { (left / size).abs() }
+    }
+}
+
+/// A point in dual numbers.
+struct State {
+    meshes: Vec<MeshFlow<Dual64>>,
+    drags: Vec<Drag<Dual64>>,
+}
+
+/// Powers at a point with the derivative by what moves; `None` where the equations have no solution.
+pub(super) fn powers(
+    train: &Train,
+    operation: &Operation,
+    point: &Point<'_>,
+    numbers: Numbers<Dual64>,
+    moved: Moved,
+) -> Option<Powers> {
+    let speeds = speeds(train, operation, point, moved);
+    let loads = loads(operation, &speeds, moved);
+    let given = numbers.efficiencies.clone();
+    let physics = train.is_physical().then(|| Physics::with_numbers(Cow::Borrowed(train), numbers));
+    let known = |m: MemberId| point.motion.speeds[m.0].is_some();
+
+    let Some(physics) = physics else {
+        let state = State { meshes: solve(point, &speeds, &loads, &[], &given)?, drags: vec![] };
+        let total = totals(point, &speeds, &loads, &state);
+        let sources = state
+            .meshes
+            .iter()
+            .map(|m| (train.meshes[m.mesh.index()].name.clone(), LossKind::Sliding, "given", m.loss));
+        return Some(Powers { sources: sources.collect(), rounds: 1, error: 0.0, ..total });
+    };
+    // The point itself is the start: what is missing are derivatives.
+    let in_force: Vec<[Dual64; 2]> = (point.c.efficiencies.iter())
+        .map(|e| [Dual64::from(e.forward.to_f64()), Dual64::from(e.backward.to_f64())])
+        .collect();
+    let forces: Vec<Dual64> = point.forces.iter().map(|f| Dual64::from(*f)).collect();
+    let mut meshes = walk(point, &speeds, &forces, &in_force);
+    let (mut last, mut q) = (f64::INFINITY, 0.0f64);
+    let mut old: Option<Vec<f64>> = None;
+    for rounds in 1..=MOST_ROUNDS {
+        let step: Step<Dual64> = physics.evaluate(&speeds, &meshes, &known);
+        let efficiencies = step.efficiencies(train, &given);
+        let drags = step.drags.clone();
+        meshes = solve(point, &speeds, &loads, &drags, &efficiencies)?;
+        let state = State { meshes, drags };
+        let mut total = totals(point, &speeds, &loads, &state);
+        let drag_losses: Vec<Dual64> = state.drags.iter().map(|d| drag_loss(d, &speeds)).collect();
+        total.sources = physics.parts(&step, &state.meshes, &drag_losses);
+        // Change of the derivatives since the last round, and the factor by which changes shrink.
+        let new: Vec<f64> = total.sources.iter().map(|s| s.3.eps).collect();
+        let size = new.iter().fold(total.loss.eps.abs(), |a, x| a.max(x.abs()));
+        let change = match &old {
+            Some(old) if old.len() == new.len() => old.iter().zip(&new).fold(0.0f64, |a, (x, y)| a.max((x - y).abs())),
+            _ => f64::INFINITY,
+        };
+        if last.is_finite() && last > 0.0 {
+            q = (change / last).max(0.2 * q);
+        }
+        last = change;
+        let relative = if size > 0.0 { change / size } else { change };
+        let error = if q < 1.0 { relative / (1.0 - q) } else { relative };
+        if error <= ACCURACY || rounds == MOST_ROUNDS {
+            return Some(Powers { rounds, error, ..total });
+        }
+        old = Some(new);
+        meshes = state.meshes;
+    }
+    None
+}
+
+/// Speeds of all members: linear in what is prescribed.
+fn speeds(train: &Train, operation: &Operation, point: &Point<'_>, moved: Moved) -> Vec<Dual64> {
+    let values = (0..train.members.len()).map(|m| point.motion.si(MemberId(m)).unwrap_or(0.0));
+    let mut speeds: Vec<Dual64> = values.map(Dual64::from).collect();
+    if let Moved::Speed(k) = moved {
+        let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
+        for (speed, factors) in speeds.iter_mut().zip(point.c.transfer(&prescribed).speeds) {
+            speed.eps = factors.map_or(0.0, |f| f[k].to_f64());
+        }
+    }
+    speeds
+}
+
+/// Prescribed torques.
+fn loads(operation: &Operation, speeds: &[Dual64], moved: Moved) -> Vec<(MemberId, Dual64)> {
+    let mut all = Vec::new();
+    for (k, (member, load)) in operation.loads.iter().enumerate() {
+        let own = |value: f64| Dual64::new(value, if moved == Moved::Load(k) { 1.0 } else { 0.0 });
+        let torque = match load {
+            Load::Torque(q) => own(q.si()),
+            // No power at rest: no torque.
+            Load::Power(_) if speeds[member.0].re == 0.0 => Dual64::from(0.0),
+            Load::Power(p) => own(p.si()) / speeds[member.0],
+        };
+        all.push((*member, torque));
+    }
+    all
+}
+
+/// Forces that balance loads and drags with these efficiencies, followed through the meshes.
+fn solve(
+    point: &Point<'_>,
+    speeds: &[Dual64],
+    loads: &[(MemberId, Dual64)],
+    drags: &[Drag<Dual64>],
+    efficiencies: &[[Dual64; 2]],
+) -> Option<Vec<MeshFlow<Dual64>>> {
+    let n = point.columns.len();
+    let zero = Dual64::from(0.0);
+    let mut matrix = vec![vec![zero; n + 1]; n];
+    for (j, column) in point.columns.iter().enumerate() {
+        let element = &point.c.elements[column.element];
+        let along = |p_drives: bool| {
+            element.links.iter().fold(Dual64::from(1.0), |product, link| {
+                product * efficiencies[link.mesh.index()][usize::from(p_drives != link.along)]
+            })
+        };
+        let rho = match column.p_drives {
+            None => Dual64::from(1.0),
+            Some(true) => along(true),
+            Some(false) => along(false).recip(),
+        };
+        for &(row, constant, slope) in &column.entries {
+            matrix[row][j] = rho * slope + constant;
+        }
+    }
+    let torques =
+        loads.iter().copied().chain(drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]));
+    for (member, torque) in torques {
+        let node = point.c.node(member);
+        if let Some(row) = node.and_then(|n| point.rows.iter().position(|r| *r == n)) {
+            matrix[row][n] += torque;
+        }
+    }
+    let found = eliminate(matrix)?;
+    let mut forces = vec![zero; point.c.elements.len()];
+    for (column, force) in point.columns.iter().zip(found) {
+        forces[column.element] = force;
+    }
+    Some(walk(point, speeds, &forces, efficiencies))
+}
+
+fn walk(
+    point: &Point<'_>,
+    speeds: &[Dual64],
+    forces: &[Dual64],
+    efficiencies: &[[Dual64; 2]],
+) -> Vec<MeshFlow<Dual64>> {
+    let mut meshes = Vec::new();
+    for (e, element) in point.c.elements.iter().enumerate() {
+        let drives = point.columns.iter().find(|c| c.element == e).and_then(|c| c.p_drives);
+        // Idle elements have no driver.
+        let drives = drives.filter(|_| forces[e].re != 0.0 || forces[e].eps != 0.0);
+        let own = |mesh: crate::train::MeshId, forward: bool| efficiencies[mesh.index()][usize::from(!forward)];
+        power_flow::walk(point.c.train, element, forces[e], drives, speeds, &own, &mut meshes);
+    }
+    meshes.sort_by_key(|m| m.mesh);
+    meshes
+}
+
+/// Solves linear equations, the right side in the last column; pivots are chosen by value.
+fn eliminate(mut m: Vec<Vec<Dual64>>) -> Option<Vec<Dual64>> {
+    let n = m.len();
+    for k in 0..n {
+        let best = (k..n).max_by(|&a, &b| m[a][k].re.abs().total_cmp(&m[b][k].re.abs()))?;
+        if m[best][k].re == 0.0 {
+            return None;
+        }
+        m.swap(k, best);
+        let (above, below) = m.split_at_mut(k + 1);
+        let pivot = &above[k];
+        for row in below {
+            let factor = row[k] / pivot[k];
+            if factor.re != 0.0 || factor.eps != 0.0 {
+                for j in k..=n {
+                    row[j] -= factor * pivot[j];
+                }
+            }
+        }
+    }
+    let mut x = vec![Dual64::from(0.0); n];
+    for k in (0..n).rev() {
+        let known = (k + 1..n).fold(m[k][n], |sum, j| sum - m[k][j] * x[j]);
+        x[k] = known / m[k][k];
+    }
+    Some(x)
+}
+
+/// Torque times speed of the second member relative to the first.
+fn drag_loss(d: &Drag<Dual64>, speeds: &[Dual64]) -> Dual64 {
+    d.torque * (speeds[d.members[1].0] - speeds[d.members[0].0])
+}
+
+/// Input, output and loss.
+fn totals(point: &Point<'_>, speeds: &[Dual64], loads: &[(MemberId, Dual64)], state: &State) -> Powers {
+    let train = point.c.train;
+    let zero = Dual64::from(0.0);
+    // What the meshes ask of each member, less what drags exert on it.
+    let mut demand = vec![zero; train.members.len()];
+    for m in &state.meshes {
+        let mesh = &train.meshes[m.mesh.index()];
+        let members = [mesh.gears[0].member, mesh.gears[1].member, mesh.carrier];
+        members.into_iter().zip(m.torques).for_each(|(member, torque)| demand[member.0] += torque);
+    }
+    for d in &state.drags {
+        demand[d.members[0].0] -= d.torque;
+        demand[d.members[1].0] += d.torque;
+    }
+    let mut external = vec![zero; train.members.len()];
+    for (member, torque) in loads {
+        external[member.0] = *torque;
+    }
+    for member in &point.open {
+        let Some(node) = point.c.node(*member) else { continue };
+        let own = |m: &usize| !point.c.inner[*m] && point.c.node_of[*m] == Some(node);
+        external[member.0] = (1..demand.len()).filter(own).fold(zero, |sum, m| sum + demand[m] - external[m]);
+    }
+    let powers: Vec<Dual64> = external.iter().zip(speeds).map(|(t, w)| *t * *w).collect();
+    let largest = powers.iter().fold(0.0f64, |a, p| a.max(p.re.abs()));
+    // What stands still takes or gives power as soon as it moves: on the side of a rising quantity.
+    let side = |p: &Dual64| if p.re.abs() > 1e-12 * largest { p.re } else { p.eps };
+    let sum = |sign: f64| {
+        let wanted = powers.iter().filter(|p| side(p) * sign > 0.0);
+        wanted.fold(zero, |sum, p| sum + *p * sign)
+    };
+    let loss = state.meshes.iter().fold(zero, |sum, m| sum + m.loss);
+    let loss = state.drags.iter().fold(loss, |sum, d| sum + drag_loss(d, speeds));
+    Powers { input: sum(1.0), output: sum(-1.0), loss, sources: vec![], rounds: 0, error: 0.0 }
+}

@@ -1,0 +1,142 @@
+//! The numbers of a train with the derivative by one of them: what is given, and all that follows from it.
+
+use num_dual::Dual64;
+
+use crate::catalogue::oil::Viscosity;
+use crate::geometry::{Pair, PairData, Tip};
+use crate::operating_point::{MountNumbers, Numbers, OilState, RotorNumbers};
+use crate::train::{BearingNumber, RotorNumber, Slot, Teeth, Train, steel_mass};
+
+/// A number that nothing depends on.
+fn constant(value: f64) -> Dual64 {
+    Dual64::new(value, 0.0)
+}
+
+/// The numbers of a train in which the given slots move together; `None` where the geometry stands on an edge of what
+/// is possible.
+pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[Slot]) -> Option<Numbers<Dual64>> {
+    let plain = Numbers::of(train, temperature);
+    let seeded = |slot: Slot, value: f64| Dual64::new(value, if slots.contains(&slot) { 1.0 } else { 0.0 });
+
+    let mut teeth: Vec<Option<Teeth<Dual64>>> = Vec::with_capacity(train.meshes.len());
+    for (j, mesh) in train.meshes.iter().enumerate() {
+        let Some(t) = &mesh.teeth else {
+            teeth.push(None);
+            continue;
+        };
+        teeth.push(Some(Teeth {
+            pair: Pair::new(&pair_data(&t.pair.data, j, &seeded)).ok()?,
+            roughness: [0, 1].map(|k| seeded(Slot::Roughness(j, k), t.roughness[k])),
+            immersion: [0, 1].map(|k| t.immersion[k].map(|depth| seeded(Slot::Immersion(j, k), depth))),
+            youngs_modulus: seeded(Slot::YoungsModulus(j), t.youngs_modulus),
+            poisson_ratio: seeded(Slot::PoissonRatio(j), t.poisson_ratio),
+        }));
+    }
+    let bearings: Vec<MountNumbers<Dual64>> = train
+        .bearings
+        .iter()
+        .zip(&plain.bearings)
+        .enumerate()
+        .map(|(k, (mount, own))| {
+            use BearingNumber as B;
+            let of = |number: B, value: f64| seeded(Slot::Bearing(k, number), value);
+            let mut data = own.data.lift::<Dual64>();
+            data.bore = of(B::Bore, own.data.bore);
+            data.outside_diameter = of(B::OutsideDiameter, own.data.outside_diameter);
+            data.width = of(B::Width, own.data.width);
+            data.static_rating = own.data.static_rating.map(|x| of(B::StaticRating, x));
+            data.axial_factor = own.data.axial_factor.map(|x| of(B::AxialFactor, x));
+            if mount.bearing.element_diameter.is_none() {
+                // Taken as a share of D − d.
+                let share = own.data.element_diameter / (own.data.outside_diameter - own.data.bore);
+                data.element_diameter.eps = share * (data.outside_diameter.eps - data.bore.eps);
+            }
+            MountNumbers {
+                data,
+                span: own.span.map(|x| of(B::Span, x)),
+                radial_load: of(B::RadialLoad, own.radial_load),
+                axial_load: of(B::AxialLoad, own.axial_load),
+                level: own.level.map(|x| of(B::Level, x)),
+            }
+        })
+        .collect();
+    let mut planets = Vec::with_capacity(train.planets.len());
+    for (k, planet) in train.planets.iter().enumerate() {
+        let orbit = teeth[planet.mesh.index()].as_ref()?.pair.centre_distance;
+        let mass = if planet.estimated {
+            let bearing = train.bearings.iter().position(|b| b.members.contains(&planet.member));
+            let hole = bearing.map_or(constant(0.0), |b| bearings[b].data.outside_diameter / 2.0);
+            steel_mass(&train.meshes, planet.member, hole, &|j| teeth[j].clone())
+        } else {
+            seeded(Slot::Mass(k), planet.mass)
+        };
+        planets.push([orbit, mass]);
+    }
+    let oil = train.lubrication.as_ref().zip(plain.oil).map(|(l, state)| {
+        let mut curves = l.oil.curves::<Dual64>();
+        let of = |wanted: Slot| train.inputs.iter().find(|i| i.slots.contains(&wanted)).map(|i| i.value);
+        if let (Some(cold), Some(hot)) = (of(Slot::Viscosity40), of(Slot::Viscosity100)) {
+            curves.viscosity = Viscosity::through(seeded(Slot::Viscosity40, cold), seeded(Slot::Viscosity100, hot));
+        }
+        if let Viscosity::Fixed { dynamic, .. } = &mut curves.viscosity {
+            *dynamic = seeded(Slot::Viscosity, dynamic.re);
+        }
+        curves.density_15 = seeded(Slot::Density15, l.oil.density_15);
+        curves.measured_pressure_viscosity =
+            l.oil.measured_pressure_viscosity.map(|alpha| seeded(Slot::PressureViscosity, alpha));
+        let given = [
+            l.oil.lubricant_factor.map(|x| seeded(Slot::LubricantFactor, x)),
+            l.volume.map(|x| seeded(Slot::Volume, x)),
+            l.mist.map(|x| seeded(Slot::Mist, x)),
+        ];
+        OilState::at(l, &curves, seeded(Slot::Temperature, state.temperature), given)
+    });
+    Some(Numbers {
+        efficiencies: (plain.efficiencies.iter().enumerate())
+            .map(|(j, [forward, backward])| {
+                [seeded(Slot::Efficiency(j, true), *forward), seeded(Slot::Efficiency(j, false), *backward)]
+            })
+            .collect(),
+        teeth,
+        oil,
+        bearings,
+        seals: plain.seals.iter().enumerate().map(|(k, d)| seeded(Slot::Seal(k), *d)).collect(),
+        rotors: (plain.rotors.iter().enumerate())
+            .map(|(k, r)| {
+                let of = |number: RotorNumber, value: f64| seeded(Slot::Rotor(k, number), value);
+                RotorNumbers {
+                    radius: of(RotorNumber::Radius, r.radius),
+                    length: of(RotorNumber::Length, r.length),
+                    radial_gap: of(RotorNumber::RadialGap, r.radial_gap),
+                    axial_gap: of(RotorNumber::AxialGap, r.axial_gap),
+                }
+            })
+            .collect(),
+        planets,
+        enclosure: plain.enclosure.map(|x| seeded(Slot::Enclosure, x)),
+        axial_gap: plain.axial_gap.map(|x| seeded(Slot::AxialGap, x)),
+        friction_coefficient: seeded(Slot::FrictionCoefficient, plain.friction_coefficient),
+    })
+}
+
+/// The data of a pair of teeth with the derivative by the slots.
+fn pair_data(plain: &PairData, j: usize, seeded: &dyn Fn(Slot, f64) -> Dual64) -> PairData<Dual64> {
+    let mut data = plain.lift::<Dual64>();
+    data.module = seeded(Slot::Module(j), plain.module);
+    data.pressure_angle = seeded(Slot::PressureAngle(j), plain.pressure_angle);
+    data.helix = seeded(Slot::Helix(j), plain.helix);
+    data.width = seeded(Slot::Width(j), plain.width);
+    data.centre_distance = plain.centre_distance.map(|a| seeded(Slot::CentreDistance(j), a));
+    for (k, (wheel, own)) in data.wheels.iter_mut().zip(&plain.wheels).enumerate() {
+        wheel.shift = seeded(Slot::Shift(j, k), own.shift);
+        wheel.dedendum = seeded(Slot::Dedendum(j, k), own.dedendum);
+        wheel.tip = match own.tip {
+            Tip::Addendum { coefficient, alteration } => Tip::Addendum {
+                coefficient: seeded(Slot::Addendum(j, k), coefficient),
+                alteration: seeded(Slot::TipAlteration(j, k), alteration),
+            },
+            Tip::Radius(radius) => Tip::Radius(Dual64::new(radius, seeded(Slot::TipDiameter(j, k), radius).eps / 2.0)),
+        };
+    }
+    data
+}

@@ -1,0 +1,418 @@
+//! Which number of the file became which number of the train: for every continuous quantity its path, and every
+//! place where it is read.
+
+use crate::exact::Rational;
+
+use super::describe::physical::{GeometrySpec, ToothSpec};
+use super::describe::{EfficiencySpec, GearSpec, Parts, SetEfficiencySpec, SetSpec, TrainBuilder};
+use super::{BearingMount, Lubrication, Mesh, PlanetBody};
+
+/// A continuous number of the train file, or one that stands in for it.
+#[derive(Clone, Debug)]
+pub(crate) struct Input {
+    /// As the file has it, with names for places in lists: `P1.geometry.module`, `bearing B1.radial_load`.
+    pub path: String,
+    /// SI.
+    pub value: f64,
+    /// SI.
+    pub unit: &'static str,
+    /// Whether it is taken, not given.
+    pub assumed: bool,
+    /// Every number of the train that it is.
+    pub slots: Vec<Slot>,
+}
+
+/// A number of a train: meshes, bearings, seals, rotors and planets by their place in the train's lists, gears by
+/// their place in the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub(crate) enum Slot {
+    /// First gear driving (`true`), or the second.
+    Efficiency(usize, bool),
+    Module(usize),
+    Width(usize),
+    PressureAngle(usize),
+    Helix(usize),
+    CentreDistance(usize),
+    YoungsModulus(usize),
+    PoissonRatio(usize),
+    Shift(usize, usize),
+    Addendum(usize, usize),
+    TipAlteration(usize, usize),
+    /// Half of it is the tip radius.
+    TipDiameter(usize, usize),
+    Dedendum(usize, usize),
+    Roughness(usize, usize),
+    Immersion(usize, usize),
+    Temperature,
+    Viscosity40,
+    Viscosity100,
+    Viscosity,
+    Density15,
+    PressureViscosity,
+    LubricantFactor,
+    Volume,
+    Mist,
+    Enclosure,
+    AxialGap,
+    FrictionCoefficient,
+    Bearing(usize, BearingNumber),
+    /// Diameter of the shaft.
+    Seal(usize),
+    Rotor(usize, RotorNumber),
+    Mass(usize),
+}
+
+/// A number of a bearing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub(crate) enum BearingNumber {
+    Bore,
+    OutsideDiameter,
+    Width,
+    StaticRating,
+    AxialFactor,
+    Span,
+    RadialLoad,
+    AxialLoad,
+    Level,
+}
+
+/// A number of a rotor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub(crate) enum RotorNumber {
+    Radius,
+    Length,
+    RadialGap,
+    AxialGap,
+}
+
+/// Whether the file has something at a place; `None` for a train that does not come from a file.
+pub(super) type Has<'a> = Option<&'a dyn Fn(&str) -> bool>;
+
+/// What was assembled, as far as inputs went into it.
+pub(super) struct Assembled<'a> {
+    pub meshes: &'a [Mesh],
+    pub lubrication: Option<&'a Lubrication>,
+    pub bearings: &'a [BearingMount],
+    pub planets: &'a [PlanetBody],
+    /// The first planet of each set, as a member.
+    pub set_planets: &'a [Vec<super::MemberId>],
+}
+
+/// Every continuous number of a description and where it went.
+pub(super) fn inputs(spec: &TrainBuilder, train: &Assembled<'_>, has: Has<'_>) -> Vec<Input> {
+    let mut list = List { all: vec![], train, has };
+    // Meshes stand in the order of the description, those of the sets behind.
+    for (j, mesh) in spec.meshes.iter().enumerate() {
+        let Some(own) = train.meshes.get(j).filter(|m| m.set.is_none()) else { return vec![] };
+        let (name, place) = (format!("mesh {}", own.name), format!("mesh[{j}]"));
+        if let (Some(given), None) = (&mesh.efficiency, &mesh.loss_table) {
+            list.efficiency(&format!("{name}.efficiency"), &format!("{place}.efficiency"), given, &[(j, false)]);
+        }
+        let gears = [0, 1].map(|k| (format!("{name}.gears[{k}]"), mesh.gears[k].tooth));
+        if let Some(g) = &mesh.geometry {
+            list.teeth(j, &gears, g, &format!("{name}.geometry"), &format!("{place}.geometry"));
+        }
+    }
+    for (index, set) in spec.sets.iter().enumerate() {
+        list.set(index, set);
+    }
+    list.oil(spec);
+    list.machinery(spec);
+    list.all
+}
+
+/// The gears of one mesh of a set, each with its path and teeth, and the central one of them.
+struct Pair<'a> {
+    gears: [(&'static str, usize, ToothSpec); 2],
+    central: Option<(usize, &'a GearSpec)>,
+}
+
+/// The meshes of a set, in the order in which they are assembled. Paths may hold the number of a list's entry.
+fn pairs(set: &SetSpec) -> Vec<Pair<'_>> {
+    let plain = |key: &'static str, tooth: ToothSpec| (key, 0, tooth);
+    let with = |gears, central: Option<(usize, _)>| Pair { gears, central };
+    match &set.parts {
+        Parts::Simple { sun, ring, planet } => vec![
+            with([plain("sun", sun.tooth), plain("planet", planet.tooth)], Some((0, sun))),
+            with([plain("planet", planet.tooth), plain("ring", ring.tooth)], Some((1, ring))),
+        ],
+        Parts::DoublePlanet { sun, ring, inner, outer } => vec![
+            with([plain("sun", sun.tooth), plain("inner_planet", inner.tooth)], Some((0, sun))),
+            with([plain("inner_planet", inner.tooth), plain("outer_planet", outer.tooth)], None),
+            with([plain("outer_planet", outer.tooth), plain("ring", ring.tooth)], Some((1, ring))),
+        ],
+        Parts::Stepped { central, .. } => {
+            let (mut suns, mut rings) = (0, 0);
+            let mut all = Vec::new();
+            for g in central {
+                if g.internal {
+                    all.push(with(
+                        [("rings[#].planet", rings, g.planet_tooth), ("rings[#]", rings, g.tooth)],
+                        Some((1, g)),
+                    ));
+                    rings += 1;
+                } else {
+                    all.push(with(
+                        [("suns[#]", suns, g.tooth), ("suns[#].planet", suns, g.planet_tooth)],
+                        Some((0, g)),
+                    ));
+                    suns += 1;
+                }
+            }
+            all
+        }
+        Parts::Ravigneaux { small_sun, large_sun, ring, short, long } => {
+            let (short, long) = (plain("short_planet", short.tooth), plain("long_planet", long.tooth));
+            let mut all = Vec::new();
+            if let Some(g) = small_sun {
+                all.push(with([plain("small_sun", g.tooth), short], Some((0, g))));
+            }
+            all.push(with([short, long], None));
+            if let Some(g) = large_sun {
+                all.push(with([plain("large_sun", g.tooth), long], Some((0, g))));
+            }
+            if let Some(g) = ring {
+                all.push(with([long, plain("ring", g.tooth)], Some((1, g))));
+            }
+            all
+        }
+        Parts::Bevel { sides, .. } => {
+            let blank = ToothSpec::default();
+            sides.iter().map(|g| with([plain("side", blank), plain("planet", blank)], Some((0, g)))).collect()
+        }
+    }
+}
+
+struct List<'a> {
+    all: Vec<Input>,
+    train: &'a Assembled<'a>,
+    has: Has<'a>,
+}
+
+impl List<'_> {
+    fn add(&mut self, path: String, value: f64, unit: &'static str, assumed: bool, slot: Slot) {
+        match self.all.iter_mut().find(|i| i.path == path) {
+            Some(input) if input.slots.contains(&slot) => {}
+            Some(input) => input.slots.push(slot),
+            None => self.all.push(Input { path, value, unit, assumed, slots: vec![slot] }),
+        }
+    }
+
+    /// Whether a table or one number stands at a place; without a file, whether the numbers differ.
+    fn split(&self, place: &str, differ: bool) -> bool {
+        self.has.map_or(differ, |has| has(place))
+    }
+
+    /// An efficiency of meshes; `swapped` where forward is the second gear driving.
+    fn efficiency(&mut self, path: &str, place: &str, given: &EfficiencySpec, meshes: &[(usize, bool)]) {
+        let EfficiencySpec(e) = given;
+        let split = self.split(&format!("{place}.forward"), e.forward != e.backward);
+        let mut add = |path: String, value: &Rational, forward: bool| {
+            for &(mesh, swapped) in meshes {
+                self.add(path.clone(), value.to_f64(), "-", false, Slot::Efficiency(mesh, forward != swapped));
+            }
+        };
+        let name = |direction: &str| if split { format!("{path}.{direction}") } else { path.to_owned() };
+        add(name("forward"), &e.forward, true);
+        add(name("backward"), &e.backward, false);
+    }
+
+    fn set(&mut self, index: usize, set: &SetSpec) {
+        let meshes: Vec<usize> =
+            (0..self.train.meshes.len()).filter(|&j| self.train.meshes[j].set == Some(index)).collect();
+        let pairs = pairs(set);
+        if meshes.len() != pairs.len() {
+            return;
+        }
+        let (name, place) = (&set.name, format!("set[{index}]"));
+        match &set.efficiency {
+            None => {}
+            Some(SetEfficiencySpec::Meshes { external, internal }) => {
+                let (path, place) = (format!("{name}.mesh_efficiency"), format!("{place}.mesh_efficiency"));
+                let (outer, inner) = (&external.0, &internal.0);
+                let ring = |j: &usize| self.train.meshes[*j].gears.iter().any(|g| g.internal);
+                let all = |wanted: &dyn Fn(&usize) -> bool| -> Vec<(usize, bool)> {
+                    meshes.iter().filter(|j| wanted(j)).map(|j| (*j, false)).collect()
+                };
+                let (with_ring, without) = (all(&ring), all(&|j| !ring(j)));
+                if self.split(&format!("{place}.external"), outer != inner) {
+                    self.efficiency(&format!("{path}.external"), &format!("{place}.external"), external, &without);
+                    self.efficiency(&format!("{path}.internal"), &format!("{place}.internal"), internal, &with_ring);
+                } else {
+                    self.efficiency(&path, &place, external, &all(&|_| true));
+                }
+            }
+            Some(SetEfficiencySpec::Basic(given)) => {
+                let booked: Vec<(usize, bool)> = match &set.parts {
+                    Parts::Ravigneaux { ring, .. } => {
+                        let suns = if ring.is_some() { 2 } else { 1 };
+                        let sun = |p: &Pair<'_>| p.central.is_some_and(|(_, g)| !g.internal);
+                        let of = meshes.iter().zip(&pairs).filter(|(_, p)| sun(p)).map(|(j, _)| (*j, false));
+                        of.take(suns).collect()
+                    }
+                    _ => {
+                        let Some(&first_mesh) = meshes.first() else { return };
+                        let first = &self.train.meshes[first_mesh];
+                        let swapped = pairs[0].central.is_some_and(|(_, g)| g.internal) || first.same_sense;
+                        vec![(first_mesh, swapped)]
+                    }
+                };
+                let (path, place) = (format!("{name}.basic_efficiency"), format!("{place}.basic_efficiency"));
+                self.efficiency(&path, &place, given, &booked);
+            }
+        }
+        for (j, pair) in meshes.into_iter().zip(&pairs) {
+            let path = |k: usize| {
+                let (key, number, _) = pair.gears[k];
+                key.replace('#', &number.to_string())
+            };
+            let gears = [0, 1].map(|k| (format!("{name}.{}", path(k)), pair.gears[k].2));
+            let own = pair.central.and_then(|(k, g)| Some((path(k), g.geometry.as_ref()?)));
+            match (own, &set.geometry) {
+                (Some((key, g)), _) => {
+                    self.teeth(j, &gears, g, &format!("{name}.{key}.geometry"), &format!("{place}.{key}.geometry"));
+                }
+                (None, Some(g)) => {
+                    self.teeth(j, &gears, g, &format!("{name}.geometry"), &format!("{place}.geometry"));
+                }
+                (None, None) => {}
+            }
+        }
+        let members = self.train.set_planets.get(index).cloned().unwrap_or_default();
+        for (member, (key, planet)) in members.into_iter().zip(set.planets()) {
+            let at = self.train.planets.iter().position(|p| p.member == member);
+            if let (Some(k), Some(mass)) = (at, planet.body.mass) {
+                self.add(format!("{name}.{key}.mass"), mass, "kg", false, Slot::Mass(k));
+            }
+        }
+    }
+
+    fn teeth(&mut self, j: usize, gears: &[(String, ToothSpec); 2], g: &GeometrySpec, path: &str, place: &str) {
+        let Some(teeth) = &self.train.meshes[j].teeth else { return };
+        let has = self.has;
+        let assumed = |key: &str| has.is_some_and(|has| !has(&format!("{place}.{key}")));
+        for (key, value, unit, slot) in [
+            ("module", Some(g.module), "m", Slot::Module(j)),
+            ("width", Some(g.width), "m", Slot::Width(j)),
+            ("pressure_angle", Some(g.pressure_angle), "rad", Slot::PressureAngle(j)),
+            // Spur gears become helical in one direction only.
+            ("helix", Some(g.helix).filter(|b| *b != 0.0), "rad", Slot::Helix(j)),
+            ("centre_distance", g.centre_distance, "m", Slot::CentreDistance(j)),
+            ("youngs_modulus", Some(g.youngs_modulus), "Pa", Slot::YoungsModulus(j)),
+            ("poisson_ratio", Some(g.poisson_ratio), "-", Slot::PoissonRatio(j)),
+        ] {
+            if let Some(value) = value {
+                self.add(format!("{path}.{key}"), value, unit, assumed(key), slot);
+            }
+        }
+        for (k, (gear, t)) in gears.iter().enumerate() {
+            self.add(format!("{gear}.shift"), t.shift.unwrap_or(0.0), "-", t.shift.is_none(), Slot::Shift(j, k));
+            if let Some(d) = t.tip_diameter {
+                self.add(format!("{gear}.tip_diameter"), d, "m", false, Slot::TipDiameter(j, k));
+            } else {
+                match t.addendum {
+                    Some(h) => self.add(format!("{gear}.addendum"), h, "-", false, Slot::Addendum(j, k)),
+                    None => {
+                        let slot = Slot::Addendum(j, k);
+                        self.add(format!("{path}.addendum"), g.addendum, "-", assumed("addendum"), slot);
+                    }
+                }
+                if let Some(alteration) = t.tip_alteration {
+                    self.add(format!("{gear}.tip_alteration"), alteration, "m", false, Slot::TipAlteration(j, k));
+                }
+            }
+            match t.dedendum {
+                Some(h) => self.add(format!("{gear}.dedendum"), h, "-", false, Slot::Dedendum(j, k)),
+                None => {
+                    let slot = Slot::Dedendum(j, k);
+                    self.add(format!("{path}.dedendum"), g.dedendum, "-", assumed("dedendum"), slot);
+                }
+            }
+            let (rough, slot) = (teeth.roughness[k], Slot::Roughness(j, k));
+            match t.roughness {
+                Some(_) => self.add(format!("{gear}.roughness"), rough, "m", false, slot),
+                None => self.add(format!("{path}.roughness"), rough, "m", g.roughness.is_none(), slot),
+            }
+            if let Some(depth) = t.immersion {
+                self.add(format!("{gear}.immersion"), depth, "m", false, Slot::Immersion(j, k));
+            }
+        }
+    }
+
+    fn oil(&mut self, spec: &TrainBuilder) {
+        if let (Some(oil), Some(l)) = (&spec.oil, self.train.lubrication) {
+            // A catalogue's oil keeps its own density.
+            let own = oil.viscosity.is_some() || oil.viscosity_40.is_some();
+            let density = own.then_some(l.oil.density_15);
+            for (key, value, unit, assumed, slot) in [
+                ("temperature", Some(l.temperature), "K", oil.temperature.is_none(), Slot::Temperature),
+                ("viscosity_40", oil.viscosity_40, "m^2/s", false, Slot::Viscosity40),
+                ("viscosity_100", oil.viscosity_100, "m^2/s", false, Slot::Viscosity100),
+                ("viscosity", oil.viscosity, "Pa s", false, Slot::Viscosity),
+                ("density_15", density, "kg/m^3", oil.density_15.is_none(), Slot::Density15),
+                ("pressure_viscosity", oil.pressure_viscosity, "1/Pa", false, Slot::PressureViscosity),
+                ("lubricant_factor", oil.lubricant_factor, "-", false, Slot::LubricantFactor),
+                ("volume", oil.volume, "m^3", false, Slot::Volume),
+                ("mist", oil.mist, "-", false, Slot::Mist),
+            ] {
+                if let Some(value) = value {
+                    self.add(format!("oil.{key}"), value, unit, assumed, slot);
+                }
+            }
+        }
+        if self.train.meshes.iter().any(|m| m.computed) {
+            let mu = spec.friction_coefficient.unwrap_or(crate::losses::mesh_friction::Constant::DEFAULT.mu);
+            let path = "laws.friction_coefficient".to_owned();
+            self.add(path, mu, "-", spec.friction_coefficient.is_none(), Slot::FrictionCoefficient);
+        }
+        if let Some(x) = spec.housing.enclosure {
+            self.add("housing.enclosure".into(), x, "-", false, Slot::Enclosure);
+        }
+        if let Some(x) = spec.housing.axial_gap {
+            self.add("housing.axial_gap".into(), x, "m", false, Slot::AxialGap);
+        }
+    }
+
+    fn machinery(&mut self, spec: &TrainBuilder) {
+        use BearingNumber as B;
+        use RotorNumber as R;
+        if self.train.bearings.len() == spec.bearings.len() {
+            for (k, b) in spec.bearings.iter().enumerate() {
+                for (key, value, unit, number) in [
+                    ("bore", b.bore, "m", B::Bore),
+                    ("outside_diameter", b.outside_diameter, "m", B::OutsideDiameter),
+                    ("width", b.width, "m", B::Width),
+                    ("static_rating", b.static_rating, "N", B::StaticRating),
+                    ("axial_factor", b.axial_factor, "-", B::AxialFactor),
+                    ("span", b.span, "m", B::Span),
+                    ("radial_load", b.radial_load, "N", B::RadialLoad),
+                    ("axial_load", b.axial_load, "N", B::AxialLoad),
+                    ("level", b.level, "m", B::Level),
+                ] {
+                    if let Some(value) = value {
+                        let path = format!("bearing {}.{key}", b.name);
+                        self.add(path, value, unit, false, Slot::Bearing(k, number));
+                    }
+                }
+            }
+        }
+        for (k, s) in spec.seals.iter().enumerate() {
+            self.add(format!("seal {}.diameter", s.name), s.diameter, "m", false, Slot::Seal(k));
+        }
+        for (k, r) in spec.rotors.iter().enumerate() {
+            // Without a gap of its own a face has that of the rim.
+            let face = if r.axial_gap.is_some() { "axial_gap" } else { "radial_gap" };
+            for (key, value, number) in [
+                ("radius", r.radius, R::Radius),
+                ("length", r.length, R::Length),
+                ("radial_gap", r.radial_gap, R::RadialGap),
+                (face, r.axial_gap.unwrap_or(r.radial_gap), R::AxialGap),
+            ] {
+                self.add(format!("rotor {}.{key}", r.name), value, "m", false, Slot::Rotor(k, number));
+            }
+        }
+    }
+}
