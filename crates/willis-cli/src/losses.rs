@@ -51,7 +51,7 @@ pub fn of_solution(s: &SolutionReport) -> String {
     out + &contacts(&s.contacts) + &bearings(&s.bearings)
 }
 
-fn bar(part: f64) -> String {
+pub fn bar(part: f64) -> String {
     let eighths = (part * (BAR * 8) as f64).round() as usize;
     let rest = [' ', '▏', '▎', '▍', '▌', '▋', '▊', '▉'][eighths % 8];
     let mut text = "█".repeat(eighths / 8);

@@ -5,13 +5,21 @@
 //! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
 
 mod axis;
+mod design;
+mod distribution;
 mod question;
 mod subject;
 mod sweep;
 mod target;
+mod uncertainty;
 
 pub use axis::Axis;
+pub use design::{Design, Index, REPLICATES, SamplingError, Statistics};
+pub use distribution::{Distribution, standard_normal_quantile};
 pub use question::{Hold, Question, Trains};
 pub use subject::Subject;
 pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};
 pub use target::{Target, Who};
+pub use uncertainty::{
+    Choice, Evaluated, Influence, Likely, Output, Reported, Uncertain, Uncertainty, UncertaintyPlan, UncertaintyRequest,
+};
