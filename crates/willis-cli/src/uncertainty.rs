@@ -357,7 +357,12 @@ fn quantities(u: &Uncertainty) -> String {
     set_header(&mut t, &["uncertain", "as written", "taken as"]);
     t.column_mut(1).expect("it was just added").set_cell_alignment(CellAlignment::Right);
     for q in &u.quantities {
-        t.add_row([q.name.clone(), q.nominal.clone().unwrap_or("-".into()), q.distribution.clone()]);
+        let taken = match &q.likely {
+            // They stand above, each in a line.
+            Likely::Each(all) => format!("{} values, equally likely", all.len()),
+            Likely::Between(_) => q.distribution.clone(),
+        };
+        t.add_row([q.name.clone(), q.nominal.clone().unwrap_or("-".into()), taken]);
     }
     show(&t)
 }

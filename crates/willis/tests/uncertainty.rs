@@ -204,7 +204,7 @@ fn val_indices_of_ishigami() {
         }
     }
     println!("Ishigami: {inside} of {all} indices inside their error, the worst off by {worst:.4}");
-    assert!(worst < 0.05, "{worst}");
+    assert!(worst < 0.08, "{worst}");
     let coverage = f64::from(inside as u32) / f64::from(all as u32);
     assert!((0.90..=0.99).contains(&coverage), "{coverage}");
 }
@@ -297,7 +297,7 @@ fn formula_quantiles_of_one_set() {
         [(s.median, e.median, 0.5), (s.p025, e.p025, 0.025), (s.p05, e.p05, 0.05), (s.p95, e.p95, 0.95)]
     {
         assert!((value - at(p)).abs() <= 2.0 * error + 1e-7, "{p}: {value} ± {error}, not {}", at(p));
-        assert!(error < 2e-5, "{error}");
+        assert!(error < 5e-5, "{error}");
     }
     // ∫ m² over the interval
     let mean = (1.0 + 7.0 / 3.0 * (0.995f64.powi(3) - 0.985f64.powi(3)) / 0.03) / (10.0 / 3.0);
@@ -317,7 +317,7 @@ fn formula_quantiles_of_one_set() {
 #[test]
 fn what_dominates_is_found() {
     let vary = ["P1.mesh_efficiency=+-0.1%", "input.torque=normal(+-5%)", "input.speed=+-1%"];
-    let u = found(ONE_SET, &vary, 256, 1);
+    let u = found(ONE_SET, &vary, 2048, 1);
     let efficiency = u.output("efficiency").unwrap();
     assert_eq!(efficiency.influences[0].quantity, "P1.mesh_efficiency");
     assert!((efficiency.influences[0].index.first - 1.0).abs() < 0.02, "{:?}", efficiency.influences);
@@ -329,7 +329,8 @@ fn what_dominates_is_found() {
     for (name, part) in [("input.torque", parts[0]), ("input.speed", parts[1]), ("P1.mesh_efficiency", parts[2])] {
         let index = of(name);
         let truth = part * part / all;
-        assert!((index.first - truth).abs() < 0.05, "{name}: {index:?}, not {truth}");
+        assert!((index.first - truth).abs() < 1.5 * index.first_error + 1e-3, "{name}: {index:?}, not {truth}");
+        assert!(index.first_error < 0.1, "{name}: {index:?}");
     }
 }
 
@@ -440,15 +441,22 @@ fn refused_text(vary: &str) -> String {
 
 #[test]
 fn locked_samples_are_counted() {
-    // 67/69 in a Wolfrom-like set locks below an efficiency; here a ring drives a set of high ratio.
-    let text = std::fs::read_to_string(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/../../examples/wolfrom-498-self-locking.toml"
-    ))
-    .unwrap();
-    let u = ask(&text, &UncertaintyRequest { samples: 128, ..Default::default() });
-    let u = u.unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(u.verdicts.values().sum::<usize>(), 128);
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/wolfrom-498-self-locking.toml"))
+            .unwrap();
+    // Driven from its slow side it locks below an efficiency of the inner meshes.
+    let back = text.replace("[[operation]]", "[[operation]]\nname = \"back\"\nspeeds = { ring = \"6 rpm\" }\ntorques = { ring = \"10 N m\" }\n\n[[operation]]");
+    let request = UncertaintyRequest {
+        operation: Some("back".into()),
+        ..request(&["P1.mesh_efficiency.internal=0.98..1", "P1.mesh_efficiency.external=0.98..1"], 256, 1)
+    };
+    let u = ask(&back, &request).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(u.verdicts.values().sum::<usize>(), 256);
+    let locked = u.verdicts["locked"];
+    assert!(locked > 64 && locked < 256, "{:?}", u.verdicts);
+    assert_eq!(u.nominal_verdict, "locked");
+    assert!(u.seen.contains_key("reason: locked"), "{:?}", u.seen);
+    assert!(u.output("efficiency").unwrap().statistics.is_none_or(|s| s.answered == 256 - locked));
 }
 
 #[test]
@@ -507,11 +515,39 @@ fn wrong_questions_are_told_what_is_wrong() {
 
 #[test]
 fn no_text_makes_it_panic() {
-    let names = ["P1.mesh_efficiency", "input.speed", "oil.temperature", "law.mesh_friction", "P1.planet.count", "state"];
+    let names =
+        ["P1.mesh_efficiency", "input.speed", "oil.temperature", "law.mesh_friction", "P1.planet.count", "state"];
     let values = [
-        "", "±", "+-", "+-%", "..", "1..", "..1", "()", "normal()", "normal(,)", "normal(+-)", "normal(+-5%, 2)", ",",
-        ",,", "%", "é..ü", "normal(1 é, 2)", "-1e99..1e99", "0..1e99 rpm", "NaN..1", "inf..1", "triangular(0,0,0)",
-        "uniform(1)", "lognormal(+-5%)", "all", "inside", "1,2 rpm", "+-1e308%", "−1..1", "normal(70 degC, 5 K)",
+        "",
+        "±",
+        "+-",
+        "+-%",
+        "..",
+        "1..",
+        "..1",
+        "()",
+        "normal()",
+        "normal(,)",
+        "normal(+-)",
+        "normal(+-5%, 2)",
+        ",",
+        ",,",
+        "%",
+        "é..ü",
+        "normal(1 é, 2)",
+        "-1e99..1e99",
+        "0..1e99 rpm",
+        "NaN..1",
+        "inf..1",
+        "triangular(0,0,0)",
+        "uniform(1)",
+        "lognormal(+-5%)",
+        "all",
+        "inside",
+        "1,2 rpm",
+        "+-1e308%",
+        "−1..1",
+        "normal(70 degC, 5 K)",
     ];
     for name in names {
         for value in values {

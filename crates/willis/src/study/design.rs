@@ -243,48 +243,46 @@ impl Design {
     ///
     /// # Formula
     /// ```text
-    /// S_i = 1 − Σ (f(B) − f(AB_i))² / (2 N V)      (Jansen, 1999)
-    /// T_i = Σ (f(A) − f(AB_i))² / (2 N V)          (Jansen, 1999)
+    /// S_i = 1 − Σ (f(B) − f(AB_i))² / Σ (f(A) − f(B))²
+    /// T_i = Σ (f(A) − f(AB_i))² / Σ (f(A) − f(B))²
     /// ```
-    /// with the variance V over A and B; Saltelli et al. (2010) compare these estimators with others. Errors are those
+    /// the numerators of Jansen (1999) on the points of Saltelli et al. (2010). For the variance stands half the mean
+    /// square of f(A) − f(B) (compare Azzini, Mara and Rosati, 2021): what A and B have in common by chance is in both
+    /// sums, so that a quantity that does nothing has exactly 0, and one that does everything exactly 1. Errors are those
     /// of a jackknife that leaves out one replicate after the other.
     pub fn indices(&self, values: &[f64]) -> Option<Vec<Index>> {
         let d = self.coordinates;
         if d < 2 {
             return None;
         }
-        // Of every replicate: number, sum of values, of squares, and of the squared differences of every coordinate.
-        let mut sums = vec![vec![0.0; 3 + 2 * d]; REPLICATES];
-        let shift = values.iter().find(|v| !v.is_nan())?;
+        // Of every replicate: number, sums of squared differences A − B, B − AB_i, A − AB_i.
+        let mut sums = vec![vec![0.0; 2 + 2 * d]; REPLICATES];
+        let mut size: f64 = 0.0;
         for (group, y) in values.chunks_exact(d + 2).enumerate() {
             if y.iter().any(|v| v.is_nan()) {
                 continue;
             }
             let own = &mut sums[group / self.points];
+            let square = |a: f64, b: f64| (a - b) * (a - b);
+            size = size.max(y[0].abs()).max(y[1].abs());
             own[0] += 1.0;
-            for v in &y[..2] {
-                own[1] += v - shift;
-                own[2] += (v - shift) * (v - shift);
-            }
+            own[1] += square(y[0], y[1]);
             for i in 0..d {
-                own[3 + i] += (y[1] - y[2 + i]) * (y[1] - y[2 + i]);
-                own[3 + d + i] += (y[0] - y[2 + i]) * (y[0] - y[2 + i]);
+                own[2 + i] += square(y[1], y[2 + i]);
+                own[2 + d + i] += square(y[0], y[2 + i]);
             }
         }
         if sums.iter().any(|s| s[0] < FEWEST_VALUES as f64) {
             return None;
         }
         let estimate = |without: Option<usize>| -> Option<Vec<(f64, f64)>> {
-            let mut all = vec![0.0; 3 + 2 * d];
+            let mut all = vec![0.0; 2 + 2 * d];
             for (_, own) in sums.iter().enumerate().filter(|(r, _)| Some(*r) != without) {
                 all.iter_mut().zip(own).for_each(|(a, x)| *a += x);
             }
-            let n = 2.0 * all[0];
-            let variance = all[2] / n - (all[1] / n) * (all[1] / n);
             // What rounding leaves of a constant is no variance.
-            let size = (all[2] / n).abs().max(shift * shift * 1e-9);
-            (variance > 1e-13 * size)
-                .then(|| (0..d).map(|i| (1.0 - all[3 + i] / (n * variance), all[3 + d + i] / (n * variance))).collect())
+            (all[1] > 1e-22 * all[0] * size * size)
+                .then(|| (0..d).map(|i| (1.0 - all[2 + i] / all[1], all[2 + d + i] / all[1])).collect())
         };
         let all = estimate(None)?;
         let without: Vec<_> = (0..REPLICATES).map(|r| estimate(Some(r))).collect::<Option<_>>()?;

@@ -55,16 +55,19 @@ pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: boo
         }
     }
     let mut told = format!("law.{family}: each law is as likely as the others");
-    let mut leave_out = |laws: &[String], why: &str| {
-        if !laws.is_empty() {
-            told += &format!("; {} left out, {why}", listed(laws));
-        }
-    };
+    let keep_inside = inside && within.len() > 1;
     let wrong: Vec<String> = wrong.iter().map(|e| e.id.to_owned()).collect();
-    leave_out(&unfit, "for which data are missing");
-    leave_out(&wrong, "which reproduces a published error");
-    if inside && within.len() > 1 {
-        leave_out(&outside, "outside the range of its source here");
+    let beyond = if keep_inside { &outside[..] } else { &[] };
+    let left_out: Vec<String> =
+        [(&unfit[..], "data missing"), (&wrong[..], "a published error"), (beyond, "outside the range of the source")]
+            .into_iter()
+            .filter(|(laws, _)| !laws.is_empty())
+            .map(|(laws, why)| format!("{} ({why})", listed(laws)))
+            .collect();
+    if !left_out.is_empty() {
+        told += &format!("; left out: {}", left_out.join(", "));
+    }
+    if keep_inside {
         return (within, told);
     }
     let order = |id: &String| losses::entries().iter().position(|e| e.family == family && e.id == id);
