@@ -131,8 +131,8 @@ impl<'a> Shown<'a> {
     }
 
     fn number(&self, x: f64) -> String {
-        // Adding zero turns -0 into 0.
-        format!("{:.*}", self.decimals, x * self.scale + 0.0)
+        let text = format!("{:.*}", self.decimals, x * self.scale);
+        if text.starts_with('-') && text.chars().all(|c| "-0.".contains(c)) { text[1..].to_owned() } else { text }
     }
 
     fn full(&self, x: f64) -> String {
@@ -190,7 +190,7 @@ fn warning(u: &Uncertainty, code: &str, seen: &Seen) -> String {
 fn share(count: usize, of: usize) -> String {
     match count == of {
         true => "every sample".into(),
-        false => format!("{} of {of} samples", count),
+        false => format!("{count} of {of} samples"),
     }
 }
 
@@ -284,12 +284,13 @@ fn dominance(u: &Uncertainty) -> String {
         if o.influences.is_empty() {
             continue;
         }
-        let name = if same { "efficiency and loss".to_owned() } else { Shown::new(o).name() };
-        out += &format!("{}\n", bold(&format!("What dominates: {name}")));
+        let beside = if same { "; the loss in the same order" } else { "" };
+        out += &format!("{}{beside}\n", bold(&format!("What dominates the {}", Shown::new(o).name())));
         let mut t = table();
         set_header(&mut t, &["share of the variance", "alone %", "±", "in all %", "±", ""]);
         for i in &o.influences {
-            let percent = |x: f64| format!("{:.1}", 100.0 * x + 0.0);
+            // Adding zero turns -0 into 0.
+            let percent = |x: f64| format!("{:.1}", (1000.0 * x).round() / 10.0 + 0.0);
             t.add_row([
                 i.quantity.clone(),
                 percent(i.index.first),

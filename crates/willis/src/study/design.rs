@@ -286,15 +286,15 @@ impl Design {
         };
         let all = estimate(None)?;
         let without: Vec<_> = (0..REPLICATES).map(|r| estimate(Some(r))).collect::<Option<_>>()?;
-        let error = |of: &dyn Fn(&[(f64, f64)]) -> f64| {
-            // Deleted groups: the standard error is (R − 1)/√R times the scatter of what is left.
-            half_width(without.iter().map(|w| of(w))) * (REPLICATES - 1) as f64
+        // Deleted groups: the standard error is (R − 1)/√R times the scatter of what is left.
+        let scatter = |i: usize, of: fn(&(f64, f64)) -> f64| {
+            half_width(without.iter().map(|w| of(&w[i]))) * (REPLICATES - 1) as f64
         };
         let index = |i: usize| Index {
             first: all[i].0,
-            first_error: error(&|w| w[i].0),
+            first_error: scatter(i, |e| e.0),
             total: all[i].1,
-            total_error: error(&|w| w[i].1),
+            total_error: scatter(i, |e| e.1),
         };
         Some((0..d).map(index).collect())
     }
