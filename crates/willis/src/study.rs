@@ -8,6 +8,8 @@ mod axis;
 mod compare;
 mod compiled;
 mod cycle;
+mod design;
+mod distribution;
 pub mod export;
 mod profile;
 mod question;
@@ -15,6 +17,7 @@ mod sensitivity;
 mod subject;
 mod sweep;
 mod target;
+mod uncertainty;
 
 pub use axis::{Axis, values};
 pub use compare::{
@@ -26,6 +29,8 @@ pub use cycle::{
     Cycle, CyclePart, CyclePoint, CycleReport, Energies, Said, SourceEnergy, TerminalEnergy, VerdictTime, Way, Worst,
     WorstRow, cycle,
 };
+pub use design::{Design, Index, REPLICATES, SamplingError, Statistics};
+pub use distribution::{Distribution, standard_normal_quantile};
 pub use profile::{Basis, Profile, ProfileRow};
 pub use question::{Hold, Question, Trains};
 pub use sensitivity::{
@@ -34,3 +39,6 @@ pub use sensitivity::{
 pub use subject::Subject;
 pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};
 pub use target::{Target, Who};
+pub use uncertainty::{
+    Choice, Evaluated, Influence, Likely, Output, Reported, Uncertain, Uncertainty, UncertaintyPlan, UncertaintyRequest,
+};

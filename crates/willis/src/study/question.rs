@@ -198,7 +198,11 @@ impl<'s> Question<'s> {
     }
 
     /// Speeds of members in an operation, where they are determined.
-    fn speeds<'a>(&self, train: &'a Train, operation: &Operation) -> impl Fn(MemberId) -> Option<Quantity> + use<'a> {
+    pub(super) fn speeds<'a>(
+        &self,
+        train: &'a Train,
+        operation: &Operation,
+    ) -> impl Fn(MemberId) -> Option<Quantity> + use<'a> {
         let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
         let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
         let c = Configuration::new(train, engaged, &operation.fixed, &prescribed);

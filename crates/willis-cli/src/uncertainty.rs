@@ -1,0 +1,464 @@
+//! `willis uncertainty`: points on all processors, and the distributions for eyes and for tables.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use comfy_table::CellAlignment;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use willis::study::{Evaluated, Likely, Output, Seen, Trains, Uncertainty, UncertaintyPlan};
+
+use crate::csv::Writer;
+use crate::losses::bar;
+use crate::text::{bold, dim, right, set_header, show, significant, table, wrap};
+
+/// A piece of work has about so many points.
+const PIECE: usize = 64;
+
+/// Where the samples go.
+pub struct SamplesOut {
+    pub path: PathBuf,
+    pub force: bool,
+}
+
+impl SamplesOut {
+    /// Whether it can be written, before anything is computed.
+    pub fn check(&self) -> Result<(), String> {
+        let told = |why: &str| Err(format!("{}: {why}\n", self.path.display()));
+        let is_csv = self.path.extension().and_then(|e| e.to_str()).is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+        if self.path.is_dir() {
+            return told("is a directory; name a file in it");
+        }
+        if !is_csv {
+            return told("samples are written as .csv; end the name with it");
+        }
+        if self.path.exists() && !self.force {
+            return told("exists already; --force replaces it");
+        }
+        if self.path.parent().is_some_and(|p| !p.as_os_str().is_empty() && !p.is_dir()) {
+            return told("its folder does not exist");
+        }
+        Ok(())
+    }
+}
+
+/// Evaluates every point, on all processors; the result does not depend on how many there are.
+pub fn evaluate(plan: &UncertaintyPlan<'_>) -> Evaluated {
+    let piece = plan.group() * (PIECE / plan.group()).max(1);
+    let pieces = plan.len().div_ceil(piece);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(pieces);
+    let next = AtomicUsize::new(0);
+    let done: Mutex<Vec<Option<Evaluated>>> = Mutex::new(vec![None; pieces]);
+    let progress = std::io::stderr().is_terminal().then(|| {
+        let bar = ProgressBar::with_draw_target(Some(pieces as u64), ProgressDrawTarget::stderr_with_hz(5));
+        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left");
+        bar.set_style(style.expect("a good template"));
+        bar.enable_steady_tick(Duration::from_millis(500));
+        bar
+    });
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                let mut trains = Trains::default();
+                loop {
+                    let k = next.fetch_add(1, Ordering::Relaxed);
+                    if k >= pieces {
+                        break;
+                    }
+                    let found = plan.evaluate(k * piece..plan.len().min((k + 1) * piece), &mut trains);
+                    done.lock().expect("no thread panics")[k] = Some(found);
+                    if let Some(bar) = &progress {
+                        bar.inc(1);
+                    }
+                }
+            });
+        }
+    });
+    if let Some(bar) = progress {
+        bar.finish_and_clear();
+    }
+    let mut all = Evaluated::default();
+    for part in done.into_inner().expect("no thread panics") {
+        all.join(part.expect("every piece was done"));
+    }
+    all
+}
+
+/// Every sample as a row.
+pub fn samples_csv(plan: &UncertaintyPlan<'_>, evaluated: &Evaluated) -> String {
+    let mut out = Writer::default();
+    let head = ["sample".to_owned(), "replicate".into()].into_iter();
+    let quantities = plan.quantities().iter().map(|q| q.name.clone());
+    out.row(head.chain(quantities).chain(["verdict".into()]).chain(plan.outputs().map(str::to_owned)));
+    for (k, (point, verdict, values)) in plan.samples(evaluated).enumerate() {
+        let head = [k.to_string(), plan.design().replicate(point).to_string()].into_iter();
+        let values = values.iter().map(|v| if v.is_nan() { String::new() } else { v.to_string() });
+        out.row(head.chain(plan.settings(point)).chain([verdict.to_owned()]).chain(values));
+    }
+    out.0
+}
+
+/// How an output is shown: its name, and numbers with as many decimals as its spread deserves.
+struct Shown<'a> {
+    of: &'a Output,
+    scale: f64,
+    unit: &'static str,
+    decimals: usize,
+}
+
+impl<'a> Shown<'a> {
+    fn new(of: &'a Output) -> Self {
+        let (scale, unit) = match of.unit {
+            "" => (100.0, " %"),
+            _ => (1.0, " W"),
+        };
+        let spread = of.statistics.map_or(0.0, |s| (s.p95 - s.p05).abs() * scale);
+        let decimals = if spread > 0.0 { (2.0 - spread.log10().floor()).clamp(0.0, 8.0) as usize } else { 2 };
+        Self { of, scale, unit, decimals }
+    }
+
+    fn name(&self) -> String {
+        match self.of.name.as_str() {
+            "efficiency" => "efficiency".into(),
+            "loss_w" => "loss".into(),
+            name => match name.strip_prefix("loss.") {
+                Some(source) => format!("  {}", source.strip_suffix("_w").unwrap_or(source)),
+                None => name.replace("_loss_w", " loss"),
+            },
+        }
+    }
+
+    fn number(&self, x: f64) -> String {
+        let text = format!("{:.*}", self.decimals, x * self.scale);
+        if text.starts_with('-') && text.chars().all(|c| "-0.".contains(c)) { text[1..].to_owned() } else { text }
+    }
+
+    fn full(&self, x: f64) -> String {
+        self.number(x) + self.unit
+    }
+}
+
+/// For eyes.
+pub fn text(u: &Uncertainty) -> String {
+    let mut out = bold(&u.train) + "\n";
+    let state = u.state.as_ref().map_or(String::new(), |s| format!("   state {s}"));
+    out += &format!("{}{state}\n", bold(&format!("Operation: {}", u.operation)));
+    for output in u.outputs.iter().take(2) {
+        out += &wrap(&sentence(output), "  ");
+        out.push('\n');
+    }
+    out += &verdicts(u);
+    out.push('\n');
+    out += &results(u);
+    out.push('\n');
+    out += &dominance(u);
+    out += &choices(u);
+    out += &quantities(u);
+    out.push('\n');
+    out += &bold("Assumptions in force");
+    out.push('\n');
+    for line in &u.assumptions {
+        out += &wrap(line, "  · ");
+        out.push('\n');
+    }
+    out += &wrap(
+        &format!(
+            "{} samples in {} scramblings of a Sobol sequence, seed {}; {} operating points computed",
+            u.samples, u.replicates, u.seed, u.evaluations
+        ),
+        "  · ",
+    );
+    out.push('\n');
+    for line in &u.warnings {
+        out += &dim(&wrap(line, "  * "));
+        out.push('\n');
+    }
+    for (code, seen) in u.seen.iter().filter(|(code, _)| !code.starts_with("reason")) {
+        out += &dim(&wrap(&warning(u, code, seen), "  * "));
+        out.push('\n');
+    }
+    out
+}
+
+fn warning(u: &Uncertainty, code: &str, seen: &Seen) -> String {
+    let code = code.split(' ').next().unwrap_or(code);
+    format!("{code} at {}, first: {}", share(seen.count as usize, u.samples), seen.message)
+}
+
+fn share(count: usize, of: usize) -> String {
+    match count == of {
+        true => "every sample".into(),
+        false => format!("{count} of {of} samples"),
+    }
+}
+
+fn sentence(o: &Output) -> String {
+    let shown = Shown::new(o);
+    let name = shown.name();
+    let written = match o.nominal {
+        Some(x) => format!("{} as written", shown.full(x)),
+        None => "as written without a unique answer".into(),
+    };
+    let Some(s) = &o.statistics else {
+        return format!("{name}: {written}; too few samples have an answer to tell its distribution");
+    };
+    if s.least == s.most {
+        return format!("{name}: {written}; no sample differs");
+    }
+    let below = o.below_nominal.map_or(String::new(), |b| {
+        format!("; {} % of the samples lie below the file's value", significant(100.0 * b, 2))
+    });
+    format!(
+        "{name}: {written}; 90 % of the samples lie from {} to {}, half of them below {}{below}",
+        shown.full(s.p05),
+        shown.full(s.p95),
+        shown.full(s.median)
+    )
+}
+
+fn verdicts(u: &Uncertainty) -> String {
+    let good = u.verdicts.get("unique").copied().unwrap_or(0);
+    if good == u.samples {
+        return "  every sample has exactly one equilibrium\n".into();
+    }
+    let percent = significant(100.0 * (u.samples - good) as f64 / u.samples as f64, 3);
+    let line = format!("{percent} % of the samples have no unique answer, and no part in what follows:");
+    let mut out = bold(&wrap(&line, "  ")) + "\n";
+    for (verdict, count) in u.verdicts.iter().filter(|v| *v.0 != "unique") {
+        let word = match *verdict {
+            "multiple" => "have several equilibria",
+            "locked" => "lock",
+            "unloaded" => "carry no load",
+            "refused" => "are refused: no such train or operating point is possible",
+            _ => "are not determined",
+        };
+        let why = u.seen.get(&format!("reason: {verdict}")).map_or(String::new(), |s| format!("; {}", s.message));
+        out += &wrap(&format!("{count} {word}{why}"), "    ");
+        out.push('\n');
+    }
+    out
+}
+
+fn results(u: &Uncertainty) -> String {
+    let mut t = table();
+    let header =
+        ["result", "", "as written", "median", "5 %", "95 %", "2.5 %", "97.5 %", "mean", "std dev", "least", "most"];
+    set_header(&mut t, &header);
+    for (k, o) in u.outputs.iter().enumerate() {
+        let shown = Shown::new(o);
+        let mut row =
+            vec![shown.name(), shown.unit.trim().to_owned(), o.nominal.map_or("-".into(), |x| shown.number(x))];
+        let Some(s) = &o.statistics else {
+            t.add_row(row);
+            continue;
+        };
+        let all = [s.median, s.p05, s.p95, s.p025, s.p975, s.mean, s.standard_deviation, s.least, s.most];
+        row.extend(all.map(|x| shown.number(x)));
+        t.add_row(row);
+        if k < 2 && s.least != s.most {
+            let e = &s.sampling_error;
+            let mut row = vec!["  ± sampling".to_owned(), shown.unit.trim().to_owned(), String::new()];
+            // One more digit than the values, or the errors of a good sample would all be nought.
+            let finer = Shown { decimals: shown.decimals + 1, ..shown };
+            row.extend([e.median, e.p05, e.p95, e.p025, e.p975, e.mean].map(|x| finer.number(x)));
+            t.add_row(row);
+        }
+    }
+    right(&mut t, 2..header.len());
+    show(&t)
+}
+
+fn dominance(u: &Uncertainty) -> String {
+    let [efficiency, loss, ..] = &u.outputs[..] else { return String::new() };
+    if u.quantities.len() == 1 {
+        return String::new();
+    }
+    let ranked = |o: &Output| -> Vec<String> {
+        o.influences.iter().filter(|i| i.index.total > 0.05).map(|i| i.quantity.clone()).collect()
+    };
+    let mut out = String::new();
+    let same = ranked(efficiency) == ranked(loss);
+    for o in [efficiency, loss].into_iter().take(if same { 1 } else { 2 }) {
+        if o.influences.is_empty() {
+            continue;
+        }
+        let beside = if same { "; the loss in the same order" } else { "" };
+        out += &format!("{}{beside}\n", bold(&format!("What dominates the {}", Shown::new(o).name())));
+        let mut t = table();
+        set_header(&mut t, &["share of the variance", "alone %", "±", "in all %", "±", ""]);
+        for i in &o.influences {
+            // Adding zero turns -0 into 0.
+            let percent = |x: f64| format!("{:.1}", (1000.0 * x).round() / 10.0 + 0.0);
+            t.add_row([
+                i.quantity.clone(),
+                percent(i.index.first),
+                percent(i.index.first_error),
+                percent(i.index.total),
+                percent(i.index.total_error),
+                bar(i.index.total.clamp(0.0, 1.0)),
+            ]);
+        }
+        right(&mut t, 1..5);
+        out += &show(&t);
+        let alone: f64 = o.influences.iter().map(|i| i.index.first).sum();
+        let rest = 100.0 * (1.0 - alone);
+        let error: f64 = o.influences.iter().map(|i| i.index.first_error.powi(2)).sum::<f64>().sqrt();
+        if rest > 1.0 && rest > 100.0 * error {
+            let line = format!("{rest:.0} % come of quantities acting together: `in all` counts them for each");
+            out += &dim(&wrap(&line, "  "));
+            out.push('\n');
+        }
+        out.push('\n');
+    }
+    out
+}
+
+fn choices(u: &Uncertainty) -> String {
+    let mut out = String::new();
+    for q in u.quantities.iter().filter(|q| matches!(q.likely, Likely::Each(_))) {
+        let what = match q.name.strip_prefix("law.") {
+            Some(family) => format!("Law beside law: {family}"),
+            None => format!("Value beside value: {}", q.name),
+        };
+        out += &format!("{}\n", bold(&what));
+        let mut t = table();
+        let header = ["value", "samples", "loss median W", "5 % W", "95 % W", "η median", ""];
+        set_header(&mut t, &header);
+        let own: Vec<_> = u.choices.iter().filter(|c| c.quantity == q.name).collect();
+        let most = own.iter().filter_map(|c| c.loss_median_w).fold(0.0f64, f64::max);
+        for c in own {
+            let watts = |x: Option<f64>| x.map_or("-".into(), |x| significant(x, 4));
+            let samples = if c.answered == c.samples {
+                c.samples.to_string()
+            } else {
+                format!("{} of {}", c.answered, c.samples)
+            };
+            let mark = if c.is_nominal { " (as written)" } else { "" };
+            t.add_row([
+                format!("{}{mark}", c.value),
+                samples,
+                watts(c.loss_median_w),
+                watts(c.loss_p05_w),
+                watts(c.loss_p95_w),
+                c.efficiency_median.map_or("-".into(), |e| format!("{:.3} %", 100.0 * e)),
+                bar(c.loss_median_w.filter(|_| most > 0.0).map_or(0.0, |l| (l / most).max(0.0))),
+            ]);
+        }
+        right(&mut t, 1..6);
+        out += &show(&t);
+        out.push('\n');
+    }
+    out
+}
+
+fn quantities(u: &Uncertainty) -> String {
+    let mut t = table();
+    set_header(&mut t, &["uncertain", "as written", "taken as"]);
+    t.column_mut(1).expect("it was just added").set_cell_alignment(CellAlignment::Right);
+    for q in &u.quantities {
+        let taken = match &q.likely {
+            // They stand above, each in a line.
+            Likely::Each(all) => format!("{} values, equally likely", all.len()),
+            Likely::Between(_) => q.distribution.clone(),
+        };
+        t.add_row([q.name.clone(), q.nominal.clone().unwrap_or("-".into()), taken]);
+    }
+    show(&t)
+}
+
+/// As tables.
+pub fn csv(u: &Uncertainty) -> String {
+    let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+    let mut results = Writer::default();
+    results.row([
+        "result",
+        "unit",
+        "nominal",
+        "below_nominal",
+        "answered",
+        "mean",
+        "standard_deviation",
+        "median",
+        "p025",
+        "p05",
+        "p95",
+        "p975",
+        "least",
+        "most",
+        "mean_error",
+        "median_error",
+        "p025_error",
+        "p05_error",
+        "p95_error",
+        "p975_error",
+    ]);
+    let mut influences = Writer::default();
+    influences.row(["result", "quantity", "first", "first_error", "total", "total_error"]);
+    for o in &u.outputs {
+        let mut row = vec![o.name.clone(), o.unit.to_owned(), number(o.nominal), number(o.below_nominal)];
+        match &o.statistics {
+            None => row.resize(20, String::new()),
+            Some(s) => {
+                let e = &s.sampling_error;
+                row.push(s.answered.to_string());
+                let all = [
+                    s.mean,
+                    s.standard_deviation,
+                    s.median,
+                    s.p025,
+                    s.p05,
+                    s.p95,
+                    s.p975,
+                    s.least,
+                    s.most,
+                    e.mean,
+                    e.median,
+                    e.p025,
+                    e.p05,
+                    e.p95,
+                    e.p975,
+                ];
+                row.extend(all.map(|x| x.to_string()));
+            }
+        }
+        results.row(row);
+        for i in &o.influences {
+            let x = &i.index;
+            let numbers = [x.first, x.first_error, x.total, x.total_error].map(|x| x.to_string());
+            influences.row([o.name.clone(), i.quantity.clone()].into_iter().chain(numbers));
+        }
+    }
+    let mut choices = Writer::default();
+    choices.row([
+        "quantity",
+        "value",
+        "is_nominal",
+        "samples",
+        "answered",
+        "efficiency_median",
+        "loss_median_w",
+        "loss_p05_w",
+        "loss_p95_w",
+    ]);
+    for c in &u.choices {
+        let head = [c.quantity.clone(), c.value.clone(), c.is_nominal.to_string(), c.samples.to_string()];
+        let tail = [c.efficiency_median, c.loss_median_w, c.loss_p05_w, c.loss_p95_w].map(number);
+        choices.row(head.into_iter().chain([c.answered.to_string()]).chain(tail));
+    }
+    let mut verdicts = Writer::default();
+    verdicts.row(["verdict", "samples"]);
+    for (verdict, count) in &u.verdicts {
+        verdicts.row([(*verdict).to_owned(), count.to_string()]);
+    }
+    format!(
+        "# results\n{}\n# influences\n{}\n# choices\n{}\n# verdicts\n{}",
+        results.0, influences.0, choices.0, verdicts.0
+    )
+}
+
+/// Writes the samples, where they are asked for.
+pub fn write_samples(path: &Path, plan: &UncertaintyPlan<'_>, evaluated: &Evaluated) -> Result<(), String> {
+    crate::output::write(path, samples_csv(plan, evaluated).as_bytes())
+}

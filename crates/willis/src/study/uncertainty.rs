@@ -1,0 +1,575 @@
+//! How sure a number is: the distribution of results when quantities are uncertain, and what dominates it.
+
+mod assumed;
+mod report;
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::analysis::Losses;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::train::{Load, Measure, Train};
+use crate::units::{self, Quantity};
+
+use super::design::Design;
+use super::distribution::{Distribution, Reader, fault, plain};
+use super::question::{Hold, Question, Trains};
+use super::sweep::{Answer, Seen, VERDICTS};
+use super::target::{Target, Who};
+use super::{Statistics, Subject};
+
+pub use report::{Choice, Influence, Output, Reported, Uncertainty};
+
+/// Most samples of a plan.
+const MOST_SAMPLES: usize = 1 << 16;
+/// A sampled number is a decimal of so many digits, which the train file can say too.
+const DIGITS: usize = 9;
+
+/// What is asked.
+#[derive(Clone, Debug)]
+pub struct UncertaintyRequest {
+    /// This operation of the file; else the first.
+    pub operation: Option<String>,
+    /// In this state of the shift table.
+    pub state: Option<String>,
+    /// `QUANTITY=DISTRIBUTION`; see [`Distribution`].
+    pub vary: Vec<String>,
+    /// Families whose laws are each as likely as the others, or `all`.
+    pub laws: Vec<String>,
+    /// How many samples; made a power of two.
+    pub samples: usize,
+    /// Other seeds give other points.
+    pub seed: u64,
+}
+
+impl Default for UncertaintyRequest {
+    fn default() -> Self {
+        Self { operation: None, state: None, vary: vec![], laws: vec![], samples: 1024, seed: 1 }
+    }
+}
+
+/// How an uncertain quantity is distributed.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Likely {
+    /// A number between others.
+    Between(Distribution),
+    /// Each of these is as likely as the others.
+    Each(Vec<String>),
+}
+
+/// A quantity that is uncertain.
+#[derive(Clone, Debug)]
+pub struct Uncertain {
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty for plain numbers and texts.
+    pub unit: String,
+    /// How it is distributed.
+    pub likely: Likely,
+    /// What the file has, as written.
+    pub nominal: Option<String>,
+    target: Target,
+}
+
+impl Uncertain {
+    /// Its value at a coordinate from 0 to 1, as the train file writes it.
+    pub fn setting(&self, p: f64) -> String {
+        match &self.likely {
+            Likely::Between(d) => self.text(d.quantile(p)),
+            Likely::Each(all) => all[self.choice(p)].clone(),
+        }
+    }
+
+    /// The number of the choice at a coordinate; 0 for a number between others.
+    fn choice(&self, p: f64) -> usize {
+        match &self.likely {
+            Likely::Between(_) => 0,
+            Likely::Each(all) => ((p * all.len() as f64) as usize).min(all.len() - 1),
+        }
+    }
+
+    fn text(&self, x: f64) -> String {
+        let number = plain(x, DIGITS);
+        if self.unit.is_empty() { number } else { format!("{number} {}", self.unit) }
+    }
+
+    /// Its distribution in words.
+    pub fn describe(&self) -> String {
+        match &self.likely {
+            Likely::Between(d) => d.describe(&self.unit),
+            Likely::Each(all) => all.join(", "),
+        }
+    }
+}
+
+/// Uncertain quantities, an operating point, and the points at which it is evaluated.
+///
+/// Work comes in pieces, so that a caller can spread it over processors: every piece is a range of points, and pieces
+/// [joined](Evaluated::join) in their order give the same result however they were cut.
+///
+/// # Example
+/// ```
+/// use willis::study::{Subject, UncertaintyPlan, UncertaintyRequest};
+///
+/// let text = r#"
+///     format = 1
+///     name = "reducer"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+///     mesh_efficiency = 0.99
+///     [[operation]]
+///     name = "full load"
+///     speeds = { s = "1000 rpm" }
+///     torques = { s = "10 N m" }
+/// "#;
+/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let vary = vec!["P1.mesh_efficiency=0.98..1".into()];
+/// let request = UncertaintyRequest { vary, samples: 256, ..Default::default() };
+/// let plan = UncertaintyPlan::new(&subject, &request)?;
+/// let evaluated = plan.evaluate(0..plan.len(), &mut Default::default());
+/// let found = plan.finish(&evaluated);
+/// // (1 − i0 η²)/(1 − i0) with i0 = −7/3 is monotonous in η: its median is that of η.
+/// let efficiency = found.output("efficiency").unwrap().statistics.unwrap();
+/// assert!((efficiency.median - 0.98607).abs() < 2.0 * efficiency.sampling_error.median);
+/// # Ok::<(), willis::diagnostic::Diagnostics>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct UncertaintyPlan<'s> {
+    question: Question<'s>,
+    quantities: Vec<Uncertain>,
+    design: Design,
+    assumptions: Vec<String>,
+    warnings: Vec<String>,
+    /// Of the values of a point: name, unit.
+    outputs: Vec<(String, &'static str)>,
+    nominal: Vec<f64>,
+    nominal_verdict: &'static str,
+}
+
+/// Values at some points.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Evaluated {
+    /// Of every point: its place in [`VERDICTS`].
+    verdicts: Vec<u8>,
+    /// Of every point: one for each output; NaN where there is none.
+    values: Vec<f64>,
+    seen: BTreeMap<String, Seen>,
+}
+
+impl Evaluated {
+    /// Adds what was found at the points that follow.
+    pub fn join(&mut self, later: Self) {
+        self.verdicts.extend(later.verdicts);
+        self.values.extend(later.values);
+        for (kind, seen) in later.seen {
+            match self.seen.get_mut(&kind) {
+                Some(own) => own.count += seen.count,
+                None => drop(self.seen.insert(kind, seen)),
+            }
+        }
+    }
+
+    fn see(&mut self, kind: String, message: &str, point: usize) {
+        match self.seen.get_mut(&kind) {
+            Some(own) => own.count += 1,
+            None => drop(self.seen.insert(kind, Seen { count: 1, message: message.into(), point: point as u64 })),
+        }
+    }
+}
+
+/// `first, second and third`.
+fn listed(all: &[String]) -> String {
+    match all {
+        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => all.join(""),
+    }
+}
+
+fn errors(wrong: Diagnostics) -> String {
+    Answer::refused(wrong).reason
+}
+
+impl<'s> UncertaintyPlan<'s> {
+    /// Reads what is uncertain, and checks that the operating point has an answer to begin with.
+    ///
+    /// # Errors
+    /// No operating point, unknown quantities, distributions that mean nothing, quantities named twice; a train that is
+    /// refused with every quantity at the middle of its distribution.
+    pub fn new(subject: &'s Subject, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
+        let mut wrong = Diagnostics::default();
+        let question = Question::new(subject, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+        if question.base().loads.is_empty() {
+            let message = match &request.state {
+                Some(state) => {
+                    format!("uncertainty belongs to an operating point, and there is none in state `{state}`")
+                }
+                None => "uncertainty belongs to an operating point, and there is none".into(),
+            };
+            let d = Diagnostic::new(Code::UnknownSelection, "", message);
+            return Err([d.hint("add an [[operation]] with speeds and torques or powers")].into_iter().collect());
+        }
+        let (mut quantities, mut assumptions): (Vec<Uncertain>, Vec<String>) = (vec![], vec![]);
+        for text in &request.vary {
+            match read(text, &question, &mut assumptions) {
+                Ok(q) => quantities.push(q),
+                Err(d) => wrong.push(*d),
+            }
+        }
+        let before = quantities.len();
+        for family in &request.laws {
+            match assumed::laws(family, &question) {
+                Ok(found) => {
+                    let new = found.into_iter().filter(|(q, _)| {
+                        !(family == "all" && quantities[..before].iter().any(|o| o.target == q.target))
+                    });
+                    let (more, told): (Vec<_>, Vec<_>) = new.unzip();
+                    quantities.extend(more);
+                    assumptions.extend(told);
+                }
+                Err(d) => wrong.push(*d),
+            }
+        }
+        for (k, q) in quantities.iter().enumerate() {
+            if quantities[..k].iter().any(|o| o.target == q.target) {
+                wrong.push(fault(&q.name, "this quantity is named twice"));
+            }
+        }
+        if !(128..=MOST_SAMPLES).contains(&request.samples) {
+            let message = format!(
+                "{} samples are too {}",
+                request.samples,
+                match request.samples {
+                    0..128 => "few to tell a distribution",
+                    _ => "many",
+                }
+            );
+            let d = Diagnostic::new(Code::BadAxis, "", message);
+            wrong.push(d.hint(format!("from 128 to {MOST_SAMPLES} are possible")));
+        }
+        if wrong.has_errors() {
+            return Err(wrong);
+        }
+        if request.vary.is_empty() && request.laws.is_empty() {
+            (quantities, assumptions) = assumed::quantities(&question);
+            if quantities.is_empty() {
+                let message = "nothing that the file gives is uncertain by itself: no efficiency below 1, no roughness, \
+                               no oil, no computed friction";
+                let d = Diagnostic::new(Code::BadAxis, "", message);
+                let hint = "name what is uncertain: --vary \"P1.mesh_efficiency=0.985..0.995\"";
+                return Err([d.hint(hint)].into_iter().collect());
+            }
+        }
+        let samples = Design::possible(request.samples);
+        if samples != request.samples {
+            assumptions.push(format!("{samples} samples in place of {}: a power of two", request.samples));
+        }
+        if quantities.len() > 1 {
+            assumptions.push("the uncertain quantities are independent of each other".into());
+        }
+        let cut = |q: &Uncertain| {
+            matches!(&q.likely, Likely::Between(Distribution::Normal { .. } | Distribution::Lognormal { .. }))
+        };
+        if quantities.iter().any(cut) {
+            assumptions.push("normal and lognormal distributions are cut off at three standard deviations".into());
+        }
+        let one = |message: String| Diagnostics::from_iter([Diagnostic::new(Code::BadAxis, "", message)]);
+        let design = Design::new(quantities.len(), samples, request.seed).map_err(one)?;
+        let mut plan = Self {
+            question,
+            quantities,
+            design,
+            assumptions,
+            warnings: vec![],
+            outputs: vec![],
+            nominal: vec![],
+            nominal_verdict: "",
+        };
+        plan.name_outputs();
+        plan.check()?;
+        Ok(plan)
+    }
+
+    fn name_outputs(&mut self) {
+        let train = self.question.subject().train();
+        self.outputs = vec![("efficiency".into(), ""), ("loss_w".into(), "W")];
+        self.outputs.extend(KINDS.iter().map(|kind| (format!("{kind}_loss_w"), "W")));
+        self.outputs.extend(sources(train).map(|name| (format!("loss.{name}_w"), "W")));
+        let answer = Answer::of(train, self.question.base());
+        self.nominal = self.values(&answer);
+        self.nominal_verdict = answer.verdict;
+    }
+
+    /// The middle must be possible; ends that are not are told.
+    fn check(&mut self) -> Result<(), Diagnostics> {
+        let middle: Vec<f64> = vec![0.5; self.quantities.len()];
+        let ask = |p: &[f64]| self.question.at(&self.settings_at(p), &mut Trains::default()).map(drop);
+        ask(&middle).map_err(|wrong| {
+            let hint = "so it is with every quantity at the middle of its distribution";
+            let told = wrong.into_iter().map(|d| d.hint(hint));
+            told.collect::<Diagnostics>()
+        })?;
+        let mut warnings = vec![];
+        for (k, q) in self.quantities.iter().enumerate() {
+            let at: Vec<f64> = match &q.likely {
+                Likely::Between(_) => vec![1e-9, 1.0 - 1e-9],
+                Likely::Each(all) => (0..all.len()).map(|c| (c as f64 + 0.5) / all.len() as f64).collect(),
+            };
+            for p in at {
+                let mut place = middle.clone();
+                place[k] = p;
+                if let Err(why) = ask(&place) {
+                    // The end itself, not a number beside it.
+                    let shown = match &q.likely {
+                        Likely::Between(d) => q.text(d.ends()[usize::from(p > 0.5)]),
+                        Likely::Each(_) => q.setting(p),
+                    };
+                    let message = format!(
+                        "{} = {shown} is refused: {}; samples like it are counted, and have no result",
+                        q.name,
+                        errors(why)
+                    );
+                    warnings.push(message);
+                }
+            }
+        }
+        self.warnings = warnings;
+        Ok(())
+    }
+
+    /// How many points there are; more than samples, for what dominates.
+    pub fn len(&self) -> usize {
+        self.design.len()
+    }
+
+    /// Whether there are none; never.
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// So many points belong together: pieces of whole groups read the train file less often.
+    pub fn group(&self) -> usize {
+        self.design.group()
+    }
+
+    /// Where it is evaluated.
+    pub fn design(&self) -> &Design {
+        &self.design
+    }
+
+    /// What is uncertain.
+    pub fn quantities(&self) -> &[Uncertain] {
+        &self.quantities
+    }
+
+    /// What is asked.
+    pub fn question(&self) -> &Question<'s> {
+        &self.question
+    }
+
+    fn settings_at(&self, p: &[f64]) -> Vec<(&Target, String)> {
+        self.quantities.iter().zip(p).map(|(q, p)| (&q.target, q.setting(*p))).collect()
+    }
+
+    /// The values of the quantities at a point, as the train file writes them.
+    pub fn settings(&self, point: usize) -> Vec<String> {
+        self.quantities.iter().zip(self.design.at(point)).map(|(q, p)| q.setting(p)).collect()
+    }
+
+    /// The answer at a point.
+    pub fn answer(&self, point: usize, trains: &mut Trains) -> Answer {
+        match self.question.at(&self.settings_at(&self.design.at(point)), trains) {
+            Ok((train, operation)) => Answer::of(&train, &operation),
+            Err(wrong) => Answer::refused(wrong),
+        }
+    }
+
+    /// The values at a range of points.
+    pub fn evaluate(&self, points: std::ops::Range<usize>, trains: &mut Trains) -> Evaluated {
+        let mut all = Evaluated::default();
+        for point in points {
+            let answer = self.answer(point, trains);
+            let verdict = VERDICTS.iter().position(|v| *v == answer.verdict).expect("a verdict is one of them");
+            all.verdicts.push(verdict as u8);
+            all.values.extend(self.values(&answer));
+            if !self.design.is_sample(point) {
+                continue;
+            }
+            if !answer.reason.is_empty() {
+                all.see(format!("reason: {}", answer.verdict), &answer.reason, point);
+            }
+            let mut told: Vec<String> = vec![];
+            for (code, message) in &answer.warnings {
+                // Laws are told apart, places and numbers are not.
+                let kind = match message.split_once(" of ") {
+                    Some((law, _)) if law.contains(" = ") => format!("{} {law}", code.as_str()),
+                    _ => code.as_str().to_owned(),
+                };
+                if !told.contains(&kind) {
+                    all.see(kind.clone(), message, point);
+                    told.push(kind);
+                }
+            }
+        }
+        all
+    }
+
+    fn values(&self, answer: &Answer) -> Vec<f64> {
+        let Some(s) = answer.solution.as_ref().filter(|_| answer.verdict == "unique") else {
+            return vec![f64::NAN; self.outputs.len()];
+        };
+        let l: &Losses = &s.losses_w;
+        let mut values = vec![answer.efficiency(), s.loss_w, l.mesh, l.bearing, l.windage, l.churning, l.seal];
+        values.extend(sources(self.question.subject().train()).map(|name| {
+            let mut own = s.sources.iter().filter(|x| x.name == name).map(|x| x.loss_w).peekable();
+            match own.peek() {
+                Some(_) => own.sum(),
+                None => s.meshes.get(name).map_or(0.0, |m| m.loss_w),
+            }
+        }));
+        values
+    }
+}
+
+/// Losses by kind, in the order in which they are among the values.
+const KINDS: [&str; 5] = ["mesh", "bearing", "windage", "churning", "seal"];
+
+/// Names of what may lose power.
+fn sources(train: &Train) -> impl Iterator<Item = &str> {
+    (train.meshes().iter().map(|m| m.name.as_str()))
+        .chain(train.bearings.iter().map(|b| b.name.as_str()))
+        .chain(train.seals.iter().map(|s| s.name.as_str()))
+        .chain(train.rotors.iter().map(|r| r.name.as_str()))
+}
+
+/// Reads `QUANTITY=DISTRIBUTION`.
+fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> Result<Uncertain, Box<Diagnostic>> {
+    let subject = question.subject();
+    let Some((name, values)) = text.split_once('=') else {
+        return Err(Box::new(fault(text, "there is no `=` between a quantity and its distribution")));
+    };
+    let (name, values) = (name.trim(), values.trim());
+    let target = Target::parse(name, subject)?;
+    if values.is_empty() {
+        return Err(Box::new(fault(text, "there is no distribution")));
+    }
+    let measure = target.measure(subject);
+    let nominal = nominal(&target, question);
+    let found = |unit: String, likely: Likely| Uncertain {
+        name: name.to_owned(),
+        unit,
+        likely,
+        nominal: nominal.clone(),
+        target: target.clone(),
+    };
+    let list = || values.split(',').map(|v| v.trim().to_owned()).collect::<Vec<_>>();
+    if let Target::Law(family) = target
+        && matches!(values, "all" | "inside")
+    {
+        let (laws, told) = assumed::laws_of(family, question, values == "inside");
+        if laws.len() < 2 {
+            return Err(Box::new(fault(text, "this train can use no two laws of the family")));
+        }
+        assumptions.push(told);
+        return Ok(found(String::new(), Likely::Each(laws)));
+    }
+    let base = nominal.as_deref().and_then(|b| Reader::base_of(b, measure));
+    let reader = Reader { whole: text, measure, base };
+    let all = match measure {
+        Measure::Text | Measure::Flag => target.choices(subject, &list()).unwrap_or_else(list),
+        Measure::Integer if values.contains("..") => {
+            let ends = values
+                .split_once("..")
+                .and_then(|(a, b)| Some((a.trim().parse::<i64>().ok()?, b.trim().parse().ok()?)));
+            match ends {
+                Some((a, b)) if a < b && b - a < 1000 => (a..=b).map(|n| n.to_string()).collect(),
+                Some((a, b)) if a >= b => {
+                    let message = format!("the interval runs backwards or is empty, from {a} to {b}");
+                    return Err(Box::new(fault(text, message)));
+                }
+                _ => return Err(Box::new(fault(text, "whole numbers are written `3..6` or `3,4,6`"))),
+            }
+        }
+        _ => match reader.read(values)? {
+            Some(_) if measure == Measure::Integer => {
+                return Err(Box::new(fault(text, "whole numbers are written `3..6` or `3,4,6`")));
+            }
+            Some(read) => {
+                // What the file says of a number of this kind, before anything is computed.
+                return Ok(found(read.unit, Likely::Between(read.distribution)));
+            }
+            None => {
+                let mut all = list();
+                let unit = all.iter().filter_map(|v| Reader::base_of(v, measure)).map(|b| b.1).find(|u| !u.is_empty());
+                if let Some(unit) = unit {
+                    let bare = |v: &String| Reader::base_of(v, measure).is_some_and(|b| b.1.is_empty());
+                    all.iter_mut().filter(|v| bare(v)).for_each(|v| *v = format!("{v} {unit}"));
+                }
+                all
+            }
+        },
+    };
+    target.check(subject, &all).map_err(|what| {
+        let mut d = *what;
+        d.message = format!("`{name}`: {}", d.message);
+        Box::new(d)
+    })?;
+    if let Some(k) = (1..all.len()).find(|&k| all[..k].contains(&all[k])) {
+        return Err(Box::new(fault(text, format!("{} stands there twice", all[k]))));
+    }
+    if all.len() < 2 {
+        return Err(Box::new(fault(text, format!("{} alone is certain", all.join("")))));
+    }
+    let what = if matches!(target, Target::Law(_)) { "laws are" } else { "values are" };
+    assumptions.push(format!("{name}: the {what} equally likely"));
+    Ok(found(String::new(), Likely::Each(all)))
+}
+
+/// What the file has, as it writes it.
+fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
+    let (subject, base) = (question.subject(), question.base());
+    let train = subject.train();
+    // The unit in which people say it.
+    let said = |q: &Quantity, unit: &str, turn: bool| {
+        let one = units::parse(&format!("1 {unit}"), q.dimension).expect("a unit of it").si();
+        let value = q.si() / one;
+        format!("{} {unit}", plain(if turn { -value } else { value }, 12))
+    };
+    match target {
+        Target::File(key) => subject.document().value(key),
+        Target::Law(family) => assumed::in_force(train, family).map(str::to_owned),
+        Target::State => base.state.map(|k| train.states()[k].name.clone()),
+        Target::Temperature => {
+            let t = base.temperature.or(train.lubrication.as_ref().map(|l| l.temperature))?;
+            Some(format!("{} degC", plain(t - 273.15, 12)))
+        }
+        Target::Speed(who) => {
+            let member = question.role(train, base, *who).ok()?;
+            let (_, speed) = base.speeds.iter().find(|s| s.0 == member)?;
+            Some(said(speed, "rpm", false))
+        }
+        Target::Torque(who) | Target::Power(who) => {
+            let member = question.role(train, base, *who).ok()?;
+            let (_, load) = base.loads.iter().find(|l| l.0 == member)?;
+            let backwards = || question.speeds(train, base)(member).is_some_and(|w| w.value.sign() < 0);
+            match (target, load) {
+                (Target::Torque(_), Load::Torque(q)) => {
+                    let turn = match who {
+                        Who::Member(_) => false,
+                        Who::Input => backwards(),
+                        Who::Output => !backwards(),
+                    };
+                    Some(said(q, "N m", turn))
+                }
+                (Target::Power(_), Load::Power(q)) => Some(said(q, "W", *who == Who::Output)),
+                _ => None,
+            }
+        }
+    }
+}

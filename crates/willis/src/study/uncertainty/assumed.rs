@@ -1,0 +1,170 @@
+//! What is uncertain when nobody says so, and the laws that are as likely as others.
+
+use crate::catalogue::oil::Viscosity;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::losses::{self, FAMILIES, Tag};
+use crate::study::distribution::{Distribution, Reader};
+use crate::study::question::Question;
+use crate::study::sweep::Answer;
+use crate::study::target::Target;
+use crate::train::{Measure, Train};
+
+use super::{Likely, Uncertain, listed, nominal};
+
+/// Share of a given loss `1 − η` that is doubtful, each way.
+const LOSS: f64 = 0.2;
+/// Share of a roughness.
+const ROUGHNESS: f64 = 0.2;
+/// Kelvin of an oil temperature.
+const TEMPERATURE: f64 = 5.0;
+
+/// The law of a family that a train uses.
+pub(super) fn in_force(train: &Train, family: &str) -> Option<&'static str> {
+    let friction = train.laws.mesh_friction(train.lubrication.is_some());
+    match family {
+        "mesh_friction" => Some(friction.meta().id),
+        "rolling" => train.laws.rolling(&friction).map(|r| r.meta().id),
+        _ => {
+            let own = losses::entries().into_iter().filter(|e| e.family == family);
+            let is_in_force = |id: &str| {
+                let mut laws = train.laws;
+                laws.choose(family, id).is_ok() && laws == train.laws
+            };
+            own.map(|e| e.id).find(|id| is_in_force(id))
+        }
+    }
+}
+
+/// The laws of a family that a train can use, in their order; only those inside their range at the operating point if so
+/// asked and two are. And what is to be said of them.
+pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: bool) -> (Vec<String>, String) {
+    let train = question.subject().train();
+    let own = losses::entries().into_iter().filter(|e| e.family == family);
+    let (wrong, good): (Vec<_>, Vec<_>) = own.partition(|e| e.tags.contains(&Tag::Compatibility));
+    let (mut within, mut outside, mut unfit) = (vec![], vec![], vec![]);
+    for e in good {
+        let Ok(with) = train.clone().with_law(family, e.id) else {
+            unfit.push(e.id.to_owned());
+            continue;
+        };
+        let title = format!("{family} = {} of ", e.id);
+        let answer = Answer::of(&with, question.base());
+        match answer.warnings.iter().any(|w| w.1.starts_with(&title)) {
+            true => outside.push(e.id.to_owned()),
+            false => within.push(e.id.to_owned()),
+        }
+    }
+    let mut told = format!("law.{family}: each law is as likely as the others");
+    let keep_inside = inside && within.len() > 1;
+    let wrong: Vec<String> = wrong.iter().map(|e| e.id.to_owned()).collect();
+    let beyond = if keep_inside { &outside[..] } else { &[] };
+    let left_out: Vec<String> =
+        [(&unfit[..], "data missing"), (&wrong[..], "a published error"), (beyond, "outside the range of the source")]
+            .into_iter()
+            .filter(|(laws, _)| !laws.is_empty())
+            .map(|(laws, why)| format!("{} ({why})", listed(laws)))
+            .collect();
+    if !left_out.is_empty() {
+        told += &format!("; left out: {}", left_out.join(", "));
+    }
+    if keep_inside {
+        return (within, told);
+    }
+    let order = |id: &String| losses::entries().iter().position(|e| e.family == family && e.id == id);
+    within.extend(outside);
+    within.sort_by_key(order);
+    (within, told)
+}
+
+/// `--laws`: a family, or all whose choice matters here.
+pub(super) fn laws(family: &str, question: &Question<'_>) -> Result<Vec<(Uncertain, String)>, Box<Diagnostic>> {
+    let train = question.subject().train();
+    let one = |family: &'static str| {
+        let (laws, told) = laws_of(family, question, true);
+        let target = Target::Law(family);
+        let loss = |law: &String| {
+            let with = train.clone().with_law(family, law).ok()?;
+            Some(Answer::of(&with, question.base()).loss())
+        };
+        let all: Vec<f64> = laws.iter().filter_map(loss).filter(|l| !l.is_nan()).collect();
+        let matters = all.iter().any(|l| *l != all[0]);
+        let nominal = nominal(&target, question);
+        let name = format!("law.{family}");
+        let found = Uncertain { name, unit: String::new(), likely: Likely::Each(laws), nominal, target };
+        matters.then_some((found, told))
+    };
+    if family == "all" {
+        let all: Vec<_> = FAMILIES.iter().filter_map(|f| one(f)).collect();
+        if all.is_empty() {
+            let d = Diagnostic::new(Code::Unfit, "", "no loss of this operating point depends on a law");
+            return Err(Box::new(d.hint("laws compute losses from teeth, oil and bearings; give some of them")));
+        }
+        return Ok(all);
+    }
+    let Some(known) = FAMILIES.iter().find(|f| **f == family) else {
+        let message = format!("there is no family of laws `{}`", family.chars().take(64).collect::<String>());
+        let d = Diagnostic::new(Code::UnknownName, "", message).suggest(family, FAMILIES.iter().copied());
+        return Err(Box::new(d.hint(format!("the families are: {}, or all", FAMILIES.join(", ")))));
+    };
+    match one(known) {
+        Some(found) => Ok(vec![found]),
+        None => {
+            let d = Diagnostic::new(Code::Unfit, "", format!("no loss of this operating point depends on {family}"));
+            Err(Box::new(d.hint("what the family is about is not given, or given as a number")))
+        }
+    }
+}
+
+/// What is taken as uncertain when nothing is said, with the assumptions.
+pub(super) fn quantities(question: &Question<'_>) -> (Vec<Uncertain>, Vec<String>) {
+    let subject = question.subject();
+    let (train, document) = (subject.train(), subject.document());
+    let (mut all, mut told) = (vec![], vec![]);
+    let mut losses: Vec<String> = vec![];
+    let mut roughness: Vec<String> = vec![];
+    for path in document.paths() {
+        let Ok(key) = document.find(&path) else { continue };
+        let Some(text) = document.value(&key) else { continue };
+        let Some((value, unit)) = Reader::base_of(&text, key.measure) else { continue };
+        let mut parts = path.rsplit('.');
+        let is_efficiency = key.measure == Measure::Number
+            && parts.clone().any(|p| matches!(p, "mesh_efficiency" | "efficiency" | "basic_efficiency"));
+        let last = parts.next().unwrap_or_default();
+        let distribution = if is_efficiency && value < 1.0 {
+            losses.push(path.clone());
+            let loss = LOSS * (1.0 - value);
+            Distribution::Uniform { least: value - loss, most: value + loss }
+        } else if last == "roughness" && value > 0.0 && train.is_physical() {
+            roughness.push(path.clone());
+            Distribution::Uniform { least: value * (1.0 - ROUGHNESS), most: value * (1.0 + ROUGHNESS) }
+        } else {
+            continue;
+        };
+        let target = Target::File(key);
+        let likely = Likely::Between(distribution);
+        all.push(Uncertain { name: path, unit, likely, nominal: Some(text), target });
+    }
+    if !losses.is_empty() {
+        told.push(format!("given efficiencies: the loss 1 − η is doubtful by ±20 % ({})", listed(&losses)));
+    }
+    if !roughness.is_empty() {
+        told.push(format!("roughness is doubtful by ±20 % ({})", listed(&roughness)));
+    }
+    let varies = |l: &crate::train::Lubrication| !matches!(l.oil.viscosity, Viscosity::Fixed { .. });
+    if train.is_physical() && train.lubrication.as_ref().is_some_and(varies) {
+        let target = Target::Temperature;
+        let text = nominal(&target, question).expect("there is an oil");
+        let (value, unit) = Reader::base_of(&text, Measure::Number).expect("it was written as a number");
+        let likely = Likely::Between(Distribution::Uniform { least: value - TEMPERATURE, most: value + TEMPERATURE });
+        all.push(Uncertain { name: "oil.temperature".into(), unit, likely, nominal: Some(text), target });
+        told.push("the oil's temperature is doubtful by ±5 K".into());
+    }
+    if train.meshes.iter().any(|m| m.computed)
+        && let Ok(found) = laws("mesh_friction", question)
+    {
+        let (laws, what): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        all.extend(laws);
+        told.extend(what);
+    }
+    (all, told)
+}

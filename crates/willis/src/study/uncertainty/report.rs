@@ -1,0 +1,242 @@
+//! What an uncertain result comes to.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::study::design::{REPLICATES, quantile};
+
+use super::{DIGITS, Evaluated, Likely, Seen, Statistics, UncertaintyPlan, VERDICTS, plain};
+
+/// A quantity as the results show it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reported {
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty for plain numbers and texts.
+    pub unit: String,
+    /// Its distribution as it can be written on the command line.
+    pub distribution: String,
+    /// The same as data.
+    pub likely: Likely,
+    /// What the file has, as written.
+    pub nominal: Option<String>,
+}
+
+/// The share of the variance of an output for which a quantity answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Influence {
+    /// The quantity.
+    pub quantity: String,
+    /// Its Sobol indices.
+    #[serde(flatten)]
+    pub index: crate::study::Index,
+}
+
+/// One result and its distribution.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Output {
+    /// `efficiency`, `loss_w`, `mesh_loss_w`, …, `loss.NAME_w`.
+    pub name: String,
+    /// Its unit; empty for the efficiency.
+    pub unit: &'static str,
+    /// With the file as written; absent where that has no unique answer.
+    pub nominal: Option<f64>,
+    /// The share of samples that lie below that.
+    pub below_nominal: Option<f64>,
+    /// Its distribution; absent where too few samples have an answer.
+    pub statistics: Option<Statistics>,
+    /// What dominates it, largest total index first; empty with a single quantity and where nothing varies.
+    pub influences: Vec<Influence>,
+}
+
+/// The samples that share one choice: one law of a family, one number of planets.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Choice {
+    /// The quantity.
+    pub quantity: String,
+    /// Its value.
+    pub value: String,
+    /// Whether the file has this one.
+    pub is_nominal: bool,
+    /// How many samples have it.
+    pub samples: usize,
+    /// How many of them have an answer.
+    pub answered: usize,
+    /// Median of their efficiencies.
+    pub efficiency_median: Option<f64>,
+    /// Median of their losses, W.
+    pub loss_median_w: Option<f64>,
+    /// 5 % of their losses are below, W.
+    pub loss_p05_w: Option<f64>,
+    /// 95 % of their losses are below, W.
+    pub loss_p95_w: Option<f64>,
+}
+
+/// How sure a result is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Uncertainty {
+    /// `willis-uncertainty-1`.
+    pub format: &'static str,
+    /// Name of the train.
+    pub train: String,
+    /// The operating point.
+    pub operation: String,
+    /// The state of the shift table.
+    pub state: Option<String>,
+    /// The seed of the points.
+    pub seed: u64,
+    /// Samples from which the distributions are told.
+    pub samples: usize,
+    /// Operating points that were computed; more than samples, for what dominates.
+    pub evaluations: usize,
+    /// Independent scramblings, from which sampling errors are told.
+    pub replicates: usize,
+    /// What is uncertain.
+    pub quantities: Vec<Reported>,
+    /// What was assumed.
+    pub assumptions: Vec<String>,
+    /// What can be said of the file as written.
+    pub nominal_verdict: &'static str,
+    /// Samples by verdict.
+    pub verdicts: BTreeMap<&'static str, usize>,
+    /// The results, efficiency and loss first.
+    pub outputs: Vec<Output>,
+    /// Samples by choice, for every quantity that has choices.
+    pub choices: Vec<Choice>,
+    /// What is to be known of the distributions.
+    pub warnings: Vec<String>,
+    /// Warnings of samples by their code, and by `reason` why samples have no answer.
+    pub seen: BTreeMap<String, Seen>,
+}
+
+impl Uncertainty {
+    /// The result of that name.
+    pub fn output(&self, name: &str) -> Option<&Output> {
+        self.outputs.iter().find(|o| o.name == name)
+    }
+}
+
+impl UncertaintyPlan<'_> {
+    /// Names of the values of a sample: `efficiency`, `loss_w`, …
+    pub fn outputs(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.outputs.iter().map(|o| o.0.as_str())
+    }
+
+    /// Every sample: its point, verdict and values, in the order of [`outputs`](Self::outputs).
+    pub fn samples<'a>(
+        &'a self,
+        evaluated: &'a Evaluated,
+    ) -> impl Iterator<Item = (usize, &'static str, &'a [f64])> + 'a {
+        let width = self.outputs.len();
+        let points = (0..evaluated.verdicts.len()).filter(|k| self.design.is_sample(*k));
+        points.map(move |k| (k, VERDICTS[usize::from(evaluated.verdicts[k])], &evaluated.values[k * width..][..width]))
+    }
+
+    /// The distributions of the results, once all points are evaluated.
+    ///
+    /// # Panics
+    /// If points are missing.
+    pub fn finish(&self, evaluated: &Evaluated) -> Uncertainty {
+        assert_eq!(evaluated.verdicts.len(), self.len(), "every point is evaluated once");
+        let width = self.outputs.len();
+        let mut verdicts: BTreeMap<&'static str, usize> = BTreeMap::new();
+        for (_, verdict, _) in self.samples(evaluated) {
+            *verdicts.entry(verdict).or_default() += 1;
+        }
+        let mut outputs = vec![];
+        for (c, (name, unit)) in self.outputs.iter().enumerate() {
+            let column: Vec<f64> = evaluated.values.iter().skip(c).step_by(width).copied().collect();
+            // What this train does not have is not worth a line.
+            if c > 1 && column.iter().all(|v| v.is_nan() || *v == 0.0) {
+                continue;
+            }
+            let nominal = Some(self.nominal[c]).filter(|v| !v.is_nan());
+            let statistics = self.design.statistics(&column);
+            let below_nominal = nominal.zip(statistics).map(|(nominal, s)| {
+                let samples = column.iter().enumerate().filter(|(k, _)| self.design.is_sample(*k));
+                let (mut below, mut same) = (0, 0);
+                for (_, v) in samples {
+                    below += usize::from(*v < nominal);
+                    same += usize::from(*v == nominal);
+                }
+                (below as f64 + 0.5 * same as f64) / s.answered as f64
+            });
+            let indices = self.design.indices(&column).unwrap_or_default();
+            let mut influences: Vec<Influence> = (self.quantities.iter().zip(indices))
+                .map(|(q, index)| Influence { quantity: q.name.clone(), index })
+                .collect();
+            influences.sort_by(|a, b| b.index.total.total_cmp(&a.index.total));
+            outputs.push(Output { name: name.clone(), unit, nominal, below_nominal, statistics, influences });
+        }
+        let base = self.question.base();
+        let train = self.question.subject().train();
+        Uncertainty {
+            format: "willis-uncertainty-1",
+            train: train.name().to_owned(),
+            operation: base.name.clone(),
+            state: base.state.map(|k| train.states()[k].name.clone()),
+            seed: self.design.seed(),
+            samples: self.design.samples(),
+            evaluations: self.design.len(),
+            replicates: REPLICATES,
+            quantities: self.reported(),
+            assumptions: self.assumptions.clone(),
+            nominal_verdict: self.nominal_verdict,
+            verdicts,
+            outputs,
+            choices: self.choices(evaluated),
+            warnings: self.warnings.clone(),
+            seen: evaluated.seen.clone(),
+        }
+    }
+
+    fn reported(&self) -> Vec<Reported> {
+        let all = self.quantities.iter().map(|q| Reported {
+            name: q.name.clone(),
+            unit: q.unit.clone(),
+            distribution: q.describe(),
+            likely: q.likely.clone(),
+            nominal: q.nominal.clone(),
+        });
+        all.collect()
+    }
+
+    fn choices(&self, evaluated: &Evaluated) -> Vec<Choice> {
+        let mut all = vec![];
+        for (i, q) in self.quantities.iter().enumerate() {
+            let Likely::Each(values) = &q.likely else { continue };
+            let mut of: Vec<(usize, Vec<f64>, Vec<f64>)> = vec![Default::default(); values.len()];
+            for (point, _, row) in self.samples(evaluated) {
+                let own = &mut of[q.choice(self.design.at(point)[i])];
+                own.0 += 1;
+                if !row[1].is_nan() {
+                    own.1.push(row[0]);
+                    own.2.push(row[1]);
+                }
+            }
+            for (value, (samples, mut efficiency, mut loss)) in values.iter().zip(of) {
+                efficiency.retain(|e| !e.is_nan());
+                efficiency.sort_by(f64::total_cmp);
+                loss.sort_by(f64::total_cmp);
+                let at = |of: &[f64], p: f64| (!of.is_empty()).then(|| quantile(of, p));
+                let same = |nominal: &String| {
+                    let number = |t: &str| t.parse::<f64>().ok().map(|x| plain(x, DIGITS));
+                    nominal == value || number(nominal).is_some_and(|n| Some(n) == number(value))
+                };
+                all.push(Choice {
+                    quantity: q.name.clone(),
+                    value: value.clone(),
+                    is_nominal: q.nominal.as_ref().is_some_and(same),
+                    samples,
+                    answered: loss.len(),
+                    efficiency_median: at(&efficiency, 0.5),
+                    loss_median_w: at(&loss, 0.5),
+                    loss_p05_w: at(&loss, 0.05),
+                    loss_p95_w: at(&loss, 0.95),
+                });
+            }
+        }
+        all
+    }
+}
