@@ -90,6 +90,14 @@ mod prose {
     struct WhereDoesEveryWattGo;
     #[doc = include_str!("../../../book/src/which-loss-first.md")]
     struct WhichLossFirst;
+    #[doc = include_str!("../../../book/src/maps.md")]
+    struct HowDoesItGo;
+    #[doc = include_str!("../../../book/src/efficiency-map.md")]
+    struct AnEfficiencyMap;
+    #[doc = include_str!("../../../book/src/how-sure-am-i.md")]
+    struct HowSureAmI;
+    #[doc = include_str!("../../../book/src/duty-cycle.md")]
+    struct WhatDoesItCost;
     #[doc = include_str!("../../../book/src/regimes.md")]
     struct EveryWayATrainCanRun;
     #[doc = include_str!("../../../book/src/power-split.md")]

@@ -394,3 +394,23 @@ fn val_wang_trends() {
     let diagonal: Vec<f64> = (0..4).map(|k| efficiency[5 * k]).collect();
     assert!(falls(&diagonal), "{diagonal:?}");
 }
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig { cases: 400, failure_persistence: None, ..Default::default() })]
+
+    /// Any text is an axis or is refused in words.
+    #[test]
+    fn no_axis_panics(
+        name in "(sun\\.speed|P1\\.planet\\.count|law\\.bearing|oil\\.temperature|[a-z.=0-9é]{0,12})",
+        values in "[0-9.eE+\\- rpmNdegC,:solgtp/é]{0,30}",
+    ) {
+        static SUBJECT: std::sync::LazyLock<Subject> =
+            std::sync::LazyLock::new(|| subject(&text("fva-planetary-stage.toml")));
+        if let Ok(axis) = Axis::parse(&format!("{name}={values}"), &SUBJECT) {
+            proptest::prop_assert!(!axis.is_empty());
+            for k in [0, axis.len() / 2, axis.len() - 1] {
+                proptest::prop_assert!(axis.is_text() || axis.number(k).is_finite(), "{}", axis.setting(k));
+            }
+        }
+    }
+}

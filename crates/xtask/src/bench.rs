@@ -130,6 +130,7 @@ pub fn run(root: &Path) -> Result<(), String> {
         println!("{task:34} {:9.3} ms, at most {} ms: {verdict}", 1e3 * seconds, 1e3 * most);
     }
     motion(root, &own, &peers)?;
+    study(root, &python, &mut wrong)?;
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n")) }
 }
 
@@ -157,6 +158,86 @@ fn motion(root: &Path, own: &[Value], peers: &[Value]) -> Result<(), String> {
     let verdict = if longest <= LONGEST_STEP { "ok" } else { "MISS" };
     println!("automatic-longest-step {longest:.0} ns, at most {LONGEST_STEP} ns: {verdict}");
     println!("median {median:.0} ns; the longest that meets a mode for the first time {:.1} us", 1e-3 * first);
+    Ok(())
+}
+
+/// Sweeps through the command line: wall time of the whole program, the best of several runs.
+fn study(root: &Path, python: &Path, wrong: &mut Vec<String>) -> Result<(), String> {
+    println!("sweeps …");
+    command(Command::new("cargo").current_dir(root).args(["build", "--release", "--quiet", "-p", "willis-cli"]))?;
+    let willis = root.join("target/release/willis");
+    let mut c = Command::new(python);
+    c.current_dir(root.join("benches/baselines")).args(["study.py", "--json"]).env("PYTHONDONTWRITEBYTECODE", "1");
+    let out = c.output().map_err(|e| e.to_string())?;
+    if !out.status.success() {
+        return Err(format!("study.py: {}", String::from_utf8_lossy(&out.stderr)));
+    }
+    let peers = lines(&String::from_utf8_lossy(&out.stdout))?;
+    let run = |arguments: &[&str], runs: usize| -> Result<(f64, Value), String> {
+        let mut best = f64::INFINITY;
+        let mut told = Value::Null;
+        for _ in 0..runs {
+            let started = std::time::Instant::now();
+            let out = Command::new(&willis).current_dir(root).args(arguments).output().map_err(|e| e.to_string())?;
+            best = best.min(started.elapsed().as_secs_f64());
+            if !out.status.success() {
+                return Err(String::from_utf8_lossy(&out.stderr).into_owned());
+            }
+            told = serde_json::from_slice(&out.stdout).map_err(|e| e.to_string())?;
+        }
+        Ok((best, told))
+    };
+    let map = ["sweep", "benches/map.toml", "--study", "map", "--fast", "--format", "json", "--threads"];
+    let on = |threads: &'static str| [&map[..], &[threads]].concat();
+    println!("\n{:24} {:20} {:>12} {:>12} {:>8} {:>8}", "task", "peer", "peer Mpt/s", "Willis Mpt/s", "ratio", "goal");
+    for threads in ["1", "2"] {
+        let (seconds, told) = run(&on(threads), 15)?;
+        let points = told["points"].as_f64().unwrap_or(f64::NAN);
+        for peer in &peers {
+            for quantity in ["efficiency", "loss_w"] {
+                let own = &told["summary"][quantity];
+                let mean = own["sum"].as_f64().unwrap_or(f64::NAN) / points;
+                let at = |key: &str| own[key][0].as_f64().unwrap_or(f64::NAN);
+                for (what, mine) in [("mean", mean), ("least", at("least")), ("most", at("most"))] {
+                    let theirs = peer["checksum"][format!("{quantity}_{what}")].as_f64().unwrap_or(f64::NAN);
+                    if (mine - theirs).abs() > 1e-9 * theirs.abs().max(1e-6) {
+                        wrong.push(format!("study-map: {quantity} {what} is {mine}, {} has {theirs}", peer["peer"]));
+                    }
+                }
+            }
+            let theirs = peer["points_per_s"].as_f64().unwrap_or(f64::NAN);
+            let name = peer["peer"].as_str().unwrap_or_default();
+            let goal = (name == "numpy-whole-array").then_some(20.0);
+            let ratio = points / seconds / theirs;
+            let task = format!("study-map, {threads} threads");
+            let mpt = points / seconds / 1e6;
+            println!("{task:24} {name:20} {:12.2} {mpt:12.2} {ratio:8.2} {:>8}", theirs / 1e6, verdict(ratio, goal));
+        }
+    }
+    // A physical map: bearings, seals, windage.
+    let table = root.join("target/willis-bench/physical.parquet");
+    let table = table.to_str().ok_or("a path that is no text")?;
+    let physical = [
+        "sweep",
+        "examples/fva-planetary-stage.toml",
+        "--over",
+        "sun.speed=100..3000 rpm:100",
+        "--over",
+        "sun.torque=50..1600 N m:100",
+        "--format",
+        "json",
+        "--threads",
+    ];
+    let on = |threads: &'static str, more: &[&'static str]| [&physical[..], &[threads], more].concat();
+    let (one, _) = run(&on("1", &[]), 3)?;
+    let (two, _) = run(&on("2", &[]), 3)?;
+    let with_table = [&physical[..], &["1", "--force", "--out", table]].concat();
+    let (written, _) = run(&with_table, 3)?;
+    println!("physical map of 10,000 points: {:.0} points/s on one thread, {:.0} on two", 1e4 / one, 1e4 / two);
+    println!("two threads: {:.2} times one: {}", one / two, verdict(one / two, Some(1.8)));
+    let share = (written / one - 1.0).max(0.0);
+    let reached = if share <= 0.3 { "ok" } else { "MISS" };
+    println!("writing Parquet: {:.1} % of the time to compute, at most 30 %: {reached}", 100.0 * share);
     Ok(())
 }
 

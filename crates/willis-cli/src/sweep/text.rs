@@ -65,7 +65,7 @@ pub fn text(report: &Report) -> String {
         "compiled" => "compiled: within a part in 10^12 of `analyze`",
         _ => "every point is that of `analyze`",
     };
-    out += &dim(&format!("  from operation `{}`{state}; held: {held}; {method}", study.operation));
+    out += &dim(&wrap(&format!("from operation `{}`{state}; held: {held}; {method}", study.operation), "  "));
     out += "\n\n";
 
     let mut t = table();
@@ -84,28 +84,35 @@ pub fn text(report: &Report) -> String {
         out += &show(&t);
         for (key, what) in [("most_efficiency", "best"), ("least_efficiency", "worst")] {
             if let Some(place) = report.places.get(key) {
-                out += &dim(&format!("  {what} efficiency at {place}"));
+                out += &dim(&wrap(&format!("{what} efficiency at {place}"), "  "));
                 out += "\n";
             }
         }
     }
     if !all.by_text.is_empty() {
         let mut t = table();
-        set_header(&mut t, &["", "with an answer", "least", "mean", "most", "best at"]);
+        let mut header = vec!["", "with an answer", "least", "mean", "most"];
+        if !all.best.is_empty() {
+            header.push("best at");
+        }
+        set_header(&mut t, &header);
         for (name, e) in ordered(report) {
             let best = name.strip_prefix("state = ").and_then(|s| all.best.get(s));
             let best = best.map_or(String::new(), |n| plural_points(*n));
             let or_dash = |x: f64| if e.count > 0 { percent(x) } else { "-".into() };
-            t.add_row([
+            let mut row = vec![
                 name.clone(),
                 e.count.to_string(),
                 or_dash(e.least.0),
                 e.mean().map_or("-".into(), percent),
                 or_dash(e.most.0),
-                best,
-            ]);
+            ];
+            if !all.best.is_empty() {
+                row.push(best);
+            }
+            t.add_row(row);
         }
-        right(&mut t, 1..6);
+        right(&mut t, 1..header.len());
         out += "\n";
         out += &show(&t);
     }

@@ -80,7 +80,10 @@ impl<'s> Question<'s> {
         let unknown = |what: &str, name: &str, known: Vec<&str>| {
             let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no {what} `{name}`"));
             let d = d.suggest(name, known.iter().copied());
-            Diagnostics::from_iter([d.hint(format!("its {what}s are: {}", known.join(", ")))])
+            Diagnostics::from_iter([match known.is_empty() {
+                true => d.hint(format!("it has no {what}s at all")),
+                false => d.hint(format!("its {what}s are: {}", known.join(", "))),
+            }])
         };
         let state =
             match state {

@@ -315,6 +315,8 @@ fn collect(table: Option<&dyn TableLike>, of: &'static Table, before: &str, all:
                 all.extend(inner.into_iter().flat_map(|t| t.iter()).map(|(name, _)| format!("{path}.{name}")));
             }
             Place::Efficiency(Some(inner), _) => {
+                // One number may take the place of several.
+                all.push(path.clone());
                 for (name, item) in inner.iter() {
                     match item.as_table_like() {
                         Some(t) => all.extend(t.iter().map(|(deep, _)| format!("{path}.{name}.{deep}"))),
