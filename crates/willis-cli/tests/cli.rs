@@ -730,7 +730,7 @@ fn regress_export_wrong_questions() {
         &["export", "vecto", zf, "--state", "R"],
         &["export", "vecto", "examples/wolfrom-498-self-locking.toml"],
         &["export", "csv", "examples/galvagno.toml"],
-        &["export", "csv", zf, "--state", "1", "--speeds", "500..2000rpm:4"],
+        &["export", "csv", zf, "--state", "1", "--speeds", "500..2000:4"],
         &["export", "csv", zf, "--state", "1", "--speeds", "500rpm..2000rpm"],
         &["export", "csv", zf, "--state", "1", "--speeds", "2000rpm..500rpm:4"],
         &["export", "csv", zf, "--state", "1", "--torques", "1Nm..2Nm:1"],

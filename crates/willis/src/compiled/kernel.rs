@@ -754,6 +754,47 @@ lanes! {
         }
         partial.iter().sum::<f64>() + rest.iter().sum::<f64>()
     }
+    /// Sum, least, greatest, and how many are above zero, which NaN is not; least and greatest leave NaN out.
+    Extremes<'a> { x: &'a [f64] } -> [f64; 4] {
+        const LANES: usize = 32;
+        let (chunks, rest) = x.as_chunks::<LANES>();
+        let (mut sum, mut above) = ([0.0; LANES], [0.0; LANES]);
+        let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+        for c in chunks {
+            for k in 0..LANES {
+                sum[k] += c[k];
+                least[k] = if c[k] < least[k] { c[k] } else { least[k] };
+                most[k] = if c[k] > most[k] { c[k] } else { most[k] };
+                above[k] += if c[k] > 0.0 { 1.0 } else { 0.0 };
+            }
+        }
+        for (k, x) in rest.iter().enumerate() {
+            sum[k] += x;
+            least[k] = if *x < least[k] { *x } else { least[k] };
+            most[k] = if *x > most[k] { *x } else { most[k] };
+            above[k] += if *x > 0.0 { 1.0 } else { 0.0 };
+        }
+        [
+            sum.iter().sum(),
+            least.iter().copied().fold(f64::INFINITY, f64::min),
+            most.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            above.iter().sum(),
+        ]
+    }
+    /// Loss and efficiency of a power split.
+    SinglePowers<'a, const LOADED> {
+        set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64], loss: &'a mut [f64], efficiency: &'a mut [f64],
+    } -> () {
+        let n = torque.len();
+        let (w0, w1) = (&w0[..n], &w1[..n]);
+        let (loss, efficiency) = (&mut loss[..n], &mut efficiency[..n]);
+        let set = *set;
+        for i in 0..n {
+            let p = set.point::<LOADED>(w0[i], w1[i], torque[i]);
+            loss[i] = p.loss;
+            efficiency[i] = p.efficiency;
+        }
+    }
     /// All results of a power split.
     SingleAll<'a, const LOADED> {
         set: &'a Single, w0: &'a [f64], w1: &'a [f64], torque: &'a [f64],
@@ -867,6 +908,11 @@ fn fit(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, fi
         }
     }
     by_count!(x.len(), go(arch, x, row, sigma, side, first, worst));
+}
+
+/// Sum, least, greatest, and how many numbers are above zero.
+pub(super) fn extremes(arch: pulp::Arch, x: &[f64]) -> [f64; 4] {
+    arch.dispatch(Extremes { x })
 }
 
 /// Sum of a slice.
@@ -994,6 +1040,9 @@ impl Single {
         match (first, second, loss, efficiency) {
             (Some(first), Some(second), Some(loss), Some(efficiency)) => {
                 arch.dispatch(SingleAll::<LOADED> { set, w0, w1, torque, first, second, loss, efficiency });
+            }
+            (None, None, Some(loss), Some(efficiency)) => {
+                arch.dispatch(SinglePowers::<LOADED> { set, w0, w1, torque, loss, efficiency });
             }
             (first, second, loss, efficiency) => {
                 if let Some(out) = first {

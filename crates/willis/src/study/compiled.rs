@@ -7,7 +7,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use crate::compiled::{CompiledTrain, Duty, Output, Points, Workspace};
+use crate::compiled::{CompiledTrain, Duty, Extremes, Output, Points, Workspace};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
 use crate::train::{Load, MemberId};
@@ -20,7 +20,7 @@ use super::target::{Target, Who};
 /// Most trains and states that are compiled.
 const MOST_CASES: usize = 4096;
 /// Points worked off at a time: what they need stays in the second-level cache.
-const BLOCK: usize = 4096;
+const BLOCK: usize = 2048;
 
 /// Where a prescribed quantity comes from.
 #[derive(Clone, Debug)]
@@ -370,13 +370,16 @@ impl CompiledSweep<'_, '_> {
         let single = self.cases.len() == 1;
         if single && self.evaluate(0, &Span::Run(from, n), room) == 0 {
             let [efficiency, loss, ..] = &room.outputs[..] else { unreachable!("always asked for") };
-            let found = reduce(self.arch, efficiency, loss);
-            if found.driving == n {
+            let found = Extremes::of(efficiency, self.arch);
+            if found.above == n {
                 // All unique and driving: nothing to look at one by one.
                 summary.points += n as u64;
-                *summary.verdicts.entry("unique".into()).or_default() += n as u64;
-                found.join(&mut summary.efficiency, 0, efficiency, from);
-                found.join(&mut summary.loss_w, 1, loss, from);
+                match summary.verdicts.get_mut("unique") {
+                    Some(count) => *count += n as u64,
+                    None => drop(summary.verdicts.insert("unique".into(), n as u64)),
+                }
+                extend(&mut summary.efficiency, found, efficiency, from);
+                extend(&mut summary.loss_w, Extremes::of(loss, self.arch), loss, from);
                 if let Some(cells) = cells {
                     self.plain_rows(from, n, &room.outputs, cells);
                 }
@@ -564,64 +567,16 @@ impl Span<'_> {
     }
 }
 
-/// What is known of a block after one pass over it.
-struct Reduced {
-    /// Points whose efficiency is above zero, so that power enters and leaves; NaN is not.
-    driving: usize,
-    /// Of efficiency and loss.
-    sum: [f64; 2],
-    least: [f64; 2],
-    most: [f64; 2],
-}
-
-/// One pass over two columns of one length. Points are counted, not searched: a loop without an exit is vectorised.
-fn reduce(arch: pulp::Arch, efficiency: &[f64], loss: &[f64]) -> Reduced {
-    const LANES: usize = 16;
-    arch.dispatch(
-        #[inline(always)]
-        || {
-            let (mut count, mut sum) = ([0u64; LANES], [[0.0; LANES]; 2]);
-            let (mut least, mut most) = ([[f64::INFINITY; LANES]; 2], [[f64::NEG_INFINITY; LANES]; 2]);
-            let mut add = |k: usize, values: [f64; 2]| {
-                count[k] += u64::from(values[0] > 0.0);
-                for (which, x) in values.into_iter().enumerate() {
-                    sum[which][k] += x;
-                    least[which][k] = if x < least[which][k] { x } else { least[which][k] };
-                    most[which][k] = if x > most[which][k] { x } else { most[which][k] };
-                }
-            };
-            let (e, l) = (efficiency.chunks_exact(LANES), loss.chunks_exact(LANES));
-            let rest = (e.remainder(), l.remainder());
-            for (e, l) in e.zip(l) {
-                for k in 0..LANES {
-                    add(k, [e[k], l[k]]);
-                }
-            }
-            for (k, (e, l)) in rest.0.iter().zip(rest.1).enumerate() {
-                add(k, [*e, *l]);
-            }
-            Reduced {
-                driving: count.iter().sum::<u64>() as usize,
-                sum: sum.map(|s| s.iter().sum()),
-                least: least.map(|s| s.into_iter().fold(f64::INFINITY, f64::min)),
-                most: most.map(|s| s.into_iter().fold(f64::NEG_INFINITY, f64::max)),
-            }
-        },
-    )
-}
-
-impl Reduced {
-    /// Adds one of the two columns, the points from `first` on, none of them NaN.
-    fn join(&self, extent: &mut Extent, which: usize, values: &[f64], first: u64) {
-        // Where an extreme is, is looked up only when it is one.
-        let at = |x: f64| first + values.iter().position(|v| *v == x).unwrap_or(0) as u64;
-        extent.count += values.len() as u64;
-        extent.sum += self.sum[which];
-        if self.least[which] < extent.least.0 {
-            extent.least = (self.least[which], at(self.least[which]));
-        }
-        if self.most[which] > extent.most.0 {
-            extent.most = (self.most[which], at(self.most[which]));
-        }
+/// Adds values none of which is NaN, those of the points from `first` on.
+fn extend(extent: &mut Extent, found: Extremes, values: &[f64], first: u64) {
+    // Where an extreme is, is looked up only when it is one.
+    let at = |x: f64| first + values.iter().position(|v| *v == x).unwrap_or(0) as u64;
+    extent.count += values.len() as u64;
+    extent.sum += found.sum;
+    if found.least < extent.least.0 {
+        extent.least = (found.least, at(found.least));
+    }
+    if found.most > extent.most.0 {
+        extent.most = (found.most, at(found.most));
     }
 }

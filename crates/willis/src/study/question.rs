@@ -57,7 +57,10 @@ pub struct Question<'s> {
 
 /// Trains that differ in quantities of their file, kept for the next point.
 #[derive(Debug, Default)]
-pub struct Trains(HashMap<Vec<(Target, String)>, Result<Arc<Train>, Diagnostics>>);
+pub struct Trains(HashMap<Settings, Result<Arc<Train>, Diagnostics>>);
+
+/// What differs from the file.
+type Settings = Vec<(Target, String)>;
 
 fn refuse(code: Code, message: String, hint: &str) -> Diagnostics {
     let d = Diagnostic::new(code, "", message);
@@ -247,7 +250,7 @@ impl<'s> Question<'s> {
     fn train(&self, settings: &[(&Target, String)], trains: &mut Trains) -> Result<Arc<Train>, Diagnostics> {
         let of_train: Vec<(&Target, String)> =
             settings.iter().filter(|s| s.0.is_of_train()).map(|(t, v)| (*t, v.clone())).collect();
-        let key: Vec<(Target, String)> = of_train.iter().map(|(t, v)| ((*t).clone(), v.clone())).collect();
+        let key: Settings = of_train.iter().map(|(t, v)| ((*t).clone(), v.clone())).collect();
         if let Some(known) = trains.0.get(&key) {
             return known.clone();
         }
