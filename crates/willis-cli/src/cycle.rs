@@ -83,6 +83,10 @@ pub fn run(studied: &Studied, request: &Request<'_>) -> Result<CycleReport, Stri
         .map_err(|wrong| studied.failure(&wrong))?;
     let cycle = Cycle::new(question, &profile);
     let parts = compute(&cycle);
+    let points = || parts.iter().flat_map(|p| &p.points);
+    if let Some(first) = points().next().filter(|_| points().all(|p| p.verdict == "refused")) {
+        return Err(format!("{}: no row of it makes a question: {}\n", request.profile, first.reason));
+    }
     if let Some(path) = request.rows {
         write(path, rows(&studied.subject, &profile, &parts).as_bytes(), request.force)?;
     }

@@ -727,7 +727,8 @@ enum PlainFormat {
 fn shard(text: &str) -> Result<(u64, u64), String> {
     let parts = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
     match parts {
-        Some((k, n)) if k >= 1 && k <= n && n <= 1_000_000 => Ok((k, n)),
+        Some((_, n)) if n > 1_000_000 => Err("more than a million parts are not made".into()),
+        Some((k, n)) if k >= 1 && k <= n => Ok((k, n)),
         Some((k, n)) => Err(format!("there is no part {k} of {n}; parts count from 1")),
         None => Err("write which of how many, as in 3/16".into()),
     }
@@ -822,6 +823,9 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
         } => {
             let job = Job::read(file)?;
             let subject = job.subject(law)?;
+            if let Some(out) = out {
+                output::apart(out, &[file.as_ref()])?;
+            }
             let request = sweep::Request {
                 study: study.clone(),
                 over: over.clone(),
@@ -846,11 +850,15 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 }
             };
             Ok(match format {
-                PlainFormat::Text => sweep::text(&report),
+                PlainFormat::Text => sweep::text(&report) + &job.notes(subject.train().warnings()),
                 PlainFormat::Json => serde_json::to_string_pretty(&report).expect("plain data") + "\n",
             })
         }
-        Command::Merge { out, shards, force } => sweep::merge(out, shards, *force).map(|r| sweep::text(&r)),
+        Command::Merge { out, shards, force } => {
+            let read: Vec<&std::path::Path> = shards.iter().map(PathBuf::as_path).collect();
+            output::apart(out, &read)?;
+            sweep::merge(out, shards, *force).map(|r| sweep::text(&r))
+        }
         Command::Losses { file, operation, speeds, powers, torques, temperature, compare, law, format } => {
             let job = Job::read(file)?.with_laws(law)?;
             let temperature = values("--temperature", temperature, Dimension::TEMPERATURE)?;
@@ -1060,6 +1068,9 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             if file == "-" && profile == "-" {
                 return Err("standard input is either the train file or the profile\n".into());
             }
+            for path in [output, rows].into_iter().flatten() {
+                output::apart(path, &[file.as_ref(), profile.as_ref()])?;
+            }
             if let Some(path) = output {
                 cycle::free(path, *force)?;
             }
@@ -1131,12 +1142,18 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 temperatures: temperature.iter().map(Quantity::si).collect(),
             };
             let job = Job::read(file)?.with_laws(law)?;
+            if let Some(out) = output {
+                output::apart(out, &[file.as_ref()])?;
+            }
             let done = willis::study::export::export(&job.train, kind, &request).map_err(|wrong| job.failure(wrong))?;
             export::deliver(&done, output.as_deref(), *force)
         }
         Command::Uncertainty { file, operation, state, vary, laws, samples, seed, law, samples_out, force, format } => {
             let job = Job::read(file)?.with_laws(law)?;
             let target = samples_out.clone().map(|path| uncertainty::SamplesOut { path, force: *force });
+            if let Some(out) = samples_out {
+                output::apart(out, &[file.as_ref()])?;
+            }
             target.iter().try_for_each(uncertainty::SamplesOut::check)?;
             let subject = job.subject(law)?;
             let request = UncertaintyRequest {

@@ -2,6 +2,15 @@
 
 use std::path::Path;
 
+/// Refuses to write over what is read, whatever is forced.
+pub fn apart(out: &Path, inputs: &[&Path]) -> Result<(), String> {
+    let real = |p: &Path| p.canonicalize().ok();
+    match inputs.iter().find(|p| **p == out || real(p).is_some_and(|r| real(out) == Some(r))) {
+        Some(p) => Err(format!("{}: is read here and cannot be written over; give another name\n", p.display())),
+        None => Ok(()),
+    }
+}
+
 /// Writes beside the target and renames, so that no half-written file is left behind.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let fail = |e: std::io::Error| format!("{}: {e}\n", path.display());

@@ -99,9 +99,19 @@ pub struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shard: Option<String>,
     pub rows: u64,
+    /// Of the table, where one was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub table_sha256: Option<String>,
     pub summary: Summary,
     /// The points of the extremes, in words.
     pub places: BTreeMap<String, String>,
+}
+
+/// What is kept beside a piece.
+#[derive(Serialize, Deserialize)]
+struct Piece {
+    sha256: String,
+    summary: Summary,
 }
 
 /// Points above which a sweep is tried for time and size first.
@@ -189,7 +199,23 @@ fn sha256(parts: &[&str]) -> String {
         hash.update((part.len() as u64).to_le_bytes());
         hash.update(part.as_bytes());
     }
-    hash.finalize().iter().map(|b| format!("{b:02x}")).collect()
+    hex(&hash.finalize())
+}
+
+/// Of a file.
+fn sha256_of(path: &Path) -> std::io::Result<String> {
+    let (mut hash, mut file) = (Sha256::new(), File::open(path)?);
+    let mut buffer = vec![0; 1 << 20];
+    loop {
+        match std::io::Read::read(&mut file, &mut buffer)? {
+            0 => return Ok(hex(&hash.finalize())),
+            n => hash.update(&buffer[..n]),
+        }
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
 /// Runs a sweep of a train file with `text`.
@@ -245,7 +271,7 @@ pub fn run(subject: &Subject, text: &str, laws: &[String], request: &Request) ->
             if kept > 0 {
                 eprintln!("going on: {kept} of {} pieces are there already", last - first);
             }
-            let done: u64 = (first..last).filter(|k| folder.has(*k)).map(|k| span(k).1 - span(k).0).sum();
+            let done: u64 = rows - todo.iter().map(|k| span(*k).1 - span(*k).0).sum::<u64>();
             let make = |k: u64, own: &mut Own| -> Result<Option<()>, String> {
                 let (from, to) = span(k);
                 let Some(rows) = engine.rows(from, to, group, own) else { return Ok(None) };
@@ -263,8 +289,8 @@ pub fn run(subject: &Subject, text: &str, laws: &[String], request: &Request) ->
                 )));
             }
             let summary = folder.summary(first..last)?;
-            let report = report(&sweep, study, shard, rows, summary);
-            folder.finish(first..last, &report)?;
+            let mut report = report(&sweep, study, shard, rows, summary);
+            folder.finish(first..last, &mut report)?;
             return Ok(report);
         }
         _ => {
@@ -354,7 +380,7 @@ fn report(sweep: &Sweep<'_>, study: Study, shard: Option<String>, rows: u64, sum
     for (code, seen) in &summary.seen {
         places.insert(code.clone(), sweep.describe(seen.point));
     }
-    Report { study, shard, rows, summary, places }
+    Report { study, shard, rows, table_sha256: None, summary, places }
 }
 
 /// A sweep none of whose first, last and middle points makes a question is wrong itself.
@@ -429,6 +455,8 @@ struct Folder {
     path: PathBuf,
     out: PathBuf,
     form: Form,
+    /// Held as long as this run works here.
+    _lock: File,
 }
 
 fn io(path: &Path) -> impl Fn(std::io::Error) -> String {
@@ -473,7 +501,13 @@ impl Folder {
         let path = with_end(out, ".parts");
         let told = serde_json::to_string_pretty(&(study, shard)).expect("plain data");
         let begun = path.join("study.json");
-        let own = Self { path, out: out.to_owned(), form };
+        // Beside the folder: that may go and come again.
+        let beside = with_end(out, ".lock");
+        let lock = File::create(&beside).map_err(io(&beside))?;
+        if lock.try_lock().is_err() {
+            return Err(format!("{name}: another willis is writing it; wait for that, or give another name\n"));
+        }
+        let own = Self { path, out: out.to_owned(), form, _lock: lock };
         match fs::read_to_string(&begun) {
             Ok(text) if text == told => return Ok(own),
             Ok(_) if !force => {
@@ -499,15 +533,23 @@ impl Folder {
         self.path.join(format!("{k:09}.{}", self.form.name()))
     }
 
-    /// A piece counts when what is said of it was written, after it.
+    /// A piece counts when what is said of it was written, after it, and is true.
     fn has(&self, k: u64) -> bool {
-        self.piece(k).with_extension("json").exists()
+        let piece = self.piece(k);
+        self.told(k).is_ok_and(|told| sha256_of(&piece).is_ok_and(|own| own == told.sha256))
+    }
+
+    fn told(&self, k: u64) -> Result<Piece, String> {
+        let path = self.piece(k).with_extension("json");
+        let text = fs::read(&path).map_err(io(&path))?;
+        serde_json::from_slice(&text).map_err(|e| format!("{}: {e}\n", path.display()))
     }
 
     fn keep(&self, k: u64, bytes: &[u8], summary: &Summary) -> Result<(), String> {
         let piece = self.piece(k);
         whole(&piece, bytes)?;
-        let told = serde_json::to_vec(summary).expect("plain data");
+        let told = Piece { sha256: hex(&Sha256::digest(bytes)), summary: summary.clone() };
+        let told = serde_json::to_vec(&told).expect("plain data");
         whole(&piece.with_extension("json"), &told)
     }
 
@@ -521,23 +563,26 @@ impl Folder {
     fn summary(&self, pieces: std::ops::Range<u64>) -> Result<Summary, String> {
         let mut all = Summary::default();
         for k in pieces {
-            let path = self.piece(k).with_extension("json");
-            let text = fs::read(&path).map_err(io(&path))?;
-            let own: Summary = serde_json::from_slice(&text).map_err(|e| format!("{}: {e}\n", path.display()))?;
-            all.join(&own);
+            all.join(&self.told(k)?.summary);
         }
         Ok(all)
     }
 
     /// The table and what is said of it; then the pieces go.
-    fn finish(&self, pieces: std::ops::Range<u64>, report: &Report) -> Result<(), String> {
+    fn finish(&self, pieces: std::ops::Range<u64>, report: &mut Report) -> Result<(), String> {
         let pieces: Vec<PathBuf> = pieces.map(|k| self.piece(k)).collect();
         write_table(&self.out, self.form, &pieces, report).map_err(|e| format!("{e}{}", self.advice()))?;
         fs::remove_dir_all(&self.path).map_err(io(&self.path))
     }
 }
 
-fn write_table(out: &Path, form: Form, pieces: &[PathBuf], report: &Report) -> Result<(), String> {
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(with_end(&self.out, ".lock"));
+    }
+}
+
+fn write_table(out: &Path, form: Form, pieces: &[PathBuf], report: &mut Report) -> Result<(), String> {
     let beside = with_end(out, ".new");
     let told = serde_json::to_string(&report.study).expect("plain data");
     let table = File::create(&beside).map_err(io(&beside)).and_then(|f| {
@@ -547,6 +592,7 @@ fn write_table(out: &Path, form: Form, pieces: &[PathBuf], report: &Report) -> R
         let _ = fs::remove_file(&beside);
         return Err(e);
     }
+    report.table_sha256 = Some(sha256_of(&beside).map_err(io(&beside))?);
     let told = serde_json::to_string_pretty(report).expect("plain data") + "\n";
     whole(&sidecar(out), told.as_bytes())?;
     fs::rename(&beside, out).map_err(io(out))
@@ -573,6 +619,11 @@ pub fn merge(out: &Path, shards: &[PathBuf], force: bool) -> Result<Report, Stri
         };
         if Form::of(shard).ok() != Some(form) || !shard.exists() {
             wrong += &format!("{}: is no table written as {}\n", shard.display(), form.name());
+            continue;
+        }
+        if sha256_of(shard).ok() != report.table_sha256 {
+            let what = "is not the table that was written (cut, changed, or of another shard)";
+            wrong += &format!("{}: {what}; make that shard again\n", shard.display());
             continue;
         }
         let parsed = report.shard.as_deref().and_then(|s| {
@@ -611,8 +662,14 @@ pub fn merge(out: &Path, shards: &[PathBuf], force: bool) -> Result<Report, Stri
         return Err(format!("{wrong}these shards do not make a sweep\n"));
     }
     let Some((_, _, _, first)) = all.first() else { return Err("no shards to merge\n".into()) };
-    let mut report =
-        Report { shard: None, rows: 0, summary: Summary::default(), places: BTreeMap::new(), ..first.clone() };
+    let mut report = Report {
+        shard: None,
+        rows: 0,
+        table_sha256: None,
+        summary: Summary::default(),
+        places: BTreeMap::new(),
+        ..first.clone()
+    };
     for (.., own) in &all {
         // Where an extreme or a warning is comes from the shard that had it first.
         let before = report.summary.clone();
@@ -635,7 +692,7 @@ pub fn merge(out: &Path, shards: &[PathBuf], force: bool) -> Result<Report, Stri
         return Err(format!("the shards have {} rows, the sweep {} points\n", report.rows, report.study.points));
     }
     let bodies = Bodies::of(form, &all)?;
-    write_table(out, form, &bodies.0, &report)?;
+    write_table(out, form, &bodies.0, &mut report)?;
     Ok(report)
 }
 

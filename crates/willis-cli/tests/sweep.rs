@@ -158,6 +158,14 @@ fn shards_make_the_whole_and_nothing_else_does() {
         fine(&sweep(&other, &["--shard", "3/4", "--force"]));
         fails(&[&shards[0], &shards[1], &other], "is shard 3 of 4");
         assert!(String::from_utf8(run(&[&shards[0]], &merged).stderr).unwrap().contains("--force"));
+        // A table that is not the one that was written.
+        let kept = fs::read(&shards[1]).unwrap();
+        fs::write(&shards[1], &kept[..kept.len() / 2]).unwrap();
+        fails(&[&shards[0], &shards[1], &shards[2]], "is not the table that was written");
+        fs::copy(&shards[0], &shards[1]).unwrap();
+        fails(&[&shards[0], &shards[1], &shards[2]], "is not the table that was written");
+        let over = ["merge", &shards[0], &shards[0], &shards[1], &shards[2], "--force"];
+        assert!(refused(&over).contains("is read here and cannot be written over"));
     }
 }
 
@@ -209,6 +217,41 @@ fn what_cannot_be_done_is_told_and_leaves_nothing() {
     fine(&sweep(&other, &["--force"]));
     assert_eq!(fs::read(&other).unwrap(), bytes);
     assert!(folder.names().iter().all(|n| !n.ends_with(".parts") && !n.ends_with(".new")), "{:?}", folder.names());
+}
+
+#[test]
+fn a_damaged_piece_is_made_again() {
+    let folder = Folder::new("damaged");
+    let (whole, cut) = (folder.file("whole.csv"), folder.file("cut.csv"));
+    fine(&sweep(&whole, &[]));
+    // What a machine that lost its power may leave: a piece that is told of and is not whole.
+    let mut child = command(&sweep(&cut, &["--threads", "1"])).stdout(Stdio::null()).spawn().unwrap();
+    let first = format!("{cut}.parts/000000000");
+    while child.try_wait().unwrap().is_none() && !Path::new(&format!("{first}.json")).exists() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let _ = child.kill();
+    let _ = child.wait();
+    if let Ok(piece) = fs::read(format!("{first}.csv")) {
+        fs::write(format!("{first}.csv"), &piece[..piece.len() / 3]).unwrap();
+        fine(&sweep(&cut, &[]));
+    }
+    assert_eq!(fs::read(&cut).unwrap(), fs::read(&whole).unwrap());
+}
+
+#[test]
+fn what_is_read_is_never_written_over() {
+    let folder = Folder::new("apart");
+    let train = folder.file("train.toml");
+    fs::copy(root().join(FVA), &train).unwrap();
+    let text = fs::read(&train).unwrap();
+    let told = refused(&["export", "csv", &train, "-o", &train, "--force"]);
+    assert!(told.contains("cannot be written over"), "{told}");
+    let profile = folder.file("profile.csv");
+    fs::write(&profile, "hours,sun.speed [rpm]\n1,1000\n").unwrap();
+    let told = refused(&["cycle", &train, "--profile", &profile, "--rows", &profile, "--force"]);
+    assert!(told.contains("cannot be written over"), "{told}");
+    assert_eq!(fs::read(&train).unwrap(), text);
 }
 
 /// Every disk is full at some point: a table that cannot be written is told, and what is finished stays.

@@ -784,20 +784,18 @@ impl Points<'_> {
     }
 }
 
-/// What is known of many numbers after one pass: `sum`, `least`, `most`, and how many are `above` zero. NaN is in the sum
-/// alone.
+/// What is known of many numbers after one pass. NaN is in the sum alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Extremes {
     pub sum: f64,
     pub least: f64,
     pub most: f64,
-    pub above: usize,
 }
 
 impl Extremes {
     pub fn of(x: &[f64], arch: pulp::Arch) -> Self {
-        let [sum, least, most, above] = kernel::extremes(arch, x);
-        Self { sum, least, most, above: above as usize }
+        let [sum, least, most] = kernel::extremes(arch, x);
+        Self { sum, least, most }
     }
 }
 

@@ -78,7 +78,7 @@ struct CsvRow {
 
 fn csv_rows(text: &str) -> Vec<CsvRow> {
     let mut lines = text.lines();
-    let header = "state,input_speed_rpm,input_torque_n_m,output_torque_n_m,loss_w,efficiency,verdict,reason";
+    let header = "state,input_speed_rpm,torque_on_input_n_m,torque_on_output_n_m,loss_w,efficiency,verdict,reason";
     assert_eq!(lines.next(), Some(header));
     let row = |l: &str| {
         let f: Vec<&str> = l.splitn(8, ',').collect();

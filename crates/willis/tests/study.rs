@@ -272,6 +272,45 @@ fn what_is_held_stays() {
     }
 }
 
+/// The torque at the output drives in every state, whichever way it turns.
+#[test]
+fn a_held_output_drives_in_reverse_too() {
+    let text = text("zf-8hp70.toml");
+    let subject = subject(&text);
+    let by_hold = sweep(&subject, &["state=all"], &["members"], Hold::Output);
+    let rows = all(&by_hold);
+    let base = analysis(&text).operations[0].solutions[0].members.get("output").unwrap().torque_n_m.unwrap();
+    let by_axis = sweep(&subject, &[&format!("output.torque={} N m", -base), "state=all"], &["members"], Hold::AsGiven);
+    let other = all(&by_axis);
+    let of = |s: &Sweep<'_>, r: &Rows, name: &str| numbers(s, r, name).to_vec();
+    assert_eq!(of(&by_hold, &rows, "efficiency"), of(&by_axis, &other, "efficiency"));
+    let (power, speed) = (of(&by_hold, &rows, "output.power_w"), of(&by_hold, &rows, "output.speed_rad_s"));
+    assert!(power.iter().all(|p| *p < 0.0) && speed.iter().any(|w| *w < 0.0));
+}
+
+#[test]
+fn what_check_says_of_another_train_is_in_its_row() {
+    let fva = text("fva-planetary-stage.toml");
+    let subject = subject(&fva);
+    let planets = sweep(&subject, &["P1.planet.count=3,4,8"], &[], Hold::AsGiven);
+    let warnings = texts(&planets, &all(&planets), "warnings");
+    assert!(!warnings[0].contains("W303") && warnings[2].contains("W303"), "{warnings:?}");
+    for (axis, says) in
+        [("oil.temperature=-300..20 degC:3", "none that a gearbox has"), ("temperature=400 degC", "327")]
+    {
+        let d = Axis::parse(axis, &subject).unwrap_err();
+        assert!(format!("{} {}", d.message, d.hints.join(" ")).contains(says), "{}", d.message);
+    }
+    // Names as `sensitivity` writes them.
+    for axis in ["speeds.sun=1,2 rpm", "bearing sun bearing.radial_load=0,1 kN", "seal input seal.diameter=40,50 mm"] {
+        axes(&subject, &[axis]);
+    }
+    // No column twice.
+    let same = sweep(&subject, &["sun.torque=50,60 N m"], &["members"], Hold::AsGiven);
+    let names: Vec<&str> = same.columns().map(|c| c.name.as_str()).collect();
+    assert!((1..names.len()).all(|k| !names[..k].contains(&names[k])), "{names:?}");
+}
+
 /// Every quantity of every example, set to what it is, leaves the train as it is.
 #[test]
 fn paths_lead_to_what_they_name() {

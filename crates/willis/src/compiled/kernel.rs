@@ -754,31 +754,28 @@ lanes! {
         }
         partial.iter().sum::<f64>() + rest.iter().sum::<f64>()
     }
-    /// Sum, least, greatest, and how many are above zero, which NaN is not; least and greatest leave NaN out.
-    Extremes<'a> { x: &'a [f64] } -> [f64; 4] {
+    /// Sum, least and greatest; least and greatest leave NaN out.
+    Extremes<'a> { x: &'a [f64] } -> [f64; 3] {
         const LANES: usize = 32;
         let (chunks, rest) = x.as_chunks::<LANES>();
-        let (mut sum, mut above) = ([0.0; LANES], [0.0; LANES]);
+        let mut sum = [0.0; LANES];
         let (mut least, mut most) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
         for c in chunks {
             for k in 0..LANES {
                 sum[k] += c[k];
                 least[k] = if c[k] < least[k] { c[k] } else { least[k] };
                 most[k] = if c[k] > most[k] { c[k] } else { most[k] };
-                above[k] += if c[k] > 0.0 { 1.0 } else { 0.0 };
             }
         }
         for (k, x) in rest.iter().enumerate() {
             sum[k] += x;
             least[k] = if *x < least[k] { *x } else { least[k] };
             most[k] = if *x > most[k] { *x } else { most[k] };
-            above[k] += if *x > 0.0 { 1.0 } else { 0.0 };
         }
         [
             sum.iter().sum(),
             least.iter().copied().fold(f64::INFINITY, f64::min),
             most.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-            above.iter().sum(),
         ]
     }
     /// Loss and efficiency of a power split.
@@ -910,8 +907,8 @@ fn fit(arch: pulp::Arch, x: &[&[f64]], row: &[f64], sigma: &[f64], side: f64, fi
     by_count!(x.len(), go(arch, x, row, sigma, side, first, worst));
 }
 
-/// Sum, least, greatest, and how many numbers are above zero.
-pub(super) fn extremes(arch: pulp::Arch, x: &[f64]) -> [f64; 4] {
+/// Sum, least and greatest of a slice.
+pub(super) fn extremes(arch: pulp::Arch, x: &[f64]) -> [f64; 3] {
     arch.dispatch(Extremes { x })
 }
 

@@ -493,7 +493,9 @@ fn differences(all: &[Option<Vec<Fact>>]) -> (Vec<Difference>, usize) {
         });
     }
     // Stable: of equal ones in the order in which they are usually read.
-    out.sort_by(|a, b| b.size.total_cmp(&a.size));
+    // What is asked first stands first, however large the rest.
+    let is_headline = |d: &Difference| matches!(d.quantity.as_str(), "efficiency" | "loss");
+    out.sort_by(|a, b| is_headline(b).cmp(&is_headline(a)).then(b.size.total_cmp(&a.size)));
     (out, equal)
 }
 

@@ -371,7 +371,8 @@ impl CompiledSweep<'_, '_> {
         if single && self.evaluate(0, &Span::Run(from, n), room) == 0 {
             let [efficiency, loss, ..] = &room.outputs[..] else { unreachable!("always asked for") };
             let found = Extremes::of(efficiency, self.arch);
-            if found.above == n {
+            // A single NaN would be in the sum.
+            if found.least > 0.0 && !found.sum.is_nan() {
                 // All unique and driving: nothing to look at one by one.
                 summary.points += n as u64;
                 match summary.verdicts.get_mut("unique") {

@@ -628,11 +628,6 @@ impl Setting {
             d.hints.iter_mut().for_each(|h| *h = h.replace("; `all` takes them all", ""));
             d
         })?;
-        if self.target == Target::Temperature
-            && units::parse(&text, Dimension::TEMPERATURE).is_ok_and(|t| t.si() <= 0.0)
-        {
-            return Err(fault(format!("{text} is below absolute zero")));
-        }
         self.values.push(value);
         Ok(self.values.len() as u32 - 1)
     }

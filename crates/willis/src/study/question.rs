@@ -13,7 +13,7 @@ use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::{Dimension, Quantity};
 
 use super::Subject;
-use super::target::{Target, Who, quantity};
+use super::target::{Target, Who, oil_temperature, quantity};
 
 /// What stays the same while other quantities vary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -50,9 +50,10 @@ const MOST_TRAINS: usize = 64;
 #[derive(Clone, Debug)]
 pub struct Question<'s> {
     subject: &'s Subject,
-    /// Without loads where nothing is held.
     base: Operation,
     hold: Hold,
+    /// The torque that the output keeps, positive where it drives.
+    output: Option<Quantity>,
 }
 
 /// Trains that differ in quantities of their file, kept for the next point.
@@ -68,8 +69,8 @@ fn refuse(code: Code, message: String, hint: &str) -> Diagnostics {
 }
 
 impl<'s> Question<'s> {
-    /// The operation of that name, else the file's only or first one (of the state, where one is named), else an
-    /// operating point in which nothing is prescribed yet.
+    /// The operation of that name, else the first of the state that is named, else the file's first (in that state), else
+    /// an operating point in which nothing is prescribed yet.
     ///
     /// # Errors
     /// No such operation or state; an operation whose loads cannot be held as asked.
@@ -102,7 +103,7 @@ impl<'s> Question<'s> {
                 unknown("operation", name, train.operations.iter().map(|o| o.name.as_str()).collect())
             })?),
             None => match state {
-                Some(k) => train.operations.iter().find(|o| o.state == Some(k)),
+                Some(k) => train.operations.iter().find(|o| o.state == Some(k)).or(train.operations.first()),
                 None => train.operations.first(),
             },
         };
@@ -116,7 +117,7 @@ impl<'s> Question<'s> {
             place: String::new(),
         });
         base.state = state.or(base.state);
-        let mut question = Self { subject, base, hold };
+        let mut question = Self { subject, base, hold, output: None };
         question.settle()?;
         Ok(question)
     }
@@ -162,15 +163,18 @@ impl<'s> Question<'s> {
                 let message = format!("operation `{}` has no one torque at the output to hold: {why}", self.base.name);
                 return Err(refuse(Code::Unfit, message, ""));
             };
-            let torque = Quantity { value: torque, pi_power: 0, dimension: Dimension::TORQUE };
+            let backwards = self.speeds(train, &self.base)(output).is_some_and(|w| w.value.sign() < 0);
+            // By its role, so that it drives in every state.
+            let torque = if backwards { torque } else { -torque };
+            self.output = Some(Quantity { value: torque, pi_power: 0, dimension: Dimension::TORQUE });
             if self.base.loads.len() > 1 && !self.base.loads.iter().any(|l| l.0 == output) {
                 let message =
                     format!("operation `{}` has several loads; which one `{name}` replaces is open", self.base.name);
                 return Err(refuse(Code::Unfit, message, "give the loads at the output in the operation"));
             }
-            match self.base.loads.iter_mut().find(|l| l.0 == output) {
-                Some(load) => load.1 = Load::Torque(torque),
-                None => self.base.loads = vec![(output, Load::Torque(torque))],
+            match self.base.loads.len() {
+                1 => self.base.loads.clear(),
+                _ => self.base.loads.retain(|l| l.0 != output),
             }
             return Ok(());
         }
@@ -275,7 +279,7 @@ impl<'s> Question<'s> {
                 }
                 Target::Temperature => {
                     let t = quantity(value, Dimension::TEMPERATURE).map_err(wrong)?;
-                    operation.temperature = Some(t.si());
+                    operation.temperature = Some(oil_temperature(t.si()).map_err(|d| Diagnostics::from_iter([*d]))?);
                 }
                 _ => {}
             }
@@ -297,6 +301,12 @@ impl<'s> Question<'s> {
             };
             let member = self.role(train, &operation, *who)?;
             loads.push((member, *who, load));
+        }
+        if let Some(held) = &self.output {
+            let member = self.role(train, &operation, Who::Output)?;
+            if !loads.iter().any(|l| l.0 == member) {
+                loads.push((member, Who::Output, Load::Torque(held.clone())));
+            }
         }
         if loads.is_empty() {
             return Ok(operation);

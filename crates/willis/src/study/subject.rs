@@ -105,7 +105,10 @@ impl Subject {
                     self.files.get(name).cloned().unwrap_or_else(|| Err(format!("`{name}` was not read before")))
                 };
                 let Reading { train, diagnostics, .. } = Train::read_toml_with(&document.text(), &mut load);
-                let mut train = train.ok_or(diagnostics)?;
+                // Their places are those of another text.
+                let elsewhere =
+                    |d: Diagnostics| d.into_iter().map(|d| Diagnostic { span: None, ..d }).collect::<Diagnostics>();
+                let mut train = train.ok_or_else(|| elsewhere(diagnostics))?;
                 for (family, law) in &self.laws {
                     train = train.with_law(family, law)?;
                 }

@@ -77,10 +77,26 @@ pub struct Extent {
     pub count: u64,
     /// Their sum.
     pub sum: f64,
-    /// The smallest, and the number of its point.
+    /// The smallest, and the number of its point; told only where there is a value.
+    #[serde(with = "extreme")]
     pub least: (f64, u64),
     /// The largest, and the number of its point.
+    #[serde(with = "extreme")]
     pub most: (f64, u64),
+}
+
+/// `null` of no point at all.
+mod extreme {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<S: Serializer>(value: &(f64, u64), to: S) -> Result<S::Ok, S::Error> {
+        (value.0.abs() < f64::MAX).then_some(value).serialize(to)
+    }
+
+    /// Joined to others only where it counts points, so that either end of the numbers does.
+    pub fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<(f64, u64), D::Error> {
+        Ok(Option::deserialize(from)?.unwrap_or((f64::NAN, 0)))
+    }
 }
 
 impl Default for Extent {
@@ -105,6 +121,9 @@ impl Extent {
     }
 
     pub(super) fn join(&mut self, other: &Self) {
+        if other.count == 0 {
+            return;
+        }
         self.count += other.count;
         self.sum += other.sum;
         if other.least.0 < self.least.0 {
@@ -353,6 +372,8 @@ impl<'s> Sweep<'s> {
                 Ok(axis) => axes.push(axis),
                 Err(mut d) => {
                     d.place = format!("study[{k}].over[{j}]");
+                    // It would replace the values too.
+                    d.replacement = None;
                     wrong.push(*d);
                 }
             }
@@ -431,7 +452,15 @@ impl<'s> Sweep<'s> {
     /// The answer at a point.
     pub fn answer(&self, point: u64, trains: &mut Trains) -> Answer {
         match self.ask(point, trains) {
-            Ok((train, operation)) => Answer::of(&train, &operation),
+            Ok((train, operation)) => {
+                let mut answer = Answer::of(&train, &operation);
+                let base = self.question.subject().train().warnings();
+                // What is wrong with this train and not with that of the file: planets that touch, for one.
+                let own = train.warnings().iter().filter(|d| d.severity == Severity::Warning);
+                let new = own.filter(|d| !base.iter().any(|b| b.code == d.code && b.message == d.message));
+                answer.warnings.extend(new.map(|d| (d.code, d.message.clone())));
+                answer
+            }
             Err(wrong) => Answer::refused(wrong),
         }
     }
@@ -628,7 +657,8 @@ impl<'s> Sweep<'s> {
                 wrong.push(d.hint("`members`, `meshes`, `elements`, `sources` and `all` name several"));
             }
             for (_, column, what) in chosen {
-                if !all.iter().any(|c| c.1 == what) {
+                // An axis of that name has its values.
+                if !all.iter().any(|c| c.1 == what || c.0.name == column.name) {
                     all.push((column, what));
                 }
             }

@@ -84,6 +84,19 @@ impl Target {
                 _ => {}
             }
         }
+        // As the ranked table of sensitivities writes them.
+        for (list, make) in
+            [("speeds.", Self::Speed as fn(Who) -> Self), ("torques.", Self::Torque), ("powers.", Self::Power)]
+        {
+            if let Some(member) = name.strip_prefix(list).and_then(|m| train.member(m)) {
+                return Ok(make(Who::Member(member)));
+            }
+        }
+        let lists = ["set ", "mesh ", "bearing ", "seal ", "rotor "];
+        let listed = lists.iter().any(|l| name.starts_with(l)).then(|| name.replacen(' ', ".", 1));
+        if let Some(key) = listed.and_then(|n| subject.document().find(&n).ok()) {
+            return Ok(Self::File(key));
+        }
         subject.document().find(name).map(Self::File).map_err(|mut d| {
             let shafts = ["input", "output"].into_iter().chain(train.members().iter().skip(1).map(|m| m.name.as_str()));
             let mut own: Vec<String> =
@@ -162,12 +175,24 @@ impl Target {
                 }
                 _ => {
                     let Measure::Quantity(dimension) = self.measure(subject) else { continue };
-                    quantity(value, dimension).map_err(fault)?;
+                    let given = quantity(value, dimension).map_err(fault)?;
+                    if *self == Self::Temperature {
+                        oil_temperature(given.si())?;
+                    }
                 }
             }
         }
         Ok(())
     }
+}
+
+/// Whether oil can be that warm, K: what the train file says of it too.
+pub(super) fn oil_temperature(kelvin: f64) -> Result<f64, Box<Diagnostic>> {
+    if (200.0..=600.0).contains(&kelvin) {
+        return Ok(kelvin);
+    }
+    let message = format!("an oil temperature of {:.1} °C is none that a gearbox has", kelvin - 273.15);
+    Err(Box::new(Diagnostic::new(Code::OutOfRange, "", message).hint("from -73 to 327 °C is computed")))
 }
 
 /// A value with a unit.

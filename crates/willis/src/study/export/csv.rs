@@ -1,4 +1,4 @@
-//! A plain map, one row a point: `state,input_speed_rpm,input_torque_n_m,output_torque_n_m,loss_w,efficiency,verdict,
+//! A plain map, one row a point: `state,input_speed_rpm,torque_on_input_n_m,torque_on_output_n_m,loss_w,efficiency,verdict,
 //! reason`, and `temperature_c` before the verdict where several are asked for.
 //!
 //! RFC 4180: comma, quotes doubled. Torques are external ones on the members, so the output's is negative where it
@@ -14,7 +14,7 @@ use super::{Export, ExportRequest, ExportedFile, told};
 pub(super) fn write(train: &Train, request: &ExportRequest) -> Result<Export, Diagnostics> {
     let (gears, mut notes) = gears(train, request)?;
     let several = request.temperatures.len() > 1;
-    let mut text = String::from("state,input_speed_rpm,input_torque_n_m,output_torque_n_m,loss_w,efficiency,");
+    let mut text = String::from("state,input_speed_rpm,torque_on_input_n_m,torque_on_output_n_m,loss_w,efficiency,");
     text += if several { "temperature_c,verdict,reason\n" } else { "verdict,reason\n" };
     let (mut points, mut empty) = (0, 0);
     for gear in &gears {
