@@ -160,10 +160,14 @@ impl Axis {
                 | Target::Power(Who::Input | Who::Output)
         );
         let name = if by_role { self.name.replace('.', "_") } else { self.name.clone() };
-        let unit: String = self.unit.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+        // `Nm` is the same unit as `N m`; of letters only M keeps its size, mega is not milli.
+        let unit = self.unit.replace("Nm", "N m");
+        let mega = unit.starts_with('M');
+        let unit: String = unit.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+        let unit = if mega { unit } else { unit.to_lowercase() };
         match unit.trim_matches('_') {
             "" => name,
-            unit => format!("{name}_{}", unit.replace("__", "_").to_lowercase()),
+            unit => format!("{name}_{}", unit.replace("__", "_")),
         }
     }
 
