@@ -129,8 +129,8 @@ enum Command {
         /// Threads. Default: as many as there are cores.
         #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
         threads: Option<u16>,
-        /// Compile the train, for maps of millions of points: given efficiencies, axes of speed, torque and state.
-        /// Numbers agree with `analyze` to a part in 10^12.
+        /// Compile the train, for maps of millions of points: given efficiencies; axes of speed, torque, state, and a
+        /// few values of the file; no columns of powers and warnings. Numbers agree with `analyze` to a part in 10^12.
         #[arg(long)]
         fast: bool,
         /// How to print the summary.

@@ -388,7 +388,7 @@ fn refuse_nonsense(sweep: &Sweep<'_>) -> Result<(), Failure> {
     let mut trains = Trains::default();
     let mut first = None;
     for k in 0..=4 {
-        let point = (sweep.len() - 1) / 4 * k;
+        let point = (sweep.len() - 1) * k / 4;
         match sweep.ask(point, &mut trains).and_then(|(train, o)| willis::analysis::operate(&train, &o).map(drop)) {
             Ok(()) => return Ok(()),
             Err(wrong) => drop(first.get_or_insert(wrong)),

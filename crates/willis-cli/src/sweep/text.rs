@@ -43,6 +43,9 @@ pub fn bytes(n: f64) -> String {
 pub fn text(report: &Report) -> String {
     let (study, all) = (&report.study, &report.summary);
     let mut out = format!("{}: {}", bold(&study.train), points(report.rows));
+    if report.rows == 0 {
+        return out + "  so small a sweep has fewer pieces than shards, and none falls into this one\n";
+    }
     if let Some(shard) = &report.shard {
         out += &format!(" (shard {shard} of {})", points(study.points));
     }

@@ -495,7 +495,7 @@ impl CompiledSweep<'_, '_> {
                 }
             }
             if let Some(a) = &answers[i] {
-                if !a.reason.is_empty() {
+                if !a.reason.is_empty() && a.verdict != "unique" {
                     summary.see(&format!("reason: {}", a.verdict), &a.reason, point);
                 }
                 for (code, message) in &a.warnings {

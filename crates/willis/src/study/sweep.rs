@@ -532,7 +532,8 @@ impl<'s> Sweep<'s> {
             }
             summary.by_text.entry(text).or_default().add(efficiency, point);
         }
-        if !answer.reason.is_empty() {
+        // What is to be said of a unique answer is a warning.
+        if !answer.reason.is_empty() && answer.verdict != "unique" {
             summary.see(&format!("reason: {}", answer.verdict), &answer.reason, point);
         }
         let mut last = None;
