@@ -10,6 +10,8 @@ use crate::units::{Dimension, Quantity};
 use super::Subject;
 use super::target::{Target, Who, quantity};
 
+/// Most values of an axis.
+const MOST: u64 = 1_000_000_000_000_000;
 /// Values up to so many are made once.
 const MOST_KEPT: usize = 1 << 20;
 
@@ -267,7 +269,7 @@ fn numbers(whole: &str, values: &str, measure: Measure) -> Result<(Values, Strin
     let width = &to - &from;
     let even = |step: Rational| -> Result<Values, Box<Diagnostic>> {
         let count = (&width / &step).floor().to_f64() + 1.0;
-        if count > 1e15 {
+        if count > MOST as f64 || count > usize::MAX as f64 {
             return Err(fault(whole, format!("{count:.0e} values are beyond all measure")));
         }
         Ok(Values::Even { from: from.clone(), step, count: count as usize })
@@ -298,8 +300,9 @@ fn numbers(whole: &str, values: &str, measure: Measure) -> Result<(Values, Strin
         }
         None => (how, false),
     };
-    let count: usize = match count.parse() {
-        Ok(count) if (2..=1_000_000_000_000_000).contains(&count) => count,
+    let count: usize = match count.parse::<u64>() {
+        // As many as can be counted here; a browser counts less far.
+        Ok(count) if (2..=MOST).contains(&count) && usize::try_from(count).is_ok() => count as usize,
         Ok(1) => return Err(fault(whole, "a range has at least 2 values")),
         _ => return Err(Box::new(fault(whole, format!("`{count}` is no number of values")).hint(GRAMMAR))),
     };
