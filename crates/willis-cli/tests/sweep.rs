@@ -301,6 +301,7 @@ fn the_tables_say_the_same() {
     assert_eq!(rows.len(), 18);
     let unique: std::collections::HashSet<_> = header.iter().collect();
     assert_eq!(unique.len(), header.len(), "{header:?}");
+    // After the header.
     for ((row, json), columns) in csv.lines().skip(1).zip(lines.lines()).zip(&rows) {
         let json: serde_json::Map<String, serde_json::Value> = serde_json::from_str(json).unwrap();
         assert_eq!(json.keys().map(String::as_str).collect::<Vec<_>>(), header);

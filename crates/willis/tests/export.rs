@@ -236,6 +236,7 @@ fn rational(text: &str) -> Rational {
 fn loss_tables(source: &str) -> BTreeMap<String, (f64, Vec<[f64; 5]>)> {
     parsed(source);
     let mut all = BTreeMap::new();
+    // What stands before the first is no table.
     for piece in source.split("constant Real ratio").skip(1) {
         let (suffix, rest) = piece.split_once(" = ").unwrap();
         let ratio = rational(rest.split(' ').next().unwrap()).to_f64();

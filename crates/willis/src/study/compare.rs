@@ -707,6 +707,7 @@ fn map(
         sweeps.push(question.and_then(|q| Sweep::new(q, axes, &[])).map_err(called)?);
     }
     let first = &sweeps[0];
+    // Each against the first.
     for (k, other) in sweeps.iter().enumerate().skip(1) {
         for (a, b) in first.axes().iter().zip(other.axes()) {
             let is_same = a.len() == b.len() && (0..a.len().min(1000)).all(|k| a.setting(k) == b.setting(k));

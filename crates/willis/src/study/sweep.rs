@@ -623,6 +623,7 @@ impl<'s> Sweep<'s> {
         offer("all", "power_residual_w".into(), What::Residual);
         offer("all", "circulating_power_w".into(), What::Circulating);
         offer("all", "lock_loss_factor".into(), What::LockFactor);
+        // All but the frame, which is at rest.
         for m in train.members().iter().skip(1).map(|m| &m.name) {
             offer("members", format!("{m}.speed_rad_s"), What::Speed(m.clone()));
             offer("members", format!("{m}.torque_n_m"), What::Torque(m.clone()));

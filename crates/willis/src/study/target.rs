@@ -98,6 +98,7 @@ impl Target {
             return Ok(Self::File(key));
         }
         subject.document().find(name).map(Self::File).map_err(|mut d| {
+            // All but the frame, whose speed nobody sets.
             let shafts = ["input", "output"].into_iter().chain(train.members().iter().skip(1).map(|m| m.name.as_str()));
             let mut own: Vec<String> =
                 shafts.flat_map(|m| ["speed", "torque", "power"].map(|what| format!("{m}.{what}"))).collect();

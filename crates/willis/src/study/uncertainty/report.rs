@@ -146,6 +146,7 @@ impl UncertaintyPlan<'_> {
         }
         let mut outputs = vec![];
         for (c, (name, unit)) in self.outputs.iter().enumerate() {
+            // Rows of `width` values lie one after the other.
             let column: Vec<f64> = evaluated.values.iter().skip(c).step_by(width).copied().collect();
             // What this train does not have is not worth a line.
             if c > 1 && column.iter().all(|v| v.is_nan() || *v == 0.0) {
