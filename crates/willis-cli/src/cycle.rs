@@ -1,12 +1,8 @@
 //! `willis cycle`: what a duty cycle or a load spectrum costs.
 
-use std::io::IsTerminal;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use willis::Diagnostics;
 use willis::study::{
     Basis, Cycle, CyclePart, CycleReport, Energies, Hold, Profile, Question, Said, Subject, Trains, WorstRow,
@@ -14,7 +10,7 @@ use willis::study::{
 
 use crate::csv::Writer;
 use crate::text::{bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
-use crate::{input, losses, output};
+use crate::{input, losses, output, work};
 
 /// A train file that is studied, with its text for messages.
 pub struct Studied {
@@ -100,54 +96,11 @@ fn refused(wrong: &Diagnostics, file: &str, text: &str) -> String {
     crate::failure(wrong, file, source)
 }
 
-/// All parts, in order, by as many threads as there are processors.
+/// All parts, in order, by all cores.
 fn compute(cycle: &Cycle<'_>) -> Vec<CyclePart> {
-    let ranges: Vec<(usize, usize)> = cycle.ranges().collect();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(ranges.len()).max(1);
-    let next = AtomicUsize::new(0);
-    let done: Mutex<Vec<Option<CyclePart>>> = Mutex::new(vec![None; ranges.len()]);
-    let finished = AtomicUsize::new(0);
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                let mut trains = Trains::default();
-                while let Some(&(from, to)) = ranges.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let part = cycle.part(from, to, &mut trains);
-                    done.lock().expect("no panic in a part")[from / (ranges[0].1).max(1)] = Some(part);
-                    finished.fetch_add(1, Ordering::Relaxed);
-                }
-            });
-        }
-        if std::io::stderr().is_terminal() {
-            watch(&finished, ranges.len(), cycle.profile().conditions());
-        }
-    });
-    let done = done.into_inner().expect("no panic in a part");
-    done.into_iter().map(|part| part.expect("every range was computed")).collect()
-}
-
-/// A bar on standard error, where that takes its time.
-fn watch(finished: &AtomicUsize, parts: usize, conditions: usize) {
-    let bar = ProgressBar::with_draw_target(Some(parts as u64), ProgressDrawTarget::hidden());
-    let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
-    bar.set_style(style.expect("a good template"));
-    bar.set_message(plural(conditions, "condition", "conditions"));
-    let mut rounds = 0;
-    loop {
-        let so_far = finished.load(Ordering::Relaxed);
-        if so_far >= parts {
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(20));
-        rounds += 1;
-        if rounds == 25 {
-            bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        if rounds % 5 == 0 {
-            bar.set_position(so_far as u64);
-        }
-    }
-    bar.finish_and_clear();
+    let length = cycle.ranges().next().map_or(1, |(from, to)| to - from);
+    let part = |range: Range<usize>, trains: &mut Trains| cycle.part(range.start, range.end, trains);
+    work::all(cycle.profile().conditions(), length, "conditions", part)
 }
 
 /// One row of the profile a line, with its answer.

@@ -16,6 +16,7 @@ mod simulate;
 mod sweep;
 mod text;
 mod uncertainty;
+mod work;
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -2,7 +2,6 @@
 
 mod table;
 mod text;
-mod work;
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -14,7 +13,7 @@ use sha2::{Digest, Sha256};
 use willis::diagnostic::Diagnostics;
 use willis::study::{Axis, Cells, Column, CompiledSweep, Hold, Question, Room, Rows, Subject, Summary, Sweep, Trains};
 
-use crate::interrupt;
+use crate::{interrupt, work};
 use table::Form;
 
 pub use text::text;
@@ -188,7 +187,8 @@ fn append(all: &mut Rows, more: Rows) {
 /// Points of a piece: a few dozen pieces of a small sweep, groups whole.
 fn piece(points: u64, group: u64, fast: bool) -> u64 {
     let [least, most] = if fast { [1 << 16, 1 << 18] } else { [1 << 7, 1 << 13] };
-    let wanted = (points / 64).next_power_of_two().clamp(least, most);
+    // However many points, a list of the pieces fits anywhere.
+    let wanted = (points / 64).next_power_of_two().clamp(least, most).max(points / 1_000_000);
     wanted.div_ceil(group) * group
 }
 
@@ -278,7 +278,7 @@ pub fn run(subject: &Subject, text: &str, laws: &[String], request: &Request) ->
                 let bytes = form.encode(&study.columns, &rows)?;
                 folder.keep(k, &bytes, &rows.summary).map(Some)
             };
-            let left = work::run(&todo, threads, (done, rows), |k| span(k).1 - span(k).0, make, |_, ()| {});
+            let left = work::run(&todo, threads, (done, rows, "points"), |k| span(k).1 - span(k).0, make, |_, ()| {});
             let left = left.map_err(|e| format!("{e}{}", folder.advice()))?;
             if left > 0 {
                 return Err(Failure::Interrupted(format!(
@@ -304,7 +304,7 @@ pub fn run(subject: &Subject, text: &str, laws: &[String], request: &Request) ->
             let left = work::run(
                 &all,
                 threads,
-                (0, rows),
+                (0, rows, "points"),
                 |k| span(k).1 - span(k).0,
                 make,
                 |k, s: Summary| {

@@ -1,18 +1,14 @@
 //! `willis uncertainty`: points on all processors, and the distributions for eyes and for tables.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
 
 use comfy_table::CellAlignment;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use willis::study::{Evaluated, Likely, Output, Seen, Trains, Uncertainty, UncertaintyPlan};
 
 use crate::csv::Writer;
 use crate::losses::bar;
 use crate::text::{bold, dim, right, set_header, show, significant, table, wrap};
+use crate::work;
 
 /// A piece of work has about so many points.
 const PIECE: usize = 64;
@@ -47,42 +43,9 @@ impl SamplesOut {
 /// Evaluates every point, on all processors; the result does not depend on how many there are.
 pub fn evaluate(plan: &UncertaintyPlan<'_>) -> Evaluated {
     let piece = plan.group() * (PIECE / plan.group()).max(1);
-    let pieces = plan.len().div_ceil(piece);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(pieces);
-    let next = AtomicUsize::new(0);
-    let done: Mutex<Vec<Option<Evaluated>>> = Mutex::new(vec![None; pieces]);
-    let progress = std::io::stderr().is_terminal().then(|| {
-        let bar = ProgressBar::with_draw_target(Some(pieces as u64), ProgressDrawTarget::stderr_with_hz(5));
-        let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left");
-        bar.set_style(style.expect("a good template"));
-        bar.enable_steady_tick(Duration::from_millis(500));
-        bar
-    });
-    std::thread::scope(|scope| {
-        for _ in 0..threads {
-            scope.spawn(|| {
-                let mut trains = Trains::default();
-                loop {
-                    let k = next.fetch_add(1, Ordering::Relaxed);
-                    if k >= pieces {
-                        break;
-                    }
-                    let found = plan.evaluate(k * piece..plan.len().min((k + 1) * piece), &mut trains);
-                    done.lock().expect("no thread panics")[k] = Some(found);
-                    if let Some(bar) = &progress {
-                        bar.inc(1);
-                    }
-                }
-            });
-        }
-    });
-    if let Some(bar) = progress {
-        bar.finish_and_clear();
-    }
+    let parts = work::all(plan.len(), piece, "points", |range, trains: &mut Trains| plan.evaluate(range, trains));
     let mut all = Evaluated::default();
-    for part in done.into_inner().expect("no thread panics") {
-        all.join(part.expect("every piece was done"));
-    }
+    parts.into_iter().for_each(|part| all.join(part));
     all
 }
 

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
+use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
@@ -13,12 +14,15 @@ pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
+/// How long work lasts before a bar shows it.
+const PATIENCE: Duration = Duration::from_millis(500);
+
 /// Works off pieces in any order; `told` hears of each on this thread. Returns how many are left, because `make` gave
-/// nothing. `(done, all)` is what the bar counts, `size` what a piece adds.
+/// nothing. `(done, all)` is what the bar counts, of things called `what`; `size` is what a piece adds.
 pub fn run<T: Send, S: Default>(
     pieces: &[u64],
     threads: usize,
-    (done, all): (u64, u64),
+    (done, all, what): (u64, u64, &'static str),
     size: impl Fn(u64) -> u64,
     make: impl Fn(u64, &mut S) -> Result<Option<T>, String> + Sync,
     mut told: impl FnMut(u64, T),
@@ -26,14 +30,15 @@ pub fn run<T: Send, S: Default>(
     let next = AtomicUsize::new(0);
     let (send, receive) = channel();
     let bar = std::io::stderr().is_terminal().then(|| {
-        let bar = ProgressBar::with_draw_target(Some(all), ProgressDrawTarget::stderr_with_hz(5));
-        let style = "{bar:40} {percent:>3} %  {human_pos} of {human_len} points  {per_sec}  {eta} left";
+        let bar = ProgressBar::with_draw_target(Some(all), ProgressDrawTarget::hidden());
+        let style = "{bar:40} {percent:>3} %  {human_pos} of {human_len} {msg}  {per_sec}  {eta} left";
+        bar.set_message(what);
         bar.set_style(ProgressStyle::with_template(style).expect("a good template"));
         bar.set_position(done);
         bar.reset_eta();
         bar
     });
-    let mut left = pieces.len() as u64;
+    let (mut left, started, mut is_shown) = (pieces.len() as u64, Instant::now(), false);
     let mut failed = None;
     std::thread::scope(|scope| {
         for _ in 0..threads.min(pieces.len()).max(1) {
@@ -53,6 +58,10 @@ pub fn run<T: Send, S: Default>(
         }
         drop(send);
         loop {
+            if let Some(bar) = bar.as_ref().filter(|_| !is_shown && started.elapsed() > PATIENCE) {
+                bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(5));
+                is_shown = true;
+            }
             match receive.recv_timeout(Duration::from_millis(200)) {
                 Ok((piece, Ok(Some(made)))) => {
                     left -= 1;
@@ -72,6 +81,33 @@ pub fn run<T: Send, S: Default>(
         bar.finish_and_clear();
     }
     failed.map_or(Ok(left), Err)
+}
+
+/// What `make` gives for every piece, in order, by all cores. The pieces are `length` of `all` things called `what`, the
+/// last one what is left.
+pub fn all<T: Send, S: Default>(
+    all: usize,
+    length: usize,
+    what: &'static str,
+    make: impl Fn(Range<usize>, &mut S) -> T + Sync,
+) -> Vec<T> {
+    let range = |k: u64| k as usize * length..((k as usize + 1) * length).min(all);
+    let pieces: Vec<u64> = (0..all.div_ceil(length) as u64).collect();
+    let (mut done, mut ordered) = (Vec::with_capacity(pieces.len()), InOrder::new(0));
+    let make = |k: u64, own: &mut S| Ok(Some(make(range(k), own)));
+    let counted = (0, all as u64, what);
+    let left = run(
+        &pieces,
+        cores(),
+        counted,
+        |k| range(k).len() as u64,
+        make,
+        |k, made| {
+            ordered.push(k, made, |made| done.push(made));
+        },
+    );
+    assert_eq!(left, Ok(0), "nothing stops this work");
+    done
 }
 
 /// Passes results on in the order of their numbers.
