@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use willis::analysis::{Analysis, Selection, analyze};
-use willis::study::{Axis, Cells, Hold, Question, Rows, Subject, Sweep};
+use willis::study::{Axis, Cells, Hold, Question, Rows, Subject, Sweep, sensitivity};
 use willis::train::{Document, Train};
 
 fn examples() -> PathBuf {
@@ -301,14 +301,24 @@ fn what_check_says_of_another_train_is_in_its_row() {
         let d = Axis::parse(axis, &subject).unwrap_err();
         assert!(format!("{} {}", d.message, d.hints.join(" ")).contains(says), "{}", d.message);
     }
-    // Names as `sensitivity` writes them.
-    for axis in ["speeds.sun=1,2 rpm", "bearing sun bearing.radial_load=0,1 kN", "seal input seal.diameter=40,50 mm"] {
-        axes(&subject, &[axis]);
-    }
     // No column twice.
     let same = sweep(&subject, &["sun.torque=50,60 N m"], &["members"], Hold::AsGiven);
     let names: Vec<&str> = same.columns().map(|c| c.name.as_str()).collect();
     assert!((1..names.len()).all(|k| !names[..k].contains(&names[k])), "{names:?}");
+}
+
+/// What `sensitivity` ranks can be swept under the same name.
+#[test]
+fn ranked_quantities_are_axes() {
+    for file in ["fva-planetary-stage.toml", "wang-herringbone-physical.toml", "prius-p112.toml", "zf-8hp70.toml"] {
+        let subject = subject(&text(file));
+        for o in sensitivity(subject.train(), &Selection::default()).unwrap().operations {
+            for q in &o.quantities {
+                let unit = if q.unit == "-" { "" } else { q.unit };
+                axes(&subject, &[&format!("{}={} {unit}", q.name, q.value)]);
+            }
+        }
+    }
 }
 
 /// Every quantity of every example, set to what it is, leaves the train as it is.

@@ -124,7 +124,8 @@ impl StepKind {
 #[derive(Clone, Debug, Serialize)]
 #[non_exhaustive]
 pub struct QuantitySensitivity {
-    /// Its path, as the file has it: `P1.geometry.module`, `bearing B1.radial_load`, `oil.temperature`, `speeds.sun`.
+    /// Its path, as the file has it: `P1.geometry.module`, `B1.radial_load`; of the operation what an
+    /// [axis](crate::study::Axis) calls it: `oil.temperature`, `sun.speed`, `sun.torque`.
     pub name: String,
     /// Its value, SI.
     pub value: f64,
@@ -398,7 +399,7 @@ fn quantities(train: &Train, operation: &Operation) -> Vec<Quantity> {
         }
         let heat = input.slots.contains(&Slot::Temperature);
         let (name, value, assumed) = match operation.temperature.filter(|_| heat) {
-            Some(own) => ("temperature".to_owned(), own, false),
+            Some(own) => ("oil.temperature".to_owned(), own, false),
             None => (input.path.clone(), input.value, input.assumed),
         };
         let (unit, slots) = (input.unit, input.slots.clone());
@@ -413,14 +414,14 @@ fn quantities(train: &Train, operation: &Operation) -> Vec<Quantity> {
         moved,
     };
     for (k, (member, speed)) in operation.speeds.iter().enumerate() {
-        let name = format!("speeds.{}", train.member_name(*member));
+        let name = format!("{}.speed", train.member_name(*member));
         all.push(moving(name, speed.si(), "rad/s", Moved::Speed(k)));
     }
     for (k, (member, load)) in operation.loads.iter().enumerate() {
         let member = train.member_name(*member);
         all.push(match load {
-            Load::Torque(q) => moving(format!("torques.{member}"), q.si(), "N m", Moved::Load(k)),
-            Load::Power(q) => moving(format!("powers.{member}"), q.si(), "W", Moved::Load(k)),
+            Load::Torque(q) => moving(format!("{member}.torque"), q.si(), "N m", Moved::Load(k)),
+            Load::Power(q) => moving(format!("{member}.power"), q.si(), "W", Moved::Load(k)),
         });
     }
     all
@@ -460,7 +461,7 @@ fn notes(train: &Train, point: &Point<'_>) -> Vec<String> {
         all.push("where a law changes its formula, the derivative is that of the formula in force".into());
     }
     let bearing = |b: &&crate::train::BearingMount| {
-        let path = format!("bearing {}.bore", b.name);
+        let path = format!("{}.bore", b.name);
         b.members != [FRAME; 2] && train.inputs.iter().all(|i| i.path != path)
     };
     let catalogue: Vec<&str> = train.bearings.iter().filter(bearing).map(|b| b.bearing.designation.as_str()).collect();

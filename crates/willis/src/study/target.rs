@@ -84,19 +84,6 @@ impl Target {
                 _ => {}
             }
         }
-        // As the ranked table of sensitivities writes them.
-        for (list, make) in
-            [("speeds.", Self::Speed as fn(Who) -> Self), ("torques.", Self::Torque), ("powers.", Self::Power)]
-        {
-            if let Some(member) = name.strip_prefix(list).and_then(|m| train.member(m)) {
-                return Ok(make(Who::Member(member)));
-            }
-        }
-        let lists = ["set ", "mesh ", "bearing ", "seal ", "rotor "];
-        let listed = lists.iter().any(|l| name.starts_with(l)).then(|| name.replacen(' ', ".", 1));
-        if let Some(key) = listed.and_then(|n| subject.document().find(&n).ok()) {
-            return Ok(Self::File(key));
-        }
         subject.document().find(name).map(Self::File).map_err(|mut d| {
             // All but the frame, whose speed nobody sets.
             let shafts = ["input", "output"].into_iter().chain(train.members().iter().skip(1).map(|m| m.name.as_str()));

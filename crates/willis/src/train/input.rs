@@ -106,12 +106,16 @@ pub(super) fn inputs(spec: &TrainBuilder, train: &Assembled<'_>, has: Has<'_>) -
     let mut list = List { all: vec![], train, has };
     // Meshes stand in the order of the description, those of the sets behind.
     for (j, mesh) in spec.meshes.iter().enumerate() {
-        let Some(own) = train.meshes.get(j).filter(|m| m.set.is_none()) else { return vec![] };
-        let (name, place) = (format!("mesh {}", own.name), format!("mesh[{j}]"));
+        if train.meshes.get(j).is_none_or(|m| m.set.is_some()) {
+            return vec![];
+        }
+        // A path leads through names that the file has; a mesh without one has its number.
+        let name = mesh.name.clone().unwrap_or_else(|| format!("mesh.{j}"));
+        let place = format!("mesh[{j}]");
         if let (Some(given), None) = (&mesh.efficiency, &mesh.loss_table) {
             list.efficiency(&format!("{name}.efficiency"), &format!("{place}.efficiency"), given, &[(j, false)]);
         }
-        let gears = [0, 1].map(|k| (format!("{name}.gears[{k}]"), mesh.gears[k].tooth));
+        let gears = [0, 1].map(|k| (format!("{name}.gears.{k}"), mesh.gears[k].tooth));
         if let Some(g) = &mesh.geometry {
             list.teeth(j, &gears, g, &format!("{name}.geometry"), &format!("{place}.geometry"));
         }
@@ -393,14 +397,14 @@ impl List<'_> {
                     ("level", b.level, "m", B::Level),
                 ] {
                     if let Some(value) = value {
-                        let path = format!("bearing {}.{key}", b.name);
+                        let path = format!("{}.{key}", b.name);
                         self.add(path, value, unit, false, Slot::Bearing(k, number));
                     }
                 }
             }
         }
         for (k, s) in spec.seals.iter().enumerate() {
-            self.add(format!("seal {}.diameter", s.name), s.diameter, "m", false, Slot::Seal(k));
+            self.add(format!("{}.diameter", s.name), s.diameter, "m", false, Slot::Seal(k));
         }
         for (k, r) in spec.rotors.iter().enumerate() {
             // Without a gap of its own a face has that of the rim.
@@ -411,7 +415,7 @@ impl List<'_> {
                 ("radial_gap", r.radial_gap, R::RadialGap),
                 (face, r.axial_gap.unwrap_or(r.radial_gap), R::AxialGap),
             ] {
-                self.add(format!("rotor {}.{key}", r.name), value, "m", false, Slot::Rotor(k, number));
+                self.add(format!("{}.{key}", r.name), value, "m", false, Slot::Rotor(k, number));
             }
         }
     }
