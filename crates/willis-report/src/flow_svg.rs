@@ -12,7 +12,7 @@ use svg::node::element::{Circle, Element, Group, Path, Polygon};
 use willis::analysis::Verdict;
 use willis::hypergraph::{FlowReport, Hypergraph, Node, NodeKind, watts};
 
-use crate::style::{Anchor, FAINT, INK, LINE, PAPER, colour, line, number, page, rectangle, text};
+use crate::style::{Anchor, FAINT, INK, LINE, PAPER, colour, fit, line, lines, number, page, rectangle, text, wide};
 
 const MARGIN: f64 = 28.0;
 /// Radius of a symbol.
@@ -150,37 +150,6 @@ fn caption(g: &Hypergraph) -> Vec<String> {
         letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect::<String>()) + "."
     };
     std::iter::once(power).chain(g.recirculation().into_iter().map(sentence)).collect()
-}
-
-/// Width of a text, rather too large.
-fn wide(text: &str, size: f64) -> f64 {
-    text.chars().count() as f64 * size * 0.61
-}
-
-/// A text that fits into a width.
-fn fit(content: &str, width: f64, size: f64) -> String {
-    let most = (width / (size * 0.61)) as usize;
-    match content.chars().count() <= most {
-        true => content.to_owned(),
-        false => content.chars().take(most.saturating_sub(1)).chain(['…']).collect(),
-    }
-}
-
-/// A sentence in lines that fit.
-fn lines(content: &str, width: f64, size: f64) -> Vec<String> {
-    let mut all = vec![String::new()];
-    for word in content.split_whitespace() {
-        let last = all.last_mut().expect("never empty");
-        if last.is_empty() {
-            *last = fit(word, width, size);
-        } else if wide(last, size) + wide(word, size) + size > width {
-            all.push(fit(word, width, size));
-        } else {
-            last.push(' ');
-            last.push_str(word);
-        }
-    }
-    all
 }
 
 fn percent(x: f64) -> String {

@@ -3,7 +3,7 @@
 use svg::node::element::Group;
 use willis::dynamics::{ModesReport, Part};
 
-use crate::style::{Anchor, FAINT, LINE, colour, line, page, rectangle, text};
+use crate::style::{Anchor, BOLD, FAINT, LINE, colour, digits, fit, line, page, rectangle, text};
 
 const LEFT: f64 = 190.0;
 const COLUMN: f64 = 104.0;
@@ -50,10 +50,11 @@ pub fn modes_plot(all: &ModesReport) -> String {
     }
     let title = format!("Natural frequencies of {}", all.train);
     let words: Vec<String> = every.iter().map(|m| format!("{}: {}", m.heads[0], m.heads[1])).collect();
-    let most = ((width - 56.0) / 11.0) as usize;
     let mut body = Group::new()
-        .add(text(28.0, 38.0, 20.0, Anchor::Start, &short(&title, most)).set("font-weight", "bold"))
-        .add(text(28.0, 58.0, 13.0, Anchor::Start, &short(&subtitle, most * 3 / 2)).set("fill", FAINT));
+        .add(
+            text(28.0, 38.0, 20.0, Anchor::Start, &fit(&title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
+        )
+        .add(text(28.0, 58.0, 13.0, Anchor::Start, &fit(&subtitle, width - 56.0, 13.0)).set("fill", FAINT));
     for (k, m) in shown.iter().enumerate() {
         let x = middle(k);
         for (j, head) in m.heads.iter().enumerate() {
@@ -102,7 +103,7 @@ fn table<'a>(
         .add(line((28.0, top), (right, top), LINE, 1.0));
     for (j, name) in names.iter().enumerate() {
         let y = top + ROW * j as f64;
-        g = g.add(text(28.0, y + 15.0, 12.0, Anchor::Start, &short(name, 24))).add(line(
+        g = g.add(text(28.0, y + 15.0, 12.0, Anchor::Start, &fit(name, LEFT - 40.0, 12.0))).add(line(
             (28.0, y + ROW),
             (right, y + ROW),
             "#e4e4e4",
@@ -126,27 +127,4 @@ fn table<'a>(
         g = g.add(line((x, top), (x, bottom), LINE, 1.0));
     }
     g
-}
-
-/// Three digits, or as many as an integer part has.
-fn digits(x: f64) -> String {
-    let size = x.abs();
-    if size == 0.0 {
-        return "0".to_owned();
-    }
-    if !(1e-3..1e6).contains(&size) {
-        return format!("{x:.1e}").replace('-', "−");
-    }
-    let decimals = (2 - size.log10().floor() as i32).clamp(0, 5) as usize;
-    let text = format!("{x:.decimals$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    text.replace('-', "−")
-}
-
-/// A text that fits.
-fn short(name: &str, most: usize) -> String {
-    if name.chars().count() <= most {
-        return name.to_owned();
-    }
-    name.chars().take(most - 1).chain(['…']).collect()
 }

@@ -56,6 +56,85 @@ pub fn text(x: f64, y: f64, size: f64, anchor: Anchor, content: &str) -> element
         .set("fill", INK)
 }
 
+/// Advance widths of DejaVu Sans from U+0020 to U+007E in thousandths of the size: the widest of the
+/// faces that a figure names, so that what fits in it fits in all.
+const WIDTHS: [u16; 95] = [
+    318, 401, 460, 838, 636, 950, 780, 275, 390, 390, 500, 838, 318, 361, 318, 337, 636, 636, 636, 636, 636, 636, 636,
+    636, 636, 636, 337, 337, 838, 838, 838, 531, 1000, 684, 686, 698, 770, 632, 575, 775, 752, 295, 295, 656, 557, 863,
+    748, 787, 603, 787, 695, 635, 611, 732, 684, 989, 685, 611, 685, 390, 337, 390, 838, 500, 500, 613, 635, 550, 635,
+    615, 352, 635, 634, 278, 278, 579, 278, 974, 634, 612, 635, 635, 411, 521, 392, 634, 592, 818, 592, 592, 525, 636,
+    337, 636, 838,
+];
+
+/// How wide a text is, at most.
+pub fn wide(content: &str, size: f64) -> f64 {
+    let one = |c: char| match c {
+        ' '..='~' => f64::from(WIDTHS[c as usize - 32]) / 1000.0,
+        '·' => 0.32,
+        '°' => 0.5,
+        '²' | '³' => 0.41,
+        // Marks that stand on the letter before.
+        '\u{0300}'..='\u{036f}' => 0.0,
+        '→' | '−' | '×' | '≤' | '≥' => 0.84,
+        '\u{00a1}'..='\u{04ff}' => 0.7,
+        // Chinese, Japanese, Korean and the rest: a square.
+        _ => 1.0,
+    };
+    size * content.chars().map(one).sum::<f64>()
+}
+
+/// Bold text is wider.
+pub const BOLD: f64 = 1.1;
+
+/// A text that fits into a width, cut if need be.
+pub fn fit(content: &str, width: f64, size: f64) -> String {
+    if wide(content, size) <= width {
+        return content.to_owned();
+    }
+    let mut kept = String::new();
+    for c in content.chars() {
+        kept.push(c);
+        if wide(&kept, size) + size > width {
+            kept.pop();
+            break;
+        }
+    }
+    kept.push('…');
+    kept
+}
+
+/// A sentence in lines that fit.
+pub fn lines(content: &str, width: f64, size: f64) -> Vec<String> {
+    let mut all = vec![String::new()];
+    for word in content.split_whitespace() {
+        let last = all.last_mut().expect("never empty");
+        if last.is_empty() {
+            *last = fit(word, width, size);
+        } else if wide(last, size) + wide(" ", size) + wide(word, size) > width {
+            all.push(fit(word, width, size));
+        } else {
+            last.push(' ');
+            last.push_str(word);
+        }
+    }
+    all
+}
+
+/// Three digits, or as many as the integer part has.
+pub fn digits(x: f64) -> String {
+    let size = x.abs();
+    if size == 0.0 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{x:.1e}").replace('-', "−");
+    }
+    let decimals = (2 - size.log10().floor() as i32).clamp(0, 5) as usize;
+    let text = format!("{x:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    text.replace('-', "−")
+}
+
 /// A letter in a circle.
 pub fn badge(x: f64, y: f64, content: &str) -> element::Group {
     element::Group::new()
