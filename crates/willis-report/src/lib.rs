@@ -1,6 +1,7 @@
 //! Figures of Willis as SVG: text stays text, colours are safe for the colour-blind, and every
 //! colour also carries a letter. Power flows also as Graphviz.
 
+pub mod document;
 mod flow_dot;
 mod flow_svg;
 mod modes_plot;
