@@ -1,8 +1,16 @@
 //! Charts and diagrams as data: what stands where, in which role, with which words. No pixels, no
 //! fonts; front ends draw.
 
+mod axes;
+mod band;
+mod losses;
+mod map;
 mod regime_map;
 mod time_plot;
 
+pub use axes::ChartAxis;
+pub use band::{BandPoint, Bands, QUANTILES, bands};
+pub use losses::{LossChart, LossSeries, loss_chart};
+pub use map::{EfficiencyMap, MapMark, MapPoint, efficiency_map};
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
 pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};

@@ -29,6 +29,7 @@ pub use cycle::{
     Cycle, CyclePart, CyclePoint, CycleReport, Energies, Said, SourceEnergy, TerminalEnergy, VerdictTime, Way, Worst,
     WorstRow, cycle,
 };
+pub(crate) use design::quantile;
 pub use design::{Design, Index, REPLICATES, SamplingError, Statistics};
 pub use distribution::{Distribution, standard_normal_quantile};
 pub use profile::{Basis, Profile, ProfileRow};

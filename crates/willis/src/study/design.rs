@@ -307,7 +307,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// Of sorted values.
-pub(super) fn quantile(sorted: &[f64], p: f64) -> f64 {
+pub(crate) fn quantile(sorted: &[f64], p: f64) -> f64 {
     let place = (p * sorted.len() as f64 - 0.5).clamp(0.0, (sorted.len() - 1) as f64);
     let k = place as usize;
     let next = sorted[(k + 1).min(sorted.len() - 1)];

@@ -17,7 +17,7 @@ use super::distribution::{Distribution, Reader, fault, plain};
 use super::question::{Hold, Question, Trains};
 use super::sweep::{Answer, Seen, VERDICTS};
 use super::target::{Target, Who};
-use super::{Statistics, Subject};
+use super::{Axis, Statistics, Subject};
 
 pub use report::{Choice, Influence, Output, Reported, Uncertainty};
 
@@ -385,6 +385,18 @@ impl<'s> UncertaintyPlan<'s> {
     /// The answer at a point.
     pub fn answer(&self, point: usize, trains: &mut Trains) -> Answer {
         match self.question.at(&self.settings_at(&self.design.at(point)), trains) {
+            Ok((train, operation)) => Answer::of(&train, &operation),
+            Err(wrong) => Answer::refused(wrong),
+        }
+    }
+
+    /// The answer at a value of an axis: at a point, or with the file as written. A quantity that is itself the axis
+    /// takes the axis' value.
+    pub(crate) fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> Answer {
+        let mut settings = point.map_or_else(Vec::new, |p| self.settings_at(&self.design.at(p)));
+        settings.retain(|s| *s.0 != axis.target);
+        settings.push((&axis.target, axis.setting(k)));
+        match self.question.at(&settings, trains) {
             Ok((train, operation)) => Answer::of(&train, &operation),
             Err(wrong) => Answer::refused(wrong),
         }
