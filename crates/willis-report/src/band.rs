@@ -30,7 +30,7 @@ pub fn bands(all: &Bands) -> String {
     let efficiency =
         |p: &BandPoint| (p.efficiency.map(|q| q.map(|e| 100.0 * e)), p.nominal_efficiency.map(|e| 100.0 * e));
     let loss = |p: &BandPoint| (p.loss_w.map(|q| q.map(|w| w / size)), p.nominal_loss_w.map(|w| w / size));
-    body = body.add(panel(all, top, "Efficiency, %".to_owned(), &efficiency));
+    body = body.add(panel(all, top, String::new(), &efficiency));
     top += HEIGHT + 64.0;
     body = body.add(panel(all, top, format!("Losses, {unit}"), &loss));
     top += HEIGHT + 62.0;
@@ -91,7 +91,7 @@ fn panel(all: &Bands, top: f64, name: String, of: Reading<'_>) -> Group {
         right: RIGHT,
         bottom: top + HEIGHT,
         x: Scale::of(all.x.values.iter().copied(), title(&all.x)),
-        y: Scale::of(values, name).rounded(),
+        y: if name.is_empty() { Scale::efficiency(values) } else { Scale::of(values, name).rounded() },
     };
     let mut g = Group::new().add(chart.grid());
     for ([low, high], strength) in [([0, 4], 0.2), ([1, 3], 0.45)] {

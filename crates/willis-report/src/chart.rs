@@ -25,6 +25,18 @@ impl Scale {
         Self { low: low - room, high: high + room, title: title.into() }
     }
 
+    /// Efficiencies in per cent: never above 100, and one per cent high at least, so that a level line looks level.
+    pub fn efficiency(values: impl Iterator<Item = f64>) -> Self {
+        let own = Self::of(values, "Efficiency, %");
+        let (low, high) = (own.low.max(0.0), own.high.min(100.0));
+        if own.high - own.low < 1.0 || own.high > 100.0 || own.low < 0.0 {
+            let middle = (own.low + own.high) / 2.0;
+            let high = (middle + 0.5).ceil().clamp(1.0, 100.0).max(high);
+            return Self { low: low.min(high - 1.0).max((middle - 0.5).floor().max(0.0)), high, ..own };
+        }
+        Self { low, high, ..own }.rounded()
+    }
+
     /// To the next full tick at both ends.
     pub fn rounded(self) -> Self {
         let all = ticks(self.low, self.high, 5);

@@ -178,7 +178,7 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
             right: WIDTH - 28.0,
             bottom: axis_bottom,
             x: Scale::of(chart.x.values.iter().copied(), title(&chart.x)),
-            y: Scale::of(known().map(|e| 100.0 * e), "Efficiency, %").rounded(),
+            y: Scale::efficiency(known().map(|e| 100.0 * e)),
         };
         let points = (0..count).map(|k| (chart.x.values[k], chart.efficiency[k].map(|e| 100.0 * e)));
         g = g.add(small.grid()).add(small.path(points).set("stroke", colour(Some(0), 1.0)).set("stroke-width", 2));

@@ -361,14 +361,13 @@ fn runs<T: Copy + PartialEq>(
 
 /// Cells around points without a single answer.
 fn hatching(map: &EfficiencyMap, chart: &Chart) -> Group {
-    let mut g = Group::new();
+    let (mut paper, mut hatch) = (Group::new(), Group::new());
     let verdict = |k: usize| Some(map.points[k].verdict).filter(|v| *v != "unique");
     runs(map, chart, &verdict, &mut |[x0, y0, x1, y1], verdict| {
-        let paper = rectangle(x0, y0, x1 - x0, y1 - y0, PAPER).set("stroke", PAPER).set("stroke-width", 0.5);
-        g.append(paper);
-        g.append(strokes([x0, y0, x1, y1], verdict));
+        paper.append(rectangle(x0, y0, x1 - x0, y1 - y0, PAPER).set("stroke", PAPER).set("stroke-width", 0.5));
+        hatch.append(strokes([x0, y0, x1, y1], verdict));
     });
-    g
+    Group::new().add(paper).add(hatch)
 }
 
 /// The lines without what of them runs along the frame.
