@@ -2,7 +2,12 @@
 //! fonts; front ends draw.
 
 mod regime_map;
+mod stick;
 mod time_plot;
 
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
+pub use stick::{
+    GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickMember, StickMesh,
+    StickPiece, StickTerminal, Way, stick,
+};
 pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};
