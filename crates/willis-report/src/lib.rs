@@ -12,6 +12,7 @@ mod modes_plot;
 #[cfg(feature = "png")]
 mod png;
 mod regime_map;
+mod stick;
 mod style;
 mod time_plot;
 
@@ -24,4 +25,5 @@ pub use modes_plot::modes_plot;
 #[cfg(feature = "png")]
 pub use png::png;
 pub use regime_map::regime_map;
+pub use stick::stick;
 pub use time_plot::time_plot;

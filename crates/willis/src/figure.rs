@@ -6,6 +6,7 @@ mod band;
 mod losses;
 mod map;
 mod regime_map;
+mod stick;
 mod time_plot;
 
 pub use axes::ChartAxis;
@@ -13,4 +14,8 @@ pub use band::{BandPoint, Bands, QUANTILES, bands};
 pub use losses::{LossChart, LossSeries, loss_chart};
 pub use map::{EfficiencyMap, MapMark, MapPoint, efficiency_map};
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
+pub use stick::{
+    GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickMember, StickMesh,
+    StickPiece, StickTerminal, Way, stick,
+};
 pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};

@@ -1,0 +1,675 @@
+//! The kinematic schematic (stick diagram).
+
+use svg::node::element::{Circle, Group, Path, Polyline};
+use willis::figure::{GearRole, JointKind, Place, Stick, StickGear, StickJoint, Way};
+
+use crate::style::{
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
+};
+
+/// Left and right of the grid: names and arrows of the terminals.
+const MARGIN: f64 = 168.0;
+const TOP: f64 = 112.0;
+/// Length of a terminal's arrow.
+const ARROW: f64 = 40.0;
+/// Half the length of a friction plate, of the line of the frame.
+const PLATE: f64 = 9.0;
+const THIN: f64 = 1.8;
+const THICK: f64 = 4.6;
+/// Width of one column of the list of members, and height of its rows.
+const LIST: f64 = 430.0;
+const ROW: f64 = 19.0;
+
+/// The schematic of a train as transmission textbooks draw it: half section above each centre line, gears
+/// as lines with their tooth counts, members as coloured lines with their names, clutches, brakes and the
+/// frame; in a state the closed elements and, drawn thick, the way of the power.
+///
+/// # Example
+/// ```
+/// use willis::figure::stick;
+/// use willis::train::{SetSpec, Train};
+///
+/// let train = Train::builder("one set")
+///     .members(["s", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4))
+///     .build()?;
+/// let picture = willis_report::stick(&stick(&train, None)?);
+/// assert!(picture.starts_with("<svg"));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn stick(data: &Stick) -> String {
+    let sheet = Sheet::new(data);
+    let mut page = page(sheet.width, sheet.height, &format!("Stick diagram of {}", data.title), &words(data)).add(
+        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&data.title, (sheet.width - 56.0) / BOLD, 20.0))
+            .set("font-weight", "bold"),
+    );
+    for (k, l) in lines(&subtitle(data), sheet.width - 56.0, 13.0).iter().take(2).enumerate() {
+        page = page.add(text(28.0, 60.0 + 18.0 * k as f64, 13.0, Anchor::Start, l).set("fill", FAINT));
+    }
+    let mut labels = Labels::default();
+    page = page
+        .add(sheet.axes())
+        .add(sheet.highlights())
+        .add(sheet.member_lines(&mut labels))
+        .add(sheet.gears(&mut labels))
+        .add(sheet.joints(&mut labels))
+        .add(sheet.grounds(&mut labels))
+        .add(sheet.terminals(&mut labels))
+        .add(sheet.block_names())
+        .add(sheet.joint_names(&mut labels))
+        .add(sheet.teeth(&mut labels))
+        .add(sheet.member_names(&mut labels))
+        .add(sheet.list());
+    page.to_string()
+}
+
+fn subtitle(data: &Stick) -> String {
+    let shown = data.members.iter().any(|m| m.loaded == Some(true));
+    let path = if shown { " Thick: the way of the power, driving, without losses." } else { "" };
+    let closed: Vec<&str> =
+        data.joints.iter().filter(|j| j.engaged && j.kind != JointKind::Shaft).map(|j| j.name.as_str()).collect();
+    match &data.state {
+        Some(s) if closed.is_empty() => format!("State {s}: nothing closed.{path}"),
+        Some(s) => format!("State {s}: closed {}.{path}", closed.join(", ")),
+        None if data.states.is_empty() => format!("Half section above the axis.{path}"),
+        None => "Half section above the axis; no shift element closed.".to_owned(),
+    }
+}
+
+/// The picture in words.
+fn words(data: &Stick) -> String {
+    let joints = data.joints.iter().map(|j| {
+        let name = |m: Option<usize>| m.map_or("frame", |k| data.members[k].name.as_str());
+        format!("{} joins {} and {}", j.name, name(j.members[0]), name(j.members[1]))
+    });
+    let blocks = data.blocks.iter().enumerate().map(|(b, block)| {
+        let gears = data.gears.iter().filter(|g| g.block == b);
+        let all: Vec<String> = gears.map(|g| format!("{} {}", role(g), g.teeth)).collect();
+        format!("{}: {}", block.name, all.join(", "))
+    });
+    let mut all: Vec<String> = blocks.chain(joints).collect();
+    all.push(subtitle(data));
+    all.join(". ")
+}
+
+fn role(g: &StickGear) -> &'static str {
+    match g.role {
+        GearRole::Sun => "sun",
+        GearRole::Planet => "planet",
+        GearRole::Ring => "ring",
+        GearRole::Side => "side gear",
+        _ => "gear",
+    }
+}
+
+/// A box: least and greatest x, least and greatest y.
+type Bounds = [f64; 4];
+
+/// What stands on the page already: texts, and marks that a text should leave alone.
+#[derive(Default)]
+struct Labels {
+    texts: Vec<Bounds>,
+    marks: Vec<Bounds>,
+}
+
+impl Labels {
+    fn mark(&mut self, a: (f64, f64), b: (f64, f64), half: f64) {
+        self.marks.push([a.0.min(b.0) - half, a.0.max(b.0) + half, a.1.min(b.1) - half, a.1.max(b.1) + half]);
+    }
+
+    fn bounds(x: f64, y: f64, size: f64, anchor: Anchor, width: f64) -> Bounds {
+        let left = match anchor {
+            Anchor::Start => x,
+            Anchor::Middle => x - width / 2.0,
+            Anchor::End => x - width,
+        };
+        [left, left + width, y - 0.78 * size, y + 0.24 * size]
+    }
+
+    fn free(&self, b: &Bounds, marks: bool) -> bool {
+        let apart =
+            |o: &Bounds, gap: f64| b[0] > o[1] + gap || o[0] > b[1] + gap || b[2] > o[3] + gap || o[2] > b[3] + gap;
+        self.texts.iter().all(|o| apart(o, 2.0)) && (!marks || self.marks.iter().all(|o| apart(o, 0.5)))
+    }
+}
+
+/// Places for a label, the best first.
+type Spots = Vec<(f64, f64, Anchor)>;
+
+struct Sheet<'a> {
+    data: &'a Stick,
+    width: f64,
+    height: f64,
+    left: f64,
+    unit: f64,
+    rise: f64,
+    /// Colour number of each member that has lines.
+    category: Vec<Option<usize>>,
+}
+
+impl<'a> Sheet<'a> {
+    fn new(data: &'a Stick) -> Self {
+        let unit = (1064.0 / data.width.max(1.0)).clamp(44.0, 80.0);
+        let rise = (420.0 / data.height.max(1.0)).clamp(46.0, 66.0);
+        let drawn = unit * data.width;
+        let width = (drawn + 2.0 * MARGIN).clamp(640.0, 4000.0).max(0.0);
+        let left = (width - drawn) / 2.0;
+        let mut next = 0;
+        let category = data
+            .members
+            .iter()
+            .map(|m| {
+                (!m.planet || m.pieces.iter().any(|p| p.points.len() > 2)).then(|| {
+                    next += 1;
+                    next - 1
+                })
+            })
+            .collect();
+        let mut s = Self { data, width, height: 0.0, left, unit, rise, category };
+        s.height = s.list_top() + s.list_rows() as f64 * ROW + 24.0;
+        s
+    }
+
+    fn at(&self, p: Place) -> (f64, f64) {
+        (self.left + p[0] * self.unit, TOP + 26.0 + (self.data.height - p[1]) * self.rise)
+    }
+
+    fn bottom(&self) -> f64 {
+        self.at([0.0, 0.0]).1
+    }
+
+    fn list_top(&self) -> f64 {
+        self.bottom() + 86.0
+    }
+
+    fn listed(&self) -> Vec<usize> {
+        (0..self.data.members.len()).filter(|&k| self.category[k].is_some()).collect()
+    }
+
+    fn list_columns(&self) -> usize {
+        (((self.width - 56.0) / LIST) as usize).max(1)
+    }
+
+    fn list_rows(&self) -> usize {
+        self.listed().len().div_ceil(self.list_columns()) + 1
+    }
+
+    fn ink(&self, member: Option<usize>) -> String {
+        match member.map(|m| self.category[m]) {
+            Some(Some(c)) => colour(Some(c), 1.0),
+            _ => INK.to_owned(),
+        }
+    }
+
+    fn axes(&self) -> Group {
+        let mut g = Group::new();
+        for y in &self.data.axes {
+            let (from, to) = (self.at([0.0, *y]), self.at([self.data.width, *y]));
+            g = g
+                .add(line((from.0 - 26.0, from.1), (to.0 + 26.0, to.1), LINE, 1.0).set("stroke-dasharray", "14 4 3 4"));
+        }
+        g
+    }
+
+    /// A light ground under what is closed.
+    fn highlights(&self) -> Group {
+        let mut g = Group::new();
+        for j in self.data.joints.iter().filter(|j| j.engaged && j.kind != JointKind::Shaft) {
+            let [a, b] = j.ends.map(|p| self.at(p));
+            let (x, y) = ((a.0 + b.0) / 2.0, (a.1 + b.1) / 2.0);
+            let r = PLATE + 5.0;
+            g = g.add(rectangle(x - r, y - r, 2.0 * r, 2.0 * r, &colour(Some(4), 0.45)).set("rx", 4));
+        }
+        g
+    }
+
+    fn member_lines(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for l in &self.data.frame {
+            g = g.add(self.polyline(l, INK, THIN + 0.6, labels));
+        }
+        for loaded in [false, true] {
+            for (k, m) in self.data.members.iter().enumerate() {
+                let ink = self.ink(Some(k));
+                for p in m.pieces.iter().filter(|p| p.loaded == loaded) {
+                    g = g.add(self.polyline(&p.points, &ink, if loaded { THICK } else { THIN }, labels));
+                }
+                for d in m.dots.iter().filter(|_| loaded) {
+                    let (x, y) = self.at(*d);
+                    g = g.add(
+                        Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", 3).set("fill", ink.as_str()),
+                    );
+                }
+            }
+        }
+        g
+    }
+
+    fn polyline(&self, points: &[Place], ink: &str, width: f64, labels: &mut Labels) -> Polyline {
+        let all: Vec<(f64, f64)> = points.iter().map(|p| self.at(*p)).collect();
+        all.windows(2).for_each(|w| labels.mark(w[0], w[1], width / 2.0 + 1.0));
+        let text: Vec<String> = all.iter().map(|p| format!("{},{}", number(p.0), number(p.1))).collect();
+        Polyline::new()
+            .set("points", text.join(" "))
+            .set("fill", "none")
+            .set("stroke", ink)
+            .set("stroke-width", number(width))
+            .set("stroke-linejoin", "round")
+            .set("stroke-linecap", "square")
+    }
+
+    fn gears(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for gear in &self.data.gears {
+            let planet = gear.role == GearRole::Planet;
+            let ink = if planet { INK.to_owned() } else { self.ink(gear.member) };
+            let body = if gear.loaded { THICK } else { THIN };
+            for [hub, tip] in &gear.stems {
+                let (a, b) = (self.at(*hub), self.near(*tip, *hub));
+                labels.mark(a, b, body / 2.0 + 1.0);
+                g = g.add(line(a, b, &ink, body));
+            }
+            for face in &gear.faces {
+                let hub = gear.stems.iter().find(|s| on(face, s[1])).map_or(face[0], |s| s[0]);
+                let middle = [(face[0][0] + face[1][0]) / 2.0, (face[0][1] + face[1][1]) / 2.0];
+                let (shifted, from) = (self.near(middle, hub), self.at(middle));
+                // Towards the hub, so that two rows of teeth lie side by side.
+                let upright = face[0][0] == face[1][0];
+                let (dx, dy) = if upright { (shifted.0 - from.0, 0.0) } else { (0.0, shifted.1 - from.1) };
+                let [a, b] = face.map(|p| self.at(p)).map(|p| (p.0 + dx, p.1 + dy));
+                labels.mark(a, b, 3.0);
+                g = g.add(line(a, b, &ink, 3.0));
+            }
+        }
+        // Stepped planets are one body; each turns on its pin.
+        for (k, m) in self.data.members.iter().enumerate() {
+            let mut hubs: Vec<Place> = self
+                .data
+                .gears
+                .iter()
+                .filter(|g| g.role == GearRole::Planet && g.member == Some(k))
+                .flat_map(|g| g.stems.iter().map(|s| s[0]))
+                .collect();
+            hubs.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+            hubs.dedup();
+            let (Some(first), Some(last)) = (hubs.first(), hubs.last()) else { continue };
+            if first != last {
+                let width = if m.loaded == Some(true) { 6.5 } else { 5.0 };
+                g = g.add(line(self.at(*first), self.at(*last), INK, width));
+                labels.mark(self.at(*first), self.at(*last), width / 2.0);
+            }
+            for h in hubs {
+                let (x, y) = self.at(h);
+                labels.mark((x, y), (x, y), 5.0);
+                g = g.add(
+                    Circle::new()
+                        .set("cx", number(x))
+                        .set("cy", number(y))
+                        .set("r", 4)
+                        .set("fill", PAPER)
+                        .set("stroke", INK)
+                        .set("stroke-width", 1.6),
+                );
+            }
+        }
+        g
+    }
+
+    /// A point a little towards another one.
+    fn near(&self, p: Place, to: Place) -> (f64, f64) {
+        let (a, b) = (self.at(p), self.at(to));
+        let length = (b.0 - a.0).hypot(b.1 - a.1).max(1e-9);
+        (a.0 + (b.0 - a.0) / length * 2.4, a.1 + (b.1 - a.1) / length * 2.4)
+    }
+
+    fn joints(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for j in &self.data.joints {
+            g = g.add(self.joint(j, labels));
+        }
+        g
+    }
+
+    fn joint(&self, j: &StickJoint, labels: &mut Labels) -> Group {
+        let [a, b] = j.ends.map(|p| self.at(p));
+        let length = (b.0 - a.0).hypot(b.1 - a.1).max(1e-9);
+        let (ux, uy) = ((b.0 - a.0) / length, (b.1 - a.1) / length);
+        let middle = length / 2.0;
+        let along = |t: f64, s: f64| (a.0 + ux * t - uy * s, a.1 + uy * t + ux * s);
+        let inks = j.members.map(|m| self.ink(m));
+        let lead = if j.loaded { THICK } else { THIN };
+        labels.mark(a, b, 2.0);
+        labels.mark(along(middle - 5.0, -PLATE), along(middle + 5.0, PLATE), 1.5);
+        let mut g = Group::new();
+        let path = |d: String, ink: &str, width: f64| {
+            Path::new().set("d", d).set("fill", "none").set("stroke", ink).set("stroke-width", number(width))
+        };
+        let point = |p: (f64, f64)| format!("{} {}", number(p.0), number(p.1));
+        match j.kind {
+            JointKind::OneWay => {
+                let r = 8.0;
+                g = g.add(line(a, along(middle - r, 0.0), &inks[0], lead));
+                g = g.add(line(along(middle + r, 0.0), b, &inks[1], lead));
+                // It locks in one direction only: a triangle against a bar.
+                let [p, q, tip] = [along(middle - r, -r), along(middle - r, r), along(middle + r - 1.0, 0.0)];
+                let body = format!("M{} L{} L{} Z", point(p), point(q), point(tip));
+                g = g.add(path(body, INK, 1.6).set("fill", if j.engaged { INK } else { PAPER }));
+                g = g.add(line(along(middle + r, -r), along(middle + r, r), INK, if j.engaged { 3.4 } else { 2.0 }));
+            }
+            JointKind::Shaft => {
+                // A spring.
+                let mut d = format!("M{}", point(a));
+                for (k, s) in [0.0, -6.0, 6.0, -6.0, 6.0, 0.0].into_iter().enumerate() {
+                    d.push_str(&format!(" L{}", point(along(middle - 10.0 + 4.0 * k as f64, s))));
+                }
+                d.push_str(&format!(" L{}", point(b)));
+                g = g.add(path(d, INK, lead));
+            }
+            _ => {
+                let gap = if j.engaged { 2.2 } else { 3.6 };
+                let plate = if j.engaged { 3.6 } else { 2.0 };
+                for (ink, end, side) in [(&inks[0], a, -1.0), (&inks[1], b, 1.0)] {
+                    g = g.add(line(end, along(middle + side * gap, 0.0), ink, lead));
+                    let [p, q] = [-PLATE, PLATE].map(|s| along(middle + side * gap, s));
+                    g = g.add(line(p, q, ink, plate));
+                }
+            }
+        }
+        g
+    }
+
+    fn grounds(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for mark in &self.data.grounds {
+            let (x, y) = self.at(mark.at);
+            let (ix, iy) = (f64::from(mark.into[0]), -f64::from(mark.into[1]));
+            let along = |s: f64, t: f64| (x - iy * s + ix * t, y + ix * s + iy * t);
+            labels.mark(along(-PLATE - 1.0, 0.0), along(PLATE + 1.0, 7.0), 1.0);
+            g = g.add(line(along(-PLATE, 0.0), along(PLATE, 0.0), INK, 2.2));
+            for k in 0..4 {
+                let s = -PLATE + 2.0 + 5.0 * f64::from(k);
+                g = g.add(line(along(s, 0.0), along(s - 4.0, 6.0), INK, 1.1));
+            }
+        }
+        g
+    }
+
+    fn terminals(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for t in &self.data.terminals {
+            let m = &self.data.members[t.member];
+            let ink = self.ink(Some(t.member));
+            let (x, y) = self.at(t.at);
+            let side = if t.left { -1.0 } else { 1.0 };
+            let tip = x + side * ARROW;
+            let loaded = m.pieces.iter().any(|p| p.loaded && p.points.contains(&t.at));
+            let width = if loaded { THICK } else { THIN };
+            labels.mark((x, y), (tip, y), 8.0);
+            if t.open {
+                let out = t.way == Some(Way::Out);
+                let (end, back) = if out { (tip, x) } else { (x + side * 4.0, tip) };
+                let head = if t.way.is_some() { 12.0 * (end - back).signum() } else { 0.0 };
+                g = g.add(line((if out { x } else { tip }, y), (end - head, y), &ink, width));
+                if t.way.is_some() {
+                    let d = format!(
+                        "M{} {} L{} {} L{} {} Z",
+                        number(end),
+                        number(y),
+                        number(end - head),
+                        number(y - 6.0),
+                        number(end - head),
+                        number(y + 6.0)
+                    );
+                    g = g.add(Path::new().set("d", d).set("fill", ink.as_str()));
+                    if !out {
+                        g = g.add(line((end, y), (x, y), &ink, width));
+                    }
+                } else {
+                    // Which way the power runs is open.
+                    g = g.add(
+                        Circle::new()
+                            .set("cx", number(tip))
+                            .set("cy", number(y))
+                            .set("r", 4)
+                            .set("fill", PAPER)
+                            .set("stroke", ink.as_str())
+                            .set("stroke-width", 2),
+                    );
+                }
+            }
+            let name = fit(&m.name, (self.left - ARROW - 20.0).min(MARGIN - ARROW - 12.0 + 40.0), 12.0);
+            let (tx, anchor) = if t.left { (tip + 4.0, Anchor::End) } else { (tip - 4.0, Anchor::Start) };
+            let tx = if t.left { tx.min(x - 12.0) - 8.0 } else { tx + 8.0 };
+            labels.texts.push(Labels::bounds(tx, y + 4.0, 12.0, anchor, wide(&name, 12.0) * BOLD));
+            g = g.add(text(tx, y + 4.0, 12.0, anchor, &name).set("font-weight", "bold"));
+        }
+        g
+    }
+
+    /// Under the lowest axis: no line runs there.
+    fn block_names(&self) -> Group {
+        let mut g = Group::new();
+        let mut order: Vec<usize> = (0..self.data.blocks.len()).collect();
+        let middle = |b: usize| (self.data.blocks[b].span[0] + self.data.blocks[b].span[1]) / 2.0;
+        order.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
+        for (k, &b) in order.iter().enumerate() {
+            let block = &self.data.blocks[b];
+            let gap = |other: Option<&usize>| other.map_or(3.0, |o| (middle(*o) - middle(b)).abs());
+            let room = gap(k.checked_sub(1).and_then(|j| order.get(j))).min(gap(order.get(k + 1))) * self.unit - 8.0;
+            let (x, y) = (self.at([middle(b), 0.0]).0, self.bottom() + 40.0);
+            let [from, to] = block.span.map(|x| self.at([x, 0.0]).0);
+            let tick = y - 15.0;
+            g = g
+                .add(line((from, tick), (to, tick), LINE, 1.0))
+                .add(line((from, tick - 4.0), (from, tick), LINE, 1.0))
+                .add(line((to, tick - 4.0), (to, tick), LINE, 1.0))
+                .add(text(x, y, 12.0, Anchor::Middle, &fit(&block.name, room / BOLD, 12.0)).set("font-weight", "bold"));
+        }
+        g
+    }
+
+    fn joint_names(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for j in &self.data.joints {
+            let [a, b] = j.ends.map(|p| self.at(p));
+            let (x, y) = ((a.0 + b.0) / 2.0, (a.1 + b.1) / 2.0);
+            let r = PLATE + 4.0;
+            let level = a.1 == b.1;
+            let side: Spots = vec![(x + r, y + 4.0, Anchor::Start), (x - r, y + 4.0, Anchor::End)];
+            let over: Spots = vec![(x, y - r, Anchor::Middle), (x, y + r + 8.0, Anchor::Middle)];
+            let mut spots = if level { over } else { side };
+            spots.extend([
+                (x + r, y - 8.0, Anchor::Start),
+                (x - r, y - 8.0, Anchor::End),
+                (x + r, y + 14.0, Anchor::Start),
+                (x - r, y + 14.0, Anchor::End),
+                (x + r - 4.0, y - r, Anchor::Start),
+                (x - r + 4.0, y - r, Anchor::End),
+                (x + r - 4.0, y + r + 8.0, Anchor::Start),
+                (x - r + 4.0, y + r + 8.0, Anchor::End),
+            ]);
+            let weight = if j.engaged && j.kind != JointKind::Shaft { "bold" } else { "normal" };
+            g = g.add(self.label(&j.name, None, 12.0, INK, weight, &spots, labels));
+        }
+        g
+    }
+
+    fn teeth(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for gear in &self.data.gears {
+            let Some([hub, tip]) = gear.stems.first() else { continue };
+            let (h, t) = (self.at(*hub), self.at(*tip));
+            let mut spots = Spots::new();
+            if gear.faces.first().is_some_and(|f| f[0][0] == f[1][0]) {
+                for s in [-10.0, 18.0, -22.0, 30.0] {
+                    spots.push(((h.0 + t.0) / 2.0, h.1 + s, Anchor::Middle));
+                }
+            }
+            let (x, y) = (h.0, (h.1 + t.1) / 2.0 + 3.5);
+            for dy in [0.0, -5.0, 5.0, -10.0, 10.0] {
+                spots.push((x + 6.0, y + dy, Anchor::Start));
+                spots.push((x - 6.0, y + dy, Anchor::End));
+            }
+            // Beyond the hub, and beside the teeth.
+            let away = (h.1 - t.1).signum();
+            for dy in [10.0, 18.0] {
+                let y = h.1 + away * dy + 3.5;
+                spots.extend([(x + 6.0, y, Anchor::Start), (x - 6.0, y, Anchor::End)]);
+            }
+            let beside = 0.42 * self.unit;
+            spots.extend([(x + beside, t.1 + 3.5, Anchor::Start), (x - beside, t.1 + 3.5, Anchor::End)]);
+            let shown = fit(&gear.teeth, 60.0, 10.0);
+            g = g.add(self.label(&shown, None, 10.0, FAINT, "normal", &spots, labels));
+        }
+        g
+    }
+
+    fn member_names(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for k in self.listed() {
+            let m = &self.data.members[k];
+            if self.data.terminals.iter().any(|t| t.member == k) {
+                continue;
+            }
+            // Long level lines first, then upright ones.
+            let mut spans: Vec<((f64, f64), (f64, f64))> =
+                m.pieces.iter().flat_map(|p| p.points.windows(2).map(|w| (self.at(w[0]), self.at(w[1])))).collect();
+            let length = |s: &((f64, f64), (f64, f64))| (s.1.0 - s.0.0).hypot(s.1.1 - s.0.1);
+            spans.sort_by(|a, b| length(b).total_cmp(&length(a)));
+            let mut spots = Spots::new();
+            for (a, b) in spans.iter().filter(|s| s.0.1 == s.1.1) {
+                let (from, to) = (a.0.min(b.0), a.0.max(b.0));
+                for y in [a.1 - 6.0, a.1 + 14.0] {
+                    spots.push(((from + to) / 2.0, y, Anchor::Middle));
+                    spots.push((from + 6.0, y, Anchor::Start));
+                    spots.push((to - 6.0, y, Anchor::End));
+                }
+            }
+            for (a, b) in spans.iter().filter(|s| s.0.0 == s.1.0) {
+                let (low, high) = (a.1.min(b.1), a.1.max(b.1));
+                for y in [(low + high) / 2.0, low + 8.0, high - 8.0] {
+                    spots.push((a.0 + 7.0, y + 4.0, Anchor::Start));
+                    spots.push((a.0 - 7.0, y + 4.0, Anchor::End));
+                }
+            }
+            for gear in self.data.gears.iter().filter(|g| g.member == Some(k)) {
+                for [hub, _] in &gear.stems {
+                    let (x, y) = self.at(*hub);
+                    spots.extend([(x + 7.0, y + 14.0, Anchor::Start), (x - 7.0, y + 14.0, Anchor::End)]);
+                    spots.extend([(x + 7.0, y - 7.0, Anchor::Start), (x - 7.0, y - 7.0, Anchor::End)]);
+                    spots.extend([(x, y + 18.0, Anchor::Middle), (x, y - 10.0, Anchor::Middle)]);
+                }
+            }
+            let ink = self.ink(Some(k));
+            let number = self.category[k].map(|c| (c + 1).to_string());
+            g = g.add(self.label(&m.name, number.as_deref(), 11.0, &ink, "normal", &spots, labels));
+        }
+        g
+    }
+
+    /// A label at the first place that is free, shorter if need be, else over lines with a halo, else its
+    /// stand-in.
+    #[allow(clippy::too_many_arguments)]
+    fn label(
+        &self,
+        content: &str,
+        stand_in: Option<&str>,
+        size: f64,
+        ink: &str,
+        weight: &str,
+        spots: &Spots,
+        labels: &mut Labels,
+    ) -> Group {
+        let factor = if weight == "bold" { BOLD } else { 1.0 };
+        let most = wide(content, size).min(150.0);
+        let least = wide("00", size).max(most * 0.45).min(most);
+        let mut tries: Vec<(String, bool)> = Vec::new();
+        for part in [1.0, 0.8, 0.6] {
+            let width = most * part;
+            if width >= least {
+                tries.push((fit(content, width + 0.01, size), true));
+            }
+        }
+        tries.extend(stand_in.map(|s| (s.to_owned(), true)));
+        tries.push((fit(content, most + 0.01, size), false));
+        tries.push((fit(content, least + 0.01, size), false));
+        tries.extend(stand_in.map(|s| (s.to_owned(), false)));
+        for (shown, marks) in tries {
+            let width = wide(&shown, size) * factor;
+            for (x, y, anchor) in spots {
+                let b = Labels::bounds(*x, *y, size, *anchor, width);
+                let inside = b[0] >= 4.0 && b[1] <= self.width - 4.0 && b[2] >= 82.0 && b[3] <= self.bottom() + 20.0;
+                if !inside || !labels.free(&b, marks) {
+                    continue;
+                }
+                labels.texts.push(b);
+                let mut t = text(*x, *y, size, *anchor, &shown).set("fill", ink);
+                if weight == "bold" {
+                    t = t.set("font-weight", weight);
+                }
+                if !marks {
+                    t = t
+                        .set("paint-order", "stroke")
+                        .set("stroke", PAPER)
+                        .set("stroke-width", 3)
+                        .set("stroke-linejoin", "round");
+                }
+                return Group::new().add(t);
+            }
+        }
+        Group::new()
+    }
+
+    /// Every member with its colour, its parts, and in a state its speed.
+    fn list(&self) -> Group {
+        let mut g = Group::new();
+        let top = self.list_top();
+        let rows = self.list_rows() - 1;
+        let speeds = self.data.members.iter().any(|m| m.speed_ratio.is_some());
+        for column in 0..self.list_columns().min(self.listed().len().div_ceil(rows.max(1))) {
+            let x = 28.0 + LIST * column as f64;
+            g = g.add(text(x + 54.0, top, 11.0, Anchor::Start, "member").set("fill", FAINT));
+            g = g.add(text(x + 182.0, top, 11.0, Anchor::Start, "its parts").set("fill", FAINT));
+            if speeds {
+                g = g.add(text(x + LIST - 24.0, top, 11.0, Anchor::End, "speed / input").set("fill", FAINT));
+            }
+        }
+        for (row, k) in self.listed().into_iter().enumerate() {
+            let m = &self.data.members[k];
+            let x = 28.0 + LIST * (row / rows) as f64;
+            let y = top + ROW * (row % rows + 1) as f64;
+            let width = if m.loaded == Some(true) { THICK } else { THIN };
+            let number = self.category[k].map_or(0, |c| c + 1);
+            g = g
+                .add(text(x + 14.0, y, 11.0, Anchor::End, &number.to_string()).set("fill", FAINT))
+                .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
+                .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, 120.0, 12.0)))
+                .add(text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), 150.0, 11.0)).set("fill", FAINT));
+            if let Some(speed) = m.speed_ratio {
+                let shown = if speed == 0.0 { "stands still".to_owned() } else { digits(speed) };
+                g = g.add(text(x + LIST - 24.0, y, 11.0, Anchor::End, &shown));
+            }
+        }
+        g
+    }
+
+    /// What a member is made of: its gears, and the blocks whose planets it carries.
+    fn parts(&self, k: usize) -> String {
+        let block = |b: usize| self.data.blocks[b].name.as_str();
+        let mut all: Vec<String> = Vec::new();
+        for g in self.data.gears.iter().filter(|g| g.member == Some(k)) {
+            all.push(format!("{} {}", role(g), block(g.block)));
+        }
+        for &b in &self.data.members[k].carries {
+            all.push(format!("carrier {}", block(b)));
+        }
+        all.dedup();
+        all.join(", ")
+    }
+}
+
+/// Whether a point lies on a line of teeth.
+fn on(face: &[Place; 2], p: Place) -> bool {
+    (0..2).all(|k| p[k] >= face[0][k].min(face[1][k]) - 1e-9 && p[k] <= face[0][k].max(face[1][k]) + 1e-9)
+}
