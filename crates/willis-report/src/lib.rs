@@ -5,6 +5,7 @@ mod flow_dot;
 mod flow_svg;
 mod modes_plot;
 mod regime_map;
+mod sankey;
 mod style;
 mod time_plot;
 
@@ -12,4 +13,5 @@ pub use flow_dot::flow_dot;
 pub use flow_svg::flow_svg;
 pub use modes_plot::modes_plot;
 pub use regime_map::regime_map;
+pub use sankey::sankey;
 pub use time_plot::time_plot;

@@ -2,7 +2,9 @@
 //! fonts; front ends draw.
 
 mod regime_map;
+mod sankey;
 mod time_plot;
 
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
+pub use sankey::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode, SankeyPanel, sankey};
 pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};
