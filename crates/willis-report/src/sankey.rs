@@ -104,7 +104,11 @@ pub fn sankey(data: &Sankey) -> String {
 }
 
 fn percent(part: f64, whole: f64) -> String {
-    if whole > 0.0 { format!("{} %", digits(100.0 * part / whole)) } else { String::new() }
+    match 100.0 * part / whole {
+        _ if whole <= 0.0 => String::new(),
+        p if p < 1e-3 => "< 0.001 %".to_owned(),
+        p => format!("{} %", digits(p)),
+    }
 }
 
 /// The plural of what loses power.
@@ -182,7 +186,7 @@ impl Words {
     }
 
     fn most(self) -> f64 {
-        if self.narrow { 84.0 } else { 128.0 }
+        if self.narrow { 96.0 } else { 128.0 }
     }
 
     /// A power and its share, in one row or two.
@@ -198,12 +202,22 @@ impl Words {
     fn head(self, n: &SankeyNode) -> Vec<String> {
         let name = |room: f64| fit(&n.name, self.most() - room, SMALL * BOLD);
         let own = match n.kind {
+            NodeKind::Teeth if self.narrow && n.name.contains('.') => match n.count {
+                1 => n.name.clone(),
+                k => format!("{} ×{k}", n.name),
+            },
             NodeKind::Input => fit(&format!("into {}", n.name), self.most(), SMALL * BOLD),
             NodeKind::Output => fit(&format!("out of {}", n.name), self.most(), SMALL * BOLD),
             _ if n.count > 1 => format!("{} ×{}", name(24.0), n.count),
             _ => name(0.0),
         };
-        let mut all = vec![own];
+        let mut all = match own.split_once('.') {
+            // The set, and below it which of its contacts.
+            Some((set, contact)) if self.narrow && n.kind == NodeKind::Teeth => {
+                vec![fit(set, self.most(), SMALL * BOLD), fit(contact, self.most(), SMALL)]
+            }
+            _ => vec![own],
+        };
         if let (NodeKind::Member, Some(w)) = (n.kind, n.speed_rad_s) {
             all.push(format!("{} rpm", digits(w * 30.0 / std::f64::consts::PI)));
         }
@@ -238,7 +252,7 @@ impl Words {
         let mut all = vec![watts(l.power_w), percent(l.power_w, self.input)];
         all.retain(|t| !t.is_empty());
         if !l.via.is_empty() {
-            all.push(fit(&format!("via {}", l.via.join(", ")), 0.75 * self.most(), SMALL));
+            all.push(fit(&format!("via {}", l.via.join(", ")), if self.narrow { 76.0 } else { 100.0 }, SMALL));
         }
         all
     }
@@ -263,8 +277,12 @@ fn picture(d: &Layout<'_>) -> Group {
         let power = &d.flow.links[label.link];
         for (row, words) in Words::of(d.flow).link(power).iter().enumerate() {
             let y = label.y[0] + LINE_HEIGHT * row as f64 + 0.82 * SMALL;
-            let t = halo(text(label.middle(), y, SMALL, Anchor::Middle, words));
-            g = g.add(if row == 0 { t } else { t.set("fill", FAINT) });
+            let t = text(label.middle(), y, SMALL, Anchor::Middle, words);
+            g = g.add(match (label.clear, row) {
+                (true, _) => t,
+                (false, 0) => halo(t),
+                (false, _) => halo(t).set("fill", FAINT),
+            });
         }
     }
     g

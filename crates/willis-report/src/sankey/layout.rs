@@ -14,7 +14,7 @@ use crate::style::{BOLD, wide};
 pub const BAR: f64 = 10.0;
 /// Size of words.
 pub const SMALL: f64 = 11.0;
-pub const LINE_HEIGHT: f64 = 13.5;
+pub const LINE_HEIGHT: f64 = 14.0;
 /// Inner radius of a loss.
 pub const TURN: f64 = 5.0;
 /// Length of the tail of an input and of the head of an output.
@@ -48,6 +48,8 @@ pub struct Label {
     pub link: usize,
     pub x: [f64; 2],
     pub y: [f64; 2],
+    /// Nothing but one plain ribbon lies behind.
+    pub clear: bool,
 }
 
 impl Label {
@@ -318,11 +320,16 @@ impl<'f> Layout<'f> {
             let rows = Words::of(self.flow).link(l);
             let tall = LINE_HEIGHT * rows.len() as f64;
             let thick = self.thickness(j);
-            let inside = thick >= tall + 4.0;
+            let inside = thick >= tall - 2.0;
             let wide = rows.iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max) + 2.0;
             let x = (channels[j][0] + channels[j][1]) / 2.0;
             let top = if inside { lane - (thick + tall) / 2.0 } else { lane - thick - 2.0 - tall };
-            self.labels.push(Label { link: j, x: [x - wide / 2.0, x + wide / 2.0], y: [top, top + tall] });
+            self.labels.push(Label {
+                link: j,
+                x: [x - wide / 2.0, x + wide / 2.0],
+                y: [top, top + tall],
+                clear: false,
+            });
             lane -= thick + 8.0 + if inside { 0.0 } else { tall };
         }
     }
@@ -395,14 +402,14 @@ impl<'f> Layout<'f> {
                     for (dy, far) in inside.into_iter().chain(shifts) {
                         let y = spot.1 + dy;
                         let place =
-                            Label { link: j, x: [x - wide / 2.0, x + wide / 2.0], y: [y - tall / 2.0, y + tall / 2.0] };
+                            Label { link: j, x: [x - wide / 2.0, x + wide / 2.0], y: [y - tall / 2.0, y + tall / 2.0], clear: false };
                         if self.labels.iter().any(|o| o.meets(&place)) {
                             continue;
                         }
                         let tight = |k: usize| {
                             let (thick, points) = &ribbons[k];
                             let low = place.y[0] - thick / 2.0;
-                            let area = Label { link: k, x: place.x, y: [low, place.y[1] + thick / 2.0] };
+                            let area = Label { link: k, x: place.x, y: [low, place.y[1] + thick / 2.0], clear: false };
                             points.iter().filter(|p| area.holds(**p)).count()
                         };
                         let crossed: usize = (0..ribbons.len()).filter(|&k| k != j).map(tight).sum();
@@ -413,7 +420,8 @@ impl<'f> Layout<'f> {
                             + 12.0 * (part - 0.5f64).abs()
                             + 2.0 * (gap - first) as f64;
                         if best.as_ref().is_none_or(|b| cost < b.0) {
-                            best = Some((cost, place));
+                            let clear = dy == 0.0 && stray(y) == 0.0 && crossed == 0 && l.circulating_w == 0.0;
+                            best = Some((cost, Label { clear, ..place }));
                         }
                     }
                 }
