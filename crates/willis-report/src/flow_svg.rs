@@ -139,8 +139,8 @@ pub fn graphs(all: &FlowReport) -> Vec<(String, &Hypergraph)> {
 fn caption(g: &Hypergraph) -> Vec<String> {
     let efficiency = match g.efficiency {
         Some(e) if g.output_power_w > 0.0 => format!("η {}", percent(e)),
-        Some(_) => "no power leaves: all of it is lost".to_owned(),
-        None => "no power enters".to_owned(),
+        Some(_) => "No power leaves, all of it is lost".to_owned(),
+        None => "No power enters".to_owned(),
     };
     let power = format!(
         "{efficiency}: in {}, out {}, lost {}.",

@@ -127,8 +127,8 @@ fn losers(kind: NodeKind) -> &'static str {
 fn caption(f: &SankeyFlow) -> Vec<String> {
     let efficiency = match f.efficiency {
         Some(e) if f.output_w > 0.0 => format!("η {}", efficiency(e)),
-        Some(_) => "no power leaves: all of it is lost".to_owned(),
-        None => "no power enters".to_owned(),
+        Some(_) => "No power leaves, all of it is lost".to_owned(),
+        None => "No power enters".to_owned(),
     };
     let mut kinds: Vec<(NodeKind, f64)> = Vec::new();
     for l in f.nodes.iter().flat_map(|n| &n.losses) {
@@ -200,23 +200,17 @@ impl Words {
 
     /// Above a node, the first in bold.
     fn head(self, n: &SankeyNode) -> Vec<String> {
-        let name = |room: f64| fit(&n.name, self.most() - room, SMALL * BOLD);
-        let own = match n.kind {
-            NodeKind::Teeth if self.narrow && n.name.contains('.') => match n.count {
-                1 => n.name.clone(),
-                k => format!("{} ×{k}", n.name),
-            },
-            NodeKind::Input => fit(&format!("into {}", n.name), self.most(), SMALL * BOLD),
-            NodeKind::Output => fit(&format!("out of {}", n.name), self.most(), SMALL * BOLD),
-            _ if n.count > 1 => format!("{} ×{}", name(24.0), n.count),
-            _ => name(0.0),
-        };
-        let mut all = match own.split_once('.') {
+        let times = if n.count > 1 { format!(" ×{}", n.count) } else { String::new() };
+        let bold = |text: &str| fit(text, self.most(), SMALL * BOLD);
+        let whole = n.name.clone() + &times;
+        let mut all = match (n.kind, whole.split_once('.')) {
+            (NodeKind::Input, _) => vec![bold(&format!("into {}", n.name))],
+            (NodeKind::Output, _) => vec![bold(&format!("out of {}", n.name))],
             // The set, and below it which of its contacts.
-            Some((set, contact)) if self.narrow && n.kind == NodeKind::Teeth => {
-                vec![fit(set, self.most(), SMALL * BOLD), fit(contact, self.most(), SMALL)]
+            (NodeKind::Teeth, Some((set, contact))) if self.narrow || bold(&whole) != whole => {
+                vec![bold(set), fit(contact, self.most(), SMALL)]
             }
-            _ => vec![own],
+            _ => vec![fit(&n.name, self.most() - wide(&times, SMALL * BOLD), SMALL * BOLD) + &times],
         };
         if let (NodeKind::Member, Some(w)) = (n.kind, n.speed_rad_s) {
             all.push(format!("{} rpm", digits(w * 30.0 / std::f64::consts::PI)));
@@ -252,7 +246,7 @@ impl Words {
         let mut all = vec![watts(l.power_w), percent(l.power_w, self.input)];
         all.retain(|t| !t.is_empty());
         if !l.via.is_empty() {
-            all.push(fit(&format!("via {}", l.via.join(", ")), if self.narrow { 76.0 } else { 100.0 }, SMALL));
+            all.push(fit(&format!("via {}", l.via.join(", ")), if self.narrow { 76.0 } else { 120.0 }, SMALL));
         }
         all
     }

@@ -26,11 +26,8 @@ fn example(name: &str) -> FlowReport {
 
 /// The graphs in the order of the panels that have a flow.
 fn graphs(all: &FlowReport) -> Vec<&Hypergraph> {
-    let both = |o: &'_ _| -> Vec<&Hypergraph> {
-        let o: &willis::hypergraph::OperationFlow = o;
-        o.solutions.iter().chain(&o.dissipative_solutions).collect()
-    };
-    all.operations.iter().flat_map(both).filter(|g| g.edges.iter().any(|e| e.power_w > 0.0)).collect()
+    let both = all.operations.iter().flat_map(|o| o.solutions.iter().chain(&o.dissipative_solutions));
+    both.filter(|g| g.edges.iter().any(|e| e.power_w > 0.0)).collect()
 }
 
 /// Parts of a side, from the top: they follow each other without gap or overlap.

@@ -69,6 +69,10 @@ impl Area {
         self.x[0] < o.x[1] && o.x[0] < self.x[1] && self.y[0] < o.y[1] && o.y[0] < self.y[1]
     }
 
+    fn grown(&self, by: f64) -> Self {
+        Self { y: [self.y[0] - by, self.y[1] + by], ..*self }
+    }
+
     fn holds(&self, p: (f64, f64)) -> bool {
         (self.x[0]..=self.x[1]).contains(&p.0) && (self.y[0]..=self.y[1]).contains(&p.1)
     }
@@ -248,7 +252,9 @@ impl Drawing {
         let mut top = f64::INFINITY;
         let mut bottom = f64::NEG_INFINITY;
         for p in &all {
-            (top, bottom) = (top.min(p.y - p.half), bottom.max(p.y + p.half));
+            // A node has more below than above.
+            let above = p.node.map_or(p.half, |k| R + 17.0 + more[k]);
+            (top, bottom) = (top.min(p.y - above), bottom.max(p.y + p.half));
         }
         for (b, _) in &labels {
             (top, bottom) = (top.min(b.y[0]), bottom.max(b.y[1]));
@@ -386,18 +392,18 @@ fn label(
         let column = all[own.places[gap]].column;
         let bounds = [middle[column] + half[column], middle[column + 1] - half[column + 1]];
         // Other lines in this gap.
-        let mut others: Vec<(f64, f64)> = Vec::new();
+        let mut others: Vec<((f64, f64), f64)> = Vec::new();
         for (_, o) in lines.iter().enumerate().filter(|(j, o)| *j != k && o.width > 0.0) {
             for (n, w) in o.points.windows(2).enumerate() {
                 if n % 2 == 1 && (w[0].0 - a.0).abs() < 1.0 {
-                    others.extend((0..=24).map(|i| bend(w[0], w[1], f64::from(i) / 24.0)));
+                    others.extend((0..=24).map(|i| (bend(w[0], w[1], f64::from(i) / 24.0), o.width / 2.0)));
                 }
             }
         }
         for t in [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8] {
             let (x, y) = bend(a, b, t);
             let x = x.clamp(bounds[0] + width / 2.0, (bounds[1] - width / 2.0).max(bounds[0] + width / 2.0));
-            let beside = own.width / 2.0 + 8.0;
+            let beside = own.width / 2.0 + TALL / 2.0 + 0.5;
             for step in 0..24 {
                 let far = 7.0 * f64::from(step / 2);
                 let dy = if step % 2 == 0 { -beside - far } else { beside + far };
@@ -405,8 +411,9 @@ fn label(
                 if labels.iter().any(|(o, _)| o.meets(&place)) {
                     continue;
                 }
-                let crossed = others.iter().filter(|p| place.holds(**p)).count();
-                let through = (0..=24).filter(|i| place.holds(bend(a, b, f64::from(*i) / 24.0))).count();
+                let crossed = others.iter().filter(|(p, half)| place.grown(*half).holds(*p)).count();
+                let own_area = place.grown(own.width / 2.0);
+                let through = (0..=24).filter(|i| own_area.holds(bend(a, b, f64::from(*i) / 24.0))).count();
                 let cost = far + 3.0 * crossed as f64 + 2.5 * through as f64 + 8.0 * (t - 0.5).abs() + gap as f64;
                 if best.as_ref().is_none_or(|b| cost < b.0) {
                     best = Some((cost, place));

@@ -401,8 +401,12 @@ impl<'f> Layout<'f> {
                     });
                     for (dy, far) in inside.into_iter().chain(shifts) {
                         let y = spot.1 + dy;
-                        let place =
-                            Label { link: j, x: [x - wide / 2.0, x + wide / 2.0], y: [y - tall / 2.0, y + tall / 2.0], clear: false };
+                        let place = Label {
+                            link: j,
+                            x: [x - wide / 2.0, x + wide / 2.0],
+                            y: [y - tall / 2.0, y + tall / 2.0],
+                            clear: false,
+                        };
                         if self.labels.iter().any(|o| o.meets(&place)) {
                             continue;
                         }
