@@ -13,6 +13,7 @@ mod modes_plot;
 mod png;
 mod regime_map;
 mod stick;
+mod sankey;
 mod style;
 mod time_plot;
 
@@ -26,4 +27,5 @@ pub use modes_plot::modes_plot;
 pub use png::png;
 pub use regime_map::regime_map;
 pub use stick::stick;
+pub use sankey::sankey;
 pub use time_plot::time_plot;

@@ -7,6 +7,7 @@ mod losses;
 mod map;
 mod regime_map;
 mod stick;
+mod sankey;
 mod time_plot;
 
 pub use axes::ChartAxis;
@@ -18,4 +19,5 @@ pub use stick::{
     GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickMember, StickMesh,
     StickPiece, StickTerminal, Way, stick,
 };
+pub use sankey::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode, SankeyPanel, sankey};
 pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};
