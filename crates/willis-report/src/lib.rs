@@ -3,6 +3,7 @@
 
 mod flow_dot;
 mod flow_svg;
+mod lever;
 mod modes_plot;
 mod regime_map;
 mod style;
@@ -10,6 +11,7 @@ mod time_plot;
 
 pub use flow_dot::flow_dot;
 pub use flow_svg::flow_svg;
+pub use lever::lever;
 pub use modes_plot::modes_plot;
 pub use regime_map::regime_map;
 pub use time_plot::time_plot;

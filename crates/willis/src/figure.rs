@@ -1,8 +1,12 @@
 //! Charts and diagrams as data: what stands where, in which role, with which words. No pixels, no
 //! fonts; front ends draw.
 
+mod lever;
 mod regime_map;
 mod time_plot;
 
+pub use lever::{
+    Lever, LeverBar, LeverCase, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
+};
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
 pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};
