@@ -6,6 +6,7 @@ mod flow_svg;
 mod lever;
 mod modes_plot;
 mod regime_map;
+mod shift;
 mod style;
 mod time_plot;
 
@@ -14,4 +15,5 @@ pub use flow_svg::flow_svg;
 pub use lever::lever;
 pub use modes_plot::modes_plot;
 pub use regime_map::regime_map;
+pub use shift::shift;
 pub use time_plot::time_plot;
