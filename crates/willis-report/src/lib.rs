@@ -8,12 +8,14 @@ mod flow_dot;
 mod flow_svg;
 mod losses;
 mod map;
+mod lever;
 mod modes_plot;
 #[cfg(feature = "png")]
 mod png;
 mod regime_map;
 mod stick;
 mod sankey;
+mod shift;
 mod style;
 mod time_plot;
 
@@ -22,10 +24,12 @@ pub use flow_dot::flow_dot;
 pub use flow_svg::flow_svg;
 pub use losses::losses;
 pub use map::map;
+pub use lever::lever;
 pub use modes_plot::modes_plot;
 #[cfg(feature = "png")]
 pub use png::png;
 pub use regime_map::regime_map;
 pub use stick::stick;
 pub use sankey::sankey;
+pub use shift::shift;
 pub use time_plot::time_plot;
