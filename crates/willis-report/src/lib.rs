@@ -1,5 +1,7 @@
 //! Figures of Willis as SVG and PNG: text stays text, colours are safe for the colour-blind, and every
 //! colour also carries a letter. Power flows also as Graphviz. Reports as documents.
+//! Figures of Willis as SVG: text stays text, colours are safe for the colour-blind, and every
+//! colour also carries a letter. Power flows also as Graphviz. Reports as web pages.
 
 mod band;
 mod chart;
@@ -10,6 +12,9 @@ mod flow_svg;
 mod lever;
 mod losses;
 mod map;
+mod formula;
+mod html;
+mod markup;
 mod modes_plot;
 #[cfg(feature = "png")]
 mod png;
@@ -18,6 +23,7 @@ mod sankey;
 mod shift;
 mod stick;
 mod style;
+mod theme;
 mod time_plot;
 
 pub use band::bands;
@@ -27,6 +33,7 @@ pub use flow_svg::flow_svg;
 pub use lever::lever;
 pub use losses::losses;
 pub use map::map;
+pub use html::html;
 pub use modes_plot::modes_plot;
 #[cfg(feature = "png")]
 pub use png::png;
@@ -34,4 +41,5 @@ pub use regime_map::regime_map;
 pub use sankey::sankey;
 pub use shift::shift;
 pub use stick::stick;
+pub use theme::{Theme, themed};
 pub use time_plot::time_plot;
