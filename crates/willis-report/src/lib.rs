@@ -9,6 +9,7 @@ mod regime_map;
 mod shift;
 mod style;
 mod time_plot;
+mod tornado;
 
 pub use flow_dot::flow_dot;
 pub use flow_svg::flow_svg;
@@ -17,3 +18,4 @@ pub use modes_plot::modes_plot;
 pub use regime_map::regime_map;
 pub use shift::shift;
 pub use time_plot::time_plot;
+pub use tornado::tornado;

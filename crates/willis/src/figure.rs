@@ -5,6 +5,7 @@ mod lever;
 mod regime_map;
 mod shift;
 mod time_plot;
+mod tornado;
 
 pub use lever::{
     Lever, LeverBar, LeverCase, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
@@ -12,3 +13,4 @@ pub use lever::{
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
 pub use shift::{ShiftChange, ShiftColumn, ShiftEfficiency, ShiftRow, ShiftSpread, ShiftTable, shift};
 pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};
+pub use tornado::{Tornado, TornadoBar, tornado};
