@@ -25,6 +25,7 @@ mod stick;
 mod style;
 mod theme;
 mod time_plot;
+mod tornado;
 
 pub use band::bands;
 pub use draw::{Drawing, draw};
@@ -43,3 +44,4 @@ pub use shift::shift;
 pub use stick::stick;
 pub use theme::{Theme, themed};
 pub use time_plot::time_plot;
+pub use tornado::tornado;

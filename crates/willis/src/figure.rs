@@ -12,6 +12,7 @@ mod sankey;
 mod shift;
 mod stick;
 mod time_plot;
+mod tornado;
 
 pub use axes::ChartAxis;
 pub use band::{BandPoint, Bands, QUANTILES, bands};
@@ -29,3 +30,4 @@ pub use stick::{
     StickPiece, StickTerminal, Way, stick,
 };
 pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};
+pub use tornado::{Tornado, TornadoBar, tornado};

@@ -200,13 +200,17 @@ struct Contact {
 pub fn lever(train: &Train, request: &LeverRequest) -> Result<Lever, Diagnostics> {
     let families = families(train);
     if families.is_empty() {
-        return Err(unfit("it has no gears", "draw its scheme instead: a lever is a set of gears on one carrier"));
+        return Err(unfit("it has no gears", "a lever is a set of gears on one carrier"));
     }
     let shown = Shown::find(train, request)?;
     let placed = layout::place(&families);
     let mut bars: Vec<LeverBar> = Vec::new();
     for parts in &placed.bars {
         bars.push(bar(train, &families, &placed, parts, &shown));
+    }
+    let far = |n: &LeverNode| !(n.position.is_finite() && n.number.is_finite());
+    if bars.iter().flat_map(|b| &b.nodes).any(far) {
+        return Err(unfit("its ratios are beyond floating point", "`willis analyze` tells them as fractions"));
     }
     let mut links: Vec<LeverLink> = Vec::new();
     for (b, one) in bars.iter().enumerate() {
@@ -491,7 +495,8 @@ fn motion(train: &Train, k: usize, state: Option<usize>) -> (LeverCase, Option<V
         case.note = Some(format!("{} cannot turn", train.member_name(input)));
         return (case, None);
     }
-    let speeds: Vec<Option<f64>> = transfer.speeds.iter().map(|w| w.as_ref().map(|w| w[0].to_f64())).collect();
+    let speeds: Vec<Option<f64>> =
+        transfer.speeds.iter().map(|w| w.as_ref().map(|w| w[0].to_f64()).filter(|w| w.is_finite())).collect();
     if speeds[output.0].is_none() {
         let text = format!(
             "{} degrees of freedom: the speed of {} does not settle that of {}",
@@ -583,7 +588,8 @@ fn pulls(train: &Train, family: &Family, solution: &SolutionReport) -> Vec<Lever
             carrier += m.carrier_torque_n_m;
             largest = largest.max(outer.abs()).max(inner.abs());
             let ratio = (&family.points[contact.outer].number / &family.points[contact.inner].number).to_f64();
-            [outer, inner, if outer == 0.0 { 1.0 } else { -inner / (ratio * outer) }]
+            let displacement = Some(-inner / (ratio * outer)).filter(|d| d.is_finite()).unwrap_or(1.0);
+            [outer, inner, displacement]
         })
         .collect();
     let mut displacement = vec![1.0; family.points.len()];
