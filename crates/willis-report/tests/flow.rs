@@ -60,7 +60,7 @@ fn labels(svg: &str) -> (Vec<Label>, [f64; 2]) {
                 _ => x,
             };
             let y = get("y") + dy;
-            all.push((content.to_owned(), [left, left + width, y - 0.76 * size, y + 0.24 * size]));
+            all.push((content.to_owned(), [left, left + width, y - 0.93 * size, y + 0.24 * size]));
         }
     }
     assert!(shifts.is_empty());
