@@ -445,9 +445,17 @@ impl<'f> Layout<'f> {
                     }
                 }
             }
-            if let Some((_, place)) = best {
-                self.labels.push(place);
-            }
+            // Nothing vanishes: where no gap has room, below everything.
+            let place = best.map_or_else(
+                || {
+                    let rooms = self.flow.nodes.iter().enumerate().map(|(k, n)| self.top[k] + self.rooms(n)[1]);
+                    let low = rooms.chain(self.labels.iter().map(|o| o.y[1])).fold(0.0, f64::max) + 8.0;
+                    let x = self.middle(first).max(wide / 2.0);
+                    Label { link: j, x: [x - wide / 2.0, x + wide / 2.0], y: [low, low + tall], clear: false }
+                },
+                |b| b.1,
+            );
+            self.labels.push(place);
         }
     }
 
