@@ -272,11 +272,7 @@ fn picture(d: &Layout<'_>) -> Group {
         for (row, words) in Words::of(d.flow).link(power).iter().enumerate() {
             let y = label.y[0] + LINE_HEIGHT * row as f64 + 0.82 * SMALL;
             let t = text(label.middle(), y, SMALL, Anchor::Middle, words);
-            g = g.add(match (label.clear, row) {
-                (true, _) => t,
-                (false, 0) => halo(t),
-                (false, _) => halo(t).set("fill", FAINT),
-            });
+            g = g.add(if label.clear { t } else { halo(t) });
         }
     }
     g

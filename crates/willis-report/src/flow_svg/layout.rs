@@ -414,7 +414,16 @@ fn label(
                 let crossed = others.iter().filter(|(p, half)| place.grown(*half).holds(*p)).count();
                 let own_area = place.grown(own.width / 2.0);
                 let through = (0..=24).filter(|i| own_area.holds(bend(a, b, f64::from(*i) / 24.0))).count();
-                let cost = far + 3.0 * crossed as f64 + 2.5 * through as f64 + 8.0 * (t - 0.5).abs() + gap as f64;
+                // A label beyond another line would seem to be that line's.
+                let [low, high] = [y.min(y + dy), y.max(y + dy)];
+                let beyond = |p: (f64, f64)| place.x[0] <= p.0 && p.0 <= place.x[1] && low < p.1 && p.1 < high;
+                let behind = others.iter().filter(|(p, _)| beyond(*p)).count();
+                let cost = far
+                    + 3.0 * crossed as f64
+                    + 2.0 * behind as f64
+                    + 2.5 * through as f64
+                    + 8.0 * (t - 0.5).abs()
+                    + gap as f64;
                 if best.as_ref().is_none_or(|b| cost < b.0) {
                     best = Some((cost, place));
                 }

@@ -61,10 +61,6 @@ impl Label {
         let near = |a: [f64; 2], b: [f64; 2]| a[0] < b[1] + 2.0 && b[0] < a[1] + 2.0;
         near(self.x, o.x) && near(self.y, o.y)
     }
-
-    fn holds(&self, p: (f64, f64)) -> bool {
-        self.x[0] <= p.0 && p.0 <= self.x[1] && self.y[0] <= p.1 && p.1 <= self.y[1]
-    }
 }
 
 pub struct Layout<'f> {
@@ -114,7 +110,7 @@ impl<'f> Layout<'f> {
         own.spread_columns();
         own.lead_round();
         own.place_labels();
-        own.to_corner();
+        own.move_to_corner();
         own
     }
 
@@ -394,12 +390,13 @@ impl<'f> Layout<'f> {
                         let far = near.fold(0.0f64, |a, p| a.max((p.1 - y).abs()));
                         (far + tall / 2.0 - 3.0 - thick / 2.0).max(0.0)
                     };
-                    let inside = (stray(spot.1) < 8.0).then_some((0.0, 2.5 * stray(spot.1)));
+                    // On a narrow ribbon words still belong to it more clearly than beyond another.
+                    let inside = (0.0, (2.5 * stray(spot.1)).min(12.0));
                     let shifts = (0..40).map(|k| {
                         let far = 5.0 * f64::from(k / 2);
                         (if k % 2 == 0 { -beside - far } else { beside + far }, far + 2.0)
                     });
-                    for (dy, far) in inside.into_iter().chain(shifts) {
+                    for (dy, far) in std::iter::once(inside).chain(shifts) {
                         let y = spot.1 + dy;
                         let place = Label {
                             link: j,
@@ -410,34 +407,60 @@ impl<'f> Layout<'f> {
                         if self.labels.iter().any(|o| o.meets(&place)) {
                             continue;
                         }
-                        let tight = |k: usize| {
+                        // How much of other ribbons the words would cover, in rows and points.
+                        let covered = |k: usize| {
                             let (thick, points) = &ribbons[k];
-                            let low = place.y[0] - thick / 2.0;
-                            let area = Label { link: k, x: place.x, y: [low, place.y[1] + thick / 2.0], clear: false };
-                            points.iter().filter(|p| area.holds(**p)).count()
+                            let one = |p: &(f64, f64)| {
+                                let within = place.x[0] <= p.0 && p.0 <= place.x[1];
+                                let [low, high] = [p.1 - thick / 2.0, p.1 + thick / 2.0];
+                                let both = high.min(place.y[1]) - low.max(place.y[0]);
+                                if within { (both / LINE_HEIGHT).max(0.0) } else { 0.0 }
+                            };
+                            points.iter().map(one).sum::<f64>()
                         };
-                        let crossed: usize = (0..ribbons.len()).filter(|&k| k != j).map(tight).sum();
-                        let own = if dy == 0.0 { 0 } else { tight(j) };
+                        let crossed: f64 = (0..ribbons.len()).filter(|&k| k != j).map(covered).sum();
+                        let beyond = |k: usize| {
+                            let (thick, points) = &ribbons[k];
+                            let [low, high] = [spot.1.min(y), spot.1.max(y)];
+                            let lies = |p: &&(f64, f64)| {
+                                place.x[0] <= p.0
+                                    && p.0 <= place.x[1]
+                                    && low < p.1 - thick / 2.0
+                                    && p.1 + thick / 2.0 < high
+                            };
+                            points.iter().filter(lies).count()
+                        };
+                        let behind: usize = (0..ribbons.len()).filter(|&k| k != j).map(beyond).sum();
+                        let own = if dy == 0.0 { 0.0 } else { covered(j) };
                         let cost = far
-                            + 1.5 * crossed as f64
-                            + 1.5 * own as f64
+                            + 2.0 * crossed
+                            + 4.0 * behind as f64
+                            + 2.0 * own
                             + 12.0 * (part - 0.5f64).abs()
                             + 2.0 * (gap - first) as f64;
                         if best.as_ref().is_none_or(|b| cost < b.0) {
-                            let clear = dy == 0.0 && stray(y) == 0.0 && crossed == 0 && l.circulating_w == 0.0;
+                            let clear = dy == 0.0 && stray(y) == 0.0 && crossed == 0.0 && l.circulating_w == 0.0;
                             best = Some((cost, Label { clear, ..place }));
                         }
                     }
                 }
             }
-            if let Some((_, place)) = best {
-                self.labels.push(place);
-            }
+            // Nothing vanishes: where no gap has room, below everything.
+            let place = best.map_or_else(
+                || {
+                    let rooms = self.flow.nodes.iter().enumerate().map(|(k, n)| self.top[k] + self.rooms(n)[1]);
+                    let low = rooms.chain(self.labels.iter().map(|o| o.y[1])).fold(0.0, f64::max) + 8.0;
+                    let x = self.middle(first).max(wide / 2.0);
+                    Label { link: j, x: [x - wide / 2.0, x + wide / 2.0], y: [low, low + tall], clear: false }
+                },
+                |b| b.1,
+            );
+            self.labels.push(place);
         }
     }
 
     /// The upper left corner becomes the origin.
-    fn to_corner(&mut self) {
+    fn move_to_corner(&mut self) {
         let (mut top, mut bottom) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut see = |a: f64, b: f64| {
             top = top.min(a);
