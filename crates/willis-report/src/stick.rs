@@ -408,7 +408,11 @@ impl<'a> Sheet<'a> {
             labels.mark((x, y), (tip, y), 8.0);
             if t.open {
                 let out = t.way == Some(Way::Out);
-                let (end, back) = if out { (tip, x) } else { (x + side * 4.0, tip) };
+                let (end, back) = match t.way {
+                    Some(Way::Out) => (tip, x),
+                    Some(Way::In) => (x + side * 4.0, tip),
+                    None => (x, tip),
+                };
                 let head = if t.way.is_some() { 12.0 * (end - back).signum() } else { 0.0 };
                 g = g.add(line((if out { x } else { tip }, y), (end - head, y), &ink, width));
                 if t.way.is_some() {
@@ -438,9 +442,8 @@ impl<'a> Sheet<'a> {
                     );
                 }
             }
-            let name = fit(&m.name, (self.left - ARROW - 20.0).min(MARGIN - ARROW - 12.0 + 40.0), 12.0);
-            let (tx, anchor) = if t.left { (tip + 4.0, Anchor::End) } else { (tip - 4.0, Anchor::Start) };
-            let tx = if t.left { tx.min(x - 12.0) - 8.0 } else { tx + 8.0 };
+            let name = fit(&m.name, (MARGIN - ARROW - 18.0) / BOLD, 12.0);
+            let (tx, anchor) = (tip + side * 10.0, if t.left { Anchor::End } else { Anchor::Start });
             labels.texts.push(Labels::bounds(tx, y + 4.0, 12.0, anchor, wide(&name, 12.0) * BOLD));
             g = g.add(text(tx, y + 4.0, 12.0, anchor, &name).set("font-weight", "bold"));
         }
@@ -474,7 +477,7 @@ impl<'a> Sheet<'a> {
         for j in &self.data.joints {
             let [a, b] = j.ends.map(|p| self.at(p));
             let (x, y) = ((a.0 + b.0) / 2.0, (a.1 + b.1) / 2.0);
-            let r = PLATE + 4.0;
+            let r = PLATE + 8.0;
             let level = a.1 == b.1;
             let side: Spots = vec![(x + r, y + 4.0, Anchor::Start), (x - r, y + 4.0, Anchor::End)];
             let over: Spots = vec![(x, y - r, Anchor::Middle), (x, y + r + 8.0, Anchor::Middle)];
@@ -626,7 +629,7 @@ impl<'a> Sheet<'a> {
         let mut g = Group::new();
         let top = self.list_top();
         let rows = self.list_rows() - 1;
-        let speeds = self.data.members.iter().any(|m| m.speed_ratio.is_some());
+        let speeds = self.speeds();
         for column in 0..self.list_columns().min(self.listed().len().div_ceil(rows.max(1))) {
             let x = 28.0 + LIST * column as f64;
             g = g.add(text(x + 54.0, top, 11.0, Anchor::Start, "member").set("fill", FAINT));
@@ -646,12 +649,17 @@ impl<'a> Sheet<'a> {
                 .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
                 .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, 120.0, 12.0)))
                 .add(text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), 150.0, 11.0)).set("fill", FAINT));
-            if let Some(speed) = m.speed_ratio {
+            if let Some(speed) = m.speed_ratio.filter(|_| speeds) {
                 let shown = if speed == 0.0 { "stands still".to_owned() } else { digits(speed) };
                 g = g.add(text(x + LIST - 24.0, y, 11.0, Anchor::End, &shown));
             }
         }
         g
+    }
+
+    /// Whether speeds are known beside that of the input.
+    fn speeds(&self) -> bool {
+        self.listed().into_iter().filter(|&k| self.data.members[k].speed_ratio.is_some()).count() > 1
     }
 
     /// What a member is made of: its gears, and the blocks whose planets it carries.

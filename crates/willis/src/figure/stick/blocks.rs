@@ -227,7 +227,8 @@ fn axes(train: &Train, members: &Members, joints: &[Joint], state: Option<usize>
         let has_gear = |g: usize| {
             train.meshes().iter().any(|m| {
                 let all = [m.gears[0].member, m.gears[1].member, m.carrier];
-                all.iter().any(|x| members.net(*x).is_some_and(|n| of[n] == g))
+                let central = |x: &MemberId| !members.is_planet(*x) || members.led_out(*x);
+                all.iter().any(|x| central(x) && members.net(*x).is_some_and(|n| of[n] == g))
             })
         };
         match (0..count).map(|k| of[k]).find(|&g| level[g].is_none() && (linked(g) || has_gear(g))) {

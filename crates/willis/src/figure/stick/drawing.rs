@@ -130,7 +130,7 @@ impl<'a> Drawing<'a> {
     /// A place of a block: around its points lengths stay what they are.
     fn in_block(&self, b: usize, [x, y]: [f64; 2]) -> Place {
         let stand = self.layout.stands[b];
-        let near = [x.round(), y.floor()];
+        let near = [x.round(), if self.shape(b).bevel { y.round() } else { y.floor() }];
         let base = self.place(near[0] + f64::from(stand.x), near[1] + f64::from(stand.y));
         [base[0] + x - near[0], base[1] + y - near[1]]
     }

@@ -6,8 +6,8 @@ use super::grid::{CLOSED, FREE, GROUND, Goal, Grid, Search};
 use super::shapes::{Point, Shape};
 
 /// Orders that are routed, and those of them that are improved.
-const ROUTED: usize = 14;
-const IMPROVED: usize = 3;
+const ROUTED: usize = 24;
+const IMPROVED: usize = 8;
 /// Rounds in which every line is laid anew.
 const ROUNDS: usize = 4;
 /// Blocks whose orders are all looked at.
@@ -365,14 +365,7 @@ impl Layout {
         let Some(a) = joint.members[0] else { return };
         let Some(start) = self.wanted(plan, a).first().copied() else { return };
         let axis = plan.axis_of[a];
-        let (top, sun, right) = (self.tops[axis], self.suns[axis], self.grid.width - 1);
-        let frame = |p: Point, way: usize| {
-            let turned = [5, 0, 5, 12][way];
-            let inside = if p.1 <= sun { 8 } else { (top + 1 - p.1).max(0) as u32 };
-            let beyond = if p.1 > top + 2 { 2 * (p.1 - top - 2) as u32 } else { 0 };
-            let border = if p.0 == 0 || p.0 == right { 1000 } else { 0 };
-            turned + inside + beyond + border
-        };
+        let frame = |p: Point, way: usize| self.frame_price(axis, p, way);
         let goal = match joint.members[1] {
             Some(b) => Goal::Net(b as u16),
             None => Goal::Frame(&frame),
@@ -404,8 +397,35 @@ impl Layout {
                 .iter()
                 .position(|d| (ends[0].0 + d.0, ends[0].1 + d.1) == ends[1])
                 .expect("a step of the grid");
-            self.price[j] = frame(ends[1], way);
+            self.price[j] = self.frame_price(axis, ends[1], way);
         }
+    }
+
+    /// What it costs to fix a brake of a member on that axis here: best outside, above the gears.
+    fn frame_price(&self, axis: usize, p: Point, way: usize) -> u32 {
+        let (top, sun, right) = (self.tops[axis], self.suns[axis], self.grid.width - 1);
+        let turned = [5, 0, 5, 12][way];
+        let inside = if p.1 <= sun { 8 } else { (top + 1 - p.1).max(0) as u32 };
+        let beyond = 2 * (p.1 - top - 2).max(0) as u32;
+        let border = if p.0 == 0 || p.0 == right { 1000 } else { 0 };
+        turned + inside + beyond + border + 30 * self.enclosed(p)
+    }
+
+    /// Lines between a place and the housing, on the straight way with the fewest.
+    fn enclosed(&self, p: Point) -> u32 {
+        let ray = |way: usize| {
+            let (dx, dy) = super::grid::WAYS[way];
+            let mut lines = 0;
+            let mut q = (p.0 + dx, p.1 + dy);
+            while (0..self.grid.width).contains(&q.0) && (0..self.grid.height).contains(&q.1) {
+                let across = [(way + 1) % 4, (way + 3) % 4].map(|w| self.grid.step(q, w));
+                let taken = |s: u16| s != FREE && s != CLOSED;
+                lines += u32::from(across.into_iter().any(taken) || self.grid.point[self.grid.at(q)] != FREE);
+                q = (q.0 + dx, q.1 + dy);
+            }
+            lines
+        };
+        [0, 1, 2].into_iter().map(ray).min().unwrap_or(0)
     }
 
     /// The step of a path nearest its middle that touches no other line.

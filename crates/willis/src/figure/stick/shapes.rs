@@ -44,6 +44,8 @@ pub(super) struct Shape {
     pub grounds: Vec<(Point, Point)>,
     /// Highest row.
     pub top: i32,
+    /// Its contacts lie left and right of the planets.
+    pub bevel: bool,
     /// Two gears stand in one place: a last resort.
     pub crowded: bool,
 }
@@ -440,7 +442,7 @@ fn bevel_set(train: &Train, members: &Members, meshes: &[MeshId], planet: Member
         taken.iter().flatten().map(z).fold(0.0, f64::max)
     };
     rows.sort_by(|a, b| largest(&a.1).total_cmp(&largest(&b.1)));
-    let mut s = Shape { width: 3, top: rows.len() as i32 + 1, ..Shape::default() };
+    let mut s = Shape { width: 3, top: rows.len() as i32 + 1, bevel: true, ..Shape::default() };
     for (r, (_, taken)) in rows.iter().enumerate() {
         let y = r as i32 + 1;
         s.block((1, y));
