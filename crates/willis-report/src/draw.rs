@@ -2,7 +2,7 @@
 
 use willis::figure::Figure;
 
-use crate::{bands, flow_svg, lever, losses, map, regime_map, sankey, shift, stick, time_plot};
+use crate::{bands, flow_svg, lever, losses, map, regime_map, sankey, shift, stick, time_plot, tornado};
 
 /// How a figure is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,6 +23,7 @@ pub fn draw(figure: &Figure, _how: Drawing) -> String {
         Figure::Losses(data) => losses(data),
         Figure::Time(data) => time_plot(data),
         Figure::Shift(data) => shift(data),
+        Figure::Tornado(data) => tornado(data),
         Figure::Band(data) => bands(data),
     }
 }

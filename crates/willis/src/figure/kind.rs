@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::dynamics::{Options, simulate};
 use crate::hypergraph::{FlowReport, flows};
 use crate::regimes::RegimeSelection;
-use crate::study::{Subject, UncertaintyRequest};
+use crate::study::{Subject, UncertaintyRequest, sensitivity};
 
 use super::*;
 
@@ -125,6 +125,8 @@ kinds! {
     Time(TimePlot) "time": |s, r| time(s, r)?;
     /// The table of states with its steps.
     Shift(ShiftTable) "shift": |s, _r| shift(s.train())?;
+    /// What moves efficiency and losses most.
+    Tornado(Tornado) "tornado": |s, r| ranking(s, r)?;
     /// How sure efficiency and loss are.
     Band(Bands) "band": |s, r| {
         let samples = if r.samples == 0 { SAMPLES } else { r.samples };
@@ -167,6 +169,7 @@ impl Figure {
             Self::Losses(_) => "Losses by source",
             Self::Time(_) => "Motion over time",
             Self::Shift(_) => "Shift table",
+            Self::Tornado(_) => "What matters most",
             Self::Band(_) => "How sure it is",
         }
     }
@@ -188,6 +191,19 @@ fn powers(subject: &Subject, r: &FigureRequest) -> Result<FlowReport, Diagnostic
         return Err(d.hint("add an [[operation]] with speeds and torques or powers; `stick` and `lever` need none").into());
     }
     Ok(report)
+}
+
+/// Bars of a ranking.
+const BARS: usize = 14;
+
+/// The quantities of the first operation that has derivatives.
+fn ranking(subject: &Subject, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
+    let all = sensitivity(subject.train(), &r.selection())?.operations;
+    let Some(one) = all.iter().find(|o| !o.quantities.is_empty()).or(all.first()) else {
+        let d = Diagnostic::new(Code::NothingAsked, "", "a ranking belongs to an operating point, and there is none");
+        return Err(d.hint("add an [[operation]] with speeds and torques or powers").into());
+    };
+    tornado(one, BARS)
 }
 
 /// Simulates the scenario of that name, or the first.
