@@ -1,8 +1,10 @@
 //! Charts and diagrams as data: what stands where, in which role, with which words. No pixels, no
 //! fonts; front ends draw.
 
+mod front;
 mod regime_map;
 mod time_plot;
 
+pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWheel, front};
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
 pub use time_plot::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};
