@@ -79,7 +79,7 @@ pub struct FrontWheel {
     /// One tooth and half a space at each side, mm, around the wheel's axis, counterclockwise; the
     /// tooth's middle lies on the positive x axis.
     pub outline_mm: Vec<[f64; 2]>,
-    /// Turns for one turn of the first wheel, relative to the carrier; zero where nothing can turn.
+    /// Turns for one turn of the first central gear, relative to the carrier; zero where nothing can turn.
     pub turns: f64,
     /// The same exactly, `-17/22`.
     pub ratio: String,

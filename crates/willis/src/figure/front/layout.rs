@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use crate::geometry::Pair;
+use crate::geometry::{Pair, Remark};
 
 use super::profile::Profile;
 use super::{FrontBody, FrontMesh, FrontPlane, FrontSpacing, Link};
@@ -93,6 +93,14 @@ pub fn build(links: &[Link], pairs: Vec<Pair>, count: Option<u32>) -> Result<Bui
     let (ties, locked) = ties(&mut wheels, &of_link, fitted);
     let planes = planes(&wheels, &ties);
     let mut notes = Vec::new();
+    for t in &ties {
+        // What one sees when one looks closely.
+        let seen = |r: &Remark| {
+            use Remark::{BelowForm, NegativeBacklash, NoClearance, TipInterference};
+            matches!(r, BelowForm { .. } | NegativeBacklash { .. } | NoClearance { .. } | TipInterference { .. })
+        };
+        notes.extend(t.pair.remarks().iter().filter(|r| seen(r)).map(|r| format!("{}: {r}.", links[t.link].name)));
+    }
     if locked {
         notes.push("These wheels cannot turn: two of them on one member would need different speeds.".to_owned());
     }
