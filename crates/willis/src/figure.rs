@@ -7,6 +7,8 @@ mod kind;
 mod lever;
 mod losses;
 mod map;
+mod contact_path;
+mod front;
 mod regime_map;
 mod sankey;
 mod shift;
@@ -22,6 +24,8 @@ pub use lever::{
 };
 pub use losses::{LossChart, LossSeries, loss_chart};
 pub use map::{EfficiencyMap, MapMark, MapPoint, efficiency_map};
+pub use contact_path::{ContactPath, MeshPath, PathPoint, contact_path};
+pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWheel, front};
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
 pub use sankey::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode, SankeyPanel, sankey};
 pub use shift::{ShiftChange, ShiftColumn, ShiftEfficiency, ShiftRow, ShiftSpread, ShiftTable, shift};

@@ -28,11 +28,15 @@ pub enum Regime {
 }
 
 impl Regime {
+    /// Film thickness ratios at which mixed and full lubrication begin.
+    pub const LIMITS: [f64; 2] = [1.0, 3.0];
+
     /// The regime of a film thickness ratio.
     pub fn of(film_ratio: f64) -> Self {
+        let [mixed, full] = Self::LIMITS;
         match film_ratio {
-            x if x < 1.0 => Self::Boundary,
-            x if x < 3.0 => Self::Mixed,
+            x if x < mixed => Self::Boundary,
+            x if x < full => Self::Mixed,
             _ => Self::Full,
         }
     }
@@ -104,6 +108,36 @@ struct Point<R> {
     radius: R,
     pressure: R,
     film: R,
+}
+
+/// One place of the path of contact of one pair in parallel, as the laws see it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Station {
+    /// Distance from C, m.
+    pub s: f64,
+    /// Load per length of contact line, N/m.
+    pub line_load: f64,
+    /// Sliding speed, and sum of the surface speeds, m/s.
+    pub sliding: f64,
+    pub sum: f64,
+    /// Hertzian pressure, Pa.
+    pub pressure: f64,
+    /// Film thickness, m, and over the composite roughness; none without load, oil or roughness.
+    pub film: Option<f64>,
+    pub film_ratio: Option<f64>,
+    /// Coefficient of friction, and the power that the tooth pair here turns into heat, W.
+    pub friction: Option<f64>,
+    pub loss: Option<f64>,
+}
+
+/// The path of contact of a mesh.
+pub(crate) struct Along {
+    /// From A to E, on both sides of every jump of the load.
+    pub stations: Vec<Station>,
+    /// Sliding loss of all pairs in parallel, W: the local loss integrated by the rule that averages friction.
+    pub loss: Option<f64>,
+    /// Whether the law of friction gives a value for each place.
+    pub local: bool,
 }
 
 /// What the laws give for the teeth of a mesh.
@@ -359,6 +393,61 @@ impl<R: Real> Physics<'_, R> {
 }
 
 impl Physics<'_> {
+    /// The path of contact of a loaded mesh, `steps` places in each part of it; none when it is idle.
+    pub(crate) fn along(&self, mesh: &Mesh, teeth: &Teeth, flow: &MeshFlow, steps: usize) -> Option<Along> {
+        let pair = &teeth.pair;
+        let loaded = self.loaded(mesh, teeth, flow);
+        if !loaded.works() {
+            return None;
+        }
+        let loss_factor = self.train.laws.loss_factor.eval(&Path::of(pair));
+        let local = self.friction.meta().tags.contains(&Tag::Local);
+        let mean = self.tooth(mesh, teeth, flow).friction;
+        let composite = composite(teeth);
+        let station = |s: f64| {
+            let p = loaded.point(s);
+            let friction = match (mesh.computed, local) {
+                (false, _) => None,
+                (true, false) => mean,
+                // Where nothing slides or presses a law may have no value; nothing is lost there.
+                (true, true) => Some(self.coefficient(&self.state(mesh, &loaded, &p, loss_factor))),
+            };
+            let friction = friction.filter(|mu| mu.is_finite());
+            // Normal force of the pair here: line load times the length of its lines of contact.
+            let force = p.line_load * pair.total_width() / pair.base_helix.cos();
+            let film = (self.oil.is_some() && p.film > 0.0 && p.film.is_finite()).then_some(p.film);
+            Station {
+                s,
+                line_load: p.line_load,
+                sliding: p.sliding,
+                sum: p.sum,
+                pressure: p.pressure,
+                film,
+                film_ratio: film.filter(|_| composite > 0.0).map(|h| h / composite),
+                friction,
+                loss: friction.map(|mu| mu * force * p.sliding),
+            }
+        };
+        let [start, end] = pair.path();
+        let breaks = loaded.breaks();
+        let (mut stations, mut work) = (Vec::new(), 0.0);
+        for k in 0..breaks.len() - 1 {
+            let (from, to) = (breaks[k].max(start), breaks[k + 1].min(end));
+            if to - from <= 1e-9 * (end - start) {
+                continue;
+            }
+            // Just inside, so that a jump of the load has a value on either side.
+            let (from, to) = (from + 1e-9 * (to - from), to - 1e-9 * (to - from));
+            stations.extend((0..=steps).map(|i| station(from + (to - from) * i as f64 / steps as f64)));
+            let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
+            for (node, w) in GAUSS.into_iter().flat_map(|(node, w)| [(node, w), (-node, w)]) {
+                work += half * w * station(middle + half * node).loss.unwrap_or(0.0);
+            }
+        }
+        let loss = mesh.computed.then(|| work / pair.base_pitch * f64::from(mesh.count));
+        Some(Along { stations, loss, local })
+    }
+
     /// The contact of a mesh.
     pub(super) fn contact(
         &self,
