@@ -4,6 +4,7 @@ mod compare;
 mod csv;
 mod export;
 mod cycle;
+mod draw;
 mod flow;
 mod input;
 mod interrupt;
@@ -27,12 +28,14 @@ use willis::analysis::{self, Analysis, LossRequest, Selection};
 use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::dynamics::{Method, Options};
+use willis::figure::FigureRequest;
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::study::export::ExportRequest;
 use willis::study::{Hold, Subject, Sweep, UncertaintyPlan, UncertaintyRequest};
 use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
 use willis::units::{self, Dimension, Quantity};
+use willis_report::{Drawing, Theme};
 
 /// Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that
 /// the answer is the only one.
@@ -557,6 +560,80 @@ enum Command {
         #[arg(long, value_name = "FOLDER", requires = "case")]
         data: Option<std::path::PathBuf>,
     },
+    /// Draw a train: its scheme, levers, power flow, teeth, regimes, maps, losses.
+    ///
+    ///   stick     kinematic schematic, engaged elements and power path of a state
+    ///   lever     nomograph: speeds and torques; --state all lays all states over each other
+    ///   sankey    power from input to output, each loss branching off, to scale
+    ///   flow      power through components and contacts
+    ///   front     a set seen along its axis, true teeth in mesh (--part SET, --animated)
+    ///   regimes   the wheel of regimes of two freedoms
+    ///   map       efficiency over two quantities (--over twice); of an automatic the best gear
+    ///   losses    losses by source, stacked over a quantity (--over) and as bars
+    ///   film      oil film over roughness along the path of contact (--part MESH)
+    ///   path      friction, sliding and load along the path of contact (--part MESH)
+    ///   time      a scenario over time (--part SCENARIO)
+    ///   shift     the table of states with its steps
+    ///   tornado   what a step of each quantity does to efficiency and losses
+    ///   band      how sure efficiency and loss are, over a quantity (--over)
+    #[command(verbatim_doc_comment)]
+    Draw {
+        /// What to draw; `all` draws whatever applies into a folder.
+        kind: String,
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// A state of the shift table.
+        #[arg(long)]
+        state: Option<String>,
+        /// An operation; else the file's first, or all where a figure shows several.
+        #[arg(long)]
+        operation: Option<String>,
+        /// The set, mesh or scenario to draw.
+        #[arg(long, value_name = "NAME")]
+        part: Option<String>,
+        /// A quantity along an axis, as `sweep` takes it: "sun.speed=500..3000 rpm:40".
+        #[arg(long, value_name = "AXIS")]
+        over: Vec<String>,
+        /// Draw teeth without geometry as nominal ones of module 1.
+        #[arg(long)]
+        nominal: bool,
+        /// Wheels turn (front, in SVG).
+        #[arg(long)]
+        animated: bool,
+        /// Put a law into force: mesh_friction=niemann. Several times for several families.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
+        /// Light or dark, or as the reader's screen is set.
+        #[arg(long, value_enum, default_value_t = ThemeArgument::Light)]
+        theme: ThemeArgument,
+        /// Pixels of a PNG to a unit of the figure.
+        #[arg(long, default_value_t = 2.0, value_parser = scale)]
+        scale: f32,
+        /// File to write: .svg, .png, or .json for the figure as data; else SVG goes to standard output.
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
+    /// Write the engineering report of a train: one file that explains itself, as web page or PDF.
+    ///
+    /// Question, train with schematic and teeth, results with verdict and certificate, power flow, losses and what to
+    /// change first, maps, regimes and closed formulas, assumptions, warnings, laws with their sources, and how to do it
+    /// again. The same input gives the same bytes.
+    Report {
+        /// Train file (TOML), or - for standard input.
+        file: String,
+        /// Only this operation.
+        #[arg(long)]
+        operation: Option<String>,
+        /// Put a law into force: mesh_friction=niemann. Several times for several families.
+        #[arg(long, value_name = "FAMILY=LAW")]
+        law: Vec<String>,
+        /// Paper of a PDF.
+        #[arg(long, value_enum, default_value_t = Paper::A4)]
+        paper: Paper,
+        /// File to write: .html, .pdf, or .json for the document before it is typeset; else HTML goes to standard output.
+        #[arg(short, long, value_name = "FILE")]
+        output: Option<PathBuf>,
+    },
     /// Check a train file and say everything that is wrong with it.
     Check {
         /// Train file (TOML), or - for standard input.
@@ -589,6 +666,32 @@ enum Format {
     Json,
     /// Tables.
     Csv,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum ThemeArgument {
+    /// For paper.
+    Light,
+    /// For dark screens.
+    Dark,
+    /// As the screen is set, where the viewer tells.
+    Auto,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Paper {
+    /// 210 mm x 297 mm.
+    A4,
+    /// 8.5 in x 11 in.
+    UsLetter,
+}
+
+/// A scale of pictures.
+fn scale(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(x) if (0.1..=10.0).contains(&x) => Ok(x),
+        _ => Err("a number from 0.1 to 10".into()),
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -904,6 +1007,54 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 Format::Json => serde_json::to_string_pretty(&losses::laws_json(&all)).expect("plain data") + "\n",
                 Format::Csv => losses::laws_csv(&all),
             })
+        }
+        Command::Draw {
+            kind,
+            file,
+            state,
+            operation,
+            part,
+            over,
+            nominal,
+            animated,
+            law,
+            theme,
+            scale,
+            output,
+        } => {
+            let job = Job::read(file)?;
+            let request = FigureRequest {
+                state: state.clone(),
+                operation: operation.clone(),
+                part: part.clone(),
+                over: over.clone(),
+                nominal: *nominal,
+                samples: 0,
+            };
+            let theme = match theme {
+                ThemeArgument::Light => Theme::Light,
+                ThemeArgument::Dark => Theme::Dark,
+                ThemeArgument::Auto => Theme::Auto,
+            };
+            let look = draw::Look { drawing: Drawing { animated: *animated }, theme, scale: *scale };
+            if let Some(out) = output {
+                output::apart(out, &[file.as_ref()])?;
+            }
+            draw::draw(&job.subject(law)?, kind, &request, &look, output.as_deref(), &|wrong| job.failure(wrong))
+        }
+        Command::Report { file, operation, law, paper, output } => {
+            let job = Job::read(file)?;
+            if let Some(out) = output {
+                output::apart(out, &[file.as_ref()])?;
+            }
+            let subject = job.subject(law)?;
+            let paper = match paper {
+                Paper::A4 => "a4",
+                Paper::UsLetter => "us-letter",
+            };
+            let request = draw::report_request(file, &job.text, operation.clone(), law);
+            let document = willis_report::report(&subject, &request).map_err(|wrong| job.failure(wrong))?;
+            draw::deliver(&document, paper, output.as_deref())
         }
         Command::Flow { file, operation, format, output, law } => {
             let selection = Selection { state: None, operation: operation.clone() };

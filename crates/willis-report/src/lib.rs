@@ -17,10 +17,7 @@ mod modes_plot;
 #[cfg(feature = "png")]
 mod png;
 mod film;
-mod flow_dot;
-mod flow_svg;
 mod front;
-mod modes_plot;
 mod path;
 mod regime_map;
 mod report;
@@ -44,10 +41,7 @@ pub use modes_plot::modes_plot;
 #[cfg(feature = "png")]
 pub use png::png;
 pub use film::film;
-pub use flow_dot::flow_dot;
-pub use flow_svg::flow_svg;
 pub use front::front;
-pub use modes_plot::modes_plot;
 pub use path::path;
 pub use regime_map::regime_map;
 pub use report::{ReportRequest, report};

@@ -113,6 +113,8 @@ kinds! {
     Sankey(Sankey) "sankey": |s, r| sankey(&powers(s, r)?);
     /// Powers through components and contacts.
     Flow(FlowReport) "flow": |s, r| powers(s, r)?;
+    /// A set seen along its axis.
+    Front(Front) "front": |s, r| front(s.train(), r.part.as_deref(), r.nominal)?;
     /// The wheel of regimes of two freedoms.
     Regimes(RegimeMap) "regimes": |s, r| {
         regime_map(s.train(), &RegimeSelection { state: r.state.clone(), ..Default::default() })?
@@ -121,6 +123,10 @@ kinds! {
     Map(EfficiencyMap) "map": |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over)?;
     /// Losses by source, over a quantity and at the operating point.
     Losses(LossChart) "losses": |s, r| loss_chart(s, r.state.as_deref(), r.operation.as_deref(), &r.over)?;
+    /// Film over roughness along the path of contact.
+    Film(ContactPath) "film": |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref())?;
+    /// Friction, sliding and load along the path of contact.
+    Path(ContactPath) "path": |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref())?;
     /// A scenario over time.
     Time(TimePlot) "time": |s, r| time(s, r)?;
     /// The table of states with its steps.
@@ -164,9 +170,12 @@ impl Figure {
             Self::Lever(_) => "Levers",
             Self::Sankey(_) => "Power flow to scale",
             Self::Flow(_) => "Power flow",
+            Self::Front(_) => "Teeth in mesh",
             Self::Regimes(_) => "Regimes",
             Self::Map(_) => "Efficiency map",
             Self::Losses(_) => "Losses by source",
+            Self::Film(_) => "Oil film along the path of contact",
+            Self::Path(_) => "Contact along its path",
             Self::Time(_) => "Motion over time",
             Self::Shift(_) => "Shift table",
             Self::Tornado(_) => "What matters most",
