@@ -323,9 +323,11 @@ fn band(ribbon: &Ribbon, carries: Carries) -> Group {
     let fill = carries.colour();
     // One too narrow to be seen is a hairline.
     if ribbon.width() < 1.0 {
-        let stroke = if carries == Carries::Circle { colour(Some(4), 1.0) } else { colour(Some(0), 0.8) };
-        let path = Path::new().set("d", ribbon.spine()).set("fill", "none").set("stroke", stroke);
-        return Group::new().add(path.set("stroke-width", 1));
+        let path = Path::new().set("d", ribbon.spine()).set("fill", "none").set("stroke-width", 1);
+        return Group::new().add(match carries {
+            Carries::Circle => path.set("stroke", colour(Some(1), 1.0)).set("stroke-dasharray", "6 4"),
+            _ => path.set("stroke", colour(Some(0), 0.8)),
+        });
     }
     let mut g = Group::new().add(filled(ribbon.outline(), &fill));
     if carries == Carries::Circle && ribbon.width() < 5.0 {

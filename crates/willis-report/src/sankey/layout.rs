@@ -304,29 +304,49 @@ impl<'f> Layout<'f> {
                 x -= self.thickness(j) + 6.0;
             }
         }
-        let tops = self.flow.nodes.iter().enumerate().map(|(k, n)| self.top[k] - self.rooms(n)[0]);
-        let passes = self.passes.iter().flatten().map(|y| y - 3.0);
-        let mut lane = tops.chain(passes).fold(f64::INFINITY, f64::min) - 8.0;
-        for j in all {
+        // The upper end of each column.
+        let mut tops = vec![f64::INFINITY; self.flow.layers];
+        for (k, n) in self.flow.nodes.iter().enumerate() {
+            tops[n.layer] = tops[n.layer].min(self.top[k] - self.rooms(n)[0]);
+        }
+        for (l, passes) in self.flow.links.iter().zip(&self.passes) {
+            for (k, y) in passes.iter().enumerate() {
+                let column = &mut tops[layer(l.from) + 1 + k];
+                *column = column.min(y - 3.0);
+            }
+        }
+        // Lanes so far: from x to x, and how high they and their words reach.
+        let mut lanes: Vec<([f64; 2], f64)> = Vec::new();
+        for j in all.iter().copied() {
             let l = &self.flow.links[j];
-            let start = self.top[l.from] + l.from_offset_w * self.scale;
-            let end = self.top[l.to] + l.to_offset_w * self.scale;
-            lane = lane.min(start - 2.0 * ROUND).min(end - 2.0 * ROUND);
-            self.rounds[j] = Some([channels[j][0], channels[j][1], lane]);
+            let thick = self.thickness(j);
+            let [rise, fall] = channels[j];
+            let span = [fall - thick - ROUND, rise + thick + ROUND];
+            let below = tops[layer(l.to)..=layer(l.from)].iter().copied();
+            let others = lanes.iter().filter(|o| o.0[0] < span[1] && span[0] < o.0[1]).map(|o| o.1);
+            let start = self.top[l.from] + l.from_offset_w * self.scale - 2.0 * ROUND;
+            let end = self.top[l.to] + l.to_offset_w * self.scale - 2.0 * ROUND;
+            let lane = below.chain(others).map(|y| y - 8.0).fold(start.min(end), f64::min);
+            self.rounds[j] = Some([rise, fall, lane]);
             let rows = Words::of(self.flow).link(l);
             let tall = LINE_HEIGHT * rows.len() as f64;
-            let thick = self.thickness(j);
             let inside = thick >= tall - 2.0;
-            let wide = rows.iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max) + 2.0;
-            let x = (channels[j][0] + channels[j][1]) / 2.0;
+            let half = rows.iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max) / 2.0 + 1.0;
+            // In the middle, if nothing else rises or comes down there.
+            let free = |x: &f64| {
+                all.iter().filter(|k| **k != j).all(|&k| {
+                    let other = self.thickness(k);
+                    let [rise, fall] = channels[k];
+                    [[rise, rise + other], [fall - other, fall]]
+                        .iter()
+                        .all(|c| c[1] < x - half - 2.0 || x + half + 2.0 < c[0])
+                })
+            };
+            let places = [0.5, 0.42, 0.58, 0.34, 0.66, 0.26, 0.74].map(|t| fall + t * (rise - fall));
+            let x = places.into_iter().find(free).unwrap_or(places[0]);
             let top = if inside { lane - (thick + tall) / 2.0 } else { lane - thick - 2.0 - tall };
-            self.labels.push(Label {
-                link: j,
-                x: [x - wide / 2.0, x + wide / 2.0],
-                y: [top, top + tall],
-                clear: false,
-            });
-            lane -= thick + 8.0 + if inside { 0.0 } else { tall };
+            self.labels.push(Label { link: j, x: [x - half, x + half], y: [top, top + tall], clear: false });
+            lanes.push((span, top.min(lane - thick)));
         }
     }
 
