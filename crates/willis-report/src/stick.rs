@@ -9,13 +9,13 @@ use crate::style::{
 
 /// Left and right of the grid: names and arrows of the terminals.
 const MARGIN: f64 = 168.0;
-const TOP: f64 = 112.0;
+const TOP: f64 = 124.0;
 /// Length of a terminal's arrow.
 const ARROW: f64 = 40.0;
 /// Half the length of a friction plate, of the line of the frame.
 const PLATE: f64 = 9.0;
-const THIN: f64 = 1.8;
-const THICK: f64 = 4.6;
+const THIN: f64 = 2.0;
+const THICK: f64 = 6.0;
 /// Width of one column of the list of members, and height of its rows.
 const LIST: f64 = 430.0;
 const ROW: f64 = 19.0;
@@ -150,17 +150,22 @@ struct Sheet<'a> {
 
 impl<'a> Sheet<'a> {
     fn new(data: &'a Stick) -> Self {
-        let unit = (1064.0 / data.width.max(1.0)).clamp(44.0, 80.0);
-        let rise = (420.0 / data.height.max(1.0)).clamp(46.0, 66.0);
+        let unit = (1064.0 / data.width.max(1.0)).clamp(44.0, 80.0).floor();
+        let rise = (420.0 / data.height.max(1.0)).clamp(46.0, 66.0).floor();
         let drawn = unit * data.width;
         let width = (drawn + 2.0 * MARGIN).clamp(640.0, 4000.0).max(0.0);
         let left = (width - drawn) / 2.0;
         let mut next = 0;
+        let led_out = |k: usize| {
+            let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
+            joined || data.terminals.iter().any(|t| t.member == k) || !data.members[k].carries.is_empty()
+        };
         let category = data
             .members
             .iter()
-            .map(|m| {
-                (!m.planet || m.pieces.iter().any(|p| p.points.len() > 2)).then(|| {
+            .enumerate()
+            .map(|(k, m)| {
+                (!m.planet || led_out(k)).then(|| {
                     next += 1;
                     next - 1
                 })
@@ -172,7 +177,10 @@ impl<'a> Sheet<'a> {
     }
 
     fn at(&self, p: Place) -> (f64, f64) {
-        (self.left + p[0] * self.unit, TOP + 26.0 + (self.data.height - p[1]) * self.rise)
+        // Whole pixels: lines of one width meet without a seam.
+        let x = self.left + p[0] * self.unit;
+        let y = TOP + (self.data.height - p[1]) * self.rise;
+        (x.round(), y.round())
     }
 
     fn bottom(&self) -> f64 {
@@ -230,7 +238,7 @@ impl<'a> Sheet<'a> {
             g = g.add(self.polyline(l, INK, THIN + 0.6, labels));
         }
         for loaded in [false, true] {
-            for (k, m) in self.data.members.iter().enumerate() {
+            for (k, m) in self.data.members.iter().enumerate().filter(|(k, _)| self.category[*k].is_some()) {
                 let ink = self.ink(Some(k));
                 for p in m.pieces.iter().filter(|p| p.loaded == loaded) {
                     g = g.add(self.polyline(&p.points, &ink, if loaded { THICK } else { THIN }, labels));
@@ -271,11 +279,12 @@ impl<'a> Sheet<'a> {
                 g = g.add(line(a, b, &ink, body));
             }
             for face in &gear.faces {
-                let hub = gear.stems.iter().find(|s| on(face, s[1])).map_or(face[0], |s| s[0]);
+                let stem = gear.stems.iter().find(|s| on(face, s[1])).or(gear.stems.first());
+                let Some(&[hub, tip]) = stem else { continue };
                 let middle = [(face[0][0] + face[1][0]) / 2.0, (face[0][1] + face[1][1]) / 2.0];
                 let (shifted, from) = (self.near(middle, hub), self.at(middle));
                 // Towards the hub, so that two rows of teeth lie side by side.
-                let upright = face[0][0] == face[1][0];
+                let upright = hub[1] == tip[1];
                 let (dx, dy) = if upright { (shifted.0 - from.0, 0.0) } else { (0.0, shifted.1 - from.1) };
                 let [a, b] = face.map(|p| self.at(p)).map(|p| (p.0 + dx, p.1 + dy));
                 labels.mark(a, b, 3.0);
@@ -295,18 +304,18 @@ impl<'a> Sheet<'a> {
             hubs.dedup();
             let (Some(first), Some(last)) = (hubs.first(), hubs.last()) else { continue };
             if first != last {
-                let width = if m.loaded == Some(true) { 6.5 } else { 5.0 };
+                let width = if m.loaded == Some(true) { 8.0 } else { 5.0 };
                 g = g.add(line(self.at(*first), self.at(*last), INK, width));
                 labels.mark(self.at(*first), self.at(*last), width / 2.0);
             }
             for h in hubs {
                 let (x, y) = self.at(h);
-                labels.mark((x, y), (x, y), 5.0);
+                labels.mark((x, y), (x, y), 6.0);
                 g = g.add(
                     Circle::new()
                         .set("cx", number(x))
                         .set("cy", number(y))
-                        .set("r", 4)
+                        .set("r", 5)
                         .set("fill", PAPER)
                         .set("stroke", INK)
                         .set("stroke-width", 1.6),
@@ -413,7 +422,7 @@ impl<'a> Sheet<'a> {
                     Some(Way::In) => (x + side * 4.0, tip),
                     None => (x, tip),
                 };
-                let head = if t.way.is_some() { 12.0 * (end - back).signum() } else { 0.0 };
+                let head = if t.way.is_some() { 14.0 * (end - back).signum() } else { 0.0 };
                 g = g.add(line((if out { x } else { tip }, y), (end - head, y), &ink, width));
                 if t.way.is_some() {
                     let d = format!(
@@ -421,9 +430,9 @@ impl<'a> Sheet<'a> {
                         number(end),
                         number(y),
                         number(end - head),
-                        number(y - 6.0),
+                        number(y - 8.0),
                         number(end - head),
-                        number(y + 6.0)
+                        number(y + 8.0)
                     );
                     g = g.add(Path::new().set("d", d).set("fill", ink.as_str()));
                     if !out {
@@ -504,7 +513,7 @@ impl<'a> Sheet<'a> {
             let Some([hub, tip]) = gear.stems.first() else { continue };
             let (h, t) = (self.at(*hub), self.at(*tip));
             let mut spots = Spots::new();
-            if gear.faces.first().is_some_and(|f| f[0][0] == f[1][0]) {
+            if hub[1] == tip[1] {
                 for s in [-10.0, 18.0, -22.0, 30.0] {
                     spots.push(((h.0 + t.0) / 2.0, h.1 + s, Anchor::Middle));
                 }

@@ -79,7 +79,7 @@ pub struct StickMember {
     pub planet: bool,
     /// The blocks whose planets it carries, positions in [`Stick::blocks`].
     pub carries: Vec<usize>,
-    /// Its lines.
+    /// Its lines; of a stepped planet what joins its steps, along the pin.
     pub pieces: Vec<StickPiece>,
     /// Where three or more of its lines meet.
     pub dots: Vec<Place>,

@@ -267,7 +267,8 @@ impl<'a> Drawing<'a> {
 
     fn member(&self, n: usize) -> StickMember {
         let id = self.members.order[n];
-        let (pieces, dots) = self.pieces(n as u16, &self.loaded_points(n));
+        let (mut pieces, dots) = self.pieces(n as u16, &self.loaded_points(n));
+        pieces.extend(self.sleeve(id));
         let speed = self.load.speeds[id.index()].as_ref();
         StickMember {
             name: self.train.member_name(id).to_owned(),
@@ -279,6 +280,19 @@ impl<'a> Drawing<'a> {
             speed_ratio: speed.map(Rational::to_f64),
             exact_speed_ratio: speed.map(|s| s.to_fraction()),
         }
+    }
+
+    /// What joins the steps of a planet, along its pin.
+    fn sleeve(&self, id: MemberId) -> Option<StickPiece> {
+        let mut hubs: Vec<Place> = Vec::new();
+        for b in 0..self.plan.blocks.len() {
+            let own = self.shape(b).gears.iter().filter(|g| g.member == id && g.role == GearRole::Planet);
+            hubs.extend(own.flat_map(|g| &g.stems).map(|s| self.in_block(b, s[0])));
+        }
+        hubs.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+        let (first, last) = (*hubs.first()?, *hubs.last()?);
+        let loaded = self.load.members[id.index()] == Some(true);
+        (first != last).then(|| StickPiece { points: vec![first, last], loaded })
     }
 
     fn carries(&self, b: usize, id: MemberId) -> bool {

@@ -193,7 +193,7 @@ impl Grid {
         search.heap.clear();
         let joint = matches!(goal, Goal::Net(_) | Goal::Frame(_));
         for k in 0..n {
-            if !search.tree[k] {
+            if !search.tree[k] || self.point[k] == CLOSED {
                 continue;
             }
             let p = self.place(k);
@@ -253,7 +253,8 @@ impl Grid {
                 let go = cost + STEP + bend;
                 match goal {
                     Goal::Own | Goal::Border(_) => {
-                        if matches!(goal, Goal::Own) && !search.tree[to] && self.owns(q, net) {
+                        let other = !search.tree[to] && self.point[to] != CLOSED && self.owns(q, net);
+                        if matches!(goal, Goal::Own) && other {
                             let last = (to * 4 + way) as u32;
                             relax(search, state, last, go);
                             relax(search, last, end, go);
@@ -265,7 +266,8 @@ impl Grid {
                     }
                     Goal::Net(_) | Goal::Frame(_) => {
                         let after = |at: usize| (n * 4 + at * 4 + way) as u32;
-                        let clear = !crossing;
+                        // A symbol at the border would bar the only way from there.
+                        let clear = !crossing && !border && q.0 > 0 && q.0 < self.width - 1;
                         // On with the line that it is.
                         if let Some(crosses) =
                             self.entry(q, way, owner).filter(|_| !behind && !search.tree[to] || behind)

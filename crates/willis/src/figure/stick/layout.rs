@@ -6,8 +6,8 @@ use super::grid::{CLOSED, FREE, GROUND, Goal, Grid, Search};
 use super::shapes::{Point, Shape};
 
 /// Orders that are routed, and those of them that are improved.
-const ROUTED: usize = 24;
-const IMPROVED: usize = 8;
+const ROUTED: usize = 20;
+const IMPROVED: usize = 6;
 /// Rounds in which every line is laid anew.
 const ROUNDS: usize = 4;
 /// Blocks whose orders are all looked at.
@@ -365,7 +365,8 @@ impl Layout {
         let Some(a) = joint.members[0] else { return };
         let Some(start) = self.wanted(plan, a).first().copied() else { return };
         let axis = plan.axis_of[a];
-        let frame = |p: Point, way: usize| self.frame_price(axis, p, way);
+        let enclosed = if joint.members[1].is_none() { self.enclosed() } else { vec![] };
+        let frame = |p: Point, way: usize| self.frame_price(axis, p, way) + 30 * enclosed[self.grid.at(p)];
         let goal = match joint.members[1] {
             Some(b) => Goal::Net(b as u16),
             None => Goal::Frame(&frame),
@@ -397,7 +398,7 @@ impl Layout {
                 .iter()
                 .position(|d| (ends[0].0 + d.0, ends[0].1 + d.1) == ends[1])
                 .expect("a step of the grid");
-            self.price[j] = self.frame_price(axis, ends[1], way);
+            self.price[j] = self.frame_price(axis, ends[1], way) + 30 * enclosed[self.grid.at(ends[1])];
         }
     }
 
@@ -408,24 +409,33 @@ impl Layout {
         let inside = if p.1 <= sun { 8 } else { (top + 1 - p.1).max(0) as u32 };
         let beyond = 2 * (p.1 - top - 2).max(0) as u32;
         let border = if p.0 == 0 || p.0 == right { 1000 } else { 0 };
-        turned + inside + beyond + border + 30 * self.enclosed(p)
+        turned + inside + beyond + border
     }
 
-    /// Lines between a place and the housing, on the straight way with the fewest.
-    fn enclosed(&self, p: Point) -> u32 {
-        let ray = |way: usize| {
-            let (dx, dy) = super::grid::WAYS[way];
-            let mut lines = 0;
-            let mut q = (p.0 + dx, p.1 + dy);
-            while (0..self.grid.width).contains(&q.0) && (0..self.grid.height).contains(&q.1) {
-                let across = [(way + 1) % 4, (way + 3) % 4].map(|w| self.grid.step(q, w));
-                let taken = |s: u16| s != FREE && s != CLOSED;
-                lines += u32::from(across.into_iter().any(taken) || self.grid.point[self.grid.at(q)] != FREE);
-                q = (q.0 + dx, q.1 + dy);
-            }
-            lines
+    /// Lines between each place and the housing: left, right or above, on the straight way with the fewest.
+    fn enclosed(&self) -> Vec<u32> {
+        let g = &self.grid;
+        let taken = |p: Point, ways: [usize; 2]| {
+            let line = |w: usize| !matches!(g.step(p, w), FREE | CLOSED);
+            u32::from(ways.into_iter().any(line) || g.point[g.at(p)] != FREE)
         };
-        [0, 1, 2].into_iter().map(ray).min().unwrap_or(0)
+        let mut least = vec![u32::MAX; g.point.len()];
+        let mut ray = |points: &mut dyn Iterator<Item = Point>, across: [usize; 2]| {
+            let mut lines = 0;
+            for p in points {
+                let at = &mut least[g.at(p)];
+                *at = (*at).min(lines);
+                lines += taken(p, across);
+            }
+        };
+        for y in 0..g.height {
+            ray(&mut (0..g.width).map(|x| (x, y)), [1, 3]);
+            ray(&mut (0..g.width).rev().map(|x| (x, y)), [1, 3]);
+        }
+        for x in 0..g.width {
+            ray(&mut (0..g.height).rev().map(|y| (x, y)), [0, 2]);
+        }
+        least
     }
 
     /// The step of a path nearest its middle that touches no other line.
@@ -437,7 +447,8 @@ impl Layout {
         let last = path.len() - 1;
         let good = |k: &usize| {
             let ends = [(*k, *k == 0), (*k + 1, *k + 1 == last)];
-            ends.into_iter().all(|(i, end)| end || clear(path[i]))
+            let border = |p: Point| p.0 == 0 || p.0 == self.grid.width - 1;
+            ends.into_iter().all(|(i, end)| (end || clear(path[i])) && !border(path[i]))
         };
         let middle = |k: &usize| (2 * k + 1).abs_diff(last);
         (0..last).filter(good).min_by_key(middle).unwrap_or(symbol)

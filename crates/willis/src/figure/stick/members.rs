@@ -81,7 +81,11 @@ fn carriers(train: &Train, outer: &[bool], carries: &[bool]) -> Vec<Option<Membe
             }
         }
     }
-    let free: Vec<_> = train.meshes().iter().filter(|m| m.carrier != FRAME).collect();
+    let free: Vec<_> = train.meshes().iter().filter(|m| m.carrier != FRAME && m.set.is_none()).collect();
+    let in_set = |member: MemberId| {
+        let mut of_sets = train.meshes().iter().filter(|m| m.set.is_some());
+        of_sets.any(|m| m.gears.iter().any(|g| g.member == member))
+    };
     let only_on = |member: MemberId, on: MemberId| {
         let mut own = train.meshes().iter().filter(|m| m.gears.iter().any(|g| g.member == member));
         own.all(|m| m.carrier == on)
@@ -89,7 +93,13 @@ fn carriers(train: &Train, outer: &[bool], carries: &[bool]) -> Vec<Option<Membe
     for m in &free {
         for g in &m.gears {
             let k = g.member.index();
-            if g.member != FRAME && !outer[k] && !carries[k] && !g.internal && only_on(g.member, m.carrier) {
+            if g.member != FRAME
+                && !in_set(g.member)
+                && !outer[k]
+                && !carries[k]
+                && !g.internal
+                && only_on(g.member, m.carrier)
+            {
                 carrier[k].get_or_insert(m.carrier);
             }
         }

@@ -50,7 +50,9 @@ pub(super) struct Shape {
     pub crowded: bool,
 }
 
+/// Half the width of a gear; how far half a bevel gear's teeth lean.
 const HALF: f64 = 0.38;
+const LEAN: f64 = 0.14;
 
 impl Shape {
     fn block(&mut self, p: Point) {
@@ -90,11 +92,15 @@ impl Shape {
         }
         let upright = hub[1] == at[1];
         let face = match upright {
-            true => [[at[0], at[1] - HALF], [at[0], at[1] + HALF]],
+            // Cones meet where the axes do.
+            true => {
+                let lean = if at[0] < 1.0 { LEAN } else { -LEAN };
+                [[at[0] + lean, at[1] - HALF], [at[0] - lean, at[1] + HALF]]
+            }
             false => [[at[0] - HALF, at[1]], [at[0] + HALF, at[1]]],
         };
         // Teeth of one gear at two neighbouring stations are one face.
-        match g.faces.last_mut().filter(|f| !upright && f[0][1] == at[1] && f[1][1] == at[1]) {
+        match g.faces.last_mut().filter(|f| !upright && f[0][1] == at[1] && f[1][1] == at[1] && at[0] - f[1][0] < 2.0) {
             Some(f) => {
                 f[0][0] = f[0][0].min(face[0][0]);
                 f[1][0] = f[1][0].max(face[1][0]);
