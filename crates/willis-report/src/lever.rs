@@ -1,7 +1,7 @@
 //! The nomograph of a train: levers side by side.
 
 use svg::node::element::{Circle, Group, Path};
-use willis::figure::{Lever, LeverBar, LeverNode, LeverPull, LeverRole, LeverSet};
+use willis::figure::{Lever, LeverBar, LeverCase, LeverNode, LeverPull, LeverRole, LeverSet};
 
 use crate::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
@@ -112,7 +112,7 @@ impl<'a> View<'a> {
         // Few levers have wide scales, many have narrow ones.
         let columns: usize = lever.bars.iter().map(|b| if lever.torques { b.sets.len() } else { 0 }).sum();
         let fixed = lever.bars.len() as f64 * (NAMES + 2.0 * PAD + GAP) + columns as f64 * FORCES;
-        let least = if cases > 1 { f64::max(14.0 * cases as f64, 150.0) } else { 84.0 };
+        let least = if cases > 1 { f64::max(14.0 * cases as f64, 150.0) } else { 80.0 };
         let room = (WIDEST - 2.0 * MARGIN - fixed) / lever.bars.len() as f64;
         let speeds = room.clamp(least, f64::max(least, if cases > 1 { 340.0 } else { 260.0 }));
         let pulls = lever.bars.iter().flat_map(|b| &b.sets).flat_map(|s| &s.pulls);
@@ -273,7 +273,7 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
             g = g.add(dot);
         }
         g = g.add(mark(rest, v.y(n.position), &n.roles));
-        let held = |c: &willis::figure::LeverCase| c.held.contains(&n.member);
+        let held = |c: &LeverCase| c.held.contains(&n.member);
         if v.lever.cases[..v.cases].iter().any(held) {
             g = g.add(ground(rest - 6.0, v.y(n.position)));
         }
@@ -469,10 +469,9 @@ fn arrow(x: f64, y: f64, length: f64, ink: &str) -> Group {
 /// What is seen, and what is special.
 fn caption(v: &View<'_>) -> Vec<String> {
     let l = v.lever;
-    let mut first =
-        "Places along a lever come from tooth numbers; speeds are displacements from its rest line.".to_owned();
+    let mut first = "Heights come from tooth numbers, displacements from the rest line are speeds.".to_owned();
     if l.torques {
-        first.push_str(" Arrows: torques on a set, at the points to which friction moves them.");
+        first.push_str(" Arrows: torques on a set, at points that friction displaces.");
     }
     let mut all = vec![first];
     let mut second = Vec::new();
@@ -527,22 +526,26 @@ fn key(v: &View<'_>, top: f64, width: f64) -> (Group, f64) {
         g = g.add(l).add(text(x + 36.0, y, 12.0, Anchor::Start, "one member"));
     }
     if v.cases > 1 {
-        let columns = ((width / 330.0).floor() as usize).clamp(1, 4);
-        let column = width / columns as f64;
-        let rows = v.cases.div_ceil(columns);
-        for (k, case) in v.lever.cases[..v.cases].iter().enumerate() {
-            let x = MARGIN + column * (k / rows) as f64;
-            let y = y + 26.0 + 20.0 * (k % rows) as f64;
-            let sample = line((x, y - 4.0), (x + 40.0, y - 4.0), &case_colour(k), 2.2);
+        let entry = |case: &LeverCase| {
             let what = match (&case.note, case.ratio) {
                 (Some(note), _) => note.clone(),
                 (None, Some(ratio)) => format!("ratio {}", exactly(ratio)),
                 (None, None) => "output at rest".to_owned(),
             };
-            let name = match case.engaged.is_empty() {
+            match case.engaged.is_empty() {
                 true => format!("{}: {what}", case.name),
                 false => format!("{}: {what}; closed {}", case.name, case.engaged.join(", ")),
-            };
+            }
+        };
+        let drawn = &v.lever.cases[..v.cases];
+        let broadest = drawn.iter().map(|c| wide(&entry(c), 12.0) + 86.0).fold(220.0, f64::max);
+        let columns = ((width / broadest).floor() as usize).clamp(1, 4);
+        let column = width / columns as f64;
+        let rows = v.cases.div_ceil(columns);
+        for (k, case) in drawn.iter().enumerate() {
+            let x = MARGIN + column * (k / rows) as f64;
+            let y = y + 26.0 + 20.0 * (k % rows) as f64;
+            let sample = line((x, y - 4.0), (x + 40.0, y - 4.0), &case_colour(k), 2.2);
             if case.note.is_none() {
                 g = g.add(dashed(sample, k));
             }
@@ -551,7 +554,7 @@ fn key(v: &View<'_>, top: f64, width: f64) -> (Group, f64) {
                 y,
                 12.0,
                 Anchor::Start,
-                &fit(&name, column - 74.0, 12.0),
+                &fit(&entry(case), column - 74.0, 12.0),
             ));
         }
         y += 26.0 + 20.0 * (rows - 1) as f64;

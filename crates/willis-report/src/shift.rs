@@ -114,7 +114,7 @@ impl Columns {
         let steps = next(STEPS);
         let drive = next(EFFICIENCY);
         let coast = next(EFFICIENCY);
-        let widest = longest(&mut table.changes.iter().map(|c| wide(&exchange(c), 12.0) * BOLD)).clamp(90.0, 230.0);
+        let widest = longest(&mut table.changes.iter().map(|c| wide(&exchange(c), 12.0) * BOLD)).clamp(90.0, 300.0);
         let changes = next(widest + 34.0);
         Self { names, paths, element, elements, ratio, steps, drive, coast, changes, width: at + MARGIN, top, upright }
     }
@@ -230,7 +230,7 @@ fn efficiency(x: f64, y: f64, e: &ShiftEfficiency, worst: f64, way: usize) -> Gr
             .add(text(x, y + 4.0, 11.0, Anchor::Start, &fit(&e.words, EFFICIENCY - 14.0, 11.0)).set("fill", FAINT));
     };
     let g = g.add(text(x + 52.0, y + 4.0, 12.0, Anchor::End, &percent(value)));
-    let length = if worst > 0.0 { (1.0 - value) / worst * (EFFICIENCY - 74.0) } else { 0.0 };
+    let length = if worst > 0.0 { (1.0 - value) / worst * (EFFICIENCY - 82.0) } else { 0.0 };
     if length < 0.3 {
         return g;
     }

@@ -35,7 +35,7 @@ const TOP: f64 = 122.0;
 ///     )
 ///     .build()?;
 /// let all = sensitivity(&train, &Selection::default())?;
-/// assert!(willis_report::tornado(&tornado(&all.operations[0], 10)?).starts_with("<svg"));
+/// assert!(willis_report::tornado(&tornado(&all, None, 10)?).starts_with("<svg"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn tornado(t: &Tornado) -> String {
@@ -48,7 +48,8 @@ pub fn tornado(t: &Tornado) -> String {
     let left = columns[2] + wide("+0.1 mm", 11.0) + room;
     let middle = left + HALF;
     let right = middle + HALF + room;
-    let width = right + EFFECT + MARGIN;
+    // A long title may widen the page somewhat.
+    let width = (right + EFFECT + MARGIN).max((wide(&t.title, 20.0) * BOLD + 2.0 * MARGIN).min(1200.0));
     let bottom = TOP + ROW * t.bars.len() as f64;
 
     let inner = width - 2.0 * MARGIN;

@@ -43,7 +43,7 @@ fn pictures() -> Vec<String> {
         .collect();
     all.push(willis_report::shift(&shift(&train).unwrap()));
     let known = sensitivity(&train, &willis::Selection::default()).unwrap();
-    all.push(willis_report::tornado(&tornado(&known.operations[0], 12).unwrap()));
+    all.push(willis_report::tornado(&tornado(&known, None, 12).unwrap()));
     all
 }
 

@@ -16,7 +16,7 @@ fn example(name: &str) -> Train {
 fn bars_are_the_largest_changes_in_their_order() {
     let all = sensitivity(&example("wang-herringbone-physical.toml"), &Selection::default()).unwrap();
     let operation = &all.operations[0];
-    let t = tornado(operation, 8).unwrap();
+    let t = tornado(&all, None, 8).unwrap();
     assert_eq!((t.bars.len(), t.left_out), (8, operation.quantities.len() - 8));
     assert!(t.bars.windows(2).all(|w| w[0].loss_change_w.abs() >= w[1].loss_change_w.abs()));
     let least = t.bars[7].loss_change_w.abs();
@@ -32,7 +32,7 @@ fn bars_are_the_largest_changes_in_their_order() {
 fn without_losses_or_without_an_equilibrium_there_is_no_ranking() {
     let lossless = sensitivity(&example("textbook-reverted.toml"), &Selection::default()).unwrap();
     for o in &lossless.operations {
-        match tornado(o, 10) {
+        match tornado(&lossless, Some(&o.name), 10) {
             Ok(t) => assert!(!t.bars.is_empty()),
             Err(why) => assert!(why.to_string().contains("moves"), "{why}"),
         }
@@ -40,8 +40,9 @@ fn without_losses_or_without_an_equilibrium_there_is_no_ranking() {
     let locked = sensitivity(&example("wolfrom-498-self-locking.toml"), &Selection::default()).unwrap();
     let refused = locked.operations.iter().filter(|o| o.reason.is_some());
     assert!(refused.clone().count() > 0);
+    assert!(tornado(&locked, Some("x"), 10).unwrap_err().to_string().contains("`x`"));
     for o in refused {
-        let why = tornado(o, 10).unwrap_err().to_string();
+        let why = tornado(&locked, Some(&o.name), 10).unwrap_err().to_string();
         assert!(why.contains(o.reason.as_ref().unwrap()), "{why}");
     }
 }

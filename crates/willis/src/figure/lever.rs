@@ -10,6 +10,7 @@
 //! Source: H. L. Benford, M. B. Leising, The Lever Analogy: A New Tool in Transmission Analysis,
 //! SAE 810102 (1981).
 
+mod family;
 mod layout;
 
 use serde::Serialize;
@@ -18,8 +19,10 @@ use crate::analysis::{AS_DRAWN, OperationReport, SolutionReport, operate};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::train::{FRAME, Load, MemberId, MemberKind, MeshId, Operation, ShiftElementId, Train};
+use crate::train::{Load, MemberId, Operation, ShiftElementId, Train};
 use crate::units::{Dimension, Quantity};
+
+use family::{Family, families};
 
 /// What a lever picture shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -148,33 +151,6 @@ pub struct LeverLink {
     pub points: Vec<[usize; 2]>,
 }
 
-/// Gears that mesh with each other's planets on one carrier: a lever before it is placed.
-struct Family {
-    name: String,
-    carrier: MemberId,
-    /// Every point but the carrier, with its number N; the reference first.
-    points: Vec<Point>,
-    /// Every mesh, from its outer to its inner point (the one nearer to the reference planet).
-    meshes: Vec<Contact>,
-}
-
-struct Point {
-    member: MemberId,
-    number: Rational,
-    role: LeverRole,
-    /// The mesh that leads to the reference planet.
-    way: Option<usize>,
-}
-
-struct Contact {
-    mesh: MeshId,
-    /// Positions in [`Family::points`].
-    outer: usize,
-    inner: usize,
-    /// Whether the outer gear is the first of the mesh.
-    first: bool,
-}
-
 /// The nomograph of a train.
 ///
 /// # Errors
@@ -240,73 +216,6 @@ fn unfit(why: &str, hint: &str) -> Diagnostics {
     [Diagnostic::new(Code::Unfit, "", format!("no levers of this train: {why}")).hint(hint)].into_iter().collect()
 }
 
-/// Whether a rotor turns on a carrier and touches nothing but gears.
-fn is_planet(train: &Train, m: MemberId) -> bool {
-    m != FRAME
-        && (train.members[m.0].kind == MemberKind::Planet
-            || !train.terminals.contains(&m)
-                && !train.shift_elements.iter().any(|e| e.members.contains(&m))
-                && train.meshes.iter().filter(|x| x.gears.iter().any(|g| g.member == m)).count() > 1
-                && train
-                    .meshes
-                    .iter()
-                    .all(|x| x.carrier != m && (x.carrier != FRAME || x.gears.iter().all(|g| g.member != m))))
-}
-
-/// Follows the meshes of one carrier from planet to planet.
-fn families(train: &Train) -> Vec<Family> {
-    let mut taken = vec![false; train.meshes.len()];
-    let mut all = Vec::new();
-    while let Some(start) = taken.iter().position(|t| !t) {
-        let mesh = &train.meshes[start];
-        let planet = mesh.gears.iter().find(|g| is_planet(train, g.member));
-        let planets = planet.is_some();
-        let reference = planet.unwrap_or(&mesh.gears[0]);
-        let role = |gear: &crate::train::Gear| match (is_planet(train, gear.member), planets, gear.internal) {
-            (true, ..) => LeverRole::Planet,
-            (_, _, true) => LeverRole::Ring,
-            (_, true, false) => LeverRole::Sun,
-            _ => LeverRole::Gear,
-        };
-        let mut points =
-            vec![Point { member: reference.member, number: Rational::ONE, role: role(reference), way: None }];
-        let mut meshes: Vec<Contact> = Vec::new();
-        let mut at = 0;
-        while at < points.len() {
-            let here = points[at].member;
-            if at > 0 && points[at].role != LeverRole::Planet {
-                at += 1;
-                continue;
-            }
-            for k in 0..train.meshes.len() {
-                let m = &train.meshes[k];
-                let Some(side) = m.gears.iter().position(|g| g.member == here) else { continue };
-                if taken[k] || m.carrier != mesh.carrier {
-                    continue;
-                }
-                taken[k] = true;
-                let (from, to) = (&m.gears[side], &m.gears[1 - side]);
-                let turn = Rational::from(if m.same_sense { 1 } else { -1 });
-                let number = &points[at].number * &(&from.teeth / &to.teeth * turn);
-                let known = points.iter().position(|p| p.member == to.member && p.number == number);
-                let outer = known.unwrap_or_else(|| {
-                    points.push(Point { member: to.member, number, role: role(to), way: Some(meshes.len()) });
-                    points.len() - 1
-                });
-                meshes.push(Contact { mesh: MeshId(k), outer, inner: at, first: side == 1 });
-            }
-            at += 1;
-        }
-        let set = mesh.set.filter(|s| meshes.iter().all(|c| train.meshes[c.mesh.0].set == Some(*s)));
-        let name = set.map_or_else(
-            || meshes.iter().map(|c| train.meshes[c.mesh.0].name.as_str()).collect::<Vec<_>>().join(", "),
-            |s| train.sets[s].name.clone(),
-        );
-        all.push(Family { name, carrier: mesh.carrier, points, meshes });
-    }
-    all
-}
-
 /// What is shown: motions, and torques where there is one.
 struct Shown {
     title: String,
@@ -359,7 +268,7 @@ impl Shown {
             unit: None,
             cases: vec![case],
             speeds: vec![speeds],
-            solution: report.solutions.into_iter().chain(report.dissipative_solutions).next(),
+            solution: chosen(report.solutions.into_iter().chain(report.dissipative_solutions).collect()),
         })
     }
 
@@ -390,7 +299,7 @@ impl Shown {
         let solution = match operate(&plain, &operation) {
             Ok((report, _)) => {
                 case.note = note(&report);
-                report.solutions.into_iter().next()
+                chosen(report.solutions)
             }
             Err(why) => {
                 case.note = why.iter().next().map(|d| d.message.clone());
@@ -467,10 +376,16 @@ fn letter(k: usize) -> String {
 fn note(report: &OperationReport) -> Option<String> {
     match (&report.reason, report.solutions.len()) {
         (reason, 2..) => {
-            Some(format!("one of {} equilibria; {}", report.solutions.len(), reason.clone().unwrap_or_default()))
+            Some(format!("shown is one of {}; {}", report.solutions.len(), reason.clone().unwrap_or_default()))
         }
         (reason, _) => reason.clone(),
     }
+}
+
+/// An equilibrium that delivers power, if there is one.
+fn chosen(mut all: Vec<SolutionReport>) -> Option<SolutionReport> {
+    let at = all.iter().position(|s| !s.all_dissipated).unwrap_or(0);
+    (at < all.len()).then(|| all.swap_remove(at))
 }
 
 fn ends(train: &Train, state: Option<usize>) -> Option<(MemberId, MemberId)> {

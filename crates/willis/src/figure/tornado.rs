@@ -3,12 +3,12 @@
 use serde::Serialize;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::study::{OperationSensitivity, StepKind};
+use crate::study::{Sensitivity, StepKind};
 
 /// Quantities of an operating point, ranked by what a small step of each does.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tornado {
-    /// The operation, and its state.
+    /// The train, the operation and its state.
     pub title: String,
     /// Output over input power at the point; absent where nothing comes in.
     pub efficiency: Option<f64>,
@@ -43,10 +43,11 @@ pub struct TornadoBar {
     pub moves: Option<String>,
 }
 
-/// The bars of an operation's [sensitivity](crate::study::sensitivity), at most `most` of them.
+/// The bars of an operation (the first one, if none is named) of a [sensitivity](crate::study::sensitivity), at most
+/// `most` of them.
 ///
 /// # Errors
-/// An operation without derivatives (a train that locks), or without losses.
+/// An unknown operation, one without derivatives (a train that locks), or without losses.
 ///
 /// # Example
 /// ```
@@ -67,11 +68,17 @@ pub struct TornadoBar {
 ///     )
 ///     .build()?;
 /// let all = sensitivity(&train, &Selection::default())?;
-/// let tornado = tornado(&all.operations[0], 10)?;
+/// let tornado = tornado(&all, None, 10)?;
 /// assert!(tornado.bars.iter().any(|b| b.name == "P1.mesh_efficiency" && b.loss_change_w < 0.0));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn tornado(operation: &OperationSensitivity, most: usize) -> Result<Tornado, Diagnostics> {
+pub fn tornado(all: &Sensitivity, operation: Option<&str>, most: usize) -> Result<Tornado, Diagnostics> {
+    let Some(operation) = all.operations.iter().find(|o| operation.is_none_or(|name| o.name == name)) else {
+        let known = all.operations.iter().map(|o| o.name.as_str());
+        let name = operation.unwrap_or_default();
+        let d = Diagnostic::new(Code::UnknownSelection, "", format!("no sensitivity of an operation `{name}`"));
+        return Err([d.suggest(name, known)].into_iter().collect());
+    };
     let unfit = |why: &str, hint: &str| -> Diagnostics {
         let text = format!("no ranking of what moves the losses of `{}`: {why}", operation.name);
         [Diagnostic::new(Code::Unfit, "", text).hint(hint)].into_iter().collect()
@@ -96,7 +103,7 @@ pub fn tornado(operation: &OperationSensitivity, most: usize) -> Result<Tornado,
     });
     let state = operation.state.as_ref().map_or(String::new(), |s| format!(" (state {s})"));
     Ok(Tornado {
-        title: format!("{}{state}", operation.name),
+        title: format!("{}: {}{state}", all.train, operation.name),
         efficiency: operation.efficiency,
         loss_w: operation.loss_w,
         input_power_w: operation.input_power_w,

@@ -9,7 +9,8 @@
 use crate::exact::{self, Matrix, Rational};
 use crate::train::MemberId;
 
-use super::{Family, LeverRole};
+use super::LeverRole;
+use super::family::Family;
 
 /// Levers shorter than this part of the picture are drawn at their own scale.
 const SHORTEST: f64 = 0.12;
