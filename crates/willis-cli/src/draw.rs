@@ -65,10 +65,8 @@ pub fn draw(
 
 /// Where a kind does not apply to a train at all, those that do.
 fn with_others(wrong: Diagnostics, subject: &Subject, request: &FigureRequest) -> Diagnostics {
-    let asked = request.state.is_some()
-        || request.operation.is_some()
-        || request.part.is_some()
-        || !request.over.is_empty();
+    let asked =
+        request.state.is_some() || request.operation.is_some() || request.part.is_some() || !request.over.is_empty();
     let mut all: Vec<Diagnostic> = wrong.into_iter().collect();
     if !asked && let Some(first) = all.iter_mut().find(|d| d.severity == Severity::Error) {
         let others: Vec<&str> = FigureKind::applicable(subject).into_iter().map(FigureKind::name).collect();
@@ -126,10 +124,7 @@ pub fn report_request(file: &str, text: &str, operation: Option<String>, laws: &
     let mut more: Vec<String> = laws.iter().map(|l| format!(" --law {}", quoted(l))).collect();
     more.extend(operation.as_ref().map(|o| format!(" --operation {}", quoted(o))));
     let more = more.concat();
-    let commands = vec![
-        format!("willis analyze {shown}{more}"),
-        format!("willis report {shown}{more} -o report.html"),
-    ];
+    let commands = vec![format!("willis analyze {shown}{more}"), format!("willis report {shown}{more} -o report.html")];
     let version = format!("willis {}", env!("CARGO_PKG_VERSION"));
     ReportRequest { operation, file: name, hash, version, commands }
 }

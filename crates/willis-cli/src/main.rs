@@ -1008,20 +1008,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 Format::Csv => losses::laws_csv(&all),
             })
         }
-        Command::Draw {
-            kind,
-            file,
-            state,
-            operation,
-            part,
-            over,
-            nominal,
-            animated,
-            law,
-            theme,
-            scale,
-            output,
-        } => {
+        Command::Draw { kind, file, state, operation, part, over, nominal, animated, law, theme, scale, output } => {
             let job = Job::read(file)?;
             let request = FigureRequest {
                 state: state.clone(),

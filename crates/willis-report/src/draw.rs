@@ -2,7 +2,9 @@
 
 use willis::figure::Figure;
 
-use crate::{bands, film, flow_svg, front, lever, losses, map, path, regime_map, sankey, shift, stick, time_plot, tornado};
+use crate::{
+    bands, film, flow_svg, front, lever, losses, map, path, regime_map, sankey, shift, stick, time_plot, tornado,
+};
 
 /// How a figure is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

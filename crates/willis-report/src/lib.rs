@@ -31,18 +31,18 @@ mod tornado;
 
 pub use band::bands;
 pub use draw::{Drawing, draw};
+pub use film::film;
 pub use flow_dot::flow_dot;
 pub use flow_svg::flow_svg;
+pub use front::front;
 pub use html::html;
 pub use lever::lever;
 pub use losses::losses;
 pub use map::map;
 pub use modes_plot::modes_plot;
+pub use path::path;
 #[cfg(feature = "png")]
 pub use png::png;
-pub use film::film;
-pub use front::front;
-pub use path::path;
 pub use regime_map::regime_map;
 pub use report::{ReportRequest, report};
 pub use sankey::sankey;

@@ -194,8 +194,8 @@ fn any_name_finds_its_place() {
     let names = [["太阳轮", "齿圈", "行星架", "行星齿轮系 <1>"], ["sun & \"co\"", "<ring>", long, long]];
     for names in names {
         let text = text(names);
-        let subject = Subject::new(&text, &[], &mut |_| Err("no file".into()))
-            .unwrap_or_else(|r| panic!("{:?}", r.diagnostics));
+        let subject =
+            Subject::new(&text, &[], &mut |_| Err("no file".into())).unwrap_or_else(|r| panic!("{:?}", r.diagnostics));
         let mut drawn = 0;
         for kind in FigureKind::ALL {
             if let Ok(figure) = kind.make(&subject, &FigureRequest { samples: 128, ..Default::default() }) {

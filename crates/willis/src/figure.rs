@@ -18,14 +18,14 @@ mod tornado;
 
 pub use axes::ChartAxis;
 pub use band::{BandPoint, Bands, QUANTILES, bands};
+pub use contact_path::{ContactPath, MeshPath, PathPoint, contact_path};
+pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWheel, front};
 pub use kind::{Figure, FigureKind, FigureRequest};
 pub use lever::{
     Lever, LeverBar, LeverCase, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
 };
 pub use losses::{LossChart, LossSeries, loss_chart};
 pub use map::{EfficiencyMap, MapMark, MapPoint, efficiency_map};
-pub use contact_path::{ContactPath, MeshPath, PathPoint, contact_path};
-pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWheel, front};
 pub use regime_map::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
 pub use sankey::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode, SankeyPanel, sankey};
 pub use shift::{ShiftChange, ShiftColumn, ShiftEfficiency, ShiftRow, ShiftSpread, ShiftTable, shift};

@@ -124,6 +124,14 @@ const STEPS: &[Step] = &[
         in_check: false,
     },
     Step {
+        name: "pdf",
+        about: "reports as PDF, by a typesetter that is built for nobody else",
+        env: &[],
+        action: Action::Call(pdf),
+        may_skip: false,
+        in_check: false,
+    },
+    Step {
         name: "fuzz",
         about: "no panic on random train files: [--seconds N], 20 if not said",
         env: &[],
@@ -331,7 +339,7 @@ impl Tests {
     }
 }
 
-/// Files that are generated, and committed.
+/// Files that are generated, and committed; so are the [`FIGURES`].
 const GENERATED: &[&str] = &[
     "schema/willis-1.schema.json",
     "validation/README.md",
@@ -346,17 +354,9 @@ const GENERATED: &[&str] = &[
     "validation/wang-2020/power.csv",
     "validation/wang-2020/temperature.csv",
     "validation/wang-2020/lubrication.csv",
-    FIGURES[0].0,
-    FIGURES[1].0,
-    FIGURES[2].0,
-    FIGURES[3].0,
-    FIGURES[4].0,
-    FIGURES[5].0,
-    FIGURES[6].0,
-    FIGURES[7].0,
 ];
 
-/// Figures of the book, and what draws them.
+/// Figures of README and book, and what draws them.
 const FIGURES: &[(&str, &[&str])] = &[
     (
         "book/src/figures/prius-regimes.svg",
@@ -416,6 +416,31 @@ const FIGURES: &[(&str, &[&str])] = &[
         &["simulate", "examples/galvagno-coast-down.toml", "--scenario", "coast down", "--plot"],
     ),
     ("book/src/figures/launch-modes.svg", &["modes", "examples/launch.toml", "--state", "clutch closed", "--plot"]),
+    (
+        "book/src/figures/8hp70-stick.svg",
+        &["draw", "stick", "examples/zf-8hp70.toml", "--state", "3", "--theme", "auto", "-o"],
+    ),
+    ("book/src/figures/8hp70-shift.svg", &["draw", "shift", "examples/zf-8hp70.toml", "--theme", "auto", "-o"]),
+    (
+        "book/src/figures/8hp70-lever.svg",
+        &["draw", "lever", "examples/zf-8hp70.toml", "--state", "3", "--theme", "auto", "-o"],
+    ),
+    ("book/src/figures/8hp70-map.svg", &["draw", "map", "examples/zf-8hp70.toml", "--theme", "auto", "-o"]),
+    (
+        "book/src/figures/herringbone-sankey.svg",
+        &["draw", "sankey", "examples/wang-herringbone-physical.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/herringbone-losses.svg",
+        &["draw", "losses", "examples/wang-herringbone-physical.toml", "--theme", "auto", "-o"],
+    ),
+    ("book/src/figures/nrel-front.svg", &["draw", "front", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
+    (
+        "book/src/figures/nrel-tornado.svg",
+        &["draw", "tornado", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"],
+    ),
+    ("book/src/figures/nrel-band.svg", &["draw", "band", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
+    ("book/src/figures/nrel-film.svg", &["draw", "film", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
 ];
 
 /// Writes every generated file. Needs the optimised program.
@@ -458,14 +483,15 @@ fn build_willis(context: &Context) -> Result<(), String> {
 
 /// Writes the generated files, compares them with what was there, and puts that back.
 fn generated(context: &Context) -> Outcome {
-    let read = || GENERATED.iter().map(|name| fs::read(context.root.join(name)).ok()).collect::<Vec<_>>();
+    let names = || GENERATED.iter().copied().chain(FIGURES.iter().map(|f| f.0));
+    let read = || names().map(|name| fs::read(context.root.join(name)).ok()).collect::<Vec<_>>();
     let before = read();
     if let Err(e) = build_willis(context).and_then(|()| write_generated(context)) {
         return Outcome::Failed(e);
     }
     let after = read();
     let mut stale = Vec::new();
-    for ((name, before), after) in GENERATED.iter().zip(before).zip(after) {
+    for ((name, before), after) in names().zip(before).zip(after) {
         if before == after {
             continue;
         }
@@ -520,6 +546,7 @@ fn examples(context: &Context) -> Outcome {
                 &["regimes"],
                 &["regimes", json[0], json[1]],
                 &["formula", "--derivatives"],
+                &["report"],
             ];
             // Power flow and losses need an operating point.
             let text = fs::read_to_string(context.root.join(file)).map_err(|e| format!("{file}: {e}"))?;
@@ -561,7 +588,7 @@ fn examples(context: &Context) -> Outcome {
     match all() {
         Ok(count) => {
             println!(
-                "{count} example trains: check, analyze, regimes, formula, flow, losses, simulate, modes, and as JSON"
+                "{count} example trains: check, analyze, regimes, formula, report, flow, losses, simulate, modes, and as JSON"
             );
             Outcome::Passed
         }
@@ -623,6 +650,33 @@ fn wasm(context: &Context) -> Outcome {
         }
     }
     outcome(context.run(&format!("cargo build -p willis --target {TARGET}")))
+}
+
+/// Tests the typesetter, and sets one report.
+fn pdf(context: &Context) -> Outcome {
+    const MANIFEST: &str = "crates/willis-pdf/Cargo.toml";
+    let all = || -> Result<(), String> {
+        component(context, "rustfmt")?;
+        context.run(&format!("cargo fmt --manifest-path {MANIFEST} --check"))?;
+        // Built once, for tests and program alike; beside its manifest, where `report` looks for it.
+        let own = context.root.join("crates/willis-pdf/target");
+        for words in ["cargo test --release --manifest-path", "cargo build --release --manifest-path"] {
+            let words = format!("{words} {MANIFEST}");
+            passes(context.words(&words).env("CARGO_TARGET_DIR", &own), &words)?;
+        }
+        build_willis(context)?;
+        let report = context.target.join("report.pdf");
+        let mut command = context.willis();
+        let path = env::join_paths(
+            [own.join("release")].into_iter().chain(env::split_paths(&env::var_os("PATH").unwrap_or_default())),
+        );
+        command.env("PATH", path.map_err(|e| e.to_string())?);
+        context.output(command.args(["report", "examples/wang-herringbone-physical.toml", "-o"]).arg(&report))?;
+        let bytes = fs::read(&report).map_err(|e| format!("{}: {e}", report.display()))?;
+        println!("a report of {} kB", bytes.len() / 1000);
+        if bytes.starts_with(b"%PDF") { Ok(()) } else { Err(format!("{} is no PDF", report.display())) }
+    };
+    outcome(all())
 }
 
 /// Random train files, begun from the examples.

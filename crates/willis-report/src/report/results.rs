@@ -95,7 +95,8 @@ pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
         .chain([Column::words("Certain")]);
     let rows: Vec<Vec<String>> = all.analysis.ratios.iter().map(|(name, s)| state(name, s)).collect();
     if !rows.is_empty() {
-        let caption = "Ratio is the input's over the output's speed; efficiencies where the meshes' are given".to_owned();
+        let caption =
+            "Ratio is the input's over the output's speed; efficiencies where the meshes' are given".to_owned();
         blocks.push(Block::Table { caption, columns: columns.collect(), rows });
     }
     for (name, s) in all.analysis.ratios.iter() {
@@ -176,7 +177,8 @@ fn members(caption: &str, s: &SolutionReport) -> Block {
             vec![name.clone(), role.to_owned(), number(m.speed_rad_s, RPM), number(m.torque_n_m, 1.0), power]
         })
         .collect();
-    let caption = format!("{caption}; torque is the external torque on the member, power flows in where it is positive");
+    let caption =
+        format!("{caption}; torque is the external torque on the member, power flows in where it is positive");
     Block::Table { caption, columns, rows }
 }
 
@@ -246,9 +248,7 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
         let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
-            .map(|x| {
-                vec![x.name.clone(), kind(x.kind).into(), x.law.into(), watts(x.loss_w), exact_percent(x.share)]
-            })
+            .map(|x| vec![x.name.clone(), kind(x.kind).into(), x.law.into(), watts(x.loss_w), exact_percent(x.share)])
             .collect();
         blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
         blocks.extend(contacts(&o.name, s));

@@ -197,7 +197,9 @@ fn powers(subject: &Subject, r: &FigureRequest) -> Result<FlowReport, Diagnostic
     let report = flows(subject.train(), &r.selection())?;
     if report.operations.is_empty() {
         let d = Diagnostic::new(Code::NothingAsked, "", "power flows in operations, and there is none");
-        return Err(d.hint("add an [[operation]] with speeds and torques or powers; `stick` and `lever` need none").into());
+        return Err(d
+            .hint("add an [[operation]] with speeds and torques or powers; `stick` and `lever` need none")
+            .into());
     }
     Ok(report)
 }

@@ -58,13 +58,7 @@ pub fn build(links: &[Link], pairs: Vec<Pair>, count: Option<u32>) -> Result<Bui
             let member = link.wheels[k].member;
             let known = wheels.iter().position(|w| w.member == member && w.profile.same(&profile));
             known.unwrap_or_else(|| {
-                wheels.push(Placed {
-                    member,
-                    planet: link.wheels[k].planet,
-                    profile,
-                    turns: (0, 1),
-                    bodies: vec![],
-                });
+                wheels.push(Placed { member, planet: link.wheels[k].planet, profile, turns: (0, 1), bodies: vec![] });
                 wheels.len() - 1
             })
         }));
