@@ -86,6 +86,10 @@ mod prose {
     struct TheTrainFile;
     #[doc = include_str!("../../../book/src/shift-tables.md")]
     struct ShiftTables;
+    #[doc = include_str!("../../../book/src/automatic-transmission.md")]
+    struct AnAutomaticTransmission;
+    #[doc = include_str!("../../../book/src/wind-turbine.md")]
+    struct AWindTurbinesGearbox;
     #[doc = include_str!("../../../book/src/losses.md")]
     struct WhereDoesEveryWattGo;
     #[doc = include_str!("../../../book/src/which-loss-first.md")]
