@@ -451,6 +451,9 @@ impl<'a> Sheet<'a> {
                     );
                 }
             }
+            if !t.open {
+                g = g.add(line((x, y), (tip, y), &ink, width));
+            }
             let name = fit(&m.name, (MARGIN - ARROW - 18.0) / BOLD, 12.0);
             let (tx, anchor) = (tip + side * 10.0, if t.left { Anchor::End } else { Anchor::Start });
             labels.texts.push(Labels::bounds(tx, y + 4.0, 12.0, anchor, wide(&name, 12.0) * BOLD));
