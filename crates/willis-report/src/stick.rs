@@ -451,6 +451,9 @@ impl<'a> Sheet<'a> {
                     );
                 }
             }
+            if !t.open {
+                g = g.add(line((x, y), (tip, y), &ink, width));
+            }
             let name = fit(&m.name, (MARGIN - ARROW - 18.0) / BOLD, 12.0);
             let (tx, anchor) = (tip + side * 10.0, if t.left { Anchor::End } else { Anchor::Start });
             labels.texts.push(Labels::bounds(tx, y + 4.0, 12.0, anchor, wide(&name, 12.0) * BOLD));
@@ -573,9 +576,8 @@ impl<'a> Sheet<'a> {
                     spots.extend([(x, y + 18.0, Anchor::Middle), (x, y - 10.0, Anchor::Middle)]);
                 }
             }
-            let ink = self.ink(Some(k));
             let number = self.category[k].map(|c| (c + 1).to_string());
-            g = g.add(self.label(&m.name, number.as_deref(), 11.0, &ink, "normal", &spots, labels));
+            g = g.add(self.label(&m.name, number.as_deref(), 11.0, INK, "italic", &spots, labels));
         }
         g
     }
@@ -589,11 +591,11 @@ impl<'a> Sheet<'a> {
         stand_in: Option<&str>,
         size: f64,
         ink: &str,
-        weight: &str,
+        face: &str,
         spots: &Spots,
         labels: &mut Labels,
     ) -> Group {
-        let factor = if weight == "bold" { BOLD } else { 1.0 };
+        let factor = if face == "bold" { BOLD } else { 1.0 };
         let most = wide(content, size).min(150.0);
         let least = wide("00", size).max(most * 0.45).min(most);
         let mut tries: Vec<(String, bool)> = Vec::new();
@@ -617,8 +619,10 @@ impl<'a> Sheet<'a> {
                 }
                 labels.texts.push(b);
                 let mut t = text(*x, *y, size, *anchor, &shown).set("fill", ink);
-                if weight == "bold" {
-                    t = t.set("font-weight", weight);
+                match face {
+                    "bold" => t = t.set("font-weight", "bold"),
+                    "italic" => t = t.set("font-style", "italic"),
+                    _ => {}
                 }
                 if !marks {
                     t = t

@@ -1,7 +1,7 @@
 //! Stick diagrams: their lines join what the train joins, and nothing else.
 
 use willis::figure::{JointKind, Place, Stick, stick};
-use willis::train::{FRAME, SetSpec, ShiftElementSpec, Train, TrainBuilder};
+use willis::train::{FRAME, GearSpec, MeshSpec, SetSpec, ShiftElementSpec, Train, TrainBuilder};
 
 const NEAR: f64 = 1e-6;
 
@@ -246,6 +246,7 @@ fn random(seed: u64, sets: usize, name: &dyn Fn(usize) -> String) -> Result<Trai
     let members = sets + 2;
     let name = |m: usize| if m == 0 { "frame".to_owned() } else { name(m) };
     let mut names: Vec<String> = (1..=members).map(name).collect();
+    names.push("wheel".to_owned());
     names.sort();
     let mut b: TrainBuilder = Train::builder(format!("random {seed}")).members(names.iter().map(String::as_str));
     b = b.terminals([name(1).as_str(), name(2).as_str()]);
@@ -253,25 +254,28 @@ fn random(seed: u64, sets: usize, name: &dyn Fn(usize) -> String) -> Result<Trai
         let set = format!("P{k}");
         let z = 20 + dice.below(20) as i64;
         let p = 15 + dice.below(10) as i64;
-        let spec = match dice.below(5) {
-            0 | 1 => {
-                let m: Vec<String> = dice.some(3, members).into_iter().map(name).collect();
-                SetSpec::simple(set, (m[0].as_str(), z), (m[1].as_str(), z + 2 * p), m[2].as_str()).planet(p, 3)
-            }
-            2 => {
-                let m: Vec<String> = dice.some(4, members.max(3)).into_iter().map(name).collect();
-                SetSpec::stepped(set, m[0].as_str()).sun(&m[1], z, p).ring(&m[2], z + 2 * p, p).sun(&m[3], z - 3, p + 3)
-            }
-            3 => {
-                let m: Vec<String> = dice.some(3, members).into_iter().map(name).collect();
-                SetSpec::stepped(set, m[0].as_str()).sun(&m[1], z, p).sun(&m[2], z - 2, p + 2)
-            }
-            _ => {
-                let m: Vec<String> = dice.some(3, members).into_iter().map(name).collect();
-                SetSpec::stepped(set, m[0].as_str()).ring(&m[1], z + 2 * p, p).ring(&m[2], z + 2 * p + 2, p + 2)
-            }
+        let kind = dice.below(8);
+        let count = if kind < 4 { 3 } else { 4.min(members) };
+        let mut m: Vec<String> = dice.some(count, members).into_iter().map(name).collect();
+        // A set of four on three members: two of its gears are fixed.
+        m.resize(m.len().max(if kind < 4 { 3 } else { 4 }), "frame".to_owned());
+        let spec = match kind {
+            0 | 1 => SetSpec::simple(set, (&m[0], z), (&m[1], z + 2 * p), &m[2]).planet(p, 3),
+            2 => SetSpec::double_planet(set, (&m[0], z), (&m[1], z + 4 * p), &m[2]),
+            3 => SetSpec::bevel(set, &m[0]).side(&m[1], z, false).side(&m[2], z, true),
+            4 => SetSpec::stepped(set, &m[0]).sun(&m[1], z, p).ring(&m[2], z + 2 * p, p).sun(&m[3], z - 3, p + 3),
+            5 => SetSpec::stepped(set, &m[0]).sun(&m[1], z, p).sun(&m[2], z - 2, p + 2),
+            6 => SetSpec::stepped(set, &m[0]).ring(&m[1], z + 2 * p, p).ring(&m[2], z + 2 * p + 2, p + 2),
+            _ => SetSpec::ravigneaux(set, (&m[0], z), (&m[1], z + 4), (&m[2], z + 4 + 2 * p), &m[3]),
         };
         b = b.set(spec.mesh_efficiency(0.99));
+    }
+    if dice.below(3) == 0 {
+        // A member on an axis of its own, behind an ordinary pair.
+        let from = 1 + dice.below(members);
+        let ring = dice.below(3) == 0;
+        let wheel = if ring { GearSpec::internal("wheel", 80) } else { GearSpec::external("wheel", 40) };
+        b = b.mesh(MeshSpec::new(GearSpec::external(name(from), 20), wheel)).terminals(["wheel"]);
     }
     for k in 0..dice.below(2 * sets) {
         let m = dice.some(2, members);
@@ -304,7 +308,7 @@ fn other_names_give_the_same_picture() {
         let mut s = stick(&a, None).expect("a picture");
         let t = stick(&b, None).expect("a picture");
         for (m, n) in s.members.iter_mut().zip(&t.members) {
-            if !m.planet {
+            if !m.planet && m.name != "wheel" {
                 let k: usize = m.name[1..].parse().expect("a number");
                 assert_eq!(n.name, other(k));
             }

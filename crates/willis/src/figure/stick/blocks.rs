@@ -17,6 +17,8 @@ pub(super) struct Block {
 
 /// A shift element or elastic shaft.
 pub(super) struct Joint {
+    /// Its place among the shift elements, then shafts, of the train.
+    pub number: usize,
     pub name: String,
     pub kind: JointKind,
     pub members: [Net; 2],
@@ -49,6 +51,7 @@ impl Plan {
             .iter()
             .enumerate()
             .map(|(k, e)| Joint {
+                number: k,
                 name: e.name.clone(),
                 kind: match e.kind {
                     ShiftElementKind::Clutch => JointKind::Clutch,
@@ -59,7 +62,9 @@ impl Plan {
                 engaged: engaged.iter().any(|id| id.index() == k),
             })
             .collect();
-        joints.extend(train.shafts().iter().map(|s| Joint {
+        let first = joints.len();
+        joints.extend(train.shafts().iter().enumerate().map(|(k, s)| Joint {
+            number: first + k,
             name: s.name.clone(),
             kind: JointKind::Shaft,
             members: s.members.map(net),

@@ -147,17 +147,16 @@ impl<'a> Drawing<'a> {
                 crossings.push(self.point(p));
             }
         }
-        let joints = self.plan.joints.iter().zip(&self.layout.joints).enumerate();
+        let joints = self.plan.joints.iter().zip(&self.layout.joints);
         let joints = joints
-            .filter_map(|(_, (j, ends))| {
-                let k = self.joint_number(&j.name)?;
+            .filter_map(|(j, ends)| {
                 Some(StickJoint {
                     name: j.name.clone(),
                     kind: j.kind,
                     members: j.members,
                     ends: ends.as_ref()?.map(|p| self.point(p)),
                     engaged: j.engaged,
-                    loaded: self.load.joints[k].contains(&Some(true)),
+                    loaded: self.load.joints[j.number].contains(&Some(true)),
                 })
             })
             .collect();
@@ -185,13 +184,6 @@ impl<'a> Drawing<'a> {
             frame: self.pieces(GROUND, &[]).0.into_iter().map(|p| p.points).collect(),
             crossings,
         }
-    }
-
-    /// Position among the shift elements, then shafts, of the train.
-    fn joint_number(&self, name: &str) -> Option<usize> {
-        let elements = self.train.shift_elements();
-        let shafts = self.train.shafts();
-        elements.iter().map(|e| &e.name).chain(shafts.iter().map(|s| &s.name)).position(|n| n == name)
     }
 
     fn block(&self, b: usize) -> StickBlock {
@@ -324,9 +316,8 @@ impl<'a> Drawing<'a> {
             }
         }
         for (j, ends) in self.plan.joints.iter().zip(&self.layout.joints) {
-            let Some(number) = self.joint_number(&j.name) else { continue };
             if let Some(ends) = ends
-                && self.load.joints[number].contains(&Some(true))
+                && self.load.joints[j.number].contains(&Some(true))
             {
                 all.extend((0..2).filter(|&k| j.members[k] == Some(n)).map(|k| ends[k]));
             }

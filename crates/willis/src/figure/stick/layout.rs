@@ -5,9 +5,10 @@ use super::blocks::{Exit, Joint, Plan};
 use super::grid::{CLOSED, FREE, GROUND, Goal, Grid, Search};
 use super::shapes::{Point, Shape};
 
-/// Orders that are routed, and those of them that are improved.
+/// Orders that are routed, those of them that are improved once, and those that are improved further.
 const ROUTED: usize = 20;
 const IMPROVED: usize = 6;
+const FINAL: usize = 2;
 /// Rounds in which every line is laid anew.
 const ROUNDS: usize = 4;
 /// Blocks whose orders are all looked at.
@@ -61,7 +62,7 @@ pub(super) fn best(plan: &Plan) -> Option<Layout> {
         let first = vec![0; plan.blocks.len()];
         for order in orders(plan) {
             let l = Layout::new(plan, &order, &first, room, &mut search);
-            all.push((l.cost(), order, first.clone(), l));
+            all.push((l.cost(plan), order, first.clone(), l));
         }
         all.sort_by_key(|a| a.0);
         all.truncate(IMPROVED);
@@ -72,17 +73,25 @@ pub(super) fn best(plan: &Plan) -> Option<Layout> {
                     let mut other = shapes.clone();
                     other[b] = s;
                     let l = Layout::new(plan, order, &other, room, &mut search);
-                    if l.cost() < *cost {
-                        (*cost, *shapes, *layout) = (l.cost(), other, l);
+                    if l.cost(plan) < *cost {
+                        (*cost, *shapes, *layout) = (l.cost(plan), other, l);
                     }
                 }
             }
-            layout.improve(plan, &mut search);
-            *cost = layout.cost();
+            layout.improve(plan, 1, &mut search);
+            *cost = layout.cost(plan);
+        }
+        all.sort_by_key(|a| a.0);
+        all.truncate(FINAL);
+        for (cost, .., layout) in &mut all {
+            layout.improve(plan, ROUNDS, &mut search);
+            layout.cut_loose(plan);
+            layout.improve(plan, 1, &mut search);
+            *cost = layout.cost(plan);
         }
         all.sort_by_key(|a| a.0);
         let (.., layout) = all.into_iter().next()?;
-        if layout.missing() == 0 {
+        if layout.missing(plan) == 0 {
             return Some(layout);
         }
         room = Room { gap: room.gap + 3, inner: room.inner + 2, outer: room.outer + 3 };
@@ -320,7 +329,7 @@ impl Layout {
                 self.grid.set(w[0], w[1], owner, false);
             }
         }
-        if let Some(k) = exit.filter(|k| self.exits[*k].is_none()) {
+        if let Some(k) = exit.filter(|k| self.exits[*k].is_none() && plan.exits[*k].open) {
             let e = &plan.exits[k];
             let axis = self.axes[plan.axis_of[net]];
             let right = self.grid.width - 1;
@@ -475,13 +484,13 @@ impl Layout {
     }
 
     /// Lays every member and every joint anew, as long as it helps.
-    fn improve(&mut self, plan: &Plan, search: &mut Search) {
-        for _ in 0..ROUNDS {
-            let before = self.cost();
+    fn improve(&mut self, plan: &Plan, rounds: usize, search: &mut Search) {
+        for _ in 0..rounds {
+            let before = self.cost(plan);
             for net in 0..plan.nets {
                 let own: Vec<usize> =
                     (0..plan.joints.len()).filter(|&j| plan.joints[j].members.contains(&Some(net))).collect();
-                self.attempt(|l| {
+                self.attempt(plan, |l| {
                     own.iter().for_each(|&j| l.part(plan, j));
                     l.grid.rip(net as u16);
                     for (k, e) in plan.exits.iter().enumerate() {
@@ -496,43 +505,58 @@ impl Layout {
                     own.iter().for_each(|&j| l.join(plan, j, search));
                 });
                 // The lines alone, with the joints where they are.
-                self.attempt(|l| {
+                self.attempt(plan, |l| {
                     l.grid.rip(net as u16);
                     l.lay(plan, net, search);
                 });
             }
             for j in 0..plan.joints.len() {
-                self.attempt(|l| {
+                self.attempt(plan, |l| {
                     l.part(plan, j);
                     l.join(plan, j, search);
                 });
             }
-            if self.cost() >= before {
+            if self.cost(plan) >= before {
                 return;
             }
         }
     }
 
-    fn attempt(&mut self, change: impl FnOnce(&mut Self)) {
+    /// A rotor between clutches ends where they are, not at the border where it was begun.
+    fn cut_loose(&mut self, plan: &Plan) {
+        for (k, e) in plan.exits.iter().enumerate().filter(|(_, e)| !e.open) {
+            let joints = plan.joints.iter().zip(&self.joints);
+            let joined = joints.filter(|(j, at)| j.members.contains(&Some(e.net)) && at.is_some()).count();
+            if joined > 1
+                && let Some(p) = self.exits[k].take()
+            {
+                let at = self.grid.at(p);
+                self.grid.point[at] = FREE;
+                self.grid.prune(e.net as u16);
+            }
+        }
+    }
+
+    fn attempt(&mut self, plan: &Plan, change: impl FnOnce(&mut Self)) {
         let before = self.clone();
         change(self);
-        if self.cost() >= before.cost() {
+        if self.cost(plan) >= before.cost(plan) {
             *self = before;
         }
     }
 
     /// What has found no way.
-    fn missing(&self) -> usize {
+    fn missing(&self, plan: &Plan) -> usize {
         self.joints.iter().filter(|j| j.is_none()).count()
-            + self.exits.iter().filter(|e| e.is_none()).count()
+            + plan.exits.iter().zip(&self.exits).filter(|(e, at)| e.open && at.is_none()).count()
             + self.broken.iter().filter(|b| **b).count()
     }
 
     /// Crossings cost most, then length and bends.
-    fn cost(&self) -> u64 {
+    fn cost(&self, plan: &Plan) -> u64 {
         let (crossings, steps, bends) = self.grid.measure();
         let extra: u32 = self.price.iter().sum();
-        self.missing() as u64 * 100_000
+        self.missing(plan) as u64 * 100_000
             + u64::from(crossings) * 200
             + u64::from(steps) * 2
             + u64::from(bends) * 3
