@@ -84,7 +84,13 @@ pub fn film(path: &ContactPath) -> String {
     }
     // Words of the bands over the curves, where none should be.
     for (a, b, _, words) in bands {
-        let at = if a == full { y(b) + 16.0 } else if b == mixed { y(a) - 7.0 } else { y(b) + 16.0 };
+        let at = if a == full {
+            y(b) + 16.0
+        } else if b == mixed {
+            y(a) - 7.0
+        } else {
+            y(b) + 16.0
+        };
         g = g.add(halo(text(LEFT + 8.0, at, 12.0, Anchor::Start, words)).set("fill", FAINT));
     }
     g = g
@@ -116,7 +122,9 @@ pub(crate) fn heading(path: &ContactPath, width: f64, laws: &str) -> Group {
     let title = format!("{}: {}", path.title, path.operation);
     let caption = format!("{} at {} °C; {laws}", path.oil, digits(path.temperature_celsius));
     Group::new()
-        .add(text(28.0, 38.0, 20.0, Anchor::Start, &fit(&title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"))
+        .add(
+            text(28.0, 38.0, 20.0, Anchor::Start, &fit(&title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
+        )
         .add(text(28.0, 60.0, 13.0, Anchor::Start, &fit(&caption, width - 56.0, 13.0)).set("fill", FAINT))
 }
 
@@ -150,11 +158,8 @@ fn halo(t: svg::node::element::Text) -> svg::node::element::Text {
 
 fn curve(m: &MeshPath, k: usize, x: &dyn Fn(f64) -> f64, y: &dyn Fn(f64) -> f64) -> Group {
     let mut g = Group::new();
-    let points: Vec<String> = m
-        .points
-        .iter()
-        .filter_map(|p| Some(format!("{} {}", number(x(p.s_mm)), number(y(p.film_ratio?)))))
-        .collect();
+    let points: Vec<String> =
+        m.points.iter().filter_map(|p| Some(format!("{} {}", number(x(p.s_mm)), number(y(p.film_ratio?))))).collect();
     if points.len() < 2 {
         return g;
     }

@@ -9,8 +9,7 @@ use svg::node::element::{Circle, Element, Group, Path, Polygon};
 use willis::figure::{Front, FrontMesh, FrontPlane, FrontWheel};
 
 use crate::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, line, lines, number, page, rectangle, text,
-    wide,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
 
 /// Edge of the page, and where the panels begin.
@@ -86,7 +85,8 @@ pub fn front(view: &Front, animated: bool) -> String {
         page_body = page_body.add(enlarged(view, mesh, x, y));
         bottom = y + ENLARGED + 62.0;
     }
-    let (x, y, room) = if several { (EDGE + ENLARGED + 40.0, y, width - EDGE - x - ENLARGED - 40.0) } else { (x, bottom, SIDE) };
+    let (x, y, room) =
+        if several { (EDGE + ENLARGED + 40.0, y, width - EDGE - x - ENLARGED - 40.0) } else { (x, bottom, SIDE) };
     let (numbers, end) = numbers(view, x, y, room);
     page_body = page_body.add(numbers);
     let height = end.max(bottom).max(TOP + panels.1) + 20.0;
@@ -168,7 +168,7 @@ fn circle(at: (f64, f64), radius: f64, stroke: &str, width: f64) -> Circle {
 /// The wheels of one plane.
 fn panel(view: &Front, plane: &FrontPlane, at: &View, first: bool, animated: bool) -> Group {
     let mut g = Group::new();
-    // Rings behind, planets before their suns.
+    // Rings behind, suns before their planets.
     let mut order = plane.wheels.clone();
     order.sort_by_key(|&w| (!view.wheels[w].internal, view.wheels[w].planet, w));
     for &k in &order {
@@ -386,7 +386,14 @@ fn arrow(centre: (f64, f64), radius: f64, [from, to]: [f64; 2], turns: f64) -> G
     let at = |r: f64, angle: f64| (centre.0 + r * angle.cos(), centre.1 - r * angle.sin());
     let (a, b) = (at(radius, start), at(radius, end));
     let sweep = i32::from(turns < 0.0);
-    let d = format!("M{} {} A{r} {r} 0 0 {sweep} {} {}", number(a.0), number(a.1), number(b.0), number(b.1), r = number(radius));
+    let d = format!(
+        "M{} {} A{r} {r} 0 0 {sweep} {} {}",
+        number(a.0),
+        number(a.1),
+        number(b.0),
+        number(b.1),
+        r = number(radius)
+    );
     // The head lies along the arc.
     let back = end - turns.signum() * 7.0 / radius;
     let points = [at(radius, end + turns.signum() * 3.0 / radius), at(radius - 3.6, back), at(radius + 3.6, back)];
@@ -405,9 +412,8 @@ fn window(view: &Front, mesh: &FrontMesh) -> f64 {
 /// The first mesh, large: flanks in contact, the path with its points.
 fn enlarged(view: &Front, mesh: &FrontMesh, x: f64, y: f64) -> Group {
     let head = format!("Mesh {}, enlarged", own(view, &mesh.name));
-    let mut g = Group::new().add(
-        text(x, y + 14.0, 13.0, Anchor::Start, &fit(&head, ENLARGED / BOLD, 13.0)).set("font-weight", "bold"),
-    );
+    let mut g = Group::new()
+        .add(text(x, y + 14.0, 13.0, Anchor::Start, &fit(&head, ENLARGED / BOLD, 13.0)).set("font-weight", "bold"));
     let y = y + 26.0;
     let half = window(view, mesh);
     let scale = ENLARGED / (2.0 * half);
@@ -491,7 +497,8 @@ fn points(mesh: &FrontMesh, at: &View, frame: &clip::Frame) -> Group {
         let places = [(15.0, 0.0), (-15.0, 0.0), (14.0, 10.0), (-14.0, -10.0), (14.0, -10.0), (-14.0, 10.0)];
         let free = places.into_iter().find_map(|(side, on)| {
             let q = (p.0 + side * across[0] + on * along[0], p.1 - side * across[1] - on * along[1]);
-            let inside = q.0 > frame.left + 8.0 && q.0 < frame.right - 8.0 && q.1 > frame.top + 9.0 && q.1 < frame.bottom - 9.0;
+            let inside =
+                q.0 > frame.left + 8.0 && q.0 < frame.right - 8.0 && q.1 > frame.top + 9.0 && q.1 < frame.bottom - 9.0;
             let clear = taken.iter().all(|t| (t.0 - q.0).abs() > 12.0 || (t.1 - q.1).abs() > 16.0);
             (inside && clear).then_some(q)
         });
@@ -531,7 +538,8 @@ fn numbers(view: &Front, x: f64, y: f64, room: f64) -> (Group, f64) {
     let mut y = y + 14.0;
     let right = x + room.min(SIDE + 120.0);
     // Right edges of the columns.
-    let columns = [("turns", 0.0), ("root mm", 62.0), ("tip mm", 124.0), ("ref. mm", 180.0), ("x", 234.0), ("z", 276.0)];
+    let columns =
+        [("turns", 0.0), ("root mm", 62.0), ("tip mm", 124.0), ("ref. mm", 180.0), ("x", 234.0), ("z", 276.0)];
     let name_room = right - 310.0 - (x + 26.0);
     g = g.add(text(x + 26.0, y, 12.0, Anchor::Start, "wheel").set("fill", FAINT));
     for (head, from) in columns {
@@ -577,7 +585,7 @@ fn numbers(view: &Front, x: f64, y: f64, room: f64) -> (Group, f64) {
             digits4(m.centre_distance_mm),
             digits4(m.pressure_angle.to_degrees()),
             digits(m.contact_ratio),
-            digits(if m.backlash_mm.abs() < 1e-6 { 0.0 } else { m.backlash_mm })
+            digits4(if m.backlash_mm.abs() < 5e-5 { 0.0 } else { m.backlash_mm })
         );
         g = say(g, &words, INK);
     }

@@ -83,15 +83,13 @@ pub fn path(path: &ContactPath) -> String {
         let left = LEFT + k as f64 * (column + GAP);
         let x = |s: f64| left + (s - from) / (to - from) * column;
         g = g
-            .add(
-                text(left, 92.0, 13.0, Anchor::Start, &fit(&m.name, column / BOLD, 13.0)).set("font-weight", "bold"),
-            )
+            .add(text(left, 92.0, 13.0, Anchor::Start, &fit(&m.name, column / BOLD, 13.0)).set("font-weight", "bold"))
             .add(breaks(m, &x, bottom));
         for (r, row) in ROWS.iter().enumerate() {
             let top = TOP + r as f64 * STEP;
             g = g.add(panel(row, shown, k, top, (left, left + column), &x));
         }
-        for t in ticks(from, to, (column / 70.0) as usize) {
+        for t in ticks(from, to, (column / 45.0) as usize) {
             g = g
                 .add(line((x(t), bottom), (x(t), bottom + 4.0), LINE, 1.0))
                 .add(text(x(t), bottom + 17.0, 11.0, Anchor::Middle, &digits(t)).set("fill", FAINT));
@@ -150,11 +148,13 @@ fn description(path: &ContactPath, shown: &[MeshPath]) -> String {
 fn balance(m: &MeshPath) -> String {
     let pairs = if m.count > 1 { format!(", {} pairs in parallel", m.count) } else { String::new() };
     match m.integrated_loss_w {
-        None => format!("Sliding loss {} W{pairs}, by the efficiency given: no friction is computed.", digits(m.sliding_loss_w)),
-        Some(_) if m.adds_up() => format!(
-            "Sliding loss {} W{pairs}: the local loss, integrated along the path.",
+        None => format!(
+            "Sliding loss {} W{pairs}, by the efficiency given: no friction is computed.",
             digits(m.sliding_loss_w)
         ),
+        Some(_) if m.adds_up() => {
+            format!("Sliding loss {} W{pairs}: the local loss, integrated along the path.", digits(m.sliding_loss_w))
+        }
         Some(own) => format!(
             "Sliding loss {} W{pairs} by the law of the loss factor, which shares the load otherwise; the local loss \
              integrates to {} W.",
@@ -167,15 +167,15 @@ fn balance(m: &MeshPath) -> String {
 fn remarks(path: &ContactPath, shown: usize) -> Vec<String> {
     let mut all = Vec::new();
     all.push(match path.local {
-        true => format!("{} gives friction for each place of the path.", path.friction_law),
+        true => format!("The law {} gives friction for each place of the path.", path.friction_law),
         false => format!(
-            "{} gives one mean coefficient for the mesh; what friction is at each place is not known.",
+            "The law {} gives one mean coefficient for the mesh; what friction is at each place is not known.",
             path.friction_law
         ),
     });
     all.push(
         "s: distance from the pitch point C along the line of action, positive towards the addendum of the mesh's first \
-         gear. Single contact from B to D."
+         gear. Spur teeth: single contact from B to D."
             .to_owned(),
     );
     if shown < path.meshes.len() {
@@ -208,14 +208,21 @@ fn breaks(m: &MeshPath, x: &dyn Fn(f64) -> f64, bottom: f64) -> Group {
 }
 
 /// One quantity of one mesh; its axis is that of all meshes.
-fn panel(row: &Row, shown: &[MeshPath], k: usize, top: f64, (left, right): (f64, f64), x: &dyn Fn(f64) -> f64) -> Group {
+fn panel(
+    row: &Row,
+    shown: &[MeshPath],
+    k: usize,
+    top: f64,
+    (left, right): (f64, f64),
+    x: &dyn Fn(f64) -> f64,
+) -> Group {
     let values = shown.iter().flat_map(|m| m.points.iter().flat_map(|p| row.curves.iter().filter_map(|c| (c.0)(p))));
     let high = values.fold(0.0, f64::max);
     let bottom = top + PANEL;
     let mut g = Group::new();
     let scale = if high > 0.0 { high * 1.1 } else { 1.0 };
     let y = |v: f64| bottom - v / scale * PANEL;
-    for t in ticks(0.0, scale, 3) {
+    for t in ticks(0.0, scale, 4) {
         g = g.add(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0));
         if k == 0 {
             g = g.add(text(left - 6.0, y(t) + 4.0, 11.0, Anchor::End, &digits(t)).set("fill", FAINT));
@@ -226,10 +233,8 @@ fn panel(row: &Row, shown: &[MeshPath], k: usize, top: f64, (left, right): (f64,
     for (get, dashed) in row.curves {
         // Where there is no value the line breaks.
         for piece in m.points.split(|p| get(p).is_none()) {
-            let all: Vec<String> = piece
-                .iter()
-                .filter_map(|p| Some(format!("{} {}", number(x(p.s_mm)), number(y(get(p)?)))))
-                .collect();
+            let all: Vec<String> =
+                piece.iter().filter_map(|p| Some(format!("{} {}", number(x(p.s_mm)), number(y(get(p)?))))).collect();
             let (Some(first), Some(last)) = (piece.first(), piece.last()) else { continue };
             if all.len() < 2 {
                 continue;

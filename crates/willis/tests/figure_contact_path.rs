@@ -12,7 +12,8 @@ fn example(name: &str) -> Train {
 
 const PHYSICAL: [&str; 3] = ["fva-planetary-stage", "nrel-5mw-stage-1", "wang-herringbone-physical"];
 /// Every law of friction between teeth: two local ones among them.
-const LAWS: [&str; 6] = ["schlenk", "niemann-winter", "matsumoto", "xu-kahraman", "benedict-kelley", "coulomb-by-regime"];
+const LAWS: [&str; 6] =
+    ["schlenk", "niemann-winter", "matsumoto", "xu-kahraman", "benedict-kelley", "coulomb-by-regime"];
 
 #[test]
 fn the_local_loss_adds_up_to_the_loss_of_the_mesh() {
@@ -76,7 +77,12 @@ fn film_by_hand_at_the_pitch_point() {
     let single = 1591.549 / 3.0 / (34e-3 * 20f64.to_radians().cos()) / 50e-3;
     let shared = |from: f64, to: f64, share: f64| {
         for p in m.points.iter().filter(|p| p.s_mm > from + 1e-6 && p.s_mm < to - 1e-6) {
-            assert!((p.line_load_n_per_m / (single * share) - 1.0).abs() < 2e-3, "{} at {}", p.line_load_n_per_m, p.s_mm);
+            assert!(
+                (p.line_load_n_per_m / (single * share) - 1.0).abs() < 2e-3,
+                "{} at {}",
+                p.line_load_n_per_m,
+                p.s_mm
+            );
         }
     };
     shared(b, d, 1.0);

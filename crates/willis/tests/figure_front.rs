@@ -89,7 +89,8 @@ fn thickness_at_the_reference_circle_is_the_textbooks() {
         for w in &view.wheels {
             // s_t = m_t (π/2 + 2 x tan α_n); on a ring the width of its space.
             let module = w.module_mm / beta.cos();
-            let textbook = w.module_mm / beta.cos() * FRAC_PI_2 + 2.0 * w.shift * w.module_mm * alpha.tan() / beta.cos();
+            let textbook =
+                w.module_mm / beta.cos() * FRAC_PI_2 + 2.0 * w.shift * w.module_mm * alpha.tan() / beta.cos();
             let drawn = 2.0 * w.half_angle(w.reference_radius_mm) * w.reference_radius_mm;
             assert!((drawn - textbook).abs() < 1e-9, "{drawn} {textbook}");
             assert!((w.reference_radius_mm - module * f64::from(w.teeth) / 2.0).abs() < 1e-9);

@@ -105,9 +105,8 @@ impl Profile {
             let end = [self.root, (corner[1] + RING_FILLET * self.module / self.root).min(quarter)];
             for k in 1..=4 {
                 let t = f64::from(k) / 4.0;
-                let bend = |i: usize| {
-                    (1.0 - t) * (1.0 - t) * last[i] + 2.0 * t * (1.0 - t) * corner[i] + t * t * end[i]
-                };
+                let bend =
+                    |i: usize| (1.0 - t) * (1.0 - t) * last[i] + 2.0 * t * (1.0 - t) * corner[i] + t * t * end[i];
                 side.push([bend(0), bend(1)]);
             }
         } else {
