@@ -168,7 +168,7 @@ fn circle(at: (f64, f64), radius: f64, stroke: &str, width: f64) -> Circle {
 /// The wheels of one plane.
 fn panel(view: &Front, plane: &FrontPlane, at: &View, first: bool, animated: bool) -> Group {
     let mut g = Group::new();
-    // Rings behind, planets before their suns.
+    // Rings behind, suns before their planets.
     let mut order = plane.wheels.clone();
     order.sort_by_key(|&w| (!view.wheels[w].internal, view.wheels[w].planet, w));
     for &k in &order {
@@ -585,7 +585,7 @@ fn numbers(view: &Front, x: f64, y: f64, room: f64) -> (Group, f64) {
             digits4(m.centre_distance_mm),
             digits4(m.pressure_angle.to_degrees()),
             digits(m.contact_ratio),
-            digits(if m.backlash_mm.abs() < 1e-6 { 0.0 } else { m.backlash_mm })
+            digits4(if m.backlash_mm.abs() < 5e-5 { 0.0 } else { m.backlash_mm })
         );
         g = say(g, &words, INK);
     }

@@ -89,7 +89,7 @@ pub fn path(path: &ContactPath) -> String {
             let top = TOP + r as f64 * STEP;
             g = g.add(panel(row, shown, k, top, (left, left + column), &x));
         }
-        for t in ticks(from, to, (column / 70.0) as usize) {
+        for t in ticks(from, to, (column / 45.0) as usize) {
             g = g
                 .add(line((x(t), bottom), (x(t), bottom + 4.0), LINE, 1.0))
                 .add(text(x(t), bottom + 17.0, 11.0, Anchor::Middle, &digits(t)).set("fill", FAINT));
@@ -167,15 +167,15 @@ fn balance(m: &MeshPath) -> String {
 fn remarks(path: &ContactPath, shown: usize) -> Vec<String> {
     let mut all = Vec::new();
     all.push(match path.local {
-        true => format!("{} gives friction for each place of the path.", path.friction_law),
+        true => format!("The law {} gives friction for each place of the path.", path.friction_law),
         false => format!(
-            "{} gives one mean coefficient for the mesh; what friction is at each place is not known.",
+            "The law {} gives one mean coefficient for the mesh; what friction is at each place is not known.",
             path.friction_law
         ),
     });
     all.push(
         "s: distance from the pitch point C along the line of action, positive towards the addendum of the mesh's first \
-         gear. Single contact from B to D."
+         gear. Spur teeth: single contact from B to D."
             .to_owned(),
     );
     if shown < path.meshes.len() {
@@ -222,7 +222,7 @@ fn panel(
     let mut g = Group::new();
     let scale = if high > 0.0 { high * 1.1 } else { 1.0 };
     let y = |v: f64| bottom - v / scale * PANEL;
-    for t in ticks(0.0, scale, 3) {
+    for t in ticks(0.0, scale, 4) {
         g = g.add(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0));
         if k == 0 {
             g = g.add(text(left - 6.0, y(t) + 4.0, 11.0, Anchor::End, &digits(t)).set("fill", FAINT));

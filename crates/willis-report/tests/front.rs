@@ -42,9 +42,9 @@ fn the_moving_picture_turns_by_the_exact_ratios() {
         .skip(1)
         .map(|t| t.split('s').next().and_then(|s| s.parse().ok()).expect("a period"))
         .collect();
-    // Ring, three planets, sun: one tooth of each passes in the same time.
+    // Ring, sun, three planets: one tooth of each passes in the same time.
     assert_eq!(periods.len(), 5);
-    for (period, teeth) in periods.iter().zip([61.0, 22.0, 22.0, 22.0, 17.0]) {
+    for (period, teeth) in periods.iter().zip([61.0, 17.0, 22.0, 22.0, 22.0]) {
         assert!((period / teeth - periods[0] / 61.0).abs() < 1e-6, "{period} s for {teeth} teeth");
     }
     // Without the motion it is the still picture.

@@ -93,7 +93,11 @@ pub fn build(links: &[Link], pairs: Vec<Pair>, count: Option<u32>) -> Result<Bui
             use Remark::{BelowForm, NegativeBacklash, NoClearance, TipInterference};
             matches!(r, BelowForm { .. } | NegativeBacklash { .. } | NoClearance { .. } | TipInterference { .. })
         };
-        notes.extend(t.pair.remarks().iter().filter(|r| seen(r)).map(|r| format!("{}: {r}.", links[t.link].name)));
+        for r in t.pair.remarks().iter().filter(|r| seen(r)) {
+            // Wheels have other numbers in the picture than in their mesh.
+            let words = r.to_string().replace("wheel 1", "first gear").replace("wheel 2", "second gear");
+            notes.push(format!("{}: {words}.", links[t.link].name));
+        }
     }
     if locked {
         notes.push("These wheels cannot turn: two of them on one member would need different speeds.".to_owned());
