@@ -63,7 +63,8 @@ pub fn stick(data: &Stick) -> String {
         .add(sheet.joint_names(&mut labels))
         .add(sheet.teeth(&mut labels))
         .add(sheet.member_names(&mut labels))
-        .add(sheet.list());
+        .add(sheet.list())
+        .add(sheet.key());
     page.to_string()
 }
 
@@ -141,7 +142,7 @@ impl<'a> Sheet<'a> {
             })
             .collect();
         let mut s = Self { data, width, height: 0.0, left, unit, rise, category };
-        s.height = s.list_top() + s.list_rows() as f64 * ROW + 24.0;
+        s.height = s.list_top() + s.list_rows() as f64 * ROW + 52.0;
         s
     }
 
@@ -310,7 +311,11 @@ impl<'a> Sheet<'a> {
     }
 
     fn joint(&self, j: &StickJoint, labels: &mut Labels) -> Group {
-        let [a, b] = j.ends.map(|p| self.at(p));
+        self.symbol(j, j.ends.map(|p| self.at(p)), labels)
+    }
+
+    /// A joint between two points of the page.
+    fn symbol(&self, j: &StickJoint, [a, b]: [(f64, f64); 2], labels: &mut Labels) -> Group {
         let length = (b.0 - a.0).hypot(b.1 - a.1).max(1e-9);
         let (ux, uy) = ((b.0 - a.0) / length, (b.1 - a.1) / length);
         let middle = length / 2.0;
@@ -364,11 +369,7 @@ impl<'a> Sheet<'a> {
             let (ix, iy) = (f64::from(mark.into[0]), -f64::from(mark.into[1]));
             let along = |s: f64, t: f64| (x - iy * s + ix * t, y + ix * s + iy * t);
             labels.mark(along(-PLATE - 1.0, 0.0), along(PLATE + 1.0, 7.0), 1.0);
-            g = g.add(line(along(-PLATE, 0.0), along(PLATE, 0.0), INK, 2.2));
-            for k in 0..4 {
-                let s = -PLATE + 2.0 + 5.0 * f64::from(k);
-                g = g.add(line(along(s, 0.0), along(s - 4.0, 6.0), INK, 1.1));
-            }
+            g = g.add(hatch((x, y), (ix, iy)));
         }
         g
     }
@@ -486,6 +487,44 @@ impl<'a> Sheet<'a> {
         g
     }
 
+    /// The symbols that occur.
+    fn key(&self) -> Group {
+        let y = self.height - 24.0;
+        let mut x = 36.0;
+        let mut g = Group::new();
+        let kinds = [
+            (JointKind::Clutch, "clutch"),
+            (JointKind::Brake, "brake"),
+            (JointKind::OneWay, "one-way clutch"),
+            (JointKind::Shaft, "elastic shaft"),
+        ];
+        for (kind, name) in kinds {
+            if self.data.joints.iter().all(|j| j.kind != kind) {
+                continue;
+            }
+            let plain = StickJoint {
+                name: name.to_owned(),
+                kind,
+                members: [None, None],
+                ends: [[0.0; 2]; 2],
+                engaged: false,
+                loaded: false,
+            };
+            let end = (x + 40.0, y - 4.0);
+            g = g.add(self.symbol(&plain, [(x, y - 4.0), end], &mut Labels::default()));
+            if kind == JointKind::Brake {
+                g = g.add(hatch(end, (1.0, 0.0)));
+            }
+            g = g.add(text(x + 54.0, y, 11.0, Anchor::Start, name).set("fill", FAINT));
+            x += 54.0 + wide(name, 11.0) + 28.0;
+        }
+        if !self.data.grounds.is_empty() {
+            g = g.add(hatch((x + 12.0, y - 6.0), (0.0, 1.0)));
+            g = g.add(text(x + 30.0, y, 11.0, Anchor::Start, "frame").set("fill", FAINT));
+        }
+        g
+    }
+
     /// Whether speeds are known beside that of the input.
     fn speeds(&self) -> bool {
         self.listed().into_iter().filter(|&k| self.data.members[k].speed_ratio.is_some()).count() > 1
@@ -509,4 +548,15 @@ impl<'a> Sheet<'a> {
 /// Whether a point lies on a line of teeth.
 fn on(face: &[Place; 2], p: Place) -> bool {
     (0..2).all(|k| p[k] >= face[0][k].min(face[1][k]) - 1e-9 && p[k] <= face[0][k].max(face[1][k]) + 1e-9)
+}
+
+/// The frame begins here and lies that way.
+fn hatch((x, y): (f64, f64), (ix, iy): (f64, f64)) -> Group {
+    let along = |s: f64, t: f64| (x - iy * s + ix * t, y + ix * s + iy * t);
+    let mut g = Group::new().add(line(along(-PLATE, 0.0), along(PLATE, 0.0), INK, 2.2));
+    for k in 0..4 {
+        let s = -PLATE + 2.0 + 5.0 * f64::from(k);
+        g = g.add(line(along(s, 0.0), along(s - 4.0, 6.0), INK, 1.1));
+    }
+    g
 }
