@@ -183,140 +183,117 @@ impl Grid {
     /// The cheapest way from the piece of a member at `start`.
     pub fn route(&self, net: u16, start: Point, goal: &Goal<'_>, search: &mut Search) -> Option<Path> {
         self.flood(net, start, search);
-        let n = self.point.len();
         // A state is a point, the way by which it was reached, and whether the joint lies behind.
-        let end = (n * 8) as u32;
+        let states = self.point.len() * 8;
         search.cost.clear();
-        search.cost.resize(n * 8 + 1, u32::MAX);
+        search.cost.resize(states + 1, u32::MAX);
         search.from.clear();
-        search.from.resize(n * 8 + 1, u32::MAX);
+        search.from.resize(states + 1, u32::MAX);
         search.heap.clear();
-        let joint = matches!(goal, Goal::Net(_) | Goal::Frame(_));
-        for k in 0..n {
-            if !search.tree[k] || self.point[k] == CLOSED {
-                continue;
-            }
+        for k in (0..self.point.len()).filter(|&k| search.tree[k] && self.point[k] != CLOSED) {
             let p = self.place(k);
             let branch = if (0..4).any(|w| self.step(p, w) == net) { BRANCH } else { 0 };
-            for way in 0..4 {
-                if self.step(p, way) != FREE {
-                    continue;
-                }
-                // As if it came straight to here.
-                let straight = if self.step(p, (way + 2) % 4) == net { 0 } else { branch };
-                let state = (k * 4 + way) as u32;
-                if straight < search.cost[state as usize] {
-                    search.cost[state as usize] = straight;
-                    search.heap.push(Reverse((straight, state)));
-                }
+            for way in (0..4).filter(|&w| self.step(p, w) == FREE) {
+                // On in the way of a line there is no branch.
+                let cost = if self.step(p, (way + 2) % 4) == net { 0 } else { branch };
+                let state = k * 4 + way;
+                search.cost[state] = cost;
+                search.heap.push(Reverse((cost, state as u32)));
             }
         }
         while let Some(Reverse((cost, state))) = search.heap.pop() {
             if cost > search.cost[state as usize] {
                 continue;
             }
-            if state == end {
-                return self.trace(search, end, joint);
+            if state as usize == states {
+                return self.trace(search, matches!(goal, Goal::Net(_) | Goal::Frame(_)));
             }
-            let behind = state as usize >= n * 4;
-            let inner = state as usize % (n * 4);
-            let (k, came) = (inner / 4, inner % 4);
-            let p = self.place(k);
-            let owner = match (goal, behind) {
-                (Goal::Net(b), true) => *b,
-                _ => net,
-            };
-            if behind && matches!(goal, Goal::Frame(_)) {
-                continue;
-            }
-            let root = search.from[state as usize] == u32::MAX;
-            // Straight across another line there is no bend, no branch and no end.
-            let side = self.step(p, (came + 1) % 4);
-            let crossing = !root && side < GROUND && side != owner;
-            if let (Goal::Border(price), false) = (goal, crossing)
-                && let Some(extra) = price(p)
-            {
-                relax(search, state, end, cost + extra);
-            }
-            for way in 0..4 {
-                if way == (came + 2) % 4 && !root || self.step(p, way) != FREE || (root && way != came) {
-                    continue;
-                }
-                // At the border only ends of members.
-                let border = p.0 == 0 || p.0 == self.width - 1;
-                if crossing && way != came || border && way % 2 == 1 {
-                    continue;
-                }
-                let q = (p.0 + WAYS[way].0, p.1 + WAYS[way].1);
-                let to = self.at(q);
-                let bend = if way == came { 0 } else { BEND };
-                let go = cost + STEP + bend;
-                match goal {
-                    Goal::Own | Goal::Border(_) => {
-                        let other = !search.tree[to] && self.point[to] != CLOSED && self.owns(q, net);
-                        if matches!(goal, Goal::Own) && other {
-                            let last = (to * 4 + way) as u32;
-                            relax(search, state, last, go);
-                            relax(search, last, end, go);
-                            continue;
-                        }
-                        if let Some(crosses) = self.entry(q, way, net).filter(|_| !search.tree[to]) {
-                            relax(search, state, (to * 4 + way) as u32, go + if crosses { CROSSING } else { 0 });
-                        }
-                    }
-                    Goal::Net(_) | Goal::Frame(_) => {
-                        let after = |at: usize| (n * 4 + at * 4 + way) as u32;
-                        // A symbol at the border would bar the only way from there.
-                        let clear = !crossing && !border && q.0 > 0 && q.0 < self.width - 1;
-                        // On with the line that it is.
-                        if let Some(crosses) =
-                            self.entry(q, way, owner).filter(|_| !behind && !search.tree[to] || behind)
-                        {
-                            let reached = behind && self.owns(q, owner);
-                            if !reached {
-                                let state_to = if behind { after(to) } else { (to * 4 + way) as u32 };
-                                relax(search, state, state_to, go + if crosses { CROSSING } else { 0 });
-                            }
-                        }
-                        if behind && self.owns(q, owner) && self.entry(q, way, owner) == Some(false) {
-                            relax(search, state, after(to), go);
-                            relax(search, after(to), end, go);
-                        }
-                        // The symbol on this step.
-                        if !behind && clear {
-                            match goal {
-                                Goal::Net(b) => {
-                                    if self.entry(q, way, *b) == Some(false) {
-                                        let found = self.owns(q, *b);
-                                        relax(search, state, after(to), go);
-                                        if found {
-                                            relax(search, after(to), end, go);
-                                        }
-                                    }
-                                }
-                                Goal::Frame(price) => {
-                                    let empty = self.point[to] == FREE
-                                        && (0..4).all(|w| matches!(self.step(q, w), FREE | CLOSED));
-                                    let closed = (0..4).any(|w| self.step(q, w) == CLOSED && self.inside_way(q, w));
-                                    if empty && !closed {
-                                        relax(search, state, after(to), go);
-                                        relax(search, after(to), end, go + price(q, way));
-                                    }
-                                }
-                                _ => {}
-                            }
-                        }
-                    }
-                }
-            }
+            self.expand(net, goal, search, state, cost);
         }
         None
     }
 
-    fn trace(&self, search: &Search, end: u32, joint: bool) -> Option<Path> {
+    /// Goes one step on from a state.
+    fn expand(&self, net: u16, goal: &Goal<'_>, search: &mut Search, state: u32, cost: u32) {
+        let n = self.point.len();
+        let end = (n * 8) as u32;
+        let behind = state as usize >= n * 4;
+        let (k, came) = (state as usize % (n * 4) / 4, state as usize % 4);
+        let p = self.place(k);
+        let owner = match goal {
+            Goal::Net(b) if behind => *b,
+            Goal::Frame(_) if behind => return,
+            _ => net,
+        };
+        let root = search.from[state as usize] == u32::MAX;
+        // Straight across another line there is no bend, no branch and no end.
+        let side = self.step(p, (came + 1) % 4);
+        let crossing = !root && side < GROUND && side != owner;
+        // At the border only ends of members.
+        let border = p.0 == 0 || p.0 == self.width - 1;
+        if let (Goal::Border(price), false) = (goal, crossing)
+            && let Some(extra) = price(p)
+        {
+            relax(search, state, end, cost + extra);
+        }
+        for way in 0..4 {
+            let straight = way == came;
+            let back = way == (came + 2) % 4;
+            if self.step(p, way) != FREE || back || !straight && (root || crossing) || border && way % 2 == 1 {
+                continue;
+            }
+            let q = (p.0 + WAYS[way].0, p.1 + WAYS[way].1);
+            let to = self.at(q);
+            let go = cost + STEP + if straight { 0 } else { BEND };
+            let here = (usize::from(behind) * n * 4 + to * 4 + way) as u32;
+            let beyond = (n * 4 + to * 4 + way) as u32;
+            let found = match goal {
+                Goal::Own => !search.tree[to] && self.point[to] != CLOSED && self.owns(q, net),
+                Goal::Net(b) => behind && self.owns(q, *b) && self.entry(q, way, *b) == Some(false),
+                Goal::Frame(_) | Goal::Border(_) => false,
+            };
+            if found {
+                relax(search, state, here, go);
+                relax(search, here, end, go);
+                continue;
+            }
+            let other = behind && self.owns(q, owner);
+            if let Some(crosses) = self.entry(q, way, owner)
+                && !other
+                && (behind || !search.tree[to])
+            {
+                relax(search, state, here, go + if crosses { CROSSING } else { 0 });
+            }
+            // The symbol of a joint on this step; at the border it would bar the only way from there.
+            if behind || crossing || border || q.0 == 0 || q.0 == self.width - 1 {
+                continue;
+            }
+            match goal {
+                Goal::Net(b) if self.entry(q, way, *b) == Some(false) => {
+                    relax(search, state, beyond, go);
+                    if self.owns(q, *b) {
+                        relax(search, beyond, end, go);
+                    }
+                }
+                Goal::Frame(price) if self.empty(q) => {
+                    relax(search, state, beyond, go);
+                    relax(search, beyond, end, go + price(q, way));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Nothing is or leads here.
+    fn empty(&self, p: Point) -> bool {
+        let free = |w: usize| self.step(p, w) == FREE || !self.inside_way(p, w);
+        self.point[self.at(p)] == FREE && (0..4).all(free)
+    }
+
+    fn trace(&self, search: &Search, joint: bool) -> Option<Path> {
         let n = self.point.len();
         let mut states = Vec::new();
-        let mut at = search.from[end as usize];
+        let mut at = search.from[n * 8];
         while at != u32::MAX {
             states.push(at as usize);
             at = search.from[at as usize];
