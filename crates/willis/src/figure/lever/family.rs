@@ -32,17 +32,18 @@ pub(super) struct Contact {
     pub first: bool,
 }
 
-/// Whether a rotor turns on a carrier and touches nothing but gears.
+/// Whether a rotor is a planet: one that a set brought along, or one of gear pairs on one carrier that touches
+/// nothing else.
 fn is_planet(train: &Train, m: MemberId) -> bool {
-    m != FRAME
-        && (train.members[m.0].kind == MemberKind::Planet
-            || !train.terminals.contains(&m)
-                && !train.shift_elements.iter().any(|e| e.members.contains(&m))
-                && train.meshes.iter().filter(|x| x.gears.iter().any(|g| g.member == m)).count() > 1
-                && train
-                    .meshes
-                    .iter()
-                    .all(|x| x.carrier != m && (x.carrier != FRAME || x.gears.iter().all(|g| g.member != m))))
+    if train.members[m.0].kind != MemberKind::Shaft {
+        return m != FRAME;
+    }
+    let loaded = train.terminals.contains(&m)
+        || train.shift_elements.iter().any(|e| e.members.contains(&m))
+        || train.meshes.iter().any(|x| x.carrier == m);
+    let own: Vec<_> = train.meshes.iter().filter(|x| x.gears.iter().any(|g| g.member == m)).collect();
+    let [first, _, ..] = own[..] else { return false };
+    !loaded && first.carrier != FRAME && own.iter().all(|x| x.set.is_none() && x.carrier == first.carrier)
 }
 
 /// Follows the meshes of one carrier from planet to planet.

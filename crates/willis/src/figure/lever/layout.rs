@@ -81,7 +81,7 @@ fn level(families: &[Family]) -> Option<Vec<[f64; 2]>> {
     let column = |m: MemberId| members.binary_search(&m).expect("every point is listed");
     let mut rows: Matrix = Vec::new();
     for f in families {
-        let Some((base, n)) = outside(f).next() else { return None };
+        let (base, n) = outside(f).next()?;
         for (m, number) in outside(f).skip(1) {
             let mut row = vec![Rational::ZERO; members.len()];
             row[column(m)] += n.clone();
