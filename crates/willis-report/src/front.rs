@@ -412,8 +412,8 @@ fn numbers(view: &Front, x: f64, y: f64, room: f64) -> (Group, f64) {
     let right = x + room.min(SIDE + 120.0);
     // Right edges of the columns.
     let columns =
-        [("turns", 0.0), ("root mm", 62.0), ("tip mm", 124.0), ("ref. mm", 180.0), ("x", 234.0), ("z", 276.0)];
-    let name_room = right - 310.0 - (x + 26.0);
+        [("turns", 0.0), ("root mm", 62.0), ("tip mm", 124.0), ("ref. mm", 180.0), ("x", 234.0), ("z", 288.0)];
+    let name_room = right - 322.0 - (x + 26.0);
     g = g.add(text(x + 26.0, y, 12.0, Anchor::Start, "wheel").set("fill", FAINT));
     for (head, from) in columns {
         g = g.add(text(right - from, y, 12.0, Anchor::End, head).set("fill", FAINT));
