@@ -280,6 +280,10 @@ fn planets_stand_where_the_textbook_says() {
             assert!((angle - TAU * k as f64 / n as f64).abs() <= step / 2.0 + 1e-9);
         }
     }
+    // 100/101 and 99/100: (100 · 100 − 99 · 101)/gcd = 1, so planets alike have one place only.
+    let view = front(&example("esmail-10000"), None, true).expect("a view");
+    assert_eq!(view.spacing.planets, 1);
+    assert!((view.spacing.least_angle.expect("a lattice") - TAU).abs() < 1e-9);
     // A double planet: z_ring − z_sun.
     let train = Train::builder("set")
         .members(["s", "r", "c"])

@@ -104,45 +104,22 @@ pub fn build(links: &[Link], pairs: Vec<Pair>, count: Option<u32>) -> Result<Bui
     }
 
     let lattice = least_turn(&wheels, &ties);
-    let (count, given) = match count {
-        Some(n) => (n.max(1), true),
-        None => {
-            let room = |n: &u32| {
-                let arms: Vec<f64> = (0..*n).map(|k| wanted(k, *n)).collect();
-                clearance(&wheels, &ties, &planes, &arms, &place).is_none_or(|c| c > 0.0)
-            };
-            ((1..=USUAL).rev().find(room).unwrap_or(1), false)
+    let given = count.is_some();
+    let mut count = count.unwrap_or(USUAL).max(1);
+    let arms = loop {
+        let arms = arrange(&mut wheels, &ties, count, lattice, &place);
+        let room = |arms: &Vec<f64>| clearance(&wheels, &ties, &planes, arms, &place).is_none_or(|c| c > 0.0);
+        match arms {
+            Some(arms) if given || count == 1 || room(&arms) => break arms,
+            None if given || count == 1 => {
+                return Err(format!("{count} planets alike fit at no angles around the axis"));
+            }
+            // Where the train does not say how many, as many as have room.
+            _ => count -= 1,
         }
     };
-    let mut arms = Vec::new();
-    for k in 0..count {
-        let target = wanted(k, count);
-        let found = if k == 0 {
-            turn_first(&mut wheels, &ties, &place);
-            Some(0.0)
-        } else {
-            // Nearest first.
-            let tried: Vec<f64> = match lattice {
-                None => vec![target],
-                Some(step) => {
-                    let middle = (target / step).round() as i64;
-                    let mut near: Vec<i64> = (-TRIED..=TRIED).map(|j| middle + j).collect();
-                    near.sort_by(|a, b| {
-                        let off = |j: &i64| (*j as f64 * step - target).abs();
-                        off(a).total_cmp(&off(b))
-                    });
-                    near.into_iter().map(|j| j as f64 * step).collect()
-                }
-            };
-            tried.into_iter().find_map(|arm| {
-                let bodies = turn_other(&wheels, &ties, arm, &place)?;
-                for (w, body) in bodies {
-                    wheels[w].bodies.push(body);
-                }
-                Some(arm)
-            })
-        };
-        arms.push(found.ok_or_else(|| format!("planet {} of {count} fits at no angle near its place", k + 1))?);
+    if lattice.is_some_and(|step| step > 0.99 * TAU) {
+        notes.push("Planets alike fit at one angle only: on the others the steps stand otherwise.".to_owned());
     }
     let equal = arms.iter().zip(0..).all(|(arm, k)| (arm - wanted(k, count)).abs() < 1e-9);
     if !given {
@@ -157,6 +134,49 @@ pub fn build(links: &[Link], pairs: Vec<Pair>, count: Option<u32>) -> Result<Bui
         notes,
         wheels,
     })
+}
+
+/// Puts so many planets around the axis, each at the angle nearest to equal spacing at which it fits;
+/// their angles, or nothing where one has no place of its own.
+fn arrange(
+    wheels: &mut [Placed],
+    ties: &[Tie],
+    count: u32,
+    lattice: Option<f64>,
+    place: &dyn Fn(&Placed, f64) -> [f64; 2],
+) -> Option<Vec<f64>> {
+    for w in wheels.iter_mut() {
+        w.bodies.clear();
+    }
+    turn_first(wheels, ties, place);
+    let mut arms = vec![0.0];
+    for k in 1..count {
+        let target = wanted(k, count);
+        // Nearest first.
+        let mut tried: Vec<f64> = match lattice {
+            None => vec![target],
+            Some(step) => {
+                let middle = (target / step).round() as i64;
+                (-TRIED..=TRIED).map(|j| (middle + j) as f64 * step).collect()
+            }
+        };
+        tried.sort_by(|a, b| (a - target).abs().total_cmp(&(b - target).abs()));
+        let taken = |arm: f64| {
+            arms.iter().any(|other: &f64| {
+                let turns = (arm - other) / TAU;
+                (turns - turns.round()).abs() < 1e-6
+            })
+        };
+        let (arm, bodies) = tried
+            .into_iter()
+            .filter(|arm| !taken(*arm))
+            .find_map(|arm| Some((arm, turn_other(wheels, ties, arm, place)?)))?;
+        for (w, body) in bodies {
+            wheels[w].bodies.push(body);
+        }
+        arms.push(arm);
+    }
+    Some(arms)
 }
 
 /// The angle of a planet from the first where all are spaced equally.
