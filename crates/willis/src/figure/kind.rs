@@ -207,14 +207,11 @@ fn powers(subject: &Subject, r: &FigureRequest) -> Result<FlowReport, Diagnostic
 /// Bars of a ranking.
 const BARS: usize = 14;
 
-/// The quantities of the first operation that has derivatives.
+/// The ranking of the operation that is named, or of the first that has derivatives.
 fn ranking(subject: &Subject, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
-    let all = sensitivity(subject.train(), &r.selection())?.operations;
-    let Some(one) = all.iter().find(|o| !o.quantities.is_empty()).or(all.first()) else {
-        let d = Diagnostic::new(Code::NothingAsked, "", "a ranking belongs to an operating point, and there is none");
-        return Err(d.hint("add an [[operation]] with speeds and torques or powers").into());
-    };
-    tornado(one, BARS)
+    let all = sensitivity(subject.train(), &r.selection())?;
+    let first = all.operations.iter().find(|o| !o.quantities.is_empty()).map(|o| o.name.clone());
+    tornado(&all, r.operation.clone().or(first).as_deref(), BARS)
 }
 
 /// Simulates the scenario of that name, or the first.
