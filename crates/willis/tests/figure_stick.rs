@@ -275,7 +275,7 @@ fn random(seed: u64, sets: usize, name: &dyn Fn(usize) -> String) -> Result<Trai
         let from = 1 + dice.below(members);
         let ring = dice.below(3) == 0;
         let wheel = if ring { GearSpec::internal("wheel", 80) } else { GearSpec::external("wheel", 40) };
-        b = b.mesh(MeshSpec::new(GearSpec::external(name(from), 20), wheel)).terminals(["wheel"]);
+        b = b.mesh(MeshSpec::new(GearSpec::external(name(from), 20), wheel).named("pair")).terminals(["wheel"]);
     }
     for k in 0..dice.below(2 * sets) {
         let m = dice.some(2, members);

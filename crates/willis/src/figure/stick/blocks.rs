@@ -83,7 +83,7 @@ impl Plan {
             let on = [first.carrier, first.gears[0].member, first.gears[1].member];
             let axis = on
                 .iter()
-                .filter(|m| !members.is_planet(**m))
+                .filter(|m| !members.is_planet(**m) || members.led_out(**m))
                 .find_map(|m| net(*m).map(|n| axis_of[n]))
                 .or_else(|| {
                     let all = meshes.iter().flat_map(|m| &train.meshes()[m.index()].gears);
