@@ -164,7 +164,7 @@ fn shown(bar: &LeverBar) -> impl Iterator<Item = &LeverNode> {
 fn ends(bar: &LeverBar) -> (&LeverNode, &LeverNode) {
     let mut own = bar.nodes.iter().filter(|n| !planet(n));
     let high = own.next().expect("a lever has a carrier");
-    (own.last().unwrap_or(high), high)
+    (own.next_back().unwrap_or(high), high)
 }
 
 fn planet(node: &LeverNode) -> bool {
