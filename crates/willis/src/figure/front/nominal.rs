@@ -26,8 +26,22 @@ struct Step {
     shift: f64,
 }
 
+/// Fewest teeth that a ring has more than its pinion, so that tips of 20° teeth pass each other far
+/// from the pitch point too: the usual rule of textbooks.
+const FEWEST_MORE: u32 = 8;
+
 /// The pairs of all links, and what was assumed; or why there are none.
 pub fn pairs(links: &[Link]) -> Result<(Vec<Pair>, Vec<String>), String> {
+    for link in links.iter().filter(|l| l.wheels.iter().any(|w| w.internal)) {
+        let [a, b] = link.wheels.map(|w| w.teeth);
+        if a.abs_diff(b) < FEWEST_MORE {
+            return Err(format!(
+                "{}: the ring has only {} teeth more than its pinion, and tips of standard teeth would collide",
+                link.name,
+                a.abs_diff(b)
+            ));
+        }
+    }
     let mut why = String::new();
     for (addendum, dedendum) in DEPTHS {
         match with_depth(links, addendum, dedendum) {
