@@ -104,9 +104,11 @@ fn panel(all: &Bands, top: f64, name: String, of: Reading<'_>) -> Group {
     let over = |y: &dyn Fn(&BandPoint) -> Option<f64>| -> Vec<(f64, Option<f64>)> {
         all.x.values.iter().zip(&all.points).map(|(x, p)| (*x, y(p))).collect()
     };
-    let median = chart.path(over(&|p| of(p).0.map(|q| q[2])));
-    let nominal = chart.path(over(&|p| of(p).1));
-    g.add(median.set("stroke", colour(Some(0), 1.0)).set("stroke-width", 2.4))
-        .add(nominal.set("stroke", INK).set("stroke-width", 1.4).set("stroke-dasharray", "6 4"))
-        .add(chart.frame())
+    if let Some(median) = chart.path(over(&|p| of(p).0.map(|q| q[2]))) {
+        g = g.add(median.set("stroke", colour(Some(0), 1.0)).set("stroke-width", 2.4));
+    }
+    if let Some(nominal) = chart.path(over(&|p| of(p).1)) {
+        g = g.add(nominal.set("stroke", INK).set("stroke-width", 1.4).set("stroke-dasharray", "6 4"));
+    }
+    g.add(chart.frame())
 }

@@ -110,8 +110,8 @@ impl Chart {
         ticks(self.y.low, self.y.high, ((self.bottom - self.top) / 45.0).max(2.0) as usize)
     }
 
-    /// A line through points; broken where one is missing.
-    pub fn path(&self, points: impl IntoIterator<Item = (f64, Option<f64>)>) -> Path {
+    /// A line through points; broken where one is missing, none where all are.
+    pub fn path(&self, points: impl IntoIterator<Item = (f64, Option<f64>)>) -> Option<Path> {
         let mut d = String::new();
         let mut pen = false;
         for (x, y) in points {
@@ -123,7 +123,8 @@ impl Chart {
                 None => pen = false,
             }
         }
-        Path::new().set("d", d.trim_end().to_owned()).set("fill", "none").set("stroke-linejoin", "round")
+        let line = || Path::new().set("d", d.trim_end().to_owned()).set("fill", "none").set("stroke-linejoin", "round");
+        (!d.is_empty()).then(line)
     }
 
     /// The areas between two lines, one for each run of values that are all there.

@@ -127,7 +127,9 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
         }
     }
     let outline = (0..count).map(|j| (chart.x.values[j], total[j].filter(|_| known(j)).map(|t| t / size)));
-    g = g.add(axes.path(outline).set("stroke", INK).set("stroke-width", 1.6));
+    if let Some(outline) = axes.path(outline) {
+        g = g.add(outline.set("stroke", INK).set("stroke-width", 1.6));
+    }
     // Letters where a layer is thickest, if they fit.
     for (k, (below, above)) in layers.iter().enumerate() {
         let thick = |j: usize| {
@@ -181,7 +183,10 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
             y: Scale::efficiency(known().map(|e| 100.0 * e)),
         };
         let points = (0..count).map(|k| (chart.x.values[k], chart.efficiency[k].map(|e| 100.0 * e)));
-        g = g.add(small.grid()).add(small.path(points).set("stroke", colour(Some(0), 1.0)).set("stroke-width", 2));
+        g = g.add(small.grid());
+        if let Some(curve) = small.path(points) {
+            g = g.add(curve.set("stroke", colour(Some(0), 1.0)).set("stroke-width", 2));
+        }
         g = g.add(small.frame());
     }
     (g, axis_bottom + 40.0)

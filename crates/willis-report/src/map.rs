@@ -209,7 +209,8 @@ fn efficiency(map: &EfficiencyMap, chart: &Chart, number_of: usize) -> Group {
         }
     }
     // Lines between the bands with their efficiency.
-    let mut labels: Vec<[f64; 4]> = vec![];
+    let marks = places(map, chart);
+    let mut labels: Vec<[f64; 4]> = marks.iter().map(|p| [p.0 - 11.0, p.1 - 11.0, p.0 + 11.0, p.1 + 11.0]).collect();
     let mut said = Group::new();
     let parting = if steps { &[][..] } else { &between };
     for l in builder(map).lines(&filled, parting).unwrap_or_default() {
@@ -254,10 +255,27 @@ fn efficiency(map: &EfficiencyMap, chart: &Chart, number_of: usize) -> Group {
     }
     fills = fills.add(hatching(map, chart));
     g = g.add(fills).add(said).add(chart.frame());
-    for (k, m) in map.marks.iter().enumerate().take(9) {
-        g = g.add(badge(chart.x(m.at[0]), chart.y(m.at[1]), &(k + 1).to_string()));
+    for (k, (m, (x, y))) in map.marks.iter().zip(&marks).enumerate() {
+        let at = (chart.x(m.at[0]), chart.y(m.at[1]));
+        if at.0 != *x {
+            g = g.add(line(at, (*x, *y), INK, 1.0));
+        }
+        g = g.add(badge(*x, *y, &(k + 1).to_string()));
     }
     g.add(legend(map, chart, &between, [least, most], !powers.is_empty()))
+}
+
+/// Where the numbers of the operations stand: side by side where operations share a place.
+fn places(map: &EfficiencyMap, chart: &Chart) -> Vec<(f64, f64)> {
+    let mut all: Vec<(f64, f64)> = vec![];
+    for m in map.marks.iter().take(9) {
+        let (mut x, y) = (chart.x(m.at[0]), chart.y(m.at[1]));
+        while all.iter().any(|p| (p.0 - x).abs() < 21.0 && (p.1 - y).abs() < 21.0) {
+            x += 21.0;
+        }
+        all.push((x, y));
+    }
+    all
 }
 
 /// The values with every gap closed by the nearest value in the map, so that lines end where a region without answers

@@ -285,12 +285,20 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
         g = g.add(path);
     }
     // Letters last, above the solid and below the dashed curves.
+    let mut taken: Vec<(f64, f64)> = vec![];
     for c in &map.curves {
-        // Several curves of one ring carry their letters at different places.
+        // Several curves of one ring carry their letters at different places, apart from all others.
         let [slot, of] = c.slot;
-        let [a, eta] = c.points[(c.points.len() - 1) * (slot + 1) / (of + 1)];
         let shift = if c.ring == 0 { -7.0 } else { 16.0 };
-        let label_y = (y(eta) + shift).clamp(top + 12.0, bottom - 3.0);
+        let place = |part: f64| {
+            let [a, eta] = c.points[((c.points.len() - 1) as f64 * part) as usize];
+            (a, (y(eta) + shift).clamp(top + 12.0, bottom - 3.0))
+        };
+        let own = (slot + 1) as f64 / (of + 1) as f64;
+        let free = |p: &(f64, f64)| taken.iter().all(|t| (t.0 - x(p.0)).abs() > 11.0 || (t.1 - p.1).abs() > 13.0);
+        let tries = [own, own - 0.15, own + 0.15, own - 0.3, own + 0.3].map(|p| place(p.clamp(0.05, 0.95)));
+        let Some((a, label_y)) = tries.into_iter().find(free) else { continue };
+        taken.push((x(a), label_y));
         g = g.add(
             text(x(a), label_y, 12.0, Anchor::Middle, &map.patterns[c.pattern].letter)
                 .set("font-weight", "bold")
