@@ -178,9 +178,6 @@ fn wanted(subject: &Subject, request: &ReportRequest, analysis: &Analysis) -> Ve
 fn facts(all: &Findings<'_>) -> Vec<[String; 2]> {
     let mut facts = vec![];
     let mut fact = |name: &str, value: String| facts.push([name.to_owned(), value]);
-    if let Some(source) = &all.analysis.source {
-        fact("Source of the data", source.clone());
-    }
     fact("Degrees of freedom", all.analysis.degrees_of_freedom.to_string());
     let sound = |v: Verdict| matches!(v, Verdict::Unique | Verdict::Unloaded);
     let without = all.analysis.operations.iter().filter(|o| !sound(o.verdict)).count();
@@ -196,7 +193,8 @@ fn facts(all: &Findings<'_>) -> Vec<[String; 2]> {
         fact("Made with", all.request.version.clone());
     }
     if !all.request.hash.is_empty() {
-        fact("Train file", format!("{}, SHA-256 {}", all.request.file, all.request.hash));
+        let short: String = all.request.hash.chars().take(12).collect();
+        fact("Train file", format!("{}, SHA-256 {short}…", all.request.file));
     }
     facts
 }

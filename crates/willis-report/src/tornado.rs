@@ -2,6 +2,7 @@
 
 use svg::node::element::Group;
 use willis::figure::{Tornado, TornadoBar};
+use willis::hypergraph::watts;
 
 use crate::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
@@ -103,7 +104,8 @@ pub fn tornado(t: &Tornado) -> String {
         notes.push("* not given: what is taken instead.".to_owned());
     }
     if t.left_out > 0 {
-        notes.push(format!("{} more quantities move the loss less.", t.left_out));
+        let (what, verb) = if t.left_out == 1 { ("quantity", "moves") } else { ("quantities", "move") };
+        notes.push(format!("{} more {what} {verb} the loss less.", t.left_out));
     }
     let notes = lines(&notes.join(" "), inner, 12.0);
     for (k, n) in notes.iter().enumerate() {
@@ -131,7 +133,7 @@ fn bar(from: f64, to: f64, y: f64, fill: &str) -> Group {
 
 fn caption(t: &Tornado) -> String {
     let efficiency = t.efficiency.map_or(String::new(), |e| format!("Efficiency {} %, ", number(100.0 * e)));
-    format!("{efficiency}{} W of {} W lost.", digits(t.loss_w), digits(t.input_power_w))
+    format!("{efficiency}{} of {} lost.", watts(t.loss_w), watts(t.input_power_w))
 }
 
 fn name(b: &TornadoBar) -> String {

@@ -88,7 +88,11 @@ pub fn again(all: &Findings<'_>) -> Section {
         blocks.push(Block::Code { text: all.request.commands.join("\n") });
     }
     let file = if all.request.file.is_empty() { "The train file" } else { &all.request.file };
-    blocks.push(Block::Text { text: format!("{file}:") });
+    let hash = match all.request.hash.is_empty() {
+        true => String::new(),
+        false => format!(", SHA-256 {}", all.request.hash),
+    };
+    blocks.push(Block::Text { text: format!("{file}{hash}:") });
     blocks.push(Block::Code { text: all.subject.document().text() });
     for (name, text) in all.subject.files() {
         let lines = text.lines().count();

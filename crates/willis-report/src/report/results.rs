@@ -4,7 +4,7 @@ use willis::analysis::{CertificateReport, OperationReport, Role, SolutionReport,
 use willis::figure::FigureKind;
 use willis::hypergraph::watts;
 use willis::operating_point::{LossKind, Regime};
-use willis::regimes::{FormulaRequest, RegimeSelection, formulas as closed};
+use willis::regimes::{FormulaRequest, formulas as closed};
 use willis::symbolic::Notation;
 
 use crate::document::{Block, Column, Level, Section};
@@ -173,7 +173,7 @@ fn members(caption: &str, s: &SolutionReport) -> Block {
                 Role::Fixed => "held",
                 _ => "",
             };
-            let power = m.power_w.filter(|p| *p != 0.0).map_or("–".into(), watts);
+            let power = m.power_w.filter(|p| *p != 0.0).map_or("–".into(), |p| watts(p).replace('-', "−"));
             vec![name.clone(), role.to_owned(), number(m.speed_rad_s, RPM), number(m.torque_n_m, 1.0), power]
         })
         .collect();
@@ -261,7 +261,7 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
 }
 
 fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
-    let heads = ["µ", "H_V", "F_t N", "v_t m/s", "v_g m/s", "p_H MPa", "h µm", "λ"];
+    let heads = ["µ", "HV", "Fₜ N", "vₜ m/s", "slide m/s", "Hertz MPa", "h µm", "λ"];
     let columns = [Column::words("Tooth contact")].into_iter().chain(heads.map(Column::numbers));
     let columns = columns.chain([Column::words("Film")]).collect();
     let rows: Vec<Vec<String>> = (s.contacts.iter())
@@ -349,6 +349,7 @@ pub fn formulas(all: &Findings<'_>) -> Option<Section> {
         None,
         "Every regime of the two freedoms: directions of speed, inputs and outputs, efficiency",
     ));
+    let title = if blocks.is_empty() { "Closed formulas" } else { "Regimes and closed formulas" };
     if let Ok(sheet) = closed(train, &FormulaRequest::default()) {
         let count = sheet.formulas.len();
         let short = |latex: &String| latex.len() <= LONGEST;
@@ -385,7 +386,5 @@ pub fn formulas(all: &Findings<'_>) -> Option<Section> {
             blocks.push(Block::Text { text });
         }
     }
-    let two = willis::regimes::regimes(train, &RegimeSelection::default()).is_ok();
-    let title = if two { "Regimes and closed formulas" } else { "Closed formulas" };
     (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
 }

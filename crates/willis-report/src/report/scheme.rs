@@ -11,6 +11,9 @@ use super::results::{exact_percent, significant};
 pub fn section(all: &Findings<'_>) -> Section {
     let train = all.subject.train();
     let mut blocks = vec![];
+    if let Some(source) = train.source() {
+        blocks.push(Block::Text { text: format!("Source of the data: {source}") });
+    }
     blocks.extend(all.figures.block(FigureKind::Stick, None, "The train: shafts, wheels, carriers and shift elements"));
     blocks.push(wheels(train));
     blocks.extend(teeth(train));
@@ -58,7 +61,7 @@ fn wheels(train: &Train) -> Block {
 }
 
 fn teeth(train: &Train) -> Option<Block> {
-    let numbers = ["m_n mm", "α_n °", "β °", "width mm", "x_1", "x_2", "a mm", "α_wt °", "ε_α", "ε_β", "Ra µm"];
+    let numbers = ["mₙ mm", "αₙ °", "β °", "width mm", "x₁", "x₂", "a mm", "α′ °", "εα", "εβ", "Ra µm"];
     let columns = [Column::words("Mesh")].into_iter().chain(numbers.map(Column::numbers)).collect();
     let rows: Vec<Vec<String>> = (train.meshes().iter())
         .filter_map(|m| {
@@ -83,7 +86,7 @@ fn teeth(train: &Train) -> Option<Block> {
         })
         .collect();
     let caption = "Teeth: normal module, pressure and helix angle, width, profile shifts, centre distance, operating \
-                   pressure angle, contact and overlap ratio, roughness";
+                   pressure angle α′, contact and overlap ratio, roughness";
     (!rows.is_empty()).then(|| Block::Table { caption: caption.into(), columns, rows })
 }
 
