@@ -49,7 +49,7 @@ impl Figures {
     /// Makes what applies, on all cores.
     fn make(subject: &Subject, wanted: &[(FigureKind, FigureRequest)]) -> Self {
         let one = |(kind, request): &(FigureKind, FigureRequest)| {
-            let figure = kind.make(subject, request).ok().filter(|f| worth_showing(f))?;
+            let figure = kind.make(subject, request).ok().filter(worth_showing)?;
             let picture = draw(&figure, Drawing::default());
             // Of some kinds there is one for every set or operation.
             let of = match kind {

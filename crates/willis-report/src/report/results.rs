@@ -292,7 +292,7 @@ fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
         "Tooth contacts at {operation}: mean friction, loss factor, tangential force, pitch line speed, largest sliding \
          speed and pressure, smallest film, film over roughness"
     );
-    (!rows.is_empty()).then(|| Block::Table { caption, columns, rows })
+    (!rows.is_empty()).then_some(Block::Table { caption, columns, rows })
 }
 
 fn what_first(all: &Findings<'_>) -> Option<Block> {
@@ -321,7 +321,7 @@ fn what_first(all: &Findings<'_>) -> Option<Block> {
         rows.len(),
         o.quantities.len()
     );
-    (!rows.is_empty()).then(|| Block::Table { caption, columns, rows })
+    (!rows.is_empty()).then_some(Block::Table { caption, columns, rows })
 }
 
 pub fn maps(all: &Findings<'_>) -> Option<Section> {
