@@ -54,6 +54,7 @@ pub fn draw(
         return every(subject, request, look, out);
     }
     let kind = FigureKind::named(kind).map_err(failure)?;
+    heard(kind, request, look)?;
     let ending = out.map_or(Ok(Ending::Svg), Ending::of)?;
     let figure = kind.make(subject, request).map_err(|wrong| failure(with_others(wrong, subject, request)))?;
     let bytes = picture(&figure, look, ending)?;
@@ -61,6 +62,27 @@ pub fn draw(
         Some(path) => output::write(path, &bytes).map(|()| String::new()),
         None => Ok(String::from_utf8(bytes).expect("SVG is text") + "\n"),
     }
+}
+
+/// Refuses what would make no difference to this kind.
+fn heard(kind: FigureKind, request: &FigureRequest, look: &Look) -> Result<(), String> {
+    let asked = [
+        ("state", request.state.is_some()),
+        ("operation", request.operation.is_some()),
+        ("part", request.part.is_some()),
+        ("over", !request.over.is_empty()),
+        ("terminals", request.terminals.is_some()),
+        ("balance", request.balance.is_some()),
+        ("nominal", request.nominal),
+    ];
+    let takes = kind.takes();
+    let still = (look.drawing.animated && kind != FigureKind::Front).then_some("animated");
+    let deaf = asked.iter().find(|(name, given)| *given && !takes.contains(name)).map(|a| a.0).or(still);
+    let Some(deaf) = deaf else { return Ok(()) };
+    let list: Vec<String> = takes.iter().map(|t| format!("--{t}")).collect();
+    let instead =
+        if list.is_empty() { "it takes no question".to_owned() } else { format!("it takes {}", list.join(", ")) };
+    Err(format!("`draw {}` has no use for --{deaf}; {instead}\n", kind.name()))
 }
 
 /// Where a kind does not apply to a train at all, those that do.
@@ -89,7 +111,7 @@ fn every(subject: &Subject, request: &FigureRequest, look: &Look, out: Option<&P
     let Some(folder) = out else {
         return Err("`all` draws several pictures: name a folder for them with -o\n".into());
     };
-    if folder.exists() && !folder.is_dir() {
+    if Ending::of(folder).is_ok() || folder.exists() && !folder.is_dir() {
         return Err(format!("{}: is no folder\n", folder.display()));
     }
     let made: Vec<(&FigureKind, Result<Figure, Diagnostics>)> =

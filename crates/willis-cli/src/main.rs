@@ -594,6 +594,12 @@ enum Command {
         /// A quantity along an axis, as `sweep` takes it: "sun.speed=500..3000 rpm:40".
         #[arg(long, value_name = "AXIS")]
         over: Vec<String>,
+        /// Members on which torque may act, with commas between (regimes); else the train's terminals.
+        #[arg(long, value_delimiter = ',')]
+        terminals: Option<Vec<String>>,
+        /// Two terminals whose powers add to zero (regimes).
+        #[arg(long, value_delimiter = ',', value_name = "A,B")]
+        balance: Option<Vec<String>>,
         /// Draw teeth without geometry as nominal ones of module 1.
         #[arg(long)]
         nominal: bool,
@@ -1008,13 +1014,30 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 Format::Csv => losses::laws_csv(&all),
             })
         }
-        Command::Draw { kind, file, state, operation, part, over, nominal, animated, law, theme, scale, output } => {
+        Command::Draw {
+            kind,
+            file,
+            state,
+            operation,
+            part,
+            over,
+            terminals,
+            balance,
+            nominal,
+            animated,
+            law,
+            theme,
+            scale,
+            output,
+        } => {
             let job = Job::read(file)?;
             let request = FigureRequest {
                 state: state.clone(),
                 operation: operation.clone(),
                 part: part.clone(),
                 over: over.clone(),
+                terminals: terminals.clone(),
+                balance: pair(balance.as_deref())?,
                 nominal: *nominal,
                 samples: 0,
             };

@@ -72,7 +72,7 @@ fn what_does_not_apply_says_why_and_what_does() {
     let said = refused(&["draw", "stick", &example("zf-8hp70.toml"), "--state", "9"]);
     assert!(said.contains("no state `9`"), "{said}");
     let said = refused(&["draw", "map", &example("zf-8hp70.toml"), "--over", "input.speed=1..2 rpm:3"]);
-    assert!(said.contains("two quantities"), "{said}");
+    assert!(said.contains("two quantities, not 1"), "{said}");
     let said = refused(&["draw", "losses", &example("prius-p112.toml"), "--over", "engine.speed=2..1 rpm:3"]);
     assert!(said.contains("runs backwards"), "{said}");
 }
@@ -125,4 +125,22 @@ fn the_same_train_makes_the_same_report() {
     assert!(String::from_utf8_lossy(&other).contains("--law mesh_friction=niemann"));
     let locked = willis(&["report", &example("wolfrom-498-self-locking.toml")]).stdout;
     assert!(String::from_utf8_lossy(&locked).contains("locked"));
+}
+
+#[test]
+fn what_makes_no_difference_is_refused() {
+    let said = refused(&["draw", "shift", &example("zf-8hp70.toml"), "--operation", "coasting"]);
+    assert!(said.contains("no use for --operation"), "{said}");
+    let said = refused(&["draw", "stick", &example("zf-8hp70.toml"), "--animated"]);
+    assert!(said.contains("no use for --animated"), "{said}");
+    let balanced = willis(&[
+        "draw",
+        "regimes",
+        &example("compound-split.toml"),
+        "--terminals",
+        "engine,wheels,mg_a,mg_b",
+        "--balance",
+        "mg_a,mg_b",
+    ]);
+    assert!(balanced.stdout.starts_with(b"<svg"), "{}", String::from_utf8_lossy(&balanced.stderr));
 }

@@ -474,7 +474,7 @@ fn numbers(view: &Front, x: f64, y: f64, room: f64) -> (Group, f64) {
         root(view) + 1
     );
     g = say(g, &circles, FAINT);
-    let roots = "Flanks are involutes. Fillets: as a rack with tip radius 0.38 m cuts them; of rings, rounded by 0.2 m. The \
+    let roots = "Flanks are involutes. Fillets: as a rack with a tip radius of 0.38 modules cuts them; of rings, rounded by 0.2 modules. The \
                  rim of a ring is not known.";
     g = say(g, roots, FAINT);
     (g, y)

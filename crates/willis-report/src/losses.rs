@@ -47,7 +47,7 @@ fn words(chart: &LossChart) -> String {
                 }
             }
         }
-        _ => out += "The operating point itself has no single answer. ",
+        _ => out += &format!("The operating point itself is {}. ", chart.verdict),
     }
     let missing = chart.verdicts.iter().filter(|v| **v != "unique").count();
     if missing > 0 {
@@ -195,8 +195,8 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
 fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
     let mut g = Group::new();
     let Some(loss) = chart.loss_w else {
-        let told = "The operating point itself has no single answer.";
-        return (g.add(text(28.0, top + 10.0, 13.0, Anchor::Start, told)), top + 14.0);
+        let told = format!("The operating point itself is {}: it has no losses to show.", chart.verdict);
+        return (g.add(text(28.0, top + 10.0, 13.0, Anchor::Start, &told)), top + 14.0);
     };
     let head = match chart.input_power_w {
         Some(p) if p > 0.0 => {

@@ -156,7 +156,10 @@ fn wanted(subject: &Subject, request: &ReportRequest, analysis: &Analysis) -> Ve
         plain(Time),
         (Losses, only.clone()),
         (Tornado, only.clone()),
-        plain(Stick),
+        (
+            Stick,
+            FigureRequest { state: analysis.operations.first().and_then(|o| o.state.clone()), ..Default::default() },
+        ),
         plain(Shift),
         plain(Regimes),
         (Film, only.clone()),
@@ -242,7 +245,8 @@ fn summary(all: &Findings<'_>) -> Section {
     for o in all.analysis.operations.iter().filter(|o| o.verdict != Verdict::Unique) {
         blocks.push(notice(o));
     }
-    let all_proved = |o: &OperationReport| o.certificate.is_some_and(|c| c.unique_for_every_load);
+    let all_proved =
+        |o: &OperationReport| o.verdict == Verdict::Unique && o.certificate.is_some_and(|c| c.unique_for_every_load);
     if !all.analysis.operations.is_empty() && all.analysis.operations.iter().all(all_proved) {
         let text = "Every answer is the only one, for every load in the same direction of motion: this is proved, not \
                     found by trying."

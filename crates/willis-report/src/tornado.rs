@@ -88,7 +88,9 @@ pub fn tornado(t: &Tornado) -> String {
         let change = text(at, y + 4.0, 11.0, anchor, &signed(b.loss_change_w));
         g = g.add(change.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3));
         if let Some(eta) = b.efficiency_change {
-            g = g.add(text(width - MARGIN, y + 4.0, 11.0, Anchor::End, &signed(100.0 * eta)));
+            // Round-off is no effect.
+            let points = if eta.abs() < 1e-10 { 0.0 } else { 100.0 * eta };
+            g = g.add(text(width - MARGIN, y + 4.0, 11.0, Anchor::End, &signed(points)));
         }
     }
     g = g.add(line((middle, TOP - 4.0), (middle, bottom), INK, 1.2)).add(line(
@@ -99,7 +101,7 @@ pub fn tornado(t: &Tornado) -> String {
     ));
 
     let mut notes =
-        vec!["Dark: the step up, with its value; light: the step down. Small steps: the effect is linear.".to_owned()];
+        vec!["Dark: the step up, with its value; light: the step down. Derivatives times the step: exact for small effects, a direction for large ones.".to_owned()];
     if t.bars.iter().any(|b| b.assumed) {
         notes.push("* not given: what is taken instead.".to_owned());
     }

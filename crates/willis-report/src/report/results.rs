@@ -147,6 +147,11 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
             blocks.push(members(&format!("Members{which}"), s));
             blocks.push(Block::Text { text: balance(s) });
             blocks.extend(elements(s));
+            blocks.extend(stiction(s));
+        }
+        for s in &o.dissipative_solutions {
+            blocks.push(members("Members, if every loaded member pushes", s));
+            blocks.push(Block::Text { text: balance(s) });
         }
         let of = Some(o.name.as_str());
         let sankey = format!("Where the power goes at {}; widths to scale", o.name);
@@ -214,6 +219,25 @@ fn balance(s: &SolutionReport) -> String {
         );
     }
     text
+}
+
+/// What friction in meshes at rest leaves open.
+fn stiction(s: &SolutionReport) -> Option<Block> {
+    let range = |r: &willis::analysis::StictionRange| match (r.low, r.high) {
+        (Some(low), Some(high)) => {
+            format!("{} anywhere from {} to {}", r.what, significant(low, 6), significant(high, 6))
+        }
+        _ => format!("{}, within limits that were not found", r.what),
+    };
+    let all: Vec<String> = s.stiction.iter().map(range).collect();
+    let text = || {
+        format!(
+            "Friction in meshes at rest leaves open: {}. The tables and pictures show the case in which those meshes lose \
+             nothing.",
+            all.join("; ")
+        )
+    };
+    (!all.is_empty()).then(|| Block::Notice { level: Level::Note, text: text() })
 }
 
 fn elements(s: &SolutionReport) -> Option<Block> {
@@ -309,7 +333,7 @@ fn what_first(all: &Findings<'_>) -> Option<Block> {
             vec![
                 name,
                 q.step.label().to_owned(),
-                q.efficiency_change.map_or("–".into(), |e| signed(100.0 * e)),
+                q.efficiency_change.map_or("–".into(), |e| signed(if e.abs() < 1e-10 { 0.0 } else { 100.0 * e })),
                 signed(q.loss_change_w),
                 most,
             ]
@@ -360,7 +384,11 @@ pub fn formulas(all: &Findings<'_>) -> Option<Section> {
                 continue;
             }
             printed += 1;
-            blocks.push(Block::Heading { text: f.title.clone() });
+            let heading = match f.state == willis::analysis::AS_DRAWN {
+                true => f.title.clone(),
+                false => format!("State {}: {}", f.state, f.title),
+            };
+            blocks.push(Block::Heading { text: heading });
             blocks.push(Block::Formula { latex: format!("\\eta = {latex}"), note: String::new() });
             if let ([from], [to], Some([speed, torque])) =
                 (&f.inputs[..], &f.outputs[..], f.ratios(Notation::Latex).filter(|r| r.iter().all(short)))
@@ -370,7 +398,11 @@ pub fn formulas(all: &Findings<'_>) -> Option<Section> {
             }
             let mut items = vec![];
             for a in &f.arguments {
-                items.push(format!("{} = {}: {}", a.name, significant(a.value, 7), a.meaning));
+                // Speeds and torques are the reader's to give.
+                items.push(match a.fixed {
+                    true => format!("{} = {}: {}", a.name, significant(a.value, 7), a.meaning),
+                    false => format!("{}: {}", a.name, a.meaning),
+                });
             }
             for (condition, meaning) in f.conditions(Notation::Text) {
                 items.push(format!("holds where {condition} > 0 ({meaning})"));

@@ -14,7 +14,14 @@ pub fn section(all: &Findings<'_>) -> Section {
     if let Some(source) = train.source() {
         blocks.push(Block::Text { text: format!("Source of the data: {source}") });
     }
-    blocks.extend(all.figures.block(FigureKind::Stick, None, "The train: shafts, wheels, carriers and shift elements"));
+    let state = all.analysis.operations.first().and_then(|o| o.state.as_deref());
+    let caption = match state {
+        Some(state) => {
+            format!("The train in state {state}: shafts, wheels, carriers, shift elements, and the loaded way")
+        }
+        None => "The train: shafts, wheels, carriers and shift elements".to_owned(),
+    };
+    blocks.extend(all.figures.block(FigureKind::Stick, None, &caption));
     blocks.push(wheels(train));
     blocks.extend(teeth(train));
     for set in train.sets() {

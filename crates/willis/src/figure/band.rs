@@ -59,7 +59,7 @@ pub fn bands(subject: &Subject, request: &UncertaintyRequest, over: &[String]) -
         [] => vec![axes::usual_speed(question, STEPS)],
         [_] => over.to_vec(),
         _ => {
-            let message = format!("bands are drawn over one quantity, and {} are named", over.len());
+            let message = format!("bands are drawn over one quantity, not {}", over.len());
             return Err(Diagnostic::new(Code::BadAxis, "", message).into());
         }
     };

@@ -22,6 +22,10 @@ pub struct FigureRequest {
     pub part: Option<String>,
     /// Quantities along the axes, as `sweep --over` takes them.
     pub over: Vec<String>,
+    /// Members on which torque may act, for regimes; `None` for the train's terminals.
+    pub terminals: Option<Vec<String>>,
+    /// Two terminals whose powers add to zero, for regimes.
+    pub balance: Option<[String; 2]>,
     /// Teeth without geometry are drawn as nominal ones of module 1.
     pub nominal: bool,
     /// Samples of bands at every value; 0 for as many as usual.
@@ -117,7 +121,8 @@ kinds! {
     Front(Front) "front": |s, r| front(s.train(), r.part.as_deref(), r.nominal)?;
     /// The wheel of regimes of two freedoms.
     Regimes(RegimeMap) "regimes": |s, r| {
-        regime_map(s.train(), &RegimeSelection { state: r.state.clone(), ..Default::default() })?
+        let (state, terminals, balance) = (r.state.clone(), r.terminals.clone(), r.balance.clone());
+        regime_map(s.train(), &RegimeSelection { state, terminals, balance })?
     };
     /// Efficiency over two quantities, and the best state.
     Map(EfficiencyMap) "map": |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over)?;
@@ -162,6 +167,23 @@ impl FigureKind {
     }
 }
 
+impl FigureKind {
+    /// Which of the questions of a [`FigureRequest`] make a difference to it: `state`, `operation`, `part`, `over`,
+    /// `terminals`, `balance`, `nominal`.
+    pub fn takes(self) -> &'static [&'static str] {
+        match self {
+            Self::Stick => &["state"],
+            Self::Lever | Self::Sankey | Self::Flow | Self::Tornado => &["state", "operation"],
+            Self::Front => &["part", "nominal"],
+            Self::Regimes => &["state", "terminals", "balance"],
+            Self::Map | Self::Losses | Self::Band => &["state", "operation", "over"],
+            Self::Film | Self::Path => &["operation", "part"],
+            Self::Time => &["part"],
+            Self::Shift => &[],
+        }
+    }
+}
+
 impl Figure {
     /// What kind it is.
     pub fn title(&self) -> &'static str {
@@ -196,7 +218,7 @@ fn lever_request(r: &FigureRequest) -> LeverRequest {
 fn powers(subject: &Subject, r: &FigureRequest) -> Result<FlowReport, Diagnostics> {
     let report = flows(subject.train(), &r.selection())?;
     if report.operations.is_empty() {
-        let d = Diagnostic::new(Code::NothingAsked, "", "power flows in operations, and there is none");
+        let d = Diagnostic::new(Code::Unfit, "", "power flows in operations, and there is none");
         return Err(d
             .hint("add an [[operation]] with speeds and torques or powers; `stick` and `lever` need none")
             .into());
@@ -226,10 +248,12 @@ fn time(subject: &Subject, r: &FigureRequest) -> Result<TimePlot, Diagnostics> {
         let d = match &r.part {
             Some(name) => {
                 let known = all.iter().map(|s| s.name.as_str());
+                let list = known.clone().collect::<Vec<_>>().join(", ");
                 Diagnostic::new(Code::UnknownSelection, "", format!("the train has no scenario `{name}`"))
                     .suggest(name, known)
+                    .hint(format!("its scenarios are: {}", if list.is_empty() { "none" } else { &list }))
             }
-            None => Diagnostic::new(Code::NothingAsked, "", "the train has no scenario that could run over time"),
+            None => Diagnostic::new(Code::Unfit, "", "the train has no scenario that could run over time"),
         };
         return Err(d.hint("a [[scenario]] says what drives and what happens when").into());
     };

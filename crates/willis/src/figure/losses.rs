@@ -30,6 +30,8 @@ pub struct LossChart {
     pub efficiency: Vec<Option<f64>>,
     /// The operating point itself, in the unit of the axis, where it prescribes the quantity that varies.
     pub at: Option<f64>,
+    /// What can be said of the operating point: one of [`VERDICTS`](crate::study::VERDICTS).
+    pub verdict: &'static str,
     /// Input power of the operating point, W; absent where it has no single answer.
     pub input_power_w: Option<f64>,
     /// All losses of the operating point, W.
@@ -104,14 +106,14 @@ pub fn loss_chart(
     let train = subject.train();
     let question = Question::new(subject, operation, state, Hold::AsGiven)?;
     if question.base().loads.is_empty() {
-        let d = Diagnostic::new(Code::NothingAsked, "", "losses belong to a loaded operating point, and there is none");
+        let d = Diagnostic::new(Code::Unfit, "", "losses belong to a loaded operating point, and there is none");
         return Err(d.hint("add an [[operation]] with speeds and torques or powers").into());
     }
     let over = match over {
         [] => vec![axes::usual_speed(&question, STEPS)],
         [_] => over.to_vec(),
         _ => {
-            let message = format!("losses are drawn over one quantity, and {} are named", over.len());
+            let message = format!("losses are drawn over one quantity, not {}", over.len());
             return Err(Diagnostic::new(Code::BadAxis, "", message).into());
         }
     };
@@ -174,6 +176,7 @@ pub fn loss_chart(
         verdicts: answers.iter().map(|a| a.verdict).collect(),
         efficiency: answers.iter().map(|a| Some(a.efficiency()).filter(|e| e.is_finite())).collect(),
         at,
+        verdict: own.verdict,
         input_power_w: own.solution.as_ref().filter(|_| here.is_some()).map(|s| s.input_power_w),
         loss_w: own.solution.as_ref().filter(|_| here.is_some()).map(|s| s.loss_w),
     })

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::analysis::{self, Selection};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::study::{Answer, Axis, Hold, Question, Subject, Sweep};
-use crate::train::Load;
+use crate::train::{Load, MemberId, Operation};
 
 use super::axes::{self, ChartAxis};
 
@@ -114,7 +114,9 @@ pub fn efficiency_map(
     over: &[String],
 ) -> Result<EfficiencyMap, Diagnostics> {
     let train = subject.train();
-    let question = Question::new(subject, operation, state, Hold::AsGiven)?;
+    // Without an operation that says so, a train with states is looked at in its first.
+    let first = train.states().first().filter(|_| train.operations().is_empty()).map(|s| s.name.as_str());
+    let question = Question::new(subject, operation, state.or(first), Hold::AsGiven)?;
     let open = state.is_none() && operation.is_none() && over.is_empty();
     if open
         && train.states().len() > 1
@@ -130,7 +132,7 @@ pub fn efficiency_map(
         }
         [_, _] => over.to_vec(),
         _ => {
-            let message = format!("a map runs over two quantities, and {} are named", over.len());
+            let message = format!("a map runs over two quantities, not {}", over.len());
             return Err(Diagnostic::new(Code::BadAxis, "", message).into());
         }
     };
@@ -158,7 +160,16 @@ fn bounded<'s>(question: Question<'s>, axes: Vec<Axis>) -> Result<Sweep<'s>, Dia
 fn marks(question: &Question<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
     let train = question.subject().train();
     let mut all = vec![];
-    for o in train.operations().iter().filter(|o| o.state == question.base().state) {
+    let base = question.base();
+    // What the map holds must be theirs too, at least in its direction.
+    let like = |o: &&Operation| {
+        let sign = |l: &Load| match l {
+            Load::Torque(q) | Load::Power(q) => q.si() > 0.0,
+        };
+        let opposite = |l: &(MemberId, Load)| base.loads.iter().any(|b| b.0 == l.0 && sign(&b.1) != sign(&l.1));
+        o.state == base.state && !o.loads.iter().any(opposite)
+    };
+    for o in train.operations().iter().filter(like) {
         let value = |axis: &Axis| {
             let (who, what) = axis.name.rsplit_once('.')?;
             let member = match who {

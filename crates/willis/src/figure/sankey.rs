@@ -162,7 +162,8 @@ pub fn sankey(report: &FlowReport) -> Sankey {
         for (k, g) in o.solutions.iter().enumerate() {
             let number = if count > 1 { format!(", solution {} of {count}", k + 1) } else { String::new() };
             let flow = flow(g);
-            let remark = flow.is_none().then(|| "Nothing is loaded: no power flows.".to_owned());
+            let remark =
+                flow.is_none().then(|| "No power flows: what is loaded stands still, or nothing is loaded.".to_owned());
             panels.push(SankeyPanel { title: format!("{title}{number}"), remark, flow });
         }
         for g in &o.dissipative_solutions {

@@ -358,7 +358,8 @@ impl fmt::Display for Remark {
                 f,
                 "wheel {}: its tip touches the mating flank at a radius of curvature of {}, below the form circle ({}) of a rack with a tip radius of 0.38 modules: shorten the tip, or check the tool",
                 wheel + 1,
-                mm(*contact),
+                // Nothing is curved less than not at all.
+                mm(contact.max(0.0)),
                 mm(*form)
             ),
             Self::ThinTip { wheel, thickness, module } => write!(

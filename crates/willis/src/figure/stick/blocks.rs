@@ -105,6 +105,10 @@ impl Plan {
         let own = state.map(|k| &train.states()[k]);
         let input = own.and_then(|s| s.input).or(train.input());
         let output = own.and_then(|s| s.output).or(train.output());
+        // The first and the last of many terminals are input and output by nothing but their place.
+        let ends = [train.terminals().first().copied(), train.terminals().last().copied()];
+        let by_place = train.terminals().len() > 2 && [input, output] == ends;
+        let (input, output) = if by_place { (None, None) } else { (input, output) };
         let mut exits: Vec<Exit> = Vec::new();
         for &m in train.terminals().iter().filter(|m| **m != FRAME) {
             let way = if Some(m) == input {
