@@ -3,7 +3,7 @@
 use willis::analysis::Verdict;
 use willis::hypergraph::{FlowReport, Hypergraph, MOST_PATHS, Node, NodeKind, OperationFlow, Path, watts};
 
-use crate::text::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, verdict_word, wrap};
+use crate::text::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
 
 pub fn text(all: &FlowReport) -> String {
     let mut out = bold(&all.train) + "\n";
@@ -25,7 +25,7 @@ fn operation(o: &OperationFlow) -> String {
     }
     out.push('\n');
     if o.verdict != Verdict::Unique {
-        out += &format!("  verdict      {}\n", bold(verdict_word(o.verdict)));
+        out += &format!("  verdict      {}\n", bold(o.verdict.words()));
     }
     if let Some(reason) = &o.reason {
         out += &wrap(reason, "               ");

@@ -3,7 +3,7 @@
 use willis::analysis::{LossPoint, LossTable, Named, SolutionReport, Verdict};
 use willis::catalogue::{bearing, oil};
 use willis::losses::{Entry, Tag, Trust};
-use willis::operating_point::{BearingReport, ContactReport, LossKind, Regime};
+use willis::operating_point::{BearingReport, ContactReport, Regime};
 
 use crate::csv::Writer;
 use crate::text::{bold, dim, percent, right, rpm, set_header, show, significant, table, wrap};
@@ -22,7 +22,7 @@ pub fn of_solution(s: &SolutionReport) -> String {
         for x in s.sources.iter().filter(|x| x.loss_w > 0.0 || most == 0.0) {
             t.add_row([
                 x.name.clone(),
-                kind(x.kind).into(),
+                x.kind.words().into(),
                 x.law.into(),
                 significant(x.loss_w, 4),
                 percent(x.share),
@@ -60,19 +60,6 @@ pub fn bar(part: f64) -> String {
         text.push(rest);
     }
     text
-}
-
-/// A kind of loss in words.
-pub fn kind(k: LossKind) -> &'static str {
-    match k {
-        LossKind::Sliding => "tooth sliding",
-        LossKind::Rolling => "tooth rolling",
-        LossKind::Bearing => "bearing",
-        LossKind::Windage => "windage",
-        LossKind::Churning => "churning",
-        LossKind::Seal => "seal",
-        _ => "other",
-    }
 }
 
 fn contacts(all: &Named<ContactReport>) -> String {

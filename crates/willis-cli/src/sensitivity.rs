@@ -4,10 +4,7 @@ use willis::operating_point::LossKind;
 use willis::study::{OperationSensitivity, QuantitySensitivity, Sensitivity};
 
 use crate::csv::{self, Writer};
-use crate::losses::kind;
-use crate::text::{
-    bold, dim, margins, percent, plural, right, rpm, set_header, show, significant, table, verdict_word, wrap,
-};
+use crate::text::{bold, dim, margins, percent, plural, right, set_header, show, significant, table, wrap};
 
 /// For eyes.
 pub fn text(all: &Sensitivity) -> String {
@@ -24,7 +21,7 @@ pub fn text(all: &Sensitivity) -> String {
 }
 
 fn operation(o: &OperationSensitivity) -> String {
-    let mut out = format!("  {:<12} {}\n", "verdict", verdict_word(o.verdict));
+    let mut out = format!("  {:<12} {}\n", "verdict", o.verdict.words());
     if let Some(reason) = &o.reason {
         return out + &wrap(reason, "  ") + "\n";
     }
@@ -99,23 +96,7 @@ fn change(x: f64) -> String {
 
 /// The value in a unit that people use.
 fn value(q: &QuantitySensitivity) -> String {
-    let x = q.value;
-    let (x, unit) = match q.unit {
-        "m" if x.abs() < 1e-4 && x != 0.0 => (x * 1e6, "µm"),
-        "m" => (x * 1e3, "mm"),
-        "rad" => (x.to_degrees(), "°"),
-        "K" => (x - 273.15, "°C"),
-        "Pa" => (x / 1e9, "GPa"),
-        "1/Pa" => (x * 1e9, "1/GPa"),
-        "m^2/s" => (x * 1e6, "mm²/s"),
-        "Pa s" => (x * 1e3, "mPa s"),
-        "m^3" => (x * 1e3, "l"),
-        "kg/m^3" => (x, "kg/m³"),
-        "rad/s" => (rpm(x), "rpm"),
-        "W" if x.abs() >= 1e3 => (x / 1e3, "kW"),
-        "-" => (x, ""),
-        other => (x, other),
-    };
+    let (x, unit) = willis::units::for_people(q.value, q.unit);
     format!("{} {unit}", significant(x, 6)).trim_end().to_owned()
 }
 
@@ -126,9 +107,9 @@ fn moves(q: &QuantitySensitivity) -> String {
     let named = worth.take(2).map(|s| {
         let what = match s.kind {
             LossKind::Sliding | LossKind::Rolling => {
-                format!("{} {}", s.name, kind(s.kind).trim_start_matches("tooth "))
+                format!("{} {}", s.name, s.kind.words().trim_start_matches("tooth "))
             }
-            LossKind::Windage | LossKind::Churning => format!("{} {}", s.name, kind(s.kind)),
+            LossKind::Windage | LossKind::Churning => format!("{} {}", s.name, s.kind.words()),
             _ => s.name.clone(),
         };
         format!("{what} {}", change(s.change_w))
@@ -159,7 +140,7 @@ pub fn table_csv(all: &Sensitivity) -> String {
     for o in &all.operations {
         for q in &o.quantities {
             let sources: Vec<String> =
-                q.sources.iter().map(|s| format!("{} ({}) {}", s.name, kind(s.kind), s.change_w)).collect();
+                q.sources.iter().map(|s| format!("{} ({}) {}", s.name, s.kind.words(), s.change_w)).collect();
             out.row([
                 o.name.as_str(),
                 csv::verdict(o.verdict),

@@ -133,20 +133,10 @@ fn proved(d: &Direction) -> bool {
 fn verdicts(s: &StateReport) -> String {
     let word = |d: &Direction| match d.verdict {
         Verdict::Unique if proved(d) => "unique, proved".to_owned(),
-        v => verdict_word(v).to_owned(),
+        v => v.words().to_owned(),
     };
     let (drive, coast) = (word(&s.drive), word(&s.coast));
     if drive == coast { drive } else { format!("{drive} / {coast}") }
-}
-
-pub fn verdict_word(v: Verdict) -> &'static str {
-    match v {
-        Verdict::Unique => "unique",
-        Verdict::Multiple => "several solutions",
-        Verdict::Locked => "locked",
-        Verdict::Unloaded => "unloaded",
-        _ => "undetermined",
-    }
 }
 
 fn certificate(c: &CertificateReport) -> String {
@@ -167,7 +157,7 @@ fn operation(o: &OperationReport) -> String {
         out += &format!("   {} degrees of freedom", o.degrees_of_freedom);
     }
     out.push('\n');
-    out += &format!("  verdict      {}", bold(verdict_word(o.verdict)));
+    out += &format!("  verdict      {}", bold(o.verdict.words()));
     match (&o.certificate, o.verdict) {
         (Some(c), Verdict::Unique | Verdict::Multiple) => out += &format!(": {}", certificate(c)),
         (Some(c), Verdict::Locked) if c.method != "undecided" => out += ": proved, no equilibrium drives a load",

@@ -37,6 +37,7 @@ fn main() -> ExitCode {
 
 fn arguments() -> Result<Request, String> {
     let (mut paper, mut output) = (Paper::A4, None);
+    // The first is the program itself.
     let mut rest = env::args_os().skip(1);
     while let Some(argument) = rest.next() {
         let mut value = || rest.next().ok_or(format!("{} needs a value", argument.display()));

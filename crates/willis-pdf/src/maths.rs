@@ -95,8 +95,10 @@ impl Reader<'_, '_> {
     fn stack(&mut self, upright: bool) -> Option<Value> {
         let mut rows = self.rows(upright)?;
         let align = json!(["align"]);
+        // A row begins with its own name, and a mark at its beginning aligns nothing.
         let marked = |row: &Value| row.as_array().is_some_and(|r| r.iter().skip(2).any(|node| *node == align));
         if rows.iter().any(marked) {
+            // No line is broken before the first row.
             let lines = rows.into_iter().flat_map(|row| [json!(["line"]), row]).skip(1);
             return Some([json!("row")].into_iter().chain(lines).collect());
         }

@@ -3,6 +3,7 @@
 use svg::node::element::Group;
 use willis::figure::{Tornado, TornadoBar};
 use willis::hypergraph::watts;
+use willis::units;
 
 use crate::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
@@ -150,23 +151,7 @@ fn signed(x: f64) -> String {
 
 /// In a unit that people use.
 fn value(b: &TornadoBar) -> String {
-    let x = b.value;
-    let (x, unit) = match b.unit {
-        "m" if x.abs() < 1e-4 && x != 0.0 => (x * 1e6, "µm"),
-        "m" => (x * 1e3, "mm"),
-        "rad" => (x.to_degrees(), "°"),
-        "K" => (x - 273.15, "°C"),
-        "Pa" => (x / 1e9, "GPa"),
-        "1/Pa" => (x * 1e9, "1/GPa"),
-        "m^2/s" => (x * 1e6, "mm²/s"),
-        "Pa s" => (x * 1e3, "mPa s"),
-        "m^3" => (x * 1e3, "l"),
-        "kg/m^3" => (x, "kg/m³"),
-        "rad/s" => (x * 30.0 / std::f64::consts::PI, "rpm"),
-        "W" if x.abs() >= 1e3 => (x / 1e3, "kW"),
-        "-" => (x, ""),
-        other => (x, other),
-    };
+    let (x, unit) = units::for_people(b.value, b.unit);
     let size = x.abs();
     // Four digits, at least those of the integer part.
     let text = if size == 0.0 || !(1e-3..1e6).contains(&size) {

@@ -1,6 +1,7 @@
 //! Figures of power flows and Sankey diagrams: no label on another, nothing beyond the page, for every example.
 
-// Words are measured here as the figures measure them.
+// Words are measured here as the figures measure them. Their measure is not public, and of the rest of its file this
+// test has no use.
 #[allow(dead_code)]
 #[path = "../src/style.rs"]
 mod style;

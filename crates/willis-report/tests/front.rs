@@ -11,6 +11,7 @@ fn example(name: &str) -> Train {
 /// A picture in which nothing is undefined, and no text is finer than 10 px.
 fn sound(svg: &str) {
     assert!(!svg.contains("NaN") && !svg.contains("inf\""), "undefined numbers");
+    // What stands before the first size is none.
     for size in svg.split("font-size=\"").skip(1) {
         let size: f64 = size.split('"').next().and_then(|s| s.parse().ok()).expect("a size");
         assert!(size >= 10.0, "{size}");
@@ -39,6 +40,7 @@ fn the_moving_picture_turns_by_the_exact_ratios() {
     sound(&svg);
     let periods: Vec<f64> = svg
         .split("dur=\"")
+        // What stands before the first period is none.
         .skip(1)
         .map(|t| t.split('s').next().and_then(|s| s.parse().ok()).expect("a period"))
         .collect();

@@ -38,6 +38,19 @@ pub enum Verdict {
     Undetermined,
 }
 
+impl Verdict {
+    /// For people: `several solutions`.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Unique => "unique",
+            Self::Multiple => "several solutions",
+            Self::Locked => "locked",
+            Self::Unloaded => "unloaded",
+            Self::Undetermined => "undetermined",
+        }
+    }
+}
+
 /// Whether the answer is the only one, and how that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct CertificateReport {

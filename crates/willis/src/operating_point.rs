@@ -73,6 +73,20 @@ pub enum LossKind {
     Seal,
 }
 
+impl LossKind {
+    /// For people: `tooth sliding`.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Sliding => "tooth sliding",
+            Self::Rolling => "tooth rolling",
+            Self::Bearing => "bearing",
+            Self::Windage => "windage",
+            Self::Churning => "churning",
+            Self::Seal => "seal",
+        }
+    }
+}
+
 /// One place where power is lost.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LossSource {

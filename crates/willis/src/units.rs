@@ -375,6 +375,34 @@ quantity!(
     kw = "kW"
 );
 
+/// A value in SI units in the unit that people use for its size: mm for m, rpm for rad/s, °C for K. Units that people
+/// use as they are stay, and `-` becomes nothing.
+///
+/// # Example
+/// ```
+/// assert_eq!(willis::units::for_people(0.045, "m"), (45.0, "mm"));
+/// assert_eq!(willis::units::for_people(0.5e-6, "m"), (0.5, "µm"));
+/// assert_eq!(willis::units::for_people(2.0, "N m"), (2.0, "N m"));
+/// ```
+pub fn for_people(x: f64, unit: &str) -> (f64, &str) {
+    match unit {
+        "m" if x.abs() < 1e-4 && x != 0.0 => (x * 1e6, "µm"),
+        "m" => (x * 1e3, "mm"),
+        "rad" => (x.to_degrees(), "°"),
+        "K" => (x - 273.15, "°C"),
+        "Pa" => (x / 1e9, "GPa"),
+        "1/Pa" => (x * 1e9, "1/GPa"),
+        "m^2/s" => (x * 1e6, "mm²/s"),
+        "Pa s" => (x * 1e3, "mPa s"),
+        "m^3" => (x * 1e3, "l"),
+        "kg/m^3" => (x, "kg/m³"),
+        "rad/s" => (x * 30.0 / std::f64::consts::PI, "rpm"),
+        "W" if x.abs() >= 1e3 => (x / 1e3, "kW"),
+        "-" => (x, ""),
+        _ => (x, unit),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,7 @@
 use willis::analysis::{CertificateReport, OperationReport, Role, SolutionReport, StateReport, Verdict};
 use willis::figure::FigureKind;
 use willis::hypergraph::watts;
-use willis::operating_point::{LossKind, Regime};
+use willis::operating_point::Regime;
 use willis::regimes::{FormulaRequest, formulas as closed};
 use willis::symbolic::Notation;
 
@@ -56,16 +56,6 @@ pub fn efficiency(s: &SolutionReport) -> String {
     }
 }
 
-pub fn verdict(v: Verdict) -> &'static str {
-    match v {
-        Verdict::Unique => "unique",
-        Verdict::Multiple => "several solutions",
-        Verdict::Locked => "locked",
-        Verdict::Unloaded => "unloaded",
-        _ => "undetermined",
-    }
-}
-
 pub fn certificate(v: Verdict, c: &CertificateReport) -> &'static str {
     match (v, c.unique_for_every_load, c.method) {
         (Verdict::Locked, _, "undecided") => "not proved",
@@ -102,7 +92,7 @@ pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
     for (name, s) in all.analysis.ratios.iter() {
         for (way, d) in [("driving", &s.drive), ("coasting", &s.coast)] {
             if let (Some(reason), true) = (&d.reason, matches!(d.verdict, Verdict::Locked | Verdict::Multiple)) {
-                let text = format!("State {name}, {way}: {}. {reason}", verdict(d.verdict));
+                let text = format!("State {name}, {way}: {}. {reason}", d.verdict.words());
                 blocks.push(Block::Notice { level: Level::Stop, text });
             }
         }
@@ -114,7 +104,7 @@ pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
 fn state(name: &str, s: &StateReport) -> Vec<String> {
     let way = |d: &willis::analysis::Direction| match d.efficiency {
         Some(e) => exact_percent(e),
-        None => verdict(d.verdict).to_owned(),
+        None => d.verdict.words().to_owned(),
     };
     let proved = |d: &willis::analysis::Direction| d.certificate.is_some_and(|c| c.unique_for_every_load);
     let certain = match (proved(&s.drive), proved(&s.coast)) {
@@ -252,18 +242,6 @@ fn elements(s: &SolutionReport) -> Option<Block> {
     (!rows.is_empty()).then(|| Block::Table { caption: "Torques of engaged elements".into(), columns, rows })
 }
 
-fn kind(k: LossKind) -> &'static str {
-    match k {
-        LossKind::Sliding => "tooth sliding",
-        LossKind::Rolling => "tooth rolling",
-        LossKind::Bearing => "bearing",
-        LossKind::Windage => "windage",
-        LossKind::Churning => "churning",
-        LossKind::Seal => "seal",
-        _ => "other",
-    }
-}
-
 pub fn losses(all: &Findings<'_>) -> Option<Section> {
     let mut blocks = vec![];
     blocks.extend(all.figures.block(FigureKind::Losses, None, "Losses by source"));
@@ -272,7 +250,7 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
         let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
-            .map(|x| vec![x.name.clone(), kind(x.kind).into(), x.law.into(), watts(x.loss_w), exact_percent(x.share)])
+            .map(|x| vec![x.name.clone(), x.kind.words().into(), x.law.into(), watts(x.loss_w), exact_percent(x.share)])
             .collect();
         blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
         blocks.extend(contacts(&o.name, s));

@@ -168,6 +168,7 @@ impl Ribbon {
     /// Slanted lines from edge to edge.
     pub fn hatching(&self) -> String {
         let all = self.sections(HATCH / 2.0);
+        // From every second section to the next but one: the lines slant and keep their distance.
         let lines = all.iter().step_by(2).zip(all.iter().skip(2).step_by(2));
         lines.map(|(a, b)| format!("M{} L{}", point(a[0]), point(b[1]))).collect::<Vec<_>>().join(" ")
     }

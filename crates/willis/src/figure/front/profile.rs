@@ -110,6 +110,7 @@ impl Profile {
                 side.push([bend(0), bend(1)]);
             }
         } else {
+            // Its last point is where the involute begins, which is there already.
             for p in fillet.iter().rev().skip(1) {
                 side.push([p[0], (quarter - p[1]).clamp(0.0, quarter)]);
             }
@@ -122,6 +123,7 @@ impl Profile {
         side.dedup_by(|b, a| (a[0] - b[0]).abs() < 1e-9 && ((a[1] - b[1]) * a[0]).abs() < 1e-9);
         let point = |r: f64, angle: f64| [r * angle.cos(), r * angle.sin()];
         let right = side.iter().rev().map(|&[r, angle]| point(r, -angle));
+        // The first point stands on the middle line of the tooth: it is its own mirror image.
         right.chain(side.iter().skip(1).map(|&[r, angle]| point(r, angle))).collect()
     }
 

@@ -82,6 +82,7 @@ fn level(families: &[Family]) -> Option<Vec<[f64; 2]>> {
     let mut rows: Matrix = Vec::new();
     for f in families {
         let (base, n) = outside(f).next()?;
+        // The first is what all others are compared with.
         for (m, number) in outside(f).skip(1) {
             let mut row = vec![Rational::ZERO; members.len()];
             row[column(m)] += n.clone();
