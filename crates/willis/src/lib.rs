@@ -50,6 +50,8 @@ pub mod symbolic;
 pub mod real;
 pub mod units;
 pub mod named;
+pub mod contract;
+pub mod work;
 pub mod diagnostic;
 pub mod catalogue;
 pub mod geometry;
