@@ -5,7 +5,7 @@ use willis::figure::outcome_in_words;
 use willis::hypergraph::watts;
 
 use super::Run;
-use crate::text::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
+use crate::style::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
 
 /// Rows of the table of events.
 pub const MOST_EVENTS: usize = 40;

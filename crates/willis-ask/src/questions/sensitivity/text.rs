@@ -3,8 +3,10 @@
 use willis::operating_point::LossKind;
 use willis::study::{OperationSensitivity, QuantitySensitivity, Sensitivity};
 
-use crate::csv::{self, Writer};
-use crate::text::{bold, dim, margins, percent, plural, right, set_header, show, significant, table, wrap};
+use crate::questions::analyze::{margins, verdict};
+use crate::style::{bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
+use crate::table::Kind::{Flag, Number, Text};
+use crate::table::Table;
 
 /// For eyes.
 pub fn text(all: &Sensitivity) -> String {
@@ -118,46 +120,47 @@ fn moves(q: &QuantitySensitivity) -> String {
 }
 
 /// One row a quantity; SI.
-pub fn table_csv(all: &Sensitivity) -> String {
-    let mut out = Writer::default();
-    out.row([
-        "operation",
-        "verdict",
-        "quantity",
-        "value",
-        "unit",
-        "assumed",
-        "step",
-        "step_size",
-        "efficiency_derivative",
-        "loss_derivative_w",
-        "efficiency_change",
-        "loss_change_w",
-        "loss_elasticity",
-        "sources",
-    ]);
-    let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+pub fn table_of(all: &Sensitivity) -> Table {
+    let mut t = Table::new(
+        "quantities",
+        [
+            ("operation", Text),
+            ("verdict", Text),
+            ("quantity", Text),
+            ("value", Number),
+            ("unit", Text),
+            ("assumed", Flag),
+            ("step", Text),
+            ("step_size", Number),
+            ("efficiency_derivative", Number),
+            ("loss_derivative_w", Number),
+            ("efficiency_change", Number),
+            ("loss_change_w", Number),
+            ("loss_elasticity", Number),
+            ("sources", Text),
+        ],
+    );
     for o in &all.operations {
         for q in &o.quantities {
             let sources: Vec<String> =
                 q.sources.iter().map(|s| format!("{} ({}) {}", s.name, s.kind.words(), s.change_w)).collect();
-            out.row([
-                o.name.as_str(),
-                csv::verdict(o.verdict),
-                &q.name,
-                &q.value.to_string(),
-                q.unit,
-                &q.assumed.to_string(),
-                q.step.label(),
-                &q.step_size.to_string(),
-                &number(q.efficiency_derivative),
-                &q.loss_derivative_w.to_string(),
-                &number(q.efficiency_change),
-                &q.loss_change_w.to_string(),
-                &number(q.loss_elasticity),
-                &sources.join("; "),
+            t.row([
+                (&o.name).into(),
+                verdict(o.verdict).into(),
+                (&q.name).into(),
+                q.value.into(),
+                q.unit.to_string().into(),
+                q.assumed.into(),
+                q.step.label().into(),
+                q.step_size.into(),
+                q.efficiency_derivative.into(),
+                q.loss_derivative_w.into(),
+                q.efficiency_change.into(),
+                q.loss_change_w.into(),
+                q.loss_elasticity.into(),
+                sources.join("; ").into(),
             ]);
         }
     }
-    out.0
+    t
 }

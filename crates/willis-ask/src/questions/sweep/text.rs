@@ -2,7 +2,7 @@
 
 use willis::study::Extent;
 
-use crate::text::{bold, dim, percent, right, set_header, show, significant, table, wrap};
+use crate::style::{bold, dim, percent, right, set_header, show, significant, table, wrap};
 
 use super::Report;
 

@@ -1,22 +1,13 @@
-//! `willis compare`: variants side by side, differences first.
+//! Variants side by side, differences first, for eyes.
 
 use willis::study::{CompareRequest, Compared, Comparison, Datum, Difference, MapDifference, MapPair, TextDifference};
 
-use crate::csv::Writer;
-use crate::cycle::Studied;
-use crate::text::{bold, dim, plural, right, rpm, set_header, show, significant, table, wrap};
+use crate::style::{bold, dim, plural, right, rpm, set_header, show, significant, table, wrap};
 
 /// Results of a state or operation that are shown; the contract has all.
 const MOST_ROWS: usize = 20;
 /// A longer value of a key is cut.
 const MOST_LETTERS: usize = 48;
-
-/// Compares files.
-pub fn run(files: &[Studied], request: &CompareRequest) -> Result<Comparison, String> {
-    let all: Vec<_> = files.iter().map(|f| (f.file.as_str(), &f.subject)).collect();
-    // A message names its file, or concerns all.
-    willis::study::compare(&all, request).map_err(|wrong| wrong.render("", "", crate::color()))
-}
 
 /// The comparison for eyes.
 pub fn text(c: &Comparison) -> String {
@@ -303,82 +294,4 @@ fn map_rows(t: &mut comfy_table::Table, name: &str, d: &MapDifference, show: fn(
     if places.is_empty() {
         t.add_row(head.into_iter().chain([String::new(), String::new()]));
     }
-}
-
-/// The tables of a comparison as CSV, one under the other.
-pub fn csv(c: &Comparison) -> String {
-    let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{:?}", x + 0.0));
-    let labels: Vec<String> = c.variants.iter().map(|v| v.label.to_lowercase()).collect();
-    let mut out = Writer::default();
-    out.0 += "# variants\n";
-    out.row(["variant", "file", "train"]);
-    for v in &c.variants {
-        out.row([&v.label, &v.file, &v.train]);
-    }
-    out.0 += "\n# files\n";
-    out.row(std::iter::once("key".to_owned()).chain(labels.iter().cloned()));
-    for d in &c.files {
-        out.row(std::iter::once(d.path.clone()).chain(d.values.iter().map(|v| v.clone().unwrap_or_default())));
-    }
-    for (title, all) in [("states", &c.states), ("operations", &c.operations)] {
-        out.0 += &format!("\n# {title}\n");
-        let mut header = vec!["name".to_owned(), "quantity".into(), "unit".into()];
-        header.extend(labels.iter().cloned());
-        for l in &labels[1..] {
-            header.extend([format!("{l}_less_{}", labels[0]), format!("{l}_relative")]);
-        }
-        out.row(&header);
-        for x in all.iter() {
-            for l in &x.missing_in {
-                out.row([&x.name, &format!("missing in {l}")]);
-            }
-            for p in &x.prescribed {
-                let head = [x.name.clone(), format!("prescribed: {}", p.path), String::new()];
-                out.row(head.into_iter().chain(p.values.iter().map(|v| v.clone().unwrap_or_default())));
-            }
-            for d in &x.differences {
-                let mut row = vec![x.name.clone(), d.quantity.clone(), d.unit.to_owned()];
-                row.extend(d.values.iter().map(|v| match v {
-                    Datum::None => String::new(),
-                    Datum::Word(w) => w.clone(),
-                    Datum::Number(x) => number(Some(*x)),
-                }));
-                for k in 1..d.values.len() {
-                    row.extend([number(d.differences[k]), number(d.relative[k])]);
-                }
-                out.row(&row);
-            }
-        }
-    }
-    if let Some(m) = &c.map {
-        out.0 += "\n# map\n";
-        out.row([
-            "variant",
-            "against",
-            "quantity",
-            "compared",
-            "better",
-            "worse",
-            "equal",
-            "mean",
-            "most_better",
-            "at",
-            "most_worse",
-            "at",
-        ]);
-        for p in &m.pairs {
-            for (name, d) in [("efficiency", &p.efficiency), ("loss_w", &p.loss_w)] {
-                let place = |x: &Option<willis::study::MapPlace>| match x {
-                    Some(x) => [number(Some(x.difference)), x.place.clone()],
-                    None => [String::new(), String::new()],
-                };
-                let mut row = vec![p.other.clone(), p.first.clone(), name.to_owned()];
-                row.extend([p.compared, d.better, d.worse, d.equal].map(|n| n.to_string()));
-                row.push(number(d.mean));
-                row.extend(place(&d.most_better).into_iter().chain(place(&d.most_worse)));
-                out.row(&row);
-            }
-        }
-    }
-    out.0
 }

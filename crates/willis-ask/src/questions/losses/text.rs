@@ -1,15 +1,12 @@
-//! Losses, laws and catalogues for eyes and for tables.
+//! Losses for eyes and as a table.
 
 use willis::analysis::{LossPoint, LossTable, Named, SolutionReport, Verdict};
-use willis::catalogue::{bearing, oil};
-use willis::losses::{Entry, Tag, Trust};
 use willis::operating_point::{BearingReport, ContactReport, Regime};
 
-use crate::csv::Writer;
-use crate::text::{bold, dim, percent, right, rpm, set_header, show, significant, table, wrap};
-
-/// Width of the longest bar.
-const BAR: usize = 28;
+use crate::questions::analyze::verdict as verdict_word;
+use crate::style::{bar, bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
+use crate::table::Kind::{Flag, Number, Text};
+use crate::table::Table;
 
 /// The losses of a solution: where every watt goes, tooth contacts, bearings.
 pub fn of_solution(s: &SolutionReport) -> String {
@@ -35,11 +32,11 @@ pub fn of_solution(s: &SolutionReport) -> String {
             let text = match c.converged {
                 true if c.rounds < 3 => format!(
                     "losses and torques agree within 10⁻⁹ of the loss: {}",
-                    crate::text::plural(c.rounds, "round", "rounds")
+                    plural(c.rounds, "round", "rounds")
                 ),
                 true => format!(
                     "losses and torques agree within 10⁻⁹ of the loss: {}, each error {} of the last",
-                    crate::text::plural(c.rounds, "round", "rounds"),
+                    plural(c.rounds, "round", "rounds"),
                     significant(c.contraction, 2)
                 ),
                 false => format!("NOT CONVERGED after {} rounds: left {:.1e} of the loss", c.rounds, c.error),
@@ -49,17 +46,6 @@ pub fn of_solution(s: &SolutionReport) -> String {
         }
     }
     out + &contacts(&s.contacts) + &bearings(&s.bearings)
-}
-
-/// A bar of that part of the full length.
-pub fn bar(part: f64) -> String {
-    let eighths = (part * (BAR * 8) as f64).round() as usize;
-    let rest = [' ', '▏', '▎', '▍', '▌', '▋', '▊', '▉'][eighths % 8];
-    let mut text = "█".repeat(eighths / 8);
-    if rest != ' ' {
-        text.push(rest);
-    }
-    text
 }
 
 fn contacts(all: &Named<ContactReport>) -> String {
@@ -253,213 +239,54 @@ fn notes(group: &[LossPoint]) -> String {
     out
 }
 
-/// The same as CSV, one row a point.
-pub fn points_csv(all: &LossTable) -> String {
-    let mut out = Writer::default();
-    out.row([
-        "operation",
-        "law",
-        "speed_of",
-        "speed_rad_s",
-        "torque_of",
-        "torque_n_m",
-        "temperature_k",
-        "verdict",
-        "efficiency",
-        "input_power_w",
-        "loss_w",
-        "mesh_loss_w",
-        "bearing_loss_w",
-        "windage_loss_w",
-        "churning_loss_w",
-        "seal_loss_w",
-        "converged",
-        "warnings",
-    ]);
-    let number = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+/// One row a point; SI.
+pub fn table_of(all: &LossTable) -> Table {
+    let mut t = Table::new(
+        "points",
+        [
+            ("operation", Text),
+            ("law", Text),
+            ("speed_of", Text),
+            ("speed_rad_s", Number),
+            ("torque_of", Text),
+            ("torque_n_m", Number),
+            ("temperature_k", Number),
+            ("verdict", Text),
+            ("efficiency", Number),
+            ("input_power_w", Number),
+            ("loss_w", Number),
+            ("mesh_loss_w", Number),
+            ("bearing_loss_w", Number),
+            ("windage_loss_w", Number),
+            ("churning_loss_w", Number),
+            ("seal_loss_w", Number),
+            ("converged", Flag),
+            ("warnings", Text),
+        ],
+    );
     for p in &all.points {
         let l = &p.losses_w;
-        out.row([
-            p.operation.as_str(),
-            p.law.unwrap_or_default(),
-            p.speed_of.as_deref().unwrap_or_default(),
-            &p.speed_rad_s.to_string(),
-            p.torque_of.as_deref().unwrap_or_default(),
-            &number(p.torque_n_m),
-            &number(p.temperature_k),
-            crate::csv::verdict(p.verdict),
-            &number(p.efficiency),
-            &p.input_power_w.to_string(),
-            &p.loss_w.to_string(),
-            &l.mesh.to_string(),
-            &l.bearing.to_string(),
-            &l.windage.to_string(),
-            &l.churning.to_string(),
-            &l.seal.to_string(),
-            &p.convergence.is_none_or(|c| c.converged).to_string(),
-            &p.warnings.join("; "),
+        let warnings: Vec<String> = p.warnings.iter().map(ToString::to_string).collect();
+        t.row([
+            (&p.operation).into(),
+            p.law.as_ref().map(ToString::to_string).into(),
+            p.speed_of.clone().into(),
+            p.speed_rad_s.into(),
+            p.torque_of.clone().into(),
+            p.torque_n_m.into(),
+            p.temperature_k.into(),
+            verdict_word(p.verdict).into(),
+            p.efficiency.into(),
+            p.input_power_w.into(),
+            p.loss_w.into(),
+            l.mesh.into(),
+            l.bearing.into(),
+            l.windage.into(),
+            l.churning.into(),
+            l.seal.into(),
+            p.convergence.is_none_or(|c| c.converged).into(),
+            warnings.join("; ").into(),
         ]);
     }
-    out.0
-}
-
-/// What a law's trust means in a word.
-fn trust(t: Trust) -> String {
-    match t {
-        Trust::Seen => "seen".into(),
-        Trust::Derived => "derived".into(),
-        Trust::Confirm(what) => format!("confirm: {what}"),
-    }
-}
-
-fn range(e: &Entry) -> String {
-    let all: Vec<String> = e
-        .valid
-        .iter()
-        .map(|(symbol, unit, low, high)| {
-            let value = |x: f64| significant(x, 3);
-            let unit = if *unit == "-" { String::new() } else { format!(" {unit}") };
-            match (*low > 0.0 && low.is_finite(), high.is_finite()) {
-                (true, true) => format!("{} ≤ {symbol} ≤ {}{unit}", value(*low), value(*high)),
-                (false, true) => format!("{symbol} ≤ {}{unit}", value(*high)),
-                (true, false) => format!("{symbol} ≥ {}{unit}", value(*low)),
-                (false, false) => format!("any {symbol}"),
-            }
-        })
-        .collect();
-    if all.is_empty() { "not limited".into() } else { all.join(", ") }
-}
-
-/// Every law, family by family.
-pub fn laws(all: &[Entry]) -> String {
-    let mut out = String::new();
-    let mut family = "";
-    for e in all {
-        if e.family != family {
-            if !family.is_empty() {
-                out.push('\n');
-            }
-            family = e.family;
-            let (symbol, unit) = e.gives;
-            let unit = if unit == "-" { String::new() } else { format!(", {unit}") };
-            out += &format!("{}   gives {symbol}{unit}\n", bold(family));
-        }
-        let mut marks = Vec::new();
-        if e.default {
-            marks.push("default".to_owned());
-        }
-        for t in e.tags {
-            marks.push(
-                match t {
-                    Tag::Local => "local, averaged along the path",
-                    Tag::SlidingOnly => "sliding only, rolling is added",
-                    Tag::Estimate => "estimate ±50 %",
-                    Tag::Compatibility => "reproduces a published error",
-                }
-                .to_owned(),
-            );
-        }
-        let marks = if marks.is_empty() { String::new() } else { format!(" ({})", marks.join("; ")) };
-        out += &format!("  {}{marks}\n", bold(e.id));
-        for line in [
-            e.title.to_owned(),
-            format!("range: {}", range(e)),
-            format!("source: [{}] {}; {}", e.source.0, e.source.1, trust(e.trust)),
-        ] {
-            out += &wrap(&line, "      ");
-            out.push('\n');
-        }
-    }
-    out
-}
-
-/// Every law as CSV.
-pub fn laws_csv(all: &[Entry]) -> String {
-    let mut out = Writer::default();
-    out.row(["family", "law", "default", "title", "gives", "unit", "source", "place", "trust", "range"]);
-    for e in all {
-        out.row([
-            e.family,
-            e.id,
-            &e.default.to_string(),
-            e.title,
-            e.gives.0,
-            e.gives.1,
-            e.source.0,
-            e.source.1,
-            &trust(e.trust),
-            &range(e),
-        ]);
-    }
-    out.0
-}
-
-/// Every law as JSON, `willis-laws-1`.
-pub fn laws_json(all: &[Entry]) -> serde_json::Value {
-    let bound = |x: f64| if x.is_finite() { serde_json::json!(x) } else { serde_json::Value::Null };
-    let entries: Vec<_> = all
-        .iter()
-        .map(|e| {
-            let valid: Vec<_> = e
-                .valid
-                .iter()
-                .map(|(symbol, unit, low, high)| {
-                    serde_json::json!({ "symbol": symbol, "unit": unit, "min": bound(*low), "max": bound(*high) })
-                })
-                .collect();
-            serde_json::json!({
-                "family": e.family, "law": e.id, "default": e.default, "title": e.title,
-                "gives": { "symbol": e.gives.0, "unit": e.gives.1 },
-                "source": e.source.0, "place": e.source.1, "trust": trust(e.trust), "valid": valid,
-            })
-        })
-        .collect();
-    serde_json::json!({ "format": "willis-laws-1", "laws": entries })
-}
-
-/// The catalogue of oils.
-pub fn oils() -> String {
-    let mut t = table();
-    set_header(&mut t, &["oil", "base", "ν 40 °C", "ν 100 °C", "ρ 15 °C", "trust"]);
-    for o in oil::all() {
-        let fixed = matches!(o.viscosity, oil::Viscosity::Fixed { .. });
-        let nu = |t: f64| match o.covers(t) && !fixed {
-            true => significant(o.kinematic_viscosity(t) * 1e6, 4),
-            false => "-".into(),
-        };
-        t.add_row([
-            o.name.clone(),
-            format!("{:?}", o.base).to_lowercase(),
-            nu(313.15),
-            nu(373.15),
-            significant(o.density_15, 4),
-            trust_word(&format!("{:?}", o.trust)),
-        ]);
-    }
-    right(&mut t, 2..5);
-    show(&t) + &dim("  ν in mm²/s, ρ in kg/m³\n")
-}
-
-/// The catalogue of bearings.
-pub fn bearings_catalogue() -> String {
-    let mut t = table();
-    set_header(&mut t, &["bearing", "kind", "d mm", "D mm", "B mm", "C0 kN", "SKF constants", "trust"]);
-    for b in bearing::all() {
-        t.add_row([
-            b.designation.clone(),
-            b.kind.to_string(),
-            significant(b.bore * 1e3, 4),
-            significant(b.outside_diameter * 1e3, 4),
-            significant(b.width * 1e3, 4),
-            b.static_rating.map_or("-".into(), |c| significant(c / 1e3, 4)),
-            if b.skf.is_some() { "yes" } else { "no" }.into(),
-            trust_word(&format!("{:?}", b.trust)),
-        ]);
-    }
-    right(&mut t, 2..6);
-    show(&t)
-}
-
-fn trust_word(debug: &str) -> String {
-    debug.split(['(', ' ']).next().unwrap_or_default().to_lowercase()
+    t
 }

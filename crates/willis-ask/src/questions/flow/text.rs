@@ -3,7 +3,7 @@
 use willis::analysis::Verdict;
 use willis::hypergraph::{FlowReport, Hypergraph, MOST_PATHS, Node, NodeKind, OperationFlow, Path, watts};
 
-use crate::text::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
+use crate::style::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
 
 pub fn text(all: &FlowReport) -> String {
     let mut out = bold(&all.train) + "\n";

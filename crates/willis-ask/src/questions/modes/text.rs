@@ -1,9 +1,8 @@
-//! Natural frequencies for eyes and as CSV.
+//! Natural frequencies for eyes.
 
 use willis::dynamics::{Mode, ModesReport, Part};
 
-use crate::csv::Writer;
-use crate::text::{bold, percent, plural, right, set_header, show, significant, table, wrap};
+use crate::style::{bold, percent, plural, right, set_header, show, significant, table, wrap};
 
 /// Columns of the tables of shapes.
 const MOST: usize = 8;
@@ -100,108 +99,4 @@ fn matrix(head: &str, of: &str, all: &[(String, &[Part])], show_value: impl Fn(f
         out += &format!("  … and {} more modes, all in --format json\n", all.len() - MOST);
     }
     out
-}
-
-/// One row a number: the mode, what the number is and whose it is; motions without strain come first and are numbered
-/// by themselves.
-pub fn csv(all: &ModesReport) -> String {
-    let mut out = Writer::default();
-    out.row([
-        "mode",
-        "kind",
-        "frequency_hz",
-        "angular_frequency_rad_s",
-        "damping_ratio",
-        "damped_frequency_hz",
-        "quantity",
-        "name",
-        "value",
-    ]);
-    let number = |x: Option<f64>| x.map_or(String::new(), |x| format!("{:?}", x + 0.0));
-    let mut rows = |head: [String; 6], quantity: &str, parts: &[Part]| {
-        for p in parts {
-            let own = [quantity.to_owned(), p.name.clone(), number(Some(p.value))];
-            out.row(head.iter().cloned().chain(own));
-        }
-    };
-    for (k, m) in all.rigid_body_modes.iter().enumerate() {
-        let zero = || "0.0".to_owned();
-        let head = || [(k + 1).to_string(), "rigid".into(), zero(), zero(), String::new(), String::new()];
-        rows(head(), "shape", &m.shape);
-        rows(head(), "kinetic_energy", &m.kinetic_energy);
-    }
-    for (k, m) in all.modes.iter().enumerate() {
-        let head = || {
-            [
-                (k + 1).to_string(),
-                "elastic".into(),
-                number(Some(m.frequency_hz)),
-                number(Some(m.angular_frequency_rad_s)),
-                number(m.damping_ratio),
-                number(m.damped_frequency_hz),
-            ]
-        };
-        rows(head(), "shape", &m.shape);
-        rows(head(), "kinetic_energy", &m.kinetic_energy);
-        rows(head(), "strain_energy", &m.strain_energy);
-    }
-    out.0
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use willis::dynamics::RigidMode;
-
-    fn report() -> ModesReport {
-        let part = |name: &str, value| Part { name: name.into(), value };
-        ModesReport {
-            format: "willis-modes-1",
-            train: "two rotors".into(),
-            state: "as drawn".into(),
-            fixed: vec!["ring".into()],
-            coordinates: vec!["sun".into()],
-            rigid_body_modes: vec![RigidMode {
-                shape: vec![part("sun", 1.0), part("wheel, rear", 1.0)],
-                kinetic_energy: vec![part("sun", 0.25), part("wheel, rear", 0.75)],
-            }],
-            modes: vec![Mode {
-                frequency_hz: 12.5,
-                angular_frequency_rad_s: 78.53981633974483,
-                damping_ratio: Some(0.02),
-                damped_frequency_hz: Some(12.4975),
-                shape: vec![part("sun", 1.0), part("wheel, rear", -1.0 / 3.0)],
-                kinetic_energy: vec![part("sun", 0.75), part("wheel, rear", 0.25)],
-                strain_energy: vec![part("half shaft", 1.0)],
-            }],
-            assumptions: vec!["meshes are rigid".into()],
-            notes: vec![],
-        }
-    }
-
-    #[test]
-    fn the_text_has_frequencies_first() {
-        let text = anstream::adapter::strip_str(&text(&report())).to_string();
-        let words = ["state as drawn, held: ring", "1 motion without strain (0 Hz), 1 vibration", "12.4975", "-0.333"];
-        for words in words {
-            assert!(text.contains(words), "{words}\n{text}");
-        }
-        assert!(text.find("12.5") < text.find("Shapes") && text.contains("half shaft 100 %"), "{text}");
-    }
-
-    #[test]
-    fn the_csv_has_a_row_a_number() {
-        let csv = csv(&report());
-        assert_eq!(csv.lines().count(), 1 + 4 + 5);
-        assert!(csv.contains("1,rigid,0.0,0.0,,,shape,sun,1.0\n"));
-        assert!(
-            csv.contains("1,elastic,12.5,78.53981633974483,0.02,12.4975,shape,\"wheel, rear\",-0.3333333333333333\n")
-        );
-    }
-
-    #[test]
-    fn the_figure_is_well_formed() {
-        let svg = willis_report::modes_plot(&report());
-        assert!(svg.starts_with("<svg") && svg.contains("12.5 Hz") && svg.contains("half shaft"));
-    }
 }
