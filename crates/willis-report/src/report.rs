@@ -9,7 +9,8 @@ use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
 use willis::diagnostic::Severity;
 use willis::figure::{Figure, FigureKind, FigureRequest};
 use willis::hypergraph::watts;
-use willis::study::{Sensitivity, Subject, sensitivity};
+use willis::model::Model;
+use willis::study::{Sensitivity, sensitivity};
 
 use crate::document::{Block, Column, Document, Level, Section};
 use crate::draw::{Drawing, draw};
@@ -34,7 +35,7 @@ pub struct ReportRequest {
 
 /// Everything that a report tells.
 struct Findings<'a> {
-    subject: &'a Subject,
+    subject: &'a Model,
     request: &'a ReportRequest,
     analysis: Analysis,
     sensitivity: Option<Sensitivity>,
@@ -47,7 +48,7 @@ struct Figures(Vec<(FigureKind, Option<String>, String)>);
 
 impl Figures {
     /// Makes what applies, on all cores.
-    fn make(subject: &Subject, wanted: &[(FigureKind, FigureRequest)]) -> Self {
+    fn make(subject: &Model, wanted: &[(FigureKind, FigureRequest)]) -> Self {
         let one = |(kind, request): &(FigureKind, FigureRequest)| {
             let figure = kind.make(subject, request).ok().filter(worth_showing)?;
             let picture = draw(&figure, Drawing::default());
@@ -90,7 +91,7 @@ fn worth_showing(figure: &Figure) -> bool {
 ///
 /// # Example
 /// ```
-/// use willis::study::Subject;
+/// use willis::model::Model;
 /// use willis_report::{ReportRequest, html, report};
 ///
 /// let text = r#"
@@ -109,12 +110,12 @@ fn worth_showing(figure: &Figure) -> bool {
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no file".into())).unwrap();
+/// let subject = Model::from_toml(text).unwrap();
 /// let document = report(&subject, &ReportRequest::default())?;
 /// assert!(html(&document).contains("98.607 %"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn report(subject: &Subject, request: &ReportRequest) -> Result<Document, Diagnostics> {
+pub fn report(subject: &Model, request: &ReportRequest) -> Result<Document, Diagnostics> {
     let train = subject.train();
     let selection = Selection { state: None, operation: request.operation.clone() };
     let analysis = analyze(train, &selection)?;
@@ -144,7 +145,7 @@ pub fn report(subject: &Subject, request: &ReportRequest) -> Result<Document, Di
 }
 
 /// The pictures that a report asks for.
-fn wanted(subject: &Subject, request: &ReportRequest, analysis: &Analysis) -> Vec<(FigureKind, FigureRequest)> {
+fn wanted(subject: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(FigureKind, FigureRequest)> {
     use FigureKind::*;
     let train = subject.train();
     let only = FigureRequest { operation: request.operation.clone(), ..Default::default() };

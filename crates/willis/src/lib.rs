@@ -6,7 +6,7 @@
 //! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions, [`units`] and values by name ([`named`]);
 //! 2. [`diagnostic`]: what is wrong, where, and what to do;
 //! 3. [`catalogue`] of oils and bearings, [`geometry`] of involute teeth, [`losses`]: the laws;
-//! 4. [`train`]: what a gear train is, and the train file;
+//! 4. [`train`]: what a gear train is, and the train file; [`model`]: a train as data;
 //! 5. [`kinematics`]: exact speeds, what is locked, free or redundant;
 //! 6. [`statics`]: torques with losses, the certificate, the verdict;
 //! 7. [`power_flow`]: torque and power everywhere, recirculation;
@@ -57,6 +57,7 @@ pub mod catalogue;
 pub mod geometry;
 pub mod losses;
 pub mod train;
+pub mod model;
 pub mod kinematics;
 pub mod statics;
 pub mod power_flow;
@@ -72,6 +73,7 @@ pub mod casebook;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;
+pub use model::Model;
 pub use real::Real;
 pub use train::Train;
 

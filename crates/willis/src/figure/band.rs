@@ -3,7 +3,8 @@
 use serde::Serialize;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::study::{Axis, Subject, UncertaintyPlan, UncertaintyRequest};
+use crate::model::Model;
+use crate::study::{Axis, UncertaintyPlan, UncertaintyRequest};
 
 use super::axes::{self, ChartAxis};
 
@@ -52,7 +53,7 @@ pub struct BandPoint {
 ///
 /// # Errors
 /// What [`UncertaintyPlan::new`] says; an axis that is none, or that is itself among the uncertain quantities.
-pub fn bands(subject: &Subject, request: &UncertaintyRequest, over: &[String]) -> Result<Bands, Diagnostics> {
+pub fn bands(subject: &Model, request: &UncertaintyRequest, over: &[String]) -> Result<Bands, Diagnostics> {
     let plan = UncertaintyPlan::new(subject, request)?;
     let question = plan.question();
     let over = match over {

@@ -6,8 +6,9 @@ use crate::analysis::Selection;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::dynamics::{Options, simulate};
 use crate::hypergraph::{FlowReport, flows};
+use crate::model::Model;
 use crate::regimes::RegimeSelection;
-use crate::study::{Subject, UncertaintyRequest, sensitivity};
+use crate::study::{UncertaintyRequest, sensitivity};
 
 use super::*;
 
@@ -76,7 +77,7 @@ macro_rules! kinds {
             /// # Example
             /// ```
             /// use willis::figure::{Figure, FigureKind};
-            /// use willis::study::Subject;
+            /// use willis::model::Model;
             ///
             /// let text = r#"
             ///     format = 1
@@ -89,14 +90,14 @@ macro_rules! kinds {
             ///     ring = { member = "frame", teeth = 70 }
             ///     carrier = "c"
             /// "#;
-            /// let subject = Subject::new(text, &[], &mut |_| Err("no file".into())).unwrap();
+            /// let subject = Model::from_toml(text).unwrap();
             /// let figure = FigureKind::Stick.make(&subject, &Default::default())?;
             /// assert!(matches!(figure, Figure::Stick(_)));
             /// // There are no gears to shift.
             /// assert!(FigureKind::Shift.make(&subject, &Default::default()).is_err());
             /// # Ok::<(), willis::Diagnostics>(())
             /// ```
-            pub fn make(self, subject: &Subject, request: &FigureRequest) -> Result<Figure, Diagnostics> {
+            pub fn make(self, subject: &Model, request: &FigureRequest) -> Result<Figure, Diagnostics> {
                 match self {
                     $(Self::$kind => {
                         let ($subject, $request) = (subject, request);
@@ -161,7 +162,7 @@ impl FigureKind {
     }
 
     /// The kinds that can be made of a train as it is.
-    pub fn applicable(subject: &Subject) -> Vec<Self> {
+    pub fn applicable(subject: &Model) -> Vec<Self> {
         let request = FigureRequest { samples: 128, ..Default::default() };
         Self::ALL.iter().copied().filter(|k| k.make(subject, &request).is_ok()).collect()
     }
@@ -215,7 +216,7 @@ fn lever_request(r: &FigureRequest) -> LeverRequest {
     }
 }
 
-fn powers(subject: &Subject, r: &FigureRequest) -> Result<FlowReport, Diagnostics> {
+fn powers(subject: &Model, r: &FigureRequest) -> Result<FlowReport, Diagnostics> {
     let report = flows(subject.train(), &r.selection())?;
     if report.operations.is_empty() {
         let d = Diagnostic::new(Code::Unfit, "", "power flows in operations, and there is none");
@@ -230,14 +231,14 @@ fn powers(subject: &Subject, r: &FigureRequest) -> Result<FlowReport, Diagnostic
 const BARS: usize = 14;
 
 /// The ranking of the operation that is named, or of the first that has derivatives.
-fn ranking(subject: &Subject, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
+fn ranking(subject: &Model, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
     let all = sensitivity(subject.train(), &r.selection())?;
     let first = all.operations.iter().find(|o| !o.quantities.is_empty()).map(|o| o.name.clone());
     tornado(&all, r.operation.clone().or(first).as_deref(), BARS)
 }
 
 /// Simulates the scenario of that name, or the first.
-fn time(subject: &Subject, r: &FigureRequest) -> Result<TimePlot, Diagnostics> {
+fn time(subject: &Model, r: &FigureRequest) -> Result<TimePlot, Diagnostics> {
     let train = subject.train();
     let all = train.scenarios();
     let scenario = match &r.part {

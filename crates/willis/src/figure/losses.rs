@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::Model;
 use crate::operating_point::LossKind;
-use crate::study::{Answer, Axis, Hold, Question, Subject, Sweep};
+use crate::study::{Answer, Axis, Hold, Question, Sweep};
 
 use super::axes::{self, ChartAxis};
 
@@ -73,7 +74,7 @@ fn sources(answer: &Answer) -> Option<Vec<(String, LossKind, &'static str, f64)>
 /// # Example
 /// ```
 /// use willis::figure::loss_chart;
-/// use willis::study::Subject;
+/// use willis::model::Model;
 ///
 /// let text = r#"
 ///     format = 1
@@ -91,14 +92,14 @@ fn sources(answer: &Answer) -> Option<Vec<(String, LossKind, &'static str, f64)>
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no file".into())).unwrap();
+/// let subject = Model::from_toml(text).unwrap();
 /// let chart = loss_chart(&subject, None, None, &["s.torque=1..20 N m:5".into()])?;
 /// let total: f64 = chart.series.iter().map(|s| s.at_operation_w.unwrap()).sum();
 /// assert!((total - chart.loss_w.unwrap()).abs() < 1e-9);
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn loss_chart(
-    subject: &Subject,
+    subject: &Model,
     state: Option<&str>,
     operation: Option<&str>,
     over: &[String],
@@ -185,7 +186,7 @@ pub fn loss_chart(
 /// The value of the axis at the operating point itself, where that prescribes it.
 fn prescribed(question: &Question<'_>, x: &Axis) -> Option<f64> {
     let (who, what) = x.name.rsplit_once('.')?;
-    let member = question.subject().train().member(who)?;
+    let member = question.model().train().member(who)?;
     let speed = question.base().speeds.iter().find(|s| s.0 == member).filter(|_| what == "speed" && x.unit == "rpm")?;
     let value = speed.1.si() * 30.0 / std::f64::consts::PI;
     (value >= x.number(0) && value <= x.number(x.len() - 1)).then_some(value)

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use crate::analysis::{self, Selection};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::study::{Answer, Axis, Hold, Question, Subject, Sweep};
+use crate::model::Model;
+use crate::study::{Answer, Axis, Hold, Question, Sweep};
 use crate::train::{Load, MemberId, Operation};
 
 use super::axes::{self, ChartAxis};
@@ -84,7 +85,7 @@ impl MapPoint {
 /// # Example
 /// ```
 /// use willis::figure::efficiency_map;
-/// use willis::study::Subject;
+/// use willis::model::Model;
 ///
 /// let text = r#"
 ///     format = 1
@@ -102,13 +103,13 @@ impl MapPoint {
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no file".into())).unwrap();
+/// let subject = Model::from_toml(text).unwrap();
 /// let map = efficiency_map(&subject, None, None, &[])?;
 /// assert!(map.points.iter().all(|p| (p.efficiency.unwrap() - 0.98607).abs() < 1e-9));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn efficiency_map(
-    subject: &Subject,
+    subject: &Model,
     state: Option<&str>,
     operation: Option<&str>,
     over: &[String],
@@ -158,7 +159,7 @@ fn bounded<'s>(question: Question<'s>, axes: Vec<Axis>) -> Result<Sweep<'s>, Dia
 
 /// Where the operations of the file lie that prescribe both quantities.
 fn marks(question: &Question<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
-    let train = question.subject().train();
+    let train = question.model().train();
     let mut all = vec![];
     let base = question.base();
     // What the map holds must be theirs too, at least in its direction.
@@ -204,7 +205,7 @@ fn marks(question: &Question<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
 
 /// Over speed and torque of the output, at every point the best state.
 fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnostics> {
-    let subject = question.subject();
+    let subject = question.model();
     let train = subject.train();
     let (Some(input), Some(output)) = (train.input(), train.output()) else { return Ok(None) };
     if train.states().iter().any(|s| s.input.is_some_and(|m| m != input) || s.output.is_some_and(|m| m != output)) {
