@@ -23,7 +23,7 @@ fn subject(path: &Path) -> Model {
     let text = std::fs::read_to_string(path).expect("an example is text");
     let folder = path.parent().expect("a file has a folder");
     Model::read(&text, &mut |f| std::fs::read_to_string(folder.join(f)).map_err(|e| e.to_string()))
-        .unwrap_or_else(|reading| panic!("{}: {:?}", path.display(), reading.diagnostics))
+        .unwrap_or_else(|reading| panic!("{}: {:?}", path.display(), reading))
 }
 
 fn stem(path: &Path) -> String {
@@ -194,7 +194,7 @@ fn any_name_finds_its_place() {
     let names = [["太阳轮", "齿圈", "行星架", "行星齿轮系 <1>"], ["sun & \"co\"", "<ring>", long, long]];
     for names in names {
         let text = text(names);
-        let subject = Model::from_toml(text).unwrap_or_else(|r| panic!("{r}"));
+        let subject = Model::from_toml(&text).unwrap_or_else(|r| panic!("{r}"));
         let mut drawn = 0;
         for kind in FigureKind::ALL {
             if let Ok(figure) = kind.make(&subject, &FigureRequest { samples: 128, ..Default::default() }) {
