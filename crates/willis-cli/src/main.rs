@@ -28,14 +28,14 @@ use willis::analysis::{self, Analysis, LossRequest, Selection};
 use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::dynamics::{Method, Options};
-use willis::figure::FigureRequest;
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::study::export::ExportRequest;
 use willis::study::{Hold, Subject, Sweep, UncertaintyPlan, UncertaintyRequest};
 use willis::symbolic::Notation;
 use willis::train::{Reading, Train};
 use willis::units::{self, Dimension, Quantity};
-use willis_report::{Drawing, Theme};
+use willis_figure::FigureRequest;
+use willis_figure::{Drawing, Theme};
 
 /// Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that
 /// the answer is the only one.
@@ -1063,7 +1063,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 Paper::UsLetter => "us-letter",
             };
             let request = draw::report_request(file, &job.text, operation.clone(), law);
-            let document = willis_report::report(&subject, &request).map_err(|wrong| job.failure(wrong))?;
+            let document = willis_figure::report(&subject, &request).map_err(|wrong| job.failure(wrong))?;
             draw::deliver(&document, paper, output.as_deref())
         }
         Command::Flow { file, operation, format, output, law } => {
@@ -1082,8 +1082,8 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 }
                 FlowFormat::Text => flow::text(&all) + &job.notes(&all.diagnostics),
                 FlowFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
-                FlowFormat::Dot => willis_report::flow_dot(&all),
-                FlowFormat::Svg => willis_report::flow_svg(&all) + "\n",
+                FlowFormat::Dot => willis_figure::flow_dot(&all),
+                FlowFormat::Svg => willis_figure::draw_flow(&all) + "\n",
             };
             match output {
                 None => Ok(text),
@@ -1098,11 +1098,11 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 balance: pair(balance.as_deref())?,
             };
             if map.is_some() || *format == RegimesFormat::MapJson {
-                let figure = willis::figure::regime_map(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+                let figure = willis_figure::regime_map(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
                 return match map {
                     None => Ok(serde_json::to_string_pretty(&figure).expect("plain data") + "\n"),
                     Some(path) => {
-                        output::write(path, willis_report::regime_map(&figure).as_bytes()).map(|()| String::new())
+                        output::write(path, willis_figure::draw_regimes(&figure).as_bytes()).map(|()| String::new())
                     }
                 };
             }
@@ -1272,7 +1272,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             let all =
                 willis::dynamics::modes(&job.train, state.as_deref(), &held).map_err(|wrong| job.failure(wrong))?;
             if let Some(path) = plot {
-                output::write(path, (willis_report::modes_plot(&all) + "\n").as_bytes())?;
+                output::write(path, (willis_figure::draw_modes(&all) + "\n").as_bytes())?;
             }
             Ok(match format {
                 ModesFormat::Text => modes::text(&all),
