@@ -7,10 +7,10 @@ use std::process::{Command, Stdio};
 use sha2::{Digest, Sha256};
 use willis::Diagnostics;
 use willis::diagnostic::{Diagnostic, Severity};
-use willis::figure::{Figure, FigureKind, FigureRequest};
 use willis::model::Model;
-use willis_report::document::Document;
-use willis_report::{Drawing, ReportRequest, Theme, html, png, themed};
+use willis_figure::report::document::Document;
+use willis_figure::{Drawing, ReportRequest, Theme, html, png, themed};
+use willis_figure::{Figure, FigureKind, FigureRequest};
 
 use crate::output;
 
@@ -98,7 +98,7 @@ fn with_others(wrong: Diagnostics, model: &Model, request: &FigureRequest) -> Di
 }
 
 fn picture(figure: &Figure, look: &Look, ending: Ending) -> Result<Vec<u8>, String> {
-    let svg = || themed(&willis_report::draw(figure, look.drawing), look.theme);
+    let svg = || themed(&willis_figure::draw(figure, look.drawing), look.theme);
     match ending {
         Ending::Json => Ok((serde_json::to_string_pretty(figure).expect("plain data") + "\n").into_bytes()),
         Ending::Svg => Ok((svg() + "\n").into_bytes()),

@@ -28,7 +28,6 @@ use willis::analysis::{self, Analysis, LossRequest, Selection};
 use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::dynamics::{Method, Options};
-use willis::figure::FigureRequest;
 use willis::model::Model;
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::study::export::ExportRequest;
@@ -36,7 +35,8 @@ use willis::study::{Hold, Sweep, UncertaintyPlan, UncertaintyRequest};
 use willis::symbolic::Notation;
 use willis::train::Train;
 use willis::units::{self, Dimension, Quantity};
-use willis_report::{Drawing, Theme};
+use willis_figure::FigureRequest;
+use willis_figure::{Drawing, Theme};
 
 /// Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that
 /// the answer is the only one.
@@ -1062,7 +1062,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 Paper::UsLetter => "us-letter",
             };
             let request = draw::report_request(file, job.model.to_toml(), operation.clone(), law);
-            let document = willis_report::report(&job.model, &request).map_err(|wrong| job.failure(wrong))?;
+            let document = willis_figure::report(&job.model, &request).map_err(|wrong| job.failure(wrong))?;
             draw::deliver(&document, paper, output.as_deref())
         }
         Command::Flow { file, operation, format, output, law } => {
@@ -1081,8 +1081,8 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 }
                 FlowFormat::Text => flow::text(&all) + &job.notes(&all.diagnostics),
                 FlowFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
-                FlowFormat::Dot => willis_report::flow_dot(&all),
-                FlowFormat::Svg => willis_report::flow_svg(&all) + "\n",
+                FlowFormat::Dot => willis_figure::flow_dot(&all),
+                FlowFormat::Svg => willis_figure::draw_flow(&all) + "\n",
             };
             match output {
                 None => Ok(text),
@@ -1097,11 +1097,11 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 balance: pair(balance.as_deref())?,
             };
             if map.is_some() || *format == RegimesFormat::MapJson {
-                let figure = willis::figure::regime_map(job.train(), &selection).map_err(|wrong| job.failure(wrong))?;
+                let figure = willis_figure::regime_map(job.train(), &selection).map_err(|wrong| job.failure(wrong))?;
                 return match map {
                     None => Ok(serde_json::to_string_pretty(&figure).expect("plain data") + "\n"),
                     Some(path) => {
-                        output::write(path, willis_report::regime_map(&figure).as_bytes()).map(|()| String::new())
+                        output::write(path, willis_figure::draw_regimes(&figure).as_bytes()).map(|()| String::new())
                     }
                 };
             }
@@ -1271,7 +1271,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             let all =
                 willis::dynamics::modes(job.train(), state.as_deref(), &held).map_err(|wrong| job.failure(wrong))?;
             if let Some(path) = plot {
-                output::write(path, (willis_report::modes_plot(&all) + "\n").as_bytes())?;
+                output::write(path, (willis_figure::draw_modes(&all) + "\n").as_bytes())?;
             }
             Ok(match format {
                 ModesFormat::Text => modes::text(&all),

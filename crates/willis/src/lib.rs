@@ -16,8 +16,9 @@
 //! 11. [`hypergraph`]: where the power runs, as a graph of components and contacts;
 //! 12. [`regimes`]: every way a train can run, with closed formulas;
 //! 13. [`study`]: what matters most at an operating point;
-//! 14. [`figure`]: charts and diagrams as data;
-//! 15. [`casebook`]: published losses beside ours.
+//! 14. [`casebook`]: published losses beside ours.
+//!
+//! Charts, diagrams and reports are in the crate `willis-figure`.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
@@ -68,8 +69,9 @@ pub mod analysis;
 pub mod hypergraph;
 pub mod regimes;
 pub mod study;
-pub mod figure;
 pub mod casebook;
+#[doc(hidden)]
+pub mod unstable;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;

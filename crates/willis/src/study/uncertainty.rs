@@ -394,7 +394,7 @@ impl<'s> UncertaintyPlan<'s> {
 
     /// The answer at a value of an axis: at a point, or with the file as written. A quantity that is itself the axis
     /// takes the axis' value.
-    pub(crate) fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> Answer {
+    pub fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> Answer {
         let mut settings = point.map_or_else(Vec::new, |p| self.settings_at(&self.design.at(p)));
         settings.retain(|s| *s.0 != axis.target);
         settings.push((&axis.target, axis.setting(k)));
