@@ -3,14 +3,14 @@
 mod amount;
 mod analyze;
 mod check;
-mod compare;
-mod cycle;
+// mod compare;
+// mod cycle;
 mod draw;
 mod explain;
 mod export;
 mod flow;
 mod formula;
-mod laws;
+// mod laws;
 mod locate;
 mod losses;
 mod modes;
@@ -18,21 +18,21 @@ mod new;
 mod regimes;
 mod report;
 mod sensitivity;
-mod simulate;
-mod sweep;
-mod uncertainty;
-mod validate;
+// mod simulate;
+// mod sweep;
+// mod uncertainty;
+// mod validate;
 
 pub use analyze::Analyze;
 pub use check::Check;
-pub use compare::Compare;
-pub use cycle::{Cycle, CycleAnswer};
+// pub use compare::Compare;
+// pub use cycle::{Cycle, CycleAnswer};
 pub use draw::{Draw, DrawAnswer, Look};
 pub use explain::Explain;
 pub use export::Export;
 pub use flow::Flow;
 pub use formula::{Formula, FormulaAnswer};
-pub use laws::Laws;
+// pub use laws::Laws;
 pub use locate::Locate;
 pub use losses::Losses;
 pub use modes::Modes;
@@ -40,10 +40,10 @@ pub use new::New;
 pub use regimes::{Regimes, RegimesAnswer};
 pub use report::{Report, quoted};
 pub use sensitivity::Sensitivity;
-pub use simulate::{Simulate, SimulateAnswer};
-pub use sweep::{Sweep, SweepAnswer};
-pub use uncertainty::{Uncertainty, UncertaintyAnswer};
-pub use validate::Validate;
+// pub use simulate::{Simulate, SimulateAnswer};
+// pub use sweep::{Sweep, SweepAnswer};
+// pub use uncertainty::{Uncertainty, UncertaintyAnswer};
+// pub use validate::Validate;
 
 use crate::Entry;
 
@@ -55,20 +55,20 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Flow>(),
     Entry::of::<Losses>(),
     Entry::of::<Sensitivity>(),
-    Entry::of::<Uncertainty>(),
-    Entry::of::<Sweep>(),
-    Entry::of::<Cycle>(),
-    Entry::of::<Compare>(),
+    //     Entry::of::<Uncertainty>(),
+    //     Entry::of::<Sweep>(),
+    //     Entry::of::<Cycle>(),
+    //     Entry::of::<Compare>(),
     Entry::of::<Regimes>(),
     Entry::of::<Formula>(),
     Entry::of::<Locate>(),
-    Entry::of::<Simulate>(),
+    //     Entry::of::<Simulate>(),
     Entry::of::<Modes>(),
     Entry::of::<Draw>(),
     Entry::of::<Report>(),
     Entry::of::<Export>(),
-    Entry::of::<Laws>(),
-    Entry::of::<Validate>(),
+    //     Entry::of::<Laws>(),
+    //     Entry::of::<Validate>(),
     Entry::of::<Explain>(),
 ];
 

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use willis::study::{ColumnKind, ColumnTable, ColumnValues};
+
 /// What the cells of a column are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -20,8 +22,8 @@ pub enum Kind {
 pub struct Column {
     /// As in the header, `torque_n_m`.
     pub name: String,
-    /// The unit, `N m`; none where the column has no unit.
-    pub unit: Option<&'static str>,
+    /// The unit, `N m`; empty where the column has none.
+    pub unit: String,
     /// What its cells are.
     pub kind: Kind,
 }
@@ -94,7 +96,9 @@ const UNITS: &[(&str, &str)] = &[
     ("_rad_s2", "rad/s^2"),
     ("_n_per_m", "N/m"),
     ("_rad_s", "rad/s"),
+    ("_kg_m3", "kg/m^3"),
     ("_kg_m2", "kg m^2"),
+    ("_m2_s", "m^2/s"),
     ("_n_m", "N m"),
     ("_m_s", "m/s"),
     ("_rad", "rad"),
@@ -128,15 +132,37 @@ impl Table {
     ///
     /// let mut table = Table::new("members", [("member", Text), ("torque_n_m", Number)]);
     /// table.row(["sun".into(), (-10.5).into()]);
-    /// assert_eq!(table.columns[1].unit, Some("N m"));
+    /// assert_eq!(table.columns[1].unit, "N m");
     /// assert_eq!(table.csv(), "member,torque_n_m\nsun,-10.5\n");
     /// ```
     pub fn new<'a>(name: &str, columns: impl IntoIterator<Item = (&'a str, Kind)>) -> Self {
         let columns = columns.into_iter().map(|(name, kind)| {
-            let unit = UNITS.iter().find(|u| kind == Kind::Number && name.ends_with(u.0)).map(|u| u.1);
-            Column { name: name.to_owned(), unit, kind }
+            let unit = UNITS.iter().find(|u| kind == Kind::Number && name.ends_with(u.0)).map_or("", |u| u.1);
+            Column { name: name.to_owned(), unit: unit.to_owned(), kind }
         });
         Self { name: name.to_owned(), columns: columns.collect(), rows: vec![] }
+    }
+
+    /// The rows of a study.
+    pub fn of_columns(name: &str, all: &ColumnTable) -> Self {
+        let columns = all.columns.iter().map(|c| {
+            let kind = match c.kind {
+                ColumnKind::Number => Kind::Number,
+                ColumnKind::Integer => Kind::Integer,
+                ColumnKind::Flag => Kind::Flag,
+                _ => Kind::Text,
+            };
+            Column { name: c.name.clone(), unit: c.unit.clone(), kind }
+        });
+        let cell = |values: &ColumnValues, k: usize| match values {
+            ColumnValues::Numbers(all) => all[k].into(),
+            ColumnValues::Integers(all) => Cell::Integer(all[k]),
+            ColumnValues::Flags(all) => Cell::Flag(all[k]),
+            ColumnValues::Texts(all) => Cell::Text(all[k].to_string()),
+            _ => Cell::Empty,
+        };
+        let row = |k: usize| all.values.iter().map(|v| cell(v, k)).collect();
+        Self { name: name.to_owned(), columns: columns.collect(), rows: (0..all.len()).map(row).collect() }
     }
 
     /// Adds a row.

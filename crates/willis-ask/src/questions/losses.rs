@@ -1,6 +1,6 @@
 //! `losses`: where every watt goes.
 
-pub(super) mod text;
+mod text;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,6 +11,8 @@ use willis::work::Work;
 use super::amount::values;
 use crate::table::Table;
 use crate::{Given, Question, Refusal};
+
+pub(super) use text::of_solution;
 
 /// Tell where every watt goes, at a few speeds, loads and temperatures, or law beside law.
 ///

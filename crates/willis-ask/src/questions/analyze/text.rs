@@ -1,11 +1,14 @@
 //! An analysis for eyes: what an engineer looks for first comes first.
 
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::CellAlignment;
 use willis::analysis::{
     Analysis, CertificateReport, Direction, Margin, MemberReport, OperationReport, Role, SolutionReport, StateReport,
     Verdict,
 };
 use willis::train::Train;
+
+use crate::questions::losses;
+use crate::style::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
 
 pub fn analysis(train: &Train, a: &Analysis) -> String {
     let mut out = String::new();
@@ -293,7 +296,7 @@ fn solution(s: &SolutionReport) -> String {
         right(&mut t, 2..3);
         out += &show(&t);
     }
-    out + &crate::losses::of_solution(s)
+    out + &losses::of_solution(s)
 }
 
 /// How far a solution is from another driving end, and from locking.
