@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use crate::analysis::{Direction, Selection, StateReport, Verdict, analyze};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
 use crate::train::{ShiftElementKind, Train};
 
 /// A shift table.
@@ -161,7 +162,7 @@ fn row(name: &str, closed: Vec<bool>, report: Option<&StateReport>) -> ShiftRow 
         closed,
         path: Some([r.input.clone(), r.output.clone()]),
         ratio: r.value,
-        exact: r.exact.clone(),
+        exact: r.exact.as_ref().map(Rational::to_fraction),
         note: r.no_ratio.clone().or_else(|| beyond.then(|| "the ratio is beyond floating point".to_owned())),
         drive: efficiency(&r.drive),
         coast: efficiency(&r.coast),
