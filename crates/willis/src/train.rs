@@ -167,7 +167,6 @@ pub struct Set {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
 pub enum ShiftElementKind {
     /// Joins two members.
     Clutch,
