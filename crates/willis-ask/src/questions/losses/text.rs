@@ -20,7 +20,7 @@ pub fn of_solution(s: &SolutionReport) -> String {
             t.add_row([
                 x.name.clone(),
                 x.kind.words().into(),
-                x.law.into(),
+                x.law.clone(),
                 significant(x.loss_w, 4),
                 percent(x.share),
                 bar(if most > 0.0 { x.loss_w / most } else { 0.0 }),
@@ -71,19 +71,11 @@ fn contacts(all: &Named<ContactReport>) -> String {
             significant(c.pressure_pa / 1e6, 4),
             or_dash(c.film_m.map(|h| h * 1e6), 3),
             or_dash(c.film_ratio, 3),
-            c.regime.map_or("-", regime).into(),
+            c.regime.map_or("-", Regime::words).into(),
         ]);
     }
     right(&mut t, 1..11);
     show(&t)
-}
-
-fn regime(r: Regime) -> &'static str {
-    match r {
-        Regime::Boundary => "boundary",
-        Regime::Mixed => "mixed",
-        Regime::Full => "full",
-    }
 }
 
 fn bearings(all: &Named<BearingReport>) -> String {
@@ -187,7 +179,7 @@ fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
             row.push(p.temperature_k.map_or("-".into(), |t| significant(t - 273.15, 4)));
         }
         if all.family.is_some() {
-            row.insert(0, p.law.unwrap_or("-").into());
+            row.insert(0, p.law.as_deref().unwrap_or("-").into());
             if all.family.as_deref() == Some("mesh_friction") {
                 let mu = p.friction.iter().filter_map(|f| f.1).collect::<Vec<_>>();
                 let (low, high) = mu.iter().fold((f64::INFINITY, 0.0f64), |(low, high), m| (low.min(*m), high.max(*m)));

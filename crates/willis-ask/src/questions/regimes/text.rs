@@ -70,7 +70,7 @@ fn one_freedom(all: &[&Atlas]) -> String {
         for (name, s) in a.symbols.iter() {
             let (Some(value), false) = (s.value, told.contains(name)) else { continue };
             told.push(name.clone());
-            let exact = s.exact.as_deref().map(|e| e.strip_suffix("/1").unwrap_or(e)).unwrap_or_default();
+            let exact = s.exact.as_ref().map(ToString::to_string).unwrap_or_default();
             let value = significant(value, 6);
             let value = if exact == value { value } else { format!("{value} = {exact}") };
             out += &wrap(&format!("{name} = {value}   {}", s.meaning), "  ");
@@ -314,7 +314,7 @@ fn atlas(a: &Atlas) -> String {
         out += &bold("Symbols");
         out += "\n";
         for (name, s) in a.symbols.iter().filter(|(_, s)| s.value.is_some()) {
-            let exact = s.exact.as_deref().map(|e| e.strip_suffix("/1").unwrap_or(e)).unwrap_or_default();
+            let exact = s.exact.as_ref().map(ToString::to_string).unwrap_or_default();
             let value = significant(s.value.unwrap_or_default(), 6);
             let value = if exact == value { value } else { format!("{value} = {exact}") };
             out += &wrap(&format!("{name} = {value}   {}", s.meaning), "  ");
@@ -336,8 +336,7 @@ fn atlas(a: &Atlas) -> String {
 /// A set over all basic ratios, for eyes.
 pub fn family(f: &Family) -> String {
     let mut out = bold(&f.train) + "\n";
-    out +=
-        &format!("  {} = {} = {}\n", f.ratio, f.exact.strip_suffix("/1").unwrap_or(&f.exact), significant(f.value, 6));
+    out += &format!("  {} = {} = {}\n", f.ratio, f.exact, significant(f.value, 6));
     let etas = if f.efficiencies[0] == f.efficiencies[1] {
         format!("eta = {}", f.efficiencies[0])
     } else {
