@@ -44,7 +44,7 @@ fn states(a: &Analysis) -> Table {
             (&s.input).into(),
             (&s.output).into(),
             s.degrees_of_freedom.into(),
-            s.exact.as_ref().map(ToString::to_string).into(),
+            s.exact.as_ref().map(word).into(),
             s.value.into(),
             s.step.into(),
             s.drive.efficiency.into(),

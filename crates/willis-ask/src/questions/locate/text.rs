@@ -1,7 +1,7 @@
 //! Where an operating point lies, for eyes.
 
 use willis::analysis::Role;
-use willis::regimes::{Edge, Located, Location};
+use willis::regimes::{Edge, Located, Location, Prescribes};
 
 use crate::style::{bold, percent, rpm, set_header, show, significant, table, wrap};
 
@@ -69,13 +69,13 @@ fn located(r: &Located) -> String {
     set_header(&mut t, &["one value changes", "now", "regime lasts", "what is there", "what changes behind it"]);
     for range in &r.ranges {
         let show_value = |x: f64| match range.quantity {
-            "speed" => format!("{} rpm", significant(rpm(x), 6)),
+            Prescribes::Speed => format!("{} rpm", significant(rpm(x), 6)),
             _ => format!("{} N m", significant(x, 6)),
         };
         let edges: [(&str, &Option<Edge>); 2] = [("down to", &range.below), ("up to", &range.above)];
         for (k, (word, edge)) in edges.into_iter().enumerate() {
             let (label, now) = match k {
-                0 => (format!("{} of {}", range.quantity, range.member), show_value(range.value)),
+                0 => (format!("{} of {}", range.quantity.words(), range.member), show_value(range.value)),
                 _ => Default::default(),
             };
             match edge {
