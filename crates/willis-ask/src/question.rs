@@ -414,6 +414,19 @@ impl Entry {
         schema.get("description").and_then(Value::as_str).unwrap_or_default().to_owned()
     }
 
+    /// What a list of questions tells of it: name, what it is asked of, what it is about, contract, tables, forms.
+    pub fn told(&self) -> Value {
+        let forms: Vec<&str> = self.forms.iter().map(|f| f.name).collect();
+        serde_json::json!({
+            "name": self.name,
+            "of": self.of,
+            "about": self.about(),
+            "answer": self.contract,
+            "tables": self.tables,
+            "forms": forms,
+        })
+    }
+
     /// JSON Schema of its request.
     pub fn request_schema(&self) -> Schema {
         (self.request_schema)(&mut generator())

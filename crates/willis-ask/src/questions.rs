@@ -40,8 +40,8 @@ pub use new::New;
 pub use regimes::{Regimes, RegimesAnswer};
 pub use report::{Report, quoted};
 pub use sensitivity::Sensitivity;
-// pub use simulate::{Simulate, SimulateAnswer};
-// pub use sweep::{Sweep, SweepAnswer};
+// pub use simulate::{MOST_EVENTS, Simulate, run_text as simulation_text};
+// pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
 // pub use uncertainty::{Uncertainty, UncertaintyAnswer};
 // pub use validate::Validate;
 

@@ -45,6 +45,11 @@ impl<'a> Asked<'a> {
         Ok(Self { entry, matches, output, force: matches.get_flag("force"), form })
     }
 
+    /// Of an answer that is told on the screen in this form, whatever is written beside it.
+    pub fn screen(entry: &'static Entry, matches: &'a ArgMatches, form: &'static str) -> Self {
+        Self { entry, matches, output: None, force: matches.get_flag("force"), form }
+    }
+
     /// The trains of the question.
     pub fn trains(&self) -> Result<Vec<Given>, Ended> {
         let files = self.matches.try_get_many::<String>("file").ok().flatten();

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use willis_ask::{QUESTIONS, RefusalReport};
+use willis_ask::{Entry, QUESTIONS, RefusalReport};
 
 use crate::{Ended, command, sweep};
 
@@ -28,7 +28,7 @@ fn schema_command() -> Command {
         .about("Print the JSON Schema of the train file, of an answer, or of a request")
         .long_about(
             "Print the JSON Schema of the train file, for editors; with a QUESTION that of its answer, with --request \
-             that of its request. `willis schema list` names all questions and their contracts.",
+             that of its request. `willis schema list` lists all questions with their contracts, tables and forms, as JSON.",
         )
         .arg(question.help("The question: analyze, sweep, ...; refusal; or list"))
         .arg(
@@ -46,10 +46,7 @@ fn schema(matches: &ArgMatches) -> Result<Ended, Ended> {
         return Ok(Ended::Answered(pretty(&willis::train::schema())));
     };
     match name.as_str() {
-        "list" => {
-            let lines = QUESTIONS.iter().map(|q| format!("{:<12} {}\n", q.name, q.contract));
-            return Ok(Ended::Answered(lines.collect()));
-        }
+        "list" => return Ok(Ended::Answered(pretty(&QUESTIONS.iter().map(Entry::told).collect()))),
         "refusal" => return Ok(Ended::Answered(pretty(RefusalReport::schema().as_value()))),
         _ => {}
     }

@@ -121,7 +121,7 @@ pub fn sweep_text(report: &SweepReport) -> String {
     text::text(report)
 }
 
-pub use text::{duration, points};
+pub use text::{bytes as bytes_in_words, duration as duration_in_words, points as points_in_words};
 
 impl Question for Sweep {
     const NAME: &'static str = "sweep";
