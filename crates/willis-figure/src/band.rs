@@ -3,11 +3,25 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::study::{Axis, Subject, UncertaintyPlan, UncertaintyRequest};
 
+use crate::kind::{Ask, Kind};
 use crate::parts::axes::{self, ChartAxis};
+
+pub(crate) const KIND: Kind<Bands> = Kind {
+    title: "How sure it is",
+    takes: &[Ask::State, Ask::Operation, Ask::Over],
+    make: |s, r| {
+        let samples = if r.samples == 0 { SAMPLES } else { r.samples };
+        let (operation, state) = (r.operation.clone(), r.state.clone());
+        bands(s, &UncertaintyRequest { operation, state, samples, ..Default::default() }, &r.over)
+    },
+    draw: |data, _| draw::draw(data),
+};
+
+/// Samples where the caller does not say.
+const SAMPLES: usize = 256;
 
 /// Points along the axis where the caller does not say.
 const STEPS: usize = 9;

@@ -3,12 +3,19 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::operating_point::LossKind;
 use willis::study::{Answer, Axis, Hold, Question, Subject, Sweep};
 
+use crate::kind::{Ask, Kind};
 use crate::parts::axes::{self, ChartAxis};
+
+pub(crate) const KIND: Kind<LossChart> = Kind {
+    title: "Losses by source",
+    takes: &[Ask::State, Ask::Operation, Ask::Over],
+    make: |s, r| loss_chart(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
+    draw: |data, _| draw::draw(data),
+};
 
 /// Points along the axis where the caller does not say.
 const STEPS: usize = 49;

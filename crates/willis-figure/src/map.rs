@@ -3,13 +3,20 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::analysis::{self, Selection};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::study::{Answer, Axis, Hold, Question, Subject, Sweep};
 use willis::train::{Load, MemberId, Operation};
 
+use crate::kind::{Ask, Kind};
 use crate::parts::axes::{self, ChartAxis};
+
+pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
+    title: "Efficiency map",
+    takes: &[Ask::State, Ask::Operation, Ask::Over],
+    make: |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
+    draw: |data, _| draw::draw(data),
+};
 
 /// Points along the axes where the caller does not say.
 const COLUMNS: usize = 41;

@@ -7,15 +7,14 @@ mod laws;
 mod results;
 mod scheme;
 
-use crate::{Figure, FigureKind, FigureRequest};
 use willis::Diagnostics;
 use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
 use willis::diagnostic::Severity;
 use willis::hypergraph::watts;
 use willis::study::{Sensitivity, Subject, sensitivity};
 
-use crate::draw::{Drawing, draw};
 use crate::report::document::{Block, Column, Document, Level, Section};
+use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
 /// Operations that get pictures of their own; all are told in tables.
 const PICTURED: usize = 4;

@@ -1,7 +1,6 @@
 //! Which quantities a chart of an operating point runs over.
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::study::{Axis, Question, Subject};
 use willis::train::{Load, MemberId};

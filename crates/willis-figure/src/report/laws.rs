@@ -3,10 +3,9 @@
 use willis::diagnostic::Severity;
 use willis::losses::{Entry, Tag, Trust, entries};
 
-use crate::report::document::{Block, Column, Level, Section};
-
 use super::Findings;
 use super::results::{significant, single};
+use crate::report::document::{Block, Column, Level, Section};
 
 pub fn assumptions(all: &Findings<'_>) -> Section {
     let mut blocks = vec![];

@@ -1,15 +1,14 @@
 //! What came out: the shift table, the operating points, losses, maps, motion, formulas.
 
-use crate::FigureKind;
 use willis::analysis::{CertificateReport, OperationReport, Role, SolutionReport, StateReport, Verdict};
 use willis::hypergraph::watts;
 use willis::operating_point::Regime;
 use willis::regimes::{FormulaRequest, formulas as closed};
 use willis::symbolic::Notation;
 
-use crate::report::document::{Block, Column, Level, Section};
-
 use super::{Findings, notice};
+use crate::FigureKind;
+use crate::report::document::{Block, Column, Level, Section};
 
 /// Formulas that are printed.
 const FORMULAS: usize = 12;

@@ -1,12 +1,11 @@
 //! The train: its schematic, its wheels, its teeth, its shift elements and bearings.
 
-use crate::FigureKind;
 use willis::train::{MemberId, Mesh, Train};
-
-use crate::report::document::{Block, Column, Section};
 
 use super::Findings;
 use super::results::{exact_percent, significant};
+use crate::FigureKind;
+use crate::report::document::{Block, Column, Section};
 
 pub fn section(all: &Findings<'_>) -> Section {
     let train = all.subject.train();
