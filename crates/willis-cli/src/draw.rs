@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use sha2::{Digest, Sha256};
 use willis::Diagnostics;
 use willis::diagnostic::{Diagnostic, Severity};
-use willis::study::Subject;
+use willis::model::Model;
 use willis_figure::report::document::Document;
 use willis_figure::{Ask, Drawing, Figure, FigureKind, FigureRequest, ReportRequest, Theme, html, png, themed};
 
@@ -42,7 +42,7 @@ impl Ending {
 
 /// Draws one kind, or all that apply into a folder.
 pub fn draw(
-    subject: &Subject,
+    model: &Model,
     kind: &str,
     request: &FigureRequest,
     look: &Look,
@@ -50,12 +50,12 @@ pub fn draw(
     failure: &dyn Fn(Diagnostics) -> String,
 ) -> Result<String, String> {
     if kind == "all" {
-        return every(subject, request, look, out);
+        return every(model, request, look, out);
     }
     let kind = FigureKind::named(kind).map_err(failure)?;
     heard(kind, request, look)?;
     let ending = out.map_or(Ok(Ending::Svg), Ending::of)?;
-    let figure = kind.make(subject, request).map_err(|wrong| failure(with_others(wrong, subject, request)))?;
+    let figure = kind.make(model, request).map_err(|wrong| failure(with_others(wrong, model, request)))?;
     let bytes = picture(&figure, look, ending)?;
     match out {
         Some(path) => output::write(path, &bytes).map(|()| String::new()),
@@ -73,11 +73,11 @@ fn heard(kind: FigureKind, request: &FigureRequest, look: &Look) -> Result<(), S
 }
 
 /// Where a kind does not apply to a train at all, those that do.
-fn with_others(wrong: Diagnostics, subject: &Subject, request: &FigureRequest) -> Diagnostics {
+fn with_others(wrong: Diagnostics, model: &Model, request: &FigureRequest) -> Diagnostics {
     let asked = request.asks().iter().any(|a| matches!(a, Ask::State | Ask::Operation | Ask::Part | Ask::Over));
     let mut all: Vec<Diagnostic> = wrong.into_iter().collect();
     if !asked && let Some(first) = all.iter_mut().find(|d| d.severity == Severity::Error) {
-        let others: Vec<&str> = FigureKind::applicable(subject).into_iter().map(FigureKind::name).collect();
+        let others: Vec<&str> = FigureKind::applicable(model).into_iter().map(FigureKind::name).collect();
         first.hints.push(format!("of this train can be drawn: {}", others.join(", ")));
     }
     all.into_iter().collect()
@@ -93,7 +93,7 @@ fn picture(figure: &Figure, look: &Look, ending: Ending) -> Result<Vec<u8>, Stri
 }
 
 /// Every kind that applies, as SVG into a folder.
-fn every(subject: &Subject, request: &FigureRequest, look: &Look, out: Option<&Path>) -> Result<String, String> {
+fn every(model: &Model, request: &FigureRequest, look: &Look, out: Option<&Path>) -> Result<String, String> {
     let Some(folder) = out else {
         return Err("`all` draws several pictures: name a folder for them with -o\n".into());
     };
@@ -101,7 +101,7 @@ fn every(subject: &Subject, request: &FigureRequest, look: &Look, out: Option<&P
         return Err(format!("{}: is no folder\n", folder.display()));
     }
     let made: Vec<(&FigureKind, Result<Figure, Diagnostics>)> =
-        FigureKind::ALL.iter().map(|k| (k, k.make(subject, request))).collect();
+        FigureKind::ALL.iter().map(|k| (k, k.make(model, request))).collect();
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}\n", folder.display()))?;
     let mut said = String::new();
     for (kind, figure) in made {

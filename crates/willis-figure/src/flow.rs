@@ -5,7 +5,7 @@ pub mod draw;
 
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::hypergraph::{FlowReport, flows};
-use willis::study::Subject;
+use willis::model::Model;
 
 use crate::kind::{Ask, FigureRequest, Kind};
 
@@ -16,8 +16,8 @@ pub(crate) const KIND: Kind<FlowReport> =
 ///
 /// # Errors
 /// What [`flows`] says; there is no operation.
-pub(crate) fn powers(subject: &Subject, r: &FigureRequest) -> Result<FlowReport, Diagnostics> {
-    let report = flows(subject.train(), &r.selection())?;
+pub(crate) fn powers(model: &Model, r: &FigureRequest) -> Result<FlowReport, Diagnostics> {
+    let report = flows(model.train(), &r.selection())?;
     if report.operations.is_empty() {
         let d = Diagnostic::new(Code::Unfit, "", "power flows in operations, and there is none");
         return Err(d

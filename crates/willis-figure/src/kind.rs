@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use willis::analysis::Selection;
 use willis::diagnostic::Diagnostics;
-use willis::study::Subject;
+use willis::model::Model;
 
 /// What a kind of figure says of itself. Each folder has one, as `KIND`.
 pub(crate) struct Kind<T> {
@@ -12,7 +12,7 @@ pub(crate) struct Kind<T> {
     /// The questions that make a difference to it.
     pub takes: &'static [Ask],
     /// Makes the data.
-    pub make: fn(&Subject, &FigureRequest) -> Result<T, Diagnostics>,
+    pub make: fn(&Model, &FigureRequest) -> Result<T, Diagnostics>,
     /// Draws them as SVG in its light form.
     pub draw: fn(&T, Drawing) -> String,
 }

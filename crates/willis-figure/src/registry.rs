@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::hypergraph::FlowReport;
-use willis::study::Subject;
+use willis::model::Model;
 
 use crate::*;
 
@@ -71,7 +71,7 @@ macro_rules! kinds {
             ///
             /// # Example
             /// ```
-            /// use willis::study::Subject;
+            /// use willis::model::Model;
             /// use willis_figure::{Figure, FigureKind};
             ///
             /// let text = r#"
@@ -85,16 +85,16 @@ macro_rules! kinds {
             ///     ring = { member = "frame", teeth = 70 }
             ///     carrier = "c"
             /// "#;
-            /// let subject = Subject::new(text, &[], &mut |_| Err("no file".into())).unwrap();
-            /// let figure = FigureKind::Stick.make(&subject, &Default::default())?;
+            /// let model = Model::from_toml(text).unwrap();
+            /// let figure = FigureKind::Stick.make(&model, &Default::default())?;
             /// assert!(matches!(figure, Figure::Stick(_)));
             /// // There are no gears to shift.
-            /// assert!(FigureKind::Shift.make(&subject, &Default::default()).is_err());
+            /// assert!(FigureKind::Shift.make(&model, &Default::default()).is_err());
             /// # Ok::<(), willis::Diagnostics>(())
             /// ```
-            pub fn make(self, subject: &Subject, request: &FigureRequest) -> Result<Figure, Diagnostics> {
+            pub fn make(self, model: &Model, request: &FigureRequest) -> Result<Figure, Diagnostics> {
                 match self {
-                    $(Self::$kind => ($entry.make)(subject, request).map(Figure::$kind),)*
+                    $(Self::$kind => ($entry.make)(model, request).map(Figure::$kind),)*
                 }
             }
         }
@@ -164,9 +164,9 @@ impl FigureKind {
     }
 
     /// The kinds that can be made of a train as it is.
-    pub fn applicable(subject: &Subject) -> Vec<Self> {
+    pub fn applicable(model: &Model) -> Vec<Self> {
         let request = FigureRequest { samples: 128, ..Default::default() };
-        Self::ALL.iter().copied().filter(|k| k.make(subject, &request).is_ok()).collect()
+        Self::ALL.iter().copied().filter(|k| k.make(model, &request).is_ok()).collect()
     }
 
     /// The first question that is answered in vain: it makes no difference to this kind.

@@ -4,7 +4,8 @@ pub mod draw;
 
 use serde::Serialize;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::study::{Sensitivity, StepKind, Subject, sensitivity};
+use willis::model::Model;
+use willis::study::{Sensitivity, StepKind, sensitivity};
 
 use crate::kind::{Ask, FigureRequest, Kind};
 
@@ -19,8 +20,8 @@ pub(crate) const KIND: Kind<Tornado> = Kind {
 const BARS: usize = 14;
 
 /// The ranking of the operation that is named, or of the first that has derivatives.
-fn ranking(subject: &Subject, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
-    let all = sensitivity(subject.train(), &r.selection())?;
+fn ranking(model: &Model, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
+    let all = sensitivity(model.train(), &r.selection())?;
     let first = all.operations.iter().find(|o| !o.quantities.is_empty()).map(|o| o.name.clone());
     tornado(&all, r.operation.clone().or(first).as_deref(), BARS)
 }

@@ -6,7 +6,7 @@
 //! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions, [`units`] and values by name ([`named`]);
 //! 2. [`diagnostic`]: what is wrong, where, and what to do;
 //! 3. [`catalogue`] of oils and bearings, [`geometry`] of involute teeth, [`losses`]: the laws;
-//! 4. [`train`]: what a gear train is, and the train file;
+//! 4. [`train`]: what a gear train is, and the train file; [`model`]: a train as data;
 //! 5. [`kinematics`]: exact speeds, what is locked, free or redundant;
 //! 6. [`statics`]: torques with losses, the certificate, the verdict;
 //! 7. [`power_flow`]: torque and power everywhere, recirculation;
@@ -23,6 +23,7 @@
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
 //! ```
+//! use willis::exact::Rational;
 //! use willis::{Selection, Train, analyze};
 //!
 //! let train = Train::from_toml(r#"
@@ -41,7 +42,7 @@
 //! "#)?;
 //! let analysis = analyze(&train, &Selection::default())?;
 //! let (_, row) = &analysis.ratios.0[0];
-//! assert_eq!(row.exact.as_deref(), Some("10/3"));
+//! assert_eq!(row.exact, Some(Rational::new(10, 3)));
 //! assert!(row.drive.certificate.unwrap().unique_for_every_load);
 //! # Ok::<(), willis::Diagnostics>(())
 //! ```
@@ -58,6 +59,7 @@ pub mod catalogue;
 pub mod geometry;
 pub mod losses;
 pub mod train;
+pub mod model;
 pub mod kinematics;
 pub mod statics;
 pub mod power_flow;
@@ -74,6 +76,7 @@ pub mod unstable;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;
+pub use model::Model;
 pub use real::Real;
 pub use train::Train;
 

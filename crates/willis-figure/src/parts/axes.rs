@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::study::{Axis, Question, Subject};
+use willis::model::Model;
+use willis::study::{Axis, Question};
 use willis::train::{Load, MemberId};
 use willis::units::Quantity;
 
@@ -29,12 +30,12 @@ impl ChartAxis {
 }
 
 /// Axes as the caller writes them; each must be one of ascending numbers.
-pub fn parse(over: &[String], subject: &Subject) -> Result<Vec<Axis>, Diagnostics> {
+pub fn parse(over: &[String], model: &Model) -> Result<Vec<Axis>, Diagnostics> {
     let mut wrong = Diagnostics::default();
     let mut axes = vec![];
     for text in over {
         let refused = |what: &str| Diagnostic::new(Code::BadAxis, "", format!("`{text}`: {what}"));
-        match Axis::parse(text, subject) {
+        match Axis::parse(text, model) {
             Err(d) => wrong.push(*d),
             Ok(a) if a.is_text() => wrong.push(refused("an axis of a chart takes numbers, not words")),
             Ok(a) if a.len() < 2 => wrong.push(refused("an axis of a chart takes two values at least")),
@@ -73,13 +74,13 @@ const RPM: f64 = std::f64::consts::PI / 30.0;
 
 /// Speeds of a member in all operations, rpm.
 pub fn most_speed(question: &Question<'_>, member: MemberId) -> f64 {
-    let all = question.subject().train().operations().iter().flat_map(|o| &o.speeds);
+    let all = question.model().train().operations().iter().flat_map(|o| &o.speeds);
     largest(all.filter(|s| s.0 == member).map(|s| s.1.si() / RPM), 6000.0)
 }
 
 /// Torques on a member in all operations, N m.
 pub fn most_torque(question: &Question<'_>, member: MemberId) -> f64 {
-    let all = question.subject().train().operations().iter().flat_map(|o| &o.loads);
+    let all = question.model().train().operations().iter().flat_map(|o| &o.loads);
     let torques = all.filter(|l| l.0 == member).filter_map(|l| match &l.1 {
         Load::Torque(t) => Some(t.si()),
         Load::Power(_) => None,
@@ -93,7 +94,7 @@ fn si(q: &Quantity) -> f64 {
 
 /// The speed that a chart of this operating point runs over, where nothing else is asked for.
 pub fn usual_speed(question: &Question<'_>, steps: usize) -> String {
-    let train = question.subject().train();
+    let train = question.model().train();
     match question.base().speeds.first() {
         None => range("input.speed", 6000.0, false, "rpm", steps),
         Some((member, speed)) => {
@@ -105,7 +106,7 @@ pub fn usual_speed(question: &Question<'_>, steps: usize) -> String {
 
 /// The load (of a train with several freedoms: the second speed) that a map of this operating point runs over.
 pub fn usual_load(question: &Question<'_>, steps: usize) -> String {
-    let (train, base) = (question.subject().train(), question.base());
+    let (train, base) = (question.model().train(), question.base());
     if let [_, (member, speed), ..] = &base.speeds[..] {
         let name = format!("{}.speed", train.member_name(*member));
         return range(&name, most_speed(question, *member), si(speed) < 0.0, "rpm", steps);
@@ -130,7 +131,7 @@ pub fn usual_load(question: &Question<'_>, steps: usize) -> String {
 
 /// The operating point in words, and what of it was chosen here.
 pub fn basis(question: &Question<'_>, over: &[&Axis]) -> String {
-    let train = question.subject().train();
+    let train = question.model().train();
     let base = question.base();
     let state = base.state.map(|k| format!(", state {}", train.states()[k].name)).unwrap_or_default();
     let varies: Vec<&str> = over.iter().map(|a| a.name.as_str()).collect();

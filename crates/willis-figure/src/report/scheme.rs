@@ -8,7 +8,7 @@ use crate::FigureKind;
 use crate::report::document::{Block, Column, Section};
 
 pub fn section(all: &Findings<'_>) -> Section {
-    let train = all.subject.train();
+    let train = all.model.train();
     let mut blocks = vec![];
     if let Some(source) = train.source() {
         blocks.push(Block::Text { text: format!("Source of the data: {source}") });

@@ -12,7 +12,7 @@ use crate::train::{Load, Operation, Train};
 use super::profile::{Basis, Held, Profile};
 use super::question::{Question, Trains};
 use super::sweep::{Answer, VERDICTS};
-use super::target::{Target, Who};
+use crate::model::{Target, Who};
 
 /// How many of the worst are told.
 const MOST_WORST: usize = 5;
@@ -79,7 +79,7 @@ pub struct CyclePart {
     /// One for each condition.
     pub points: Vec<CyclePoint>,
     /// By name and kind: law, energy.
-    sources: BTreeMap<(String, &'static str), (&'static str, f64)>,
+    sources: BTreeMap<(String, &'static str), (String, f64)>,
     kinds: [f64; 5],
     /// By member: energy in, energy out.
     terminals: BTreeMap<String, [f64; 2]>,
@@ -133,7 +133,7 @@ pub struct SourceEnergy {
     /// What kind of loss it is.
     pub kind: &'static str,
     /// The law that it was last computed by; `given` for a given efficiency.
-    pub law: &'static str,
+    pub law: String,
     /// The energy, J.
     pub energy_j: f64,
     /// The part of all losses.
@@ -280,7 +280,8 @@ pub struct Cycle<'a> {
 ///
 /// # Example
 /// ```
-/// use willis::study::{Hold, Profile, Question, Subject, cycle};
+/// use willis::model::Model;
+/// use willis::study::{Hold, Profile, Question, cycle};
 ///
 /// let text = r#"
 ///     format = 1
@@ -294,7 +295,7 @@ pub struct Cycle<'a> {
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let subject = Model::from_toml(text).unwrap();
 /// let spectrum = "hours,input.speed [rad/s],input.torque [N m]\n1,100,50\n3,100,10\n";
 /// let profile = Profile::parse(spectrum, &subject)?;
 /// let report = cycle(Question::new(&subject, None, None, Hold::AsGiven)?, &profile);
@@ -342,7 +343,7 @@ impl<'a> Cycle<'a> {
     fn point(&self, condition: usize, trains: &mut Trains, part: &mut CyclePart) -> CyclePoint {
         let held = self.profile.held(condition);
         let settings = self.profile.settings(condition);
-        let states = self.question.subject().train().states();
+        let states = self.question.model().train().states();
         let named = settings.iter().find(|s| *s.0 == Target::State);
         let state = match named {
             Some((_, name)) => states.iter().position(|s| s.name == *name),
@@ -382,12 +383,12 @@ impl<'a> Cycle<'a> {
             *sum += power * held.time_s;
         }
         let mut lose = |name: &str, kind, law, power: f64| {
-            let own = part.sources.entry((name.to_owned(), kind)).or_insert((law, 0.0));
+            let own = part.sources.entry((name.to_owned(), kind)).or_insert_with(|| (law, 0.0));
             own.1 += power * held.time_s;
         };
         match s.sources.is_empty() {
-            true => s.meshes.iter().for_each(|(name, m)| lose(name, "mesh", "given", m.loss_w)),
-            false => s.sources.iter().for_each(|x| lose(&x.name, kind(x.kind), x.law, x.loss_w)),
+            true => s.meshes.iter().for_each(|(name, m)| lose(name, "mesh", "given".to_owned(), m.loss_w)),
+            false => s.sources.iter().for_each(|x| lose(&x.name, kind(x.kind), x.law.clone(), x.loss_w)),
         }
         for (name, m) in s.members.iter() {
             let energy = m.power_w.unwrap_or(0.0) * held.time_s;
@@ -456,7 +457,7 @@ impl<'a> Cycle<'a> {
         let profile = self.profile;
         let points: Vec<&CyclePoint> = parts.iter().flat_map(|p| &p.points).collect();
         assert_eq!(points.len(), profile.conditions(), "a report needs every part of the cycle");
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         let mut whole = Energies::default();
         let mut ways: BTreeMap<Way, Energies> = BTreeMap::new();
         let mut states: Vec<Energies> = vec![Energies::default(); train.states().len() + 1];
@@ -486,7 +487,7 @@ impl<'a> Cycle<'a> {
             }
         }
         whole.close();
-        let mut sources: BTreeMap<&(String, &'static str), (&'static str, f64)> = BTreeMap::new();
+        let mut sources: BTreeMap<&(String, &'static str), (&str, f64)> = BTreeMap::new();
         let mut terminals: BTreeMap<&str, TerminalEnergy> = BTreeMap::new();
         let mut kinds = [0.0; 5];
         let mut warnings: BTreeMap<&str, Vec<Told>> = BTreeMap::new();
@@ -508,7 +509,7 @@ impl<'a> Cycle<'a> {
             .into_iter()
             .map(|((name, kind), (law, energy_j))| {
                 let share = if whole.energy_lost_j > 0.0 { energy_j / whole.energy_lost_j } else { 0.0 };
-                SourceEnergy { name: name.clone(), kind, law, energy_j, share }
+                SourceEnergy { name: name.clone(), kind, law: law.to_owned(), energy_j, share }
             })
             .collect();
         sources.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));

@@ -5,7 +5,7 @@ use crate::losses::{self, FAMILIES};
 use crate::train::{Document, Key, Measure, MemberId};
 use crate::units::{self, Dimension, Quantity};
 
-use super::Subject;
+use super::Model;
 
 /// Whose speed or load it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -44,8 +44,8 @@ impl Target {
     ///
     /// # Errors
     /// No such quantity; with the nearest.
-    pub fn parse(name: &str, subject: &Subject) -> Result<Self, Box<Diagnostic>> {
-        let train = subject.train();
+    pub fn parse(name: &str, model: &Model) -> Result<Self, Box<Diagnostic>> {
+        let train = model.train();
         if name == "state" {
             return match train.states().is_empty() {
                 false => Ok(Self::State),
@@ -84,7 +84,7 @@ impl Target {
                 _ => {}
             }
         }
-        subject.document().find(name).map(Self::File).map_err(|mut d| {
+        model.document().find(name).map(Self::File).map_err(|mut d| {
             // All but the frame, whose speed nobody sets.
             let shafts = ["input", "output"].into_iter().chain(train.members().iter().skip(1).map(|m| m.name.as_str()));
             let mut own: Vec<String> =
@@ -103,7 +103,7 @@ impl Target {
     }
 
     /// What its values are.
-    pub(super) fn measure(&self, _: &Subject) -> Measure {
+    pub(crate) fn measure(&self, _: &Model) -> Measure {
         match self {
             Self::Speed(_) => Measure::Quantity(Dimension::ANGULAR_SPEED),
             Self::Torque(_) => Measure::Quantity(Dimension::TORQUE),
@@ -115,21 +115,21 @@ impl Target {
     }
 
     /// Whether the train itself changes with it, not only the operating point.
-    pub(super) fn is_of_train(&self) -> bool {
+    pub(crate) fn is_of_train(&self) -> bool {
         matches!(self, Self::Law(_) | Self::File(_))
     }
 
     /// `all` written out.
-    pub(super) fn choices(&self, subject: &Subject, given: &[String]) -> Option<Vec<String>> {
+    pub(crate) fn choices(&self, model: &Model, given: &[String]) -> Option<Vec<String>> {
         if given != ["all"] {
             return None;
         }
         match self {
-            Self::State => Some(subject.train().states().iter().map(|s| s.name.clone()).collect()),
+            Self::State => Some(model.train().states().iter().map(|s| s.name.clone()).collect()),
             Self::Law(family) => {
                 let laws = losses::entries().into_iter().filter(|e| e.family == *family);
                 // A law that needs what this train does not give is left out.
-                let fits = |id: &str| subject.train().clone().with_law(family, id).is_ok();
+                let fits = |id: &str| model.train().clone().with_law(family, id).is_ok();
                 Some(laws.filter(|e| fits(e.id)).map(|e| e.id.to_owned()).collect())
             }
             _ => None,
@@ -137,12 +137,12 @@ impl Target {
     }
 
     /// Whether values can be set.
-    pub(super) fn check(&self, subject: &Subject, values: &[String]) -> Result<(), Box<Diagnostic>> {
+    pub(crate) fn check(&self, model: &Model, values: &[String]) -> Result<(), Box<Diagnostic>> {
         let fault = |message: String| Box::new(Diagnostic::new(Code::BadAxis, "", message));
         for value in values {
             match self {
                 Self::State => {
-                    let states = subject.train().states().iter().map(|s| s.name.as_str());
+                    let states = model.train().states().iter().map(|s| s.name.as_str());
                     if !states.clone().any(|s| s == value) {
                         let d =
                             Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{value}`"));
@@ -152,17 +152,17 @@ impl Target {
                     }
                 }
                 Self::Law(family) => {
-                    subject.train().clone().with_law(family, value).map_err(|wrong| {
+                    model.train().clone().with_law(family, value).map_err(|wrong| {
                         let first = wrong.into_iter().next();
                         Box::new(first.expect("a law that is refused is refused for a reason"))
                     })?;
                 }
                 Self::File(key) => {
-                    let mut document: Document = subject.document().clone();
+                    let mut document: Document = model.document().clone();
                     document.set(key, value).map_err(fault)?;
                 }
                 _ => {
-                    let Measure::Quantity(dimension) = self.measure(subject) else { continue };
+                    let Measure::Quantity(dimension) = self.measure(model) else { continue };
                     let given = quantity(value, dimension).map_err(fault)?;
                     if *self == Self::Temperature {
                         oil_temperature(given.si())?;
@@ -175,7 +175,7 @@ impl Target {
 }
 
 /// Whether oil can be that warm, K: what the train file says of it too.
-pub(super) fn oil_temperature(kelvin: f64) -> Result<f64, Box<Diagnostic>> {
+pub(crate) fn oil_temperature(kelvin: f64) -> Result<f64, Box<Diagnostic>> {
     if (200.0..=600.0).contains(&kelvin) {
         return Ok(kelvin);
     }
@@ -184,7 +184,7 @@ pub(super) fn oil_temperature(kelvin: f64) -> Result<f64, Box<Diagnostic>> {
 }
 
 /// A value with a unit.
-pub(super) fn quantity(text: &str, dimension: Dimension) -> Result<Quantity, String> {
+pub(crate) fn quantity(text: &str, dimension: Dimension) -> Result<Quantity, String> {
     units::parse(text, dimension).map_err(|e| {
         let (kind, example) = dimension.describe();
         format!("\"{text}\" is not {kind}: {e}; an example is \"{example}\"")
