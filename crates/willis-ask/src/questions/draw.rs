@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::work::Work;
-use willis_figure::{Drawing, Figure, FigureKind, FigureRequest, Theme, draw, themed};
+use willis_figure::{Ask, Drawing, Figure, FigureKind, FigureRequest, Theme, draw, themed};
 
 use super::amount::pair;
 use crate::{File, Form, Given, Question, Refusal};
@@ -155,25 +155,17 @@ impl Draw {
         })
     }
 
+    fn drawing(&self) -> Drawing {
+        Drawing { animated: self.animated }
+    }
+
     /// Refuses what would make no difference to this kind.
-    fn heard(&self, kind: FigureKind) -> Result<(), Refusal> {
-        let asked = [
-            ("state", self.state.is_some()),
-            ("operation", self.operation.is_some()),
-            ("part", self.part.is_some()),
-            ("over", !self.over.is_empty()),
-            ("terminals", self.terminals.is_some()),
-            ("balance", self.balance.is_some()),
-            ("nominal", self.nominal),
-        ];
-        let takes = kind.takes();
-        let still = (self.animated && kind != FigureKind::Front).then_some("animated");
-        let deaf = asked.iter().find(|(name, given)| *given && !takes.contains(name)).map(|a| a.0).or(still);
-        let Some(deaf) = deaf else { return Ok(()) };
-        let list: Vec<String> = takes.iter().map(|t| format!("--{t}")).collect();
+    fn heard(&self, kind: FigureKind, request: &FigureRequest) -> Result<(), Refusal> {
+        let Some(deaf) = kind.deaf_to(request, self.drawing()) else { return Ok(()) };
+        let list: Vec<String> = kind.takes().iter().map(|t| format!("--{}", t.name())).collect();
         let instead =
             if list.is_empty() { "it takes no question".to_owned() } else { format!("it takes {}", list.join(", ")) };
-        let message = format!("`draw {}` has no use for --{deaf}", kind.name());
+        let message = format!("`draw {}` has no use for --{}", kind.name(), deaf.name());
         Err(Diagnostic::new(Code::UnknownSelection, "", message).hint(instead).into())
     }
 
@@ -183,7 +175,7 @@ impl Draw {
             Look::Dark => Theme::Dark,
             Look::Auto => Theme::Auto,
         };
-        themed(&draw(figure, Drawing { animated: self.animated }), theme)
+        themed(&draw(figure, self.drawing()), theme)
     }
 }
 
@@ -215,9 +207,9 @@ impl Question for Draw {
             return Ok(DrawAnswer::All(Figures { format: Format::new(), figures, missing }));
         }
         let kind = FigureKind::named(&self.kind)?;
-        self.heard(kind)?;
-        let asked =
-            self.state.is_some() || self.operation.is_some() || self.part.is_some() || !self.over.is_empty();
+        self.heard(kind, &request)?;
+        let narrows = |a: &Ask| matches!(a, Ask::State | Ask::Operation | Ask::Part | Ask::Over);
+        let asked = request.asks().iter().any(narrows);
         match kind.make(model, &request) {
             Ok(figure) => Ok(DrawAnswer::One(Box::new(figure))),
             // Where a kind does not apply to a train at all, those that do are told.
