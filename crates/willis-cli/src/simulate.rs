@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use willis::dynamics::{Column, ColumnKind, Event, Options, Outcome, Recorder, RunReport, Sample};
-use willis::figure::{TimePlotBuilder, outcome_in_words};
 use willis::train::Train;
+use willis_figure::TimePlotBuilder;
 
 use crate::interrupt::{interrupted, listen};
 
@@ -200,7 +200,7 @@ fn record(
         u.complete()?;
     }
     if let (Some(path), Some(plot)) = (&request.plot, listener.plot) {
-        crate::output::write(path, (willis_report::time_plot(&plot.finish(&report)) + "\n").as_bytes())?;
+        crate::output::write(path, (willis_figure::draw_time(&plot.finish(&report)) + "\n").as_bytes())?;
     }
     report.events = listener.events;
     if request.rows() {
@@ -213,7 +213,7 @@ fn record(
 fn early(r: &RunReport, end: f64) -> String {
     let word = if r.outcome == Outcome::Interrupted { "interrupted" } else { "ended" };
     let why = if r.outcome.why().is_empty() { String::new() } else { format!("; {}", r.outcome.why()) };
-    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, outcome_in_words(&r.outcome))
+    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, r.outcome.words())
 }
 
 /// `willis-simulation-1`

@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use proptest::prelude::*;
-use willis::dynamics::{Event, Method, Options, Outcome, Recorder, RunReport, Sample, simulate};
+use willis::dynamics::{ColumnKind, Event, Method, Options, Outcome, Recorder, RunReport, Sample, simulate};
 use willis::named::Named;
 use willis::train::Train;
 
@@ -508,4 +508,28 @@ fn the_rows_end_with_the_losses_of_the_report() {
     let quiet = Options { energies: false, method: Method::Fixed { step_s: 1e-3 }, ..Options::default() };
     let (_, report) = run(&rotor("\"4 N m\""), &quiet);
     assert!(report.energy.is_none() && report.outcome == Outcome::Finished);
+}
+
+/// A run and its vibrations read back as they were written; another contract does not.
+#[test]
+fn answers_read_back() {
+    let text = rotor("\"4 N m\"");
+    let (rows, mut report) = run(&text, &Options::default());
+    report.event_count = rows.events.len();
+    report.events = rows.events;
+    assert!(report.events[0].is_start() && report.events.iter().skip(1).all(|e| !e.is_start()));
+    report.rows = Some(vec![vec![Some(0.0), None]]);
+    let written = serde_json::to_string(&report).expect("plain data");
+    assert_eq!(serde_json::from_str::<RunReport>(&written).expect("a run"), report);
+    let vibrations = willis::dynamics::modes(&train(&text), None, &[]).expect("an inertia");
+    let written_modes = serde_json::to_string(&vibrations).expect("plain data");
+    let read: willis::dynamics::ModesReport = serde_json::from_str(&written_modes).expect("vibrations");
+    assert_eq!(read, vibrations);
+    assert!(serde_json::from_str::<willis::dynamics::ModesReport>(&written).is_err());
+    // Names in code are those of the contract.
+    for kind in ["time", "speed", "angle", "acceleration", "torque", "power", "mode", "twist", "efficiency", "energy"] {
+        let read: ColumnKind = serde_json::from_value(kind.into()).expect("a kind");
+        assert_eq!(read.name(), kind);
+        assert_eq!(serde_json::to_value(read.unit()).expect("plain data"), read.unit().symbol());
+    }
 }

@@ -1,7 +1,6 @@
 //! A run for eyes.
 
 use willis::dynamics::{Event, ModeLabel, Outcome};
-use willis::figure::outcome_in_words;
 use willis::hypergraph::watts;
 
 use super::Run;
@@ -17,7 +16,7 @@ pub fn text(run: &Run) -> String {
     let mut out = bold(&r.train) + "\n";
     let [start, reached, end] = [r.start_s, r.end_s, r.scenario_end_s].map(seconds);
     out += &format!("{}   {start} to {end} s\n", bold(&format!("Scenario: {}", r.scenario)));
-    let words = outcome_in_words(&r.outcome);
+    let words = r.outcome.words();
     let mut line = |name: &str, words: &str| {
         out += &wrap(words, &format!("  {name:<13}"));
         out.push('\n');
@@ -66,7 +65,6 @@ pub fn text(run: &Run) -> String {
 /// What can be done where a run ends early.
 fn advice(outcome: &Outcome) -> Option<&'static str> {
     Some(match outcome {
-        Outcome::Finished | Outcome::Interrupted => return None,
         Outcome::NoSolution(_) => "rigid parts cannot tell what follows; an elastic [[shaft]] in the jammed path can",
         Outcome::SeveralSolutions(_) => {
             "what decides between them is not in the model; --continue-when-ambiguous goes on with the first"
@@ -76,6 +74,7 @@ fn advice(outcome: &Outcome) -> Option<&'static str> {
         }
         Outcome::NotConverged(_) => "try a coarser --tolerance, or --fixed-step",
         Outcome::Impact(_) => "--fixed-step goes on as after an inelastic impact",
+        _ => return None,
     })
 }
 

@@ -329,6 +329,19 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// How the run ended, as in `the run …`; [`Outcome::why`] says more.
+    pub fn words(&self) -> &'static str {
+        match self {
+            Self::Finished => "reached the end of the scenario",
+            Self::Interrupted => "was interrupted",
+            Self::NoSolution(_) => "jammed: no tooth forces fit the motion",
+            Self::SeveralSolutions(_) => "stopped where several motions are possible",
+            Self::TooManyEvents(_) => "stopped: modes change too often",
+            Self::NotConverged(_) => "stopped: the equations could not be solved",
+            Self::Impact(_) => "stopped at an impact: a speed would have to change at once",
+        }
+    }
+
     /// Why the run ended there, in words; empty where the outcome itself says it.
     pub fn why(&self) -> &str {
         match self {
