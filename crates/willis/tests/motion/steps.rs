@@ -7,7 +7,7 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use willis::dynamics::{Batch, FixedStep};
 use willis::train::Train;
 
-#[path = "../benches/trains/mod.rs"]
+#[path = "../../benches/trains/mod.rs"]
 mod trains;
 
 #[global_allocator]
@@ -159,7 +159,7 @@ fn a_batch_takes_the_steps_of_a_train_with_an_elastic_shaft() {
 fn a_batch_takes_the_steps_of_a_train_with_controllers() {
     let _turn = turn();
     let text = |factor: f64| {
-        include_str!("../../../examples/galvagno.toml")
+        include_str!("../../../../examples/galvagno.toml")
             .replace("torque = \"-68 N m\", about", &format!("torque = \"{} N m\", about", -68.0 * factor))
             .replace("factor = \"0.05 ", &format!("factor = \"{} ", 0.05 * factor))
     };

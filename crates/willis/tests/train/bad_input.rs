@@ -201,7 +201,7 @@ const MOST_MIB: u64 = 512;
 /// Answers in a process of its own, which is ended when it takes too long.
 fn bounded(text: &str, limit: f64) {
     let mut child = Command::new(std::env::current_exe().expect("this test"))
-        .args(["--exact", "regress_in_a_process_of_its_own", "--ignored", "--nocapture"])
+        .args(["--exact", "bad_input::regress_in_a_process_of_its_own", "--ignored", "--nocapture"])
         .env("WILLIS_BAD_INPUT", limit.to_string())
         .env("RUST_BACKTRACE", "0")
         .stdin(Stdio::piped())

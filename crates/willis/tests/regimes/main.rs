@@ -1,0 +1,5 @@
+//! Every way a train can run: regimes, their limits, their formulas and the code written of them.
+
+mod atlas;
+mod emitted;
+mod limits;

@@ -1,0 +1,7 @@
+//! One operating point: speeds, torques, verdicts, power flow, computed losses; and many, compiled.
+
+mod compiled;
+mod flow;
+mod operating_point;
+mod properties;
+mod theory;

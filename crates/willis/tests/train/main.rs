@@ -1,0 +1,5 @@
+//! The train file: what it reads to, and what is said of one that is wrong, odd or hostile.
+
+mod bad_input;
+mod diagnostics;
+mod dynamic_format;
