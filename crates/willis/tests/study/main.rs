@@ -1,5 +1,8 @@
 //! Questions over many operating points.
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod compare;
 mod cycle;
 mod export;

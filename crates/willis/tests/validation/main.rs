@@ -1,5 +1,8 @@
 //! Numbers of others beside ours.
 
+#[path = "../common/mod.rs"]
+mod common;
+
 mod cases;
 mod dynamics;
 mod esmail_table;
