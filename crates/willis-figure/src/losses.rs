@@ -49,7 +49,7 @@ pub struct LossSeries {
     /// What kind of loss it is; of the others, none.
     pub kind: Option<LossKind>,
     /// Its law; `given` for an efficiency that the file gives.
-    pub law: Option<&'static str>,
+    pub law: Option<String>,
     /// How many sources it stands for.
     pub sources: usize,
     /// W at each value of the axis, absent where there is no single answer.
@@ -59,13 +59,13 @@ pub struct LossSeries {
 }
 
 /// The losses of an answer: name, kind, law, W.
-fn sources(answer: &Answer) -> Option<Vec<(String, LossKind, &'static str, f64)>> {
+fn sources(answer: &Answer) -> Option<Vec<(String, LossKind, String, f64)>> {
     let s = answer.solution.as_ref().filter(|_| answer.verdict == "unique")?;
     if !s.sources.is_empty() {
-        return Some(s.sources.iter().map(|x| (x.name.clone(), x.kind, x.law, x.loss_w)).collect());
+        return Some(s.sources.iter().map(|x| (x.name.clone(), x.kind, x.law.clone(), x.loss_w)).collect());
     }
     let meshes = s.meshes.iter().filter(|(_, m)| m.loss_w > 0.0);
-    Some(meshes.map(|(name, m)| (name.clone(), LossKind::Sliding, "given", m.loss_w)).collect())
+    Some(meshes.map(|(name, m)| (name.clone(), LossKind::Sliding, "given".to_owned(), m.loss_w)).collect())
 }
 
 /// Computes losses over a quantity (the operation's first speed, where none is named), source by source.
@@ -138,7 +138,7 @@ pub fn loss_chart(
         for (name, kind, law, watts) in list.unwrap_or(&here).iter().flatten() {
             let at = all.iter().position(|s| s.name == *name && s.kind == Some(*kind)).unwrap_or_else(|| {
                 let loss_w = found.iter().map(|f| f.as_ref().map(|_| 0.0)).collect();
-                let (name, kind, law) = (name.clone(), Some(*kind), Some(*law));
+                let (name, kind, law) = (name.clone(), Some(*kind), Some(law.clone()));
                 all.push(LossSeries {
                     name,
                     kind,

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use willis::analysis::{Direction, Selection, StateReport, Verdict, analyze};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::exact::Rational;
 use willis::train::{ShiftElementKind, Train};
 use willis::unstable;
 
@@ -162,7 +163,7 @@ fn row(name: &str, closed: Vec<bool>, report: Option<&StateReport>) -> ShiftRow 
         closed,
         path: Some([r.input.clone(), r.output.clone()]),
         ratio: r.value,
-        exact: r.exact.clone(),
+        exact: r.exact.as_ref().map(Rational::to_fraction),
         note: r.no_ratio.clone().or_else(|| beyond.then(|| "the ratio is beyond floating point".to_owned())),
         drive: efficiency(&r.drive),
         coast: efficiency(&r.coast),

@@ -214,7 +214,7 @@ fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
             true => format!("{}, {} %", watts(w), digits(100.0 * w / loss)),
             false => watts(w),
         };
-        let law = s.law.map(|l| format!("  {l}")).unwrap_or_default();
+        let law = s.law.as_ref().map(|l| format!("  {l}")).unwrap_or_default();
         g = g
             .add(badge(37.0, y + 9.0, &letter(k)))
             .add(text(54.0, y + 13.0, 12.0, Anchor::Start, &fit(&name(s), start - 66.0, 12.0)))

@@ -31,7 +31,7 @@ pub fn assumptions(all: &Findings<'_>) -> Section {
 /// Laws that computed a loss in an operating point.
 pub fn in_force(all: &Findings<'_>) -> Option<Section> {
     let solutions = || all.analysis.operations.iter().filter_map(single);
-    let mut used: Vec<&str> = solutions().flat_map(|s| s.sources.iter().map(|x| x.law)).collect();
+    let mut used: Vec<&str> = solutions().flat_map(|s| s.sources.iter().map(|x| x.law.as_str())).collect();
     used.sort_unstable();
     used.dedup();
     let catalogue = entries();

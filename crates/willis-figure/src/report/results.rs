@@ -2,9 +2,11 @@
 
 use crate::FigureKind;
 use willis::analysis::{CertificateReport, OperationReport, Role, SolutionReport, StateReport, Verdict};
+use willis::exact::Rational;
 use willis::hypergraph::watts;
 use willis::operating_point::Regime;
 use willis::regimes::{FormulaRequest, formulas as closed};
+use willis::statics::Certificate;
 use willis::symbolic::Notation;
 
 use crate::report::document::{Block, Column, Level, Section};
@@ -58,11 +60,13 @@ pub fn efficiency(s: &SolutionReport) -> String {
 
 pub fn certificate(v: Verdict, c: &CertificateReport) -> &'static str {
     match (v, c.unique_for_every_load, c.method) {
-        (Verdict::Locked, _, "undecided") => "not proved",
+        (Verdict::Locked, _, Certificate::Undecided) => "not proved",
         (Verdict::Locked, ..) => "proved: no equilibrium drives a load",
-        (_, true, "spectral-radius") => "proved: exactly one equilibrium for every load (spectral radius below one)",
+        (_, true, Certificate::SpectralRadius) => {
+            "proved: exactly one equilibrium for every load (spectral radius below one)"
+        }
         (_, true, _) => "proved: exactly one equilibrium for every load (all determinants of sign patterns agree)",
-        (_, false, "enumeration") => "not unique for every load; for this one every sign pattern was tried",
+        (_, false, Certificate::Enumeration) => "not unique for every load; for this one every sign pattern was tried",
         _ => "uniqueness undecided",
     }
 }
@@ -116,7 +120,7 @@ fn state(name: &str, s: &StateReport) -> Vec<String> {
     vec![
         name.to_owned(),
         format!("{} – {}", s.input, s.output),
-        s.exact.clone().or(s.no_ratio.clone()).unwrap_or_else(|| "–".into()),
+        s.exact.as_ref().map(Rational::to_fraction).or(s.no_ratio.clone()).unwrap_or_else(|| "–".into()),
         s.value.map_or("–".into(), |v| significant(v, 6)),
         s.step.map_or(String::new(), |v| significant(v, 4)),
         way(&s.drive),
@@ -250,7 +254,9 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
         let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
-            .map(|x| vec![x.name.clone(), x.kind.words().into(), x.law.into(), watts(x.loss_w), exact_percent(x.share)])
+            .map(|x| {
+                vec![x.name.clone(), x.kind.words().into(), x.law.clone(), watts(x.loss_w), exact_percent(x.share)]
+            })
             .collect();
         blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
         blocks.extend(contacts(&o.name, s));
@@ -270,12 +276,7 @@ fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
         .map(|(name, c)| {
             let n = |x: f64| significant(x, 4);
             let or = |x: Option<f64>| x.map_or("–".into(), |x| significant(x, 3));
-            let film = match c.regime {
-                Some(Regime::Boundary) => "boundary",
-                Some(Regime::Mixed) => "mixed",
-                Some(Regime::Full) => "full",
-                None => "–",
-            };
+            let film = c.regime.map_or("–", Regime::words);
             vec![
                 name.clone(),
                 or(c.friction),
