@@ -17,7 +17,7 @@ use willis::dynamics::{Column, Event, Outcome, Recorder, RunReport, Sample};
 use willis::work::Work;
 use willis_ask::questions::{MOST_EVENTS, Simulate, simulation_text};
 use willis_ask::{Entry, Refusal};
-use willis_figure::{TimePlotBuilder, draw_time, outcome_in_words};
+use willis_figure::{TimePlotBuilder, draw_time};
 
 use crate::command::{JSON, TEXT};
 use crate::interrupt::{interrupted, listen};
@@ -139,7 +139,7 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
 fn early(r: &RunReport, end: f64) -> String {
     let word = if r.outcome == Outcome::Interrupted { "interrupted" } else { "ended" };
     let why = if r.outcome.why().is_empty() { String::new() } else { format!("; {}", r.outcome.why()) };
-    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, outcome_in_words(&r.outcome))
+    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, r.outcome.words())
 }
 
 /// A file that has its name only when it is whole.

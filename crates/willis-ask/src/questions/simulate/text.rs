@@ -1,9 +1,8 @@
 //! A run for eyes.
 
-use willis::dynamics::{Event, ModeLabel, Outcome};
+use willis::dynamics::{Event, ModeLabel, Outcome, RunReport};
 use willis::hypergraph::watts;
 
-use super::Run;
 use crate::style::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
 
 /// Rows of the table of events.
@@ -11,8 +10,7 @@ pub const MOST_EVENTS: usize = 40;
 /// A part of the energy that is round-off.
 const NOTHING: f64 = 1e-12;
 
-pub fn text(run: &Run) -> String {
-    let r = &run.report;
+pub fn text(r: &RunReport) -> String {
     let mut out = bold(&r.train) + "\n";
     let [start, reached, end] = [r.start_s, r.end_s, r.scenario_end_s].map(seconds);
     out += &format!("{}   {start} to {end} s\n", bold(&format!("Scenario: {}", r.scenario)));
@@ -46,9 +44,9 @@ pub fn text(run: &Run) -> String {
     if let Some(start) = r.events.first().filter(|e| e.is_start() && !e.modes.is_empty()) {
         line("at the start", &modes(start, usize::MAX));
     }
-    out += &events(run);
-    out += &speeds(run);
-    out += &energy(run);
+    out += &events(r);
+    out += &speeds(r);
+    out += &energy(r);
     for (head, lines) in [("Assumptions in force", &r.assumptions), ("Notes", &r.notes)] {
         if lines.is_empty() {
             continue;
@@ -83,8 +81,8 @@ fn seconds(t: f64) -> String {
     significant(t, 7)
 }
 
-fn events(run: &Run) -> String {
-    let told: Vec<&Event> = run.report.events.iter().filter(|e| !e.is_start()).take(MOST_EVENTS - 1).collect();
+fn events(run: &RunReport) -> String {
+    let told: Vec<&Event> = run.events.iter().filter(|e| !e.is_start()).take(MOST_EVENTS - 1).collect();
     if told.is_empty() {
         return String::new();
     }
@@ -96,7 +94,7 @@ fn events(run: &Run) -> String {
     }
     right(&mut t, 0..1);
     out += &show(&t);
-    let rest = run.report.event_count.saturating_sub(1 + told.len());
+    let rest = run.event_count.saturating_sub(1 + told.len());
     if rest > 0 {
         out += &dim(&format!("  … and {rest} more, all in --format json"));
         out.push('\n');
@@ -132,14 +130,14 @@ fn mode(m: ModeLabel) -> &'static str {
     }
 }
 
-fn speeds(run: &Run) -> String {
-    if run.report.final_speeds_rad_s.is_empty() {
+fn speeds(run: &RunReport) -> String {
+    if run.final_speeds_rad_s.is_empty() {
         return String::new();
     }
-    let at = seconds(run.report.end_s);
+    let at = seconds(run.end_s);
     let mut t = table();
     set_header(&mut t, &["member", "rpm", "rad/s"]);
-    for (name, w) in &run.report.final_speeds_rad_s {
+    for (name, w) in &run.final_speeds_rad_s {
         // Round-off is not a speed.
         let w = if w.abs() < 1e-9 { 0.0 } else { *w };
         t.add_row([name.clone(), significant(rpm(w), 6), significant(w, 6)]);
@@ -153,8 +151,8 @@ fn joules(e: f64) -> String {
     watts(e).replace('W', "J")
 }
 
-fn energy(run: &Run) -> String {
-    let Some(e) = &run.report.energy else { return String::new() };
+fn energy(run: &RunReport) -> String {
+    let Some(e) = &run.energy else { return String::new() };
     let mut out = format!("\n{}\n", bold("Where the energy went"));
     let mut rows: Vec<(f64, [String; 5])> = Vec::new();
     let flow = |x: f64| if x == 0.0 { "-".to_owned() } else { joules(x) };
