@@ -4,12 +4,16 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::analysis::{Direction, Selection, StateReport, Verdict, analyze};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
 use willis::train::{ShiftElementKind, Train};
 use willis::unstable;
+
+use crate::kind::Kind;
+
+pub(crate) const KIND: Kind<ShiftTable> =
+    Kind { title: "Shift table", takes: &[], make: |s, _| shift(s.train()), draw: |data, _| draw::draw(data) };
 
 /// A shift table.
 #[derive(Clone, Debug, PartialEq, Serialize)]

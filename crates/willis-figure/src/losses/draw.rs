@@ -1,6 +1,5 @@
 //! Losses by source: stacked over a quantity, and as bars at the operating point.
 
-use crate::{LossChart, LossSeries};
 use svg::node::element::Group;
 use willis::hypergraph::watts;
 use willis::operating_point::LossKind;
@@ -9,6 +8,7 @@ use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, line, lines, page, rectangle, text, wide,
 };
+use crate::{LossChart, LossSeries};
 
 const WIDTH: f64 = 980.0;
 const LEFT: f64 = 100.0;

@@ -3,10 +3,9 @@
 use willis::diagnostic::Severity;
 use willis::losses::{Entry, Tag, Trust, entries};
 
-use crate::report::document::{Block, Column, Level, Section};
-
 use super::Findings;
 use super::results::{significant, single};
+use crate::report::document::{Block, Column, Level, Section};
 
 pub fn assumptions(all: &Findings<'_>) -> Section {
     let mut blocks = vec![];
@@ -93,8 +92,8 @@ pub fn again(all: &Findings<'_>) -> Section {
         false => format!(", SHA-256 {}", all.request.hash),
     };
     blocks.push(Block::Text { text: format!("{file}{hash}:") });
-    blocks.push(Block::Code { text: all.subject.document().text() });
-    for (name, text) in all.subject.files() {
+    blocks.push(Block::Code { text: all.model.document().text() });
+    for (name, text) in all.model.files() {
         let lines = text.lines().count();
         blocks.push(Block::Text { text: format!("It names {name}, a table of {lines} lines.") });
     }

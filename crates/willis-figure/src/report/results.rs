@@ -1,6 +1,5 @@
 //! What came out: the shift table, the operating points, losses, maps, motion, formulas.
 
-use crate::FigureKind;
 use willis::analysis::{CertificateReport, OperationReport, Role, SolutionReport, StateReport, Verdict};
 use willis::exact::Rational;
 use willis::hypergraph::watts;
@@ -9,9 +8,9 @@ use willis::regimes::{FormulaRequest, formulas as closed};
 use willis::statics::Certificate;
 use willis::symbolic::Notation;
 
-use crate::report::document::{Block, Column, Level, Section};
-
 use super::{Findings, notice};
+use crate::FigureKind;
+use crate::report::document::{Block, Column, Level, Section};
 
 /// Formulas that are printed.
 const FORMULAS: usize = 12;
@@ -101,7 +100,7 @@ pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
             }
         }
     }
-    let title = if all.subject.train().states().is_empty() { "Ratio" } else { "Shift table" };
+    let title = if all.model.train().states().is_empty() { "Ratio" } else { "Shift table" };
     (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
 }
 
@@ -339,13 +338,13 @@ pub fn maps(all: &Findings<'_>) -> Option<Section> {
 }
 
 pub fn motion(all: &Findings<'_>) -> Option<Section> {
-    let scenario = all.subject.train().scenarios().first()?;
+    let scenario = all.model.train().scenarios().first()?;
     let figure = all.figures.block(FigureKind::Time, None, &format!("Scenario {}", scenario.name))?;
     Some(Section { title: "Motion".into(), blocks: vec![figure] })
 }
 
 pub fn formulas(all: &Findings<'_>) -> Option<Section> {
-    let train = all.subject.train();
+    let train = all.model.train();
     let mut blocks = vec![];
     blocks.extend(all.figures.block(
         FigureKind::Regimes,
