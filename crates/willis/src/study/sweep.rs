@@ -235,7 +235,11 @@ impl Answer {
         };
         let is_one = matches!(report.verdict, Verdict::Unique | Verdict::Unloaded);
         let title = format!("operation `{}`: ", operation.name);
-        let oil = train.lubrication.iter().filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)));
+        let oil = train
+            .lubrication
+            .iter()
+            .filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)))
+            .map(|b| b.to_string());
         let warnings = notes.into_iter().filter(|d| d.severity == Severity::Warning && d.code != Code::SelfLocking);
         let warnings = warnings.map(|d| (d.code, d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned()));
         Self {
