@@ -14,6 +14,8 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Patch, Renderer, Snippet};
 use serde::Serialize;
 
+use crate::work::Cancelled;
+
 pub use codes::Code;
 
 /// How much a diagnostic matters.
@@ -196,6 +198,13 @@ impl Diagnostics {
 impl From<Diagnostic> for Diagnostics {
     fn from(one: Diagnostic) -> Self {
         [one].into_iter().collect()
+    }
+}
+
+/// A computation that was stopped has the code [`Code::Cancelled`].
+impl From<Cancelled> for Diagnostics {
+    fn from(cancelled: Cancelled) -> Self {
+        Diagnostic::new(Code::Cancelled, "", cancelled.to_string()).into()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Variants side by side: what the files differ in, and what that changes.
 
-use willis::study::{CompareRequest, Compared, Comparison, Datum, Subject, compare};
+use willis::study::{CompareRequest, Compared, Comparison, ComparedValue, Subject, compare};
 
 const REDUCER: &str = r#"
     format = 1
@@ -116,7 +116,7 @@ fn a_changed_verdict_comes_first_with_its_reason() {
     let state = &c.states[0];
     assert_eq!(state.differences[0].size, 2.0);
     let verdict = quantity(state, "verdict coasting");
-    assert_eq!(verdict.values, [Datum::Word("locked".into()), Datum::Word("unique".into())]);
+    assert_eq!(verdict.values, [ComparedValue::Word("locked".into()), ComparedValue::Word("unique".into())]);
     assert!(state.reasons.iter().any(|r| r.0 == "A"), "{state:?}");
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use willis::analysis::{Analysis, Selection, analyze};
-use willis::study::{Axis, Cells, Hold, Question, Rows, Subject, Sweep, sensitivity};
+use willis::study::{Axis, ColumnValues, Hold, Question, Rows, Subject, Sweep, sensitivity};
 use willis::train::{Document, Train};
 
 fn examples() -> PathBuf {
@@ -34,18 +34,18 @@ fn all(sweep: &Sweep<'_>) -> Rows {
     sweep.rows(0, sweep.len(), &mut Default::default())
 }
 
-fn column<'r>(sweep: &Sweep<'_>, rows: &'r Rows, name: &str) -> &'r Cells {
+fn column<'r>(sweep: &Sweep<'_>, rows: &'r Rows, name: &str) -> &'r ColumnValues {
     let k = sweep.columns().position(|c| c.name == name).unwrap_or_else(|| panic!("no column {name}"));
     &rows.columns[k]
 }
 
 fn numbers<'r>(sweep: &Sweep<'_>, rows: &'r Rows, name: &str) -> &'r [f64] {
-    let Cells::Numbers(all) = column(sweep, rows, name) else { panic!("{name} holds texts") };
+    let ColumnValues::Numbers(all) = column(sweep, rows, name) else { panic!("{name} holds texts") };
     all
 }
 
 fn texts(sweep: &Sweep<'_>, rows: &Rows, name: &str) -> Vec<String> {
-    let Cells::Texts(all) = column(sweep, rows, name) else { panic!("{name} holds numbers") };
+    let ColumnValues::Texts(all) = column(sweep, rows, name) else { panic!("{name} holds numbers") };
     all.iter().map(|t| t.to_string()).collect()
 }
 
@@ -197,11 +197,11 @@ fn compiled_rows_are_the_same_but_for_round_off() {
         let slow = all(&sweep);
         for (k, c) in compiled.columns().enumerate() {
             match &fast.columns[k] {
-                Cells::Texts(own) => {
+                ColumnValues::Texts(own) => {
                     let own: Vec<String> = own.iter().map(|t| t.to_string()).collect();
                     assert_eq!(own, texts(&sweep, &slow, &c.name), "{file} {}", c.name);
                 }
-                Cells::Numbers(own) => {
+                ColumnValues::Numbers(own) => {
                     let size = own.iter().filter(|x| !x.is_nan()).fold(0.0f64, |a, x| a.max(x.abs()));
                     for (i, (a, b)) in own.iter().zip(numbers(&sweep, &slow, &c.name)).enumerate() {
                         let near = (a - b).abs() <= 1e-12 * size || a.is_nan() && b.is_nan();
@@ -219,10 +219,10 @@ fn compiled_rows_are_the_same_but_for_round_off() {
         let pieces = [compiled.rows(0, middle, &mut room), compiled.rows(middle, lean.len(), &mut room)];
         for (k, whole) in fast.columns.iter().enumerate() {
             match (whole, &pieces[0].columns[k], &pieces[1].columns[k]) {
-                (Cells::Numbers(w), Cells::Numbers(a), Cells::Numbers(b)) => {
+                (ColumnValues::Numbers(w), ColumnValues::Numbers(a), ColumnValues::Numbers(b)) => {
                     assert!(w.iter().zip(a.iter().chain(b)).all(|(x, y)| x.to_bits() == y.to_bits()), "{file}");
                 }
-                (Cells::Texts(w), Cells::Texts(a), Cells::Texts(b)) => assert!(w.iter().eq(a.iter().chain(b))),
+                (ColumnValues::Texts(w), ColumnValues::Texts(a), ColumnValues::Texts(b)) => assert!(w.iter().eq(a.iter().chain(b))),
                 _ => panic!("columns change their kind"),
             }
         }

@@ -76,7 +76,7 @@ pub fn bands(subject: &Subject, request: &UncertaintyRequest, over: &[String]) -
         .map(|k| {
             let one = |j| {
                 let answer = plan.answer_along(Some(*k), &x, j, &mut trains);
-                if answer.verdict == "unique" { [answer.efficiency(), answer.loss()] } else { [f64::NAN; 2] }
+                if answer.is_unique() { [answer.efficiency(), answer.loss()] } else { [f64::NAN; 2] }
             };
             (0..x.len()).map(one).collect()
         })
@@ -94,7 +94,7 @@ pub fn bands(subject: &Subject, request: &UncertaintyRequest, over: &[String]) -
                     .then(|| QUANTILES.map(|p| crate::study::quantile(own, p)))
             };
             let nominal = plan.answer_along(None, &x, j, &mut trains);
-            let nominal = (nominal.verdict == "unique").then(|| [nominal.efficiency(), nominal.loss()]);
+            let nominal = (nominal.is_unique()).then(|| [nominal.efficiency(), nominal.loss()]);
             BandPoint {
                 efficiency: told(&efficiency),
                 loss_w: told(&loss),

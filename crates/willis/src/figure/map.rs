@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::analysis::{self, Selection};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::study::{Answer, Axis, Hold, Question, Subject, Sweep};
+use crate::study::{PointAnswer, Axis, Hold, Question, Subject, Sweep};
 use crate::train::{Load, MemberId, Operation};
 
 use super::axes::{self, ChartAxis};
@@ -39,7 +39,7 @@ pub struct EfficiencyMap {
 /// A point of a map.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MapPoint {
-    /// One of [`VERDICTS`](crate::study::VERDICTS); `beyond` where no state stays within the limits of the input.
+    /// One of [`PointVerdict`](crate::study::PointVerdict); `beyond` where no state stays within the limits of the input.
     pub verdict: &'static str,
     /// Output over input power.
     pub efficiency: Option<f64>,
@@ -61,10 +61,10 @@ pub struct MapMark {
 }
 
 impl MapPoint {
-    fn of(answer: &Answer) -> Self {
-        let s = answer.solution.as_ref().filter(|_| answer.verdict == "unique");
+    fn of(answer: &PointAnswer) -> Self {
+        let s = answer.solution.as_ref().filter(|_| answer.is_unique());
         Self {
-            verdict: answer.verdict,
+            verdict: answer.verdict.name(),
             efficiency: s.and_then(|s| s.efficiency),
             input_power_w: s.map(|s| s.input_power_w),
             loss_w: s.map(|s| s.loss_w),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -16,8 +16,10 @@ use super::Subject;
 use super::target::{Target, Who, oil_temperature, quantity};
 
 /// What stays the same while other quantities vary.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Hold {
     /// The loads as the operation gives them, torques as torques and powers as powers.
     #[default]
@@ -31,15 +33,22 @@ pub enum Hold {
 }
 
 impl Hold {
+    /// All there are.
+    pub const ALL: [Self; 4] = [Self::AsGiven, Self::Torque, Self::Power, Self::Output];
+
+    /// Its name in the train file: `as-given`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AsGiven => "as-given",
+            Self::Torque => "torque",
+            Self::Power => "power",
+            Self::Output => "output",
+        }
+    }
+
     /// By its name in the train file.
     pub fn named(name: &str) -> Option<Self> {
-        match name {
-            "as-given" => Some(Self::AsGiven),
-            "torque" => Some(Self::Torque),
-            "power" => Some(Self::Power),
-            "output" => Some(Self::Output),
-            _ => None,
-        }
+        Self::ALL.into_iter().find(|h| h.name() == name)
     }
 }
 

@@ -85,6 +85,11 @@ impl Subject {
         self.files.iter().filter_map(|(name, text)| Some((name.as_str(), text.as_deref().ok()?)))
     }
 
+    /// The laws in force over those of the file: family and name.
+    pub fn laws(&self) -> &[(String, String)] {
+        &self.laws
+    }
+
     /// The train with other values.
     ///
     /// # Errors
