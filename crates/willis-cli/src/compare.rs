@@ -1,7 +1,8 @@
 //! `willis compare`: variants side by side, differences first.
 
 use willis::study::{
-    CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapDifference, MapPair, TextDifference,
+    CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapDifference, MapPair,
+    TextDifference,
 };
 
 use crate::csv::Writer;
@@ -15,7 +16,7 @@ const MOST_LETTERS: usize = 48;
 
 /// Compares files.
 pub fn run(files: &[Studied], request: &CompareRequest) -> Result<Comparison, String> {
-    let all: Vec<_> = files.iter().map(|f| (f.file.as_str(), &f.subject)).collect();
+    let all: Vec<_> = files.iter().map(|f| (f.file.as_str(), &f.model)).collect();
     // A message names its file, or concerns all.
     willis::study::compare(&all, request).map_err(|wrong| wrong.render("", "", crate::color()))
 }

@@ -10,8 +10,9 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use willis::diagnostic::Diagnostics;
+use willis::model::Model;
 use willis::study::{
-    Hold, Shard, Subject, Summary, SweepMethod, SweepPlan, SweepReport as Report, SweepRequest, SweepStudy as Study,
+    Hold, Shard, Summary, SweepMethod, SweepPlan, SweepReport as Report, SweepRequest, SweepStudy as Study,
     SweepWorkspace,
 };
 use willis::work::Work;
@@ -97,9 +98,9 @@ fn hex(bytes: &[u8]) -> String {
 }
 
 /// Runs a sweep.
-pub fn run(subject: &Subject, request: &Request) -> Result<Report, Failure> {
+pub fn run(model: &Model, request: &Request) -> Result<Report, Failure> {
     let plan = SweepPlan::new(
-        subject,
+        model,
         &SweepRequest {
             study: request.study.clone(),
             over: request.over.clone(),
@@ -160,16 +161,9 @@ pub fn run(subject: &Subject, request: &Request) -> Result<Report, Failure> {
             let mut summary = Summary::default();
             let make =
                 |k: u64, room: &mut SweepWorkspace| Ok(plan.summary(plan.points(k), room, &UntilInterrupted).ok());
-            let left = work::run(
-                &all,
-                threads,
-                (0, rows, "points"),
-                size,
-                make,
-                |k, s: Summary| {
-                    ordered.push(k, s, |s| summary.join(&s));
-                },
-            )?;
+            let left = work::run(&all, threads, (0, rows, "points"), size, make, |k, s: Summary| {
+                ordered.push(k, s, |s| summary.join(&s));
+            })?;
             if left > 0 {
                 return Err(Failure::Interrupted(
                     "interrupted: nothing was written (give --out to keep pieces)\n".into(),

@@ -128,6 +128,11 @@ impl Diagnostics {
         self.0.iter().any(|d| d.severity == Severity::Error)
     }
 
+    /// Whether nothing is wrong but that the computation was [stopped](Code::Cancelled).
+    pub fn is_cancelled(&self) -> bool {
+        self.0.iter().any(|d| d.code == Code::Cancelled)
+    }
+
     /// Whether there is nothing to say.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()

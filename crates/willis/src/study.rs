@@ -1,6 +1,6 @@
 //! Many operating points: maps, trends, what matters most, how sure it is, and files for other programs.
 //!
-//! A [`Subject`] is a train file whose quantities can be set anew; a [`Question`] says what is prescribed and what is
+//! A [`Model`](crate::model::Model) is a train whose quantities can be set anew; a [`Question`] says what is prescribed and what is
 //! held while quantities vary; an [`Axis`] is one quantity and its values. A [`Sweep`] puts them together: a grid of
 //! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
 
@@ -16,10 +16,8 @@ pub mod export;
 mod profile;
 mod question;
 mod sensitivity;
-mod subject;
 mod summary;
 mod sweep;
-mod target;
 mod uncertainty;
 
 pub use answer::{PointAnswer, PointVerdict};
@@ -42,13 +40,11 @@ pub use question::{Hold, Question, Trains};
 pub use sensitivity::{
     Checks, OperationSensitivity, QuantitySensitivity, Sensitivity, SourceChange, StepKind, sensitivity,
 };
-pub use subject::Subject;
 pub use summary::{AxisValue, Extreme, LawChoice, MinMaxSum, Summary, WarningCount, WarningKind};
 pub use sweep::{
     Shard, Sweep, SweepAnswer, SweepAxis, SweepColumn, SweepMethod, SweepPlace, SweepPlan, SweepReport, SweepRequest,
     SweepStudy, sweep,
 };
-pub use target::{Target, Who};
 pub use uncertainty::{
     ChoiceResult, Influence, SampleResult, Uncertain, UncertainQuantity, UncertainResult, UncertainValue, Uncertainty,
     UncertaintyPlan, UncertaintyRequest,

@@ -1,6 +1,7 @@
 //! Variants side by side: what the files differ in, and what that changes.
 
-use willis::study::{CompareRequest, Compared, Comparison, ComparedValue, Subject, compare};
+use willis::model::Model;
+use willis::study::{CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, compare};
 
 const REDUCER: &str = r#"
     format = 1
@@ -28,10 +29,9 @@ const MORE: &str = r#"
 "#;
 
 fn all(texts: &[&str], request: &CompareRequest) -> Comparison {
-    let subjects: Vec<Subject> =
-        texts.iter().map(|t| Subject::new(t, &[], &mut |_| Err("no files".into())).unwrap()).collect();
+    let subjects: Vec<Model> = texts.iter().map(|t| Model::from_toml(t).unwrap()).collect();
     let names = ["first.toml", "second.toml", "third.toml"];
-    let variants: Vec<(&str, &Subject)> = names.into_iter().zip(&subjects).collect();
+    let variants: Vec<(&str, &Model)> = names.into_iter().zip(&subjects).collect();
     compare(&variants, request).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -60,7 +60,7 @@ fn another_efficiency_changes_what_it_should() {
     assert!((loss.differences[1].unwrap() - power * (eta(0.99) - eta(0.98))).abs() < 1e-9);
     assert!((loss.relative[1].unwrap() - (eta(0.99) - eta(0.98)) / (1.0 - eta(0.99))).abs() < 1e-9);
     // Speeds and the input are what they were; the loss is twice as large, the output a little smaller.
-    assert!(load.equal > 0 && !load.differences.iter().any(|d| d.unit == "rad/s"));
+    assert!(load.equal > 0 && !load.differences.iter().any(|d| d.unit == ComparedUnit::RadianPerSecond));
     // What is asked first stands first, then the largest.
     let headline = load.differences.iter().take_while(|d| matches!(d.quantity.as_str(), "efficiency" | "loss")).count();
     assert!(headline > 0 && load.differences[headline..].windows(2).all(|w| w[0].size >= w[1].size));
@@ -147,7 +147,7 @@ fn over_axes_it_tells_where_which_is_better() {
 
 #[test]
 fn wrong_questions_are_refused() {
-    let subject = Subject::new(REDUCER, &[], &mut |_| Err("no files".into())).unwrap();
+    let subject = Model::from_toml(REDUCER).unwrap();
     let two = [("a.toml", &subject), ("b.toml", &subject)];
     let told = |request: CompareRequest| compare(&two, &request).unwrap_err().to_string();
     let operation = told(CompareRequest { operation: Some("lod".into()), ..Default::default() });

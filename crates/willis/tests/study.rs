@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use willis::analysis::{Analysis, Selection, analyze};
-use willis::study::{Axis, ColumnValues, Hold, Question, Rows, Subject, Sweep, sensitivity};
+use willis::model::Model;
+use willis::study::{Axis, ColumnValues, Hold, PointVerdict, Question, Rows, Sweep, SweepRequest, sensitivity};
 use willis::train::{Document, Train};
 
 fn examples() -> PathBuf {
@@ -15,16 +16,16 @@ fn text(name: &str) -> String {
     fs::read_to_string(examples().join(name)).unwrap()
 }
 
-fn subject(text: &str) -> Subject {
+fn subject(text: &str) -> Model {
     let mut load = |file: &str| fs::read_to_string(examples().join(file)).map_err(|e| e.to_string());
-    Subject::new(text, &[], &mut load).unwrap_or_else(|r| panic!("{}", r.diagnostics))
+    Model::read(text, &mut load).unwrap_or_else(|r| panic!("{r}"))
 }
 
-fn axes(subject: &Subject, over: &[&str]) -> Vec<Axis> {
+fn axes(subject: &Model, over: &[&str]) -> Vec<Axis> {
     over.iter().map(|a| Axis::parse(a, subject).unwrap_or_else(|d| panic!("{a}: {}", d.message))).collect()
 }
 
-fn sweep<'s>(subject: &'s Subject, over: &[&str], columns: &[&str], hold: Hold) -> Sweep<'s> {
+fn sweep<'s>(subject: &'s Model, over: &[&str], columns: &[&str], hold: Hold) -> Sweep<'s> {
     let question = Question::new(subject, None, None, hold).unwrap();
     let columns: Vec<String> = columns.iter().map(|c| (*c).to_owned()).collect();
     Sweep::new(question, axes(subject, over), &columns).unwrap_or_else(|d| panic!("{d}"))
@@ -222,7 +223,9 @@ fn compiled_rows_are_the_same_but_for_round_off() {
                 (ColumnValues::Numbers(w), ColumnValues::Numbers(a), ColumnValues::Numbers(b)) => {
                     assert!(w.iter().zip(a.iter().chain(b)).all(|(x, y)| x.to_bits() == y.to_bits()), "{file}");
                 }
-                (ColumnValues::Texts(w), ColumnValues::Texts(a), ColumnValues::Texts(b)) => assert!(w.iter().eq(a.iter().chain(b))),
+                (ColumnValues::Texts(w), ColumnValues::Texts(a), ColumnValues::Texts(b)) => {
+                    assert!(w.iter().eq(a.iter().chain(b)))
+                }
                 _ => panic!("columns change their kind"),
             }
         }
@@ -372,6 +375,23 @@ fn axes_take_the_values_that_are_written() {
     assert_eq!(Axis::parse("oil.viscosity_40=80..120 mm^2/s:2", &subject).unwrap().column(), "oil.viscosity_40_mm_2_s");
 }
 
+/// Work that is stopped at its first piece.
+struct Stopped;
+
+impl willis::work::Work for Stopped {
+    fn cancelled(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_sweep_that_is_stopped_says_so() {
+    let model = subject(&text("zf-8hp70.toml"));
+    let request = SweepRequest { over: vec!["state=all".into()], ..SweepRequest::default() };
+    let wrong = willis::study::sweep(&model, &request, &Stopped).unwrap_err();
+    assert!(wrong.is_cancelled(), "{wrong}");
+}
+
 #[test]
 fn what_is_wrong_with_an_axis_is_told() {
     let fva = text("fva-planetary-stage.toml");
@@ -426,7 +446,7 @@ fn val_wang_trends() {
     let run = |name: &str| {
         let sweep = Sweep::of_file(&subject, name).unwrap_or_else(|d| panic!("{name}: {d}"));
         let rows = all(&sweep);
-        assert_eq!(rows.summary.verdicts.get("unique"), Some(&sweep.len()), "{name}");
+        assert_eq!(rows.summary.verdicts.get(&PointVerdict::Unique), Some(&sweep.len()), "{name}");
         let get = |c: &str| numbers(&sweep, &rows, c).to_vec();
         (get("efficiency"), get("loss_w"), get("windage_loss_w"), get("mesh_loss_w"))
     };
@@ -455,7 +475,7 @@ proptest::proptest! {
         name in "(sun\\.speed|P1\\.planet\\.count|law\\.bearing|oil\\.temperature|[a-z.=0-9é]{0,12})",
         values in "[0-9.eE+\\- rpmNdegC,:solgtp/é]{0,30}",
     ) {
-        static SUBJECT: std::sync::LazyLock<Subject> =
+        static SUBJECT: std::sync::LazyLock<Model> =
             std::sync::LazyLock::new(|| subject(&text("fva-planetary-stage.toml")));
         if let Ok(axis) = Axis::parse(&format!("{name}={values}"), &SUBJECT) {
             proptest::prop_assert!(!axis.is_empty());

@@ -8,9 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::Model;
 use crate::train::Train;
-
-use super::Subject;
 
 pub use map::{Band, MapComparison, MapDifference, MapPair, MapPlace};
 
@@ -44,7 +43,6 @@ pub struct Variant {
 /// A value of a variant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
 #[serde(untagged)]
 pub enum ComparedValue {
     /// It has none.
@@ -196,7 +194,8 @@ impl Contract for Comparison {
 ///
 /// # Example
 /// ```
-/// use willis::study::{CompareRequest, Subject, compare};
+/// use willis::model::Model;
+/// use willis::study::{CompareRequest, compare};
 ///
 /// let text = r#"
 ///     format = 1
@@ -210,14 +209,14 @@ impl Contract for Comparison {
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 /// "#;
-/// let subject = |text: &str| Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
-/// let (a, b) = (subject(text), subject(&text.replace("0.99", "0.98")));
+/// let model = |text: &str| Model::from_toml(text).unwrap();
+/// let (a, b) = (model(text), model(&text.replace("0.99", "0.98")));
 /// let all = compare(&[("a", &a), ("b", &b)], &CompareRequest::default())?;
 /// assert_eq!(all.files[0].path, "P1.mesh_efficiency");
 /// assert!(all.states[0].differences.iter().any(|d| d.quantity == "efficiency driving"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn compare(variants: &[(&str, &Subject)], request: &CompareRequest) -> Result<Comparison, Diagnostics> {
+pub fn compare(variants: &[(&str, &Model)], request: &CompareRequest) -> Result<Comparison, Diagnostics> {
     if variants.len() < 2 {
         let d = Diagnostic::new(Code::Unfit, "", "one train cannot be compared");
         return Err(d.hint("name two files or more").into());
@@ -233,10 +232,10 @@ pub fn compare(variants: &[(&str, &Subject)], request: &CompareRequest) -> Resul
     Ok(Comparison {
         format: Format::new(),
         variants: (variants.iter().zip(&labels))
-            .map(|((file, subject), label)| Variant {
+            .map(|((file, model), label)| Variant {
                 label: label.clone(),
                 file: (*file).to_owned(),
-                train: subject.train().name().to_owned(),
+                train: model.train().name().to_owned(),
             })
             .collect(),
         identical: files.is_empty(),
@@ -269,4 +268,3 @@ fn selected(trains: &[&Train], request: &CompareRequest) -> Result<(), Diagnosti
     );
     if wrong.has_errors() { Err(wrong) } else { Ok(()) }
 }
-

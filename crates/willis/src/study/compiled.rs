@@ -10,6 +10,7 @@ use std::sync::Arc;
 use crate::compiled::{CompiledTrain, Duty, Extremes, Output, Points, Workspace};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
+use crate::model::{Target, Who};
 use crate::train::{Load, MemberId};
 use crate::units;
 
@@ -18,7 +19,6 @@ use super::column::{Column, ColumnValues, Rows};
 use super::question::{Hold, Trains};
 use super::summary::{AxisValue, MinMaxSum, Summary};
 use super::sweep::{Sweep, What};
-use super::target::{Target, Who};
 
 /// Most trains and states that are compiled.
 const MOST_CASES: usize = 4096;
@@ -119,7 +119,8 @@ impl<'s> Sweep<'s> {
     ///
     /// # Example
     /// ```
-    /// use willis::study::{Axis, Hold, PointVerdict, Question, Subject, Sweep};
+    /// use willis::model::Model;
+    /// use willis::study::{Axis, Hold, PointVerdict, Question, Sweep};
     ///
     /// let text = r#"
     ///     format = 1
@@ -133,10 +134,10 @@ impl<'s> Sweep<'s> {
     ///     carrier = "c"
     ///     mesh_efficiency = 0.99
     /// "#;
-    /// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+    /// let model = Model::from_toml(text).unwrap();
     /// let axes = ["input.speed=1 rpm..2000 rpm:2000", "input.torque=1 N m..100 N m:500"];
-    /// let axes = axes.iter().map(|a| Axis::parse(a, &subject)).collect::<Result<_, _>>()?;
-    /// let sweep = Sweep::new(Question::new(&subject, None, None, Hold::AsGiven).unwrap(), axes, &[]).unwrap();
+    /// let axes = axes.iter().map(|a| Axis::parse(a, &model)).collect::<Result<_, _>>()?;
+    /// let sweep = Sweep::new(Question::new(&model, None, None, Hold::AsGiven).unwrap(), axes, &[]).unwrap();
     /// let map = sweep.compile().unwrap().summary(0, sweep.len(), &mut Default::default());
     /// assert_eq!(map.verdicts[&PointVerdict::Unique], 1_000_000);
     /// assert!((map.efficiency.least.unwrap().value - 0.98607).abs() < 1e-9);
@@ -258,7 +259,7 @@ impl<'s> CompiledSweep<'s> {
     pub(super) fn new(sweep: Arc<Sweep<'s>>) -> Result<Self, Diagnostics> {
         let axes = &sweep.axes;
         let with_hold = "sweep without --fast";
-        if sweep.question.subject().train().is_physical() {
+        if sweep.question.model().train().is_physical() {
             return Err(refuse(
                 "losses of this train are computed from load and speed; they cannot be compiled",
                 with_hold,
@@ -368,7 +369,14 @@ impl<'s> CompiledSweep<'s> {
         rows
     }
 
-    fn block(&self, from: u64, n: usize, room: &mut SweepWorkspace, summary: &mut Summary, cells: Option<&mut Vec<ColumnValues>>) {
+    fn block(
+        &self,
+        from: u64,
+        n: usize,
+        room: &mut SweepWorkspace,
+        summary: &mut Summary,
+        cells: Option<&mut Vec<ColumnValues>>,
+    ) {
         let to = from + n as u64;
         let single = self.cases.len() == 1;
         if single && self.evaluate(0, &Span::Run(from, n), room) == 0 {
@@ -441,7 +449,9 @@ impl<'s> CompiledSweep<'s> {
             match (cells, what, output) {
                 (ColumnValues::Numbers(all), What::Axis(k), _) => self.axis_column(*k, from, n, all),
                 (ColumnValues::Numbers(all), _, Some(o)) => all.extend_from_slice(&outputs[*o]),
-                (ColumnValues::Texts(all), What::Verdict, _) => all.resize(all.len() + n, PointVerdict::Unique.name().into()),
+                (ColumnValues::Texts(all), What::Verdict, _) => {
+                    all.resize(all.len() + n, PointVerdict::Unique.name().into())
+                }
                 (ColumnValues::Texts(all), What::Reason, _) => all.resize(all.len() + n, "".into()),
                 _ => unreachable!("a single train has no axis of texts"),
             }

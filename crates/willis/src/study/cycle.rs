@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::SolutionReport;
 use crate::contract::{Contract, Format};
 use crate::diagnostic::Code;
+use crate::model::{Target, Who};
 use crate::named::Named;
 use crate::operating_point::LossKind;
 use crate::train::{Load, Operation, Train};
@@ -14,7 +15,6 @@ use crate::train::{Load, Operation, Train};
 use super::answer::{PointAnswer, PointVerdict};
 use super::profile::{Basis, Held, Profile};
 use super::question::{Question, Trains};
-use super::target::{Target, Who};
 
 /// How many of the worst are told.
 const MOST_WORST: usize = 5;
@@ -357,7 +357,8 @@ pub struct Cycle<'a> {
 ///
 /// # Example
 /// ```
-/// use willis::study::{Hold, Profile, Question, Subject, cycle};
+/// use willis::model::Model;
+/// use willis::study::{Hold, Profile, Question, cycle};
 ///
 /// let text = r#"
 ///     format = 1
@@ -371,10 +372,10 @@ pub struct Cycle<'a> {
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let model = Model::from_toml(text).unwrap();
 /// let spectrum = "hours,input.speed [rad/s],input.torque [N m]\n1,100,50\n3,100,10\n";
-/// let profile = Profile::parse(spectrum, &subject)?;
-/// let report = cycle(Question::new(&subject, None, None, Hold::AsGiven)?, &profile);
+/// let profile = Profile::parse(spectrum, &model)?;
+/// let report = cycle(Question::new(&model, None, None, Hold::AsGiven)?, &profile);
 /// assert!((report.energy_in_j - (5000.0 + 3.0 * 1000.0) * 3600.0).abs() < 1e-6);
 /// assert!((report.efficiency.unwrap() - 0.98607).abs() < 1e-9);
 /// # Ok::<(), willis::Diagnostics>(())
@@ -419,7 +420,7 @@ impl<'a> Cycle<'a> {
     fn point(&self, condition: usize, trains: &mut Trains, part: &mut CyclePart) -> CyclePoint {
         let held = self.profile.held(condition);
         let settings = self.profile.settings(condition);
-        let states = self.question.subject().train().states();
+        let states = self.question.model().train().states();
         let named = settings.iter().find(|s| *s.0 == Target::State);
         let state = match named {
             Some((_, name)) => states.iter().position(|s| s.name == *name),
@@ -533,7 +534,7 @@ impl<'a> Cycle<'a> {
         let profile = self.profile;
         let points: Vec<&CyclePoint> = parts.iter().flat_map(|p| &p.points).collect();
         assert_eq!(points.len(), profile.conditions(), "a report needs every part of the cycle");
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         let mut whole = Energies::default();
         let mut ways: BTreeMap<PowerDirection, Energies> = BTreeMap::new();
         let mut states: Vec<Energies> = vec![Energies::default(); train.states().len() + 1];
@@ -635,7 +636,10 @@ impl<'a> Cycle<'a> {
                 .zip(kinds)
                 .collect(),
             sources,
-            ways: PowerDirection::ALL.iter().filter_map(|w| Some((w.name().to_owned(), energies(ways.remove(w)?)))).collect(),
+            ways: PowerDirection::ALL
+                .iter()
+                .filter_map(|w| Some((w.name().to_owned(), energies(ways.remove(w)?))))
+                .collect(),
             states: named.into_iter().collect(),
             terminals: (train.members().iter())
                 .filter_map(|m| Some((m.name.clone(), terminals.remove(m.name.as_str())?)))

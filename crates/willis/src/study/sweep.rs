@@ -5,15 +5,14 @@ mod plan;
 mod report;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use crate::model::{Model, Target};
 use crate::train::{Operation, Train};
 
-use super::Subject;
 use super::answer::PointAnswer;
 use super::axis::Axis;
 use super::column::{Column, Rows};
 use super::question::{Hold, Question, Trains};
 use super::summary::{AxisValue, Summary};
-use super::target::Target;
 
 pub(super) use columns::What;
 pub use plan::{SweepAnswer, SweepPlan, SweepRequest, sweep};
@@ -26,7 +25,8 @@ pub use report::{Shard, SweepAxis, SweepColumn, SweepMethod, SweepPlace, SweepRe
 ///
 /// # Example
 /// ```
-/// use willis::study::{Axis, Hold, PointVerdict, Question, Subject, Sweep};
+/// use willis::model::Model;
+/// use willis::study::{Axis, Hold, PointVerdict, Question, Sweep};
 ///
 /// let text = r#"
 ///     format = 1
@@ -40,10 +40,10 @@ pub use report::{Shard, SweepAxis, SweepColumn, SweepMethod, SweepPlace, SweepRe
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
-/// let axis = |text: &str| Axis::parse(text, &subject);
+/// let model = Model::from_toml(text).unwrap();
+/// let axis = |text: &str| Axis::parse(text, &model);
 /// let axes = vec![axis("input.speed=1000 rpm..2000 rpm:3")?, axis("output.torque=-10 N m, 10 N m")?];
-/// let question = Question::new(&subject, None, None, Hold::AsGiven).unwrap();
+/// let question = Question::new(&model, None, None, Hold::AsGiven).unwrap();
 /// let sweep = Sweep::new(question, axes, &[]).unwrap();
 /// assert_eq!(sweep.len(), 6);
 /// let rows = sweep.rows(0, 6, &mut Default::default());
@@ -98,8 +98,8 @@ impl<'s> Sweep<'s> {
     ///
     /// # Errors
     /// No study of that name; all that is wrong with it, at its place in the file.
-    pub fn of_file(subject: &'s Subject, name: &str) -> Result<Self, Diagnostics> {
-        let studies = subject.train().studies();
+    pub fn of_file(model: &'s Model, name: &str) -> Result<Self, Diagnostics> {
+        let studies = model.train().studies();
         let Some(k) = studies.iter().position(|s| s.name == name) else {
             let known: Vec<&str> = studies.iter().map(|s| s.name.as_str()).collect();
             let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no study `{name}`"));
@@ -113,7 +113,7 @@ impl<'s> Sweep<'s> {
         let mut wrong = Diagnostics::default();
         let mut axes = vec![];
         for (j, over) in study.over.iter().enumerate() {
-            match Axis::parse(over, subject) {
+            match Axis::parse(over, model) {
                 Ok(axis) => axes.push(axis),
                 Err(mut d) => {
                     d.place = format!("study[{k}].over[{j}]");
@@ -127,7 +127,7 @@ impl<'s> Sweep<'s> {
             what.into_iter().map(move |d| Diagnostic { place: format!("study[{k}].{key}"), ..d }).collect::<Vec<_>>()
         };
         let hold = study.hold.as_deref().and_then(Hold::named).unwrap_or_default();
-        match Question::new(subject, study.operation.as_deref(), study.state.as_deref(), hold) {
+        match Question::new(model, study.operation.as_deref(), study.state.as_deref(), hold) {
             Ok(question) if !wrong.has_errors() => {
                 Self::new(question, axes, &study.columns).map_err(|w| at(w, "over").into_iter().collect())
             }
@@ -199,7 +199,7 @@ impl<'s> Sweep<'s> {
         match self.ask(point, trains) {
             Ok((train, operation)) => {
                 let mut answer = PointAnswer::of(&train, &operation);
-                let base = self.question.subject().train().warnings();
+                let base = self.question.model().train().warnings();
                 // What is wrong with this train and not with that of the file: planets that touch, for one.
                 let own = train.warnings().iter().filter(|d| d.severity == Severity::Warning);
                 let new = own.filter(|d| !base.iter().any(|b| b.code == d.code && b.message == d.message));

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::Losses;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::{Model, Target, Who};
 use crate::train::{Load, Measure, Train};
 use crate::units::{self, Quantity};
 
@@ -16,8 +17,7 @@ use super::design::Design;
 use super::distribution::{Distribution, Reader, fault, plain};
 use super::question::{Hold, Question, Trains};
 use super::summary::{self, LawChoice, Seen, WarningKind};
-use super::target::{Target, Who};
-use super::{Axis, Statistics, Subject};
+use super::{Axis, Statistics};
 
 pub use report::{ChoiceResult, Influence, UncertainQuantity, UncertainResult, Uncertainty};
 
@@ -53,7 +53,6 @@ impl Default for UncertaintyRequest {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
-#[non_exhaustive]
 pub enum UncertainValue {
     /// A number between others.
     Between(Distribution),
@@ -113,7 +112,8 @@ impl Uncertain {
 ///
 /// # Example
 /// ```
-/// use willis::study::{Subject, UncertaintyPlan, UncertaintyRequest};
+/// use willis::model::Model;
+/// use willis::study::{UncertaintyPlan, UncertaintyRequest};
 ///
 /// let text = r#"
 ///     format = 1
@@ -131,10 +131,10 @@ impl Uncertain {
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let model = Model::from_toml(text).unwrap();
 /// let vary = vec!["P1.mesh_efficiency=0.98..1".into()];
 /// let request = UncertaintyRequest { vary, samples: 256, ..Default::default() };
-/// let plan = UncertaintyPlan::new(&subject, &request)?;
+/// let plan = UncertaintyPlan::new(&model, &request)?;
 /// let evaluated = plan.evaluate(0..plan.len(), &mut Default::default());
 /// let found = plan.finish(&evaluated);
 /// // (1 − i0 η²)/(1 − i0) with i0 = −7/3 is monotonous in η: its median is that of η.
@@ -192,9 +192,9 @@ impl<'s> UncertaintyPlan<'s> {
     /// # Errors
     /// No operating point, unknown quantities, distributions that mean nothing, quantities named twice; a train that is
     /// refused with every quantity at the middle of its distribution.
-    pub fn new(subject: &'s Subject, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
+    pub fn new(model: &'s Model, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
         let mut wrong = Diagnostics::default();
-        let question = Question::new(subject, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+        let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
         if question.base().loads.is_empty() {
             let message = match &request.state {
                 Some(state) => {
@@ -287,7 +287,7 @@ impl<'s> UncertaintyPlan<'s> {
     }
 
     fn name_outputs(&mut self) {
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         self.outputs = vec![Column::number("efficiency", ""), Column::number("loss_w", "W")];
         self.outputs.extend(KINDS.iter().map(|kind| Column::number(format!("{kind}_loss_w"), "W")));
         self.outputs.extend(sources(train).map(|name| Column::number(format!("loss.{name}_w"), "W")));
@@ -382,7 +382,7 @@ impl<'s> UncertaintyPlan<'s> {
 
     /// The answer at a value of an axis: at a point, or with the file as written. A quantity that is itself the axis
     /// takes the axis' value.
-    pub(crate) fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> PointAnswer {
+    pub fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> PointAnswer {
         let mut settings = point.map_or_else(Vec::new, |p| self.settings_at(&self.design.at(p)));
         settings.retain(|s| *s.0 != axis.target);
         settings.push((&axis.target, axis.setting(k)));
@@ -424,7 +424,7 @@ impl<'s> UncertaintyPlan<'s> {
         };
         let l: &Losses = &s.losses_w;
         let mut values = vec![answer.efficiency(), s.loss_w, l.mesh, l.bearing, l.windage, l.churning, l.seal];
-        values.extend(sources(self.question.subject().train()).map(|name| {
+        values.extend(sources(self.question.model().train()).map(|name| {
             let mut own = s.sources.iter().filter(|x| x.name == name).map(|x| x.loss_w).peekable();
             match own.peek() {
                 Some(_) => own.sum(),
@@ -454,16 +454,16 @@ fn sources(train: &Train) -> impl Iterator<Item = &str> {
 
 /// Reads `QUANTITY=DISTRIBUTION`.
 fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> Result<Uncertain, Box<Diagnostic>> {
-    let subject = question.subject();
+    let model = question.model();
     let Some((name, values)) = text.split_once('=') else {
         return Err(Box::new(fault(text, "there is no `=` between a quantity and its distribution")));
     };
     let (name, values) = (name.trim(), values.trim());
-    let target = Target::parse(name, subject)?;
+    let target = Target::parse(name, model)?;
     if values.is_empty() {
         return Err(Box::new(fault(text, "there is no distribution")));
     }
-    let measure = target.measure(subject);
+    let measure = target.measure(model);
     let nominal = nominal(&target, question);
     let found = |unit: String, likely: UncertainValue| Uncertain {
         name: name.to_owned(),
@@ -486,7 +486,7 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
     let base = nominal.as_deref().and_then(|b| Reader::base_of(b, measure));
     let reader = Reader { whole: text, measure, base };
     let all = match measure {
-        Measure::Text | Measure::Flag => target.choices(subject, &list()).unwrap_or_else(list),
+        Measure::Text | Measure::Flag => target.choices(model, &list()).unwrap_or_else(list),
         Measure::Integer if values.contains("..") => {
             let ends = values
                 .split_once("..")
@@ -519,7 +519,7 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
             }
         },
     };
-    target.check(subject, &all).map_err(|what| {
+    target.check(model, &all).map_err(|what| {
         let mut d = *what;
         d.message = format!("`{name}`: {}", d.message);
         Box::new(d)
@@ -537,8 +537,8 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
 
 /// What the file has, as it writes it.
 fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
-    let (subject, base) = (question.subject(), question.base());
-    let train = subject.train();
+    let (model, base) = (question.model(), question.base());
+    let train = model.train();
     // The unit in which people say it.
     let said = |q: &Quantity, unit: &str, turn: bool| {
         let one = units::parse(&format!("1 {unit}"), q.dimension).expect("a unit of it").si();
@@ -546,7 +546,7 @@ fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
         format!("{} {unit}", plain(if turn { -value } else { value }, 12))
     };
     match target {
-        Target::File(key) => subject.document().value(key),
+        Target::File(key) => model.document().value(key),
         Target::Law(family) => assumed::in_force(train, family).map(str::to_owned),
         Target::State => base.state.map(|k| train.states()[k].name.clone()),
         Target::Temperature => {

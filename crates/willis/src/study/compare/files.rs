@@ -2,12 +2,12 @@
 
 use toml::{Table, Value};
 
-use crate::study::Subject;
+use crate::model::Model;
 
 use super::TextDifference;
 
 /// The keys in which files differ.
-pub(super) fn differences<'a>(variants: impl Iterator<Item = &'a Subject>) -> Vec<TextDifference> {
+pub(super) fn differences<'a>(variants: impl Iterator<Item = &'a Model>) -> Vec<TextDifference> {
     let documents: Vec<Value> = variants.map(read).collect();
     let mut all = vec![];
     differ("", &documents.iter().map(Some).collect::<Vec<_>>(), &mut all);
@@ -16,8 +16,8 @@ pub(super) fn differences<'a>(variants: impl Iterator<Item = &'a Subject>) -> Ve
     all
 }
 
-fn read(subject: &Subject) -> Value {
-    let table: Table = subject.document().text().parse().expect("the text was read as TOML");
+fn read(model: &Model) -> Value {
+    let table: Table = model.to_toml().parse().expect("the text was read as TOML");
     Value::Table(table)
 }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::study::Subject;
+use crate::model::Model;
 use crate::study::axis::Axis;
 use crate::study::question::{Hold, Question, Trains};
 use crate::study::sweep::Sweep;
@@ -136,12 +136,12 @@ pub struct MapComparison {
 }
 
 pub(super) fn compare(
-    variants: &[(&str, &Subject)],
+    variants: &[(&str, &Model)],
     labels: &[String],
     request: &CompareRequest,
 ) -> Result<MapComparison, Diagnostics> {
     let mut sweeps = vec![];
-    for (file, subject) in variants {
+    for (file, model) in variants {
         let called = |wrong: Diagnostics| -> Diagnostics {
             let own = wrong.into_iter().map(|mut d| {
                 d.message = format!("{file}: {}", d.message);
@@ -150,9 +150,9 @@ pub(super) fn compare(
             });
             own.collect()
         };
-        let axes: Result<Vec<Axis>, _> = request.over.iter().map(|text| Axis::parse(text, subject)).collect();
+        let axes: Result<Vec<Axis>, _> = request.over.iter().map(|text| Axis::parse(text, model)).collect();
         let axes = axes.map_err(|d| called((*d).into()))?;
-        let question = Question::new(subject, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven);
+        let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven);
         sweeps.push(question.and_then(|q| Sweep::new(q, axes, &[])).map_err(called)?);
     }
     let first = &sweeps[0];

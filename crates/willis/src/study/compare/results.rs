@@ -5,7 +5,7 @@ use crate::study::answer::{PointAnswer, PointVerdict};
 use crate::study::cycle::EnergyKind;
 use crate::train::{Load, Operation, Train};
 
-use super::{Compared, ComparedUnit, ComparedValue, CompareRequest, Difference, ROUND_OFF, TextDifference};
+use super::{CompareRequest, Compared, ComparedUnit, ComparedValue, Difference, ROUND_OFF, TextDifference};
 
 /// A result of one variant.
 struct Fact {
@@ -55,7 +55,8 @@ fn differences(all: &[Option<Vec<Fact>>]) -> (Vec<Difference>, usize) {
             })
             .collect();
         // A variant without the state or operation at all is told once, elsewhere.
-        let present: Vec<&ComparedValue> = values.iter().zip(all).filter(|(_, f)| f.is_some()).map(|(v, _)| v).collect();
+        let present: Vec<&ComparedValue> =
+            values.iter().zip(all).filter(|(_, f)| f.is_some()).map(|(v, _)| v).collect();
         let is_same = present.windows(2).all(|w| match (w[0], w[1]) {
             (ComparedValue::Number(a), ComparedValue::Number(b)) => same(*a, *b),
             (a, b) => a == b,
@@ -249,7 +250,9 @@ fn solution_facts(s: &SolutionReport, all: &mut Vec<Fact>) {
     all.push(fact("output power", ComparedUnit::Watt, Some(s.output_power_w)));
     all.push(headline(fact("loss", ComparedUnit::Watt, Some(s.loss_w))));
     if s.sources.is_empty() {
-        all.extend(s.meshes.iter().map(|(name, m)| fact(format!("loss in {name}"), ComparedUnit::Watt, Some(m.loss_w))));
+        all.extend(
+            s.meshes.iter().map(|(name, m)| fact(format!("loss in {name}"), ComparedUnit::Watt, Some(m.loss_w))),
+        );
     } else {
         let Losses { mesh, bearing, windage, churning, seal } = s.losses_w;
         for (name, loss) in
@@ -275,9 +278,17 @@ fn solution_facts(s: &SolutionReport, all: &mut Vec<Fact>) {
         all.push(fact(format!("contact pressure in {name}"), ComparedUnit::Pascal, Some(c.pressure_pa)));
         all.push(fact(format!("film ratio in {name}"), ComparedUnit::None, c.film_ratio));
     }
-    all.push(fact("circulating power", ComparedUnit::Watt, Some(s.recirculation.iter().map(|r| r.power_w).fold(0.0, f64::max))));
+    all.push(fact(
+        "circulating power",
+        ComparedUnit::Watt,
+        Some(s.recirculation.iter().map(|r| r.power_w).fold(0.0, f64::max)),
+    ));
     all.push(fact("factor on all losses that locks", ComparedUnit::None, s.margin.lock_loss_factor));
     if let Some(b) = &s.margin.torque {
-        all.push(fact(format!("torque on {} that unloads {}", b.member, b.mesh), ComparedUnit::NewtonMetre, Some(b.boundary)));
+        all.push(fact(
+            format!("torque on {} that unloads {}", b.member, b.mesh),
+            ComparedUnit::NewtonMetre,
+            Some(b.boundary),
+        ));
     }
 }

@@ -2,9 +2,9 @@
 
 use crate::analysis::Losses;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::Target;
 use crate::study::answer::PointAnswer;
 use crate::study::column::{Column, ColumnValues};
-use crate::study::target::Target;
 use crate::train::Train;
 
 use super::Sweep;
@@ -87,7 +87,7 @@ fn offers(train: &Train) -> Vec<Offer> {
 impl Sweep<'_> {
     /// The columns that every sweep over these axes has, up to the reason and the warnings.
     fn usual(&self) -> Vec<(Column, What)> {
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         let physical = train.is_physical() || self.axes.iter().any(|a| matches!(a.target, Target::File(_)));
         let axis = |(k, a): (usize, &super::Axis)| match a.is_text() {
             true => (Column::text(a.column()), What::Axis(k)),
@@ -112,7 +112,7 @@ impl Sweep<'_> {
     /// The usual columns and those asked for.
     pub(super) fn choose(&self, asked: &[String]) -> Result<Vec<(Column, What)>, Diagnostics> {
         let mut all = self.usual();
-        let offers = offers(self.question.subject().train());
+        let offers = offers(self.question.model().train());
         let mut wrong = Diagnostics::default();
         for name in asked {
             let name = name.trim();

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::study::Subject;
+use crate::model::Model;
 use crate::study::axis::Axis;
 use crate::study::column::{Column, ColumnTable, Rows};
 use crate::study::compiled::{CompiledSweep, SweepWorkspace};
@@ -83,7 +83,8 @@ pub struct SweepAnswer {
 ///
 /// # Example
 /// ```
-/// use willis::study::{PointVerdict, Subject, SweepRequest, sweep};
+/// use willis::model::Model;
+/// use willis::study::{PointVerdict, SweepRequest, sweep};
 /// use willis::work::Serial;
 ///
 /// let text = r#"
@@ -98,16 +99,16 @@ pub struct SweepAnswer {
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let model = Model::from_toml(text).unwrap();
 /// let over = vec!["input.speed=1000 rpm..2000 rpm:3".into(), "output.torque=-10 N m, 10 N m".into()];
-/// let answer = sweep(&subject, &SweepRequest { over, ..Default::default() }, &Serial)?;
+/// let answer = sweep(&model, &SweepRequest { over, ..Default::default() }, &Serial)?;
 /// // Driving and coasting in one map.
 /// assert_eq!(answer.report.summary.verdicts[&PointVerdict::Unique], 6);
 /// assert_eq!(answer.table.len(), 6);
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn sweep(subject: &Subject, request: &SweepRequest, work: &dyn Work) -> Result<SweepAnswer, Diagnostics> {
-    let plan = SweepPlan::new(subject, request)?;
+pub fn sweep(model: &Model, request: &SweepRequest, work: &dyn Work) -> Result<SweepAnswer, Diagnostics> {
+    let plan = SweepPlan::new(model, request)?;
     plan.check()?;
     let values = plan.sweep().len().saturating_mul(plan.columns().len() as u64);
     if !request.summary_only && values > MOST_VALUES {
@@ -182,7 +183,7 @@ impl<'s> SweepPlan<'s> {
     /// # Errors
     /// Everything that is wrong with the request: axes, operation, state, columns; a train that cannot be compiled where
     /// that is asked for.
-    pub fn new(subject: &'s Subject, request: &SweepRequest) -> Result<Self, Diagnostics> {
+    pub fn new(model: &'s Model, request: &SweepRequest) -> Result<Self, Diagnostics> {
         let (sweep, over) = match &request.study {
             Some(name) => {
                 let alone = SweepRequest {
@@ -192,18 +193,19 @@ impl<'s> SweepPlan<'s> {
                     ..SweepRequest::default()
                 };
                 if *request != alone {
-                    let message =
-                        format!("the study `{name}` says itself what varies, from which operation and with which columns");
+                    let message = format!(
+                        "the study `{name}` says itself what varies, from which operation and with which columns"
+                    );
                     let d = Diagnostic::new(Code::Conflict, "", message);
                     return Err(d.hint("give the study alone, or the axes without a study").into());
                 }
-                (Sweep::of_file(subject, name)?, format!("study {name}"))
+                (Sweep::of_file(model, name)?, format!("study {name}"))
             }
             None => {
                 let mut wrong = Diagnostics::default();
                 let mut axes = vec![];
                 for over in &request.over {
-                    match Axis::parse(over, subject) {
+                    match Axis::parse(over, model) {
                         Ok(axis) => axes.push(axis),
                         Err(d) => wrong.push(*d),
                     }
@@ -212,7 +214,7 @@ impl<'s> SweepPlan<'s> {
                     return Err(wrong);
                 }
                 let (operation, state) = (request.operation.as_deref(), request.state.as_deref());
-                let question = Question::new(subject, operation, state, request.hold)?;
+                let question = Question::new(model, operation, state, request.hold)?;
                 let over: Vec<&str> = request.over.iter().map(|o| o.trim()).collect();
                 (Sweep::new(question, axes, &request.columns)?, over.join("\n"))
             }
@@ -322,7 +324,12 @@ impl<'s> SweepPlan<'s> {
     ///
     /// # Errors
     /// The work was cancelled.
-    pub fn summary(&self, points: Range<u64>, room: &mut SweepWorkspace, work: &dyn Work) -> Result<Summary, Cancelled> {
+    pub fn summary(
+        &self,
+        points: Range<u64>,
+        room: &mut SweepWorkspace,
+        work: &dyn Work,
+    ) -> Result<Summary, Cancelled> {
         match &self.compiled {
             Some(_) if work.cancelled() => Err(Cancelled),
             Some(compiled) => Ok(compiled.summary(points.start, points.end, room)),

@@ -257,18 +257,18 @@ impl Contract for SweepReport {
 impl SweepStudy {
     /// `over` tells the axes as they were asked for: one a line, or the name of a study of the train file.
     pub(super) fn new(sweep: &Sweep<'_>, method: SweepMethod, columns: &[Column], over: &str, piece: u64) -> Self {
-        let subject = sweep.question().subject();
-        let train = subject.train();
+        let model = sweep.question().model();
+        let train = model.train();
         let base = sweep.question().base();
         let held = sweep.question().hold();
         let state = base.state.map(|k| train.states()[k].name.clone());
         let version = env!("CARGO_PKG_VERSION");
-        let files: Vec<String> = subject.files().map(|(name, text)| format!("{name}\n{text}")).collect();
-        let laws: Vec<String> = subject.laws().iter().map(|(family, law)| format!("{family}={law}")).collect();
+        let files: Vec<String> = model.files().map(|(name, text)| format!("{name}\n{text}")).collect();
+        let laws: Vec<String> = model.laws().iter().map(|(family, law)| format!("{family}={law}")).collect();
         let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
         let sha256 = sha256(&[
             version,
-            &subject.document().text(),
+            model.to_toml(),
             &files.join("\n"),
             &laws.join("\n"),
             over,

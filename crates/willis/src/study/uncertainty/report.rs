@@ -186,10 +186,17 @@ impl UncertaintyPlan<'_> {
                 .map(|(q, index)| Influence { quantity: q.name.clone(), index })
                 .collect();
             influences.sort_by(|a, b| b.index.total.total_cmp(&a.index.total));
-            outputs.push(UncertainResult { name: name.clone(), unit: unit.clone(), nominal, below_nominal, statistics, influences });
+            outputs.push(UncertainResult {
+                name: name.clone(),
+                unit: unit.clone(),
+                nominal,
+                below_nominal,
+                statistics,
+                influences,
+            });
         }
         let base = self.question.base();
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         Uncertainty {
             format: Format::new(),
             train: train.name().to_owned(),
