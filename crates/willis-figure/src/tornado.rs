@@ -3,9 +3,28 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::study::{Sensitivity, StepKind};
+use willis::model::Model;
+use willis::study::{Sensitivity, StepKind, sensitivity};
+
+use crate::kind::{Ask, FigureRequest, Kind};
+
+pub(crate) const KIND: Kind<Tornado> = Kind {
+    title: "What matters most",
+    takes: &[Ask::State, Ask::Operation],
+    make: ranking,
+    draw: |data, _| draw::draw(data),
+};
+
+/// Bars of a ranking.
+const BARS: usize = 14;
+
+/// The ranking of the operation that is named, or of the first that has derivatives.
+fn ranking(model: &Model, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
+    let all = sensitivity(model.train(), &r.selection())?;
+    let first = all.operations.iter().find(|o| !o.quantities.is_empty()).map(|o| o.name.clone());
+    tornado(&all, r.operation.clone().or(first).as_deref(), BARS)
+}
 
 /// Quantities of an operating point, ranked by what a small step of each does.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -32,7 +51,7 @@ pub struct TornadoBar {
     /// Its value, SI.
     pub value: f64,
     /// SI unit of the value.
-    pub unit: &'static str,
+    pub unit: String,
     /// Whether it is not given but taken.
     pub assumed: bool,
     /// The step up.
@@ -96,7 +115,7 @@ pub fn tornado(all: &Sensitivity, operation: Option<&str>, most: usize) -> Resul
     let bars = ranked.iter().take(most.max(1)).map(|q| TornadoBar {
         name: q.name.clone(),
         value: q.value,
-        unit: q.unit,
+        unit: q.unit.clone(),
         assumed: q.assumed,
         step: q.step,
         loss_change_w: q.loss_change_w,

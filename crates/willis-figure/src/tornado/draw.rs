@@ -1,6 +1,5 @@
 //! What moves the losses of an operating point most, as bars about a middle line.
 
-use crate::{Tornado, TornadoBar};
 use svg::node::element::Group;
 use willis::hypergraph::watts;
 use willis::units;
@@ -8,6 +7,7 @@ use willis::units;
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
 };
+use crate::{Tornado, TornadoBar};
 
 const MARGIN: f64 = 28.0;
 const ROW: f64 = 30.0;
@@ -151,7 +151,7 @@ fn signed(x: f64) -> String {
 
 /// In a unit that people use.
 fn value(b: &TornadoBar) -> String {
-    let (x, unit) = units::for_people(b.value, b.unit);
+    let (x, unit) = units::for_people(b.value, &b.unit);
     let size = x.abs();
     // Four digits, at least those of the integer part.
     let text = if size == 0.0 || !(1e-3..1e6).contains(&size) {
