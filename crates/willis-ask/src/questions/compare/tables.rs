@@ -1,6 +1,6 @@
 //! Variants side by side as tables.
 
-use willis::study::{Comparison, Datum, MapPlace};
+use willis::study::{ComparedValue, Comparison, MapPlace};
 
 use crate::table::Kind::{Integer, Number, Text};
 use crate::table::{Cell, Kind, Table};
@@ -42,11 +42,11 @@ pub fn tables(c: &Comparison) -> Vec<Table> {
                 row(head.into_iter().chain(p.values.iter().map(|v| v.clone().into())).collect());
             }
             for d in &x.differences {
-                let mut cells: Vec<Cell> = vec![(&x.name).into(), (&d.quantity).into(), d.unit.to_string().into()];
+                let mut cells: Vec<Cell> = vec![(&x.name).into(), (&d.quantity).into(), d.unit.name().into()];
                 cells.extend(d.values.iter().map(|v| match v {
-                    Datum::None => Cell::Empty,
-                    Datum::Word(w) => w.into(),
-                    Datum::Number(x) => {
+                    ComparedValue::None => Cell::Empty,
+                    ComparedValue::Word(w) => w.into(),
+                    ComparedValue::Number(x) => {
                         let mut text = String::new();
                         crate::table::number(&mut text, *x);
                         text.into()

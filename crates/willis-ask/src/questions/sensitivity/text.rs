@@ -98,7 +98,7 @@ fn change(x: f64) -> String {
 
 /// The value in a unit that people use.
 fn value(q: &QuantitySensitivity) -> String {
-    let (x, unit) = willis::units::for_people(q.value, q.unit);
+    let (x, unit) = willis::units::for_people(q.value, &q.unit);
     format!("{} {unit}", significant(x, 6)).trim_end().to_owned()
 }
 

@@ -1,21 +1,24 @@
 //! How sure a number is, for eyes.
 
 use comfy_table::CellAlignment;
-use willis::study::{Likely, Output, Seen, Uncertainty};
+use willis::diagnostic::Code;
+use willis::study::{
+    PointVerdict, UncertainResult, UncertainValue, Uncertainty, WarningCount, WarningKind,
+};
 
 use crate::style::{bar, bold, dim, right, set_header, show, significant, table, wrap};
 
 /// How an output is shown: its name, and numbers with as many decimals as its spread deserves.
 struct Shown<'a> {
-    of: &'a Output,
+    of: &'a UncertainResult,
     scale: f64,
     unit: &'static str,
     decimals: usize,
 }
 
 impl<'a> Shown<'a> {
-    fn new(of: &'a Output) -> Self {
-        let (scale, unit) = match of.unit {
+    fn new(of: &'a UncertainResult) -> Self {
+        let (scale, unit) = match of.unit.as_str() {
             "" => (100.0, " %"),
             _ => (1.0, " W"),
         };
@@ -80,15 +83,16 @@ pub fn text(u: &Uncertainty) -> String {
         out += &dim(&wrap(line, "  * "));
         out.push('\n');
     }
-    for (code, seen) in u.seen.iter().filter(|(code, _)| !code.starts_with("reason")) {
-        out += &dim(&wrap(&warning(u, code, seen), "  * "));
-        out.push('\n');
+    for (kind, seen) in &u.seen {
+        if let WarningKind::Warning { code, .. } = kind {
+            out += &dim(&wrap(&warning(u, *code, seen), "  * "));
+            out.push('\n');
+        }
     }
     out
 }
 
-fn warning(u: &Uncertainty, code: &str, seen: &Seen) -> String {
-    let code = code.split(' ').next().unwrap_or(code);
+fn warning(u: &Uncertainty, code: Code, seen: &WarningCount) -> String {
     format!("{code} at {}, first: {}", share(seen.count as usize, u.samples), seen.message)
 }
 
@@ -99,7 +103,7 @@ fn share(count: usize, of: usize) -> String {
     }
 }
 
-fn sentence(o: &Output) -> String {
+fn sentence(o: &UncertainResult) -> String {
     let shown = Shown::new(o);
     let name = shown.name();
     let written = match o.nominal {
@@ -124,22 +128,22 @@ fn sentence(o: &Output) -> String {
 }
 
 fn verdicts(u: &Uncertainty) -> String {
-    let good = u.verdicts.get("unique").copied().unwrap_or(0);
+    let good = u.verdicts.get(&PointVerdict::Unique).copied().unwrap_or(0);
     if good == u.samples {
         return "  every sample has exactly one equilibrium\n".into();
     }
     let percent = significant(100.0 * (u.samples - good) as f64 / u.samples as f64, 3);
     let line = format!("{percent} % of the samples have no unique answer, and no part in what follows:");
     let mut out = bold(&wrap(&line, "  ")) + "\n";
-    for (verdict, count) in u.verdicts.iter().filter(|v| *v.0 != "unique") {
-        let word = match *verdict {
-            "multiple" => "have several equilibria",
-            "locked" => "lock",
-            "unloaded" => "carry no load",
-            "refused" => "are refused: no such train or operating point is possible",
+    for (verdict, count) in u.verdicts.iter().filter(|v| *v.0 != PointVerdict::Unique) {
+        let word = match verdict {
+            PointVerdict::Multiple => "have several equilibria",
+            PointVerdict::Locked => "lock",
+            PointVerdict::Unloaded => "carry no load",
+            PointVerdict::Refused => "are refused: no such train or operating point is possible",
             _ => "are not determined",
         };
-        let why = u.seen.get(&format!("reason: {verdict}")).map_or(String::new(), |s| format!("; {}", s.message));
+        let why = u.seen.get(&WarningKind::Reason(*verdict)).map_or(String::new(), |s| format!("; {}", s.message));
         out += &wrap(&format!("{count} {word}{why}"), "    ");
         out.push('\n');
     }
@@ -180,7 +184,7 @@ fn dominance(u: &Uncertainty) -> String {
     if u.quantities.len() == 1 {
         return String::new();
     }
-    let ranked = |o: &Output| -> Vec<String> {
+    let ranked = |o: &UncertainResult| -> Vec<String> {
         o.influences.iter().filter(|i| i.index.total > 0.05).map(|i| i.quantity.clone()).collect()
     };
     let mut out = String::new();
@@ -222,7 +226,7 @@ fn dominance(u: &Uncertainty) -> String {
 
 fn choices(u: &Uncertainty) -> String {
     let mut out = String::new();
-    for q in u.quantities.iter().filter(|q| matches!(q.likely, Likely::Each(_))) {
+    for q in u.quantities.iter().filter(|q| matches!(q.likely, UncertainValue::Each(_))) {
         let what = match q.name.strip_prefix("law.") {
             Some(family) => format!("Law beside law: {family}"),
             None => format!("Value beside value: {}", q.name),
@@ -265,8 +269,8 @@ fn quantities(u: &Uncertainty) -> String {
     for q in &u.quantities {
         let taken = match &q.likely {
             // They stand above, each in a line.
-            Likely::Each(all) => format!("{} values, equally likely", all.len()),
-            Likely::Between(_) => q.distribution.clone(),
+            UncertainValue::Each(all) => format!("{} values, equally likely", all.len()),
+            UncertainValue::Between(_) => q.distribution.clone(),
         };
         t.add_row([q.name.clone(), q.nominal.clone().unwrap_or("-".into()), taken]);
     }
