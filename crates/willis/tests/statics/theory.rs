@@ -9,6 +9,8 @@ use willis::exact::Rational;
 use willis::train::{EfficiencySpec, OperationSpec, SetSpec, ShiftElementSpec, StateSpec, Train, TrainBuilder};
 use willis::units::{AngularSpeed, Torque};
 
+use crate::common::Dice;
+
 fn set(name: &str, [a, b, c]: [&str; 3], r: (i64, i64), eta: Rational) -> SetSpec {
     if r.0 < 0 {
         // A ring turns the sign.
@@ -95,11 +97,8 @@ fn val_table_of_six_inversions() {
 
 #[test]
 fn val_closed_forms_on_a_thousand_sets() {
-    let mut seed = 1u64;
-    let mut next = |n: u64| {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 33) % n
-    };
+    let mut dice = Dice(1);
+    let mut next = |n: u64| dice.below(n);
     let mut locked = 0;
     for _ in 0..1000 {
         let (a, b) = (15 + next(80) as i64, 15 + next(80) as i64);

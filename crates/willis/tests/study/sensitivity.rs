@@ -7,10 +7,7 @@ use willis::study::{OperationSensitivity, QuantitySensitivity, Sensitivity, sens
 use willis::train::Document;
 use willis::{Selection, Train, analyze};
 
-fn example(name: &str) -> String {
-    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    std::fs::read_to_string(path).expect("an example")
-}
+use crate::common::example;
 
 fn all_of(text: &str) -> Sensitivity {
     let train = Train::from_toml(text).unwrap_or_else(|wrong| panic!("{wrong}"));

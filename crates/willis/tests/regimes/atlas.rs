@@ -22,28 +22,14 @@ use willis::train::{
 };
 use willis::units::{AngularSpeed, Torque};
 
+use crate::common::{self, Dice};
+
 fn q(numerator: i64, denominator: i64) -> Rational {
     Rational::new(numerator, denominator)
 }
 
 fn exact(text: &str) -> Rational {
     text.parse().unwrap()
-}
-
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 33) % n
-    }
-    fn whole(&mut self, low: i64, high: i64) -> i64 {
-        low + self.below((high - low + 1) as u64) as i64
-    }
-    /// A positive fraction.
-    fn fraction(&mut self) -> Rational {
-        q(self.whole(1, 999), self.whole(1, 99))
-    }
 }
 
 fn as_drawn(train: &Train) -> Atlas {
@@ -329,7 +315,7 @@ fn compare_thresholds(atlas: &Atlas, regime: &RegimeReport, p: &Point, set: &Set
 
 #[test]
 fn val_all_80_regimes_of_one_set_with_two_freedoms() {
-    let mut random = Random(1);
+    let mut random = Dice(1);
     for eta in ETAS {
         let mut total = 0;
         for shape in &SHAPES {
@@ -360,7 +346,7 @@ fn val_all_80_regimes_of_one_set_with_two_freedoms() {
                     let region = region_of(&atlas, &w);
                     assert_eq!(region.order, [chain(&w)]);
                     for s in [1i8, -1] {
-                        let t = |random: &mut Random| random.fraction() * Rational::from(i64::from(s));
+                        let t = |random: &mut Dice| random.fraction() * Rational::from(i64::from(s));
                         let regime = regime_of(&atlas, region.number, s);
                         let own: Vec<_> = sheet.formulas.iter().filter(|f| f.regimes.contains(&regime.id)).collect();
                         let [formula] = own[..] else { panic!("{:?}", regime.id) };
@@ -582,7 +568,7 @@ fn val_the_ten_entries_of_the_reference() {
 /// Ratios and efficiencies in symbols, teeth, meshes or numbers: always the same value.
 #[test]
 fn prop_every_way_of_writing_gives_the_same_value() {
-    let mut random = Random(2);
+    let mut random = Dice(2);
     for shape in &SHAPES {
         let base = fig1(shape, ETAS[1], LINKS);
         let by_meshes = {
@@ -677,7 +663,7 @@ fn held([input, output]: [&str; 2]) -> String {
 }
 
 /// All that is said of the six inversions; the number of locked ones.
-fn compare_inversions(shape: &Shape, eta: [i64; 2], random: &mut Random) -> usize {
+fn compare_inversions(shape: &Shape, eta: [i64; 2], random: &mut Dice) -> usize {
     let set = Set::new(shape, eta);
     let train = fig1(shape, eta, LINKS).build().unwrap();
     let [a, b] = &set.eta;
@@ -761,7 +747,7 @@ fn compare_inversions(shape: &Shape, eta: [i64; 2], random: &mut Random) -> usiz
 
 #[test]
 fn val_six_inversions_in_every_range() {
-    let mut random = Random(3);
+    let mut random = Dice(3);
     let mut locked = 0;
     for eta in ETAS {
         for shape in &SHAPES {
@@ -828,7 +814,7 @@ fn val_the_table_of_check_values() {
 
 #[test]
 fn val_basic_ratio_one_is_pure_friction() {
-    let mut random = Random(4);
+    let mut random = Dice(4);
     let shape = ("R=1", Some([25, 20, 25, 20]), (1, 1));
     for eta in ETAS {
         for order in [["1", "2", "4"], ["2", "4", "1"], ["1", "4", "2"], ["4", "2", "1"]] {
@@ -916,20 +902,8 @@ fn val_basic_ratio_one_is_pure_friction() {
 
 /// Name, text, train.
 fn examples() -> Vec<(String, String, Train)> {
-    let folder = format!("{}/../../examples", env!("CARGO_MANIFEST_DIR"));
-    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|f| f.unwrap().path()).collect();
-    files.retain(|f| f.extension().is_some_and(|e| e == "toml"));
-    files.sort();
-    let all: Vec<_> = files
-        .iter()
-        .map(|f| {
-            let text = std::fs::read_to_string(f).unwrap();
-            let train = Train::from_toml(&text).unwrap();
-            (f.file_stem().unwrap().to_str().unwrap().to_owned(), text, train)
-        })
-        .collect();
-    assert!(all.len() >= 29);
-    all
+    let read = |text: &str| Train::from_toml(text).unwrap();
+    common::examples().into_iter().map(|(name, text)| (name, text.clone(), read(&text))).collect()
 }
 
 /// All states that have regimes, as drawn included.
@@ -951,7 +925,7 @@ fn from_to(state: &str, from: &str, to: &str) -> FormulaRequest {
 }
 
 /// Whole numbers inside a region of two freedoms, for the base speeds.
-fn inside(region: &RegionReport, random: &mut Random) -> [i64; 2] {
+fn inside(region: &RegionReport, random: &mut Dice) -> [i64; 2] {
     let (from, to) = (region.from.unwrap(), region.to.unwrap());
     let unit = |v: [f64; 2]| {
         let size = v[0].abs().max(v[1].abs());
@@ -992,7 +966,7 @@ fn sign(x: f64) -> i8 {
 }
 
 /// A thousand points in every regime of two freedoms; the number of points.
-fn compare_two_freedoms(name: &str, train: &Train, atlas: &Atlas, random: &mut Random) -> usize {
+fn compare_two_freedoms(name: &str, train: &Train, atlas: &Atlas, random: &mut Dice) -> usize {
     let sheet = formulas(train, &request_of(&atlas.state)).unwrap();
     assert!(sheet.without.is_empty(), "{name}: {:?}", sheet.without);
     let all: Vec<_> = sheet.formulas.iter().map(|f| (f, sources(f))).collect();
@@ -1061,13 +1035,13 @@ fn compare_two_freedoms(name: &str, train: &Train, atlas: &Atlas, random: &mut R
     points
 }
 
-fn signed(random: &mut Random) -> f64 {
+fn signed(random: &mut Dice) -> f64 {
     let size = random.fraction().to_f64();
     if random.below(2) == 0 { size } else { -size }
 }
 
 /// Both directions of a state with one freedom; the number of points.
-fn compare_one_freedom(name: &str, train: &Train, atlas: &Atlas, random: &mut Random) -> usize {
+fn compare_one_freedom(name: &str, train: &Train, atlas: &Atlas, random: &mut Dice) -> usize {
     let [a, b] = &atlas.terminals[..] else { panic!("{name}, {}: {:?}", atlas.state, atlas.terminals) };
     let mut points = 0;
     for (from, to) in [(a, b), (b, a)] {
@@ -1125,7 +1099,7 @@ fn compare_one_freedom(name: &str, train: &Train, atlas: &Atlas, random: &mut Ra
 
 #[test]
 fn val_every_formula_of_every_example_equals_the_solver() {
-    let mut random = Random(5);
+    let mut random = Dice(5);
     let (mut one, mut two, mut locked) = (0, 0, 0);
     for (name, _, train) in examples() {
         for atlas in atlases(&train) {
@@ -1150,7 +1124,7 @@ fn val_every_formula_of_every_example_equals_the_solver() {
 /// A few points of every regime by the exact path of the analysis, as fractions.
 #[test]
 fn val_every_formula_of_every_example_equals_the_analysis_exactly() {
-    let mut random = Random(6);
+    let mut random = Dice(6);
     let (mut compared, mut as_fraction) = (0, 0);
     // Where losses are computed, an operating point has others than the nominal ones of the formulas.
     for (name, mut text, train) in examples().into_iter().filter(|e| !e.2.is_physical()) {
@@ -1242,7 +1216,7 @@ fn val_every_formula_of_every_example_equals_the_analysis_exactly() {
 }
 
 // ---------------------------------------------------------------------------------------------
-// Random coupled trains, against exact elimination over every choice of drivers
+// Dice coupled trains, against exact elimination over every choice of drivers
 
 /// `ω_q − ω_c = R (ω_p − ω_c)`, torques `f (1, −ρ/R, ρ/R − 1)` on p, q, c.
 #[derive(Clone, Debug)]
@@ -1257,7 +1231,7 @@ struct Coupled {
 }
 
 impl Coupled {
-    fn random(members: usize, low: i64, random: &mut Random) -> Self {
+    fn random(members: usize, low: i64, random: &mut Dice) -> Self {
         let p = random.whole(0, members as i64 - 1) as usize;
         let mut other = |taken: &[usize]| loop {
             let m = random.whole(0, members as i64 - 1) as usize;
@@ -1334,7 +1308,7 @@ struct Balance {
 }
 
 impl Net {
-    fn random(sets: usize, freedoms: usize, torques: usize, low: i64, random: &mut Random) -> Self {
+    fn random(sets: usize, freedoms: usize, torques: usize, low: i64, random: &mut Dice) -> Self {
         let frame = random.below(2) == 0;
         let members = sets + freedoms + usize::from(frame);
         let mut all: Vec<usize> = (usize::from(frame)..members).collect();
@@ -1574,9 +1548,9 @@ struct Seen {
     unsaid: usize,
 }
 
-/// Random points of a random train: each equilibrium lies in exactly one regime, whose formula
+/// Dice points of a random train: each equilibrium lies in exactly one regime, whose formula
 /// gives its efficiency; and the solver finds the same equilibria.
-fn compare_random(case: &Case, points: usize, random: &mut Random, seen: &mut Seen) {
+fn compare_random(case: &Case, points: usize, random: &mut Dice, seen: &mut Seen) {
     let Case { net, atlas, train, .. } = case;
     seen.trains += 1;
     let ids: BTreeSet<&str> = atlas.regimes.iter().map(|r| r.id.as_str()).collect();
@@ -1710,7 +1684,7 @@ fn compare_random(case: &Case, points: usize, random: &mut Random, seen: &mut Se
 
 #[test]
 fn val_random_trains_with_two_freedoms_and_three_terminals() {
-    let mut random = Random(7);
+    let mut random = Dice(7);
     let mut seen = Seen::default();
     let mut tried = 0;
     while seen.trains < 120 {
@@ -1729,7 +1703,7 @@ fn val_random_trains_with_two_freedoms_and_three_terminals() {
 
 #[test]
 fn val_random_trains_with_more_torques_or_freedoms() {
-    let mut random = Random(8);
+    let mut random = Dice(8);
     let mut seen = [Seen::default(), Seen::default(), Seen::default()];
     for (k, (freedoms, torques, trains, sets)) in
         [(2, 2, 4, [2, 3]), (3, 1, 6, [2, 3]), (3, 2, 1, [2, 3])].into_iter().enumerate()
@@ -1822,7 +1796,7 @@ fn compare_boundaries(case: &Case, seen: &mut Crossed) {
 
 #[test]
 fn val_losses_go_on_over_every_boundary_but_those_without_relative_motion() {
-    let mut random = Random(9);
+    let mut random = Dice(9);
     let mut seen = Crossed::default();
     let mut trains = 0;
     while trains < 150 {
@@ -1904,7 +1878,7 @@ fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
 
 #[test]
 fn regress_five_coupled_sets_take_seconds() {
-    let mut random = Random(10);
+    let mut random = Dice(10);
     let mut trains = 0;
     while trains < 8 {
         let net = Net::random(5, 2, 1 + trains / 6, 900, &mut random);
@@ -1924,7 +1898,7 @@ fn regress_five_coupled_sets_take_seconds() {
 
 #[test]
 fn regress_a_train_too_large_is_told_at_once() {
-    let mut random = Random(11);
+    let mut random = Dice(11);
     let mut seen = 0;
     for _ in 0..200 {
         let net = Net::random(16, 4, 8, 900, &mut random);
@@ -2060,7 +2034,7 @@ fn regress_arguments_have_names_of_their_own() {
     };
     let set = Set { r: q(-20, 80), eta: [q(97 * 91, 10000), q(97 * 91, 10000)] };
     let of = |link: usize| ["a b", "w", "a_b"][link];
-    let mut random = Random(12);
+    let mut random = Dice(12);
     for ratios in [Ratios::Basic, Ratios::Teeth, Ratios::Numbers] {
         for efficiencies in [Efficiencies::Basic, Efficiencies::Meshes, Efficiencies::Numbers] {
             let request = FormulaRequest { ratios, efficiencies, ..request_as_drawn() };
@@ -2091,7 +2065,7 @@ fn regress_arguments_have_names_of_their_own() {
 /// Trains put together at random from everything there is: any answer will do, a panic will not.
 #[test]
 fn prop_no_question_about_any_train_panics() {
-    let mut random = Random(13);
+    let mut random = Dice(13);
     let (mut built, mut with_regimes, mut with_formulas) = (0, 0, 0);
     for n in 0..160 {
         let Some(train) = anything(&mut random) else { continue };
@@ -2158,12 +2132,12 @@ fn prop_no_question_about_any_train_panics() {
 
 /// A train of random parts: sets of every type, ordinary pairs, clutches, brakes; `None` when the
 /// parts make no train.
-fn anything(random: &mut Random) -> Option<Train> {
+fn anything(random: &mut Dice) -> Option<Train> {
     let count = random.whole(2, 6) as usize;
     let names: Vec<String> = (0..count).map(|m| format!("{}{m}", "m".repeat(1 + m % 2))).collect();
     let mut pool: Vec<String> = names.clone();
     pool.push("frame".into());
-    let any = |random: &mut Random, n: usize, from: &[String]| -> Vec<String> {
+    let any = |random: &mut Dice, n: usize, from: &[String]| -> Vec<String> {
         let mut all = from.to_vec();
         while all.len() > n {
             all.remove(random.below(all.len() as u64) as usize);
@@ -2176,7 +2150,7 @@ fn anything(random: &mut Random) -> Option<Train> {
     let mut builder = Train::builder("anything").members(names.iter().map(String::as_str));
     let wanted = random.whole(0, count as i64) as usize;
     builder = builder.terminals(any(random, wanted, &names).iter().map(String::as_str));
-    let efficiency = |random: &mut Random| match random.below(4) {
+    let efficiency = |random: &mut Dice| match random.below(4) {
         0 => EfficiencySpec::from(1.0),
         1 => EfficiencySpec::directed(random.whole(600, 1000) as f64 / 1000.0, random.whole(600, 1000) as f64 / 1000.0),
         _ => EfficiencySpec::from(random.whole(900, 999) as f64 / 1000.0),
@@ -2186,7 +2160,7 @@ fn anything(random: &mut Random) -> Option<Train> {
         let name = format!("P{k}");
         let m = any(random, 4, &pool);
         let at = |k: usize| m[k % m.len()].as_str();
-        let teeth = |random: &mut Random| random.whole(12, 40);
+        let teeth = |random: &mut Dice| random.whole(12, 40);
         let (z, p) = (teeth(random), teeth(random));
         let set = match random.below(8) {
             0 => SetSpec::double_planet(name, (at(0), z), (at(1), z + 3 * p), at(2)),

@@ -9,6 +9,8 @@ use willis::study::{
     standard_normal_quantile,
 };
 
+use crate::common::example;
+
 const ONE_SET: &str = r#"
 format = 1
 name = "one set"
@@ -442,9 +444,7 @@ fn refused_text(vary: &str) -> String {
 
 #[test]
 fn locked_samples_are_counted() {
-    let text =
-        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/wolfrom-498-self-locking.toml"))
-            .unwrap();
+    let text = example("wolfrom-498-self-locking");
     // Driven from its slow side it locks below an efficiency of the inner meshes.
     let request = UncertaintyRequest {
         operation: Some("ring helps by 50 N m".into()),

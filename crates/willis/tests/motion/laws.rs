@@ -1,9 +1,7 @@
 //! A physical train in motion follows the laws of its operating points.
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::ops::ControlFlow;
-use std::path::Path;
 
 use willis::analysis::{Selection, SolutionReport, analyze};
 
@@ -11,11 +9,11 @@ use willis::dynamics::{FixedStep, Options, Outcome, Recorder, RunReport, Sample,
 use willis::losses::entries;
 use willis::train::Train;
 
+use crate::common;
+
 /// An example with moments of inertia and motions.
 fn example(name: &str, more: &str) -> Train {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../examples/{name}.toml"));
-    let text = fs::read_to_string(path).expect("the example");
-    Train::from_toml(&(text + more)).expect("a train")
+    Train::from_toml(&(common::example(name) + more)).expect("a train")
 }
 
 /// A stage with everything that costs power.

@@ -1,23 +1,16 @@
 //! Sweeps: a point is what `analyze` says of it, whatever varies; verdicts are rows; words for what is wrong.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use willis::analysis::{Analysis, Selection, analyze};
 use willis::model::Model;
 use willis::study::{Axis, Cells, Hold, Question, Rows, Sweep, sensitivity};
 use willis::train::{Document, Train};
 
-fn examples() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
-}
-
-fn text(name: &str) -> String {
-    fs::read_to_string(examples().join(name)).unwrap()
-}
+use crate::common::{self, example};
 
 fn subject(text: &str) -> Model {
-    let mut load = |file: &str| fs::read_to_string(examples().join(file)).map_err(|e| e.to_string());
+    let mut load = |file: &str| fs::read_to_string(common::folder().join(file)).map_err(|e| e.to_string());
     Model::read(text, &mut load).unwrap_or_else(|r| panic!("{r}"))
 }
 
@@ -71,7 +64,7 @@ fn same_bits(
     operation: &dyn Fn(&[String]) -> String,
     edit: &dyn Fn(&mut Document, &[String]),
 ) {
-    let text = text(file);
+    let text = example(file);
     let subject = subject(&text);
     let sweep = sweep(&subject, over, &["members", "meshes"], Hold::AsGiven);
     let rows = all(&sweep);
@@ -127,7 +120,7 @@ fn a_point_is_what_analyze_says_of_it() {
         &nothing,
     );
     // Every state; positive at the output drives.
-    let text = text("zf-8hp70.toml");
+    let text = example("zf-8hp70.toml");
     let states: toml::Table = text.parse().unwrap();
     assert!(states["state"].as_array().unwrap().len() > 8);
     same_bits(
@@ -184,7 +177,7 @@ fn compiled_rows_are_the_same_but_for_round_off() {
             &["input.speed=1000 rpm", "input.torque=10..60 N m:3", "P1.mesh_efficiency=0.9,0.98", "state=2,R"],
         ),
     ] {
-        let text = text(file);
+        let text = example(file);
         let subject = subject(&text);
         let sweep = sweep(&subject, over, &["members"], Hold::AsGiven);
         let terminals: Vec<String> = (subject.train().terminals().iter())
@@ -232,7 +225,7 @@ fn compiled_rows_are_the_same_but_for_round_off() {
 
 #[test]
 fn what_has_no_answer_is_a_row_with_its_verdict() {
-    let locking = text("wolfrom-498-self-locking.toml");
+    let locking = example("wolfrom-498-self-locking.toml");
     let subject = subject(&locking);
     let locking = sweep(&subject, &["input.speed=10 rpm", "output.torque=-40,40 N m"], &[], Hold::AsGiven);
     let rows = all(&locking);
@@ -244,7 +237,7 @@ fn what_has_no_answer_is_a_row_with_its_verdict() {
         assert!(verdict == "unique" || reason.contains("locks the train"), "{reason}");
     }
     // Planets that cannot be built there.
-    let fva = text("fva-planetary-stage.toml");
+    let fva = example("fva-planetary-stage.toml");
     let subject = self::subject(&fva);
     let counts = sweep(&subject, &["P1.planet.teeth=22,23,40"], &[], Hold::AsGiven);
     let rows = all(&counts);
@@ -255,7 +248,7 @@ fn what_has_no_answer_is_a_row_with_its_verdict() {
 
 #[test]
 fn what_is_held_stays() {
-    let fva = text("fva-planetary-stage.toml");
+    let fva = example("fva-planetary-stage.toml");
     let subject = subject(&fva);
     let over = &["sun.speed=500..3000 rpm:6"];
     let constant = |x: &[f64]| x.iter().all(|v| (v - x[0]).abs() <= 1e-12 * x[0].abs());
@@ -276,7 +269,7 @@ fn what_is_held_stays() {
 /// The torque at the output drives in every state, whichever way it turns.
 #[test]
 fn a_held_output_drives_in_reverse_too() {
-    let text = text("zf-8hp70.toml");
+    let text = example("zf-8hp70.toml");
     let subject = subject(&text);
     let by_hold = sweep(&subject, &["state=all"], &["members"], Hold::Output);
     let rows = all(&by_hold);
@@ -291,7 +284,7 @@ fn a_held_output_drives_in_reverse_too() {
 
 #[test]
 fn what_check_says_of_another_train_is_in_its_row() {
-    let fva = text("fva-planetary-stage.toml");
+    let fva = example("fva-planetary-stage.toml");
     let subject = subject(&fva);
     let planets = sweep(&subject, &["P1.planet.count=3,4,8"], &[], Hold::AsGiven);
     let warnings = texts(&planets, &all(&planets), "warnings");
@@ -312,7 +305,7 @@ fn what_check_says_of_another_train_is_in_its_row() {
 #[test]
 fn ranked_quantities_are_axes() {
     for file in ["fva-planetary-stage.toml", "wang-herringbone-physical.toml", "prius-p112.toml", "zf-8hp70.toml"] {
-        let subject = subject(&text(file));
+        let subject = subject(&example(file));
         for o in sensitivity(subject.train(), &Selection::default()).unwrap().operations {
             for q in &o.quantities {
                 let unit = if q.unit == "-" { "" } else { q.unit };
@@ -326,33 +319,28 @@ fn ranked_quantities_are_axes() {
 #[test]
 fn paths_lead_to_what_they_name() {
     let mut checked = 0;
-    for entry in fs::read_dir(examples()).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|e| e != "toml") {
-            continue;
-        }
-        let text = fs::read_to_string(&path).unwrap();
+    for (file, text) in common::examples() {
         let document = Document::parse(&text).unwrap();
         assert_eq!(document.text(), text);
         let mut all = Document::parse(&text).unwrap();
         let paths = document.paths();
         for (k, name) in paths.iter().enumerate() {
-            assert!(!paths[..k].contains(name), "{}: {name} twice", path.display());
-            let key = document.find(name).unwrap_or_else(|d| panic!("{}: {name}: {}", path.display(), d.message));
+            assert!(!paths[..k].contains(name), "{file}: {name} twice");
+            let key = document.find(name).unwrap_or_else(|d| panic!("{file}: {name}: {}", d.message));
             let Some(value) = document.value(&key) else { continue };
-            all.set(&key, &value).unwrap_or_else(|e| panic!("{}: {name}: {e}", path.display()));
+            all.set(&key, &value).unwrap_or_else(|e| panic!("{file}: {name}: {e}"));
             assert_eq!(all.value(&key), Some(value), "{name}");
             checked += 1;
         }
         let same: [toml::Table; 2] = [&text, &all.text()].map(|t| t.parse().unwrap());
-        assert_eq!(same[0], same[1], "{}", path.display());
+        assert_eq!(same[0], same[1], "{file}");
     }
     assert!(checked > 800, "{checked}");
 }
 
 #[test]
 fn axes_take_the_values_that_are_written() {
-    let fva = text("fva-planetary-stage.toml");
+    let fva = example("fva-planetary-stage.toml");
     let subject = subject(&fva);
     let settings = |axis: &str| {
         let a = Axis::parse(axis, &subject).unwrap_or_else(|d| panic!("{axis}: {}", d.message));
@@ -375,7 +363,7 @@ fn axes_take_the_values_that_are_written() {
 
 #[test]
 fn what_is_wrong_with_an_axis_is_told() {
-    let fva = text("fva-planetary-stage.toml");
+    let fva = example("fva-planetary-stage.toml");
     let subject = subject(&fva);
     for (axis, says) in [
         ("sun.sped=1..2 rpm:3", "did you mean `sun.speed`?"),
@@ -410,7 +398,7 @@ fn what_is_wrong_with_an_axis_is_told() {
         assert!(told.contains(says), "{axis}: {told}");
     }
     // Which speed it replaces is open where two are prescribed.
-    let prius = text("prius-p112.toml");
+    let prius = example("prius-p112.toml");
     let subject = self::subject(&prius);
     let two = sweep(&subject, &["mg1.speed=1000,2000 rpm"], &[], Hold::AsGiven);
     let rows = all(&two);
@@ -422,7 +410,7 @@ fn what_is_wrong_with_an_axis_is_told() {
 /// `validation/wang-2020/README.md` for why the number of planets acts as it does.
 #[test]
 fn val_wang_trends() {
-    let wang = text("wang-herringbone-physical.toml");
+    let wang = example("wang-herringbone-physical.toml");
     let subject = subject(&wang);
     let run = |name: &str| {
         let sweep = Sweep::of_file(&subject, name).unwrap_or_else(|d| panic!("{name}: {d}"));
@@ -457,7 +445,7 @@ proptest::proptest! {
         values in "[0-9.eE+\\- rpmNdegC,:solgtp/é]{0,30}",
     ) {
         static SUBJECT: std::sync::LazyLock<Model> =
-            std::sync::LazyLock::new(|| subject(&text("fva-planetary-stage.toml")));
+            std::sync::LazyLock::new(|| subject(&example("fva-planetary-stage.toml")));
         if let Ok(axis) = Axis::parse(&format!("{name}={values}"), &SUBJECT) {
             proptest::prop_assert!(!axis.is_empty());
             for k in [0, axis.len() / 2, axis.len() - 1] {

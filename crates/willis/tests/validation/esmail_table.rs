@@ -17,6 +17,8 @@ use willis::train::{
 };
 use willis::units::{AngularSpeed, Torque};
 
+use crate::common::Dice;
+
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/esmail-2018-table-1")
 }
@@ -345,16 +347,6 @@ fn point(order: &[String], (p, q): (i64, i64), place: i64) -> Point {
     speeds
 }
 
-/// Places of zero at random, the same in every run.
-struct Places(u64);
-
-impl Places {
-    fn next(&mut self) -> i64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 33) as i64 % 998 + 1
-    }
-}
-
 /// Pairs of mesh efficiencies; `eta1*eta2` is 0.9409 and 0.931.
 fn efficiencies() -> [[Rational; 2]; 2] {
     [[fraction((97, 100)), fraction((97, 100))], [fraction((49, 50)), fraction((19, 20))]]
@@ -437,7 +429,7 @@ fn compare<'t>(table: &'t Table, f: &Family) -> Vec<Compared<'t>> {
         let missing: Vec<_> = x.cell.combination.iter().filter(|c| x.range(c).is_none()).map(|c| &c.speeds).collect();
         x.wrong.extend(missing.into_iter().map(|s| format!("no regime with {s}")));
     }
-    let mut places = Places(2018);
+    let mut places = Dice(2018);
     for meshes in &efficiencies() {
         for (column, inside) in [(1, false), (2, false), (1, true), (2, true)] {
             let ratios = if inside { &INSIDE[column - 1][..] } else { &OUTSIDE[column - 1][..] };
@@ -445,7 +437,7 @@ fn compare<'t>(table: &'t Table, f: &Family) -> Vec<Compared<'t>> {
                 let mut points = Vec::new();
                 for x in all.iter().filter(|x| x.cell.column == column) {
                     for c in &x.cell.combination {
-                        points.extend((0..POINTS).map(|_| (point(&c.order(), *r, places.next()), c.signs()[0])));
+                        points.extend((0..POINTS).map(|_| (point(&c.order(), *r, places.whole(1, 998)), c.signs()[0])));
                     }
                 }
                 let found = truths(*r, meshes, &points);
@@ -1055,7 +1047,7 @@ fn page() -> String {
     page
 }
 
-/// `WILLIS_WRITE=1 cargo test -p willis --test esmail_table write_page` writes the page; otherwise it must
+/// `WILLIS_WRITE=1 cargo test -p willis --test validation write_page` writes the page; otherwise it must
 /// be up to date.
 #[test]
 fn write_page() {

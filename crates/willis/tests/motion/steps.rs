@@ -1,49 +1,29 @@
 //! Steps of fixed length: after a rehearsal none allocates, and a batch takes exactly the steps of its runs.
 
-use std::alloc::System;
-use std::sync::{Mutex, MutexGuard};
-
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use allocation_counter::measure;
 use willis::dynamics::{Batch, FixedStep};
 use willis::train::Train;
 
-#[path = "../benches/trains/mod.rs"]
+#[path = "../../benches/trains/mod.rs"]
 mod trains;
 
-#[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
-/// The allocator counts for the whole process, so the tests of this file take turns.
-static TURN: Mutex<()> = Mutex::new(());
-
-fn turn() -> MutexGuard<'static, ()> {
-    TURN.lock().unwrap_or_else(|e| e.into_inner())
-}
-
-/// Steps that allocate in a whole rehearsed run, each time it is run: what the test runner allocates meanwhile is counted
-/// as well, but not at the same step again.
+/// Steps that allocate in a whole rehearsed run.
 fn steps_that_allocate(train: &Train, scenario: &str, steps: usize) -> Vec<usize> {
     let mut run = FixedStep::new(train, scenario, 1e-3).unwrap();
     run.rehearse();
-    let mut found: Vec<usize> = (0..steps).collect();
-    for _ in 0..3 {
-        run.reset();
-        let mut again = Vec::with_capacity(steps);
-        for k in 0..steps {
-            let region = Region::new(ALLOCATOR);
-            run.step();
-            let change = region.change();
-            if change.allocations + change.reallocations > 0 && found.binary_search(&k).is_ok() {
-                again.push(k);
-            }
-        }
-        found = again;
-    }
-    found
+    run.reset();
+    (0..steps)
+        .filter(|_| {
+            let count = measure(|| {
+                run.step();
+            });
+            count.count_total > 0
+        })
+        .collect()
 }
 
 #[test]
 fn no_step_allocates_after_a_rehearsal() {
-    let _turn = turn();
     assert_eq!(steps_that_allocate(&trains::set(), "pulses", 20_000), [0usize; 0]);
     assert_eq!(steps_that_allocate(&trains::automatic(), "through the gears", 16_000), [0usize; 0]);
 }
@@ -95,7 +75,6 @@ const FACTORS: [f64; 11] = [1.0, 0.5, 2.0, 1.0025, 1.005, 0.9, 1.3, 0.5, 1.7, 1.
 
 #[test]
 fn a_batch_takes_the_steps_of_the_set() {
-    let _turn = turn();
     let text = |factor: f64| {
         let number = |x: f64| format!("\"{} N m\"", x * factor);
         trains::SET.replace("\"60 N m\"", &number(60.0)).replace("\"200 N m\"", &number(200.0))
@@ -105,7 +84,6 @@ fn a_batch_takes_the_steps_of_the_set() {
 
 #[test]
 fn a_batch_takes_the_steps_of_the_automatic() {
-    let _turn = turn();
     let text = |factor: f64| {
         trains::automatic_text().replace("torque = \"150 N m\"", &format!("torque = \"{} N m\"", 150.0 * factor))
     };
@@ -151,15 +129,13 @@ torque = {{ type = "sine", offset = "{} N m", amplitude = "{} N m", frequency = 
 
 #[test]
 fn a_batch_takes_the_steps_of_a_train_with_an_elastic_shaft() {
-    let _turn = turn();
     assert_equal("to and fro", "motor", &shaft, &FACTORS, 6000);
 }
 
 #[test]
 fn a_batch_takes_the_steps_of_a_train_with_controllers() {
-    let _turn = turn();
     let text = |factor: f64| {
-        include_str!("../../../examples/galvagno.toml")
+        include_str!("../../../../examples/galvagno.toml")
             .replace("torque = \"-68 N m\", about", &format!("torque = \"{} N m\", about", -68.0 * factor))
             .replace("factor = \"0.05 ", &format!("factor = \"{} ", 0.05 * factor))
     };

@@ -13,6 +13,8 @@ use willis::exact::Rational;
 use willis::statics::Certificate;
 use willis::train::Train;
 
+use crate::common::{Dice, examples};
+
 const SET: &str = r#"format = 1
 name = "set"
 members = ["sun", "ring", "carrier"]
@@ -203,7 +205,7 @@ const MOST_MIB: u64 = 512;
 /// Answers in a process of its own, which is ended when it takes too long.
 fn bounded(text: &str, limit: f64) {
     let mut child = Command::new(std::env::current_exe().expect("this test"))
-        .args(["--exact", "regress_in_a_process_of_its_own", "--ignored", "--nocapture"])
+        .args(["--exact", "bad_input::regress_in_a_process_of_its_own", "--ignored", "--nocapture"])
         .env("WILLIS_BAD_INPUT", limit.to_string())
         .env("RUST_BACKTRACE", "0")
         .stdin(Stdio::piped())
@@ -258,13 +260,10 @@ fn regress_in_a_process_of_its_own() {
 /// A file as large as the command line accepts.
 const FOUR_MIB: usize = 4 << 20;
 
-/// Pseudo-random numbers, the same in every run.
+/// Numbers at random below a limit.
 fn noise(seed: u64) -> impl FnMut(usize) -> usize {
-    let mut state = seed;
-    move |below| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    }
+    let mut dice = Dice(seed);
+    move |below| dice.next() as usize % below
 }
 
 fn members(count: usize) -> String {
@@ -966,17 +965,6 @@ fn regress_ordinary_rows_do_not_lock() {
 
 // ---- Files with damage ---------------------------------------------------------------------------
 
-fn examples() -> Vec<String> {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    let mut files: Vec<_> = std::fs::read_dir(folder).expect("examples").map(|e| e.expect("an entry").path()).collect();
-    files.sort();
-    files
-        .iter()
-        .filter(|f| f.extension().is_some_and(|e| e == "toml"))
-        .map(|f| std::fs::read_to_string(f).expect("text"))
-        .collect()
-}
-
 /// Something that a hand or a disk may do to a file.
 #[derive(Clone, Debug)]
 enum Damage {
@@ -1368,7 +1356,7 @@ proptest! {
 
     #[test]
     fn regress_damaged_examples(which in any::<prop::sample::Index>(), how in prop::collection::vec(any_damage(), 1..5)) {
-        let all = examples();
+        let all: Vec<String> = examples().into_iter().map(|(_, text)| text).collect();
         let text = damage(&all[which.index(all.len())], &how);
         let _ = answer(&text);
     }

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
@@ -17,12 +17,9 @@ use willis::regimes::{ClosedFormula, Efficiencies, FormulaRequest, FormulaSheet,
 use willis::symbolic::Notation;
 use willis::train::Train;
 
-// ---------------------------------------------------------------- trains
+use crate::common::{Dice, example};
 
-fn example(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name);
-    fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-}
+// ---------------------------------------------------------------- trains
 
 fn sheet(toml: &str, request: &FormulaRequest) -> FormulaSheet {
     let train = Train::from_toml(toml).unwrap_or_else(|e| panic!("{e}\n{toml}"));
@@ -285,25 +282,6 @@ impl Exact<'_> {
 
 // ---------------------------------------------------------------- points
 
-/// Numbers without a pattern, the same in every run.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        self.0 >> 33
-    }
-
-    /// Between −1 and 1.
-    fn unit(&mut self) -> f64 {
-        self.next() as f64 / (1u64 << 30) as f64 - 1.0
-    }
-
-    fn of<T: Copy>(&mut self, list: &[T]) -> T {
-        list[self.next() as usize % list.len()]
-    }
-}
-
 /// A number that is the same as a fraction and in floating point.
 fn short(value: f64) -> Rational {
     Rational::new((value * f64::from(1 << 20)).round() as i64, 1 << 20)
@@ -410,7 +388,7 @@ const INSIDE: usize = 12;
 
 /// Points of all kinds for a formula. Sums that all but cancel are left out: there floating point
 /// has neither the digits nor the sign.
-fn points(k: usize, f: &Function, noise: &mut Noise) -> Vec<Point> {
+fn points(k: usize, f: &Function, noise: &mut Dice) -> Vec<Point> {
     let n = f.arguments.len();
     let mut all: Vec<Point> = Vec::new();
     let floats = |at: &[Rational]| at.iter().map(Rational::to_f64).collect::<Vec<f64>>();
@@ -765,7 +743,7 @@ static ALL: LazyLock<(Vec<FormulaSheet>, Vec<Function>, Vec<Point>)> = LazyLock:
     let sheets = sheets();
     let own = |(k, s): (usize, &FormulaSheet)| s.formulas.iter().map(|f| Function::new(k, f)).collect::<Vec<_>>();
     let functions: Vec<Function> = sheets.iter().enumerate().flat_map(own).collect();
-    let mut noise = Noise(20260);
+    let mut noise = Dice(20260);
     let points = functions.iter().enumerate().flat_map(|(k, f)| points(k, f, &mut noise)).collect();
     (sheets, functions, points)
 });

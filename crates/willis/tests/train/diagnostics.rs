@@ -104,10 +104,10 @@ torques = { a = "1 N m" }
 
 /// Two sets on a free carrier; with these losses they lock or have two equilibria
 /// (`examples/two-efficiencies.toml`, `examples/wolfrom-498-self-locking.toml`).
-const TWO_EFFICIENCIES: &str = include_str!("../../../examples/two-efficiencies.toml");
+const TWO_EFFICIENCIES: &str = include_str!("../../../../examples/two-efficiencies.toml");
 /// Three terminals: with some loads power enters at all of them.
-const BAND: &str = include_str!("../../../examples/esmail-fig1-band.toml");
-const WOLFROM: &str = include_str!("../../../examples/wolfrom-498-self-locking.toml");
+const BAND: &str = include_str!("../../../../examples/esmail-fig1-band.toml");
+const WOLFROM: &str = include_str!("../../../../examples/wolfrom-498-self-locking.toml");
 
 /// The text with one part replaced, which must stand there exactly once.
 fn with(text: &str, old: &str, new: &str) -> String {

@@ -1,7 +1,6 @@
 //! Exports: every format read back by its own grammar, and its numbers beside those of the analysis.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use willis::analysis::{Analysis, Selection, Verdict, analyze};
 use willis::exact::Rational;
@@ -9,14 +8,7 @@ use willis::study::export::{Export, ExportRequest, KINDS, export};
 use willis::train::Train;
 use willis::units::{Dimension, Quantity, parse};
 
-fn text_of(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../examples/{name}.toml"));
-    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-}
-
-fn train(name: &str) -> Train {
-    Train::from_toml(&text_of(name)).unwrap()
-}
+use crate::common::{self, example, train};
 
 fn speeds(all: &[&str]) -> Vec<Quantity> {
     all.iter().map(|t| parse(t, Dimension::ANGULAR_SPEED).unwrap()).collect()
@@ -53,7 +45,7 @@ fn analysed(file: &str, of: Option<&str>, input: &str, output: &str, rpm: &str, 
     let text = format!(
         "{}\n[[operation]]\nname = \"here\"\n{place}speeds = {{ {input} = \"{rpm} rpm\" }}\ntorques = {{ {input} = \
          \"{torque} N m\" }}\n",
-        text_of(file)
+        example(file)
     );
     let train = Train::from_toml(&text).unwrap();
     let selection = Selection { operation: Some("here".into()), ..Selection::default() };
@@ -420,14 +412,8 @@ fn the_model_read_back_is_the_train() {
 
 #[test]
 fn models_of_every_example_are_read_by_a_parser() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
     let mut count = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|e| e != "toml") {
-            continue;
-        }
-        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+    for (name, _) in common::examples() {
         parsed(&made(&train(&name), "modelica", &ExportRequest::default()).files[0].text);
         count += 1;
     }
@@ -521,7 +507,7 @@ fn mujoco_and_drake_say_ratio_inertia_and_both_efficiencies() {
 #[test]
 fn inertias_are_reflected() {
     // Galvagno's set with its ring held: sun in, carrier out, 1 + 72/30 = 3.4. Planets 0.25 kg at 51 mm.
-    let text = text_of("galvagno").replace(
+    let text = example("galvagno").replace(
         "[[operation]]",
         "[[shift_element]]\nname = \"B\"\nkind = \"brake\"\nmembers = [\"ring\"]\n[[state]]\nname = \"1\"\nengaged = [\"B\"]\n\
          input = \"sun\"\noutput = \"carrier\"\n[[operation]]",
@@ -537,7 +523,7 @@ fn inertias_are_reflected() {
     let rotor: f64 = urdf.iter().find(|e| e.1 == "drake:rotor_inertia").unwrap().2["value"].parse().unwrap();
     assert!((rotor * 3.4 * 3.4 / at_output - 1.0).abs() < 1e-12);
     // As drawn it has two freedoms.
-    let wrong = export(&crate::train("galvagno"), "mujoco", &ExportRequest::default()).unwrap_err().to_string();
+    let wrong = export(&common::train("galvagno"), "mujoco", &ExportRequest::default()).unwrap_err().to_string();
     assert!(wrong.contains("no single ratio") && wrong.contains("2 degrees of freedom"), "{wrong}");
 }
 
@@ -663,7 +649,7 @@ fn two_freedoms_have_no_ratio_and_states_that_have_one_are_named() {
         assert!(wrong.contains("the train has 3 states"), "{kind}: {wrong}");
     }
     // An operation with two freedoms.
-    let text = text_of("prius-p112").replace("engaged = [\"hold-mg1\"]", "engaged = []");
+    let text = example("prius-p112").replace("engaged = [\"hold-mg1\"]", "engaged = []");
     let free = Train::from_toml(&text).unwrap();
     let wrong = export(&free, "csv", &state("mg1 held")).unwrap_err().to_string();
     assert!(wrong.contains("state mg1 held has no single ratio"), "{wrong}");

@@ -5,6 +5,8 @@ use willis::model::Model;
 use willis::study::{Basis, Cycle, CycleReport, Hold, Profile, Question, Trains, cycle};
 use willis::{Diagnostics, Train};
 
+use crate::common::example;
+
 /// One set, ring held: i = 10/3.
 const REDUCER: &str = r#"
     format = 1
@@ -31,11 +33,6 @@ fn driving() -> f64 {
 /// (1 − i0)/(1 − i0/η0)
 fn coasting() -> f64 {
     (1.0 + 7.0 / 3.0) / (1.0 + 7.0 / 3.0 / ETA_0)
-}
-
-fn example(name: &str) -> String {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name);
-    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
 fn subject(text: &str) -> Model {

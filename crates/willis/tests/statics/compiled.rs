@@ -1,42 +1,13 @@
 //! A compiled train gives the answers of the analysis, one point or many, and allocates nothing.
 
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
-use std::alloc::System;
-use std::sync::Mutex;
-
+use allocation_counter::measure;
 use willis::analysis::{Selection, Verdict, analyze};
 use willis::compiled::{CompiledTrain, Duty, Output, PointVerdict, Points, PowerLoss, ShaftDrag};
 use willis::diagnostic::Code;
 use willis::train::{OperationSpec, SetSpec, Train, TrainBuilder};
 use willis::units::{AngularSpeed, Torque};
 
-#[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
-/// The allocator counts for the whole process, so the tests of this file take turns.
-static TURN: Mutex<()> = Mutex::new(());
-
-fn turn() -> std::sync::MutexGuard<'static, ()> {
-    TURN.lock().unwrap_or_else(|e| e.into_inner())
-}
-
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + self.next() * (high - low)
-    }
-}
-
-fn example(name: &str) -> Train {
-    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    Train::from_toml(&std::fs::read_to_string(path).unwrap()).unwrap()
-}
+use crate::common::{self, Uniform};
 
 fn power_split() -> TrainBuilder {
     Train::builder("power split")
@@ -56,8 +27,7 @@ fn compound_split() -> TrainBuilder {
 
 #[test]
 fn compiled_equals_analysis_with_two_freedoms() {
-    let _turn = turn();
-    let mut random = Random(1);
+    let mut random = Uniform(1);
     for (builder, speeds, torque, open) in [
         (power_split(), ["sun", "carrier"], "sun", ["ring", "carrier"]),
         (power_split(), ["carrier", "ring"], "ring", ["sun", "carrier"]),
@@ -113,10 +83,9 @@ fn compiled_equals_analysis_with_two_freedoms() {
 
 #[test]
 fn compiled_equals_analysis_in_every_gear() {
-    let _turn = turn();
-    let mut random = Random(2);
+    let mut random = Uniform(2);
     for name in ["zf-8hp70", "zf-6hp26", "ford-10r80", "mercedes-9g-tronic", "ford-aod", "simpson-ford-c4"] {
-        let train = example(name);
+        let train = common::train(name);
         let input = train.member_name(train.input().unwrap()).to_owned();
         let output = train.member_name(train.output().unwrap()).to_owned();
         for state in train.states() {
@@ -135,9 +104,7 @@ fn compiled_equals_analysis_in_every_gear() {
             let mut out = vec![0.0; compiled.outputs()];
             for _ in 0..4 {
                 let (w, t) = (random.between(50.0, 500.0).round(), random.between(-200.0, 400.0).round());
-                let text =
-                    std::fs::read_to_string(format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR")))
-                        .unwrap();
+                let text = common::example(name);
                 let text = format!(
                     "{text}\n[[operation]]\nname = \"one more\"\nstate = \"{}\"\nspeeds = {{ {input} = \"{w} rad/s\" }}\ntorques = {{ {input} = \"{t} N m\" }}\n",
                     state.name
@@ -172,15 +139,14 @@ fn with_drag(duty: Duty, members: &[&str]) -> Duty {
 
 #[test]
 fn a_batch_equals_its_points() {
-    let _turn = turn();
     let n = 5000;
-    let mut random = Random(3);
-    let column = |low: f64, high: f64, random: &mut Random| -> Vec<f64> {
+    let mut random = Uniform(3);
+    let column = |low: f64, high: f64, random: &mut Uniform| -> Vec<f64> {
         (0..n).map(|i| if i % 97 == 0 { 0.0 } else { random.between(low, high) }).collect()
     };
     let (w0, w1, t) =
         (column(-400.0, 400.0, &mut random), column(-150.0, 150.0, &mut random), column(-200.0, 200.0, &mut random));
-    let eight = example("zf-8hp70");
+    let eight = common::train("zf-8hp70");
     let shafts = ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"];
     let mut duties: Vec<(Train, Duty, usize)> = Vec::new();
     for gear in ["1", "5", "8", "R"] {
@@ -237,8 +203,7 @@ fn a_batch_equals_its_points() {
 
 #[test]
 fn a_point_allocates_nothing() {
-    let _turn = turn();
-    let train = example("zf-8hp70");
+    let train = common::train("zf-8hp70");
     let duty = with_drag(Duty::new(["input"], ["input"]).state("5"), &["input", "output", "c3"])
         .output(Output::Torque("output".into()))
         .output(Output::Efficiency);
@@ -250,24 +215,20 @@ fn a_point_allocates_nothing() {
         let (mut a, mut b) = (vec![0.0; 1000], vec![0.0; 1000]);
         let (speeds, torques) = ([&w[..]], [&t[..]]);
         let mut slices = [&mut a[..], &mut b[..]];
-        // The test harness allocates in its own thread now and then, never every time.
-        let allocations = (0..20).map(|_| {
-            let region = Region::new(ALLOCATOR);
+        let count = measure(|| {
             for i in 0..1000 {
                 compiled.evaluate(&[w[i]], &[t[i]], &mut work, &mut out);
             }
             compiled.evaluate_batch(&Points { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
-            region.change().allocations
         });
-        assert_eq!(allocations.min(), Some(0));
+        assert_eq!(count.count_total, 0);
     }
 }
 
 /// Where the analysis finds two equilibria or none, the compiled train says so too.
 #[test]
 fn verdicts_of_points() {
-    let _turn = turn();
-    let train = example("two-efficiencies");
+    let train = common::train("two-efficiencies");
     let duty = Duty::new(["input"], ["output"]).output(Output::Efficiency);
     let compiled = train.compile(&duty).unwrap();
     assert!(!compiled.is_certified());
@@ -300,8 +261,7 @@ fn by_law(law: &PowerLoss, torque: f64, speed: f64) -> f64 {
 
 /// The eight-speed train with other basic efficiencies of its sets.
 fn eight_speed(etas: [f64; 4]) -> Train {
-    let path = format!("{}/../../examples/zf-8hp70.toml", env!("CARGO_MANIFEST_DIR"));
-    let mut text = std::fs::read_to_string(path).unwrap();
+    let mut text = common::example("zf-8hp70");
     for eta in etas {
         text = text.replacen(
             "mesh_efficiency = { external = 0.98, internal = 0.99 }",
@@ -337,7 +297,6 @@ fn relative_speeds(out: &[f64]) -> [f64; 4] {
 
 #[test]
 fn load_dependent_losses_give_the_number_of_the_baseline() {
-    let _turn = turn();
     let compiled = eight_speed([1.0; 4]).compile(&with_laws(eight_speed_duty("3"))).unwrap();
     assert!(compiled.is_certified());
     let mut out = [0.0; 15];
@@ -349,8 +308,7 @@ fn load_dependent_losses_give_the_number_of_the_baseline() {
 /// The same equilibria as constant efficiencies, read off the torques again and again.
 #[test]
 fn load_dependent_losses_are_the_fixed_point_of_constant_ones() {
-    let _turn = turn();
-    let mut random = Random(11);
+    let mut random = Uniform(11);
     for gear in ["1", "2", "3", "4", "5", "6", "7", "8", "R"] {
         let duty = eight_speed_duty(gear);
         let compiled = eight_speed([1.0; 4]).compile(&with_laws(duty.clone())).unwrap();
@@ -402,9 +360,8 @@ fn load_dependent_losses_are_the_fixed_point_of_constant_ones() {
 /// rest: one point and many are the same bits.
 #[test]
 fn load_dependent_batches_are_their_points() {
-    let _turn = turn();
     let n = 3000;
-    let mut random = Random(12);
+    let mut random = Uniform(12);
     let mut column = |low: f64, high: f64| -> Vec<f64> {
         (0..n).map(|i| if i % 89 == 0 { 0.0 } else { random.between(low, high) }).collect()
     };
@@ -447,8 +404,7 @@ fn load_dependent_batches_are_their_points() {
 /// Two equilibria, or none, also with losses that depend on load; and what cannot be decided says so.
 #[test]
 fn load_dependent_verdicts() {
-    let _turn = turn();
-    let train = example("two-efficiencies");
+    let train = common::train("two-efficiencies");
     let compiled = |exponent: f64, most: [f64; 2]| {
         let law = |coefficient, most| PowerLoss { coefficient, exponent, torque: 1.0, speed: 1.0, most };
         let duty = Duty::new(["input"], ["output"]).output(Output::Efficiency);
@@ -489,7 +445,6 @@ fn load_dependent_verdicts() {
 
 #[test]
 fn laws_that_cannot_be() {
-    let _turn = turn();
     let code = |train: &Train, losses: &[(&str, PowerLoss)]| {
         let duty = Duty::new(["sun", "carrier"], ["sun"]);
         let duty = losses.iter().fold(duty, |d, (name, law)| d.mesh_loss(name, *law));

@@ -1,13 +1,12 @@
 //! Power flows: every node balances, the paths add up to the train's efficiency, loops agree with
 //! the analysis; for every example, for trains with computed losses, and for random trains.
 
-use std::fs;
-use std::path::Path;
-
 use willis::analysis::{Selection, SolutionReport, Verdict, analyze};
 use willis::hypergraph::{FlowReport, Hypergraph, NodeKind, flows, hypergraph};
 use willis::train::{OperationSpec, SetSpec, Train};
 use willis::units::{AngularSpeed, Torque};
+
+use crate::common::{self, Dice};
 
 /// A stage with bearings, a seal, gears in mist and a drum.
 const STAGE: &str = r#"
@@ -68,12 +67,8 @@ torques = { carrier = "0 N m" }
 "#;
 
 fn examples() -> Vec<(String, Train)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
-    files.retain(|p| p.extension().is_some_and(|e| e == "toml"));
-    files.sort();
-    let read = |p: &Path| Train::from_toml(&fs::read_to_string(p).unwrap()).unwrap();
-    files.iter().map(|p| (p.file_name().unwrap().to_str().unwrap().to_owned(), read(p))).collect()
+    let read = |text: &str| Train::from_toml(text).unwrap();
+    common::examples().into_iter().map(|(name, text)| (name, read(&text))).collect()
 }
 
 /// Everything that holds for any graph.
@@ -166,9 +161,7 @@ fn every_example_balances() {
 #[test]
 fn every_state_of_every_example_balances() {
     let mut count = 0;
-    for (name, _) in examples() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(&name);
-        let text = fs::read_to_string(path).unwrap();
+    for (name, text) in common::examples() {
         let train = Train::from_toml(&text).unwrap();
         for state in train.states() {
             let Some(input) = state.input.or(train.input()).or(train.terminals().first().copied()) else { continue };
@@ -261,8 +254,7 @@ fn prop_reversal_keeps_the_flow() {
 /// (1 + i0)/(1 + i0 + i0²) of the power, with i0 = 97/35, one half from each tooth contact.
 #[test]
 fn the_herringbone_drive_splits_as_it_must() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/wang-herringbone.toml");
-    let text = fs::read_to_string(path).unwrap();
+    let text = common::example("wang-herringbone");
     let lossless = text.replace("mesh_efficiency = { external = 0.9963, internal = 0.9974 }", "mesh_efficiency = 1");
     let g = flow_of(&lossless, "424 kW at 4920 rpm");
     let i0 = 97.0 / 35.0;
@@ -278,8 +270,7 @@ fn the_herringbone_drive_splits_as_it_must() {
 
 #[test]
 fn every_solution_has_its_graph() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/two-efficiencies.toml");
-    let train = Train::from_toml(&fs::read_to_string(path).unwrap()).unwrap();
+    let train = common::train("two-efficiencies");
     let all = flows(&train, &Selection::default()).unwrap();
     assert_eq!(all.operations[0].verdict, Verdict::Multiple);
     assert_eq!(all.operations[0].solutions.len(), 2);
@@ -288,8 +279,7 @@ fn every_solution_has_its_graph() {
 
 #[test]
 fn a_locked_train_says_so() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/wolfrom-498-self-locking.toml");
-    let train = Train::from_toml(&fs::read_to_string(path).unwrap()).unwrap();
+    let train = common::train("wolfrom-498-self-locking");
     let all = flows(&train, &Selection::default()).unwrap();
     let locked = all.operations.iter().find(|o| o.verdict == Verdict::Locked).expect("it locks");
     assert!(locked.reason.as_ref().unwrap().contains("locks"));
@@ -325,15 +315,6 @@ fn wrong_questions_are_answered_with_a_hint() {
 }
 
 /// A small generator of numbers, so that every run has the same trains.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, n: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % n
-    }
-}
-
 /// `k` stepped sets on `k + 2` members, one of them held; renamed and reordered on demand.
 fn random(seed: u64, names: &dyn Fn(usize) -> String, sort: bool) -> Option<Train> {
     let mut dice = Dice(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1));

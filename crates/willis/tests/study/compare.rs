@@ -3,6 +3,8 @@
 use willis::model::Model;
 use willis::study::{CompareRequest, Compared, Comparison, Datum, compare};
 
+use crate::common::example;
+
 const REDUCER: &str = r#"
     format = 1
     name = "reducer"
@@ -107,10 +109,7 @@ fn operations_of_one_name_that_prescribe_different_things_are_marked() {
 #[test]
 fn a_changed_verdict_comes_first_with_its_reason() {
     let wolfrom = |efficiency: &str| {
-        let path =
-            std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/wolfrom-498-self-locking.toml");
-        let text = std::fs::read_to_string(path).unwrap();
-        text.replace("{ external = 0.98, internal = 0.99 }", efficiency)
+        example("wolfrom-498-self-locking").replace("{ external = 0.98, internal = 0.99 }", efficiency)
     };
     let c = all(&[&wolfrom("{ external = 0.98, internal = 0.99 }"), &wolfrom("0.9999")], &Default::default());
     let state = &c.states[0];

@@ -1,7 +1,5 @@
 //! Regimes at their edges: boundaries, balanced powers, trains that are large, odd or wrong.
 
-use std::fs;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use willis::analysis::{Selection, analyze};
@@ -13,10 +11,7 @@ use willis::symbolic::Notation;
 use willis::train::Train;
 use willis::units::{self, Dimension, Quantity};
 
-fn example(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(format!("{name}.toml"));
-    fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-}
+use crate::common::{example, examples};
 
 fn all(text: &str, selection: &RegimeSelection) -> Regimes {
     regimes(&Train::from_toml(text).unwrap(), selection).unwrap()
@@ -301,12 +296,8 @@ fn regress_odd_trains_are_answered_in_words() {
 
 #[test]
 fn regress_every_example_can_be_asked_everything() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    for file in fs::read_dir(folder).unwrap() {
-        let path = file.unwrap().path();
-        if path.extension().is_some_and(|e| e == "toml") {
-            everything(&fs::read_to_string(path).unwrap());
-        }
+    for (_, text) in examples() {
+        everything(&text);
     }
 }
 

@@ -1,12 +1,10 @@
 //! Every law of every family: its docs, its range, its derivatives; and numbers of others.
 
-use std::alloc::System;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
-use std::sync::{Mutex, MutexGuard};
 
+use allocation_counter::measure;
 use num_dual::Dual64;
-use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use willis::catalogue::oil::Base;
 use willis::losses::bearing::{BearingDuty, BearingTorque, Supply};
 use willis::losses::churning::{Churning, Dip};
@@ -22,26 +20,7 @@ use willis::losses::seal::{Lip, Material, SealLoss};
 use willis::losses::windage::{Disc, Windage};
 use willis::losses::{self, Entry, Tag, Trust, entries};
 
-#[global_allocator]
-static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
-/// The allocator counts for the whole process, so the tests of this file take turns.
-static TURN: Mutex<()> = Mutex::new(());
-
-fn turn() -> MutexGuard<'static, ()> {
-    TURN.lock().unwrap_or_else(|e| e.into_inner())
-}
-
-/// A number between 0 and 1 (xorshift).
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
+use crate::common::Uniform;
 
 /// A constant in another kind of number; what is no number stays.
 trait Lift<T> {
@@ -103,7 +82,7 @@ macro_rules! every_law {
             /// States at the corners of a law's range and inside it.
             fn states(law: $laws) -> Vec<State> {
                 let ranges = law.meta().valid;
-                let mut random = Random(7);
+                let mut random = Uniform(7);
                 let mut all = Vec::new();
                 for k in 0..(1 << ranges.len()) + 200 {
                     let mut state = State::typical();
@@ -145,7 +124,6 @@ macro_rules! every_law {
 
             #[test]
             fn every_law_is_finite_and_not_negative_in_its_range() {
-                let _turn = turn();
                 for &law in $laws::ALL {
                     let id = law.meta().id;
                     for state in states(law) {
@@ -157,7 +135,6 @@ macro_rules! every_law {
 
             #[test]
             fn every_law_has_the_derivative_of_a_difference() {
-                let _turn = turn();
                 for &law in $laws::ALL {
                     let id = law.meta().id;
                     for state in states(law) {
@@ -192,7 +169,6 @@ macro_rules! every_law {
 
             #[test]
             fn every_law_gives_the_same_with_and_without_derivatives() {
-                let _turn = turn();
                 for &law in $laws::ALL {
                     let state = State::typical();
                     let (plain, dual) = (law.eval(&state), law.eval(&seeded(&state, FIELDS[0].0)).re);
@@ -202,7 +178,6 @@ macro_rules! every_law {
 
             #[test]
             fn every_law_reports_the_ends_of_its_range() {
-                let _turn = turn();
                 for &law in $laws::ALL {
                     for range in law.meta().valid {
                         assert!(range.min < range.max, "{} {}", law.meta().id, range.symbol);
@@ -220,22 +195,17 @@ macro_rules! every_law {
 
             #[test]
             fn every_law_allocates_nothing() {
-                let _turn = turn();
                 let state = State::typical();
                 let dual = seeded(&state, FIELDS[0].0);
-                // The harness allocates now and then in a thread of its own.
-                let least = (0..20).map(|_| {
-                    let region = Region::new(ALLOCATOR);
+                let count = measure(|| {
                     let sum: f64 = $laws::ALL.iter().map(|law| law.eval(&state) + law.eval(&dual).re).sum();
                     assert!(sum.is_finite());
-                    region.change().allocations
                 });
-                assert_eq!(least.min(), Some(0));
+                assert_eq!(count.count_total, 0);
             }
 
             #[test]
             fn every_law_is_found_by_its_name() {
-                let _turn = turn();
                 for law in $laws::ALL {
                     assert_eq!($laws::named(law.meta().id), Some(*law));
                 }
@@ -247,7 +217,6 @@ macro_rules! every_law {
 
             #[test]
             fn every_law_is_documented() {
-                let _turn = turn();
                 assert_eq!($laws::ALL.len(), $laws::SOURCES.len());
                 for (name, text) in $laws::SOURCES {
                     documented(name, text);
@@ -293,7 +262,6 @@ every_law!(windage: Windage, Disc {
 /// Its state holds a pair of numbers with derivatives, which the macro does not know.
 #[test]
 fn every_loss_factor_is_documented_finite_and_has_its_derivative() {
-    let _turn = turn();
     for (name, text) in LossFactor::SOURCES.iter().chain(LoadSharing::SOURCES) {
         documented(name, text);
     }
@@ -355,7 +323,6 @@ fn references() -> BTreeSet<String> {
 
 #[test]
 fn every_law_has_a_name_a_source_and_a_default() {
-    let _turn = turn();
     let references = references();
     let all = entries();
     let families: BTreeSet<_> = all.iter().map(|e| e.family).collect();
@@ -377,7 +344,6 @@ fn every_law_has_a_name_a_source_and_a_default() {
 
 #[test]
 fn every_key_named_in_the_docs_is_in_the_references() {
-    let _turn = turn();
     let references = references();
     let sources = [
         BearingTorque::SOURCES,
@@ -407,7 +373,6 @@ fn close(ours: f64, theirs: f64, relative: f64, what: &str) {
 /// The same formulas by another implementation, with constants that were seen in their source.
 #[test]
 fn val_spot_values_of_another_implementation() {
-    let _turn = turn();
     let typical = MeshContact::typical();
     let contact = MeshContact {
         line_load: 200e3,
@@ -457,7 +422,6 @@ fn val_spot_values_of_another_implementation() {
 /// Formula sheet of Wang and others (2020), corrected, evaluated by another implementation.
 #[test]
 fn val_wang_2020_formulas() {
-    let _turn = turn();
     use losses::film::Law as _;
     use losses::film_reduction::Law as _;
     let contact = FilmContact {
@@ -498,7 +462,6 @@ fn val_wang_2020_formulas() {
 /// ours the end of the range, and says so.
 #[test]
 fn benedict_kelley_is_cut_and_flagged_where_its_logarithm_is_negative() {
-    let _turn = turn();
     let contact = MeshContact {
         local_line_load: 26e3,
         dynamic_viscosity: 80e-3,
@@ -521,7 +484,6 @@ fn benedict_kelley_is_cut_and_flagged_where_its_logarithm_is_negative() {
 /// Tolerance: residual of the reading (rms 0.014), which contains windage; printed to 0.01.
 #[test]
 fn val_wang_2020_table_4() {
-    let _turn = turn();
     let percent = |teeth: [f64; 2], internal, planets: f64| {
         let contact = MeshContact { teeth, internal, parallel: planets, ..MeshContact::typical() };
         100.0 * Agma6011PerPlanet.eval(&contact) * contact.loss_factor
@@ -548,7 +510,6 @@ type Row = [f64; 14];
 /// and results are printed to six digits.
 #[test]
 fn val_gearpie_coefficients() {
-    let _turn = turn();
     #[rustfmt::skip]
     let rows: [Row; 10] = [
         [6370.671, 40.0, 1.0, 5.266628, 8.382099, 49.847147, 12.756502, 0.355, 0.65, 9.6, 0.439116, 0.025602, 0.024459, 0.073723],
@@ -631,7 +592,6 @@ fn petry_johnson(rpm: f64) -> f64 {
 /// which it reproduces within 2.2 points (measured losses recovered from rounded errors).
 #[test]
 fn val_petry_johnson_2008() {
-    let _turn = turn();
     let others = [(2e3, 116.0), (4e3, 216.3), (6e3, 311.5), (8e3, 403.5), (10e3, 493.2)];
     for (rpm, power) in others {
         assert!((petry_johnson(rpm) - power).abs() < 0.05, "{rpm}: {}", petry_johnson(rpm));
@@ -646,7 +606,6 @@ fn val_petry_johnson_2008() {
 /// Laws whose constants stand as recalled: our own numbers, not a validation.
 #[test]
 fn regress_recalled_laws() {
-    let _turn = turn();
     let typical = MeshContact::typical();
     let of = |id: &str| format!("{:.6}", MeshFriction::named(id).unwrap().eval(&typical));
     let expected = [
