@@ -19,7 +19,7 @@ mod regimes;
 mod report;
 mod sensitivity;
 mod simulate;
-// mod sweep;
+mod sweep;
 // mod uncertainty;
 // mod validate;
 
@@ -41,7 +41,7 @@ pub use regimes::{Regimes, RegimesAnswer};
 pub use report::{Report, quoted};
 pub use sensitivity::Sensitivity;
 pub use simulate::{MOST_EVENTS, Simulate, run_text as simulation_text};
-// pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
+pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
 // pub use uncertainty::{Uncertainty, UncertaintyAnswer};
 // pub use validate::Validate;
 
