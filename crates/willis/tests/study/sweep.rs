@@ -375,7 +375,7 @@ impl willis::work::Work for Stopped {
 
 #[test]
 fn a_sweep_that_is_stopped_says_so() {
-    let model = subject(&text("zf-8hp70.toml"));
+    let model = subject(&example("zf-8hp70"));
     let request = SweepRequest { over: vec!["state=all".into()], ..SweepRequest::default() };
     let wrong = willis::study::sweep(&model, &request, &Stopped).unwrap_err();
     assert!(wrong.is_cancelled(), "{wrong}");
