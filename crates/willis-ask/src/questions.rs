@@ -3,9 +3,9 @@
 mod amount;
 mod analyze;
 mod check;
-// mod compare;
-// mod cycle;
-mod draw;
+mod compare;
+mod cycle;
+// mod draw;
 mod explain;
 mod export;
 mod flow;
@@ -20,14 +20,14 @@ mod report;
 mod sensitivity;
 mod simulate;
 mod sweep;
-// mod uncertainty;
+mod uncertainty;
 // mod validate;
 
 pub use analyze::Analyze;
 pub use check::Check;
-// pub use compare::Compare;
-// pub use cycle::{Cycle, CycleAnswer};
-pub use draw::{Draw, DrawAnswer, Look};
+pub use compare::Compare;
+pub use cycle::{Cycle, CycleAnswer};
+// pub use draw::{Draw, DrawAnswer, Look};
 pub use explain::Explain;
 pub use export::Export;
 pub use flow::Flow;
@@ -42,7 +42,7 @@ pub use report::{Report, quoted};
 pub use sensitivity::Sensitivity;
 pub use simulate::{MOST_EVENTS, Simulate, run_text as simulation_text};
 pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
-// pub use uncertainty::{Uncertainty, UncertaintyAnswer};
+pub use uncertainty::{Uncertainty, UncertaintyAnswer};
 // pub use validate::Validate;
 
 use crate::Entry;
@@ -64,7 +64,7 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Locate>(),
     //     Entry::of::<Simulate>(),
     Entry::of::<Modes>(),
-    Entry::of::<Draw>(),
+    // Entry::of::<Draw>(),
     Entry::of::<Report>(),
     Entry::of::<Export>(),
     //     Entry::of::<Laws>(),

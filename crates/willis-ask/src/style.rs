@@ -2,12 +2,13 @@
 
 use comfy_table::{CellAlignment, Table, presets};
 
+/// A speed in rpm, from rad/s.
 pub fn rpm(rad_s: f64) -> f64 {
     rad_s * 30.0 / std::f64::consts::PI
 }
 
+/// A share as percent: two decimals, more where two would hide the loss or the efficiency.
 pub fn percent(x: f64) -> String {
-    // Two decimals, more where two would hide the loss or the efficiency.
     let p = 100.0 * x;
     if (99.995..100.0).contains(&p) || (0.0 < p && p < 0.1) { format!("{p:.4} %") } else { format!("{p:.2} %") }
 }
@@ -26,16 +27,19 @@ pub fn significant(x: f64, digits: i32) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
+/// A count with its word: `1 mesh`, `2 meshes`.
 pub fn plural(n: usize, one: &str, many: &str) -> String {
     format!("{n} {}", if n == 1 { one } else { many })
 }
 
+/// An empty table without lines.
 pub fn table() -> Table {
     let mut t = Table::new();
     t.load_style(presets::NOTHING);
     t
 }
 
+/// Names the columns of a table.
 pub fn set_header(t: &mut Table, names: &[&str]) {
     t.set_header(names.iter().copied());
     t.column_mut(0).expect("a table has a column").set_padding((2, 1));
@@ -49,6 +53,7 @@ pub fn show(t: &Table) -> String {
     std::iter::once(header).chain(lines.map(String::from)).map(|l| l + "\n").collect()
 }
 
+/// Aligns columns to the right.
 pub fn right(t: &mut Table, columns: std::ops::Range<usize>) {
     for k in columns {
         if let Some(c) = t.column_mut(k) {
@@ -57,10 +62,12 @@ pub fn right(t: &mut Table, columns: std::ops::Range<usize>) {
     }
 }
 
+/// In bold.
 pub fn bold(text: &str) -> String {
     format!("\u{1b}[1m{text}\u{1b}[0m")
 }
 
+/// Dimmed.
 pub fn dim(text: &str) -> String {
     format!("\u{1b}[2m{text}\u{1b}[0m")
 }

@@ -149,7 +149,6 @@ impl Table {
             let kind = match c.kind {
                 ColumnKind::Number => Kind::Number,
                 ColumnKind::Integer => Kind::Integer,
-                ColumnKind::Flag => Kind::Flag,
                 _ => Kind::Text,
             };
             Column { name: c.name.clone(), unit: c.unit.clone(), kind }
@@ -157,9 +156,7 @@ impl Table {
         let cell = |values: &ColumnValues, k: usize| match values {
             ColumnValues::Numbers(all) => all[k].into(),
             ColumnValues::Integers(all) => Cell::Integer(all[k]),
-            ColumnValues::Flags(all) => Cell::Flag(all[k]),
             ColumnValues::Texts(all) => Cell::Text(all[k].to_string()),
-            _ => Cell::Empty,
         };
         let row = |k: usize| all.values.iter().map(|v| cell(v, k)).collect();
         Self { name: name.to_owned(), columns: columns.collect(), rows: (0..all.len()).map(row).collect() }

@@ -39,7 +39,7 @@ const TABLE: Kind = Kind {
 const PERMISSIONS: &str = "check the path and its permissions";
 
 /// Why a file was not read, and what to do.
-type Refusal = (String, &'static str);
+type Unread = (String, &'static str);
 
 /// Reads a train file, with the laws and values that the command line puts in.
 pub fn train(file: &str, matches: &ArgMatches) -> Result<Given, Refusal> {
@@ -105,7 +105,7 @@ pub fn tables_beside(file: &str) -> impl FnMut(&str) -> Result<String, String> {
     move |name| open(&folder.join(name), name, &TABLE).map_err(|(message, hint)| format!("{message}; {hint}"))
 }
 
-fn open(path: &Path, name: &str, kind: &Kind) -> Result<String, Refusal> {
+fn open(path: &Path, name: &str, kind: &Kind) -> Result<String, Unread> {
     let io = |e: std::io::Error| (format!("{name}: {e}"), PERMISSIONS);
     let handle = std::fs::File::open(path).map_err(io)?;
     if handle.metadata().map_err(io)?.is_dir() {
@@ -114,7 +114,7 @@ fn open(path: &Path, name: &str, kind: &Kind) -> Result<String, Refusal> {
     text_of(handle, name, kind)
 }
 
-fn text_of(from: impl Read, name: &str, kind: &Kind) -> Result<String, Refusal> {
+fn text_of(from: impl Read, name: &str, kind: &Kind) -> Result<String, Unread> {
     let most = kind.most_mib << 20;
     let mut bytes = Vec::new();
     let read = from.take(most + 1).read_to_end(&mut bytes);

@@ -62,10 +62,13 @@ impl Question for Cycle {
             profile: self.profile.text.clone(),
             operation: self.operation.clone(),
             state: self.state.clone(),
-            ..CycleRequest::default()
         };
-        let answer = study::cycle(&of[0].model, &request, work)?;
-        Ok(CycleAnswer { report: answer.report, rows: answer.table })
+        // What is wrong with the profile stands in the profile.
+        let answer = study::cycle(&of[0].model, &request, work).map_err(|wrong| match wrong.iter().any(|d| d.span.is_some()) {
+            true => Refusal::File(wrong, self.profile.clone()),
+            false => wrong.into(),
+        })?;
+        Ok(CycleAnswer { report: answer.report, rows: answer.rows })
     }
 
     fn text(&self, answer: &CycleAnswer, _: &[Given]) -> String {

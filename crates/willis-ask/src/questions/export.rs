@@ -4,10 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::study::export::{ExportRequest, KINDS, export};
-use willis::units::{Dimension, Quantity};
 use willis::work::Work;
 
-use super::amount::values;
 use crate::style::wrap;
 use crate::{File, Form, Given, Of, Question, Refusal};
 
@@ -85,14 +83,6 @@ pub struct OneKind {
     pub about: String,
 }
 
-fn axis(field: &str, text: Option<&str>, dimension: Dimension) -> Result<Vec<Quantity>, Refusal> {
-    let Some(text) = text else { return Ok(vec![]) };
-    willis::study::values(text, dimension).map_err(|mut d| {
-        d.message = format!("{field} {}", d.message);
-        (*d).into()
-    })
-}
-
 impl Question for Export {
     const NAME: &'static str = "export";
     const OF: Of = Of::AtMostOne;
@@ -123,12 +113,9 @@ impl Question for Export {
             state: self.state.clone(),
             all_states: self.all_states,
             operation: self.operation.clone(),
-            speeds: axis("speeds", self.speeds.as_deref(), Dimension::ANGULAR_SPEED)?,
-            torques: axis("torques", self.torques.as_deref(), Dimension::TORQUE)?,
-            temperatures: values("temperature", &self.temperature, Dimension::TEMPERATURE)?
-                .iter()
-                .map(Quantity::si)
-                .collect(),
+            speeds: self.speeds.clone(),
+            torques: self.torques.clone(),
+            temperatures: (!self.temperature.is_empty()).then(|| self.temperature.join(",")),
         };
         let done = export(of[0].model.train(), kind, &request)?;
         let file = |f: willis::study::export::ExportedFile| OneFile { name: f.name, about: f.about, text: f.text };

@@ -83,7 +83,7 @@ impl Question for Uncertainty {
             seed: self.seed,
         };
         let answer = study::uncertainty(&of[0].model, &request, work)?;
-        Ok(UncertaintyAnswer { report: answer.report, samples: answer.table })
+        Ok(UncertaintyAnswer { report: answer.report, samples: answer.samples })
     }
 
     fn text(&self, answer: &UncertaintyAnswer, _: &[Given]) -> String {

@@ -1,6 +1,7 @@
 //! Rows as bytes, and pieces of a table put together.
 
 use std::borrow::Cow;
+use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufWriter, Read, Write};
 use std::path::{Path, PathBuf};

@@ -9,6 +9,10 @@ pub fn tables(c: &Comparison) -> Vec<Table> {
     let labels: Vec<String> = c.variants.iter().map(|v| v.label.to_lowercase()).collect();
     let per_variant = |kind: Kind| labels.iter().map(move |l| (l.as_str(), kind));
     let mut all = vec![];
+    let against: Vec<String> = labels[1..]
+        .iter()
+        .flat_map(|l| [format!("{l}_less_{}", labels[0]), format!("{l}_relative")])
+        .collect();
     let mut t = Table::new("variants", [("variant", Text), ("file", Text), ("train", Text)]);
     for v in &c.variants {
         t.row([(&v.label).into(), (&v.file).into(), (&v.train).into()]);
@@ -20,14 +24,10 @@ pub fn tables(c: &Comparison) -> Vec<Table> {
     }
     all.push(t);
     for (title, compared) in [("states", &c.states), ("operations", &c.operations)] {
-        let against: Vec<String> = labels[1..]
-            .iter()
-            .flat_map(|l| [format!("{l}_less_{}", labels[0]), format!("{l}_relative")])
-            .collect();
         let head = [("name", Text), ("quantity", Text), ("unit", Text)].into_iter();
         // A quantity of a state or an operation may be a word.
         let columns = head.chain(per_variant(Text)).chain(against.iter().map(|a| (a.as_str(), Number)));
-        let mut t = Table::new(title, columns);
+        let mut t = Table::new(title, columns.collect::<Vec<_>>());
         let width = t.columns.len();
         let mut row = |mut cells: Vec<Cell>| {
             cells.resize(width, Cell::Empty);

@@ -1,7 +1,7 @@
 //! Variants side by side, differences first, for eyes.
 
 use willis::study::{
-    CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapDifference, MapPair,
+    Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapDifference, MapPair,
     TextDifference,
 };
 

@@ -58,7 +58,7 @@ pub fn tables(r: &CycleReport) -> Vec<Table> {
     for s in &r.sources {
         t.row([
             (&s.name).into(),
-            s.kind.to_string().into(),
+            s.kind.name().into(),
             s.law.to_string().into(),
             s.energy_j.into(),
             s.share.into(),

@@ -1,8 +1,8 @@
 //! What a duty cycle or a load spectrum costs, for eyes.
 
-use willis::study::{Basis, CycleReport, Energies, Said, WorstRow};
+use willis::study::{Basis, CycleReport, Energies, PointVerdict, RepeatedMessage, WorstRow};
 
-use crate::style::{bar, bold, percent, plural, right, set_header, show, significant, table, wrap};
+use crate::style::{bar, bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
 
 /// Units in which a report is easy to read.
 struct Scale {
@@ -46,7 +46,7 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
         facts.push(format!("{} different", r.conditions));
     }
     facts.push(format!("{} {hour}", scale.time(r.time_s)));
-    facts.push(r.rule.to_owned());
+    facts.push(r.rule.clone());
     out += &(wrap(&facts.join(" · "), "") + "\n");
     if let (Some(operation), false) = (&r.operation, r.held.is_empty()) {
         out += &(wrap(&format!("held from operation `{operation}`: {}", r.held.join(", ")), "") + "\n");
@@ -125,8 +125,8 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
         for s in &lossy {
             t.add_row([
                 s.name.clone(),
-                s.kind.to_owned(),
-                s.law.to_owned(),
+                s.kind.name().to_owned(),
+                s.law.clone(),
                 significant(s.energy_j / scale.energy.1, 4),
                 percent(s.share),
                 bar(s.energy_j / first.energy_j),
@@ -152,7 +152,7 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
     out
 }
 
-fn more(s: &Said) -> String {
+fn more(s: &RepeatedMessage) -> String {
     if s.rows > 1 { format!(" and {}", plural(s.rows as usize - 1, "other row", "other rows")) } else { String::new() }
 }
 
@@ -161,7 +161,7 @@ fn verdicts(r: &CycleReport, scale: &Scale) -> String {
     set_header(&mut t, &["verdict", "rows", &format!("time {}", scale.time.0), "of the time"]);
     let mut reasons = String::new();
     for (name, v) in r.verdicts.iter() {
-        let word = if name == "multiple" { "several solutions" } else { name };
+        let word = if name == PointVerdict::Multiple.name() { "several solutions" } else { name };
         t.add_row([word.to_owned(), v.rows.to_string(), scale.time(v.time_s), percent(v.share_of_time)]);
         for s in &v.reasons {
             reasons += &(wrap(&format!("line {}{}: {}", s.line, more(s), s.message), &format!("  {word}  ")) + "\n");
