@@ -26,7 +26,12 @@ pub enum Ended {
     /// With this on standard output, before its end: exit status 130.
     Interrupted(String),
     /// With this on standard output and on standard error: exit status 1.
-    Refused { out: String, told: String },
+    Refused {
+        /// For machines, where they asked.
+        out: String,
+        /// For eyes.
+        told: String,
+    },
 }
 
 impl From<String> for Ended {
