@@ -187,7 +187,7 @@ fn trajectory(case: &Value) -> Trajectory {
         }
         ours.push((event.time_s, modes.clone()));
     }
-    let energy = run.report().energy;
+    let energy = run.report().energy.expect("counted");
     Trajectory {
         id,
         rows,
