@@ -72,8 +72,7 @@ impl Engine {
             let (p, m) = (self.sliding(f, 0.0, 1, true, t), self.sliding(f, 0.0, -1, true, t));
             p != 0.0 || m != 0.0
         };
-        let alone =
-            group.elements.is_empty() && group.frictions.iter().filter(|&&f| can_hold(f)).count() == 1;
+        let alone = group.elements.is_empty() && group.frictions.iter().filter(|&&f| can_hold(f)).count() == 1;
         let torque = match (&self.map, can_hold(k)) {
             (_, false) => viscous,
             (Some(map), _) if alone && !map.open_groups[g] && !group.driven => {

@@ -129,7 +129,11 @@ pub(super) struct GroupStep {
 ///     [[scenario]]
 ///     name = "drive"
 ///     duration = "10 s"
-///     sources = [ { name = "motor", member = "rotor", torque = "0 N m" } ]
+///
+///     [[scenario.source]]
+///     name = "motor"
+///     member = "rotor"
+///     torque = "0 N m"
 /// "#)?;
 /// let mut run = FixedStep::new(&train, "drive", 1e-3)?;
 /// let motor = run.input("motor")?;
@@ -258,6 +262,7 @@ impl FixedStep {
         }
         let mut engine = Engine::new(system);
         let x = initial_state(&mut engine)?;
+        engine.counts = false;
         let s = &engine.system;
         let groups: Vec<GroupStep> = (s.groups.iter())
             .map(|g| GroupStep {
@@ -460,6 +465,7 @@ impl FixedStep {
 
     /// Begins to count where the energy goes: `lost_energy` can be read. Steps take several times as long.
     pub fn with_energies(&mut self) {
+        self.engine.counts = true;
         self.energies = vec![0.0; self.engine.energies()];
         self.came_in = vec![0.0; self.engine.system.drivers.len()];
         (self.present, self.seen_at) = (None, None);
@@ -569,7 +575,7 @@ impl FixedStep {
         let s = &self.engine.system;
         let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
         for &k in &self.varying {
-            let u = self.input(k, middle);
+            let u = self.enters(k, middle);
             // What opens, closes or locks is more than a change of torque.
             if k >= drivers && k < drivers + frictions {
                 let was = self.inputs[k];

@@ -113,7 +113,8 @@ fn signal(kind: &mut SourceKind) -> Option<(InputKind, &mut Signal)> {
 impl System {
     /// All inputs of the scenario.
     pub fn inputs(&self) -> Vec<InputInfo> {
-        let info = |name: String, kind: InputKind, sets| InputInfo { name, kind, unit: kind.unit(), input: Input(sets) };
+        let info =
+            |name: String, kind: InputKind, sets| InputInfo { name, kind, unit: kind.unit(), input: Input(sets) };
         let sources = (self.scenario.sources.iter().enumerate()).filter_map(|(k, source)| {
             let (kind, _) = signal(&mut source.kind.clone())?;
             Some(info(source.name.clone(), kind, Sets::Source(k)))
@@ -180,12 +181,7 @@ impl Output {
     }
 }
 
-fn unknown<'a>(
-    message: String,
-    name: &str,
-    known: impl Iterator<Item = &'a str> + Clone,
-    what: &str,
-) -> Diagnostics {
+fn unknown<'a>(message: String, name: &str, known: impl Iterator<Item = &'a str> + Clone, what: &str) -> Diagnostics {
     let mut d = Diagnostic::new(Code::UnknownName, "", message).suggest(name, known.clone());
     if d.hints.is_empty() {
         let list = known.collect::<Vec<_>>().join(", ");

@@ -90,11 +90,7 @@ impl Pass {
                 mesh: link.mesh.index(),
                 along: link.along,
                 ratio: if mesh.same_sense { -ratio } else { ratio },
-                efficiency: if links.len() == 1 {
-                    [1.0; 2]
-                } else {
-                    [own.forward.to_f64(), own.backward.to_f64()]
-                },
+                efficiency: if links.len() == 1 { [1.0; 2] } else { [own.forward.to_f64(), own.backward.to_f64()] },
             }
         };
         links.iter().map(pass).collect()
