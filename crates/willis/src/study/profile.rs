@@ -242,7 +242,8 @@ fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Box<Diagnostic>> 
                 Ok(_) => Ok(setting(target, unit.to_owned())),
                 Err(why) => {
                     let (kind, example) = dimension.describe();
-                    let good = example.split_once(' ').map_or("", |e| e.1);
+                    // The unit that may be meant, or the usual one.
+                    let good = why.instead.first().map_or(example, String::as_str).split_once(' ').map_or("", |e| e.1);
                     Err(hinted(
                         format!("the unit `{unit}` is not that of {kind}: {why}"),
                         format!("write `{name} [{good}]`"),

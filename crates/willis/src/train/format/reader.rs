@@ -11,7 +11,7 @@ use crate::exact::Rational;
 use crate::train::Efficiency;
 use crate::train::assemble::clip;
 use crate::train::describe::EfficiencySpec;
-use crate::units::{self, Dimension, Quantity, QuantityError};
+use crate::units::{self, Dimension, Quantity, QuantityFault};
 
 use super::csv;
 use super::keys::{Kind, Measure, NUMBER_SIGNAL, SignalKind, Table};
@@ -142,7 +142,11 @@ pub(super) fn read(text: &str, table: &Table, load: &mut Load<'_>, diagnostics: 
     for error in errors.iter().take(MOST_ERRORS) {
         let mut d = Diagnostic::new(Code::Syntax, "", error.message().trim().replace('\n', ", "));
         d.span = error.span().map(|s| s.start.min(text.len())..s.end.min(text.len()));
-        diagnostics.push(d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"));
+        let comma = d.span.as_ref().and_then(|span| decimal_comma(text, span.start));
+        diagnostics.push(match comma {
+            Some(number) => d.hint(format!("the decimal sign is a decimal point: write {number}")),
+            None => d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"),
+        });
     }
     let mut reader = Reader { diagnostics, spans: Spans::default(), load, files: BTreeMap::new() };
     if !errors.is_empty() {
@@ -150,6 +154,13 @@ pub(super) fn read(text: &str, table: &Table, load: &mut Load<'_>, diagnostics: 
     }
     let fields = reader.table(root.get_ref(), table, "", 0..text.len().min(1));
     (fields, reader.spans)
+}
+
+/// The number that is meant in the line of a syntax error, if a decimal comma is the cause: `backlash = 20,5`.
+fn decimal_comma(text: &str, at: usize) -> Option<String> {
+    let start = text.get(..at)?.rfind('\n').map_or(0, |k| k + 1);
+    let (_, value) = text[start..].lines().next()?.split_once('=')?;
+    units::decimal_point(value.split('#').next()?)
 }
 
 struct Reader<'d, 'l> {
@@ -605,7 +616,8 @@ impl Reader<'_, '_> {
             DeValue::Float(x) => x.as_str(),
             DeValue::String(s) => {
                 let message = format!("`{}` is a number without quotes, here is \"{}\"", last(place), clip(s));
-                self.report(Code::WrongType, place, message, hint);
+                let comma = units::decimal_point(s).map(|n| format!("the decimal sign is a decimal point: write {n}"));
+                self.report(Code::WrongType, place, message, comma.unwrap_or_else(|| hint.to_owned()));
                 return None;
             }
             _ => {
@@ -627,22 +639,22 @@ impl Reader<'_, '_> {
         let (kind, example) = dimension.describe();
         let unit = example.split_once(' ').map_or("", |e| e.1);
         let at = value.span();
-        let mut report = |message: String, hint: String| {
+        let mut report = |message: String, hint: String, replacement: Option<String>| {
             let mut d = Diagnostic::new(Code::Quantity, place, message).hint(hint);
             d.span = Some(at.clone());
+            d.replacement = replacement;
             self.diagnostics.push(d);
         };
         match value.get_ref() {
             DeValue::String(text) => match units::parse(text, dimension) {
                 Ok(q) => return Some(q),
                 Err(error) => {
-                    let shown = clip(text);
-                    let hint = match &error {
-                        QuantityError::NoUnit => format!("write \"{} {unit}\" if that is the unit meant", shown.trim()),
-                        QuantityError::UnknownUnit(_, Some(near)) => format!("did you mean `{near}`?"),
-                        _ => format!("{kind} looks like \"{example}\""),
+                    let replacement = match error.instead.as_slice() {
+                        // Without a unit nobody knows which is meant.
+                        [one] if error.fault != QuantityFault::NoUnit => Some(format!("\"{one}\"")),
+                        _ => None,
                     };
-                    report(format!("\"{shown}\" is not {kind}: {error}"), hint);
+                    report(format!("\"{}\" is not {kind}: {error}", clip(text)), error.hint(), replacement);
                 }
             },
             DeValue::Integer(_) | DeValue::Float(_) => {
@@ -652,11 +664,15 @@ impl Reader<'_, '_> {
                     _ => unreachable!(),
                 };
                 let hint = format!("write \"{shown} {unit}\" if that is the unit meant");
-                report(format!("{shown} has no unit; {kind} is a text with one"), hint);
+                report(format!("{shown} has no unit; {kind} is a text with one"), hint, None);
             }
             other => {
                 let found = describe(other);
-                report(format!("{kind} is a text with a unit, here is {found}"), format!("an example: \"{example}\""));
+                report(
+                    format!("{kind} is a text with a unit, here is {found}"),
+                    format!("an example: \"{example}\""),
+                    None,
+                );
             }
         }
         None
