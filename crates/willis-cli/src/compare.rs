@@ -13,7 +13,7 @@ const MOST_LETTERS: usize = 48;
 
 /// Compares files.
 pub fn run(files: &[Studied], request: &CompareRequest) -> Result<Comparison, String> {
-    let all: Vec<_> = files.iter().map(|f| (f.file.as_str(), &f.subject)).collect();
+    let all: Vec<_> = files.iter().map(|f| (f.file.as_str(), &f.model)).collect();
     // A message names its file, or concerns all.
     willis::study::compare(&all, request).map_err(|wrong| wrong.render("", "", crate::color()))
 }

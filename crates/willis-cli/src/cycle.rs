@@ -4,9 +4,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use willis::Diagnostics;
-use willis::study::{
-    Basis, Cycle, CyclePart, CycleReport, Energies, Hold, Profile, Question, Said, Subject, Trains, WorstRow,
-};
+use willis::model::Model;
+use willis::study::{Basis, Cycle, CyclePart, CycleReport, Energies, Hold, Profile, Question, Said, Trains, WorstRow};
 
 use crate::csv::Writer;
 use crate::text::{bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
@@ -15,33 +14,19 @@ use crate::{input, losses, output, work};
 /// A train file that is studied, with its text for messages.
 pub struct Studied {
     pub file: String,
-    text: String,
-    pub subject: Subject,
+    pub model: Model,
 }
 
 impl Studied {
     /// Reads a train file and puts laws into force, `family=law`.
     pub fn read(file: &str, laws: &[String]) -> Result<Self, String> {
-        let name = if file == "-" { "standard input" } else { file };
-        let mut pairs = vec![];
-        for text in laws {
-            match text.split_once('=') {
-                Some((family, law)) => pairs.push((family.trim().to_owned(), law.trim().to_owned())),
-                None => {
-                    return Err(format!("--law {text}: write family=law, as in --law mesh_friction=niemann\n"));
-                }
-            }
-        }
-        let text = input::read(file).map_err(|d| d.render(name, "", crate::color()))?;
-        match Subject::new(&text, &pairs, &mut input::tables_beside(file)) {
-            Ok(subject) => Ok(Self { file: name.to_owned(), text, subject }),
-            Err(reading) => Err(crate::failure(&reading.diagnostics, name, &text)),
-        }
+        let crate::Job { file, model, .. } = crate::Job::read(file, laws)?;
+        Ok(Self { file, model })
     }
 
     /// What is wrong with a question to it.
     pub fn failure(&self, wrong: &Diagnostics) -> String {
-        crate::failure(wrong, &self.file, &self.text)
+        crate::failure(wrong, &self.file, self.model.to_toml())
     }
 }
 
@@ -74,8 +59,8 @@ pub fn run(studied: &Studied, request: &Request<'_>) -> Result<CycleReport, Stri
         free(path, request.force)?;
     }
     let text = input::table(request.profile).map_err(|d| d.render(request.profile, "", crate::color()))?;
-    let profile = Profile::parse(&text, &studied.subject).map_err(|wrong| refused(&wrong, request.profile, &text))?;
-    let question = Question::new(&studied.subject, request.operation, request.state, Hold::AsGiven)
+    let profile = Profile::parse(&text, &studied.model).map_err(|wrong| refused(&wrong, request.profile, &text))?;
+    let question = Question::new(&studied.model, request.operation, request.state, Hold::AsGiven)
         .map_err(|wrong| studied.failure(&wrong))?;
     let cycle = Cycle::new(question, &profile);
     let parts = compute(&cycle);
@@ -84,7 +69,7 @@ pub fn run(studied: &Studied, request: &Request<'_>) -> Result<CycleReport, Stri
         return Err(format!("{}: no row of it makes a question: {}\n", request.profile, first.reason));
     }
     if let Some(path) = request.rows {
-        write(path, rows(&studied.subject, &profile, &parts).as_bytes(), request.force)?;
+        write(path, rows(&studied.model, &profile, &parts).as_bytes(), request.force)?;
     }
     Ok(cycle.report(&parts))
 }
@@ -104,7 +89,7 @@ fn compute(cycle: &Cycle<'_>) -> Vec<CyclePart> {
 }
 
 /// One row of the profile a line, with its answer.
-fn rows(subject: &Subject, profile: &Profile, parts: &[CyclePart]) -> String {
+fn rows(model: &Model, profile: &Profile, parts: &[CyclePart]) -> String {
     let points: Vec<_> = parts.iter().flat_map(|p| &p.points).collect();
     let mut out = Writer::default();
     let is_trace = profile.basis() == Basis::Trace;
@@ -137,7 +122,7 @@ fn rows(subject: &Subject, profile: &Profile, parts: &[CyclePart]) -> String {
         }
         all.push(number(row.duration_s));
         all.extend(profile.cells(k).map(str::to_owned));
-        all.push(p.state.and_then(|s| subject.train().states().get(s)).map_or(String::new(), |s| s.name.clone()));
+        all.push(p.state.and_then(|s| model.train().states().get(s)).map_or(String::new(), |s| s.name.clone()));
         all.extend([p.verdict.to_owned(), p.way.map_or("", |w| w.name()).to_owned()]);
         all.extend([p.efficiency, p.input_power_w, p.output_power_w, p.loss_w].map(number));
         all.extend([number(p.loss_w * row.duration_s), p.reason.to_string()]);

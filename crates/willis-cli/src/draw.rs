@@ -7,10 +7,10 @@ use std::process::{Command, Stdio};
 use sha2::{Digest, Sha256};
 use willis::Diagnostics;
 use willis::diagnostic::{Diagnostic, Severity};
-use willis::figure::{Figure, FigureKind, FigureRequest};
-use willis::study::Subject;
-use willis_report::document::Document;
-use willis_report::{Drawing, ReportRequest, Theme, html, png, themed};
+use willis::model::Model;
+use willis_figure::report::document::Document;
+use willis_figure::{Drawing, ReportRequest, Theme, html, png, themed};
+use willis_figure::{Figure, FigureKind, FigureRequest};
 
 use crate::output;
 
@@ -43,7 +43,7 @@ impl Ending {
 
 /// Draws one kind, or all that apply into a folder.
 pub fn draw(
-    subject: &Subject,
+    model: &Model,
     kind: &str,
     request: &FigureRequest,
     look: &Look,
@@ -51,12 +51,12 @@ pub fn draw(
     failure: &dyn Fn(Diagnostics) -> String,
 ) -> Result<String, String> {
     if kind == "all" {
-        return every(subject, request, look, out);
+        return every(model, request, look, out);
     }
     let kind = FigureKind::named(kind).map_err(failure)?;
     heard(kind, request, look)?;
     let ending = out.map_or(Ok(Ending::Svg), Ending::of)?;
-    let figure = kind.make(subject, request).map_err(|wrong| failure(with_others(wrong, subject, request)))?;
+    let figure = kind.make(model, request).map_err(|wrong| failure(with_others(wrong, model, request)))?;
     let bytes = picture(&figure, look, ending)?;
     match out {
         Some(path) => output::write(path, &bytes).map(|()| String::new()),
@@ -86,19 +86,19 @@ fn heard(kind: FigureKind, request: &FigureRequest, look: &Look) -> Result<(), S
 }
 
 /// Where a kind does not apply to a train at all, those that do.
-fn with_others(wrong: Diagnostics, subject: &Subject, request: &FigureRequest) -> Diagnostics {
+fn with_others(wrong: Diagnostics, model: &Model, request: &FigureRequest) -> Diagnostics {
     let asked =
         request.state.is_some() || request.operation.is_some() || request.part.is_some() || !request.over.is_empty();
     let mut all: Vec<Diagnostic> = wrong.into_iter().collect();
     if !asked && let Some(first) = all.iter_mut().find(|d| d.severity == Severity::Error) {
-        let others: Vec<&str> = FigureKind::applicable(subject).into_iter().map(FigureKind::name).collect();
+        let others: Vec<&str> = FigureKind::applicable(model).into_iter().map(FigureKind::name).collect();
         first.hints.push(format!("of this train can be drawn: {}", others.join(", ")));
     }
     all.into_iter().collect()
 }
 
 fn picture(figure: &Figure, look: &Look, ending: Ending) -> Result<Vec<u8>, String> {
-    let svg = || themed(&willis_report::draw(figure, look.drawing), look.theme);
+    let svg = || themed(&willis_figure::draw(figure, look.drawing), look.theme);
     match ending {
         Ending::Json => Ok((serde_json::to_string_pretty(figure).expect("plain data") + "\n").into_bytes()),
         Ending::Svg => Ok((svg() + "\n").into_bytes()),
@@ -107,7 +107,7 @@ fn picture(figure: &Figure, look: &Look, ending: Ending) -> Result<Vec<u8>, Stri
 }
 
 /// Every kind that applies, as SVG into a folder.
-fn every(subject: &Subject, request: &FigureRequest, look: &Look, out: Option<&Path>) -> Result<String, String> {
+fn every(model: &Model, request: &FigureRequest, look: &Look, out: Option<&Path>) -> Result<String, String> {
     let Some(folder) = out else {
         return Err("`all` draws several pictures: name a folder for them with -o\n".into());
     };
@@ -115,7 +115,7 @@ fn every(subject: &Subject, request: &FigureRequest, look: &Look, out: Option<&P
         return Err(format!("{}: is no folder\n", folder.display()));
     }
     let made: Vec<(&FigureKind, Result<Figure, Diagnostics>)> =
-        FigureKind::ALL.iter().map(|k| (k, k.make(subject, request))).collect();
+        FigureKind::ALL.iter().map(|k| (k, k.make(model, request))).collect();
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}\n", folder.display()))?;
     let mut said = String::new();
     for (kind, figure) in made {

@@ -28,14 +28,15 @@ use willis::analysis::{self, Analysis, LossRequest, Selection};
 use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::dynamics::{Method, Options};
-use willis::figure::FigureRequest;
+use willis::model::Model;
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::study::export::ExportRequest;
-use willis::study::{Hold, Subject, Sweep, UncertaintyPlan, UncertaintyRequest};
+use willis::study::{Hold, Sweep, UncertaintyPlan, UncertaintyRequest};
 use willis::symbolic::Notation;
-use willis::train::{Reading, Train};
+use willis::train::Train;
 use willis::units::{self, Dimension, Quantity};
-use willis_report::{Drawing, Theme};
+use willis_figure::FigureRequest;
+use willis_figure::{Drawing, Theme};
 
 /// Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that
 /// the answer is the only one.
@@ -906,10 +907,10 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
     match command {
         Command::Analyze { file, state, operation, format, table, law } => {
             let selection = Selection { state: state.clone(), operation: operation.clone() };
-            let job = Job::read(file)?.with_laws(law)?;
+            let job = Job::read(file, law)?;
             let analysis = job.analyze(&selection)?;
             Ok(match format {
-                Format::Text => text::analysis(&job.train, &analysis) + &job.notes(&analysis.diagnostics),
+                Format::Text => text::analysis(job.train(), &analysis) + &job.notes(&analysis.diagnostics),
                 Format::Json => serde_json::to_string_pretty(&analysis).expect("plain data") + "\n",
                 Format::Csv => csv::analysis(&analysis, *table),
             })
@@ -931,8 +932,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             fast,
             format,
         } => {
-            let job = Job::read(file)?;
-            let subject = job.subject(law)?;
+            let job = Job::read(file, law)?;
             if let Some(out) = out {
                 output::apart(out, &[file.as_ref()])?;
             }
@@ -950,7 +950,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 threads: threads.map(usize::from),
                 fast: *fast,
             };
-            let report = match sweep::run(&subject, &job.text, law, &request) {
+            let report = match sweep::run(&job.model, job.model.to_toml(), law, &request) {
                 Ok(report) => report,
                 Err(sweep::Failure::Input(wrong)) => return Err(job.failure(wrong)),
                 Err(sweep::Failure::Told(text)) => return Err(text),
@@ -960,7 +960,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 }
             };
             Ok(match format {
-                PlainFormat::Text => sweep::text(&report) + &job.notes(subject.train().warnings()),
+                PlainFormat::Text => sweep::text(&report) + &job.notes(job.train().warnings()),
                 PlainFormat::Json => serde_json::to_string_pretty(&report).expect("plain data") + "\n",
             })
         }
@@ -970,7 +970,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             sweep::merge(out, shards, *force).map(|r| sweep::text(&r))
         }
         Command::Losses { file, operation, speeds, powers, torques, temperature, compare, law, format } => {
-            let job = Job::read(file)?.with_laws(law)?;
+            let job = Job::read(file, law)?;
             let temperature = values("--temperature", temperature, Dimension::TEMPERATURE)?;
             let request = LossRequest {
                 operation: operation.clone(),
@@ -980,7 +980,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 temperatures: temperature.iter().map(Quantity::si).collect(),
                 compare: compare.clone(),
             };
-            let all = analysis::losses(&job.train, &request).map_err(|wrong| job.failure(wrong))?;
+            let all = analysis::losses(job.train(), &request).map_err(|wrong| job.failure(wrong))?;
             Ok(match format {
                 Format::Text => losses::points(&all),
                 Format::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
@@ -989,8 +989,8 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
         }
         Command::Sensitivity { file, operation, state, law, format } => {
             let selection = Selection { state: state.clone(), operation: operation.clone() };
-            let job = Job::read(file)?.with_laws(law)?;
-            let all = willis::study::sensitivity(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+            let job = Job::read(file, law)?;
+            let all = willis::study::sensitivity(job.train(), &selection).map_err(|wrong| job.failure(wrong))?;
             Ok(match format {
                 Format::Text => sensitivity::text(&all) + &job.notes(&all.diagnostics),
                 Format::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
@@ -1030,7 +1030,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             scale,
             output,
         } => {
-            let job = Job::read(file)?;
+            let job = Job::read(file, law)?;
             let request = FigureRequest {
                 state: state.clone(),
                 operation: operation.clone(),
@@ -1050,26 +1050,25 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             if let Some(out) = output {
                 output::apart(out, &[file.as_ref()])?;
             }
-            draw::draw(&job.subject(law)?, kind, &request, &look, output.as_deref(), &|wrong| job.failure(wrong))
+            draw::draw(&job.model, kind, &request, &look, output.as_deref(), &|wrong| job.failure(wrong))
         }
         Command::Report { file, operation, law, paper, output } => {
-            let job = Job::read(file)?;
+            let job = Job::read(file, law)?;
             if let Some(out) = output {
                 output::apart(out, &[file.as_ref()])?;
             }
-            let subject = job.subject(law)?;
             let paper = match paper {
                 Paper::A4 => "a4",
                 Paper::UsLetter => "us-letter",
             };
-            let request = draw::report_request(file, &job.text, operation.clone(), law);
-            let document = willis_report::report(&subject, &request).map_err(|wrong| job.failure(wrong))?;
+            let request = draw::report_request(file, job.model.to_toml(), operation.clone(), law);
+            let document = willis_figure::report(&job.model, &request).map_err(|wrong| job.failure(wrong))?;
             draw::deliver(&document, paper, output.as_deref())
         }
         Command::Flow { file, operation, format, output, law } => {
             let selection = Selection { state: None, operation: operation.clone() };
-            let job = Job::read(file)?.with_laws(law)?;
-            let all = willis::hypergraph::flows(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+            let job = Job::read(file, law)?;
+            let all = willis::hypergraph::flows(job.train(), &selection).map_err(|wrong| job.failure(wrong))?;
             let promised = output.as_deref().and_then(FlowFormat::of);
             if let (Some(path), None, None) = (output, format, promised) {
                 let told = "its ending is none of .svg, .json, .dot, .txt; name one of them, or give --format";
@@ -1082,8 +1081,8 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 }
                 FlowFormat::Text => flow::text(&all) + &job.notes(&all.diagnostics),
                 FlowFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
-                FlowFormat::Dot => willis_report::flow_dot(&all),
-                FlowFormat::Svg => willis_report::flow_svg(&all) + "\n",
+                FlowFormat::Dot => willis_figure::flow_dot(&all),
+                FlowFormat::Svg => willis_figure::draw_flow(&all) + "\n",
             };
             match output {
                 None => Ok(text),
@@ -1091,23 +1090,23 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             }
         }
         Command::Regimes { file, state, terminals, balance, family, map, format } => {
-            let job = Job::read(file)?;
+            let job = Job::read(file, &[])?;
             let selection = RegimeSelection {
                 state: state.clone(),
                 terminals: terminals.clone(),
                 balance: pair(balance.as_deref())?,
             };
             if map.is_some() || *format == RegimesFormat::MapJson {
-                let figure = willis::figure::regime_map(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+                let figure = willis_figure::regime_map(job.train(), &selection).map_err(|wrong| job.failure(wrong))?;
                 return match map {
                     None => Ok(serde_json::to_string_pretty(&figure).expect("plain data") + "\n"),
                     Some(path) => {
-                        output::write(path, willis_report::regime_map(&figure).as_bytes()).map(|()| String::new())
+                        output::write(path, willis_figure::draw_regimes(&figure).as_bytes()).map(|()| String::new())
                     }
                 };
             }
             if *family {
-                let all = willis::regimes::family(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+                let all = willis::regimes::family(job.train(), &selection).map_err(|wrong| job.failure(wrong))?;
                 return Ok(match format {
                     RegimesFormat::Text => regimes::family(&all),
                     RegimesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
@@ -1116,7 +1115,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                     RegimesFormat::MapJson => unreachable!("answered above"),
                 });
             }
-            let all = willis::regimes::regimes(&job.train, &selection).map_err(|wrong| job.failure(wrong))?;
+            let all = willis::regimes::regimes(job.train(), &selection).map_err(|wrong| job.failure(wrong))?;
             Ok(match format {
                 RegimesFormat::Text => regimes::text(&all),
                 RegimesFormat::Json => serde_json::to_string_pretty(&all).expect("plain data") + "\n",
@@ -1138,7 +1137,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             efficiencies,
             derivatives,
         } => {
-            let job = Job::read(file)?;
+            let job = Job::read(file, &[])?;
             let request = FormulaRequest {
                 state: state.clone(),
                 from: from.clone(),
@@ -1157,11 +1156,11 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                     EfficienciesArgument::Numbers => Efficiencies::Numbers,
                 },
             };
-            let sheet = willis::regimes::formulas(&job.train, &request).map_err(|wrong| job.failure(wrong))?;
+            let sheet = willis::regimes::formulas(job.train(), &request).map_err(|wrong| job.failure(wrong))?;
             Ok(sheet.emit((*lang).into(), *derivatives))
         }
         Command::Locate { file, state, speeds, torques, operation, terminals, balance, format } => {
-            let job = Job::read(file)?;
+            let job = Job::read(file, &[])?;
             let request = LocateRequest {
                 state: state.clone(),
                 terminals: terminals.clone(),
@@ -1170,7 +1169,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 speeds: quantities("--speeds", speeds, Dimension::ANGULAR_SPEED)?,
                 torques: quantities("--torques", torques, Dimension::TORQUE)?,
             };
-            let found = willis::regimes::locate(&job.train, &request).map_err(|wrong| job.failure(wrong))?;
+            let found = willis::regimes::locate(job.train(), &request).map_err(|wrong| job.failure(wrong))?;
             Ok(match format {
                 LocateFormat::Text => regimes::location(&found),
                 LocateFormat::Json => serde_json::to_string_pretty(&found).expect("plain data") + "\n",
@@ -1190,7 +1189,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             most_events,
             format,
         } => {
-            let job = Job::read(file)?;
+            let job = Job::read(file, &[])?;
             let mut options = Options {
                 samples: samples.map(|n| n as usize),
                 continue_when_ambiguous: *continue_when_ambiguous,
@@ -1214,7 +1213,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 options,
                 json: *format == SimulateFormat::Json,
             };
-            let run = simulate::run(&job.train, &request).map_err(|failure| match failure {
+            let run = simulate::run(job.train(), &request).map_err(|failure| match failure {
                 simulate::Failure::Input(wrong) => job.failure(wrong),
                 simulate::Failure::Told(text) => text,
             })?;
@@ -1267,12 +1266,12 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             })
         }
         Command::Modes { file, state, fixed, plot, format } => {
-            let job = Job::read(file)?;
+            let job = Job::read(file, &[])?;
             let held: Vec<&str> = fixed.iter().map(String::as_str).collect();
             let all =
-                willis::dynamics::modes(&job.train, state.as_deref(), &held).map_err(|wrong| job.failure(wrong))?;
+                willis::dynamics::modes(job.train(), state.as_deref(), &held).map_err(|wrong| job.failure(wrong))?;
             if let Some(path) = plot {
-                output::write(path, (willis_report::modes_plot(&all) + "\n").as_bytes())?;
+                output::write(path, (willis_figure::draw_modes(&all) + "\n").as_bytes())?;
             }
             Ok(match format {
                 ModesFormat::Text => modes::text(&all),
@@ -1303,21 +1302,21 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 torques: export::axis("--torques", torques.as_deref(), Dimension::TORQUE)?,
                 temperatures: temperature.iter().map(Quantity::si).collect(),
             };
-            let job = Job::read(file)?.with_laws(law)?;
+            let job = Job::read(file, law)?;
             if let Some(out) = output {
                 output::apart(out, &[file.as_ref()])?;
             }
-            let done = willis::study::export::export(&job.train, kind, &request).map_err(|wrong| job.failure(wrong))?;
+            let done =
+                willis::study::export::export(job.train(), kind, &request).map_err(|wrong| job.failure(wrong))?;
             export::deliver(&done, output.as_deref(), *force)
         }
         Command::Uncertainty { file, operation, state, vary, laws, samples, seed, law, samples_out, force, format } => {
-            let job = Job::read(file)?.with_laws(law)?;
+            let job = Job::read(file, law)?;
             let target = samples_out.clone().map(|path| uncertainty::SamplesOut { path, force: *force });
             if let Some(out) = samples_out {
                 output::apart(out, &[file.as_ref()])?;
             }
             target.iter().try_for_each(uncertainty::SamplesOut::check)?;
-            let subject = job.subject(law)?;
             let request = UncertaintyRequest {
                 operation: operation.clone(),
                 state: state.clone(),
@@ -1326,7 +1325,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 samples: *samples,
                 seed: *seed,
             };
-            let plan = UncertaintyPlan::new(&subject, &request).map_err(|wrong| job.failure(wrong))?;
+            let plan = UncertaintyPlan::new(&job.model, &request).map_err(|wrong| job.failure(wrong))?;
             let evaluated = uncertainty::evaluate(&plan);
             if let Some(target) = &target {
                 uncertainty::write_samples(&target.path, &plan, &evaluated)?;
@@ -1340,19 +1339,18 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
         }
         Command::Validate { case, format, data } => validate(case.as_deref(), *format, data.as_deref()),
         Command::Check { file } => {
-            let job = Job::read(file)?;
+            let job = Job::read(file, &[])?;
             let analysis = job.analyze(&Selection::default())?;
-            if !job.train.studies().is_empty() {
-                let subject = job.subject(&[])?;
+            if !job.train().studies().is_empty() {
                 let mut wrong = Diagnostics::default();
-                for study in job.train.studies() {
-                    wrong.extend(Sweep::of_file(&subject, &study.name).err().unwrap_or_default());
+                for study in job.train().studies() {
+                    wrong.extend(Sweep::of_file(&job.model, &study.name).err().unwrap_or_default());
                 }
                 if wrong.has_errors() {
                     return Err(job.failure(wrong));
                 }
             }
-            let (train, notes) = (&job.train, job.notes(&analysis.diagnostics));
+            let (train, notes) = (job.train(), job.notes(&analysis.diagnostics));
             let warnings = analysis.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
             let count = |n: usize, one: &str| format!("{n} {one}{}", if n == 1 { "" } else { "s" });
             let meshes = train.meshes().len();
@@ -1465,70 +1463,48 @@ fn pair(names: Option<&[String]>) -> Result<Option<[String; 2]>, String> {
     }
 }
 
-/// A train read from somewhere, with what is needed to tell where things stand in its text.
+/// A train read from somewhere, with the name to show.
 struct Job {
-    /// As given.
-    path: String,
-    /// As shown.
     file: String,
-    text: String,
-    reading: Reading,
-    train: Train,
+    model: Model,
 }
 
 impl Job {
-    fn read(file: &str) -> Result<Self, String> {
+    /// Reads a train file and puts laws into force, `family=law`.
+    fn read(file: &str, laws: &[String]) -> Result<Self, String> {
         let name = if file == "-" { "standard input" } else { file };
-        let text = input::read(file).map_err(|d| d.render(name, "", color()))?;
-        let mut reading = Train::read_toml_with(&text, &mut input::tables_beside(file));
-        match reading.train.take() {
-            Some(train) => Ok(Self { path: file.to_owned(), file: name.to_owned(), text, reading, train }),
-            None => Err(failure(&reading.diagnostics, name, &text)),
-        }
-    }
-
-    /// Puts laws into force, `family=law`.
-    fn with_laws(mut self, laws: &[String]) -> Result<Self, String> {
-        for text in laws {
-            let Some((family, law)) = text.split_once('=') else {
-                return Err(format!("--law {text}: write family=law, as in --law mesh_friction=niemann\n"));
-            };
-            match self.train.clone().with_law(family.trim(), law.trim()) {
-                Ok(train) => self.train = train,
-                Err(wrong) => return Err(self.failure(wrong)),
-            }
-        }
-        Ok(self)
-    }
-
-    /// The train with quantities that can vary.
-    fn subject(&self, laws: &[String]) -> Result<Subject, String> {
         let mut pairs = vec![];
         for text in laws {
             let Some((family, law)) = text.split_once('=') else {
                 return Err(format!("--law {text}: write family=law, as in --law mesh_friction=niemann\n"));
             };
-            pairs.push((family.trim().to_owned(), law.trim().to_owned()));
+            pairs.push((family.trim(), law.trim()));
         }
-        let read = Subject::new(&self.text, &pairs, &mut input::tables_beside(&self.path));
-        read.map_err(|reading| failure(&reading.diagnostics, &self.file, &self.text))
+        let text = input::read(file).map_err(|d| d.render(name, "", color()))?;
+        let model = Model::read(&text, &mut input::tables_beside(file)).and_then(|m| m.with_laws(pairs));
+        let model = model.map_err(|wrong| failure(&wrong, name, &text))?;
+        Ok(Self { file: name.to_owned(), model })
+    }
+
+    fn train(&self) -> &Train {
+        self.model.train()
     }
 
     fn analyze(&self, selection: &Selection) -> Result<Analysis, String> {
-        analysis::analyze(&self.train, selection).map_err(|wrong| self.failure(wrong))
+        analysis::analyze(self.train(), selection).map_err(|wrong| self.failure(wrong))
     }
 
     fn failure(&self, mut wrong: Diagnostics) -> String {
-        self.reading.locate(&self.text, &mut wrong);
-        failure(&wrong, &self.file, &self.text)
+        self.model.locate(&mut wrong);
+        failure(&wrong, &self.file, self.model.to_toml())
     }
 
     /// Warnings and notes, each at its place in the file.
     fn notes(&self, diagnostics: &[Diagnostic]) -> String {
         let mut all = Diagnostics::default();
         all.extend(diagnostics.iter().cloned());
-        self.reading.locate(&self.text, &mut all);
-        all.render(&self.file, &self.text, color())
+        self.model.locate(&mut all);
+        all.render(&self.file, self.model.to_toml(), color())
     }
 }
 

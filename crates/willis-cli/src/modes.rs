@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn the_figure_is_well_formed() {
-        let svg = willis_report::modes_plot(&report());
+        let svg = willis_figure::draw_modes(&report());
         assert!(svg.starts_with("<svg") && svg.contains("12.5 Hz") && svg.contains("half shaft"));
     }
 }

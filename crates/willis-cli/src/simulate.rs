@@ -18,8 +18,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 use willis::dynamics::{Column, Event, Options, Outcome, Recorder, RunReport, Sample};
-use willis::figure::{TimePlotBuilder, outcome_in_words};
 use willis::train::Train;
+use willis_figure::{TimePlotBuilder, outcome_in_words};
 
 use crate::interrupt::{interrupted, listen};
 
@@ -206,7 +206,7 @@ fn record(
         u.complete()?;
     }
     if let (Some(path), Some(plot)) = (&request.plot, listener.plot) {
-        crate::output::write(path, (willis_report::time_plot(&plot.finish(&report)) + "\n").as_bytes())?;
+        crate::output::write(path, (willis_figure::draw_time(&plot.finish(&report)) + "\n").as_bytes())?;
     }
     Ok(Run {
         report,

@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use willis::diagnostic::Diagnostics;
-use willis::study::{Axis, Cells, Column, CompiledSweep, Hold, Question, Room, Rows, Subject, Summary, Sweep, Trains};
+use willis::model::Model;
+use willis::study::{Axis, Cells, Column, CompiledSweep, Hold, Question, Room, Rows, Summary, Sweep, Trains};
 
 use crate::{interrupt, work};
 use table::Form;
@@ -219,14 +220,14 @@ fn hex(bytes: &[u8]) -> String {
 }
 
 /// Runs a sweep of a train file with `text`.
-pub fn run(subject: &Subject, text: &str, laws: &[String], request: &Request) -> Result<Report, Failure> {
+pub fn run(model: &Model, text: &str, laws: &[String], request: &Request) -> Result<Report, Failure> {
     let sweep = match &request.study {
-        Some(name) => Sweep::of_file(subject, name)?,
+        Some(name) => Sweep::of_file(model, name)?,
         None => {
             let mut wrong = Diagnostics::default();
             let mut axes = vec![];
             for over in &request.over {
-                match Axis::parse(over, subject) {
+                match Axis::parse(over, model) {
                     Ok(axis) => axes.push(axis),
                     Err(d) => wrong.push(*d),
                 }
@@ -235,7 +236,7 @@ pub fn run(subject: &Subject, text: &str, laws: &[String], request: &Request) ->
                 return Err(wrong.into());
             }
             let (operation, state) = (request.operation.as_deref(), request.state.as_deref());
-            Sweep::new(Question::new(subject, operation, state, request.hold)?, axes, &request.columns)?
+            Sweep::new(Question::new(model, operation, state, request.hold)?, axes, &request.columns)?
         }
     };
     let engine = if request.fast { Engine::Compiled(sweep.compile()?) } else { Engine::Analyze(&sweep) };
@@ -254,7 +255,7 @@ pub fn run(subject: &Subject, text: &str, laws: &[String], request: &Request) ->
     let shard = request.shard.map(|(k, n)| format!("{k}/{n}"));
     let rows = (last * piece).min(sweep.len()) - (first * piece).min(sweep.len());
     let columns = engine.columns();
-    let study = study(subject, text, laws, request, &sweep, columns, piece);
+    let study = study(model, text, laws, request, &sweep, columns, piece);
     let threads = request.threads.unwrap_or_else(work::cores);
 
     refuse_nonsense(&sweep)?;
@@ -323,7 +324,7 @@ pub fn run(subject: &Subject, text: &str, laws: &[String], request: &Request) ->
 }
 
 fn study(
-    subject: &Subject,
+    model: &Model,
     text: &str,
     laws: &[String],
     request: &Request,
@@ -331,7 +332,7 @@ fn study(
     columns: Vec<Column>,
     piece: u64,
 ) -> Study {
-    let train = subject.train();
+    let train = model.train();
     let axis = |a: &Axis| AxisReport {
         quantity: a.name.clone(),
         unit: a.unit.clone(),
@@ -348,7 +349,7 @@ fn study(
     let (names, laws) = (names.join("\n"), laws.join("\n"));
     let over = request.over.iter().map(|o| o.trim()).collect::<Vec<_>>().join("\n");
     let over = request.study.as_ref().map_or(over, |name| format!("study {name}"));
-    let files = subject.files().map(|(name, text)| format!("{name}\n{text}")).collect::<Vec<_>>().join("\n");
+    let files = model.files().map(|(name, text)| format!("{name}\n{text}")).collect::<Vec<_>>().join("\n");
     let version = env!("CARGO_PKG_VERSION");
     let state_text = state.as_deref().unwrap_or_default();
     let parts = [version, text, &files, &laws, &over, &base.name, state_text, &held, method, &names];

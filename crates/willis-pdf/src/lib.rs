@@ -13,7 +13,7 @@ use crate::document::{Block, Document};
 use crate::world::Desk;
 
 // The source itself, not its crate: the physics would have to be built with it.
-#[path = "../../willis-report/src/document.rs"]
+#[path = "../../willis-figure/src/report/document.rs"]
 pub mod document;
 
 /// The size of the pages.

@@ -6,7 +6,7 @@
 //! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions, [`units`] and values by name ([`named`]);
 //! 2. [`diagnostic`]: what is wrong, where, and what to do;
 //! 3. [`catalogue`] of oils and bearings, [`geometry`] of involute teeth, [`losses`]: the laws;
-//! 4. [`train`]: what a gear train is, and the train file;
+//! 4. [`train`]: what a gear train is, and the train file; [`model`]: a train as data;
 //! 5. [`kinematics`]: exact speeds, what is locked, free or redundant;
 //! 6. [`statics`]: torques with losses, the certificate, the verdict;
 //! 7. [`power_flow`]: torque and power everywhere, recirculation;
@@ -16,8 +16,9 @@
 //! 11. [`hypergraph`]: where the power runs, as a graph of components and contacts;
 //! 12. [`regimes`]: every way a train can run, with closed formulas;
 //! 13. [`study`]: what matters most at an operating point;
-//! 14. [`figure`]: charts and diagrams as data;
-//! 15. [`casebook`]: published losses beside ours.
+//! 14. [`casebook`]: published losses beside ours.
+//!
+//! Charts, diagrams and reports are in the crate `willis-figure`.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
@@ -57,6 +58,7 @@ pub mod catalogue;
 pub mod geometry;
 pub mod losses;
 pub mod train;
+pub mod model;
 pub mod kinematics;
 pub mod statics;
 pub mod power_flow;
@@ -67,11 +69,13 @@ pub mod analysis;
 pub mod hypergraph;
 pub mod regimes;
 pub mod study;
-pub mod figure;
 pub mod casebook;
+#[doc(hidden)]
+pub mod unstable;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;
+pub use model::Model;
 pub use real::Real;
 pub use train::Train;
 

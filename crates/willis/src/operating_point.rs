@@ -22,7 +22,7 @@
 
 mod bearing;
 mod body;
-mod contact;
+pub(crate) mod contact;
 mod motion;
 mod numbers;
 
@@ -38,7 +38,6 @@ use crate::real::{self, Real};
 use crate::train::{Efficiency, Gear, Lubrication, MemberId, Operation, Train};
 
 pub use bearing::BearingReport;
-pub(crate) use contact::Along;
 pub use contact::{ContactReport, Regime};
 pub(crate) use motion::{LEAST_SPEED, Place};
 pub(crate) use numbers::{MountNumbers, Numbers, OilState, RotorNumbers};

@@ -1,6 +1,6 @@
 //! Many operating points: maps, trends, what matters most, how sure it is, and files for other programs.
 //!
-//! A [`Subject`] is a train file whose quantities can be set anew; a [`Question`] says what is prescribed and what is
+//! A [`Model`](crate::model::Model) is a train whose quantities can be set anew; a [`Question`] says what is prescribed and what is
 //! held while quantities vary; an [`Axis`] is one quantity and its values. A [`Sweep`] puts them together: a grid of
 //! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
 
@@ -14,9 +14,7 @@ pub mod export;
 mod profile;
 mod question;
 mod sensitivity;
-mod subject;
 mod sweep;
-mod target;
 mod uncertainty;
 
 pub use axis::{Axis, values};
@@ -37,9 +35,7 @@ pub use question::{Hold, Question, Trains};
 pub use sensitivity::{
     Checks, OperationSensitivity, QuantitySensitivity, Sensitivity, SourceChange, StepKind, sensitivity,
 };
-pub use subject::Subject;
 pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};
-pub use target::{Target, Who};
 pub use uncertainty::{
     Choice, Evaluated, Influence, Likely, Output, Reported, Uncertain, Uncertainty, UncertaintyPlan, UncertaintyRequest,
 };

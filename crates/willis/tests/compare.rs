@@ -1,6 +1,7 @@
 //! Variants side by side: what the files differ in, and what that changes.
 
-use willis::study::{CompareRequest, Compared, Comparison, Datum, Subject, compare};
+use willis::model::Model;
+use willis::study::{CompareRequest, Compared, Comparison, Datum, compare};
 
 const REDUCER: &str = r#"
     format = 1
@@ -28,10 +29,9 @@ const MORE: &str = r#"
 "#;
 
 fn all(texts: &[&str], request: &CompareRequest) -> Comparison {
-    let subjects: Vec<Subject> =
-        texts.iter().map(|t| Subject::new(t, &[], &mut |_| Err("no files".into())).unwrap()).collect();
+    let subjects: Vec<Model> = texts.iter().map(|t| Model::from_toml(t).unwrap()).collect();
     let names = ["first.toml", "second.toml", "third.toml"];
-    let variants: Vec<(&str, &Subject)> = names.into_iter().zip(&subjects).collect();
+    let variants: Vec<(&str, &Model)> = names.into_iter().zip(&subjects).collect();
     compare(&variants, request).unwrap_or_else(|e| panic!("{e}"))
 }
 
@@ -147,7 +147,7 @@ fn over_axes_it_tells_where_which_is_better() {
 
 #[test]
 fn wrong_questions_are_refused() {
-    let subject = Subject::new(REDUCER, &[], &mut |_| Err("no files".into())).unwrap();
+    let subject = Model::from_toml(REDUCER).unwrap();
     let two = [("a.toml", &subject), ("b.toml", &subject)];
     let told = |request: CompareRequest| compare(&two, &request).unwrap_err().to_string();
     let operation = told(CompareRequest { operation: Some("lod".into()), ..Default::default() });

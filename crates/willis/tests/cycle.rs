@@ -1,7 +1,8 @@
 //! Duty cycles and load spectra: energies by hand, the same numbers as the analysis, every mistake told.
 
 use willis::analysis::{Selection, analyze};
-use willis::study::{Basis, Cycle, CycleReport, Hold, Profile, Question, Subject, Trains, cycle};
+use willis::model::Model;
+use willis::study::{Basis, Cycle, CycleReport, Hold, Profile, Question, Trains, cycle};
 use willis::{Diagnostics, Train};
 
 /// One set, ring held: i = 10/3.
@@ -37,11 +38,11 @@ fn example(name: &str) -> String {
     std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-fn subject(text: &str) -> Subject {
-    Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap_or_else(|r| panic!("{}", r.diagnostics))
+fn subject(text: &str) -> Model {
+    Model::from_toml(text).unwrap_or_else(|r| panic!("{r}"))
 }
 
-fn question(subject: &Subject) -> Question<'_> {
+fn question(subject: &Model) -> Question<'_> {
     Question::new(subject, None, None, Hold::AsGiven).unwrap()
 }
 

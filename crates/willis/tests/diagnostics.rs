@@ -6,7 +6,6 @@
 
 use willis::analysis::{Selection, analyze};
 use willis::diagnostic::{Code, Diagnostics};
-use willis::figure::regime_map;
 use willis::regimes::{LocateRequest, RegimeSelection, family, locate};
 use willis::train::Train;
 
@@ -190,7 +189,6 @@ fn regress_e208() {
     let all = RegimeSelection::default();
     let wrong = [
         ("a table over all ratios", family(&train, &all).unwrap_err()),
-        ("a wheel", regime_map(&train, &all).unwrap_err()),
         ("a place without speeds", locate(&train, &LocateRequest::default()).unwrap_err()),
     ];
     let mut text = String::new();

@@ -347,7 +347,7 @@ fn documented(name: &str, text: &str) {
 
 /// Keys of the list of references.
 fn references() -> BTreeSet<String> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../data/references.bib");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/references.bib");
     let text = std::fs::read_to_string(path).unwrap();
     let keys = text.lines().filter_map(|l| l.strip_prefix('@')?.split_once('{')?.1.strip_suffix(','));
     keys.map(str::to_owned).collect()

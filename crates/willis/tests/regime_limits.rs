@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 
 use willis::analysis::{Selection, analyze};
 use willis::diagnostic::Diagnostics;
-use willis::figure::regime_map;
 use willis::regimes::{
     Atlas, FormulaRequest, LocateRequest, RegimeSelection, Regimes, family, formulas, locate, regimes,
 };
@@ -249,7 +248,6 @@ fn everything(text: &str) -> Vec<String> {
         Err(d) => note(d),
     }
     let _ = family(&train, &selection).map_err(&mut note);
-    let _ = regime_map(&train, &selection).map_err(&mut note);
     let members: Vec<String> = train.members().iter().skip(1).map(|m| m.name.clone()).collect();
     for n in 0..3 {
         let speeds = members.iter().take(n).map(|m| (m.clone(), rpm("10 rpm"))).collect();

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use willis::analysis::{Analysis, Selection, analyze};
-use willis::study::{Axis, Cells, Hold, Question, Rows, Subject, Sweep, sensitivity};
+use willis::model::Model;
+use willis::study::{Axis, Cells, Hold, Question, Rows, Sweep, sensitivity};
 use willis::train::{Document, Train};
 
 fn examples() -> PathBuf {
@@ -15,16 +16,16 @@ fn text(name: &str) -> String {
     fs::read_to_string(examples().join(name)).unwrap()
 }
 
-fn subject(text: &str) -> Subject {
+fn subject(text: &str) -> Model {
     let mut load = |file: &str| fs::read_to_string(examples().join(file)).map_err(|e| e.to_string());
-    Subject::new(text, &[], &mut load).unwrap_or_else(|r| panic!("{}", r.diagnostics))
+    Model::read(text, &mut load).unwrap_or_else(|r| panic!("{r}"))
 }
 
-fn axes(subject: &Subject, over: &[&str]) -> Vec<Axis> {
+fn axes(subject: &Model, over: &[&str]) -> Vec<Axis> {
     over.iter().map(|a| Axis::parse(a, subject).unwrap_or_else(|d| panic!("{a}: {}", d.message))).collect()
 }
 
-fn sweep<'s>(subject: &'s Subject, over: &[&str], columns: &[&str], hold: Hold) -> Sweep<'s> {
+fn sweep<'s>(subject: &'s Model, over: &[&str], columns: &[&str], hold: Hold) -> Sweep<'s> {
     let question = Question::new(subject, None, None, hold).unwrap();
     let columns: Vec<String> = columns.iter().map(|c| (*c).to_owned()).collect();
     Sweep::new(question, axes(subject, over), &columns).unwrap_or_else(|d| panic!("{d}"))
@@ -455,7 +456,7 @@ proptest::proptest! {
         name in "(sun\\.speed|P1\\.planet\\.count|law\\.bearing|oil\\.temperature|[a-z.=0-9é]{0,12})",
         values in "[0-9.eE+\\- rpmNdegC,:solgtp/é]{0,30}",
     ) {
-        static SUBJECT: std::sync::LazyLock<Subject> =
+        static SUBJECT: std::sync::LazyLock<Model> =
             std::sync::LazyLock::new(|| subject(&text("fva-planetary-stage.toml")));
         if let Ok(axis) = Axis::parse(&format!("{name}={values}"), &SUBJECT) {
             proptest::prop_assert!(!axis.is_empty());

@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 
 use willis::diagnostic::Diagnostics;
+use willis::model::Model;
 use willis::study::{
-    Design, Distribution, Evaluated, Statistics, Subject, Trains, Uncertainty, UncertaintyPlan, UncertaintyRequest,
+    Design, Distribution, Evaluated, Statistics, Trains, Uncertainty, UncertaintyPlan, UncertaintyRequest,
     standard_normal_quantile,
 };
 
@@ -47,8 +48,8 @@ speeds = { s = "1000 rpm" }
 torques = { s = "200 N m" }
 "#;
 
-fn subject(text: &str) -> Subject {
-    Subject::new(text, &[], &mut |file| Err(format!("no file {file}"))).unwrap()
+fn subject(text: &str) -> Model {
+    Model::from_toml(text).unwrap()
 }
 
 fn request(vary: &[&str], samples: usize, seed: u64) -> UncertaintyRequest {

@@ -649,7 +649,7 @@ fn wasm(context: &Context) -> Outcome {
             return Outcome::Skipped(format!("the target {TARGET} cannot be had here"));
         }
     }
-    outcome(context.run(&format!("cargo build -p willis --target {TARGET}")))
+    outcome(context.run(&format!("cargo build -p willis -p willis-figure --target {TARGET}")))
 }
 
 /// Tests the typesetter, and sets one report.

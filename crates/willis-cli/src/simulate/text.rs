@@ -1,8 +1,8 @@
 //! A run for eyes.
 
 use willis::dynamics::{Event, ModeLabel, Outcome};
-use willis::figure::outcome_in_words;
 use willis::hypergraph::watts;
+use willis_figure::outcome_in_words;
 
 use super::Run;
 use crate::text::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};

@@ -112,21 +112,24 @@ struct Point<R> {
 
 /// One place of the path of contact of one pair in parallel, as the laws see it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Station {
+pub struct Station {
     /// Distance from C, m.
     pub s: f64,
     /// Load per length of contact line, N/m.
     pub line_load: f64,
-    /// Sliding speed, and sum of the surface speeds, m/s.
+    /// Sliding speed, m/s.
     pub sliding: f64,
+    /// Sum of the surface speeds, m/s.
     pub sum: f64,
     /// Hertzian pressure, Pa.
     pub pressure: f64,
-    /// Film thickness, m, and over the composite roughness; none without load, oil or roughness.
+    /// Film thickness, m; none without load or oil.
     pub film: Option<f64>,
+    /// Film thickness over the composite roughness; none without roughness either.
     pub film_ratio: Option<f64>,
-    /// Coefficient of friction, and the power that the tooth pair here turns into heat, W.
+    /// Coefficient of friction.
     pub friction: Option<f64>,
+    /// The power that the tooth pair here turns into heat, W.
     pub loss: Option<f64>,
 }
 

@@ -7,8 +7,8 @@ use crate::exact::Rational;
 use crate::train::Measure;
 use crate::units::{Dimension, Quantity};
 
-use super::Subject;
-use super::target::{Target, Who, quantity};
+use crate::model::Model;
+use crate::model::{Target, Who, quantity};
 
 /// Most values of an axis.
 const MOST: u64 = 1_000_000_000_000_000;
@@ -63,7 +63,7 @@ impl Axis {
     ///
     /// # Errors
     /// No quantity of that name (with the nearest), and what is wrong with the values.
-    pub fn parse(text: &str, subject: &Subject) -> Result<Self, Box<Diagnostic>> {
+    pub fn parse(text: &str, subject: &Model) -> Result<Self, Box<Diagnostic>> {
         let Some((name, values)) = text.split_once('=') else {
             return Err(Box::new(fault(text, "there is no `=` between a quantity and its values").hint(GRAMMAR)));
         };

@@ -7,10 +7,10 @@ use crate::analysis::{self, Direction, Losses, Selection, SolutionReport, StateR
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{Load, Operation, Train};
 
-use super::Subject;
 use super::axis::Axis;
 use super::question::{Hold, Question, Trains};
 use super::sweep::{Answer, Sweep};
+use crate::model::Model;
 
 /// Points of a map beyond which a comparison is a study of its own.
 const MOST_POINTS: u64 = 1_000_000;
@@ -251,7 +251,8 @@ pub struct Comparison {
 ///
 /// # Example
 /// ```
-/// use willis::study::{CompareRequest, Subject, compare};
+/// use willis::model::Model;
+/// use willis::study::{CompareRequest, compare};
 ///
 /// let text = r#"
 ///     format = 1
@@ -265,14 +266,14 @@ pub struct Comparison {
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 /// "#;
-/// let subject = |text: &str| Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let subject = |text: &str| Model::from_toml(text).unwrap();
 /// let (a, b) = (subject(text), subject(&text.replace("0.99", "0.98")));
 /// let all = compare(&[("a", &a), ("b", &b)], &CompareRequest::default())?;
 /// assert_eq!(all.files[0].path, "P1.mesh_efficiency");
 /// assert!(all.states[0].differences.iter().any(|d| d.quantity == "efficiency driving"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn compare(variants: &[(&str, &Subject)], request: &CompareRequest) -> Result<Comparison, Diagnostics> {
+pub fn compare(variants: &[(&str, &Model)], request: &CompareRequest) -> Result<Comparison, Diagnostics> {
     if variants.len() < 2 {
         let d = Diagnostic::new(Code::Unfit, "", "one train cannot be compared");
         return Err(d.hint("name two files or more").into());
@@ -331,7 +332,7 @@ fn selected(trains: &[&Train], request: &CompareRequest) -> Result<(), Diagnosti
 
 // ---- files ---------------------------------------------------------------------------------
 
-fn read(subject: &Subject) -> Value {
+fn read(subject: &Model) -> Value {
     let table: Table = subject.document().text().parse().expect("the text was read as TOML");
     Value::Table(table)
 }
@@ -686,11 +687,7 @@ fn solution_facts(s: &SolutionReport, all: &mut Vec<Fact>) {
 
 // ---- maps ----------------------------------------------------------------------------------
 
-fn map(
-    variants: &[(&str, &Subject)],
-    labels: &[String],
-    request: &CompareRequest,
-) -> Result<MapComparison, Diagnostics> {
+fn map(variants: &[(&str, &Model)], labels: &[String], request: &CompareRequest) -> Result<MapComparison, Diagnostics> {
     let mut sweeps = vec![];
     for (file, subject) in variants {
         let called = |wrong: Diagnostics| -> Diagnostics {

@@ -15,7 +15,7 @@ use crate::units;
 
 use super::question::{Hold, Trains};
 use super::sweep::{Cells, Column, Extent, Rows, Summary, Sweep, What, yes_or_no};
-use super::target::{Target, Who};
+use crate::model::{Target, Who};
 
 /// Most trains and states that are compiled.
 const MOST_CASES: usize = 4096;
@@ -116,7 +116,8 @@ impl<'s> Sweep<'s> {
     ///
     /// # Example
     /// ```
-    /// use willis::study::{Axis, Hold, Question, Subject, Sweep};
+    /// use willis::model::Model;
+    /// use willis::study::{Axis, Hold, Question, Sweep};
     ///
     /// let text = r#"
     ///     format = 1
@@ -130,7 +131,7 @@ impl<'s> Sweep<'s> {
     ///     carrier = "c"
     ///     mesh_efficiency = 0.99
     /// "#;
-    /// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+    /// let subject = Model::from_toml(text).unwrap();
     /// let axes = ["input.speed=1 rpm..2000 rpm:2000", "input.torque=1 N m..100 N m:500"];
     /// let axes = axes.iter().map(|a| Axis::parse(a, &subject)).collect::<Result<_, _>>()?;
     /// let sweep = Sweep::new(Question::new(&subject, None, None, Hold::AsGiven).unwrap(), axes, &[]).unwrap();
@@ -142,7 +143,7 @@ impl<'s> Sweep<'s> {
     pub fn compile(&self) -> Result<CompiledSweep<'_, 's>, Diagnostics> {
         let axes = &self.axes;
         let with_hold = "sweep without --fast";
-        if self.question.subject().train().is_physical() {
+        if self.question.model().train().is_physical() {
             return Err(refuse(
                 "losses of this train are computed from load and speed; they cannot be compiled",
                 with_hold,

@@ -12,7 +12,7 @@ use crate::train::{Load, Operation, Train};
 use super::profile::{Basis, Held, Profile};
 use super::question::{Question, Trains};
 use super::sweep::{Answer, VERDICTS};
-use super::target::{Target, Who};
+use crate::model::{Target, Who};
 
 /// How many of the worst are told.
 const MOST_WORST: usize = 5;
@@ -280,7 +280,8 @@ pub struct Cycle<'a> {
 ///
 /// # Example
 /// ```
-/// use willis::study::{Hold, Profile, Question, Subject, cycle};
+/// use willis::model::Model;
+/// use willis::study::{Hold, Profile, Question, cycle};
 ///
 /// let text = r#"
 ///     format = 1
@@ -294,7 +295,7 @@ pub struct Cycle<'a> {
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let subject = Model::from_toml(text).unwrap();
 /// let spectrum = "hours,input.speed [rad/s],input.torque [N m]\n1,100,50\n3,100,10\n";
 /// let profile = Profile::parse(spectrum, &subject)?;
 /// let report = cycle(Question::new(&subject, None, None, Hold::AsGiven)?, &profile);
@@ -342,7 +343,7 @@ impl<'a> Cycle<'a> {
     fn point(&self, condition: usize, trains: &mut Trains, part: &mut CyclePart) -> CyclePoint {
         let held = self.profile.held(condition);
         let settings = self.profile.settings(condition);
-        let states = self.question.subject().train().states();
+        let states = self.question.model().train().states();
         let named = settings.iter().find(|s| *s.0 == Target::State);
         let state = match named {
             Some((_, name)) => states.iter().position(|s| s.name == *name),
@@ -456,7 +457,7 @@ impl<'a> Cycle<'a> {
         let profile = self.profile;
         let points: Vec<&CyclePoint> = parts.iter().flat_map(|p| &p.points).collect();
         assert_eq!(points.len(), profile.conditions(), "a report needs every part of the cycle");
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         let mut whole = Energies::default();
         let mut ways: BTreeMap<Way, Energies> = BTreeMap::new();
         let mut states: Vec<Energies> = vec![Energies::default(); train.states().len() + 1];

@@ -9,8 +9,8 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::Measure;
 use crate::units::{self, Dimension};
 
-use super::Subject;
-use super::target::Target;
+use crate::model::Model;
+use crate::model::Target;
 
 /// More errors than these are counted, not kept.
 const MOST_ERRORS: usize = 1000;
@@ -85,7 +85,8 @@ pub(super) struct Held {
 ///
 /// # Example
 /// ```
-/// use willis::study::{Basis, Profile, Subject};
+/// use willis::model::Model;
+/// use willis::study::{Basis, Profile};
 ///
 /// let text = r#"
 ///     format = 1
@@ -98,7 +99,7 @@ pub(super) struct Held {
 ///     ring = { member = "frame", teeth = 70 }
 ///     carrier = "c"
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let subject = Model::from_toml(text).unwrap();
 /// let profile = Profile::parse("time [s],input.speed [rpm]\n0,900\n2,1000\n3,0\n", &subject)?;
 /// assert_eq!((profile.basis(), profile.rows().len(), profile.total_s()), (Basis::Trace, 2, 3.0));
 /// assert_eq!(profile.describe(1), "input.speed = 1000 rpm");
@@ -220,7 +221,7 @@ fn weight_unit(name: &str, basis: Basis, unit: Option<&str>) -> Result<f64, Stri
     }
 }
 
-fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Box<Diagnostic>> {
+fn purpose(header: &str, subject: &Model) -> Result<Purpose, Box<Diagnostic>> {
     let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
     let hinted = |message: String, hint: String| Box::new(fault(message).hint(hint));
     let (name, unit) = bracketed(header).map_or((header, None), |(n, u)| (n, Some(u)));
@@ -302,7 +303,7 @@ impl Profile {
     /// All that is wrong with it, each with its line and column: no column that weighs the rows or several, unknown
     /// quantities (with the nearest) and states, units of another kind, empty cells and such that are no finite number,
     /// times that do not rise, a profile without rows or that lasts no time.
-    pub fn parse(text: &str, subject: &Subject) -> Result<Self, Diagnostics> {
+    pub fn parse(text: &str, subject: &Model) -> Result<Self, Diagnostics> {
         let mut wrong = Wrong { all: Diagnostics::default(), more: 0 };
         let mut at = 0;
         let mut lines = text.split_inclusive('\n').enumerate().filter_map(|(k, line)| {
@@ -610,7 +611,7 @@ impl Profile {
 
 impl Setting {
     /// The position of a cell's value among those known, checked where it is new.
-    fn read(&mut self, cell: &str, subject: &Subject) -> Result<u32, Box<Diagnostic>> {
+    fn read(&mut self, cell: &str, subject: &Model) -> Result<u32, Box<Diagnostic>> {
         let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
         let value = match self.target.measure(subject) {
             Measure::Text | Measure::Flag => cell.to_owned(),

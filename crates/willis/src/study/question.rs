@@ -12,8 +12,8 @@ use crate::kinematics::Configuration;
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::{Dimension, Quantity};
 
-use super::Subject;
-use super::target::{Target, Who, oil_temperature, quantity};
+use crate::model::Model;
+use crate::model::{Target, Who, oil_temperature, quantity};
 
 /// What stays the same while other quantities vary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -49,7 +49,7 @@ const MOST_TRAINS: usize = 64;
 /// The operating point from which a study starts, and what is held.
 #[derive(Clone, Debug)]
 pub struct Question<'s> {
-    subject: &'s Subject,
+    subject: &'s Model,
     base: Operation,
     hold: Hold,
     /// The torque that the output keeps, positive where it drives.
@@ -75,7 +75,7 @@ impl<'s> Question<'s> {
     /// # Errors
     /// No such operation or state; an operation whose loads cannot be held as asked.
     pub fn new(
-        subject: &'s Subject,
+        subject: &'s Model,
         operation: Option<&str>,
         state: Option<&str>,
         hold: Hold,
@@ -123,7 +123,7 @@ impl<'s> Question<'s> {
     }
 
     /// The train of the study.
-    pub fn subject(&self) -> &'s Subject {
+    pub fn model(&self) -> &'s Model {
         self.subject
     }
 
@@ -261,7 +261,7 @@ impl<'s> Question<'s> {
         if trains.0.len() >= MOST_TRAINS {
             trains.0.clear();
         }
-        let train = self.subject.with(&of_train).map(Arc::new);
+        let train = self.subject.train_with(&of_train).map(Arc::new);
         trains.0.insert(key, train.clone());
         train
     }

@@ -9,10 +9,10 @@ use crate::analysis::{self, Losses, SolutionReport, Verdict};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::train::{Operation, Train};
 
-use super::Subject;
 use super::axis::Axis;
 use super::question::{Hold, Question, Trains};
-use super::target::Target;
+use crate::model::Model;
+use crate::model::Target;
 
 /// What can be said of a point: the [verdicts](Verdict) of an operating point, and one for a point that makes none.
 pub const VERDICTS: [&str; 6] = ["unique", "multiple", "locked", "unloaded", "undetermined", "refused"];
@@ -281,7 +281,8 @@ fn loss_of(l: &Losses, kind: usize) -> f64 {
 ///
 /// # Example
 /// ```
-/// use willis::study::{Axis, Hold, Question, Subject, Sweep};
+/// use willis::model::Model;
+/// use willis::study::{Axis, Hold, Question, Sweep};
 ///
 /// let text = r#"
 ///     format = 1
@@ -295,7 +296,7 @@ fn loss_of(l: &Losses, kind: usize) -> f64 {
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let subject = Model::from_toml(text).unwrap();
 /// let axis = |text: &str| Axis::parse(text, &subject);
 /// let axes = vec![axis("input.speed=1000 rpm..2000 rpm:3")?, axis("output.torque=-10 N m, 10 N m")?];
 /// let question = Question::new(&subject, None, None, Hold::AsGiven).unwrap();
@@ -353,7 +354,7 @@ impl<'s> Sweep<'s> {
     ///
     /// # Errors
     /// No study of that name; all that is wrong with it, at its place in the file.
-    pub fn of_file(subject: &'s Subject, name: &str) -> Result<Self, Diagnostics> {
+    pub fn of_file(subject: &'s Model, name: &str) -> Result<Self, Diagnostics> {
         let studies = subject.train().studies();
         let Some(k) = studies.iter().position(|s| s.name == name) else {
             let known: Vec<&str> = studies.iter().map(|s| s.name.as_str()).collect();
@@ -454,7 +455,7 @@ impl<'s> Sweep<'s> {
         match self.ask(point, trains) {
             Ok((train, operation)) => {
                 let mut answer = Answer::of(&train, &operation);
-                let base = self.question.subject().train().warnings();
+                let base = self.question.model().train().warnings();
                 // What is wrong with this train and not with that of the file: planets that touch, for one.
                 let own = train.warnings().iter().filter(|d| d.severity == Severity::Warning);
                 let new = own.filter(|d| !base.iter().any(|b| b.code == d.code && b.message == d.message));
@@ -599,7 +600,7 @@ impl<'s> Sweep<'s> {
 
     /// The usual columns and those asked for.
     fn choose(&self, asked: &[String]) -> Result<Vec<(Column, What)>, Diagnostics> {
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         let text = |name: &str, what: What| (Column { name: name.into(), is_text: true }, what);
         let number = |name: String, what: What| (Column { name, is_text: false }, what);
         let physical = train.is_physical() || self.axes.iter().any(|a| matches!(a.target, Target::File(_)));

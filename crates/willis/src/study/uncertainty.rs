@@ -16,8 +16,9 @@ use super::design::Design;
 use super::distribution::{Distribution, Reader, fault, plain};
 use super::question::{Hold, Question, Trains};
 use super::sweep::{Answer, Seen, VERDICTS};
-use super::target::{Target, Who};
-use super::{Axis, Statistics, Subject};
+use super::{Axis, Statistics};
+use crate::model::Model;
+use crate::model::{Target, Who};
 
 pub use report::{Choice, Influence, Output, Reported, Uncertainty};
 
@@ -111,7 +112,8 @@ impl Uncertain {
 ///
 /// # Example
 /// ```
-/// use willis::study::{Subject, UncertaintyPlan, UncertaintyRequest};
+/// use willis::model::Model;
+/// use willis::study::{UncertaintyPlan, UncertaintyRequest};
 ///
 /// let text = r#"
 ///     format = 1
@@ -129,7 +131,7 @@ impl Uncertain {
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let subject = Model::from_toml(text).unwrap();
 /// let vary = vec!["P1.mesh_efficiency=0.98..1".into()];
 /// let request = UncertaintyRequest { vary, samples: 256, ..Default::default() };
 /// let plan = UncertaintyPlan::new(&subject, &request)?;
@@ -202,7 +204,7 @@ impl<'s> UncertaintyPlan<'s> {
     /// # Errors
     /// No operating point, unknown quantities, distributions that mean nothing, quantities named twice; a train that is
     /// refused with every quantity at the middle of its distribution.
-    pub fn new(subject: &'s Subject, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
+    pub fn new(subject: &'s Model, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
         let mut wrong = Diagnostics::default();
         let question = Question::new(subject, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
         if question.base().loads.is_empty() {
@@ -297,7 +299,7 @@ impl<'s> UncertaintyPlan<'s> {
     }
 
     fn name_outputs(&mut self) {
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         self.outputs = vec![("efficiency".into(), ""), ("loss_w".into(), "W")];
         self.outputs.extend(KINDS.iter().map(|kind| (format!("{kind}_loss_w"), "W")));
         self.outputs.extend(sources(train).map(|name| (format!("loss.{name}_w"), "W")));
@@ -392,7 +394,7 @@ impl<'s> UncertaintyPlan<'s> {
 
     /// The answer at a value of an axis: at a point, or with the file as written. A quantity that is itself the axis
     /// takes the axis' value.
-    pub(crate) fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> Answer {
+    pub fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> Answer {
         let mut settings = point.map_or_else(Vec::new, |p| self.settings_at(&self.design.at(p)));
         settings.retain(|s| *s.0 != axis.target);
         settings.push((&axis.target, axis.setting(k)));
@@ -438,7 +440,7 @@ impl<'s> UncertaintyPlan<'s> {
         };
         let l: &Losses = &s.losses_w;
         let mut values = vec![answer.efficiency(), s.loss_w, l.mesh, l.bearing, l.windage, l.churning, l.seal];
-        values.extend(sources(self.question.subject().train()).map(|name| {
+        values.extend(sources(self.question.model().train()).map(|name| {
             let mut own = s.sources.iter().filter(|x| x.name == name).map(|x| x.loss_w).peekable();
             match own.peek() {
                 Some(_) => own.sum(),
@@ -462,7 +464,7 @@ fn sources(train: &Train) -> impl Iterator<Item = &str> {
 
 /// Reads `QUANTITY=DISTRIBUTION`.
 fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> Result<Uncertain, Box<Diagnostic>> {
-    let subject = question.subject();
+    let subject = question.model();
     let Some((name, values)) = text.split_once('=') else {
         return Err(Box::new(fault(text, "there is no `=` between a quantity and its distribution")));
     };
@@ -545,7 +547,7 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
 
 /// What the file has, as it writes it.
 fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
-    let (subject, base) = (question.subject(), question.base());
+    let (subject, base) = (question.model(), question.base());
     let train = subject.train();
     // The unit in which people say it.
     let said = |q: &Quantity, unit: &str, turn: bool| {

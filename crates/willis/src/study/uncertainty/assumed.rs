@@ -3,10 +3,10 @@
 use crate::catalogue::oil::Viscosity;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::losses::{self, FAMILIES, Tag};
+use crate::model::Target;
 use crate::study::distribution::{Distribution, Reader};
 use crate::study::question::Question;
 use crate::study::sweep::Answer;
-use crate::study::target::Target;
 use crate::train::{Measure, Train};
 
 use super::{Likely, Uncertain, listed, nominal};
@@ -38,7 +38,7 @@ pub(super) fn in_force(train: &Train, family: &str) -> Option<&'static str> {
 /// The laws of a family that a train can use, in their order; only those inside their range at the operating point if so
 /// asked and two are. And what is to be said of them.
 pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: bool) -> (Vec<String>, String) {
-    let train = question.subject().train();
+    let train = question.model().train();
     let own = losses::entries().into_iter().filter(|e| e.family == family);
     let (wrong, good): (Vec<_>, Vec<_>) = own.partition(|e| e.tags.contains(&Tag::Compatibility));
     let (mut within, mut outside, mut unfit) = (vec![], vec![], vec![]);
@@ -78,7 +78,7 @@ pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: boo
 
 /// `--laws`: a family, or all whose choice matters here.
 pub(super) fn laws(family: &str, question: &Question<'_>) -> Result<Vec<(Uncertain, String)>, Box<Diagnostic>> {
-    let train = question.subject().train();
+    let train = question.model().train();
     let one = |family: &'static str| {
         let (laws, told) = laws_of(family, question, true);
         let target = Target::Law(family);
@@ -117,7 +117,7 @@ pub(super) fn laws(family: &str, question: &Question<'_>) -> Result<Vec<(Uncerta
 
 /// What is taken as uncertain when nothing is said, with the assumptions.
 pub(super) fn quantities(question: &Question<'_>) -> (Vec<Uncertain>, Vec<String>) {
-    let subject = question.subject();
+    let subject = question.model();
     let (train, document) = (subject.train(), subject.document());
     let (mut all, mut told) = (vec![], vec![]);
     let mut losses: Vec<String> = vec![];

@@ -171,7 +171,7 @@ impl UncertaintyPlan<'_> {
             outputs.push(Output { name: name.clone(), unit, nominal, below_nominal, statistics, influences });
         }
         let base = self.question.base();
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         Uncertainty {
             format: "willis-uncertainty-1",
             train: train.name().to_owned(),

@@ -1,0 +1,290 @@
+//! The engineering report of a train: what was asked, what was assumed, what came out, and how to do it again.
+
+pub mod document;
+mod formula;
+pub mod html;
+mod laws;
+mod results;
+mod scheme;
+
+use crate::{Figure, FigureKind, FigureRequest};
+use willis::Diagnostics;
+use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
+use willis::diagnostic::Severity;
+use willis::hypergraph::watts;
+use willis::model::Model;
+use willis::study::{Sensitivity, sensitivity};
+
+use crate::draw::{Drawing, draw};
+use crate::report::document::{Block, Column, Document, Level, Section};
+
+/// Operations that get pictures of their own; all are told in tables.
+const PICTURED: usize = 4;
+
+/// What a report is about.
+#[derive(Clone, Debug, Default)]
+pub struct ReportRequest {
+    /// Only this operation.
+    pub operation: Option<String>,
+    /// Name of the train file, as the reader of the report would give it.
+    pub file: String,
+    /// SHA-256 of the train file, in hexadecimal digits.
+    pub hash: String,
+    /// The program and its version.
+    pub version: String,
+    /// The commands that make the results again.
+    pub commands: Vec<String>,
+}
+
+/// Everything that a report tells.
+struct Findings<'a> {
+    subject: &'a Model,
+    request: &'a ReportRequest,
+    analysis: Analysis,
+    sensitivity: Option<Sensitivity>,
+    figures: Figures,
+}
+
+/// Pictures by what they show, in the order in which they were asked for.
+#[derive(Default)]
+struct Figures(Vec<(FigureKind, Option<String>, String)>);
+
+impl Figures {
+    /// Makes what applies, on all cores.
+    fn make(subject: &Model, wanted: &[(FigureKind, FigureRequest)]) -> Self {
+        let one = |(kind, request): &(FigureKind, FigureRequest)| {
+            let figure = kind.make(subject, request).ok().filter(worth_showing)?;
+            let picture = draw(&figure, Drawing::default());
+            // Of some kinds there is one for every set or operation.
+            let of = match kind {
+                FigureKind::Front => request.part.clone(),
+                FigureKind::Sankey | FigureKind::Lever => request.operation.clone(),
+                _ => None,
+            };
+            Some((*kind, of, picture))
+        };
+        let all = std::thread::scope(|scope| {
+            let running: Vec<_> = wanted.iter().map(|w| scope.spawn(move || one(w))).collect();
+            running.into_iter().filter_map(|t| t.join().ok().flatten()).collect()
+        });
+        Self(all)
+    }
+
+    /// The picture of a kind, as a block; what it is of, where there are several.
+    fn block(&self, kind: FigureKind, of: Option<&str>, caption: &str) -> Option<Block> {
+        let (_, _, svg) = self.0.iter().find(|f| f.0 == kind && f.1.as_deref() == of)?;
+        Some(Block::Figure { caption: caption.to_owned(), svg: svg.clone() })
+    }
+}
+
+/// Whether a figure says more than a sentence would.
+fn worth_showing(figure: &Figure) -> bool {
+    match figure {
+        Figure::Map(m) => m.points.iter().any(|p| p.efficiency.is_some()),
+        Figure::Losses(l) => !l.series.is_empty(),
+        Figure::Band(b) => b.points.iter().any(|p| p.efficiency.is_some()),
+        _ => true,
+    }
+}
+
+/// Writes the report of a train.
+///
+/// # Errors
+/// What [`analyze`] says.
+///
+/// # Example
+/// ```
+/// use willis::model::Model;
+/// use willis_figure::{ReportRequest, html, report};
+///
+/// let text = r#"
+///     format = 1
+///     name = "one set"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+///     mesh_efficiency = 0.99
+///     [[operation]]
+///     name = "full load"
+///     speeds = { s = "1000 rpm" }
+///     torques = { s = "10 N m" }
+/// "#;
+/// let subject = Model::from_toml(text).unwrap();
+/// let document = report(&job.model, &ReportRequest::default())?;
+/// assert!(html(&document).contains("98.607 %"));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn report(subject: &Model, request: &ReportRequest) -> Result<Document, Diagnostics> {
+    let train = subject.train();
+    let selection = Selection { state: None, operation: request.operation.clone() };
+    let analysis = analyze(train, &selection)?;
+    let sensitivity = sensitivity(train, &selection).ok();
+    let figures = Figures::make(subject, &wanted(subject, request, &analysis));
+    let all = Findings { subject, request, analysis, sensitivity, figures };
+    let sections = [
+        Some(summary(&all)),
+        Some(scheme::section(&all)),
+        results::shift_table(&all),
+        results::operations(&all),
+        results::losses(&all),
+        results::maps(&all),
+        results::motion(&all),
+        results::formulas(&all),
+        Some(laws::assumptions(&all)),
+        laws::in_force(&all),
+        Some(laws::again(&all)),
+    ];
+    Ok(Document {
+        format: Document::FORMAT.to_owned(),
+        title: train.name().to_owned(),
+        subtitle: "Gear train report".to_owned(),
+        facts: facts(&all),
+        sections: sections.into_iter().flatten().filter(|s| !s.blocks.is_empty()).collect(),
+    })
+}
+
+/// The pictures that a report asks for.
+fn wanted(subject: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(FigureKind, FigureRequest)> {
+    use FigureKind::*;
+    let train = subject.train();
+    let only = FigureRequest { operation: request.operation.clone(), ..Default::default() };
+    let plain = |kind| (kind, FigureRequest::default());
+    // The longest first, so that the cores end together.
+    let mut all = vec![
+        (Map, only.clone()),
+        (Band, FigureRequest { samples: 128, ..only.clone() }),
+        plain(Time),
+        (Losses, only.clone()),
+        (Tornado, only.clone()),
+        (
+            Stick,
+            FigureRequest { state: analysis.operations.first().and_then(|o| o.state.clone()), ..Default::default() },
+        ),
+        plain(Shift),
+        plain(Regimes),
+        (Film, only.clone()),
+        (Path, only.clone()),
+    ];
+    for set in train.sets() {
+        all.push((Front, FigureRequest { part: Some(set.name.clone()), ..Default::default() }));
+    }
+    for o in analysis.operations.iter().take(PICTURED) {
+        let own = FigureRequest { operation: Some(o.name.clone()), ..Default::default() };
+        all.extend([(Sankey, own.clone()), (Lever, own)]);
+    }
+    if analysis.operations.is_empty() {
+        all.push(plain(Lever));
+    }
+    all
+}
+
+fn facts(all: &Findings<'_>) -> Vec<[String; 2]> {
+    let mut facts = vec![];
+    let mut fact = |name: &str, value: String| facts.push([name.to_owned(), value]);
+    fact("Degrees of freedom", all.analysis.degrees_of_freedom.to_string());
+    let sound = |v: Verdict| matches!(v, Verdict::Unique | Verdict::Unloaded);
+    let without = all.analysis.operations.iter().filter(|o| !sound(o.verdict)).count();
+    let count = all.analysis.operations.len();
+    match (count, without) {
+        (0, _) => fact("Operating points", "none in the file".to_owned()),
+        (_, 0) => fact("Operating points", format!("{count}, each with a single answer")),
+        _ => fact("Operating points", format!("{count}, {without} of them without a single answer")),
+    }
+    let warnings = all.analysis.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
+    fact("Warnings", warnings.to_string());
+    if !all.request.version.is_empty() {
+        fact("Made with", all.request.version.clone());
+    }
+    if !all.request.hash.is_empty() {
+        let short: String = all.request.hash.chars().take(12).collect();
+        fact("Train file", format!("{}, SHA-256 {short}…", all.request.file));
+    }
+    facts
+}
+
+/// What was asked and what came out, in a few lines.
+fn summary(all: &Findings<'_>) -> Section {
+    let mut blocks = vec![];
+    let train = all.subject.train();
+    let question = match all.analysis.operations.len() {
+        0 => format!(
+            "What does {} do: its ratios, the direction in which it can be driven, and its efficiency, with the proof \
+             that each answer is the only one?",
+            train.name()
+        ),
+        1 => format!(
+            "How does {} run at {}: speeds, torques, where the power goes, and is the answer the only one?",
+            train.name(),
+            all.analysis.operations[0].name
+        ),
+        n => format!(
+            "How does {} run at {n} operating points: speeds, torques, where the power goes, and is each answer the \
+             only one?",
+            train.name()
+        ),
+    };
+    blocks.push(Block::Text { text: question });
+    let columns = ["Operating point", "Verdict"].map(Column::words).into_iter();
+    let columns = columns.chain(["Efficiency", "Power in", "Lost"].map(Column::numbers)).collect();
+    let rows: Vec<Vec<String>> = (all.analysis.operations.iter())
+        .map(|o| {
+            let one = results::single(o);
+            let state = o.state.as_ref().map(|s| format!(", state {s}")).unwrap_or_default();
+            vec![
+                format!("{}{state}", o.name),
+                o.verdict.words().to_owned(),
+                one.map_or("–".into(), results::efficiency),
+                one.map_or("–".into(), |s| watts(s.input_power_w)),
+                one.map_or("–".into(), |s| watts(s.loss_w)),
+            ]
+        })
+        .collect();
+    if !rows.is_empty() {
+        blocks.push(Block::Table { caption: "Operating points".into(), columns, rows });
+    }
+    for o in all.analysis.operations.iter().filter(|o| o.verdict != Verdict::Unique) {
+        blocks.push(notice(o));
+    }
+    let all_proved =
+        |o: &OperationReport| o.verdict == Verdict::Unique && o.certificate.is_some_and(|c| c.unique_for_every_load);
+    if !all.analysis.operations.is_empty() && all.analysis.operations.iter().all(all_proved) {
+        let text = "Every answer is the only one, for every load in the same direction of motion: this is proved, not \
+                    found by trying."
+            .to_owned();
+        blocks.push(Block::Notice { level: Level::Good, text });
+    }
+    if let Some(first) = all.sensitivity.as_ref().and_then(|s| s.operations.first())
+        && let Some(q) = first.quantities.first()
+    {
+        let text = format!(
+            "At {} the quantity that matters most is {}: a step of {} changes the losses by {} W.",
+            first.name,
+            q.name,
+            q.step.label().trim_start_matches('+'),
+            results::signed(q.loss_change_w)
+        );
+        blocks.push(Block::Text { text });
+    }
+    Section { title: "Question and answer".into(), blocks }
+}
+
+/// The verdict of an operating point in words.
+fn notice(o: &OperationReport) -> Block {
+    let level = match o.verdict {
+        Verdict::Unique => Level::Good,
+        Verdict::Unloaded => Level::Note,
+        _ => Level::Stop,
+    };
+    let mut text = format!("{}: {}", o.name, o.verdict.words());
+    if let Some(c) = &o.certificate {
+        text += &format!("; {}", results::certificate(o.verdict, c));
+    }
+    if let Some(reason) = &o.reason {
+        text += &format!(". {reason}");
+    }
+    Block::Notice { level, text }
+}
