@@ -19,7 +19,7 @@ use std::fmt;
 
 use crate::exact::Rational;
 
-use grammar::{Mass, Scale};
+use grammar::{MassAs, Scale};
 use symbols::{KINDS, WORDS};
 
 /// Exponents of metre, kilogram, second, radian and kelvin.
@@ -268,13 +268,13 @@ const FAHRENHEIT: [&str; 4] = ["degF", "°F", "ºF", "℉"];
 
 /// What a unit amounts to as that kind of quantity.
 fn scale(unit: &str, expected: Dimension) -> Result<Scale, QuantityFault> {
-    let plain = grammar::read(unit, Mass::Mass).map_err(|unknown| QuantityFault::UnknownUnit(unknown.0))?;
+    let plain = grammar::read(unit, MassAs::Mass).map_err(|unknown| QuantityFault::UnknownUnit(unknown.0))?;
     let measures = Dimension(plain.exponents);
     if let Some(found) = taken_as(plain, expected) {
         return Ok(found);
     }
     // Pounds and ounces are forces too, where nothing else fits: `ft-lb`.
-    let force = grammar::read(unit, Mass::PoundForce).ok().and_then(|force| taken_as(force, expected));
+    let force = grammar::read(unit, MassAs::PoundForce).ok().and_then(|force| taken_as(force, expected));
     force.ok_or_else(|| QuantityFault::WrongDimension { unit: clip(unit), measures })
 }
 
@@ -314,7 +314,7 @@ fn instead(text: &str, fault: &QuantityFault, expected: Dimension) -> Vec<String
         QuantityFault::WrongDimension { measures, .. }
             if (expected, *measures) == (Dimension::ANGULAR_SPEED, Dimension::FREQUENCY) =>
         {
-            match grammar::read(unit, Mass::Mass) {
+            match grammar::read(unit, MassAs::Mass) {
                 Ok(hertz) if hertz.factor == Rational::ONE => vec![with("rev/s"), with("rad/s")],
                 _ => vec![],
             }
@@ -336,7 +336,7 @@ fn nearest(unit: &str, fault: &QuantityFault, expected: Dimension) -> Option<Str
     if let QuantityFault::WrongDimension { .. } = fault {
         // The same letters; a kilogram for the force; the same unit but for an angle.
         let same = |u: &&str| letters(u) == letters(unit);
-        let [mass, force] = [Mass::Mass, Mass::KilogramForce].map(|mass| grammar::read(unit, mass).ok());
+        let [mass, force] = [MassAs::Mass, MassAs::KilogramForce].map(|mass| grammar::read(unit, mass).ok());
         let is = |u: &&str, found: &Option<Scale>, angle: bool| {
             let known = scale(u, expected).ok();
             found.as_ref().zip(known).is_some_and(|(a, b)| {

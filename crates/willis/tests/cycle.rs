@@ -349,7 +349,7 @@ fn all_mistakes_are_told_at_once_and_underlined() {
     let all = wrong(REDUCER, text);
     // The misspelt column, the empty cell, the number, the time; nothing is said of cells that mean nothing.
     assert_eq!(all.len(), 4, "{all}");
-    let underlined: Vec<&str> = all.iter().map(|d| &text[d.span.clone().unwrap()]).collect();
+    let underlined: Vec<&str> = all.iter().map(|d| &text[d.span.unwrap().range()]).collect();
     assert_eq!(underlined, ["input.sped [rpm]", "1,1000,", "1", "nan"]);
     let many: String = (0..5000).map(|_| "0,x\n").collect();
     let all = wrong(REDUCER, &format!("hours,input.speed [rpm]\n{many}"));

@@ -148,7 +148,7 @@ fn check(name: &str, code: Code, text: &str, selection: &Selection) {
     for d in all.iter() {
         assert_eq!(d.severity, d.code.severity());
         if let Some(span) = &d.span {
-            assert!(text.get(span.clone()).is_some(), "{} spans {span:?}, not a piece of the text", d.code);
+            assert!(text.get(span.range()).is_some(), "{} spans {span:?}, not a piece of the text", d.code);
         }
     }
     insta::with_settings!({ omit_expression => true }, {

@@ -143,7 +143,7 @@ impl Wrong {
         }
         // What is underlined is replaced by hints only where that is the whole cell.
         d.replacement = None;
-        d.span = Some(span);
+        d.span = Some(span.into());
         self.all.push(if hint.is_empty() { d } else { d.hint(hint) });
     }
 }
@@ -476,6 +476,7 @@ impl Profile {
             wrong.all.push(Diagnostic::new(Code::BadTable, "", message));
         }
         if wrong.all.has_errors() {
+            wrong.all.stand_in(None, text);
             return Err(wrong.all);
         }
         let mut numbered: Vec<(Box<[u32]>, u32)> = conditions.into_iter().collect();

@@ -21,7 +21,7 @@ const MASS_TAKEN_FOR_FORCE: [&str; 2] = ["kg", "g"];
 
 /// How units of mass are read.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Mass {
+pub(super) enum MassAs {
     /// As masses.
     Mass,
     /// Pounds and ounces as the forces of that name.
@@ -45,7 +45,7 @@ fn one(name: &str) -> Option<(Rational, i8, [i8; 5])> {
 }
 
 /// Reads a unit.
-pub(super) fn read(text: &str, mass: Mass) -> Result<Scale, Unknown> {
+pub(super) fn read(text: &str, mass: MassAs) -> Result<Scale, Unknown> {
     let unknown = || Unknown(text.chars().take(40).collect());
     if text.len() > 60 {
         return Err(unknown());
@@ -78,7 +78,7 @@ fn raised(c: char) -> Option<char> {
 
 struct Reader<'t> {
     rest: &'t [char],
-    mass: Mass,
+    mass: MassAs,
     scale: Scale,
 }
 
@@ -179,9 +179,9 @@ impl Reader<'_> {
     fn put(&mut self, symbol: &str, power: i8) {
         let (mut factor, pi_power, mut exponents) = one(symbol).expect("the tables agree");
         let force = match self.mass {
-            Mass::Mass => false,
-            Mass::PoundForce => MASS_OR_FORCE.contains(&symbol),
-            Mass::KilogramForce => MASS_OR_FORCE.contains(&symbol) || MASS_TAKEN_FOR_FORCE.contains(&symbol),
+            MassAs::Mass => false,
+            MassAs::PoundForce => MASS_OR_FORCE.contains(&symbol),
+            MassAs::KilogramForce => MASS_OR_FORCE.contains(&symbol) || MASS_TAKEN_FOR_FORCE.contains(&symbol),
         };
         if force {
             // The standard acceleration of free fall, 9.80665 m/s².

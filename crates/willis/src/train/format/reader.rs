@@ -141,8 +141,8 @@ pub(super) fn read(text: &str, table: &Table, load: &mut Load<'_>, diagnostics: 
     };
     for error in errors.iter().take(MOST_ERRORS) {
         let mut d = Diagnostic::new(Code::Syntax, "", error.message().trim().replace('\n', ", "));
-        d.span = error.span().map(|s| s.start.min(text.len())..s.end.min(text.len()));
-        let comma = d.span.as_ref().and_then(|span| decimal_comma(text, span.start));
+        d.span = error.span().map(|s| (s.start.min(text.len())..s.end.min(text.len())).into());
+        let comma = d.span.and_then(|span| decimal_comma(text, span.start));
         diagnostics.push(match comma {
             Some(number) => d.hint(format!("the decimal sign is a decimal point: write {number}")),
             None => d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"),
@@ -206,7 +206,7 @@ impl Reader<'_, '_> {
                         let known: Vec<_> = table.keys.iter().map(|k| k.name).collect();
                         d = d.hint(format!("the keys here are: {}", known.join(", ")));
                     }
-                    d.span = Some(key.span());
+                    d.span = Some(key.span().into());
                     self.diagnostics.push(d);
                 }
             }
@@ -223,7 +223,7 @@ impl Reader<'_, '_> {
                     _ => format!("{}: {}", key.name, key.doc),
                 };
                 let mut d = Diagnostic::new(Code::MissingKey, place, message).hint(hint);
-                d.span = Some(own.clone());
+                d.span = Some(own.clone().into());
                 self.diagnostics.push(d);
             }
         }
@@ -494,7 +494,7 @@ impl Reader<'_, '_> {
         let at = join(place, "type");
         let Some(given) = map.get("type") else {
             let mut d = Diagnostic::new(Code::MissingKey, at, format!("`type` is missing in {place}"));
-            d.span = Some(value.span());
+            d.span = Some(value.span().into());
             self.diagnostics.push(d.hint(listed()));
             return None;
         };
@@ -571,7 +571,7 @@ impl Reader<'_, '_> {
                 None => {
                     let message = format!("there is no key `{}` here", clip(key.get_ref()));
                     let mut d = Diagnostic::new(Code::UnknownKey, place, message).suggest(key.get_ref(), names);
-                    d.span = Some(key.span());
+                    d.span = Some(key.span().into());
                     self.diagnostics.push(d.hint(format!("the keys here are: {}", names.join(", "))));
                 }
             }
@@ -580,7 +580,7 @@ impl Reader<'_, '_> {
             if found[k].is_none() {
                 let message = format!("`{name}` is missing: give both {} and {}", names[0], names[1]);
                 let mut d = Diagnostic::new(Code::MissingKey, join(place, name), message);
-                d.span = Some(span.clone());
+                d.span = Some(span.clone().into());
                 self.diagnostics.push(d);
             }
         }
@@ -641,7 +641,7 @@ impl Reader<'_, '_> {
         let at = value.span();
         let mut report = |message: String, hint: String, replacement: Option<String>| {
             let mut d = Diagnostic::new(Code::Quantity, place, message).hint(hint);
-            d.span = Some(at.clone());
+            d.span = Some(at.clone().into());
             d.replacement = replacement;
             self.diagnostics.push(d);
         };
