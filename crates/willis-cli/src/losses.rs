@@ -2,7 +2,8 @@
 
 use willis::analysis::{LossPoint, LossTable, Named, SolutionReport, Verdict};
 use willis::catalogue::{bearing, oil};
-use willis::losses::{Entry, Tag, Trust};
+use willis::diagnostic::Diagnostic;
+use willis::losses::{Entry, Trust};
 use willis::operating_point::{BearingReport, ContactReport, Regime};
 
 use crate::csv::Writer;
@@ -238,15 +239,17 @@ fn verdict(p: &LossPoint) -> String {
 
 /// Warnings under a table, each once.
 fn notes(group: &[LossPoint]) -> String {
-    let mut told: Vec<(&str, &str)> = Vec::new();
+    let mut told: Vec<&Diagnostic> = Vec::new();
     let mut out = String::new();
-    for w in group.iter().flat_map(|p| &p.warnings) {
-        // Numbers differ from point to point; what is outside does not.
-        let (law, range) = (w.split(" of ").next().unwrap_or(w), w.split_once("range, ").map_or("", |r| r.1));
-        let key = (law, range);
-        if !told.contains(&key) {
-            told.push(key);
-            out += &dim(&wrap(w, "  * "));
+    for d in group.iter().flat_map(|p| &p.diagnostics) {
+        // Values differ from point to point; which quantity of which law has left its range does not.
+        let same = |other: &&Diagnostic| match (d.outside_law(), other.outside_law()) {
+            (Some(a), Some(b)) => (&a.family, &a.law, &a.quantity) == (&b.family, &b.law, &b.quantity),
+            _ => d.message == other.message,
+        };
+        if !told.iter().any(same) {
+            told.push(d);
+            out += &dim(&wrap(&d.message, "  * "));
             out.push('\n');
         }
     }
@@ -349,15 +352,7 @@ pub fn laws(all: &[Entry]) -> String {
             marks.push("default".to_owned());
         }
         for t in e.tags {
-            marks.push(
-                match t {
-                    Tag::Local => "local, averaged along the path",
-                    Tag::SlidingOnly => "sliding only, rolling is added",
-                    Tag::Estimate => "estimate ±50 %",
-                    Tag::Compatibility => "reproduces a published error",
-                }
-                .to_owned(),
-            );
+            marks.push(t.words().to_owned());
         }
         let marks = if marks.is_empty() { String::new() } else { format!(" ({})", marks.join("; ")) };
         out += &format!("  {}{marks}\n", bold(e.id));
