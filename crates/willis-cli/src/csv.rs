@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use willis::analysis::{Analysis, SolutionReport, Verdict};
+use willis::exact::Rational;
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 pub enum Table {
@@ -70,7 +71,7 @@ fn rows(a: &Analysis, table: Table) -> String {
                     &s.input,
                     &s.output,
                     &s.degrees_of_freedom.to_string(),
-                    s.exact.as_deref().unwrap_or_default(),
+                    &s.exact.as_ref().map(Rational::to_fraction).unwrap_or_default(),
                     &number(s.value),
                     &number(s.step),
                     &number(s.drive.efficiency),
@@ -103,7 +104,7 @@ fn rows(a: &Analysis, table: Table) -> String {
                         o.state.clone().unwrap_or_default(),
                         solution.to_owned(),
                         verdict(o.verdict).to_owned(),
-                        o.certificate.map_or(String::new(), |c| c.method.to_owned()),
+                        o.certificate.map_or(String::new(), |c| c.method.as_str().to_owned()),
                     ]
                 };
                 if o.solutions.is_empty() {
@@ -200,7 +201,7 @@ fn rows(a: &Analysis, table: Table) -> String {
             each(a, |head, s| {
                 for x in &s.sources {
                     let kind = word(&x.kind);
-                    let tail = [x.name.clone(), kind, x.law.to_owned(), number(Some(x.loss_w)), number(Some(x.share))];
+                    let tail = [x.name.clone(), kind, x.law.clone(), number(Some(x.loss_w)), number(Some(x.share))];
                     out.row(head.iter().cloned().chain(tail));
                 }
             });
@@ -277,7 +278,7 @@ fn rows(a: &Analysis, table: Table) -> String {
                     for x in [b.speed_rad_s, b.radial_load_n, b.axial_load_n, b.torque_n_m] {
                         row.push(number(Some(x)));
                     }
-                    row.extend([b.law.to_owned(), number(Some(b.loss_w))]);
+                    row.extend([b.law.clone(), number(Some(b.loss_w))]);
                     out.row(row);
                 }
             });

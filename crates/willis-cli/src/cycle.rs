@@ -253,7 +253,7 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
             t.add_row([
                 s.name.clone(),
                 s.kind.to_owned(),
-                s.law.to_owned(),
+                s.law.clone(),
                 significant(s.energy_j / scale.energy.1, 4),
                 percent(s.share),
                 losses::bar(s.energy_j / first.energy_j),
@@ -356,7 +356,7 @@ pub fn csv(r: &CycleReport) -> String {
     out.0 += "\n# sources\n";
     out.row(["source", "kind", "law", "energy_j", "share"]);
     for s in &r.sources {
-        out.row([&s.name, s.kind, s.law, &number(s.energy_j), &number(s.share)]);
+        out.row([&s.name, s.kind, &s.law, &number(s.energy_j), &number(s.share)]);
     }
     out.0 += "\n# terminals\n";
     out.row(["member", "energy_in_j", "energy_out_j"]);

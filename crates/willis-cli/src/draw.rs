@@ -9,8 +9,7 @@ use willis::Diagnostics;
 use willis::diagnostic::{Diagnostic, Severity};
 use willis::model::Model;
 use willis_figure::report::document::Document;
-use willis_figure::{Drawing, ReportRequest, Theme, html, png, themed};
-use willis_figure::{Figure, FigureKind, FigureRequest};
+use willis_figure::{Ask, Drawing, Figure, FigureKind, FigureRequest, ReportRequest, Theme, html, png, themed};
 
 use crate::output;
 
@@ -66,29 +65,16 @@ pub fn draw(
 
 /// Refuses what would make no difference to this kind.
 fn heard(kind: FigureKind, request: &FigureRequest, look: &Look) -> Result<(), String> {
-    let asked = [
-        ("state", request.state.is_some()),
-        ("operation", request.operation.is_some()),
-        ("part", request.part.is_some()),
-        ("over", !request.over.is_empty()),
-        ("terminals", request.terminals.is_some()),
-        ("balance", request.balance.is_some()),
-        ("nominal", request.nominal),
-    ];
-    let takes = kind.takes();
-    let still = (look.drawing.animated && kind != FigureKind::Front).then_some("animated");
-    let deaf = asked.iter().find(|(name, given)| *given && !takes.contains(name)).map(|a| a.0).or(still);
-    let Some(deaf) = deaf else { return Ok(()) };
-    let list: Vec<String> = takes.iter().map(|t| format!("--{t}")).collect();
+    let Some(deaf) = kind.deaf_to(request, look.drawing) else { return Ok(()) };
+    let list: Vec<String> = kind.takes().iter().map(|t| format!("--{}", t.name())).collect();
     let instead =
         if list.is_empty() { "it takes no question".to_owned() } else { format!("it takes {}", list.join(", ")) };
-    Err(format!("`draw {}` has no use for --{deaf}; {instead}\n", kind.name()))
+    Err(format!("`draw {}` has no use for --{}; {instead}\n", kind.name(), deaf.name()))
 }
 
 /// Where a kind does not apply to a train at all, those that do.
 fn with_others(wrong: Diagnostics, model: &Model, request: &FigureRequest) -> Diagnostics {
-    let asked =
-        request.state.is_some() || request.operation.is_some() || request.part.is_some() || !request.over.is_empty();
+    let asked = request.asks().iter().any(|a| matches!(a, Ask::State | Ask::Operation | Ask::Part | Ask::Over));
     let mut all: Vec<Diagnostic> = wrong.into_iter().collect();
     if !asked && let Some(first) = all.iter_mut().find(|d| d.severity == Severity::Error) {
         let others: Vec<&str> = FigureKind::applicable(model).into_iter().map(FigureKind::name).collect();

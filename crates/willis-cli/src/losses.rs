@@ -24,7 +24,7 @@ pub fn of_solution(s: &SolutionReport) -> String {
             t.add_row([
                 x.name.clone(),
                 x.kind.words().into(),
-                x.law.into(),
+                x.law.clone(),
                 significant(x.loss_w, 4),
                 percent(x.share),
                 bar(if most > 0.0 { x.loss_w / most } else { 0.0 }),
@@ -86,19 +86,11 @@ fn contacts(all: &Named<ContactReport>) -> String {
             significant(c.pressure_pa / 1e6, 4),
             or_dash(c.film_m.map(|h| h * 1e6), 3),
             or_dash(c.film_ratio, 3),
-            c.regime.map_or("-", regime).into(),
+            c.regime.map_or("-", Regime::words).into(),
         ]);
     }
     right(&mut t, 1..11);
     show(&t)
-}
-
-fn regime(r: Regime) -> &'static str {
-    match r {
-        Regime::Boundary => "boundary",
-        Regime::Mixed => "mixed",
-        Regime::Full => "full",
-    }
 }
 
 fn bearings(all: &Named<BearingReport>) -> String {
@@ -202,7 +194,7 @@ fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
             row.push(p.temperature_k.map_or("-".into(), |t| significant(t - 273.15, 4)));
         }
         if all.family.is_some() {
-            row.insert(0, p.law.unwrap_or("-").into());
+            row.insert(0, p.law.as_deref().unwrap_or("-").into());
             if all.family.as_deref() == Some("mesh_friction") {
                 let mu = p.friction.iter().filter_map(|f| f.1).collect::<Vec<_>>();
                 let (low, high) = mu.iter().fold((f64::INFINITY, 0.0f64), |(low, high), m| (low.min(*m), high.max(*m)));
@@ -284,7 +276,7 @@ pub fn points_csv(all: &LossTable) -> String {
         let l = &p.losses_w;
         out.row([
             p.operation.as_str(),
-            p.law.unwrap_or_default(),
+            p.law.as_deref().unwrap_or_default(),
             p.speed_of.as_deref().unwrap_or_default(),
             &p.speed_rad_s.to_string(),
             p.torque_of.as_deref().unwrap_or_default(),
@@ -387,29 +379,6 @@ pub fn laws_csv(all: &[Entry]) -> String {
         ]);
     }
     out.0
-}
-
-/// Every law as JSON, `willis-laws-1`.
-pub fn laws_json(all: &[Entry]) -> serde_json::Value {
-    let bound = |x: f64| if x.is_finite() { serde_json::json!(x) } else { serde_json::Value::Null };
-    let entries: Vec<_> = all
-        .iter()
-        .map(|e| {
-            let valid: Vec<_> = e
-                .valid
-                .iter()
-                .map(|(symbol, unit, low, high)| {
-                    serde_json::json!({ "symbol": symbol, "unit": unit, "min": bound(*low), "max": bound(*high) })
-                })
-                .collect();
-            serde_json::json!({
-                "family": e.family, "law": e.id, "default": e.default, "title": e.title,
-                "gives": { "symbol": e.gives.0, "unit": e.gives.1 },
-                "source": e.source.0, "place": e.source.1, "trust": trust(e.trust), "valid": valid,
-            })
-        })
-        .collect();
-    serde_json::json!({ "format": "willis-laws-1", "laws": entries })
 }
 
 /// The catalogue of oils.

@@ -1001,7 +1001,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
         Command::Laws { bearings: true, .. } => Ok(losses::bearings_catalogue()),
         Command::Laws { family, format, .. } => {
             let mut all = willis::losses::entries();
-            if let Some(family) = family {
+            if let Some(family) = &family {
                 all.retain(|e| e.family == family);
                 if all.is_empty() {
                     let known = willis::losses::FAMILIES.join(", ");
@@ -1010,7 +1010,10 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             }
             Ok(match format {
                 Format::Text => losses::laws(&all),
-                Format::Json => serde_json::to_string_pretty(&losses::laws_json(&all)).expect("plain data") + "\n",
+                Format::Json => {
+                    let list = willis::losses::list(family.as_deref());
+                    serde_json::to_string_pretty(&list).expect("plain data") + "\n"
+                }
                 Format::Csv => losses::laws_csv(&all),
             })
         }

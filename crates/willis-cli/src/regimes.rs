@@ -2,7 +2,7 @@
 
 use comfy_table::CellAlignment;
 use willis::analysis::Role;
-use willis::regimes::{Atlas, Edge, Family, Located, Location, RegimeReport, Regimes};
+use willis::regimes::{Atlas, Edge, Family, Located, Location, Prescribes, RegimeReport, Regimes};
 
 use crate::csv::Writer;
 use crate::text::{bold, dim, percent, plural, rpm, set_header, show, significant, table, wrap};
@@ -72,7 +72,7 @@ fn one_freedom(all: &[&Atlas]) -> String {
         for (name, s) in a.symbols.iter() {
             let (Some(value), false) = (s.value, told.contains(name)) else { continue };
             told.push(name.clone());
-            let exact = s.exact.as_deref().map(|e| e.strip_suffix("/1").unwrap_or(e)).unwrap_or_default();
+            let exact = s.exact.as_ref().map(ToString::to_string).unwrap_or_default();
             let value = significant(value, 6);
             let value = if exact == value { value } else { format!("{value} = {exact}") };
             out += &wrap(&format!("{name} = {value}   {}", s.meaning), "  ");
@@ -316,7 +316,7 @@ fn atlas(a: &Atlas) -> String {
         out += &bold("Symbols");
         out += "\n";
         for (name, s) in a.symbols.iter().filter(|(_, s)| s.value.is_some()) {
-            let exact = s.exact.as_deref().map(|e| e.strip_suffix("/1").unwrap_or(e)).unwrap_or_default();
+            let exact = s.exact.as_ref().map(ToString::to_string).unwrap_or_default();
             let value = significant(s.value.unwrap_or_default(), 6);
             let value = if exact == value { value } else { format!("{value} = {exact}") };
             out += &wrap(&format!("{name} = {value}   {}", s.meaning), "  ");
@@ -472,8 +472,7 @@ fn escape(text: &str) -> String {
 /// A set over all basic ratios, for eyes.
 pub fn family(f: &Family) -> String {
     let mut out = bold(&f.train) + "\n";
-    out +=
-        &format!("  {} = {} = {}\n", f.ratio, f.exact.strip_suffix("/1").unwrap_or(&f.exact), significant(f.value, 6));
+    out += &format!("  {} = {} = {}\n", f.ratio, f.exact, significant(f.value, 6));
     let etas = if f.efficiencies[0] == f.efficiencies[1] {
         format!("eta = {}", f.efficiencies[0])
     } else {
@@ -696,13 +695,13 @@ fn located(r: &Located) -> String {
     set_header(&mut t, &["one value changes", "now", "regime lasts", "what is there", "what changes behind it"]);
     for range in &r.ranges {
         let show_value = |x: f64| match range.quantity {
-            "speed" => format!("{} rpm", significant(rpm(x), 6)),
+            Prescribes::Speed => format!("{} rpm", significant(rpm(x), 6)),
             _ => format!("{} N m", significant(x, 6)),
         };
         let edges: [(&str, &Option<Edge>); 2] = [("down to", &range.below), ("up to", &range.above)];
         for (k, (word, edge)) in edges.into_iter().enumerate() {
             let (label, now) = match k {
-                0 => (format!("{} of {}", range.quantity, range.member), show_value(range.value)),
+                0 => (format!("{} of {}", range.quantity.words(), range.member), show_value(range.value)),
                 _ => Default::default(),
             };
             match edge {

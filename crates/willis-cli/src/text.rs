@@ -5,6 +5,7 @@ use willis::analysis::{
     Analysis, CertificateReport, Direction, Margin, MemberReport, OperationReport, Role, SolutionReport, StateReport,
     Verdict,
 };
+use willis::statics::Certificate;
 use willis::train::Train;
 
 pub fn analysis(train: &Train, a: &Analysis) -> String {
@@ -82,7 +83,7 @@ fn shift_table(a: &Analysis) -> String {
         if !same {
             row.extend([s.input.clone(), s.output.clone()]);
         }
-        let exact = s.exact.as_deref().map(|e| e.strip_suffix("/1").unwrap_or(e).to_owned());
+        let exact = s.exact.as_ref().map(ToString::to_string);
         row.push(s.value.map_or("-".into(), |v| significant(v, 5)));
         row.push(exact.unwrap_or("-".into()));
         if steps {
@@ -141,9 +142,13 @@ fn verdicts(s: &StateReport) -> String {
 
 fn certificate(c: &CertificateReport) -> String {
     match (c.unique_for_every_load, c.method) {
-        (true, "spectral-radius") => "exactly one equilibrium for every load (spectral-radius certificate)".into(),
+        (true, Certificate::SpectralRadius) => {
+            "exactly one equilibrium for every load (spectral-radius certificate)".into()
+        }
         (true, _) => "exactly one equilibrium for every load (all sign patterns' determinants agree)".into(),
-        (false, "enumeration") => "not unique for every load; for this one every sign pattern was tried".into(),
+        (false, Certificate::Enumeration) => {
+            "not unique for every load; for this one every sign pattern was tried".into()
+        }
         _ => "uniqueness undecided".into(),
     }
 }
@@ -160,7 +165,9 @@ fn operation(o: &OperationReport) -> String {
     out += &format!("  verdict      {}", bold(o.verdict.words()));
     match (&o.certificate, o.verdict) {
         (Some(c), Verdict::Unique | Verdict::Multiple) => out += &format!(": {}", certificate(c)),
-        (Some(c), Verdict::Locked) if c.method != "undecided" => out += ": proved, no equilibrium drives a load",
+        (Some(c), Verdict::Locked) if c.method != Certificate::Undecided => {
+            out += ": proved, no equilibrium drives a load"
+        }
         _ => {}
     }
     out.push('\n');
@@ -197,9 +204,11 @@ fn solution(s: &SolutionReport) -> String {
     let (unit, scale) = power_unit(s);
     let power = |p: f64| significant(p / scale, 5);
     let exact = match &s.efficiency_exact {
-        Some(e) if e.len() < 40 => format!(" = {}", e.strip_suffix("/1").unwrap_or(e)),
-        _ => String::new(),
+        Some(e) => e.to_string(),
+        None => String::new(),
     };
+    // A longer one is for machines.
+    let exact = if (1..40).contains(&exact.len()) { format!(" = {exact}") } else { String::new() };
     let efficiency = match (s.all_dissipated, s.efficiency) {
         (true, _) => "none: every loaded member is an input, all power is dissipated".into(),
         (_, Some(e)) => percent(e) + &exact,

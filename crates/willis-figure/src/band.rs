@@ -3,12 +3,26 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Axis, UncertaintyPlan, UncertaintyRequest};
 
+use crate::kind::{Ask, Kind};
 use crate::parts::axes::{self, ChartAxis};
+
+pub(crate) const KIND: Kind<Bands> = Kind {
+    title: "How sure it is",
+    takes: &[Ask::State, Ask::Operation, Ask::Over],
+    make: |s, r| {
+        let samples = if r.samples == 0 { SAMPLES } else { r.samples };
+        let (operation, state) = (r.operation.clone(), r.state.clone());
+        bands(s, &UncertaintyRequest { operation, state, samples, ..Default::default() }, &r.over)
+    },
+    draw: |data, _| draw::draw(data),
+};
+
+/// Samples where the caller does not say.
+const SAMPLES: usize = 256;
 
 /// Points along the axis where the caller does not say.
 const STEPS: usize = 9;
@@ -55,8 +69,8 @@ pub struct BandPoint {
 ///
 /// # Errors
 /// What [`UncertaintyPlan::new`] says; an axis that is none, or that is itself among the uncertain quantities.
-pub fn bands(subject: &Model, request: &UncertaintyRequest, over: &[String]) -> Result<Bands, Diagnostics> {
-    let plan = UncertaintyPlan::new(subject, request)?;
+pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Result<Bands, Diagnostics> {
+    let plan = UncertaintyPlan::new(model, request)?;
     let question = plan.question();
     let over = match over {
         [] => vec![axes::usual_speed(question, STEPS)],
@@ -66,7 +80,7 @@ pub fn bands(subject: &Model, request: &UncertaintyRequest, over: &[String]) -> 
             return Err(Diagnostic::new(Code::BadAxis, "", message).into());
         }
     };
-    let [x] = <[Axis; 1]>::try_from(axes::parse(&over, subject)?).expect("one is parsed");
+    let [x] = <[Axis; 1]>::try_from(axes::parse(&over, model)?).expect("one is parsed");
     let design = plan.design();
     let samples: Vec<usize> = (0..plan.len()).filter(|k| design.is_sample(*k)).collect();
     if samples.len() * x.len() > MOST_POINTS {
@@ -108,7 +122,7 @@ pub fn bands(subject: &Model, request: &UncertaintyRequest, over: &[String]) -> 
         })
         .collect();
     Ok(Bands {
-        title: subject.train().name().to_owned(),
+        title: model.train().name().to_owned(),
         basis: axes::basis(question, &[&x]),
         x: ChartAxis::of(&x),
         quantities: plan.quantities().iter().map(|q| format!("{} {}", q.name, q.describe())).collect(),

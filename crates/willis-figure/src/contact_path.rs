@@ -4,7 +4,6 @@ pub mod film;
 pub mod path;
 
 use serde::Serialize;
-
 use willis::analysis::operate;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::operating_point::Regime;

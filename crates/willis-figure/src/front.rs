@@ -6,12 +6,19 @@ mod nominal;
 mod profile;
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::geometry::Pair;
 use willis::train::{Gear, MemberKind, Train};
 
+use crate::kind::{Ask, Kind};
 use profile::Profile;
+
+pub(crate) const KIND: Kind<Front> = Kind {
+    title: "Teeth in mesh",
+    takes: &[Ask::Part, Ask::Nominal, Ask::Animated],
+    make: |s, r| front(s.train(), r.part.as_deref(), r.nominal),
+    draw: |data, how| draw::draw(data, how.animated),
+};
 
 /// The transverse section of a set, or of a pair of gears.
 ///

@@ -15,7 +15,6 @@ mod family;
 mod layout;
 
 use serde::Serialize;
-
 use willis::analysis::{AS_DRAWN, OperationReport, SolutionReport, operate};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
@@ -24,7 +23,27 @@ use willis::train::{Load, MemberId, Operation, ShiftElementId, Train};
 use willis::units::{Dimension, Quantity};
 use willis::unstable;
 
+use crate::kind::{Ask, FigureRequest, Kind};
 use family::{Family, families};
+
+pub(crate) const KIND: Kind<Lever> = Kind {
+    title: "Levers",
+    takes: &[Ask::State, Ask::Operation],
+    make: |s, r| lever(s.train(), &LeverRequest::of(r)),
+    draw: |data, _| draw::draw(data),
+};
+
+impl LeverRequest {
+    /// What a request for a figure of any kind means here.
+    fn of(r: &FigureRequest) -> Self {
+        match (&r.operation, r.state.as_deref()) {
+            (Some(operation), _) => Self::Operation(operation.clone()),
+            (None, Some("all")) => Self::EveryState,
+            (None, Some(state)) => Self::State(state.to_owned()),
+            (None, None) => Self::First,
+        }
+    }
+}
 
 /// What a lever picture shows.
 #[derive(Clone, Debug, Default, PartialEq)]

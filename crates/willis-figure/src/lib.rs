@@ -6,7 +6,6 @@
 
 mod band;
 mod contact_path;
-mod draw;
 mod flow;
 mod front;
 mod kind;
@@ -16,6 +15,7 @@ mod map;
 mod modes;
 mod parts;
 mod regimes;
+mod registry;
 pub mod report;
 mod sankey;
 mod shift;
@@ -28,12 +28,11 @@ pub use band::{BandPoint, Bands, QUANTILES, bands};
 pub use contact_path::film::draw as draw_film;
 pub use contact_path::path::draw as draw_path;
 pub use contact_path::{ContactPath, MeshPath, PathPoint, contact_path};
-pub use draw::{Drawing, draw};
 pub use flow::dot::flow_dot;
 pub use flow::draw::draw as draw_flow;
 pub use front::draw::draw as draw_front;
 pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWheel, front};
-pub use kind::{Figure, FigureKind, FigureRequest};
+pub use kind::{Ask, Drawing, FigureRequest};
 pub use lever::draw::draw as draw_lever;
 pub use lever::{
     Lever, LeverBar, LeverCase, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
@@ -49,6 +48,7 @@ pub use parts::png::png;
 pub use parts::theme::{Theme, themed};
 pub use regimes::draw::draw as draw_regimes;
 pub use regimes::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
+pub use registry::{Figure, FigureKind, draw};
 pub use report::html::html;
 pub use report::{ReportRequest, report};
 pub use sankey::draw::draw as draw_sankey;

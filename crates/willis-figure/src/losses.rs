@@ -3,13 +3,20 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::operating_point::LossKind;
 use willis::study::{Answer, Axis, Hold, Question, Sweep};
 
+use crate::kind::{Ask, Kind};
 use crate::parts::axes::{self, ChartAxis};
+
+pub(crate) const KIND: Kind<LossChart> = Kind {
+    title: "Losses by source",
+    takes: &[Ask::State, Ask::Operation, Ask::Over],
+    make: |s, r| loss_chart(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
+    draw: |data, _| draw::draw(data),
+};
 
 /// Points along the axis where the caller does not say.
 const STEPS: usize = 49;
@@ -49,7 +56,7 @@ pub struct LossSeries {
     /// What kind of loss it is; of the others, none.
     pub kind: Option<LossKind>,
     /// Its law; `given` for an efficiency that the file gives.
-    pub law: Option<&'static str>,
+    pub law: Option<String>,
     /// How many sources it stands for.
     pub sources: usize,
     /// W at each value of the axis, absent where there is no single answer.
@@ -59,13 +66,13 @@ pub struct LossSeries {
 }
 
 /// The losses of an answer: name, kind, law, W.
-fn sources(answer: &Answer) -> Option<Vec<(String, LossKind, &'static str, f64)>> {
+fn sources(answer: &Answer) -> Option<Vec<(String, LossKind, String, f64)>> {
     let s = answer.solution.as_ref().filter(|_| answer.verdict == "unique")?;
     if !s.sources.is_empty() {
-        return Some(s.sources.iter().map(|x| (x.name.clone(), x.kind, x.law, x.loss_w)).collect());
+        return Some(s.sources.iter().map(|x| (x.name.clone(), x.kind, x.law.clone(), x.loss_w)).collect());
     }
     let meshes = s.meshes.iter().filter(|(_, m)| m.loss_w > 0.0);
-    Some(meshes.map(|(name, m)| (name.clone(), LossKind::Sliding, "given", m.loss_w)).collect())
+    Some(meshes.map(|(name, m)| (name.clone(), LossKind::Sliding, "given".to_owned(), m.loss_w)).collect())
 }
 
 /// Computes losses over a quantity (the operation's first speed, where none is named), source by source.
@@ -94,20 +101,20 @@ fn sources(answer: &Answer) -> Option<Vec<(String, LossKind, &'static str, f64)>
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Model::from_toml(text).unwrap();
-/// let chart = loss_chart(&subject, None, None, &["s.torque=1..20 N m:5".into()])?;
+/// let model = Model::from_toml(text).unwrap();
+/// let chart = loss_chart(&model, None, None, &["s.torque=1..20 N m:5".into()])?;
 /// let total: f64 = chart.series.iter().map(|s| s.at_operation_w.unwrap()).sum();
 /// assert!((total - chart.loss_w.unwrap()).abs() < 1e-9);
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn loss_chart(
-    subject: &Model,
+    model: &Model,
     state: Option<&str>,
     operation: Option<&str>,
     over: &[String],
 ) -> Result<LossChart, Diagnostics> {
-    let train = subject.train();
-    let question = Question::new(subject, operation, state, Hold::AsGiven)?;
+    let train = model.train();
+    let question = Question::new(model, operation, state, Hold::AsGiven)?;
     if question.base().loads.is_empty() {
         let d = Diagnostic::new(Code::Unfit, "", "losses belong to a loaded operating point, and there is none");
         return Err(d.hint("add an [[operation]] with speeds and torques or powers").into());
@@ -120,7 +127,7 @@ pub fn loss_chart(
             return Err(Diagnostic::new(Code::BadAxis, "", message).into());
         }
     };
-    let [x] = <[Axis; 1]>::try_from(axes::parse(&over, subject)?).expect("one is parsed");
+    let [x] = <[Axis; 1]>::try_from(axes::parse(&over, model)?).expect("one is parsed");
     let basis = axes::basis(&question, &[&x]);
     let own = Answer::of(train, question.base());
     let here = sources(&own);
@@ -138,7 +145,7 @@ pub fn loss_chart(
         for (name, kind, law, watts) in list.unwrap_or(&here).iter().flatten() {
             let at = all.iter().position(|s| s.name == *name && s.kind == Some(*kind)).unwrap_or_else(|| {
                 let loss_w = found.iter().map(|f| f.as_ref().map(|_| 0.0)).collect();
-                let (name, kind, law) = (name.clone(), Some(*kind), Some(*law));
+                let (name, kind, law) = (name.clone(), Some(*kind), Some(law.clone()));
                 all.push(LossSeries {
                     name,
                     kind,

@@ -3,14 +3,21 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::analysis::{self, Selection};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Answer, Axis, Hold, Question, Sweep};
 use willis::train::{Load, MemberId, Operation};
 
+use crate::kind::{Ask, Kind};
 use crate::parts::axes::{self, ChartAxis};
+
+pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
+    title: "Efficiency map",
+    takes: &[Ask::State, Ask::Operation, Ask::Over],
+    make: |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
+    draw: |data, _| draw::draw(data),
+};
 
 /// Points along the axes where the caller does not say.
 const COLUMNS: usize = 41;
@@ -105,21 +112,21 @@ impl MapPoint {
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Model::from_toml(text).unwrap();
-/// let map = efficiency_map(&subject, None, None, &[])?;
+/// let model = Model::from_toml(text).unwrap();
+/// let map = efficiency_map(&model, None, None, &[])?;
 /// assert!(map.points.iter().all(|p| (p.efficiency.unwrap() - 0.98607).abs() < 1e-9));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn efficiency_map(
-    subject: &Model,
+    model: &Model,
     state: Option<&str>,
     operation: Option<&str>,
     over: &[String],
 ) -> Result<EfficiencyMap, Diagnostics> {
-    let train = subject.train();
+    let train = model.train();
     // Without an operation that says so, a train with states is looked at in its first.
     let first = train.states().first().filter(|_| train.operations().is_empty()).map(|s| s.name.as_str());
-    let question = Question::new(subject, operation, state.or(first), Hold::AsGiven)?;
+    let question = Question::new(model, operation, state.or(first), Hold::AsGiven)?;
     let open = state.is_none() && operation.is_none() && over.is_empty();
     if open
         && train.states().len() > 1
@@ -139,7 +146,7 @@ pub fn efficiency_map(
             return Err(Diagnostic::new(Code::BadAxis, "", message).into());
         }
     };
-    let [x, y] = <[Axis; 2]>::try_from(axes::parse(&over, subject)?).expect("two are parsed");
+    let [x, y] = <[Axis; 2]>::try_from(axes::parse(&over, model)?).expect("two are parsed");
     let basis = axes::basis(&question, &[&x, &y]);
     let marks = marks(&question, &x, &y);
     let (own_x, own_y) = (ChartAxis::of(&x), ChartAxis::of(&y));
@@ -207,8 +214,8 @@ fn marks(question: &Question<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
 
 /// Over speed and torque of the output, at every point the best state.
 fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnostics> {
-    let subject = question.model();
-    let train = subject.train();
+    let model = question.model();
+    let train = model.train();
     let (Some(input), Some(output)) = (train.input(), train.output()) else { return Ok(None) };
     if train.states().iter().any(|s| s.input.is_some_and(|m| m != input) || s.output.is_some_and(|m| m != output)) {
         return Ok(None);
@@ -230,8 +237,8 @@ fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnost
         format!("output.torque={} N m..{torque} N m:{ROWS}", torque / 30.0),
         "state=all".to_owned(),
     ];
-    let [x, y] = <[Axis; 2]>::try_from(axes::parse(&over[..2], subject)?).expect("two are parsed");
-    let states = Axis::parse(&over[2], subject).map_err(|d| Diagnostics::from_iter([*d]))?;
+    let [x, y] = <[Axis; 2]>::try_from(axes::parse(&over[..2], model)?).expect("two are parsed");
+    let states = Axis::parse(&over[2], model).map_err(|d| Diagnostics::from_iter([*d]))?;
     let names: Vec<String> = (0..states.len()).map(|k| states.setting(k)).collect();
     let (own_x, own_y) = (ChartAxis::of(&x), ChartAxis::of(&y));
     let sweep = bounded(question.clone(), vec![y, x, states])?;

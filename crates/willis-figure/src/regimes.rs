@@ -3,11 +3,22 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::regimes::{Atlas, RegimeReport, RegimeSelection, RegionReport};
 use willis::train::Train;
 use willis::unstable::{Speeds, arrow};
+
+use crate::kind::{Ask, Kind};
+
+pub(crate) const KIND: Kind<RegimeMap> = Kind {
+    title: "Regimes",
+    takes: &[Ask::State, Ask::Terminals, Ask::Balance],
+    make: |s, r| {
+        let (state, terminals, balance) = (r.state.clone(), r.terminals.clone(), r.balance.clone());
+        regime_map(s.train(), &RegimeSelection { state, terminals, balance })
+    },
+    draw: |data, _| draw::draw(data),
+};
 
 /// The speed plane of a train with two freedoms.
 ///

@@ -7,7 +7,6 @@ mod laws;
 mod results;
 mod scheme;
 
-use crate::{Figure, FigureKind, FigureRequest};
 use willis::Diagnostics;
 use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
 use willis::diagnostic::Severity;
@@ -15,8 +14,8 @@ use willis::hypergraph::watts;
 use willis::model::Model;
 use willis::study::{Sensitivity, sensitivity};
 
-use crate::draw::{Drawing, draw};
 use crate::report::document::{Block, Column, Document, Level, Section};
+use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
 /// Operations that get pictures of their own; all are told in tables.
 const PICTURED: usize = 4;
@@ -38,7 +37,7 @@ pub struct ReportRequest {
 
 /// Everything that a report tells.
 struct Findings<'a> {
-    subject: &'a Model,
+    model: &'a Model,
     request: &'a ReportRequest,
     analysis: Analysis,
     sensitivity: Option<Sensitivity>,
@@ -51,9 +50,9 @@ struct Figures(Vec<(FigureKind, Option<String>, String)>);
 
 impl Figures {
     /// Makes what applies, on all cores.
-    fn make(subject: &Model, wanted: &[(FigureKind, FigureRequest)]) -> Self {
+    fn make(model: &Model, wanted: &[(FigureKind, FigureRequest)]) -> Self {
         let one = |(kind, request): &(FigureKind, FigureRequest)| {
-            let figure = kind.make(subject, request).ok().filter(worth_showing)?;
+            let figure = kind.make(model, request).ok().filter(worth_showing)?;
             let picture = draw(&figure, Drawing::default());
             // Of some kinds there is one for every set or operation.
             let of = match kind {
@@ -113,18 +112,18 @@ fn worth_showing(figure: &Figure) -> bool {
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Model::from_toml(text).unwrap();
+/// let model = Model::from_toml(text).unwrap();
 /// let document = report(&job.model, &ReportRequest::default())?;
 /// assert!(html(&document).contains("98.607 %"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn report(subject: &Model, request: &ReportRequest) -> Result<Document, Diagnostics> {
-    let train = subject.train();
+pub fn report(model: &Model, request: &ReportRequest) -> Result<Document, Diagnostics> {
+    let train = model.train();
     let selection = Selection { state: None, operation: request.operation.clone() };
     let analysis = analyze(train, &selection)?;
     let sensitivity = sensitivity(train, &selection).ok();
-    let figures = Figures::make(subject, &wanted(subject, request, &analysis));
-    let all = Findings { subject, request, analysis, sensitivity, figures };
+    let figures = Figures::make(model, &wanted(model, request, &analysis));
+    let all = Findings { model, request, analysis, sensitivity, figures };
     let sections = [
         Some(summary(&all)),
         Some(scheme::section(&all)),
@@ -148,9 +147,9 @@ pub fn report(subject: &Model, request: &ReportRequest) -> Result<Document, Diag
 }
 
 /// The pictures that a report asks for.
-fn wanted(subject: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(FigureKind, FigureRequest)> {
+fn wanted(model: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(FigureKind, FigureRequest)> {
     use FigureKind::*;
-    let train = subject.train();
+    let train = model.train();
     let only = FigureRequest { operation: request.operation.clone(), ..Default::default() };
     let plain = |kind| (kind, FigureRequest::default());
     // The longest first, so that the cores end together.
@@ -209,7 +208,7 @@ fn facts(all: &Findings<'_>) -> Vec<[String; 2]> {
 /// What was asked and what came out, in a few lines.
 fn summary(all: &Findings<'_>) -> Section {
     let mut blocks = vec![];
-    let train = all.subject.train();
+    let train = all.model.train();
     let question = match all.analysis.operations.len() {
         0 => format!(
             "What does {} do: its ratios, the direction in which it can be driven, and its efficiency, with the proof \

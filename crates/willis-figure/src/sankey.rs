@@ -14,9 +14,18 @@ pub mod draw;
 mod layers;
 
 use serde::Serialize;
-
 use willis::analysis::Verdict;
 use willis::hypergraph::{FlowReport, Hypergraph, Node, NodeKind};
+
+use crate::flow::powers;
+use crate::kind::{Ask, Kind};
+
+pub(crate) const KIND: Kind<Sankey> = Kind {
+    title: "Power flow to scale",
+    takes: &[Ask::State, Ask::Operation],
+    make: |s, r| Ok(sankey(&powers(s, r)?)),
+    draw: |data, _| draw::draw(data),
+};
 
 /// Losses of one kind at one node that are below this part of the input are gathered.
 const SMALL_LOSS: f64 = 0.01;

@@ -4,11 +4,16 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::analysis::{Direction, Selection, StateReport, Verdict, analyze};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::exact::Rational;
 use willis::train::{ShiftElementKind, Train};
 use willis::unstable;
+
+use crate::kind::Kind;
+
+pub(crate) const KIND: Kind<ShiftTable> =
+    Kind { title: "Shift table", takes: &[], make: |s, _| shift(s.train()), draw: |data, _| draw::draw(data) };
 
 /// A shift table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -162,7 +167,7 @@ fn row(name: &str, closed: Vec<bool>, report: Option<&StateReport>) -> ShiftRow 
         closed,
         path: Some([r.input.clone(), r.output.clone()]),
         ratio: r.value,
-        exact: r.exact.clone(),
+        exact: r.exact.as_ref().map(Rational::to_fraction),
         note: r.no_ratio.clone().or_else(|| beyond.then(|| "the ratio is beyond floating point".to_owned())),
         drive: efficiency(&r.drive),
         coast: efficiency(&r.coast),

@@ -18,9 +18,17 @@ mod members;
 mod shapes;
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::train::Train;
+
+use crate::kind::{Ask, Kind};
+
+pub(crate) const KIND: Kind<Stick> = Kind {
+    title: "Kinematic schematic",
+    takes: &[Ask::State],
+    make: |s, r| stick(s.train(), r.state.as_deref()),
+    draw: |data, _| draw::draw(data),
+};
 
 /// A point of the picture: x along the axis, y outward; the unit is a step of the grid.
 pub type Place = [f64; 2];

@@ -5,9 +5,46 @@ pub mod draw;
 use std::ops::ControlFlow;
 
 use serde::Serialize;
-
-use willis::dynamics::{Column, Event, ModeLabel, Outcome, Recorder, RunReport, Sample};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::dynamics::{Column, Event, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, simulate};
 use willis::train::{MemberKind, Train};
+
+use crate::kind::{Ask, Kind};
+
+pub(crate) const KIND: Kind<TimePlot> = Kind {
+    title: "Motion over time",
+    takes: &[Ask::Part],
+    make: |s, r| scenario(s.train(), r.part.as_deref()),
+    draw: |data, _| draw::draw(data),
+};
+
+/// The scenario of that name, or the first, simulated.
+///
+/// # Errors
+/// No such scenario, none at all, or what [`simulate`] says.
+fn scenario(train: &Train, name: Option<&str>) -> Result<TimePlot, Diagnostics> {
+    let all = train.scenarios();
+    let scenario = match name {
+        None => all.first(),
+        Some(name) => all.iter().find(|s| s.name == name),
+    };
+    let Some(scenario) = scenario else {
+        let d = match name {
+            Some(name) => {
+                let known = all.iter().map(|s| s.name.as_str());
+                let list = known.clone().collect::<Vec<_>>().join(", ");
+                Diagnostic::new(Code::UnknownSelection, "", format!("the train has no scenario `{name}`"))
+                    .suggest(name, known)
+                    .hint(format!("its scenarios are: {}", if list.is_empty() { "none" } else { &list }))
+            }
+            None => Diagnostic::new(Code::Unfit, "", "the train has no scenario that could run over time"),
+        };
+        return Err(d.hint("a [[scenario]] says what drives and what happens when").into());
+    };
+    let mut plot = TimePlotBuilder::new(train, [scenario.start, scenario.end]);
+    let report = simulate(train, &scenario.name, &Options::default(), &mut plot)?;
+    Ok(plot.finish(&report))
+}
 
 /// A run over time.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -3,9 +3,28 @@
 pub mod draw;
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::study::{Sensitivity, StepKind};
+use willis::model::Model;
+use willis::study::{Sensitivity, StepKind, sensitivity};
+
+use crate::kind::{Ask, FigureRequest, Kind};
+
+pub(crate) const KIND: Kind<Tornado> = Kind {
+    title: "What matters most",
+    takes: &[Ask::State, Ask::Operation],
+    make: ranking,
+    draw: |data, _| draw::draw(data),
+};
+
+/// Bars of a ranking.
+const BARS: usize = 14;
+
+/// The ranking of the operation that is named, or of the first that has derivatives.
+fn ranking(model: &Model, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
+    let all = sensitivity(model.train(), &r.selection())?;
+    let first = all.operations.iter().find(|o| !o.quantities.is_empty()).map(|o| o.name.clone());
+    tornado(&all, r.operation.clone().or(first).as_deref(), BARS)
+}
 
 /// Quantities of an operating point, ranked by what a small step of each does.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -19,7 +19,7 @@ fn examples() -> Vec<PathBuf> {
     all
 }
 
-fn subject(path: &Path) -> Model {
+fn model(path: &Path) -> Model {
     let text = std::fs::read_to_string(path).expect("an example is text");
     let folder = path.parent().expect("a file has a folder");
     Model::read(&text, &mut |f| std::fs::read_to_string(folder.join(f)).map_err(|e| e.to_string()))
@@ -128,10 +128,10 @@ fn every_kind_of_every_example_is_fit_to_print() {
     let faces = faces();
     let (mut wrong, mut drawn) = (String::new(), BTreeMap::new());
     for path in examples() {
-        let subject = subject(&path);
+        let model = model(&path);
         for kind in FigureKind::ALL {
             let request = FigureRequest { samples: 128, ..Default::default() };
-            let figure = match kind.make(&subject, &request) {
+            let figure = match kind.make(&model, &request) {
                 Ok(figure) => figure,
                 Err(why) => {
                     // A kind that does not apply says why.
@@ -194,10 +194,10 @@ fn any_name_finds_its_place() {
     let names = [["太阳轮", "齿圈", "行星架", "行星齿轮系 <1>"], ["sun & \"co\"", "<ring>", long, long]];
     for names in names {
         let text = text(names);
-        let subject = Model::from_toml(&text).unwrap_or_else(|r| panic!("{r}"));
+        let model = Model::from_toml(&text).unwrap_or_else(|r| panic!("{r}"));
         let mut drawn = 0;
         for kind in FigureKind::ALL {
-            if let Ok(figure) = kind.make(&subject, &FigureRequest { samples: 128, ..Default::default() }) {
+            if let Ok(figure) = kind.make(&model, &FigureRequest { samples: 128, ..Default::default() }) {
                 let found = faults(&draw(&figure, Drawing::default()), &faces);
                 // Letters that the face lacks have no box there; all others do.
                 assert!(found.is_empty(), "{} {names:?}: {found:#?}", kind.name());
@@ -235,7 +235,7 @@ fn regress_pictures() {
         let path = all.iter().find(|p| stem(p) == train).expect("an example of that name");
         let kind = FigureKind::named(kind).expect("a kind of that name");
         let request = FigureRequest { samples: 128, ..Default::default() };
-        let figure = kind.make(&subject(path), &request).expect("it applies");
+        let figure = kind.make(&model(path), &request).expect("it applies");
         let svg = draw(&figure, Drawing::default());
         let file = stored.join(format!("{train}.{}.svg", kind.name()));
         if update {

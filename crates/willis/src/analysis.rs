@@ -13,16 +13,19 @@ pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 pub use crate::named::Named;
 pub(crate) use operation::Point;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource};
 use crate::statics::Certificate;
 use crate::train::{Efficiency, Operation, ShiftElementId, ShiftElementKind, Train};
 
 /// What can be said of a load case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Verdict {
@@ -52,22 +55,26 @@ impl Verdict {
 }
 
 /// Whether the answer is the only one, and how that is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct CertificateReport {
     /// Whether exactly one solution exists whatever the loads (with these directions of motion).
     pub unique_for_every_load: bool,
-    /// `spectral-radius`, `determinants`, `enumeration` or `undecided`.
-    pub method: &'static str,
+    /// How that is known.
+    pub method: Certificate,
 }
 
 impl From<Certificate> for CertificateReport {
     fn from(c: Certificate) -> Self {
-        Self { unique_for_every_load: c.unique_for_every_load(), method: c.method() }
+        Self { unique_for_every_load: c.unique_for_every_load(), method: c }
     }
 }
 
 /// One direction of power through a state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Direction {
     /// What can be said of it.
     pub verdict: Verdict,
@@ -82,14 +89,16 @@ pub struct Direction {
 }
 
 /// A row of the shift table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StateReport {
     /// Where power enters when driving.
     pub input: String,
     /// Where power leaves when driving.
     pub output: String,
-    /// `ω_input/ω_output` as a fraction `p/q`; absent when there is no such number.
-    pub exact: Option<String>,
+    /// `ω_input/ω_output`, exactly; absent when there is no such number.
+    pub exact: Option<Rational>,
     /// The same as a decimal.
     pub value: Option<f64>,
     /// Why there is no ratio.
@@ -107,7 +116,8 @@ pub struct StateReport {
 }
 
 /// What a member does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Role {
@@ -122,7 +132,9 @@ pub enum Role {
 }
 
 /// A member in an operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MemberReport {
     /// Absolute speed (for a bevel planet: carrier speed plus spin), rad/s; absent when not
     /// determined.
@@ -140,7 +152,9 @@ pub struct MemberReport {
 }
 
 /// A mesh in an operating point; totals over its `count` pairs in parallel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MeshReport {
     /// The member that drives, seen from the carrier; absent when idle or without relative motion.
     pub driver: Option<String>,
@@ -163,7 +177,9 @@ pub struct MeshReport {
 }
 
 /// An engaged shift element in an operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ShiftElementReport {
     /// What it is.
     pub kind: ShiftElementKind,
@@ -174,7 +190,9 @@ pub struct ShiftElementReport {
 }
 
 /// Losses by kind, W.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Losses {
     /// Tooth friction.
     pub mesh: f64,
@@ -205,7 +223,9 @@ impl Losses {
 }
 
 /// Power that goes round in circles.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct CirculationReport {
     /// The power, W.
     pub power_w: f64,
@@ -216,7 +236,9 @@ pub struct CirculationReport {
 }
 
 /// How far a solution is from a change.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Margin {
     /// The smallest change of a prescribed torque that unloads a mesh (and beyond which another
     /// loss formula holds).
@@ -230,7 +252,9 @@ pub struct Margin {
 }
 
 /// A boundary of the region in which the present loss formula holds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Boundary {
     /// The member whose prescribed value moves.
     pub member: String,
@@ -243,7 +267,9 @@ pub struct Boundary {
 }
 
 /// The nearest self-locking threshold of one efficiency.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LockMargin {
     /// The mesh, or the meshes in a row that share one efficiency.
     pub meshes: Vec<String>,
@@ -254,7 +280,9 @@ pub struct LockMargin {
 }
 
 /// A torque range that friction in a mesh at rest leaves open.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StictionRange {
     /// What varies: `efficiency`, or `torque on <member>`.
     pub what: String,
@@ -265,12 +293,14 @@ pub struct StictionRange {
 }
 
 /// One equilibrium.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SolutionReport {
     /// Output over input power; 0 when everything is dissipated, absent when nothing is loaded.
     pub efficiency: Option<f64>,
-    /// The exact efficiency as a fraction, where it was computed.
-    pub efficiency_exact: Option<String>,
+    /// The efficiency exactly, where it was computed so.
+    pub efficiency_exact: Option<Rational>,
     /// Whether every loaded member is an input.
     pub all_dissipated: bool,
     /// Power in, W.
@@ -290,19 +320,19 @@ pub struct SolutionReport {
     /// Losses by kind.
     pub losses_w: Losses,
     /// Losses by source, largest first, where they are computed.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sources: Vec<LossSource>,
     /// Tooth contacts of the meshes whose teeth are given.
-    #[serde(skip_serializing_if = "Named::is_empty")]
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub contacts: Named<ContactReport>,
     /// Rolling bearings.
-    #[serde(skip_serializing_if = "Named::is_empty")]
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub bearings: Named<BearingReport>,
     /// Drag torques between members, where losses are computed.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drags: Vec<DragReport>,
     /// How losses and torques were brought into agreement, where losses are computed.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub convergence: Option<Convergence>,
     /// Recirculating powers.
     pub recirculation: Vec<CirculationReport>,
@@ -313,7 +343,9 @@ pub struct SolutionReport {
 }
 
 /// An operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct OperationReport {
     /// Its name.
     pub name: String,
@@ -336,10 +368,12 @@ pub struct OperationReport {
 }
 
 /// Everything that is known about a train.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Analysis {
     /// `willis-analysis-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// Source of its data.
@@ -354,6 +388,10 @@ pub struct Analysis {
     pub assumptions: Vec<String>,
     /// Warnings and notes.
     pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Contract for Analysis {
+    const FORMAT: &'static str = "willis-analysis-1";
 }
 
 /// Which states and operations to analyse; `None` means all.
@@ -377,6 +415,7 @@ pub const AS_DRAWN: &str = "as drawn";
 /// # Example
 /// ```
 /// use willis::analysis::{analyze, Selection, Verdict};
+/// use willis::exact::Rational;
 /// use willis::train::Train;
 ///
 /// let train = Train::from_toml(r#"
@@ -398,7 +437,7 @@ pub const AS_DRAWN: &str = "as drawn";
 /// "#)?;
 /// let analysis = analyze(&train, &Selection::default())?;
 /// let row = analysis.ratios.get("as drawn").unwrap();
-/// assert_eq!(row.exact.as_deref(), Some("10/3"));
+/// assert_eq!(row.exact, Some(Rational::new(10, 3)));
 /// let load = &analysis.operations[0];
 /// assert_eq!(load.verdict, Verdict::Unique);
 /// assert!(load.certificate.unwrap().unique_for_every_load);
@@ -450,7 +489,7 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
     }
     let degrees_of_freedom = Configuration::new(train, &[], &[], &[]).degrees_of_freedom();
     Ok(Analysis {
-        format: "willis-analysis-1",
+        format: Format::new(),
         train: train.name.clone(),
         source: train.source.clone(),
         degrees_of_freedom,

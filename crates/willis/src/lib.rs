@@ -23,6 +23,7 @@
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 //!
 //! ```
+//! use willis::exact::Rational;
 //! use willis::{Selection, Train, analyze};
 //!
 //! let train = Train::from_toml(r#"
@@ -41,7 +42,7 @@
 //! "#)?;
 //! let analysis = analyze(&train, &Selection::default())?;
 //! let (_, row) = &analysis.ratios.0[0];
-//! assert_eq!(row.exact.as_deref(), Some("10/3"));
+//! assert_eq!(row.exact, Some(Rational::new(10, 3)));
 //! assert!(row.drive.certificate.unwrap().unique_for_every_load);
 //! # Ok::<(), willis::Diagnostics>(())
 //! ```

@@ -209,6 +209,7 @@ pub mod bearing;
 pub mod churning;
 pub mod film;
 pub mod film_reduction;
+mod list;
 pub mod load_sharing;
 pub mod loss_factor;
 pub mod mesh_friction;
@@ -216,6 +217,8 @@ pub mod rolling;
 pub mod rotor_drag;
 pub mod seal;
 pub mod windage;
+
+pub use list::{Bounds, Checked, LawList, LawReport, Symbol, list};
 
 /// The laws in force, one of each family.
 macro_rules! laws {

@@ -22,12 +22,15 @@
 use std::collections::HashSet;
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Node};
 
 /// How uniqueness was established.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Certificate {
     /// One solution for every load: verified bound on the spectral radius over the whole box.
@@ -49,7 +52,7 @@ impl Certificate {
     }
 
     /// The name in the machine-readable results.
-    pub fn method(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Self::SpectralRadius => "spectral-radius",
             Self::Determinants => "determinants",

@@ -355,7 +355,7 @@ impl Function {
         Self {
             sheet,
             formula: f.clone(),
-            own: arguments.iter().map(|a| a.exact.parse().unwrap()).collect(),
+            own: arguments.iter().map(|a| a.exact.clone()).collect(),
             given: arguments.iter().filter(|a| !a.fixed).count(),
             arguments: arguments.iter().map(|a| a.name.clone()).collect(),
             results: f.results(Notation::Text, true).into_iter().map(|(name, text, _)| (name, text)).collect(),

@@ -68,7 +68,7 @@ fn ours(a: &Analysis, value: &Table, what: &str) -> Ours {
         }
         let row = a.ratios.get(state).unwrap_or_else(|| panic!("{}: no state {state}", a.train));
         return match what {
-            "ratio" => Ours::Number(row.value.unwrap_or(f64::NAN), row.exact.as_ref().map(|e| e.parse().unwrap())),
+            "ratio" => Ours::Number(row.value.unwrap_or(f64::NAN), row.exact.clone()),
             "efficiency_drive" => direction(&row.drive, "efficiency"),
             "efficiency_coast" => direction(&row.coast, "efficiency"),
             "verdict_drive" => direction(&row.drive, "verdict"),

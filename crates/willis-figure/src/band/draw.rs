@@ -1,10 +1,10 @@
 //! Bands of uncertainty over a quantity.
 
-use crate::{BandPoint, Bands};
 use svg::node::element::Group;
 
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{Anchor, BOLD, FAINT, INK, colour, digits, fit, line, lines, page, rectangle, text};
+use crate::{BandPoint, Bands};
 
 const WIDTH: f64 = 900.0;
 const LEFT: f64 = 100.0;

@@ -1,10 +1,18 @@
 //! The film thickness ratio along paths of contact.
 
-use crate::{ContactPath, MeshPath};
 use svg::node::element::{Circle, Group, Path};
 
+use super::{ContactPath, MeshPath, contact_path};
+use crate::kind::{Ask, Kind};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
+};
+
+pub(crate) const KIND: Kind<ContactPath> = Kind {
+    title: "Oil film along the path of contact",
+    takes: &[Ask::Operation, Ask::Part],
+    make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
+    draw: |data, _| draw(data),
 };
 
 const WIDTH: f64 = 1080.0;

@@ -1,11 +1,19 @@
 //! What happens along paths of contact, in panels one above the other.
 
-use crate::{ContactPath, MeshPath, PathPoint};
 use svg::node::element::{Group, Path};
 
 use super::film::heading;
+use super::{ContactPath, MeshPath, PathPoint, contact_path};
+use crate::kind::{Ask, Kind};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks,
+};
+
+pub(crate) const KIND: Kind<ContactPath> = Kind {
+    title: "Contact along its path",
+    takes: &[Ask::Operation, Ask::Part],
+    make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
+    draw: |data, _| draw(data),
 };
 
 const LEFT: f64 = 76.0;

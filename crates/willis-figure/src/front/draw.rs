@@ -5,15 +5,14 @@ mod enlarged;
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-use crate::{Front, FrontMesh, FrontPlane, FrontWheel};
 use svg::Node;
 use svg::node::element::{Circle, Element, Group, Path, Polygon};
-
-use enlarged::{enlarged, window};
 
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, badge, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
+use crate::{Front, FrontMesh, FrontPlane, FrontWheel};
+use enlarged::{enlarged, window};
 
 /// Edge of the page, and where the panels begin.
 const EDGE: f64 = 28.0;

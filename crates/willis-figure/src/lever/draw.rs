@@ -1,11 +1,11 @@
 //! The nomograph of a train: levers side by side.
 
-use crate::{Lever, LeverBar, LeverCase, LeverNode, LeverPull, LeverRole, LeverSet};
 use svg::node::element::{Circle, Group, Path};
 
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
 };
+use crate::{Lever, LeverBar, LeverCase, LeverNode, LeverPull, LeverRole, LeverSet};
 
 const MARGIN: f64 = 28.0;
 const WIDEST: f64 = 1400.0;

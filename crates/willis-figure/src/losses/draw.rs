@@ -1,6 +1,5 @@
 //! Losses by source: stacked over a quantity, and as bars at the operating point.
 
-use crate::{LossChart, LossSeries};
 use svg::node::element::Group;
 use willis::hypergraph::watts;
 use willis::operating_point::LossKind;
@@ -9,6 +8,7 @@ use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, line, lines, page, rectangle, text, wide,
 };
+use crate::{LossChart, LossSeries};
 
 const WIDTH: f64 = 980.0;
 const LEFT: f64 = 100.0;
@@ -214,7 +214,7 @@ fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
             true => format!("{}, {} %", watts(w), digits(100.0 * w / loss)),
             false => watts(w),
         };
-        let law = s.law.map(|l| format!("  {l}")).unwrap_or_default();
+        let law = s.law.as_ref().map(|l| format!("  {l}")).unwrap_or_default();
         g = g
             .add(badge(37.0, y + 9.0, &letter(k)))
             .add(text(54.0, y + 13.0, 12.0, Anchor::Start, &fit(&name(s), start - 66.0, 12.0)))

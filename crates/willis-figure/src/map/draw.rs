@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use crate::EfficiencyMap;
 use contour::ContourBuilder;
 use svg::Node as _;
 use svg::node::element::{ClipPath, Definitions, Group, Path};
 use willis::hypergraph::watts;
 
+use crate::EfficiencyMap;
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, line, lines, number, page, rectangle, text, wide,

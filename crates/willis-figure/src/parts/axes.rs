@@ -1,7 +1,6 @@
 //! Which quantities a chart of an operating point runs over.
 
 use serde::Serialize;
-
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Axis, Question};
@@ -31,12 +30,12 @@ impl ChartAxis {
 }
 
 /// Axes as the caller writes them; each must be one of ascending numbers.
-pub fn parse(over: &[String], subject: &Model) -> Result<Vec<Axis>, Diagnostics> {
+pub fn parse(over: &[String], model: &Model) -> Result<Vec<Axis>, Diagnostics> {
     let mut wrong = Diagnostics::default();
     let mut axes = vec![];
     for text in over {
         let refused = |what: &str| Diagnostic::new(Code::BadAxis, "", format!("`{text}`: {what}"));
-        match Axis::parse(text, subject) {
+        match Axis::parse(text, model) {
             Err(d) => wrong.push(*d),
             Ok(a) if a.is_text() => wrong.push(refused("an axis of a chart takes numbers, not words")),
             Ok(a) if a.len() < 2 => wrong.push(refused("an axis of a chart takes two values at least")),

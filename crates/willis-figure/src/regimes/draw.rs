@@ -1,9 +1,9 @@
 //! The wheel of regimes.
 
-use crate::{MapCell, MapSector, RegimeMap};
 use svg::node::element::{Group, Path};
 
 use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, badge, colour, line, number, page, rectangle, text, ticks};
+use crate::{MapCell, MapSector, RegimeMap};
 
 const WIDTH: f64 = 1180.0;
 const CENTRE: (f64, f64) = (362.0, 410.0);

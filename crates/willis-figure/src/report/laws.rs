@@ -3,10 +3,9 @@
 use willis::diagnostic::Severity;
 use willis::losses::{Entry, Tag, Trust, entries};
 
-use crate::report::document::{Block, Column, Level, Section};
-
 use super::Findings;
 use super::results::{significant, single};
+use crate::report::document::{Block, Column, Level, Section};
 
 pub fn assumptions(all: &Findings<'_>) -> Section {
     let mut blocks = vec![];
@@ -31,7 +30,7 @@ pub fn assumptions(all: &Findings<'_>) -> Section {
 /// Laws that computed a loss in an operating point.
 pub fn in_force(all: &Findings<'_>) -> Option<Section> {
     let solutions = || all.analysis.operations.iter().filter_map(single);
-    let mut used: Vec<&str> = solutions().flat_map(|s| s.sources.iter().map(|x| x.law)).collect();
+    let mut used: Vec<&str> = solutions().flat_map(|s| s.sources.iter().map(|x| x.law.as_str())).collect();
     used.sort_unstable();
     used.dedup();
     let catalogue = entries();
@@ -93,8 +92,8 @@ pub fn again(all: &Findings<'_>) -> Section {
         false => format!(", SHA-256 {}", all.request.hash),
     };
     blocks.push(Block::Text { text: format!("{file}{hash}:") });
-    blocks.push(Block::Code { text: all.subject.document().text() });
-    for (name, text) in all.subject.files() {
+    blocks.push(Block::Code { text: all.model.document().text() });
+    for (name, text) in all.model.files() {
         let lines = text.lines().count();
         blocks.push(Block::Text { text: format!("It names {name}, a table of {lines} lines.") });
     }

@@ -1,15 +1,16 @@
 //! What came out: the shift table, the operating points, losses, maps, motion, formulas.
 
-use crate::FigureKind;
 use willis::analysis::{CertificateReport, OperationReport, Role, SolutionReport, StateReport, Verdict};
+use willis::exact::Rational;
 use willis::hypergraph::watts;
 use willis::operating_point::Regime;
 use willis::regimes::{FormulaRequest, formulas as closed};
+use willis::statics::Certificate;
 use willis::symbolic::Notation;
 
-use crate::report::document::{Block, Column, Level, Section};
-
 use super::{Findings, notice};
+use crate::FigureKind;
+use crate::report::document::{Block, Column, Level, Section};
 
 /// Formulas that are printed.
 const FORMULAS: usize = 12;
@@ -58,11 +59,13 @@ pub fn efficiency(s: &SolutionReport) -> String {
 
 pub fn certificate(v: Verdict, c: &CertificateReport) -> &'static str {
     match (v, c.unique_for_every_load, c.method) {
-        (Verdict::Locked, _, "undecided") => "not proved",
+        (Verdict::Locked, _, Certificate::Undecided) => "not proved",
         (Verdict::Locked, ..) => "proved: no equilibrium drives a load",
-        (_, true, "spectral-radius") => "proved: exactly one equilibrium for every load (spectral radius below one)",
+        (_, true, Certificate::SpectralRadius) => {
+            "proved: exactly one equilibrium for every load (spectral radius below one)"
+        }
         (_, true, _) => "proved: exactly one equilibrium for every load (all determinants of sign patterns agree)",
-        (_, false, "enumeration") => "not unique for every load; for this one every sign pattern was tried",
+        (_, false, Certificate::Enumeration) => "not unique for every load; for this one every sign pattern was tried",
         _ => "uniqueness undecided",
     }
 }
@@ -97,7 +100,7 @@ pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
             }
         }
     }
-    let title = if all.subject.train().states().is_empty() { "Ratio" } else { "Shift table" };
+    let title = if all.model.train().states().is_empty() { "Ratio" } else { "Shift table" };
     (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
 }
 
@@ -116,7 +119,7 @@ fn state(name: &str, s: &StateReport) -> Vec<String> {
     vec![
         name.to_owned(),
         format!("{} – {}", s.input, s.output),
-        s.exact.clone().or(s.no_ratio.clone()).unwrap_or_else(|| "–".into()),
+        s.exact.as_ref().map(Rational::to_fraction).or(s.no_ratio.clone()).unwrap_or_else(|| "–".into()),
         s.value.map_or("–".into(), |v| significant(v, 6)),
         s.step.map_or(String::new(), |v| significant(v, 4)),
         way(&s.drive),
@@ -250,7 +253,9 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
         let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
-            .map(|x| vec![x.name.clone(), x.kind.words().into(), x.law.into(), watts(x.loss_w), exact_percent(x.share)])
+            .map(|x| {
+                vec![x.name.clone(), x.kind.words().into(), x.law.clone(), watts(x.loss_w), exact_percent(x.share)]
+            })
             .collect();
         blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
         blocks.extend(contacts(&o.name, s));
@@ -270,12 +275,7 @@ fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
         .map(|(name, c)| {
             let n = |x: f64| significant(x, 4);
             let or = |x: Option<f64>| x.map_or("–".into(), |x| significant(x, 3));
-            let film = match c.regime {
-                Some(Regime::Boundary) => "boundary",
-                Some(Regime::Mixed) => "mixed",
-                Some(Regime::Full) => "full",
-                None => "–",
-            };
+            let film = c.regime.map_or("–", Regime::words);
             vec![
                 name.clone(),
                 or(c.friction),
@@ -338,13 +338,13 @@ pub fn maps(all: &Findings<'_>) -> Option<Section> {
 }
 
 pub fn motion(all: &Findings<'_>) -> Option<Section> {
-    let scenario = all.subject.train().scenarios().first()?;
+    let scenario = all.model.train().scenarios().first()?;
     let figure = all.figures.block(FigureKind::Time, None, &format!("Scenario {}", scenario.name))?;
     Some(Section { title: "Motion".into(), blocks: vec![figure] })
 }
 
 pub fn formulas(all: &Findings<'_>) -> Option<Section> {
-    let train = all.subject.train();
+    let train = all.model.train();
     let mut blocks = vec![];
     blocks.extend(all.figures.block(
         FigureKind::Regimes,

@@ -1,15 +1,14 @@
 //! The train: its schematic, its wheels, its teeth, its shift elements and bearings.
 
-use crate::FigureKind;
 use willis::train::{MemberId, Mesh, Train};
-
-use crate::report::document::{Block, Column, Section};
 
 use super::Findings;
 use super::results::{exact_percent, significant};
+use crate::FigureKind;
+use crate::report::document::{Block, Column, Section};
 
 pub fn section(all: &Findings<'_>) -> Section {
-    let train = all.subject.train();
+    let train = all.model.train();
     let mut blocks = vec![];
     if let Some(source) = train.source() {
         blocks.push(Block::Text { text: format!("Source of the data: {source}") });

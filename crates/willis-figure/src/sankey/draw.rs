@@ -3,7 +3,6 @@
 mod layout;
 mod ribbon;
 
-use crate::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode};
 use svg::Node as _;
 use svg::node::element::{Element, Group, Path, Polygon};
 use willis::hypergraph::{NodeKind, watts};
@@ -11,6 +10,7 @@ use willis::hypergraph::{NodeKind, watts};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
+use crate::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode};
 use layout::{BAR, LINE_HEIGHT, Layout, SMALL};
 use ribbon::Ribbon;
 

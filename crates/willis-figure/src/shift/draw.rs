@@ -1,11 +1,11 @@
 //! The shift table with its ratios as steps.
 
-use crate::{ShiftChange, ShiftEfficiency, ShiftRow, ShiftTable};
 use svg::node::element::{Circle, Group, Rectangle, Text};
 
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
+use crate::{ShiftChange, ShiftEfficiency, ShiftRow, ShiftTable};
 
 const MARGIN: f64 = 28.0;
 const ROW: f64 = 40.0;

@@ -2,13 +2,13 @@
 
 mod labels;
 
-use crate::{GearRole, JointKind, Place, Stick, StickGear, StickJoint, Way};
 use svg::node::element::{Circle, Group, Path, Polyline};
 
 use self::labels::Labels;
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
+use crate::{GearRole, JointKind, Place, Stick, StickGear, StickJoint, Way};
 
 /// Left and right of the grid: names and arrows of the terminals.
 const MARGIN: f64 = 168.0;

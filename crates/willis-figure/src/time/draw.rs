@@ -1,10 +1,10 @@
 //! A run over time: stacked panels on one time axis.
 
-use crate::{ModeRow, TimeLine, TimePanel, TimePlot, outcome_in_words};
 use svg::node::element::{Circle, Group, Path};
 use willis::dynamics::{ModeLabel, Outcome};
 
 use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, colour, line, number, page, rectangle, text, ticks};
+use crate::{ModeRow, TimeLine, TimePanel, TimePlot, outcome_in_words};
 
 const WIDTH: f64 = 1060.0;
 const LEFT: f64 = 84.0;

@@ -1,6 +1,5 @@
 //! What moves the losses of an operating point most, as bars about a middle line.
 
-use crate::{Tornado, TornadoBar};
 use svg::node::element::Group;
 use willis::hypergraph::watts;
 use willis::units;
@@ -8,6 +7,7 @@ use willis::units;
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
 };
+use crate::{Tornado, TornadoBar};
 
 const MARGIN: f64 = 28.0;
 const ROW: f64 = 30.0;

@@ -1,7 +1,8 @@
 //! Losses at a few points: over speed, load and temperature, and law beside law.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, OutsideLaw, Severity};
 use crate::losses::{self, Entry, Tag};
 use crate::train::{Load, MemberId, Operation, Train};
@@ -27,7 +28,9 @@ pub struct LossRequest {
 }
 
 /// One point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LossPoint {
     /// The operation it comes from.
     pub operation: String,
@@ -42,7 +45,7 @@ pub struct LossPoint {
     /// Oil temperature, K; absent without an oil.
     pub temperature_k: Option<f64>,
     /// The law in force, where laws are compared.
-    pub law: Option<&'static str>,
+    pub law: Option<String>,
     /// What can be said of the point.
     pub verdict: Verdict,
     /// One sentence that explains the verdict.
@@ -71,12 +74,14 @@ pub struct LossPoint {
 /// How far the laws of a family disagree at a point: the honest uncertainty of a prediction. Laws
 /// outside their range count only where fewer than two are inside; laws that reproduce a published
 /// error never count.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Spread {
     /// Smallest loss, W, and the law that gives it.
-    pub least_w: (f64, &'static str),
+    pub least_w: (f64, String),
     /// Largest loss, W, and the law that gives it.
-    pub most_w: (f64, &'static str),
+    pub most_w: (f64, String),
     /// Laws that were used inside their ranges.
     pub inside: usize,
     /// Laws in all.
@@ -84,10 +89,12 @@ pub struct Spread {
 }
 
 /// Losses at the points asked for.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LossTable {
     /// `willis-losses-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// The family whose laws are compared.
@@ -96,6 +103,10 @@ pub struct LossTable {
     pub points: Vec<LossPoint>,
     /// Where laws are compared: the spread over each group of points that differ in the law alone.
     pub spreads: Vec<Spread>,
+}
+
+impl Contract for LossTable {
+    const FORMAT: &'static str = "willis-losses-1";
 }
 
 /// Evaluates losses.
@@ -171,7 +182,7 @@ pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnos
         None => vec![None],
     };
     let mut table = LossTable {
-        format: "willis-losses-1",
+        format: Format::new(),
         train: train.name.clone(),
         family: request.compare.clone(),
         points: vec![],
@@ -279,7 +290,7 @@ fn quantity(load: &Load) -> &Quantity {
     }
 }
 
-fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Result<LossPoint, Diagnostics> {
+fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<LossPoint, Diagnostics> {
     let mut notes = Diagnostics::default();
     let report = operation::report(train, operation, &mut notes)?;
     let solution = report.solutions.first();
@@ -310,7 +321,7 @@ fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Res
         torque_of: operation.loads.first().map(|l| train.member_name(l.0).to_owned()),
         torque_n_m: torque,
         temperature_k: train.lubrication.as_ref().map(|l| operation.temperature.unwrap_or(l.temperature)),
-        law,
+        law: law.map(str::to_owned),
         verdict: report.verdict,
         reason: report.reason.clone(),
         efficiency: solution.and_then(|s| s.efficiency),
@@ -329,10 +340,10 @@ fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Res
 
 fn spread(points: &[LossPoint], family: &str, compatibility: impl Fn(&str) -> bool) -> Option<Spread> {
     // Laws that reproduce errors are shown, and not counted.
-    let counts = |p: &&LossPoint| p.verdict == Verdict::Unique && p.law.is_some_and(|l| !compatibility(l));
+    let counts = |p: &&LossPoint| p.verdict == Verdict::Unique && p.law.as_ref().is_some_and(|l| !compatibility(l));
     let all: Vec<&LossPoint> = points.iter().filter(counts).collect();
     let inside = |p: &&LossPoint| {
-        let own = |law: &OutsideLaw| law.family == family && Some(law.law.as_str()) == p.law;
+        let own = |law: &OutsideLaw| law.family == family && Some(&law.law) == p.law.as_ref();
         !p.diagnostics.iter().filter_map(Diagnostic::outside_law).any(own)
     };
     let within: Vec<&LossPoint> = all.iter().copied().filter(inside).collect();
@@ -341,8 +352,8 @@ fn spread(points: &[LossPoint], family: &str, compatibility: impl Fn(&str) -> bo
     let least = counted.iter().min_by(by_loss)?;
     let most = counted.iter().max_by(by_loss)?;
     Some(Spread {
-        least_w: (least.loss_w, least.law?),
-        most_w: (most.loss_w, most.law?),
+        least_w: (least.loss_w, least.law.clone()?),
+        most_w: (most.loss_w, most.law.clone()?),
         inside: within.len(),
         laws: all.len(),
     })

@@ -810,7 +810,7 @@ impl Frame<'_> {
         };
         SolutionReport {
             efficiency,
-            efficiency_exact: exact.map(|e| e.to_fraction()),
+            efficiency_exact: exact,
             all_dissipated,
             input_power_w: flow.input_power,
             output_power_w: flow.output_power,

@@ -99,7 +99,7 @@ pub(super) fn row(
             }
             _ => {}
         }
-        if d.certificate.is_some_and(|c| c.method == Certificate::Undecided.method()) {
+        if d.certificate.is_some_and(|c| c.method == Certificate::Undecided) {
             diagnostics.push(Diagnostic::new(
                 Code::NotEnumerated,
                 &place,
@@ -114,7 +114,7 @@ pub(super) fn row(
         input: train.member_name(input).to_owned(),
         output: train.member_name(output).to_owned(),
         value: exact.as_ref().filter(|_| !beyond).map(Rational::to_f64),
-        exact: exact.map(|r| r.to_fraction()),
+        exact,
         no_ratio,
         step: None,
         engaged: element_names(train, engaged),

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 use std::fmt;
 
-use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::de::{Deserialize, Deserializer, Error, Unexpected};
+use serde::ser::{Serialize, Serializer};
 
 use super::Severity;
 
@@ -235,7 +235,8 @@ impl Serialize for Code {
 impl<'de> Deserialize<'de> for Code {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = Cow::<str>::deserialize(deserializer)?;
-        Self::parse(&text).ok_or_else(|| D::Error::custom(format_args!("`{text}` is no code of a diagnostic")))
+        let wrong = || D::Error::invalid_value(Unexpected::Str(&text), &"a diagnostic code as in `E101`");
+        Self::parse(&text).ok_or_else(wrong)
     }
 }
 
@@ -247,7 +248,7 @@ impl schemars::JsonSchema for Code {
 
     fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
         schemars::json_schema!({
-            "description": "Stable code: `E` an error in the input, `W` a warning, `N` a note.",
+            "description": "A stable diagnostic code: `E…` an error, `W…` a warning, `N…` a note.",
             "type": "string",
             "pattern": "^[EWN][0-9]{3}$",
         })

@@ -1,6 +1,6 @@
 //! A tooth contact under load: speeds, pressure, film, friction.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::losses::film::FilmContact;
 use crate::losses::film_reduction::Inlet;
@@ -16,8 +16,10 @@ use crate::train::{Mesh, Teeth};
 use super::{Extrapolation, OilState, Physics};
 
 /// Lubrication of a contact by its film thickness ratio λ.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Regime {
     /// λ < 1: the load is carried by asperities.
     Boundary,
@@ -28,6 +30,15 @@ pub enum Regime {
 }
 
 impl Regime {
+    /// For people: `mixed`.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Boundary => "boundary",
+            Self::Mixed => "mixed",
+            Self::Full => "full",
+        }
+    }
+
     /// Film thickness ratios at which mixed and full lubrication begin.
     pub const LIMITS: [f64; 2] = [1.0, 3.0];
 
@@ -43,7 +54,9 @@ impl Regime {
 }
 
 /// A tooth contact in an operating point. Loads are those of one of the pairs in parallel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ContactReport {
     /// Mean coefficient of friction; absent when the efficiency is given, or nothing is loaded.
     pub friction: Option<f64>,

@@ -264,7 +264,7 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
                     speeds: atlas.regions[k].example.clone(),
                     torques: Named((0..m).map(|t| (terminal(t), torques[t].to_f64())).collect()),
                     efficiency: exact.to_f64(),
-                    efficiency_exact: exact.to_fraction(),
+                    efficiency_exact: exact,
                 },
                 mirror: ids[other][mirror].clone(),
                 by_friction_only: !frictionless.contains(&(k, cell.signs.clone())),
@@ -322,7 +322,7 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
                         info.name.clone(),
                         SymbolReport {
                             value: info.value.as_ref().map(Rational::to_f64),
-                            exact: info.value.as_ref().map(Rational::to_fraction),
+                            exact: info.value.clone(),
                             meaning: info.meaning.clone(),
                             latex: info.latex.clone(),
                         },

@@ -1,8 +1,6 @@
 //! Closed formulas to take away: in words, typeset, or as code that refuses to answer outside its
 //! regime.
 
-use serde::Serialize;
-
 use crate::analysis::{AS_DRAWN, Named};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::exact::Rational;
@@ -48,7 +46,8 @@ pub struct FormulaSheet {
 }
 
 /// A quantity that a formula takes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Argument {
     /// Its identifier.
     pub name: String,
@@ -58,20 +57,15 @@ pub struct Argument {
     pub meaning: String,
     /// Its value in this train; a speed or torque inside the regime otherwise.
     pub value: f64,
-    /// The same as a fraction.
-    pub exact: String,
+    /// The same, exactly.
+    pub exact: Rational,
     /// Whether it is an efficiency, to be above 0 and at most 1.
     pub efficiency: bool,
     /// Whether the train fixes it (a ratio, a tooth number, an efficiency).
     pub fixed: bool,
-    #[serde(skip)]
     pub(crate) meaning_latex: Option<String>,
-    #[serde(skip)]
     pub(crate) kind: SymbolKind,
-    #[serde(skip)]
     pub(crate) symbol: Symbol,
-    #[serde(skip)]
-    pub(crate) number: Rational,
 }
 
 impl Argument {
@@ -178,7 +172,8 @@ impl From<Outside> for Diagnostic {
 through_diagnostic!(Outside);
 
 /// A derivative of the efficiency.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Derivative {
     /// The efficiency symbol.
     pub of: String,
@@ -289,7 +284,7 @@ impl ClosedFormula {
 
     /// The arguments' own values and what follows from them.
     fn values(&self) -> Vec<(Symbol, Rational)> {
-        let mut values: Vec<(Symbol, Rational)> = self.arguments.iter().map(|a| (a.symbol, a.number.clone())).collect();
+        let mut values: Vec<(Symbol, Rational)> = self.arguments.iter().map(|a| (a.symbol, a.exact.clone())).collect();
         for (symbol, function) in self.dependent() {
             let known = function.evaluate(&lookup(&values));
             values.extend(known.map(|v| (symbol, v)));
@@ -550,12 +545,11 @@ fn closed(
                 meaning: info.meaning.clone(),
                 meaning_latex: info.meaning_latex.clone(),
                 value: number.to_f64(),
-                exact: number.to_fraction(),
+                exact: number,
                 efficiency: info.kind == SymbolKind::Efficiency,
                 fixed: info.value.is_some(),
                 kind: info.kind,
                 symbol: s,
-                number,
             }
         })
         .collect();

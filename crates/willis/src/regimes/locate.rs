@@ -1,8 +1,9 @@
 //! In which regime an operating point lies, how far it is to each boundary, and what changes there.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::{Named, Role};
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, common};
@@ -35,10 +36,12 @@ pub struct LocateRequest {
 }
 
 /// Where an operating point lies.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Location {
     /// `willis-location-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// The state.
@@ -59,8 +62,14 @@ pub struct Location {
     pub regimes: Vec<Located>,
 }
 
+impl Contract for Location {
+    const FORMAT: &'static str = "willis-location-1";
+}
+
 /// An equilibrium and its surroundings.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Located {
     /// Name of the regime as `willis regimes` lists it, where that list was made.
     pub regime: Option<String>,
@@ -74,19 +83,43 @@ pub struct Located {
     pub drivers: Named<Option<String>>,
     /// Output over input power; zero when all is dissipated.
     pub efficiency: f64,
-    /// The same as a fraction.
-    pub efficiency_exact: String,
+    /// The same, exactly.
+    pub efficiency_exact: Rational,
     /// The closed formula, where the train is small enough.
     pub formula: Option<String>,
     /// For each prescribed value the range within which the regime lasts, all others fixed.
     pub ranges: Vec<Range>,
 }
 
+/// What is prescribed on a member.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum Prescribes {
+    /// Its speed.
+    Speed,
+    /// Its torque.
+    Torque,
+}
+
+impl Prescribes {
+    /// For people: `speed`.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Speed => "speed",
+            Self::Torque => "torque",
+        }
+    }
+}
+
 /// How far one prescribed value can change before the regime ends.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Range {
-    /// `speed` or `torque`.
-    pub quantity: &'static str,
+    /// What it is.
+    pub quantity: Prescribes,
     /// The member.
     pub member: String,
     /// Its value, rad/s or N m.
@@ -98,7 +131,9 @@ pub struct Range {
 }
 
 /// A boundary that a changing value meets.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Edge {
     /// The value there, rad/s or N m.
     pub at: f64,
@@ -376,13 +411,13 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
             roles: Named((0..setup.terminals.len()).map(|t| (name(t), role(power_signs[t]))).collect()),
             drivers: Named(drivers(&setup, &s.pattern)),
             efficiency: efficiency.to_f64(),
-            efficiency_exact: efficiency.to_fraction(),
+            efficiency_exact: efficiency,
             formula,
             ranges,
         });
     }
     Ok(Location {
-        format: "willis-location-1",
+        format: Format::new(),
         train: train.name.clone(),
         state,
         speeds_rad_s: Named(
@@ -541,7 +576,7 @@ impl Finder<'_, '_> {
             })
         };
         Range {
-            quantity: "speed",
+            quantity: Prescribes::Speed,
             member: member.to_owned(),
             value: value.to_f64() * unit,
             below: edge(false),
@@ -603,7 +638,7 @@ impl Finder<'_, '_> {
             })
         };
         Range {
-            quantity: "torque",
+            quantity: Prescribes::Torque,
             member: member.to_owned(),
             value: value.to_f64() * unit,
             below: edge(false),

@@ -79,7 +79,7 @@ pub struct CyclePart {
     /// One for each condition.
     pub points: Vec<CyclePoint>,
     /// By name and kind: law, energy.
-    sources: BTreeMap<(String, &'static str), (&'static str, f64)>,
+    sources: BTreeMap<(String, &'static str), (String, f64)>,
     kinds: [f64; 5],
     /// By member: energy in, energy out.
     terminals: BTreeMap<String, [f64; 2]>,
@@ -133,7 +133,7 @@ pub struct SourceEnergy {
     /// What kind of loss it is.
     pub kind: &'static str,
     /// The law that it was last computed by; `given` for a given efficiency.
-    pub law: &'static str,
+    pub law: String,
     /// The energy, J.
     pub energy_j: f64,
     /// The part of all losses.
@@ -383,12 +383,12 @@ impl<'a> Cycle<'a> {
             *sum += power * held.time_s;
         }
         let mut lose = |name: &str, kind, law, power: f64| {
-            let own = part.sources.entry((name.to_owned(), kind)).or_insert((law, 0.0));
+            let own = part.sources.entry((name.to_owned(), kind)).or_insert_with(|| (law, 0.0));
             own.1 += power * held.time_s;
         };
         match s.sources.is_empty() {
-            true => s.meshes.iter().for_each(|(name, m)| lose(name, "mesh", "given", m.loss_w)),
-            false => s.sources.iter().for_each(|x| lose(&x.name, kind(x.kind), x.law, x.loss_w)),
+            true => s.meshes.iter().for_each(|(name, m)| lose(name, "mesh", "given".to_owned(), m.loss_w)),
+            false => s.sources.iter().for_each(|x| lose(&x.name, kind(x.kind), x.law.clone(), x.loss_w)),
         }
         for (name, m) in s.members.iter() {
             let energy = m.power_w.unwrap_or(0.0) * held.time_s;
@@ -487,7 +487,7 @@ impl<'a> Cycle<'a> {
             }
         }
         whole.close();
-        let mut sources: BTreeMap<&(String, &'static str), (&'static str, f64)> = BTreeMap::new();
+        let mut sources: BTreeMap<&(String, &'static str), (&str, f64)> = BTreeMap::new();
         let mut terminals: BTreeMap<&str, TerminalEnergy> = BTreeMap::new();
         let mut kinds = [0.0; 5];
         let mut warnings: BTreeMap<&str, Vec<Told>> = BTreeMap::new();
@@ -509,7 +509,7 @@ impl<'a> Cycle<'a> {
             .into_iter()
             .map(|((name, kind), (law, energy_j))| {
                 let share = if whole.energy_lost_j > 0.0 { energy_j / whole.energy_lost_j } else { 0.0 };
-                SourceEnergy { name: name.clone(), kind, law, energy_j, share }
+                SourceEnergy { name: name.clone(), kind, law: law.to_owned(), energy_j, share }
             })
             .collect();
         sources.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));

@@ -4,11 +4,10 @@
 //! Ribbons bend, rise and come down only in the gaps between columns, where their words stand too.
 //! So nothing crosses a node or its words.
 
-use crate::{SankeyFlow, SankeyNode};
-
 use super::Words;
 use super::ribbon::Ribbon;
 use crate::parts::style::{BOLD, wide};
+use crate::{SankeyFlow, SankeyNode};
 
 /// Width of a node.
 pub const BAR: f64 = 10.0;

@@ -1,9 +1,9 @@
 //! Names and tooth counts beside the lines: each at the first place that is free.
 
-use crate::JointKind;
 use svg::node::element::Group;
 
 use super::{PLATE, Sheet};
+use crate::JointKind;
 use crate::parts::style::{Anchor, BOLD, FAINT, INK, PAPER, fit, text, wide};
 
 /// A box: least and greatest x, least and greatest y.

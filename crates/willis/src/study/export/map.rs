@@ -399,7 +399,7 @@ fn gear(
         input: row.input.clone(),
         output: row.output.clone(),
         ends,
-        exact: row.exact.clone().expect("a ratio"),
+        exact: row.exact.as_ref().expect("a ratio").to_fraction(),
         ratio: row.value.expect("a ratio"),
         drive: row.drive.clone(),
         coast: row.coast.clone(),
