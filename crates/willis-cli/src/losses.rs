@@ -2,7 +2,6 @@
 
 use willis::analysis::{LossPoint, LossTable, Named, SolutionReport, Verdict};
 use willis::catalogue::{bearing, oil};
-use willis::diagnostic::Diagnostic;
 use willis::losses::{Entry, Trust};
 use willis::operating_point::{BearingReport, ContactReport, Regime};
 
@@ -231,17 +230,15 @@ fn verdict(p: &LossPoint) -> String {
 
 /// Warnings under a table, each once.
 fn notes(group: &[LossPoint]) -> String {
-    let mut told: Vec<&Diagnostic> = Vec::new();
+    let mut told: Vec<(&str, &str)> = Vec::new();
     let mut out = String::new();
-    for d in group.iter().flat_map(|p| &p.diagnostics) {
-        // Values differ from point to point; which quantity of which law has left its range does not.
-        let same = |other: &&Diagnostic| match (d.outside_law(), other.outside_law()) {
-            (Some(a), Some(b)) => (&a.family, &a.law, &a.quantity) == (&b.family, &b.law, &b.quantity),
-            _ => d.message == other.message,
-        };
-        if !told.iter().any(same) {
-            told.push(d);
-            out += &dim(&wrap(&d.message, "  * "));
+    for w in group.iter().flat_map(|p| &p.warnings) {
+        // Numbers differ from point to point; what is outside does not.
+        let (law, range) = (w.split(" of ").next().unwrap_or(w), w.split_once("range, ").map_or("", |r| r.1));
+        let key = (law, range);
+        if !told.contains(&key) {
+            told.push(key);
+            out += &dim(&wrap(w, "  * "));
             out.push('\n');
         }
     }

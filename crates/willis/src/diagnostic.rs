@@ -26,7 +26,6 @@
 
 mod codes;
 mod conversions;
-mod details;
 mod span;
 
 use std::fmt;
@@ -36,7 +35,6 @@ use serde::{Deserialize, Serialize};
 
 pub use codes::Code;
 pub(crate) use conversions::through_diagnostic;
-pub use details::{Details, OutsideAt, OutsideLaw};
 pub use span::{Lines, Span};
 
 /// How much a diagnostic matters.
@@ -76,9 +74,6 @@ pub struct Diagnostic {
     /// What to put in place of the spanned text, when that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub replacement: Option<String>,
-    /// What it is about, as data, where that is more than names and places.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub details: Option<Details>,
 }
 
 impl Diagnostic {
@@ -93,15 +88,6 @@ impl Diagnostic {
             file: None,
             span: None,
             replacement: None,
-            details: None,
-        }
-    }
-
-    /// The law that was used outside its range, if that is what it is about.
-    pub fn outside_law(&self) -> Option<&OutsideLaw> {
-        match &self.details {
-            Some(Details::OutsideLaw(law)) => Some(law),
-            None => None,
         }
     }
 

@@ -283,7 +283,7 @@ fn every_mistake_is_told_with_its_line_and_column() {
         (
             REDUCER,
             "hours,input.speed [N m]\n1,1000\n".into(),
-            "the unit `N m` is not that of an angular speed: its unit measures something else (at line 1, column 2); write `input.speed [rpm]`",
+            "the unit `N m` is not that of an angular speed: `N m` measures a torque (at line 1, column 2); write `input.speed [rpm]`",
         ),
         (REDUCER, "hours,input.speed [rpn]\n1,1000\n".into(), "`rpn` is not a unit known here"),
         (

@@ -290,7 +290,9 @@ cases! {
     regress_e007_no_unit: Quantity, with(PAIR, "100 rpm", "100");
     regress_e007_wrong_dimension: Quantity, with(PAIR, "100 rpm", "100 N m");
     regress_e007_misspelt_unit: Quantity, with(PAIR, "1 N m", "1 kNM");
-    regress_e007_unit_of_the_workshop: Quantity, with(PAIR, "100 rpm", "100 U/min");
+    regress_e007_unit_of_the_workshop: Quantity, with(PAIR, "100 rpm", "100 U/mn");
+    regress_e007_energy_for_torque: Quantity, with(PAIR, "1 N m", "350 J");
+    regress_e001_decimal_comma_inside: Syntax, with(PAIR, "\"100 rpm\"", "1450,5");
     regress_e007_hertz: Quantity, with(PAIR, "100 rpm", "100 Hz");
     regress_e007_per_second: Quantity, with(PAIR, "100 rpm", "157 1/s");
     regress_e007_decimal_comma: Quantity, with(PAIR, "100 rpm", "1450,5 rpm");

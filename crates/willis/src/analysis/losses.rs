@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::contract::{Contract, Format};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, OutsideLaw, Severity};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::losses::{self, Entry, Tag};
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::Quantity;
@@ -66,9 +66,6 @@ pub struct LossPoint {
     pub convergence: Option<Convergence>,
     /// Warnings of this point.
     pub warnings: Vec<String>,
-    /// The same with their codes, and as data where they are about laws.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub diagnostics: Vec<Diagnostic>,
 }
 
 /// How far the laws of a family disagree at a point: the honest uncertainty of a prediction. Laws
@@ -303,17 +300,6 @@ fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<Loss
         }
     });
     let title = format!("operation `{}`: ", operation.name);
-    let diagnostics: Vec<Diagnostic> = (train.lubrication.iter())
-        .filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)))
-        .map(|text| Diagnostic::new(Code::OutsideLaw, "", text))
-        .chain(notes)
-        .filter(|d| d.severity == Severity::Warning)
-        .map(|mut d| {
-            // Which point it is, the table says.
-            d.message = d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned();
-            d
-        })
-        .collect();
     Ok(LossPoint {
         operation: operation.name.clone(),
         speed_of: operation.speeds.first().map(|s| train.member_name(s.0).to_owned()),
@@ -333,8 +319,13 @@ fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<Loss
             solution.map(|s| s.contacts.iter().map(|(n, c)| (n.clone(), c.friction)).collect()).unwrap_or_default(),
         ),
         convergence: solution.and_then(|s| s.convergence),
-        warnings: diagnostics.iter().map(|d| d.message.clone()).collect(),
-        diagnostics,
+        warnings: (train.lubrication.iter())
+            .filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)))
+            .map(|text| Diagnostic::new(Code::OutsideLaw, "", text))
+            .chain(notes)
+            .filter(|d| d.severity == Severity::Warning)
+            .map(|d| d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned())
+            .collect(),
     })
 }
 
@@ -343,8 +334,8 @@ fn spread(points: &[LossPoint], family: &str, compatibility: impl Fn(&str) -> bo
     let counts = |p: &&LossPoint| p.verdict == Verdict::Unique && p.law.as_ref().is_some_and(|l| !compatibility(l));
     let all: Vec<&LossPoint> = points.iter().filter(counts).collect();
     let inside = |p: &&LossPoint| {
-        let own = |law: &OutsideLaw| law.family == family && Some(&law.law) == p.law.as_ref();
-        !p.diagnostics.iter().filter_map(Diagnostic::outside_law).any(own)
+        let own = format!("{family} = {} of ", p.law.as_deref().unwrap_or_default());
+        !p.warnings.iter().any(|w| w.starts_with(&own))
     };
     let within: Vec<&LossPoint> = all.iter().copied().filter(inside).collect();
     let counted = if within.len() > 1 { &within } else { &all };

@@ -1,6 +1,6 @@
 //! One operating point: speeds, torques, power flow, margins.
 
-use crate::diagnostic::{Code, Details, Diagnostic, Diagnostics, OutsideLaw};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, common};
 use crate::operating_point::{Convergence, Extrapolation, Physics, Step};
@@ -698,21 +698,58 @@ impl<'a> Setting<'a> {
 
 /// Warnings where laws were used outside their ranges: one for each quantity of a law.
 fn outside_laws(all: Vec<Extrapolation>, place: &str, title: &str, diagnostics: &mut Diagnostics) {
-    let mut laws: Vec<OutsideLaw> = Vec::new();
+    let mut told: Vec<(&str, &str, &str)> = Vec::new();
     for x in &all {
-        let o = &x.outside;
-        let known = laws.iter().position(|y| (&*y.family, &*y.law, &*y.quantity) == (x.family, x.law, o.symbol));
-        let at = known.unwrap_or_else(|| {
-            laws.push(OutsideLaw::new(x.family, x.law, o.symbol, o.unit, o.range));
-            laws.len() - 1
-        });
-        laws[at].push(&x.at, o.value);
+        let key = (x.family, x.law, x.outside.symbol);
+        if told.contains(&key) {
+            continue;
+        }
+        told.push(key);
+        let same = |y: &&Extrapolation| (y.family, y.law, y.outside.symbol) == key;
+        let mut at: Vec<String> = Vec::new();
+        for y in all.iter().filter(same) {
+            let text = format!("{} ({})", y.at, readable(y.outside.value, y.outside.unit));
+            if !at.contains(&text) {
+                at.push(text);
+            }
+        }
+        let (low, high) = x.outside.range;
+        let range = match (low.is_finite() && low > 0.0, high.is_finite()) {
+            (true, true) => format!("from {} to {}", readable(low, x.outside.unit), readable(high, x.outside.unit)),
+            (false, _) => format!("up to {}", readable(high, x.outside.unit)),
+            (true, false) => format!("from {}", readable(low, x.outside.unit)),
+        };
+        let message = format!(
+            "{title}: {} = {} of {} is outside its range, {} {range}",
+            x.family,
+            x.law,
+            at.join(", "),
+            x.outside.symbol,
+        );
+        diagnostics.push(Diagnostic::new(Code::OutsideLaw, place, message));
     }
-    for law in laws {
-        let mut d = Diagnostic::new(Code::OutsideLaw, place, format!("{title}: {law}"));
-        d.details = Some(Details::OutsideLaw(law));
-        diagnostics.push(d);
+}
+
+/// A value with a unit that people use, four digits.
+fn readable(value: f64, unit: &str) -> String {
+    let (factor, unit) = match unit {
+        "m" if value.abs() < 1e-3 => (1e6, "µm"),
+        "m" => (1e3, "mm"),
+        "N/m" => (1e-3, "N/mm"),
+        "Pa" if value.abs() >= 1e5 => (1e-6, "MPa"),
+        "Pa s" => (1e3, "mPa s"),
+        "m^2/s" | "m²/s" => (1e6, "mm²/s"),
+        "rad/s" => (30.0 / std::f64::consts::PI, "rpm"),
+        "-" => (1.0, ""),
+        other => (1.0, other),
+    };
+    let x = value * factor;
+    let digits = if x == 0.0 || !x.is_finite() { 0 } else { (3 - x.abs().log10().floor() as i32).clamp(0, 9) as usize };
+    let mut text = format!("{x:.digits$}");
+    if text.contains('.') {
+        text = text.trim_end_matches('0').trim_end_matches('.').to_owned();
     }
+    if unit.is_empty() { text } else { format!("{text} {unit}") }
 }
 
 impl Frame<'_> {

@@ -159,8 +159,12 @@ pub(super) fn read(text: &str, table: &Table, load: &mut Load<'_>, diagnostics: 
 /// The number that is meant in the line of a syntax error, if a decimal comma is the cause: `backlash = 20,5`.
 fn decimal_comma(text: &str, at: usize) -> Option<String> {
     let start = text.get(..at)?.rfind('\n').map_or(0, |k| k + 1);
-    let (_, value) = text[start..].lines().next()?.split_once('=')?;
-    units::decimal_point(value.split('#').next()?)
+    let numeric = |c: char| c.is_ascii_digit() || matches!(c, ',' | '.' | '+' | '-');
+    text[start..].lines().next()?.split('=').skip(1).find_map(|value| {
+        let value = value.trim_start();
+        let end = value.find(|c| !numeric(c)).unwrap_or(value.len());
+        units::decimal_point(value[..end].trim_end_matches(','))
+    })
 }
 
 struct Reader<'d, 'l> {
