@@ -33,6 +33,8 @@ use std::fmt;
 use annotate_snippets::{AnnotationKind, Group, Level, Patch, Renderer, Snippet};
 use serde::{Deserialize, Serialize};
 
+use crate::work::Cancelled;
+
 pub use codes::Code;
 pub(crate) use conversions::through_diagnostic;
 pub use span::{Lines, Span};
@@ -154,6 +156,11 @@ impl Diagnostics {
         self.0.iter().any(|d| d.severity == Severity::Error)
     }
 
+    /// Whether nothing is wrong but that the computation was [stopped](Code::Cancelled).
+    pub fn is_cancelled(&self) -> bool {
+        self.0.iter().any(|d| d.code == Code::Cancelled)
+    }
+
     /// Whether there is nothing to say.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -228,6 +235,13 @@ impl Diagnostics {
             out += &format!("… and {} more of the kind\n\n", self.0.len() - MOST);
         }
         out
+    }
+}
+
+/// A computation that was stopped has the code [`Code::Cancelled`].
+impl From<Cancelled> for Diagnostics {
+    fn from(cancelled: Cancelled) -> Self {
+        Diagnostic::new(Code::Cancelled, "", cancelled.to_string()).into()
     }
 }
 

@@ -459,8 +459,7 @@ fn write_generated(context: &Context) -> Result<(), String> {
 
 /// Writes the pages of `validation`.
 fn write_pages(context: &Context) -> Result<(), String> {
-    let words = "cargo test -p willis --test validation --test esmail_table --test validation_losses \
-                 --test validation_dynamics -- --nocapture write_page";
+    let words = "cargo test -p willis --test validation -- --nocapture write_page";
     context.output(context.words(words).env("WILLIS_WRITE", "1")).map(drop)
 }
 

@@ -1,0 +1,4 @@
+//! What the repository says of itself: the order of modules, the prose.
+
+mod architecture;
+mod docs;
