@@ -107,7 +107,7 @@ fn a_file_may_name_its_schema() {
 
 /// A train with something of everything.
 fn full() -> Specification {
-    Specification::new("of \"everything\"\n")
+    Specification::new("of \"everything\" \\ 1")
         .source("worked out\tby hand")
         .members(["s", "r", "c", "out", "w-1"])
         .terminals(["s", "out"])
