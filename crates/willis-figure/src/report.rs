@@ -180,7 +180,7 @@ pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result
     let analysis = analyze(train, &selection)?;
     let sensitivity = sensitivity(train, &selection).ok();
     let wanted = wanted(model, request, &analysis);
-    let figures = Figures::make(work, &wanted, |kind, request| kind.make(model, request)).expect("TEMP");
+    let figures = Figures::make(work, &wanted, |kind, request| kind.make(model, request))?;
     let all = Findings { model, request, analysis, sensitivity, figures };
     let sections = [
         Some(summary(&all)),

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use resvg::usvg::{self, Options, Tree, fontdb, roxmltree};
 use willis::model::Model;
-use willis_figure::{Drawing, FigureKind, FigureRequest, draw};
+use willis_figure::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
 use crate::common::examples;
 use crate::trains::model;
@@ -123,6 +123,9 @@ fn every_kind_of_every_example_is_fit_to_print() {
                 }
             };
             *drawn.entry(kind.name()).or_insert(0) += 1;
+            let text = serde_json::to_string(&figure).expect("plain data");
+            let back: Figure = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{name} {}: {e}", kind.name()));
+            assert_eq!(back, figure, "{name} {}: another figure is read back", kind.name());
             let svg = draw(&figure, Drawing::default());
             assert_eq!(svg, draw(&figure, Drawing::default()), "the same figure, the same bytes");
             let found = faults(&svg, &faces);

@@ -1,7 +1,7 @@
 //! Rankings of what moves the losses agree with the sensitivity that they show.
 
-use willis::study::sensitivity;
 use willis::Selection;
+use willis::study::sensitivity;
 use willis_figure::tornado;
 
 use crate::common::train as example;

@@ -1,6 +1,6 @@
 //! From the text of a train file to a train.
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity, Span};
 
 use super::Train;
 use super::assemble::assemble;
@@ -30,14 +30,15 @@ impl Reading {
 
 fn locate(spans: &format::Spans, text: &str, diagnostics: &mut Diagnostics) {
     for d in diagnostics.iter_mut().filter(|d| d.span.is_none()) {
-        d.span = spans.nearest(&d.place);
+        d.span = spans.nearest(&d.place).map(Span::from);
         // A suggestion replaces a name; inside quotes, if that is what stands there.
         if let (Some(span), Some(new)) = (&d.span, &mut d.replacement)
-            && let Some(quote) = text[span.clone()].chars().next().filter(|c| matches!(c, '"' | '\''))
+            && let Some(quote) = text[span.range()].chars().next().filter(|c| matches!(c, '"' | '\''))
         {
             *new = format!("{quote}{new}{quote}");
         }
     }
+    diagnostics.stand_in(None, text);
     diagnostics.sort();
 }
 
@@ -52,6 +53,8 @@ pub(super) fn read(text: &str, load: &mut Load<'_>) -> Reading {
     }
     let (root, spans) = format::read(text, FILE, &mut diagnostics);
     let specification = Specification::read_fields(&root);
+    // Tables of points may be large.
+    drop(root);
     let mut train = None;
     if !diagnostics.has_errors() {
         train = assemble(&specification, load, &mut diagnostics);

@@ -8,7 +8,7 @@ use super::format::keys::{Key, Kind, Measure, SignalKind, Table, TypedTable, abo
 use super::specification::FILE;
 
 /// Where the schema is known by, whatever place it is read from.
-const ID: &str = "https://willis.dev/schema/willis-1.schema.json";
+const ID: &str = "urn:willis:schema:willis-1";
 
 /// The JSON Schema of the train file, format 1, for editors that complete and check TOML.
 ///

@@ -57,7 +57,7 @@ fn one_freedom(all: &[&Atlas]) -> String {
             );
             out += "\n";
         }
-        for note in a.notes.iter().filter(|n| !n.starts_with("without loss")) {
+        for note in a.notes_beside_losses() {
             out += &wrap(&format!("{}: {note}", a.state), "  ");
             out += "\n";
         }
@@ -296,7 +296,7 @@ fn atlas(a: &Atlas) -> String {
     }
 
     let unreached: Vec<_> = a.assignments.iter().filter(|x| x.regimes.is_empty()).collect();
-    if !unreached.is_empty() || a.assignments.iter().any(|x| x.reach != "reached") {
+    if !unreached.is_empty() || a.assignments.iter().any(|x| x.reach != Reach::Reached) {
         out += "\n";
         out += &bold("Assignments of inputs and outputs");
         out += "\n";
@@ -304,7 +304,7 @@ fn atlas(a: &Atlas) -> String {
         set_header(&mut t, &["inputs → outputs", "regimes", ""]);
         for x in &a.assignments {
             let to = if x.outputs.is_empty() { "heat".to_owned() } else { x.outputs.join(", ") };
-            t.add_row([format!("{} → {to}", x.inputs.join(", ")), x.regimes.join(", "), x.reach.clone()]);
+            t.add_row([format!("{} → {to}", x.inputs.join(", ")), x.regimes.join(", "), x.reach.to_string()]);
         }
         out += &show(&t);
     }

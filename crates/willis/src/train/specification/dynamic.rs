@@ -549,24 +549,38 @@ impl<Q: Measured + Field + 'static> Field for SignalSpec<Q> {
     fn plain(&self) -> SignalSpec<f64> {
         let si = |q: &Q| q.number();
         let maybe = |q: &Option<Q>| q.as_ref().map(si);
-        match self.clone() {
-            Self::Constant(value) => SignalSpec::Constant(si(&value)),
-            Self::Step { offset, height, at } => SignalSpec::Step { offset: maybe(&offset), height: si(&height), at },
+        let (some, copy) = (Option::<Time>::clone, Time::clone);
+        match self {
+            Self::Constant(value) => SignalSpec::Constant(si(value)),
+            Self::Step { offset, height, at } => {
+                SignalSpec::Step { offset: maybe(offset), height: si(height), at: some(at) }
+            }
             Self::Ramp { offset, height, at, duration } => {
-                SignalSpec::Ramp { offset: maybe(&offset), height: si(&height), at, duration }
+                SignalSpec::Ramp { offset: maybe(offset), height: si(height), at: some(at), duration: copy(duration) }
             }
-            Self::Sine { offset, amplitude, frequency, phase, at, decay } => {
-                SignalSpec::Sine { offset: maybe(&offset), amplitude: si(&amplitude), frequency, phase, at, decay }
-            }
-            Self::Pulse { offset, amplitude, period, width, at } => {
-                SignalSpec::Pulse { offset: maybe(&offset), amplitude: si(&amplitude), period, width, at }
-            }
+            Self::Sine { offset, amplitude, frequency, phase, at, decay } => SignalSpec::Sine {
+                offset: maybe(offset),
+                amplitude: si(amplitude),
+                frequency: frequency.clone(),
+                phase: phase.clone(),
+                at: some(at),
+                decay: decay.clone(),
+            },
+            Self::Pulse { offset, amplitude, period, width, at } => SignalSpec::Pulse {
+                offset: maybe(offset),
+                amplitude: si(amplitude),
+                period: copy(period),
+                width: *width,
+                at: some(at),
+            },
             Self::Table { points, hold } => {
-                SignalSpec::Table { points: points.iter().map(|(t, x)| (t.clone(), si(x))).collect(), hold }
+                SignalSpec::Table { points: points.iter().map(|(t, x)| (copy(t), si(x))).collect(), hold: *hold }
             }
-            Self::Csv { file, time, value, hold } => SignalSpec::Csv { file, time, value, hold },
-            Self::Expression { formula } => SignalSpec::Expression { formula },
-            Self::Product(of) => SignalSpec::Product(Box::new((of.0.plain(), of.1))),
+            Self::Csv { file, time, value, hold } => {
+                SignalSpec::Csv { file: file.clone(), time: time.clone(), value: value.clone(), hold: *hold }
+            }
+            Self::Expression { formula } => SignalSpec::Expression { formula: formula.clone() },
+            Self::Product(of) => SignalSpec::Product(Box::new((of.0.plain(), of.1.clone()))),
         }
     }
 }

@@ -113,12 +113,6 @@ macro_rules! measured {
             }
         }
 
-        impl From<$name> for Quantity {
-            fn from(value: $name) -> Self {
-                value.0
-            }
-        }
-
         impl std::fmt::Display for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.pad(&written(&self.0))
