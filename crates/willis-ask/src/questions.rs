@@ -5,7 +5,7 @@ mod analyze;
 mod check;
 mod compare;
 mod cycle;
-// mod draw;
+mod draw;
 mod explain;
 mod export;
 mod flow;
@@ -27,7 +27,7 @@ pub use analyze::Analyze;
 pub use check::Check;
 pub use compare::Compare;
 pub use cycle::{Cycle, CycleAnswer};
-// pub use draw::{Draw, DrawAnswer, Look};
+pub use draw::{Draw, DrawAnswer, Look};
 pub use explain::Explain;
 pub use export::Export;
 pub use flow::Flow;
@@ -64,7 +64,7 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Locate>(),
     //     Entry::of::<Simulate>(),
     Entry::of::<Modes>(),
-    // Entry::of::<Draw>(),
+    Entry::of::<Draw>(),
     Entry::of::<Report>(),
     Entry::of::<Export>(),
     //     Entry::of::<Laws>(),

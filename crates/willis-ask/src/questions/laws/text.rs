@@ -1,6 +1,6 @@
 //! Laws and catalogues for eyes.
 
-use willis::losses::{self, LawList, LawReport, Tag};
+use willis::losses::{self, LawList, LawReport};
 
 use crate::style::{bold, dim, right, set_header, show, significant, table, wrap};
 
@@ -43,15 +43,7 @@ pub fn laws(all: &LawList) -> String {
         }
         let entry = entries.iter().find(|e| e.family == l.family && e.id == l.law);
         for t in entry.map_or(&[][..], |e| e.tags) {
-            marks.push(
-                match t {
-                    Tag::Local => "local, averaged along the path",
-                    Tag::SlidingOnly => "sliding only, rolling is added",
-                    Tag::Estimate => "estimate ±50 %",
-                    Tag::Compatibility => "reproduces a published error",
-                }
-                .to_owned(),
-            );
+            marks.push(t.words().to_owned());
         }
         let marks = if marks.is_empty() { String::new() } else { format!(" ({})", marks.join("; ")) };
         out += &format!("  {}{marks}\n", bold(&l.law));

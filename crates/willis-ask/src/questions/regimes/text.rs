@@ -1,7 +1,7 @@
 //! Regimes for eyes.
 
 use comfy_table::CellAlignment;
-use willis::regimes::{Atlas, Family, RegimeReport, Regimes};
+use willis::regimes::{Atlas, Family, Reach, RegimeReport, Regimes};
 
 use crate::style::{bold, dim, percent, plural, set_header, show, significant, table, wrap};
 
