@@ -1296,6 +1296,9 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             force,
         } => {
             let (Some(kind), Some(file)) = (kind, file) else { return Ok(export::list()) };
+            values("--temperature", temperature, Dimension::TEMPERATURE)?;
+            export::axis("--speeds", speeds.as_deref(), Dimension::ANGULAR_SPEED)?;
+            export::axis("--torques", torques.as_deref(), Dimension::TORQUE)?;
             let request = ExportRequest {
                 state: state.clone(),
                 all_states: *all_states,
