@@ -1065,7 +1065,8 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 Paper::UsLetter => "us-letter",
             };
             let request = draw::report_request(file, job.model.to_toml(), operation.clone(), law);
-            let document = willis_figure::report(&job.model, &request).map_err(|wrong| job.failure(wrong))?;
+            let document = willis_figure::report(&job.model, &request, &willis::work::Serial)
+                .map_err(|wrong| job.failure(wrong))?;
             draw::deliver(&document, paper, output.as_deref())
         }
         Command::Flow { file, operation, format, output, law } => {

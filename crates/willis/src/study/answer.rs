@@ -102,7 +102,7 @@ impl PointAnswer {
             Err(wrong) => return Self::refused(wrong),
         };
         let oil = train.lubrication.iter().filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)));
-        let oil = oil.map(|message| PointWarning { code: Code::OutsideLaw, law: None, message });
+        let oil = oil.map(|beyond| PointWarning { code: Code::OutsideLaw, law: None, message: beyond.to_string() });
         // The notes tell of the laws outside their ranges in the order of these.
         let mut outside = report.outside_laws.into_iter();
         let own = notes.into_iter().filter(|d| d.severity == Severity::Warning && d.code != Code::SelfLocking);

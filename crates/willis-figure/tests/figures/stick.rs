@@ -1,7 +1,9 @@
 //! Stick diagrams: their lines join what the train joins, and nothing else.
 
-use willis::train::{FRAME, GearSpec, MeshSpec, SetSpec, ShiftElementSpec, Train, TrainBuilder};
+use willis::train::{FRAME, GearSpec, MeshSpec, SetSpec, ShiftElementSpec, Specification, Train};
 use willis_figure::{JointKind, Place, Stick, stick};
+
+use crate::trains::examples;
 
 const NEAR: f64 = 1e-6;
 
@@ -153,22 +155,6 @@ fn meets(x: &Span, y: &Span) -> bool {
     side(x, y[0]) * side(x, y[1]) < -NEAR && side(y, x[0]) * side(y, x[1]) < -NEAR
 }
 
-fn examples() -> Vec<(String, Train)> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
-    let mut all: Vec<_> = std::fs::read_dir(folder).expect("examples").map(|e| e.expect("an entry").path()).collect();
-    all.retain(|p| p.extension().is_some_and(|e| e == "toml"));
-    all.sort();
-    all.into_iter()
-        .map(|p| {
-            let text = std::fs::read_to_string(&p).expect("readable");
-            let mut load =
-                |f: &str| std::fs::read_to_string(p.parent().expect("a folder").join(f)).map_err(|e| e.to_string());
-            let train = Train::read_toml_with(&text, &mut load).train.expect("a good example");
-            (p.file_stem().expect("a name").to_string_lossy().into_owned(), train)
-        })
-        .collect()
-}
-
 #[test]
 fn every_example_is_drawn_as_it_is_joined() {
     for (_, train) in examples() {
@@ -248,7 +234,7 @@ fn random(seed: u64, sets: usize, name: &dyn Fn(usize) -> String) -> Result<Trai
     let mut names: Vec<String> = (1..=members).map(name).collect();
     names.push("wheel".to_owned());
     names.sort();
-    let mut b: TrainBuilder = Train::builder(format!("random {seed}")).members(names.iter().map(String::as_str));
+    let mut b: Specification = Train::builder(format!("random {seed}")).members(names.iter().map(String::as_str));
     b = b.terminals([name(1).as_str(), name(2).as_str()]);
     for k in 0..sets {
         let set = format!("P{k}");
