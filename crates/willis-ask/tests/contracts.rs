@@ -28,7 +28,7 @@ fn requests(entry: &Entry, given: &Given) -> Vec<Value> {
     let train = given.model.train();
     match entry.name {
         "draw" => willis_figure::FigureKind::ALL.iter().map(|k| json!({ "kind": k.name() })).collect(),
-        "uncertainty" => vec![json!({ "samples": 64 })],
+        "uncertainty" => vec![json!({ "samples": 128 })],
         "simulate" => (train.scenarios().iter())
             .map(|s| json!({ "scenario": s.name, "samples": 5, "columns": ["speed", "mode"] }))
             .collect(),

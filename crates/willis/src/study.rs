@@ -20,7 +20,7 @@ mod summary;
 mod sweep;
 mod uncertainty;
 
-pub use answer::{PointAnswer, PointVerdict};
+pub use answer::{PointAnswer, PointVerdict, PointWarning};
 pub use axis::{Axis, values};
 pub use column::{Column, ColumnKind, ColumnTable, ColumnValues, Rows};
 pub use compare::{

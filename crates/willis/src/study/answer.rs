@@ -8,6 +8,8 @@ use crate::analysis::{self, SolutionReport, Verdict};
 use crate::diagnostic::{Code, Diagnostics, Severity};
 use crate::train::{Operation, Train};
 
+use super::summary::LawChoice;
+
 /// What can be said of a point of a study: the [verdict](Verdict) on its operating point, or that it makes none.
 ///
 /// Ordered by name, as tables by verdict are written; [`PointVerdict::ALL`] has the order for people.
@@ -66,6 +68,18 @@ impl fmt::Display for PointVerdict {
     }
 }
 
+/// A warning at one point.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PointWarning {
+    /// Its code.
+    pub code: Code,
+    /// The law that it is about.
+    pub law: Option<LawChoice>,
+    /// What it says.
+    pub message: String,
+}
+
 /// The answer at one point.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -76,32 +90,34 @@ pub struct PointAnswer {
     pub reason: String,
     /// The one equilibrium, where there is one.
     pub solution: Option<SolutionReport>,
-    /// Warnings of this point, by code.
-    pub warnings: Vec<(Code, String)>,
+    /// Warnings of this point, those of a code side by side.
+    pub warnings: Vec<PointWarning>,
 }
 
 impl PointAnswer {
     /// What [`analyze`](crate::analyze) says of an operation.
     pub fn of(train: &Train, operation: &Operation) -> Self {
-        let (report, notes) = match analysis::operate(train, operation) {
+        let (report, notes) = match analysis::operate_unnamed(train, operation) {
             Ok(answer) => answer,
-            Err(wrong) => {
-                let title = format!("operation `{}`: ", operation.name);
-                let mut answer = Self::refused(wrong);
-                answer.reason = answer.reason.replace(&title, "");
-                return answer;
-            }
+            Err(wrong) => return Self::refused(wrong),
         };
-        let is_one = matches!(report.verdict, Verdict::Unique | Verdict::Unloaded);
-        let title = format!("operation `{}`: ", operation.name);
         let oil = train.lubrication.iter().filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)));
-        let warnings = notes.into_iter().filter(|d| d.severity == Severity::Warning && d.code != Code::SelfLocking);
-        let warnings = warnings.map(|d| (d.code, d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned()));
+        let oil = oil.map(|beyond| PointWarning { code: Code::OutsideLaw, law: None, message: beyond.to_string() });
+        // The notes tell of the laws outside their ranges in the order of these.
+        let mut outside = report.outside_laws.into_iter();
+        let own = notes.into_iter().filter(|d| d.severity == Severity::Warning && d.code != Code::SelfLocking);
+        let own = own.map(|d| {
+            let law = if d.code == Code::OutsideLaw { outside.next() } else { None };
+            let law = law.map(|o| LawChoice { family: o.family, law: o.law });
+            PointWarning { code: d.code, law, message: d.message }
+        });
+        let warnings = oil.chain(own).collect();
+        let is_one = matches!(report.verdict, Verdict::Unique | Verdict::Unloaded);
         Self {
             verdict: report.verdict.into(),
             reason: report.reason.unwrap_or_default(),
             solution: report.solutions.into_iter().next().filter(|_| is_one),
-            warnings: oil.map(|beyond| (Code::OutsideLaw, beyond.to_string())).chain(warnings).collect(),
+            warnings,
         }
     }
 

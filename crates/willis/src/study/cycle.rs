@@ -520,13 +520,13 @@ impl<'a> Cycle<'a> {
             }
             Err(wrong) => (PointAnswer::refused(wrong.clone()), None),
         };
-        for (code, message) in &answer.warnings {
-            let told = part.warnings.entry(*code).or_default();
-            tell(told, message, held);
+        for warning in &answer.warnings {
+            let told = part.warnings.entry(warning.code).or_default();
+            tell(told, &warning.message, held);
         }
         let mut point = CyclePoint {
             verdict: answer.verdict,
-            reason: answer.reason.replace(&format!("operation `{}`: ", self.question.base().name), "").into(),
+            reason: answer.reason.as_str().into(),
             way,
             state,
             efficiency: answer.efficiency(),

@@ -282,11 +282,11 @@ impl Summary {
             see(&mut self.seen, WarningKind::Reason(answer.verdict), &answer.reason, point);
         }
         let mut last = None;
-        for (code, message) in &answer.warnings {
-            if last != Some(code) {
-                see(&mut self.seen, (*code).into(), message, point);
+        for warning in &answer.warnings {
+            if last != Some(warning.code) {
+                see(&mut self.seen, warning.code.into(), &warning.message, point);
             }
-            last = Some(code);
+            last = Some(warning.code);
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::model::{Model, Target};
 use crate::train::{Operation, Train};
 
-use super::answer::PointAnswer;
+use super::answer::{PointAnswer, PointWarning};
 use super::axis::Axis;
 use super::column::{Column, Rows};
 use super::question::{Hold, Question, Trains};
@@ -203,7 +203,8 @@ impl<'s> Sweep<'s> {
                 // What is wrong with this train and not with that of the file: planets that touch, for one.
                 let own = train.warnings().iter().filter(|d| d.severity == Severity::Warning);
                 let new = own.filter(|d| !base.iter().any(|b| b.code == d.code && b.message == d.message));
-                answer.warnings.extend(new.map(|d| (d.code, d.message.clone())));
+                let told = new.map(|d| PointWarning { code: d.code, law: None, message: d.message.clone() });
+                answer.warnings.extend(told);
                 answer
             }
             Err(wrong) => PointAnswer::refused(wrong),

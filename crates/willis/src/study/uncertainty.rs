@@ -500,11 +500,11 @@ impl<'s> UncertaintyPlan<'s> {
                 summary::see(&mut all.seen, WarningKind::Reason(answer.verdict), &answer.reason, point as u64);
             }
             let mut told: Vec<WarningKind> = vec![];
-            for (code, message) in &answer.warnings {
+            for warning in &answer.warnings {
                 // Laws are counted one by one, places and numbers are not.
-                let kind = WarningKind::Warning { code: *code, law: law_of(message) };
+                let kind = WarningKind::Warning { code: warning.code, law: warning.law.clone() };
                 if !told.contains(&kind) {
-                    summary::see(&mut all.seen, kind.clone(), message, point as u64);
+                    summary::see(&mut all.seen, kind.clone(), &warning.message, point as u64);
                     told.push(kind);
                 }
             }
@@ -527,12 +527,6 @@ impl<'s> UncertaintyPlan<'s> {
         }));
         values
     }
-}
-
-/// The law that a warning is about.
-fn law_of(message: &str) -> Option<LawChoice> {
-    let (family, law) = message.split_once(" of ")?.0.split_once(" = ")?;
-    Some(LawChoice { family: family.to_owned(), law: law.to_owned() })
 }
 
 /// Losses by kind, in the order in which they are among the values.

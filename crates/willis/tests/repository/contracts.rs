@@ -10,8 +10,13 @@ use willis::analysis::{Analysis, LossRequest, LossTable, Selection, analyze, los
 use willis::contract::Contract;
 use willis::hypergraph::{FlowReport, flows};
 use willis::losses::{LawList, list};
+use willis::model::Model;
 use willis::regimes::{Family, LocateRequest, Location, RegimeSelection, Regimes, family, locate, regimes};
+use willis::study::{
+    CompareRequest, CycleRequest, SweepRequest, UncertaintyRequest, compare, cycle, sensitivity, sweep, uncertainty,
+};
 use willis::train::Train;
+use willis::work::Serial;
 
 /// Writes an answer, reads it back, writes it again; says how long the text is.
 fn round<T: Contract + Serialize + DeserializeOwned + PartialEq + Debug>(what: &str, answer: &T) -> usize {
@@ -84,4 +89,32 @@ fn another_format_is_refused_by_name() {
     let text = serde_json::to_string(&list(Some("bearing"))).unwrap();
     let wrong = serde_json::from_str::<Analysis>(&text).unwrap_err().to_string();
     assert!(wrong.contains("willis-laws-1") && wrong.contains("willis-analysis-1"), "{wrong}");
+}
+
+#[test]
+fn studies_read_back() {
+    let text = |file: &str| {
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(file)).unwrap()
+    };
+    let model = |file: &str| Model::from_toml(&text(file)).unwrap();
+    let (zf, fva, wolfrom) =
+        (model("zf-8hp70.toml"), model("fva-planetary-stage.toml"), model("wolfrom-498-self-locking.toml"));
+    for (name, model, over) in [
+        ("zf", &zf, "state=all"),
+        ("fva", &fva, "oil.temperature=20 degC, 60 degC, 150 degC"),
+        ("wolfrom", &wolfrom, "output.torque=-10 N m, 10 N m"),
+    ] {
+        let request = SweepRequest { over: vec![over.into()], ..SweepRequest::default() };
+        round(name, &sweep(model, &request, &Serial).unwrap().report);
+    }
+    for (name, model) in [("fva", &fva), ("zf", &zf)] {
+        round(name, &sensitivity(model.train(), &Selection::default()).unwrap());
+    }
+    let request = UncertaintyRequest { samples: 128, ..UncertaintyRequest::default() };
+    round("wolfrom", &uncertainty(&wolfrom, &request, &Serial).unwrap().report);
+    let other = Model::from_toml(&text("zf-8hp70.toml").replacen("0.99", "0.98", 1)).unwrap();
+    let request = CompareRequest { over: vec!["state=all".into()], ..CompareRequest::default() };
+    round("zf", &compare(&[("a", &zf), ("b", &other)], &request, &Serial).unwrap());
+    let request = CycleRequest { profile: text("cycle-8hp70.csv"), ..CycleRequest::default() };
+    round("zf", &cycle(&zf, &request, &Serial).unwrap().report);
 }

@@ -158,7 +158,8 @@ impl Sweep<'_> {
                 What::Best => if is_best { "yes" } else { "no" }.into(),
                 What::Reason => answer.reason.clone().into(),
                 What::Warnings => {
-                    let all: Vec<String> = answer.warnings.iter().map(|(c, m)| format!("{} {m}", c.as_str())).collect();
+                    let all: Vec<String> =
+                        answer.warnings.iter().map(|w| format!("{} {}", w.code, w.message)).collect();
                     all.join("; ").into()
                 }
                 _ => unreachable!("all others are numbers"),
