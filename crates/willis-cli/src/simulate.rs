@@ -285,3 +285,6 @@ impl Recorder for Listener<'_> {
         if interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
+
+#[cfg(test)]
+mod tests;
