@@ -25,7 +25,6 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand, ValueEnum};
 use willis::analysis::{self, Analysis, LossRequest, Selection};
-use willis::casebook;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::dynamics::{Method, Options};
 use willis::model::Model;
@@ -35,6 +34,7 @@ use willis::study::{Hold, Sweep, UncertaintyPlan, UncertaintyRequest};
 use willis::symbolic::Notation;
 use willis::train::Train;
 use willis::units::{self, Dimension, Quantity};
+use willis_casebook as casebook;
 use willis_figure::FigureRequest;
 use willis_figure::{Drawing, Theme};
 

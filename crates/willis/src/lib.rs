@@ -15,8 +15,7 @@
 //! 10. [`analysis`]: the whole answer, as every front end shows it;
 //! 11. [`hypergraph`]: where the power runs, as a graph of components and contacts;
 //! 12. [`regimes`]: every way a train can run, with closed formulas;
-//! 13. [`study`]: what matters most at an operating point;
-//! 14. [`casebook`]: published losses beside ours.
+//! 13. [`study`]: what matters most at an operating point.
 //!
 //! Charts, diagrams and reports are in the crate `willis-figure`.
 //!
@@ -70,7 +69,6 @@ pub mod analysis;
 pub mod hypergraph;
 pub mod regimes;
 pub mod study;
-pub mod casebook;
 #[doc(hidden)]
 pub mod unstable;
 
