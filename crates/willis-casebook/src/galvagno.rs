@@ -10,7 +10,9 @@ use serde::Deserialize;
 use crate::{Cell, Gate, Report, Section, train};
 use willis::contract::Format;
 use willis::dynamics::offset::{Driver, external, internal};
-use willis::dynamics::{Column, Event, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, simulate};
+use willis::dynamics::{
+    Column, Event, HappeningKind, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, simulate,
+};
 
 const CASES: &str = include_str!("../data/galvagno/cases.json");
 
@@ -303,7 +305,7 @@ fn bound(x: f64) -> String {
 
 /// Part of the energy turned over that is not accounted for.
 fn residual(report: &RunReport) -> f64 {
-    let e = &report.energy;
+    let Some(e) = &report.energy else { return f64::NAN };
     if e.turned_over_j > 0.0 { (e.residual_j / e.turned_over_j).abs() } else { (e.residual_j / e.stored_j).abs() }
 }
 
@@ -570,19 +572,15 @@ fn steady(report: &mut Report) {
 }
 
 /// What an event is, ours in their words.
-fn kind(cause: &str) -> &'static str {
-    if cause == "start" {
-        "start"
-    } else if ["rest", "turns round", "turn round", "instant"].iter().any(|end| cause.ends_with(end)) {
-        "zero"
-    } else if cause.ends_with("away") {
-        "release"
-    } else if cause.ends_with("P.sun-planet") {
-        "F_tps"
-    } else if cause.ends_with("P.planet-ring") {
-        "F_trp"
-    } else {
-        "input"
+fn kind(event: &Event) -> &'static str {
+    let Some(last) = event.happenings.last() else { return "input" };
+    match last.kind {
+        HappeningKind::Start => "start",
+        HappeningKind::ComesToRest | HappeningKind::TurnsRound | HappeningKind::RestsForAnInstant => "zero",
+        HappeningKind::BreaksAway => "release",
+        HappeningKind::DriveReverses if last.of == ["P.sun-planet"] => "F_tps",
+        HappeningKind::DriveReverses if last.of == ["P.planet-ring"] => "F_trp",
+        _ => "input",
     }
 }
 
@@ -607,7 +605,7 @@ fn events(ours: &[Event], theirs: &[TheirEvent]) -> (bool, f64) {
                 modes.insert(key, sign * number(*label));
             }
         }
-        same &= their.why.starts_with(kind(&our.cause));
+        same &= their.why.starts_with(kind(our));
         same &= their.mode.iter().all(|(k, mode)| modes.get(k.as_str()) == Some(mode));
         late = late.max((our.time_s - their.t).abs());
     }
@@ -681,7 +679,7 @@ fn transients(report: &mut Report) {
 
 /// Speeds of ring, sun and carrier at every step, s apart: solved, or by the method of the paper.
 fn stepped_speeds(file: &str, step: f64, duration: f64, lagged: bool) -> Vec<[f64; 3]> {
-    let method = if lagged { Method::Fixed(step) } else { Method::Adaptive };
+    let method = if lagged { Method::Fixed { step_s: step } } else { Method::Adaptive };
     let count = (duration / step).round() as usize + 1;
     let options =
         Options { tolerance: 1e-12, samples: Some(count), method, lagged_forces: lagged, ..Options::default() };

@@ -950,7 +950,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 threads: threads.map(usize::from),
                 fast: *fast,
             };
-            let report = match sweep::run(&job.model, job.model.to_toml(), law, &request) {
+            let report = match sweep::run(&job.model, &request) {
                 Ok(report) => report,
                 Err(sweep::Failure::Input(wrong)) => return Err(job.failure(wrong)),
                 Err(sweep::Failure::Told(text)) => return Err(text),
@@ -1206,7 +1206,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 if step <= 0.0 {
                     return Err(format!("--fixed-step {text}: give a time above zero, as in --fixed-step '1 ms'\n"));
                 }
-                options.method = Method::Fixed(step);
+                options.method = Method::Fixed { step_s: step };
             }
             let request = simulate::Request {
                 scenario: scenario.clone(),

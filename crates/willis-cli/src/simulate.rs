@@ -16,10 +16,9 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::{Value, json};
-use willis::dynamics::{Column, Event, Options, Outcome, Recorder, RunReport, Sample};
+use willis::dynamics::{Column, ColumnKind, Event, Options, Outcome, Recorder, RunReport, Sample};
 use willis::train::Train;
-use willis_figure::{TimePlotBuilder, outcome_in_words};
+use willis_figure::TimePlotBuilder;
 
 use crate::interrupt::{interrupted, listen};
 
@@ -45,11 +44,6 @@ impl Request {
 /// A run and what was kept of it.
 pub struct Run {
     pub report: RunReport,
-    pub scenario_end_s: f64,
-    pub events: Vec<Event>,
-    columns: Vec<Column>,
-    rows: Vec<Vec<f64>>,
-    with_rows: bool,
 }
 
 impl Run {
@@ -195,7 +189,7 @@ fn record(
             _ => wrong + "\n",
         }));
     }
-    let report = result?;
+    let mut report = result?;
     if let (Some(sink), Some(u), Some(t)) = (listener.sink, unfinished, target) {
         let early = (report.outcome != Outcome::Finished).then(|| early(&report, span[1]));
         let closed = match sink {
@@ -208,38 +202,23 @@ fn record(
     if let (Some(path), Some(plot)) = (&request.plot, listener.plot) {
         crate::output::write(path, (willis_figure::draw_time(&plot.finish(&report)) + "\n").as_bytes())?;
     }
-    Ok(Run {
-        report,
-        scenario_end_s: span[1],
-        events: listener.events,
-        columns: listener.columns,
-        rows: listener.rows,
-        with_rows: request.rows(),
-    })
+    report.events = listener.events;
+    if request.rows() {
+        (report.columns, report.rows) = (Some(listener.columns), Some(listener.rows));
+    }
+    Ok(Run { report })
 }
 
 /// What a file says of a run that did not reach its end.
 fn early(r: &RunReport, end: f64) -> String {
     let word = if r.outcome == Outcome::Interrupted { "interrupted" } else { "ended" };
     let why = if r.outcome.why().is_empty() { String::new() } else { format!("; {}", r.outcome.why()) };
-    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, outcome_in_words(&r.outcome))
+    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, r.outcome.words())
 }
 
 /// `willis-simulation-1`
 pub fn json(run: &Run) -> String {
-    let mut all = serde_json::to_value(&run.report).expect("plain data");
-    let fields = all.as_object_mut().expect("a report has fields");
-    fields.insert("scenario_end_s".into(), json!(run.scenario_end_s));
-    // The count makes room for the events themselves.
-    fields.insert("event_count".into(), json!(run.report.events));
-    let events: Vec<Value> = run.events.iter().map(|e| serde_json::to_value(e).expect("plain data")).collect();
-    fields.insert("events".into(), Value::Array(events));
-    if run.with_rows {
-        fields.insert("columns".into(), serde_json::to_value(&run.columns).expect("plain data"));
-        // A value that is not determined becomes null.
-        fields.insert("rows".into(), serde_json::to_value(&run.rows).expect("plain data"));
-    }
-    serde_json::to_string_pretty(&all).expect("plain data") + "\n"
+    serde_json::to_string_pretty(&run.report).expect("plain data") + "\n"
 }
 
 /// A file that has its name only when it is whole.
@@ -299,7 +278,7 @@ struct Listener<'a> {
     sink: Option<Sink>,
     plot: Option<TimePlotBuilder>,
     with_rows: bool,
-    rows: Vec<Vec<f64>>,
+    rows: Vec<Vec<Option<f64>>>,
     all_events: bool,
     events: Vec<Event>,
     progress: Progress,
@@ -340,10 +319,10 @@ impl Recorder for Listener<'_> {
         self.row.clear();
         self.row.extend(self.kept.iter().map(|&k| sample.values[k]));
         if let Some(plot) = &mut self.plot {
-            let _ = plot.sample(Sample { time: sample.time, values: &self.row });
+            let _ = plot.sample(Sample { time_s: sample.time_s, values: &self.row });
         }
         if self.with_rows {
-            self.rows.push(self.row.clone());
+            self.rows.push(self.row.iter().map(|x| Some(*x).filter(|x| x.is_finite())).collect());
         }
         let written = match &mut self.sink {
             Some(Sink::Csv(rows)) => rows.row(&self.row),
@@ -352,7 +331,7 @@ impl Recorder for Listener<'_> {
         };
         self.check(written)?;
         // One step may have many rows.
-        self.progress(sample.time)
+        self.progress(sample.time_s)
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
@@ -377,23 +356,23 @@ fn select(columns: &[Column], wanted: &[String]) -> Result<Vec<usize>, String> {
     if wanted.is_empty() {
         return Ok((0..columns.len()).collect());
     }
-    let named = |c: &Column, w: &str| c.kind == w || c.name == w;
+    let named = |c: &Column, w: &str| c.kind.name() == w || c.name == w;
     for w in wanted {
         if !columns.iter().any(|c| named(c, w)) {
             let mut kinds: Vec<&str> = Vec::new();
             for c in columns {
-                if !kinds.contains(&c.kind) {
-                    kinds.push(c.kind);
+                if !kinds.contains(&c.kind.name()) {
+                    kinds.push(c.kind.name());
                 }
             }
-            let example = columns.iter().find(|c| c.kind != "time").map_or("time_s", |c| c.name.as_str());
+            let example = columns.iter().find(|c| c.kind != ColumnKind::Time).map_or("time_s", |c| c.name.as_str());
             return Err(format!(
                 "--columns {w}: this run has no such column; give kinds ({}) or names such as {example}",
                 kinds.join(", ")
             ));
         }
     }
-    let kept = |c: &Column| c.kind == "time" || wanted.iter().any(|w| named(c, w));
+    let kept = |c: &Column| c.kind == ColumnKind::Time || wanted.iter().any(|w| named(c, w));
     Ok((0..columns.len()).filter(|&k| kept(&columns[k])).collect())
 }
 

@@ -61,6 +61,6 @@ pub use stick::{
     StickPiece, StickTerminal, Way, stick,
 };
 pub use time::draw::draw as draw_time;
-pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, outcome_in_words};
+pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder};
 pub use tornado::draw::draw as draw_tornado;
 pub use tornado::{Tornado, TornadoBar, tornado};

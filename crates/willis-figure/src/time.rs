@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 
 use serde::Serialize;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::dynamics::{Column, Event, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, simulate};
+use willis::dynamics::{Column, ColumnKind, Event, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, simulate};
 use willis::train::{MemberKind, Train};
 
 use crate::kind::{Ask, Kind};
@@ -127,16 +127,15 @@ pub struct TimeMark {
 
 /// Kinds of columns that make panels, with their quantity; the first five wherever they are, the
 /// others where none of the first is.
-const KINDS: [(&str, &str); 9] = [
-    ("speed", "Speed"),
-    ("torque", "Torque"),
-    ("power", "Power"),
-    ("energy", "Energy"),
-    ("twist", "Twist"),
-    ("acceleration", "Acceleration"),
-    ("angle", "Angle"),
-    ("efficiency", "Efficiency"),
-    ("", "Value"),
+const KINDS: [(ColumnKind, &str); 8] = [
+    (ColumnKind::Speed, "Speed"),
+    (ColumnKind::Torque, "Torque"),
+    (ColumnKind::Power, "Power"),
+    (ColumnKind::Energy, "Energy"),
+    (ColumnKind::Twist, "Twist"),
+    (ColumnKind::Acceleration, "Acceleration"),
+    (ColumnKind::Angle, "Angle"),
+    (ColumnKind::Efficiency, "Efficiency"),
 ];
 const USUAL: usize = 5;
 /// Curves in a panel; a label beside each has to find room.
@@ -205,7 +204,7 @@ impl TimePlotBuilder {
             if reached > start && reached - start < 0.2 * (end - start) { [start, reached] } else { [start, end] };
         let panels = KINDS.iter().filter_map(|(kind, quantity)| {
             let own: Vec<_> = self.curves.iter().filter(|(_, c, _)| c.kind == *kind).collect();
-            panel(quantity, own.first()?.1.unit, own.iter().map(|(_, c, d)| (label(c), d.pieces())))
+            panel(quantity, own.first()?.1.unit.symbol(), own.iter().map(|(_, c, d)| (label(c), d.pieces())))
         });
         let panels = panels.collect();
         let mut modes: Vec<_> = self
@@ -289,19 +288,20 @@ impl Recorder for TimePlotBuilder {
     fn columns(&mut self, columns: &[Column]) -> ControlFlow<()> {
         let usual = |c: &Column| KINDS[..USUAL].iter().any(|k| k.0 == c.kind);
         let some = columns.iter().any(usual);
-        let energy = !columns.iter().any(|c| c.kind == "power");
-        let other = |kind: &str, names: &[String]| columns.iter().any(|c| c.kind == kind && !names.contains(&c.of));
-        let (shafts, sources) = (other("speed", &self.planets), other("torque", &self.meshes));
+        let energy = !columns.iter().any(|c| c.kind == ColumnKind::Power);
+        let other =
+            |kind: ColumnKind, names: &[String]| columns.iter().any(|c| c.kind == kind && !names.contains(&c.of));
+        let (shafts, sources) = (other(ColumnKind::Speed, &self.planets), other(ColumnKind::Torque, &self.meshes));
         for (k, c) in columns.iter().enumerate() {
             let drawn = match c.kind {
-                "time" => false,
-                "mode" => {
+                ColumnKind::Time => false,
+                ColumnKind::Mode => {
                     self.modes.push((k, label(c), Modes::new(self.span[0])));
                     false
                 }
-                "speed" => !shafts || !self.planets.contains(&c.of),
-                "torque" => !sources || !self.meshes.contains(&c.of),
-                "energy" => energy,
+                ColumnKind::Speed => !shafts || !self.planets.contains(&c.of),
+                ColumnKind::Torque => !sources || !self.meshes.contains(&c.of),
+                ColumnKind::Energy => energy,
                 kind => usual(c) || (!some && KINDS.iter().any(|(k, _)| *k == kind)),
             };
             if drawn {
@@ -313,16 +313,16 @@ impl Recorder for TimePlotBuilder {
 
     fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
         for (k, _, curve) in &mut self.curves {
-            curve.push(sample.time, sample.values[*k]);
+            curve.push(sample.time_s, sample.values[*k]);
         }
         for (k, _, modes) in &mut self.modes {
-            modes.push(sample.time, sample.values[*k]);
+            modes.push(sample.time_s, sample.values[*k]);
         }
         ControlFlow::Continue(())
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        if event.cause == "start" {
+        if event.is_start() {
             return ControlFlow::Continue(());
         }
         self.event_count += 1;
@@ -486,19 +486,6 @@ impl Modes {
             kept.extend(open);
             self.segments = kept;
         }
-    }
-}
-
-/// How a run ended, in words, as in `the run …`; [`Outcome::why`] says more.
-pub fn outcome_in_words(outcome: &Outcome) -> &'static str {
-    match outcome {
-        Outcome::Finished => "reached the end of the scenario",
-        Outcome::Interrupted => "was interrupted",
-        Outcome::NoSolution(_) => "jammed: no tooth forces fit the motion",
-        Outcome::SeveralSolutions(_) => "stopped where several motions are possible",
-        Outcome::TooManyEvents(_) => "stopped: modes change too often",
-        Outcome::NotConverged(_) => "stopped: the equations could not be solved",
-        Outcome::Impact(_) => "stopped at an impact: a speed would have to change at once",
     }
 }
 

@@ -1,7 +1,7 @@
 //! Figures of runs: no label on another, nothing beyond the page, no chart empty.
 
-use willis::dynamics::{Column, EnergyReport, Event, ModeLabel, Outcome, Recorder, RunReport, Sample};
-use willis::named::Named;
+use serde_json::{Value, json};
+use willis::dynamics::{Column, ColumnKind, Event, Outcome, Recorder, RunReport, Sample};
 use willis::train::{SetSpec, ShiftElementSpec, Train};
 use willis_figure::{TimePlot, TimePlotBuilder};
 
@@ -66,54 +66,55 @@ fn train() -> Train {
         .expect("a train")
 }
 
-fn column(name: &str, unit: &'static str, kind: &'static str) -> Column {
+fn column(name: &str, kind: ColumnKind) -> Column {
     let of = name.split_once('.').map_or("", |n| n.1);
-    Column { name: name.to_owned(), unit, kind, of: of.to_owned() }
+    serde_json::from_value(json!({ "name": name, "unit": kind.unit(), "kind": kind, "of": of })).expect("a column")
+}
+
+fn event(time: f64, cause: &str, modes: Value) -> Event {
+    let happenings = if cause == "start" { json!([{ "kind": "start", "of": [] }]) } else { json!([]) };
+    serde_json::from_value(json!({ "time_s": time, "cause": cause, "happenings": happenings, "modes": modes }))
+        .expect("an event")
 }
 
 fn columns() -> Vec<Column> {
-    let mut all = vec![column("time_s", "s", "time")];
-    all.extend(["sun", "ring", "carrier", "P1.planet", "out"].map(|m| column(&format!("speed.{m}"), "rad/s", "speed")));
-    all.extend(["motor", "vehicle", "B", "P1.sun-planet"].map(|m| column(&format!("torque.{m}"), "N m", "torque")));
-    all.extend(["motor", "vehicle", "B"].map(|m| column(&format!("power.{m}"), "W", "power")));
-    all.extend(["P1.sun-planet", "P1.planet-ring", "B"].map(|m| column(&format!("mode.{m}"), "", "mode")));
+    let mut all = vec![column("time_s", ColumnKind::Time)];
+    all.extend(
+        ["sun", "ring", "carrier", "P1.planet", "out"].map(|m| column(&format!("speed.{m}"), ColumnKind::Speed)),
+    );
+    all.extend(["motor", "vehicle", "B", "P1.sun-planet"].map(|m| column(&format!("torque.{m}"), ColumnKind::Torque)));
+    all.extend(["motor", "vehicle", "B"].map(|m| column(&format!("power.{m}"), ColumnKind::Power)));
+    all.extend(["P1.sun-planet", "P1.planet-ring", "B"].map(|m| column(&format!("mode.{m}"), ColumnKind::Mode)));
     all
 }
 
 fn report(outcome: Outcome, end: f64) -> RunReport {
-    RunReport {
-        format: "willis-simulation-1",
-        train: "Reducer with a brake".into(),
-        scenario: "launch and reversal".into(),
-        outcome,
-        start_s: 0.0,
-        end_s: end,
-        coordinates: vec!["sun".into(), "ring".into()],
-        unique_for_every_load: true,
-        steps: 2000,
-        events: 3,
-        final_speeds_rad_s: Named::default(),
-        energy: EnergyReport {
-            sources: vec![],
-            stored_j: 0.0,
-            losses: vec![],
-            turned_over_j: 0.0,
-            residual_j: 0.0,
-            efficiency: None,
-        },
-        assumptions: vec![],
-        notes: vec![],
-    }
+    let mut report: RunReport = serde_json::from_value(json!({
+        "format": "willis-simulation-1",
+        "train": "Reducer with a brake",
+        "scenario": "launch and reversal",
+        "outcome": { "verdict": "finished" },
+        "start_s": 0.0,
+        "end_s": end,
+        "coordinates": ["sun", "ring"],
+        "unique_for_every_load": true,
+        "steps": 2000,
+        "events": [],
+        "final_speeds_rad_s": {},
+        "energy": null,
+        "assumptions": [],
+        "notes": [],
+        "scenario_end_s": 3.0,
+        "event_count": 3,
+    }))
+    .expect("a report");
+    report.outcome = outcome;
+    report
 }
 
 /// A launch in which the brake slips, sticks, and the direction of drive reverses.
 fn launch(plot: &mut TimePlotBuilder, end: f64, rows: usize) {
     let _ = plot.columns(&columns());
-    let event = |t: f64, cause: &str| Event {
-        time_s: t,
-        cause: cause.into(),
-        modes: Named(vec![("B".into(), ModeLabel::Stuck)]),
-    };
     let mut causes = [
         (0.0, "start"),
         (0.8, "brake B comes to rest"),
@@ -125,7 +126,7 @@ fn launch(plot: &mut TimePlotBuilder, end: f64, rows: usize) {
     for k in 0..=rows {
         let t = end * k as f64 / rows as f64;
         while let Some((at, cause)) = causes.next_if(|c| c.0 <= t) {
-            let _ = plot.event(&event(*at, cause));
+            let _ = plot.event(&event(*at, cause, json!({ "B": "stuck" })));
         }
         let slip = t < 0.8;
         let ring = if slip { 80.0 * (1.0 - t / 0.8) } else { 0.0 };
@@ -163,7 +164,7 @@ fn launch(plot: &mut TimePlotBuilder, end: f64, rows: usize) {
             },
             if slip { 1.0 } else { 0.0 },
         ];
-        let _ = plot.sample(Sample { time: t, values: &values });
+        let _ = plot.sample(Sample { time_s: t, values: &values });
     }
 }
 
@@ -205,10 +206,10 @@ fn a_run_that_ends_early_says_so() {
 #[test]
 fn many_members_many_events_and_tiny_times() {
     let names: Vec<String> = (1..=14).map(|k| format!("a rather long member {k}")).collect();
-    let mut all = vec![column("time_s", "s", "time")];
-    all.extend(names.iter().map(|n| column(&format!("speed.{n}"), "rad/s", "speed")));
-    all.extend(names.iter().take(9).map(|n| column(&format!("twist.{n}"), "rad", "twist")));
-    all.extend((1..=30).map(|k| column(&format!("mode.element {k}"), "", "mode")));
+    let mut all = vec![column("time_s", ColumnKind::Time)];
+    all.extend(names.iter().map(|n| column(&format!("speed.{n}"), ColumnKind::Speed)));
+    all.extend(names.iter().take(9).map(|n| column(&format!("twist.{n}"), ColumnKind::Twist)));
+    all.extend((1..=30).map(|k| column(&format!("mode.element {k}"), ColumnKind::Mode)));
     let mut plot = TimePlotBuilder::new(&train(), [0.0, 2e-3]);
     let _ = plot.columns(&all);
     for k in 0..=20_000 {
@@ -220,13 +221,9 @@ fn many_members_many_events_and_tiny_times() {
         );
         values.extend((0..9).map(|m| 1e-5 * (t * 1e4 + f64::from(m)).sin()));
         values.extend((0..30).map(|m| if m < 8 { f64::from((k / 50 * (m + 1)) % 4 - 1) } else { 0.0 }));
-        let _ = plot.sample(Sample { time: t, values: &values });
+        let _ = plot.sample(Sample { time_s: t, values: &values });
         if k % 7 == 1 {
-            let _ = plot.event(&Event {
-                time_s: t,
-                cause: format!("brake B breaks away & sticks < {k}"),
-                modes: Named::default(),
-            });
+            let _ = plot.event(&event(t, &format!("brake B breaks away & sticks < {k}"), json!({})));
         }
     }
     let plot = plot.finish(&report(Outcome::TooManyEvents("1001 within 2 µs".into()), 2e-3));
@@ -247,36 +244,38 @@ fn nothing_at_all_is_said() {
     for t in [0.0, 3.0] {
         let mut values = [0.0; 16];
         values[0] = t;
-        let _ = plot.sample(Sample { time: t, values: &values });
+        let _ = plot.sample(Sample { time_s: t, values: &values });
     }
     check("rest", &plot.finish(&report(Outcome::Finished, 3.0)));
 }
 
 #[test]
 fn shapes_of_vibration_keep_apart() {
-    use willis::dynamics::{Mode, ModesReport, Part, RigidMode};
-    let part = |k: usize, value: f64| Part { name: format!("a rather long rotor {k}"), value };
+    let part = |k: usize, value: f64| json!({ "name": format!("a rather long rotor {k}"), "value": value });
     let shape = |m: usize| (0..9).map(|k| part(k, ((k * m) as f64 * 0.7).cos())).collect::<Vec<_>>();
-    let mode = |m: usize| Mode {
-        frequency_hz: 7.0 * 3f64.powi(m as i32),
-        angular_frequency_rad_s: 44.0 * 3f64.powi(m as i32),
-        damping_ratio: (m != 2).then_some(0.0123 * m as f64),
-        damped_frequency_hz: None,
-        shape: shape(m),
-        kinetic_energy: vec![],
-        strain_energy: (0..4).map(|k| part(k, 0.25)).collect(),
+    let mode = |m: usize| {
+        json!({
+            "frequency_hz": 7.0 * 3f64.powi(m as i32),
+            "angular_frequency_rad_s": 44.0 * 3f64.powi(m as i32),
+            "damping_ratio": (m != 2).then_some(0.0123 * m as f64),
+            "damped_frequency_hz": null,
+            "shape": shape(m),
+            "kinetic_energy": [],
+            "strain_energy": (0..4).map(|k| part(k, 0.25)).collect::<Vec<_>>(),
+        })
     };
-    let all = ModesReport {
-        format: "willis-modes-1",
-        train: "A driveline".into(),
-        state: "as drawn".into(),
-        fixed: vec!["ring".into()],
-        coordinates: vec![],
-        rigid_body_modes: vec![RigidMode { shape: shape(0), kinetic_energy: vec![] }],
-        modes: (1..12).map(mode).collect(),
-        assumptions: vec![],
-        notes: vec![],
-    };
+    let all = serde_json::from_value(json!({
+        "format": "willis-modes-1",
+        "train": "A driveline",
+        "state": "as drawn",
+        "fixed": ["ring"],
+        "coordinates": [],
+        "rigid_body_modes": [{ "shape": shape(0), "kinetic_energy": [] }],
+        "modes": (1..12).map(mode).collect::<Vec<_>>(),
+        "assumptions": [],
+        "notes": [],
+    }))
+    .expect("a report");
     let svg = apart("modes", &willis_figure::draw_modes(&all));
     assert!(svg.contains("2 more modes are not drawn") && svg.contains("21 Hz"));
 }

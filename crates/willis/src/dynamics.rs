@@ -29,7 +29,7 @@ pub use batch::Batch;
 pub use fixed::FixedStep;
 pub use modes::{Mode, ModesReport, Part, RigidMode, modes};
 pub use report::{
-    Column, EnergyLoss, EnergyReport, Event, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample,
-    SourceEnergy,
+    Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind, Method,
+    ModeLabel, Options, Outcome, Recorder, RunReport, Sample, SourceEnergy,
 };
 pub use run::{Simulation, simulate};

@@ -169,7 +169,7 @@ fn trajectory(case: &Value, values: &Values) -> Trajectory {
         }
         ours.push((event.time_s, modes.clone()));
     }
-    let energy = run.report().energy;
+    let energy = run.report().energy.expect("counted");
     Trajectory {
         id,
         rows: values.rows.len(),

@@ -2,24 +2,21 @@
 
 use willis::dynamics::{Event, ModeLabel, Outcome};
 use willis::hypergraph::watts;
-use willis_figure::outcome_in_words;
 
 use super::Run;
 use crate::text::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
 
 /// Rows of the table of events.
 pub const MOST_EVENTS: usize = 40;
-/// The cause of the first event.
-const START: &str = "start";
 /// A part of the energy that is round-off.
 const NOTHING: f64 = 1e-12;
 
 pub fn text(run: &Run) -> String {
     let r = &run.report;
     let mut out = bold(&r.train) + "\n";
-    let [start, reached, end] = [r.start_s, r.end_s, run.scenario_end_s].map(seconds);
+    let [start, reached, end] = [r.start_s, r.end_s, r.scenario_end_s].map(seconds);
     out += &format!("{}   {start} to {end} s\n", bold(&format!("Scenario: {}", r.scenario)));
-    let words = outcome_in_words(&r.outcome);
+    let words = r.outcome.words();
     let mut line = |name: &str, words: &str| {
         out += &wrap(words, &format!("  {name:<13}"));
         out.push('\n');
@@ -35,7 +32,7 @@ pub fn text(run: &Run) -> String {
         line("what to do", advice);
     }
     // The start is an event too, but no change.
-    let changes = r.events.saturating_sub(1);
+    let changes = r.event_count.saturating_sub(1);
     let took = [plural(r.steps, "step", "steps"), plural(changes, "change of mode", "changes of mode")];
     line("took", &took.join(", "));
     line("coordinates", &r.coordinates.join(", "));
@@ -46,7 +43,7 @@ pub fn text(run: &Run) -> String {
             false => "not proved unique for every load; see the notes",
         },
     );
-    if let Some(start) = run.events.first().filter(|e| e.cause == START && !e.modes.is_empty()) {
+    if let Some(start) = r.events.first().filter(|e| e.is_start() && !e.modes.is_empty()) {
         line("at the start", &modes(start, usize::MAX));
     }
     out += &events(run);
@@ -68,7 +65,6 @@ pub fn text(run: &Run) -> String {
 /// What can be done where a run ends early.
 fn advice(outcome: &Outcome) -> Option<&'static str> {
     Some(match outcome {
-        Outcome::Finished | Outcome::Interrupted => return None,
         Outcome::NoSolution(_) => "rigid parts cannot tell what follows; an elastic [[shaft]] in the jammed path can",
         Outcome::SeveralSolutions(_) => {
             "what decides between them is not in the model; --continue-when-ambiguous goes on with the first"
@@ -78,6 +74,7 @@ fn advice(outcome: &Outcome) -> Option<&'static str> {
         }
         Outcome::NotConverged(_) => "try a coarser --tolerance, or --fixed-step",
         Outcome::Impact(_) => "--fixed-step goes on as after an inelastic impact",
+        _ => return None,
     })
 }
 
@@ -87,7 +84,7 @@ fn seconds(t: f64) -> String {
 }
 
 fn events(run: &Run) -> String {
-    let told: Vec<&Event> = run.events.iter().filter(|e| e.cause != START).take(MOST_EVENTS - 1).collect();
+    let told: Vec<&Event> = run.report.events.iter().filter(|e| !e.is_start()).take(MOST_EVENTS - 1).collect();
     if told.is_empty() {
         return String::new();
     }
@@ -99,7 +96,7 @@ fn events(run: &Run) -> String {
     }
     right(&mut t, 0..1);
     out += &show(&t);
-    let rest = run.report.events.saturating_sub(1 + told.len());
+    let rest = run.report.event_count.saturating_sub(1 + told.len());
     if rest > 0 {
         out += &dim(&format!("  … and {rest} more, all in --format json"));
         out.push('\n');
@@ -157,7 +154,7 @@ fn joules(e: f64) -> String {
 }
 
 fn energy(run: &Run) -> String {
-    let e = &run.report.energy;
+    let Some(e) = &run.report.energy else { return String::new() };
     let mut out = format!("\n{}\n", bold("Where the energy went"));
     let mut rows: Vec<(f64, [String; 5])> = Vec::new();
     let flow = |x: f64| if x == 0.0 { "-".to_owned() } else { joules(x) };
@@ -182,8 +179,7 @@ fn energy(run: &Run) -> String {
             idle += 1;
             continue;
         }
-        let kind = if l.kind == "shift-element" { "shift element" } else { l.kind };
-        let row = [l.name.clone(), format!("loss, {kind}"), "-".into(), flow(l.energy_j), share(l.energy_j)];
+        let row = [l.name.clone(), format!("loss, {}", l.kind), "-".into(), flow(l.energy_j), share(l.energy_j)];
         rows.push((l.energy_j.abs(), row));
     }
     rows.sort_by(|a, b| b.0.total_cmp(&a.0));

@@ -4,7 +4,7 @@ use svg::node::element::{Circle, Group, Path};
 use willis::dynamics::{ModeLabel, Outcome};
 
 use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, colour, line, number, page, rectangle, text, ticks};
-use crate::{ModeRow, TimeLine, TimePanel, TimePlot, outcome_in_words};
+use crate::{ModeRow, TimeLine, TimePanel, TimePlot};
 
 const WIDTH: f64 = 1060.0;
 const LEFT: f64 = 84.0;
@@ -64,7 +64,7 @@ pub fn draw(plot: &TimePlot) -> String {
 }
 
 fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
-    let words = outcome_in_words(&plot.outcome);
+    let words = plot.outcome.words();
     let [start, end] = plot.run;
     let one = format!("From {} to {}; the run {words}", time.moment(start), time.moment(end));
     let changes = match plot.event_count {
@@ -88,7 +88,7 @@ fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
 }
 
 fn description(plot: &TimePlot) -> String {
-    let mut words = vec![format!("The run {}", outcome_in_words(&plot.outcome))];
+    let mut words = vec![format!("The run {}", plot.outcome.words())];
     for p in &plot.panels {
         let ends = p.lines.iter().map(|l| {
             let last = l.pieces.last().and_then(|p| p.last()).map_or(f64::NAN, |p| p[1]);

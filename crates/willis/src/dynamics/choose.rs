@@ -129,7 +129,7 @@ impl Engine {
                     return Err(Trouble::Impact(format!(
                         "{} would stop a relative speed of {} rad/s at once; give the shift element a capacity, or \
                          engage it when its sides turn alike",
-                        self.system.groups[g].name,
+                        self.system.groups[g].names.join(", "),
                         short(slip)
                     )));
                 }
@@ -195,9 +195,9 @@ impl Engine {
     }
 
     fn no_solution(&self, at_rest: &[bool]) -> String {
-        let still: Vec<&str> = (at_rest.iter().enumerate())
+        let still: Vec<String> = (at_rest.iter().enumerate())
             .filter(|(_, r)| **r)
-            .map(|(g, _)| self.system.groups[g].name.as_str())
+            .map(|(g, _)| self.system.groups[g].names.join(", "))
             .collect();
         let still = if still.is_empty() { String::new() } else { format!(" with {} at rest", still.join("; ")) };
         format!(

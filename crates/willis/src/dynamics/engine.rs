@@ -6,6 +6,7 @@ use crate::train::{Contact, MemberId, SourceKind};
 
 use super::integrator::Smooth;
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
+use super::report::EnergyLossKind;
 use super::system::{Rubs, System, source_torque};
 
 /// What a backlash does.
@@ -655,13 +656,13 @@ impl Smooth for Engine {
 }
 
 impl Engine {
-    /// What a friction element is, for names of columns and losses.
-    pub fn kind(&self, f: usize) -> &'static str {
+    /// What a friction element is; nothing of its own where it belongs to a source.
+    pub fn kind(&self, f: usize) -> Option<EnergyLossKind> {
         match self.system.frictions[f].what {
-            Rubs::Drag(_) => "drag",
-            Rubs::Shift(_) => "shift-element",
-            Rubs::Rolling(_) => "source",
-            Rubs::Law(place) => self.system.laws.as_ref().map_or("drag", |laws| laws.places[place].label()),
+            Rubs::Drag(_) => Some(EnergyLossKind::Drag),
+            Rubs::Shift(_) => Some(EnergyLossKind::ShiftElement),
+            Rubs::Rolling(_) => None,
+            Rubs::Law(place) => self.system.laws.as_ref().map(|laws| laws.places[place].loss_kind()),
         }
     }
 }

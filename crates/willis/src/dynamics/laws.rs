@@ -14,6 +14,7 @@ use crate::train::{MeshId, Train};
 
 use super::engine::Engine;
 use super::mode::{Map, Mode, Side, dot, slope};
+use super::report::EnergyLossKind;
 use super::system::{Loss, MOST_LOST, Rubs};
 
 /// Change in a round that counts as none, over the sum of the losses as torques.
@@ -88,8 +89,9 @@ impl Laws {
             all.push(format!("tooth friction `{}`", self.physics.friction_law()));
         }
         for place in &self.places {
-            if all.iter().all(|known| known != place.label()) {
-                all.push(place.label().to_owned());
+            let kind = place.loss_kind().to_string();
+            if !all.contains(&kind) {
+                all.push(kind);
             }
         }
         let oil = match self.physics.temperature() {
@@ -109,15 +111,15 @@ impl Laws {
 }
 
 impl Place {
-    /// For names of losses.
-    pub fn label(&self) -> &'static str {
+    /// What it is called among the energies.
+    pub(super) fn loss_kind(&self) -> EnergyLossKind {
         match self.kind {
-            LossKind::Sliding => "mesh",
-            LossKind::Rolling => "rolling",
-            LossKind::Bearing => "bearing",
-            LossKind::Windage => "windage",
-            LossKind::Churning => "churning",
-            LossKind::Seal => "seal",
+            LossKind::Sliding => EnergyLossKind::Mesh,
+            LossKind::Rolling => EnergyLossKind::Rolling,
+            LossKind::Bearing => EnergyLossKind::Bearing,
+            LossKind::Windage => EnergyLossKind::Windage,
+            LossKind::Churning => EnergyLossKind::Churning,
+            LossKind::Seal => EnergyLossKind::Seal,
         }
     }
 }

@@ -10,15 +10,18 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector, SVD, Schur};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::Configuration;
 use crate::train::{FRAME, MemberId, Train};
 
 /// A number that belongs to a member or a shaft.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Part {
     /// The member or shaft.
     pub name: String,
@@ -27,7 +30,9 @@ pub struct Part {
 }
 
 /// A motion without strain, at 0 Hz.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct RigidMode {
     /// Angle of each member whose motion is settled; the largest is 1.
     pub shape: Vec<Part>,
@@ -36,7 +41,9 @@ pub struct RigidMode {
 }
 
 /// A vibration.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Mode {
     /// Undamped natural frequency f, Hz.
     pub frequency_hz: f64,
@@ -57,10 +64,12 @@ pub struct Mode {
 }
 
 /// Natural frequencies of a train.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ModesReport {
     /// `willis-modes-1`
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// The train.
     pub train: String,
     /// The state of the shift table, or `as drawn`.
@@ -77,6 +86,10 @@ pub struct ModesReport {
     pub assumptions: Vec<String>,
     /// What the reader must know.
     pub notes: Vec<String>,
+}
+
+impl Contract for ModesReport {
+    const FORMAT: &'static str = "willis-modes-1";
 }
 
 /// Torsional natural frequencies and mode shapes in a state of the shift table (`None`: as drawn),
@@ -312,7 +325,7 @@ pub fn modes(train: &Train, state: Option<&str>, fixed: &[&str]) -> Result<Modes
         notes.push("nothing that has inertia can move".to_owned());
     }
     Ok(ModesReport {
-        format: "willis-modes-1",
+        format: Format::new(),
         train: train.name.clone(),
         state: state.unwrap_or("as drawn").to_owned(),
         fixed: fixed.iter().map(|m| (*m).to_owned()).collect(),

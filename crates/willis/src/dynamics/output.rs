@@ -2,7 +2,7 @@
 
 use super::engine::{Engine, Touch};
 use super::mode::{Side, dot};
-use super::report::{Column, ModeLabel};
+use super::report::{Column, ColumnKind, EnergyLossKind, ModeLabel};
 use super::system::{Rubs, element_name};
 
 fn label(slip: i8) -> ModeLabel {
@@ -27,7 +27,7 @@ impl Engine {
     /// Whether a law's friction element can hold, and its slip is not told of by another of its group.
     fn speaks(&self, k: usize) -> bool {
         let group = self.system.frictions[k].group.map(|(g, _)| &self.system.groups[g]);
-        matches!(self.kind(k), "bearing" | "seal")
+        matches!(self.kind(k), Some(EnergyLossKind::Bearing | EnergyLossKind::Seal))
             && group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
     }
 
@@ -75,37 +75,40 @@ impl Engine {
     pub fn columns(&self) -> Vec<Column> {
         let s = &self.system;
         let mut all = Vec::new();
-        let mut add = |prefix: &str, of: &str, unit: &'static str, kind: &'static str| {
-            let name = if of.is_empty() { prefix.to_owned() } else { format!("{prefix}.{of}") };
-            all.push(Column { name, unit, kind, of: of.to_owned() });
+        let mut column = |name: String, kind: ColumnKind, of: &str| {
+            all.push(Column { name, unit: kind.unit(), kind, of: of.to_owned() })
         };
+        column("time_s".to_owned(), ColumnKind::Time, "");
+        let mut add = |kind: ColumnKind, of: &str| column(format!("{}.{of}", kind.name()), kind, of);
         let members = || s.train.members()[1..].iter().map(|m| m.name.as_str());
-        add("time_s", "", "s", "time");
-        members().for_each(|m| add("speed", m, "rad/s", "speed"));
-        members().for_each(|m| add("angle", m, "rad", "angle"));
-        members().for_each(|m| add("acceleration", m, "rad/s^2", "acceleration"));
+        members().for_each(|m| add(ColumnKind::Speed, m));
+        members().for_each(|m| add(ColumnKind::Angle, m));
+        members().for_each(|m| add(ColumnKind::Acceleration, m));
         for source in &s.scenario.sources {
-            add("torque", &source.name, "N m", "torque");
+            add(ColumnKind::Torque, &source.name);
         }
         for source in &s.scenario.sources {
-            add("power", &source.name, "W", "power");
+            add(ColumnKind::Power, &source.name);
         }
         for f in s.frictions.iter().filter(|f| !f.open && !matches!(f.what, Rubs::Rolling(_))) {
-            add("torque", &f.name, "N m", "torque");
+            add(ColumnKind::Torque, &f.name);
         }
         for shaft in s.train.shafts() {
-            add("torque", &shaft.name, "N m", "torque");
-            add("twist", &shaft.name, "rad", "twist");
+            add(ColumnKind::Torque, &shaft.name);
+            add(ColumnKind::Twist, &shaft.name);
         }
         for mesh in s.train.meshes() {
-            add("torque", &mesh.name, "N m", "torque");
+            add(ColumnKind::Torque, &mesh.name);
         }
-        add("loss", "", "W", "power");
-        add("stored_energy", "", "J", "energy");
-        add("lost_energy", "", "J", "energy");
-        add("efficiency", "", "", "efficiency");
+        let of_all = [
+            ("loss", ColumnKind::Power),
+            ("stored_energy", ColumnKind::Energy),
+            ("lost_energy", ColumnKind::Energy),
+            ("efficiency", ColumnKind::Efficiency),
+        ];
+        of_all.into_iter().for_each(|(name, kind)| column(name.to_owned(), kind, ""));
         for (name, _) in self.labels() {
-            add("mode", &name, "", "mode");
+            column(format!("mode.{name}"), ColumnKind::Mode, &name);
         }
         all
     }

@@ -7,6 +7,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::contract::Format;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{MemberId, Train};
 
@@ -326,7 +327,7 @@ impl Simulation {
             let mut flow = ControlFlow::Continue(());
             if self.events > 1 || self.next_sample > 0 {
                 self.engine.row(self.t, &x, &mut self.row);
-                flow = recorder.sample(Sample { time: self.t, values: &self.row });
+                flow = recorder.sample(Sample { time_s: self.t, values: &self.row });
             }
             if flow.is_break() || recorder.event(&event).is_break() {
                 self.x = x;
@@ -456,7 +457,7 @@ impl Simulation {
         let x = std::mem::take(&mut self.x);
         self.engine.row(self.t, &x, &mut self.row);
         self.x = x;
-        match recorder.sample(Sample { time: self.t, values: &self.row }) {
+        match recorder.sample(Sample { time_s: self.t, values: &self.row }) {
             ControlFlow::Break(()) => Stretch::Ended(Outcome::Interrupted),
             ControlFlow::Continue(()) => Stretch::Again,
         }
@@ -556,7 +557,7 @@ impl Simulation {
                 self.state = x;
             }
             self.next_sample += 1;
-            if recorder.sample(Sample { time: t, values: &self.row }).is_break() {
+            if recorder.sample(Sample { time_s: t, values: &self.row }).is_break() {
                 return ControlFlow::Break(t);
             }
         }
@@ -577,7 +578,8 @@ impl Simulation {
         let s = &self.engine.system;
         let states = self.engine.states();
         let final_speeds = (s.train.members().iter().enumerate().skip(1))
-            .map(|(m, member)| (member.name.clone(), self.engine.member_speed(MemberId(m))));
+            .map(|(m, member)| (member.name.clone(), self.engine.member_speed(MemberId(m))))
+            .filter(|(_, speed)| speed.is_finite());
         let mut notes = self.notes.clone();
         if self.engine.unsearched > 0 {
             notes.push(format!(
@@ -594,7 +596,7 @@ impl Simulation {
             notes.push("stiff: an implicit integrator was used".into());
         }
         RunReport {
-            format: "willis-simulation-1",
+            format: Format::new(),
             train: s.train.name().to_owned(),
             scenario: s.scenario.name.clone(),
             outcome: self.outcome.clone().unwrap_or(Outcome::Interrupted),
@@ -603,7 +605,7 @@ impl Simulation {
             coordinates: s.coordinates.iter().map(|m| s.train.member_name(*m).to_owned()).collect(),
             unique_for_every_load: self.engine.certified,
             steps: self.steps,
-            events: self.events,
+            events: vec![],
             final_speeds_rad_s: final_speeds.collect(),
             energy: self.engine.energy_report(
                 [self.stored_at_start, self.engine.stored(&self.x)],
@@ -612,6 +614,10 @@ impl Simulation {
             ),
             assumptions: s.assumptions.clone(),
             notes,
+            scenario_end_s: s.scenario.end,
+            event_count: self.events,
+            columns: None,
+            rows: None,
         }
     }
 }
@@ -628,7 +634,7 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     };
     let done = match method {
         Method::Adaptive => "every change of mode was searched for all of them",
-        Method::Fixed(_) => {
+        Method::Fixed { .. } => {
             "steps of fixed length go on with what they find first, and do not notice where there is none"
         }
     };
@@ -672,8 +678,8 @@ pub fn simulate(
     recorder: &mut dyn Recorder,
 ) -> Result<RunReport, Diagnostics> {
     match options.method {
-        Method::Fixed(h) if options.lagged_forces => lagged(train, scenario, options, h, recorder),
-        Method::Fixed(h) => fixed(train, scenario, options, h, recorder),
+        Method::Fixed { step_s } if options.lagged_forces => lagged(train, scenario, options, step_s, recorder),
+        Method::Fixed { step_s } => fixed(train, scenario, options, step_s, recorder),
         Method::Adaptive => {
             let mut run = Simulation::new(train, scenario, options)?;
             if recorder.columns(&run.columns).is_continue() {

@@ -173,7 +173,8 @@ pub(super) struct Friction {
 
 /// Elements whose relative speeds are always proportional: they stick and slip together.
 pub(super) struct Group {
-    pub name: String,
+    /// Of its friction and mesh elements.
+    pub names: Vec<String>,
     /// Its slip over the coordinates.
     pub row: Vec<f64>,
     pub frictions: Vec<usize>,
@@ -636,12 +637,12 @@ impl System {
                 let factor = &row[first] / &other[first];
                 if row.iter().zip(other).all(|(x, y)| *x == &factor * y) {
                     let factor = factor.to_f64();
-                    groups[g].name = format!("{}, {name}", groups[g].name);
+                    groups[g].names.push(name.to_owned());
                     return Some((g, factor));
                 }
             }
             groups.push(Group {
-                name: name.to_owned(),
+                names: vec![name.to_owned()],
                 row: row.iter().map(Rational::to_f64).collect(),
                 frictions: vec![],
                 elements: vec![],

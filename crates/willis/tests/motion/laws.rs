@@ -45,7 +45,7 @@ fn run(train: &Train, scenario: &str) -> (RunReport, Vec<f64>) {
     let mut last = Last::default();
     let report = simulate(train, scenario, &Options::default(), &mut last).expect("a run");
     assert_eq!(report.outcome, Outcome::Finished);
-    let energy = &report.energy;
+    let energy = report.energy.as_ref().expect("counted");
     let residual = energy.residual_j.abs() / energy.turned_over_j;
     assert!(residual < 1e-9, "{scenario}: the energy closes to {residual:e}");
     (report, last.0)
@@ -65,7 +65,7 @@ fn by_source(solution: &SolutionReport) -> BTreeMap<String, f64> {
 /// Losses of a run, J.
 fn by_cause(report: &RunReport) -> BTreeMap<String, f64> {
     let mut all = BTreeMap::new();
-    for l in &report.energy.losses {
+    for l in &report.energy.as_ref().expect("counted").losses {
         let name = l.name.split(" rolling on ").next().expect("a name");
         let name = name.trim_end_matches(" windage").trim_end_matches(" churning");
         *all.entry(format!("{} {name}", l.kind)).or_insert(0.0) += l.energy_j;
@@ -106,7 +106,12 @@ fn compare(what: &str, point: &SolutionReport, report: &RunReport) {
     }
     let all = |of: &BTreeMap<String, f64>| of.values().sum::<f64>();
     close(&format!("{what}, loss"), all(&ours), all(&theirs), 1e-8);
-    close(what, report.energy.efficiency.expect("steady"), point.efficiency.expect("one"), 1e-9);
+    close(
+        what,
+        report.energy.as_ref().and_then(|e| e.efficiency).expect("steady"),
+        point.efficiency.expect("one"),
+        1e-9,
+    );
 }
 
 /// At steady speed every loss of motion is that of the operating point: the laws are the same and nothing is left out.
@@ -167,7 +172,7 @@ torque = \"{load:.17} N m\"
 /// At a small load drags take their part, at a large one tooth friction grows with it.
 #[test]
 fn efficiency_depends_on_load() {
-    let efficiency = |load: f64| run(&train(&held(load)), "held").0.energy.efficiency.expect("steady");
+    let efficiency = |load: f64| run(&train(&held(load)), "held").0.energy.and_then(|e| e.efficiency).expect("steady");
     let [low, middle, high] = [-100.0, -1000.0, -7000.0].map(efficiency);
     assert!(low + 0.01 < middle && high + 0.001 < middle, "{low} {middle} {high}");
 }
@@ -217,7 +222,7 @@ torque = \"-5000 N m\"
 ";
     let (report, last) = run(&train(scenario), "up");
     let (_, steady) = run(&train(&held(-5000.0)), "held");
-    let lost: f64 = report.energy.losses.iter().map(|l| l.energy_j).sum();
+    let lost: f64 = report.energy.as_ref().expect("counted").losses.iter().map(|l| l.energy_j).sum();
     assert!(lost > 1000.0, "{lost} J");
     // Speed, acceleration and torque of the end are those of steady motion; angles and energies are not.
     for k in [1, 2, 3, 7, 8, 9, 10, 11] {

@@ -45,7 +45,7 @@ pub(in crate::dynamics) fn fixed(
                 }
             } else {
                 run.row();
-                if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
+                if recorder.sample(Sample { time_s: t, values: &run.row }).is_break() {
                     run.outcome = Some(Outcome::Interrupted);
                 }
             }
@@ -64,7 +64,7 @@ pub(in crate::dynamics) fn fixed(
         }
         if sampled && step > 0 {
             stepper.engine.row(t, &x, &mut run.row);
-            if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
+            if recorder.sample(Sample { time_s: t, values: &run.row }).is_break() {
                 run.outcome = Some(Outcome::Interrupted);
             }
         }
