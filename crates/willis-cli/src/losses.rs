@@ -2,7 +2,7 @@
 
 use willis::analysis::{LossPoint, LossTable, Named, SolutionReport, Verdict};
 use willis::catalogue::{bearing, oil};
-use willis::losses::{Entry, Tag, Trust};
+use willis::losses::{Entry, Trust};
 use willis::operating_point::{BearingReport, ContactReport, Regime};
 
 use crate::csv::Writer;
@@ -228,18 +228,31 @@ fn verdict(p: &LossPoint) -> String {
     if p.warnings.is_empty() { word.into() } else { format!("{word} *") }
 }
 
-/// Warnings under a table, each once.
+/// Warnings under a table, each once; of a law outside its range, the first of a kind: numbers differ from point to
+/// point, what is outside does not.
 fn notes(group: &[LossPoint]) -> String {
-    let mut told: Vec<(&str, &str)> = Vec::new();
+    let mut told: Vec<&str> = Vec::new();
+    let mut laws: Vec<(&str, &str, Option<f64>, Option<f64>)> = Vec::new();
     let mut out = String::new();
-    for w in group.iter().flat_map(|p| &p.warnings) {
-        // Numbers differ from point to point; what is outside does not.
-        let (law, range) = (w.split(" of ").next().unwrap_or(w), w.split_once("range, ").map_or("", |r| r.1));
-        let key = (law, range);
-        if !told.contains(&key) {
-            told.push(key);
-            out += &dim(&wrap(w, "  * "));
-            out.push('\n');
+    for p in group {
+        let mut outside = p.outside_laws.iter().map(|o| (o.to_string(), o)).collect::<Vec<_>>();
+        for w in &p.warnings {
+            let new = match outside.iter().position(|(text, _)| text == w) {
+                Some(k) => {
+                    let o = outside.remove(k).1;
+                    let kind = (o.law.as_str(), o.symbol.as_str(), o.low, o.high);
+                    !laws.contains(&kind) && {
+                        laws.push(kind);
+                        true
+                    }
+                }
+                None => !told.contains(&w.as_str()),
+            };
+            if new {
+                told.push(w);
+                out += &dim(&wrap(w, "  * "));
+                out.push('\n');
+            }
         }
     }
     out
@@ -341,15 +354,7 @@ pub fn laws(all: &[Entry]) -> String {
             marks.push("default".to_owned());
         }
         for t in e.tags {
-            marks.push(
-                match t {
-                    Tag::Local => "local, averaged along the path",
-                    Tag::SlidingOnly => "sliding only, rolling is added",
-                    Tag::Estimate => "estimate ±50 %",
-                    Tag::Compatibility => "reproduces a published error",
-                }
-                .to_owned(),
-            );
+            marks.push(t.words().to_owned());
         }
         let marks = if marks.is_empty() { String::new() } else { format!(" ({})", marks.join("; ")) };
         out += &format!("  {}{marks}\n", bold(e.id));

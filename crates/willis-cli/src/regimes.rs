@@ -2,7 +2,7 @@
 
 use comfy_table::CellAlignment;
 use willis::analysis::Role;
-use willis::regimes::{Atlas, Edge, Family, Located, Location, Prescribes, RegimeReport, Regimes};
+use willis::regimes::{Atlas, Edge, Family, Located, Location, Prescribes, Reach, RegimeReport, Regimes};
 
 use crate::csv::Writer;
 use crate::text::{bold, dim, percent, plural, rpm, set_header, show, significant, table, wrap};
@@ -59,7 +59,7 @@ fn one_freedom(all: &[&Atlas]) -> String {
             );
             out += "\n";
         }
-        for note in a.notes.iter().filter(|n| !n.starts_with("without loss")) {
+        for note in a.notes_beside_losses() {
             out += &wrap(&format!("{}: {note}", a.state), "  ");
             out += "\n";
         }
@@ -298,7 +298,7 @@ fn atlas(a: &Atlas) -> String {
     }
 
     let unreached: Vec<_> = a.assignments.iter().filter(|x| x.regimes.is_empty()).collect();
-    if !unreached.is_empty() || a.assignments.iter().any(|x| x.reach != "reached") {
+    if !unreached.is_empty() || a.assignments.iter().any(|x| x.reach != Reach::Reached) {
         out += "\n";
         out += &bold("Assignments of inputs and outputs");
         out += "\n";
@@ -306,7 +306,7 @@ fn atlas(a: &Atlas) -> String {
         set_header(&mut t, &["inputs → outputs", "regimes", ""]);
         for x in &a.assignments {
             let to = if x.outputs.is_empty() { "heat".to_owned() } else { x.outputs.join(", ") };
-            t.add_row([format!("{} → {to}", x.inputs.join(", ")), x.regimes.join(", "), x.reach.clone()]);
+            t.add_row([format!("{} → {to}", x.inputs.join(", ")), x.regimes.join(", "), x.reach.to_string()]);
         }
         out += &show(&t);
     }

@@ -4,11 +4,20 @@
 //! Serialised as JSON it is the results contract `willis-analysis-1`; fields are added, never
 //! renamed. Units are SI and stand in the names.
 
+mod balance;
+mod loads;
 mod losses;
+mod margin;
 mod operation;
+mod outside;
+mod solution;
 mod table;
+mod why;
+mod words;
 
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
+pub use outside::{OutsideAt, OutsideLaw};
+pub use why::Why;
 
 pub use crate::named::Named;
 pub(crate) use operation::Point;
@@ -21,7 +30,7 @@ use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource};
 use crate::statics::Certificate;
-use crate::train::{Efficiency, Operation, ShiftElementId, ShiftElementKind, Train};
+use crate::train::{Efficiency, Operation, ShiftElementKind, Train};
 
 /// What can be said of a load case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -86,6 +95,9 @@ pub struct Direction {
     pub certificate: Option<CertificateReport>,
     /// One sentence that explains a verdict other than `unique`.
     pub reason: Option<String>,
+    /// The same as data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<Why>,
 }
 
 /// A row of the shift table.
@@ -284,12 +296,52 @@ pub struct LockMargin {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct StictionRange {
-    /// What varies: `efficiency`, or `torque on <member>`.
+    /// What varies, in words.
     pub what: String,
+    /// The same as data.
+    pub quantity: StictionQuantity,
     /// Smallest value; absent when too many meshes rest to bound it.
     pub low: Option<f64>,
     /// Largest value.
     pub high: Option<f64>,
+}
+
+/// What friction in a mesh at rest leaves open.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum StictionQuantity {
+    /// The efficiency.
+    Efficiency,
+    /// The torque on a member, N m.
+    Torque {
+        /// The member.
+        member: String,
+    },
+    /// Every torque behind loaded meshes at rest, too many to bound it.
+    Unbounded {
+        /// How many there are.
+        meshes: usize,
+    },
+}
+
+impl StictionRange {
+    fn new(quantity: StictionQuantity, range: Option<(f64, f64)>) -> Self {
+        Self { what: quantity.to_string(), quantity, low: range.map(|r| r.0), high: range.map(|r| r.1) }
+    }
+}
+
+impl std::fmt::Display for StictionQuantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Efficiency => f.write_str("the efficiency"),
+            Self::Torque { member } => write!(f, "the torque on {member} in N m"),
+            Self::Unbounded { meshes } => {
+                write!(f, "{meshes} loaded meshes at rest: too many to bound; any torque behind them")
+            }
+        }
+    }
 }
 
 /// One equilibrium.
@@ -359,12 +411,42 @@ pub struct OperationReport {
     pub certificate: Option<CertificateReport>,
     /// One sentence that explains the verdict.
     pub reason: Option<String>,
+    /// The same as data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<Why>,
+    /// Laws that were used outside their ranges.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outside_laws: Vec<OutsideLaw>,
     /// Speeds, also when the torques have no answer; rad/s.
     pub speeds_rad_s: Named<Option<f64>>,
     /// Every equilibrium that drives a load (or, with two or more freedoms, any equilibrium).
     pub solutions: Vec<SolutionReport>,
     /// Of a locked train: equilibria in which every loaded member must push.
     pub dissipative_solutions: Vec<SolutionReport>,
+}
+
+impl OperationReport {
+    /// An operating point before anything but its speeds is known.
+    fn new(train: &Train, operation: &Operation, freedoms: usize, speeds: Named<Option<f64>>) -> Self {
+        Self {
+            name: operation.name.clone(),
+            state: operation.state.map(|k| train.states[k].name.clone()),
+            degrees_of_freedom: freedoms,
+            verdict: Verdict::Undetermined,
+            certificate: None,
+            reason: None,
+            why: None,
+            outside_laws: vec![],
+            speeds_rad_s: speeds,
+            solutions: vec![],
+            dissipative_solutions: vec![],
+        }
+    }
+
+    fn explain(&mut self, why: &Why) {
+        self.reason = Some(why.to_string());
+        self.why = Some(why.clone());
+    }
 }
 
 /// Everything that is known about a train.
@@ -471,8 +553,11 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
         if !selection.wants(train, operation) {
             continue;
         }
-        match operation::report(train, operation, &mut diagnostics) {
-            Ok(report) => operations.push(report),
+        match operate(train, operation) {
+            Ok((report, notes)) => {
+                operations.push(report);
+                diagnostics.extend(notes);
+            }
             Err(wrong) => errors.extend(wrong),
         }
     }
@@ -545,9 +630,10 @@ pub(crate) fn settle<'t>(
     train: &'t Train,
     operation: &Operation,
 ) -> Result<(OperationReport, Option<Point<'t>>, Diagnostics), Diagnostics> {
-    let mut notes = Diagnostics::default();
-    let (report, point) = operation::settle(train, operation, &mut notes)?;
-    Ok((report, point, notes))
+    let settled = operation::settle(train, operation);
+    let settled = settled.map_err(|wrong| words::named(operation, words::refused(train, operation, &wrong)))?;
+    let notes = words::named(operation, words::found(train, operation, &settled.findings));
+    Ok((settled.report, settled.point, notes))
 }
 
 /// Analyses one operating point that need not stand in the file; [`analyze`] says the same of one that does. Beside
@@ -556,9 +642,17 @@ pub(crate) fn settle<'t>(
 /// # Errors
 /// What the operation prescribes makes no question: contradictory speeds, loads missing or too many.
 pub fn operate(train: &Train, operation: &Operation) -> Result<(OperationReport, Diagnostics), Diagnostics> {
-    let mut notes = Diagnostics::default();
-    let report = operation::report(train, operation, &mut notes)?;
-    Ok((report, notes))
+    settle(train, operation).map(|(report, _, notes)| (report, notes))
+}
+
+/// The same with warnings, notes and errors that do not name the operation, for one of many points that are told
+/// apart otherwise.
+///
+/// # Errors
+/// As [`operate`].
+pub fn operate_unnamed(train: &Train, operation: &Operation) -> Result<(OperationReport, Diagnostics), Diagnostics> {
+    let settled = operation::settle(train, operation).map_err(|wrong| words::refused(train, operation, &wrong))?;
+    Ok((settled.report, words::found(train, operation, &settled.findings)))
 }
 
 /// What the model leaves out, then what stands in for missing data.
@@ -646,15 +740,4 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
         all.push("no drag of carriers (give a [[rotor]])".into());
     }
     all.push("no drag of open shift elements, no oil pump".into());
-}
-
-/// Names of members, for sentences.
-fn names(train: &Train, members: impl IntoIterator<Item = crate::train::MemberId>) -> String {
-    let all: Vec<_> = members.into_iter().map(|m| train.member_name(m)).collect();
-    all.join(", ")
-}
-
-/// Names of shift elements.
-fn element_names(train: &Train, elements: &[ShiftElementId]) -> Vec<String> {
-    elements.iter().map(|e| train.shift_elements[e.0].name.clone()).collect()
 }

@@ -34,7 +34,7 @@ use setup::{Pattern, Setup};
 pub(crate) use atlas::{arrow, efficiency_at};
 pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
 pub use family::{Case, Family, FamilyRange, Group, Row, family};
-pub use formula::{Efficiencies, Ratios};
+pub use formula::{Efficiencies, Ratios, SymbolKind};
 pub use locate::{Edge, LocateRequest, Located, Location, Prescribes, Range, locate};
 
 /// Which part of a train, and from which terminals.
@@ -99,6 +99,9 @@ pub struct Atlas {
     pub boundaries: Vec<BoundaryReport>,
     /// Every assignment of inputs and outputs, and whether it can be reached.
     pub assignments: Vec<AssignmentReport>,
+    /// Elements without loss: it does not matter who drives them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lossless: Vec<String>,
     /// What else a reader must know.
     pub notes: Vec<String>,
 }
@@ -366,8 +369,44 @@ pub struct AssignmentReport {
     pub outputs: Vec<String>,
     /// Regimes that realise it; none when it cannot be reached.
     pub regimes: Vec<String>,
-    /// In words: how it is reached, or why not.
-    pub reach: String,
+    /// How it is reached, or why not.
+    pub reach: Reach,
+}
+
+/// Whether an assignment of inputs and outputs is reached; a sentence in answers for machines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub enum Reach {
+    /// It is reached.
+    #[serde(rename = "reached")]
+    Reached,
+    /// Only where friction turns a torque round, although without friction it exists too.
+    #[serde(rename = "reached where friction turns a torque round, and nowhere else")]
+    WhereFrictionTurns,
+    /// Only because friction turns a torque round.
+    #[serde(rename = "only because friction turns a torque round")]
+    ByFrictionOnly,
+    /// All inputs, and reached.
+    #[serde(rename = "reached: friction takes everything")]
+    Dissipated,
+    /// All inputs, and not reached.
+    #[serde(rename = "cannot be reached: friction never takes everything")]
+    NeverDissipated,
+    /// Not reached, although without friction it exists.
+    #[serde(rename = "cannot be reached: friction prevents it (without losses it exists)")]
+    PreventedByFriction,
+    /// Not reached, friction or not.
+    #[serde(rename = "cannot be reached: speeds and torques never have these signs together")]
+    Never,
+}
+
+impl std::fmt::Display for Reach {
+    /// The sentence.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // The names under which it is serialised are the sentences.
+        self.serialize(f)
+    }
 }
 
 /// Enumerates the regimes of a train.

@@ -493,6 +493,41 @@ impl Equilibrium {
     }
 }
 
+/// External torque on a node, from the forces of the elements.
+pub(crate) fn torque(c: &Configuration<'_>, s: &Solution, node: usize) -> f64 {
+    let mut sum = 0.0;
+    for (j, e) in c.elements.iter().enumerate() {
+        let (a, b) = (e.a.to_f64(), e.b.to_f64() * s.rho[j]);
+        for (member, coefficient) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
+            if c.node(member) == Some(node) {
+                sum += s.forces[j] * coefficient;
+            }
+        }
+    }
+    sum
+}
+
+/// The same in rationals.
+pub(crate) fn torque_exact(
+    c: &Configuration<'_>,
+    equilibrium: &Equilibrium,
+    s: &Solution,
+    forces: &[Rational],
+    node: usize,
+) -> Rational {
+    let mut sum = Rational::ZERO;
+    for (j, e) in c.elements.iter().enumerate() {
+        let b = &e.b * &equilibrium.rho_of(s, j);
+        let carrier = -(&e.a + &b);
+        for (member, coefficient) in [(e.p, &e.a), (e.q, &b), (e.carrier, &carrier)] {
+            if c.node(member) == Some(node) {
+                sum += &forces[j] * coefficient;
+            }
+        }
+    }
+    sum
+}
+
 /// Which nodes have an equation and which elements can carry a force at all.
 ///
 /// An unloaded node that a single gear end touches carries no force: the element is idle. A carrier

@@ -8,7 +8,7 @@ use crate::losses::{self, Entry, Tag};
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::Quantity;
 
-use super::{Convergence, LossSource, Losses, Named, Verdict, operation};
+use super::{Convergence, LossSource, Losses, Named, OutsideLaw, Verdict, Why, operate_unnamed, words};
 
 /// Where to evaluate the losses of a train. An empty list leaves a quantity as the file has it.
 #[derive(Clone, Debug, Default)]
@@ -50,6 +50,9 @@ pub struct LossPoint {
     pub verdict: Verdict,
     /// One sentence that explains the verdict.
     pub reason: Option<String>,
+    /// The same as data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<Why>,
     /// Output over input power.
     pub efficiency: Option<f64>,
     /// Power in, W.
@@ -66,6 +69,9 @@ pub struct LossPoint {
     pub convergence: Option<Convergence>,
     /// Warnings of this point.
     pub warnings: Vec<String>,
+    /// Those of them that say that a law was used outside its range, as data.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outside_laws: Vec<OutsideLaw>,
 }
 
 /// How far the laws of a family disagree at a point: the honest uncertainty of a prediction. Laws
@@ -288,8 +294,7 @@ fn quantity(load: &Load) -> &Quantity {
 }
 
 fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<LossPoint, Diagnostics> {
-    let mut notes = Diagnostics::default();
-    let report = operation::report(train, operation, &mut notes)?;
+    let (report, notes) = operate_unnamed(train, operation).map_err(|wrong| words::named(operation, wrong))?;
     let solution = report.solutions.first();
     let speed = operation.speeds.first().map_or(0.0, |s| s.1.si());
     let torque = operation.loads.first().and_then(|(m, load)| match load {
@@ -299,7 +304,6 @@ fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<Loss
             speed.map(|w| p.si() / w)
         }
     });
-    let title = format!("operation `{}`: ", operation.name);
     Ok(LossPoint {
         operation: operation.name.clone(),
         speed_of: operation.speeds.first().map(|s| train.member_name(s.0).to_owned()),
@@ -324,8 +328,10 @@ fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<Loss
             .map(|text| Diagnostic::new(Code::OutsideLaw, "", text))
             .chain(notes)
             .filter(|d| d.severity == Severity::Warning)
-            .map(|d| d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned())
+            .map(|d| d.message)
             .collect(),
+        why: report.why,
+        outside_laws: report.outside_laws,
     })
 }
 
@@ -334,8 +340,8 @@ fn spread(points: &[LossPoint], family: &str, compatibility: impl Fn(&str) -> bo
     let counts = |p: &&LossPoint| p.verdict == Verdict::Unique && p.law.as_ref().is_some_and(|l| !compatibility(l));
     let all: Vec<&LossPoint> = points.iter().filter(counts).collect();
     let inside = |p: &&LossPoint| {
-        let own = format!("{family} = {} of ", p.law.as_deref().unwrap_or_default());
-        !p.warnings.iter().any(|w| w.starts_with(&own))
+        let own = |o: &OutsideLaw| o.family == family && Some(&o.law) == p.law.as_ref();
+        !p.outside_laws.iter().any(own)
     };
     let within: Vec<&LossPoint> = all.iter().copied().filter(inside).collect();
     let counted = if within.len() > 1 { &within } else { &all };

@@ -13,7 +13,7 @@ use super::formula::{Efficiencies, Formula, Ratios, Shape, SymbolKind, element_l
 use super::setup::{MOST_TRIED, Pattern, Setup, TorqueCell};
 use super::{
     AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, Neighbour,
-    PlaneReport, Prescribed, RatioRange, RegimeReport, RegionReport, SymbolReport, Threshold,
+    PlaneReport, Prescribed, RatioRange, Reach, RegimeReport, RegionReport, SymbolReport, Threshold,
 };
 
 /// Most patterns of drivers times cones of torques, over all regions, that are tried.
@@ -49,6 +49,7 @@ pub(crate) fn atlas(
         formulas: vec![],
         boundaries: vec![],
         assignments: vec![],
+        lossless: vec![],
         notes: vec![],
     };
     // Input and output clutched together: no gear carries the load.
@@ -188,8 +189,9 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     let lossless: Vec<String> =
         (0..setup.active.len()).filter(|&j| !setup.lossy(j)).map(|j| element_label(setup, j)).collect();
     if !lossless.is_empty() {
-        atlas.notes.push(format!("without loss, so it does not matter who drives: {}", lossless.join(", ")));
+        atlas.notes.push(without_loss(&lossless));
     }
+    atlas.lossless = lossless;
     atlas.planes = cells.planes.iter().map(|f| plane(setup, f)).collect();
     let signs: BTreeMap<&[i8], usize> =
         cells.regions.iter().enumerate().map(|(k, c)| (c.signs.as_slice(), k)).collect();
@@ -335,6 +337,19 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     }
     boundaries(atlas, setup);
     assignments(atlas, setup);
+}
+
+/// The note on elements without loss.
+fn without_loss(elements: &[String]) -> String {
+    format!("without loss, so it does not matter who drives: {}", elements.join(", "))
+}
+
+impl Atlas {
+    /// The notes without that on elements without loss, for readers to whom [`Atlas::lossless`] says it.
+    pub fn notes_beside_losses(&self) -> impl Iterator<Item = &str> {
+        let told = (!self.lossless.is_empty()).then(|| without_loss(&self.lossless));
+        self.notes.iter().map(String::as_str).filter(move |note| told.as_deref() != Some(note))
+    }
 }
 
 fn mirrored(a: &TorqueCell, b: &TorqueCell) -> bool {
@@ -878,17 +893,15 @@ fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
         let reach = match (own.is_empty(), outputs.is_empty()) {
             (false, false) if own.iter().all(|r| r.by_friction_only) => {
                 match possible_without_friction(atlas, setup, &powers) {
-                    true => "reached where friction turns a torque round, and nowhere else".to_owned(),
-                    false => "only because friction turns a torque round".to_owned(),
+                    true => Reach::WhereFrictionTurns,
+                    false => Reach::ByFrictionOnly,
                 }
             }
-            (false, false) => "reached".to_owned(),
-            (false, true) => "reached: friction takes everything".to_owned(),
-            (true, true) => "cannot be reached: friction never takes everything".to_owned(),
-            (true, false) if possible_without_friction(atlas, setup, &powers) => {
-                "cannot be reached: friction prevents it (without losses it exists)".to_owned()
-            }
-            (true, false) => "cannot be reached: speeds and torques never have these signs together".to_owned(),
+            (false, false) => Reach::Reached,
+            (false, true) => Reach::Dissipated,
+            (true, true) => Reach::NeverDissipated,
+            (true, false) if possible_without_friction(atlas, setup, &powers) => Reach::PreventedByFriction,
+            (true, false) => Reach::Never,
         };
         all.push(AssignmentReport { inputs, outputs, regimes: own.iter().map(|r| r.id.clone()).collect(), reach });
     }

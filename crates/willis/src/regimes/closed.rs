@@ -2,7 +2,7 @@
 //! regime.
 
 use crate::analysis::{AS_DRAWN, Named};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::symbolic::{Function, Notation, Symbol};
@@ -55,6 +55,10 @@ pub struct Argument {
     pub latex: String,
     /// In words.
     pub meaning: String,
+    /// What it is.
+    pub kind: SymbolKind,
+    /// Of a speed or torque: the terminal.
+    pub terminal: Option<String>,
     /// Its value in this train; a speed or torque inside the regime otherwise.
     pub value: f64,
     /// The same, exactly.
@@ -64,7 +68,6 @@ pub struct Argument {
     /// Whether the train fixes it (a ratio, a tooth number, an efficiency).
     pub fixed: bool,
     pub(crate) meaning_latex: Option<String>,
-    pub(crate) kind: SymbolKind,
     pub(crate) symbol: Symbol,
 }
 
@@ -162,6 +165,14 @@ impl std::fmt::Display for Outside {
 }
 
 impl std::error::Error for Outside {}
+
+impl From<Outside> for Diagnostic {
+    fn from(outside: Outside) -> Self {
+        Self::new(Code::Unfit, "", outside.to_string())
+    }
+}
+
+through_diagnostic!(Outside);
 
 /// A derivative of the efficiency.
 #[derive(Clone, Debug, PartialEq)]
@@ -541,6 +552,7 @@ fn closed(
                 efficiency: info.kind == SymbolKind::Efficiency,
                 fixed: info.value.is_some(),
                 kind: info.kind,
+                terminal: terminal.map(|t| train.member_name(setup.terminals[t].member).to_owned()),
                 symbol: s,
             }
         })

@@ -13,8 +13,8 @@ use willis::analysis::{Role, Selection, Verdict, analyze};
 use willis::compiled::{Duty, Output, PointVerdict};
 use willis::exact::Rational;
 use willis::regimes::{
-    Atlas, ClosedFormula, Efficiencies, FormulaRequest, Outside, Ratios, RegimeReport, RegimeSelection, RegionReport,
-    formulas, regimes,
+    Atlas, ClosedFormula, Efficiencies, FormulaRequest, Outside, Ratios, Reach, RegimeReport, RegimeSelection,
+    RegionReport, SymbolKind, formulas, regimes,
 };
 use willis::symbolic::Notation;
 use willis::train::{
@@ -47,7 +47,7 @@ fn state(train: &Train, name: &str) -> Atlas {
     all.states.remove(0)
 }
 
-/// What a formula asks for, told by what the arguments mean.
+/// What a formula asks for.
 enum Source {
     Fixed(Rational),
     Speed(String),
@@ -55,13 +55,12 @@ enum Source {
 }
 
 fn sources(f: &ClosedFormula) -> Vec<(String, Source)> {
-    let source =
-        |a: &willis::regimes::Argument| match (a.fixed, a.meaning.split_once(" of "), a.meaning.split_once(" on ")) {
-            (true, ..) => Source::Fixed(a.exact.clone()),
-            (_, Some(("speed", member)), _) => Source::Speed(member.into()),
-            (_, _, Some(("torque", member))) => Source::Torque(member.into()),
-            _ => panic!("{a:?}"),
-        };
+    let source = |a: &willis::regimes::Argument| match (a.kind, &a.terminal) {
+        _ if a.fixed => Source::Fixed(a.exact.clone()),
+        (SymbolKind::Speed, Some(member)) => Source::Speed(member.clone()),
+        (SymbolKind::Torque, Some(member)) => Source::Torque(member.clone()),
+        _ => panic!("{a:?}"),
+    };
     f.arguments.iter().map(|a| (a.name.clone(), source(a))).collect()
 }
 
@@ -446,16 +445,15 @@ fn val_all_80_regimes_of_one_set_with_two_freedoms() {
                     assert_eq!(a.regimes.iter().map(String::as_str).collect::<BTreeSet<_>>(), own, "{a:?}");
                     let ideal = lossless_roles.contains(&powers);
                     let expected = match (own.is_empty(), powers == [1, 1, 1]) {
-                        (false, true) => "reached: friction takes everything",
-                        (true, true) => "cannot be reached: friction never takes everything",
-                        (false, _) if unturned.contains(&powers) => "reached",
-                        (false, _) if ideal => "reached where friction turns a torque round",
-                        (false, _) => "only because friction",
-                        (true, _) if ideal => "cannot be reached: friction prevents it",
-                        (true, _) => "cannot be reached: speeds and torques never",
+                        (false, true) => Reach::Dissipated,
+                        (true, true) => Reach::NeverDissipated,
+                        (false, _) if unturned.contains(&powers) => Reach::Reached,
+                        (false, _) if ideal => Reach::WhereFrictionTurns,
+                        (false, _) => Reach::ByFrictionOnly,
+                        (true, _) if ideal => Reach::PreventedByFriction,
+                        (true, _) => Reach::Never,
                     };
-                    let told = if expected == "reached" { a.reach == expected } else { a.reach.starts_with(expected) };
-                    assert!(told, "{}: {a:?}, expected {expected}", shape.0);
+                    assert_eq!(a.reach, expected, "{}: {a:?}", shape.0);
                 }
                 // Friction alone makes half of the regimes in the band, and two of them heaters.
                 let band = shape.0.contains("band");

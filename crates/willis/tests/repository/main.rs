@@ -1,4 +1,5 @@
 //! What the repository says of itself: the order of modules, the prose.
 
 mod architecture;
+mod contracts;
 mod docs;
