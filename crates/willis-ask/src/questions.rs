@@ -21,7 +21,7 @@ mod sensitivity;
 mod simulate;
 mod sweep;
 mod uncertainty;
-// mod validate;
+mod validate;
 
 pub use analyze::Analyze;
 pub use check::Check;
@@ -43,7 +43,7 @@ pub use sensitivity::Sensitivity;
 pub use simulate::{MOST_EVENTS, Simulate, run_text as simulation_text};
 pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
 pub use uncertainty::{Uncertainty, UncertaintyAnswer};
-// pub use validate::Validate;
+pub use validate::Validate;
 
 use crate::Entry;
 
@@ -68,7 +68,7 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Report>(),
     Entry::of::<Export>(),
     Entry::of::<Laws>(),
-    // Entry::of::<Validate>(),
+    Entry::of::<Validate>(),
     Entry::of::<Explain>(),
 ];
 

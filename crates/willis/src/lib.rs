@@ -136,7 +136,6 @@ pub mod analysis;
 pub mod hypergraph;
 pub mod regimes;
 pub mod study;
-pub mod casebook;
 #[doc(hidden)]
 pub mod unstable;
 

@@ -6,7 +6,10 @@
 use std::fs;
 use std::path::Path;
 
-use crate::{Context, example_files};
+use crate::context::{Context, passes, said};
+use crate::examples::example_files;
+use crate::generate::build_willis;
+use crate::step::{Outcome, outcome};
 
 /// A command of the prose and what it is said to print.
 struct Shown {
@@ -17,8 +20,45 @@ struct Shown {
     train: Option<String>,
 }
 
+/// Runs the commands of README and book and compares.
+pub(crate) fn book(context: &Context) -> Outcome {
+    match build_willis(context).and_then(|()| run(context)) {
+        Ok(told) => {
+            println!("{told}");
+            Outcome::Passed
+        }
+        Err(e) => Outcome::Failed(e),
+    }
+}
+
+/// `cargo xtask pages`: the book as web pages, by the tool that it is written for.
+///
+/// The tool is built once, without what serves and searches pages and without optimisation, and kept beside the other
+/// build results.
+pub(crate) fn pages(context: &Context) -> Outcome {
+    let tools = context.target.join("tools");
+    let own = tools.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
+    let runs = |program: &Path| {
+        context.output(context.command(program).arg("--version")).is_ok_and(|o| o.stdout.starts_with(b"mdbook v0.5"))
+    };
+    let program = if runs(Path::new("mdbook")) { Path::new("mdbook") } else { &own };
+    if !runs(program) {
+        let words = "cargo install --quiet --locked mdbook --version ^0.5 --no-default-features --debug";
+        let mut install = context.words(words);
+        install.arg("--root").arg(&tools).arg("--target-dir").arg(tools.join("build"));
+        if passes(&mut install, words).is_err() || !runs(program) {
+            return Outcome::Skipped("mdbook is not installed, and cannot be had here".into());
+        }
+        let _ = fs::remove_dir_all(tools.join("build"));
+    }
+    let mut build = context.command(program);
+    build.args(["build", "book", "--dest-dir"]).arg(context.target.join("book-pages"));
+    let said = said(&build);
+    outcome(passes(&mut build, &said))
+}
+
 /// Runs all of them in a folder of their own. How many there were, or what differs.
-pub fn run(context: &Context) -> Result<String, String> {
+fn run(context: &Context) -> Result<String, String> {
     let folder = context.target.join("book");
     let fail = |e: std::io::Error| format!("{}: {e}", folder.display());
     let _ = fs::remove_dir_all(&folder);

@@ -4,6 +4,4 @@
 mod common;
 
 mod cases;
-mod dynamics;
 mod esmail_table;
-mod losses;

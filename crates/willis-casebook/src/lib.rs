@@ -1,11 +1,11 @@
-//! Cases: published numbers beside ours, with what agrees, what does not, and why.
+//! The case book of [`willis`]: published numbers beside ours, with what agrees, what does not, and why.
 //!
 //! Every number called *Willis* comes from running a train (or one law, where the case is one law)
 //! through the library. Numbers that follow from an error of a publication are computed in the
 //! module of that case, in functions that are named after the error, and nowhere else.
 //!
 //! ```
-//! let report = willis::casebook::run("wang-2020").unwrap();
+//! let report = willis_casebook::run("wang-2020").unwrap();
 //! assert!(report.gates.iter().all(|g| g.holds || g.cause.is_some()));
 //! ```
 
@@ -15,10 +15,11 @@ mod wang_2020;
 
 use std::fmt;
 
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::analysis::{Analysis, Selection, SolutionReport, analyze};
-use crate::train::Train;
+use willis::analysis::{Analysis, Selection, SolutionReport, analyze};
+use willis::contract::{Contract, Format};
+use willis::train::Train;
 
 /// Name and text.
 type File = (&'static str, String);
@@ -64,32 +65,40 @@ pub fn run(name: &str) -> Option<Report> {
 /// The curves of a case as CSV files, name and text; `None` if there is no such case or it has none.
 ///
 /// ```
-/// let files = willis::casebook::data("wang-2020").unwrap();
+/// let files = willis_casebook::data("wang-2020").unwrap();
 /// assert!(files.iter().any(|f| f.0 == "planets.csv"));
 /// ```
 pub fn data(name: &str) -> Option<Vec<(&'static str, String)>> {
     CASES.iter().find(|c| c.name == name)?.data.map(|d| d())
 }
 
-/// A case beside our numbers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// A case beside our numbers: the contract `willis-validation-1`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Report {
     /// `willis-validation-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the case.
-    pub case: &'static str,
+    pub case: String,
     /// Title.
-    pub title: &'static str,
+    pub title: String,
     /// Where the printed numbers come from.
-    pub source: &'static str,
+    pub source: String,
     /// In the order to be read.
     pub sections: Vec<Section>,
     /// What must hold.
     pub gates: Vec<Gate>,
 }
 
+impl Contract for Report {
+    const FORMAT: &'static str = "willis-validation-1";
+}
+
 /// A part of a report.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Section {
     /// Title.
     pub title: String,
@@ -103,26 +112,30 @@ pub struct Section {
     pub points: Vec<String>,
 }
 
-/// A cell of a table.
-#[derive(Clone, Debug, PartialEq)]
+/// A cell of a table; as JSON a text, a number or `null`.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Cell {
     /// Words.
     Text(String),
-    /// A number and the decimals it is shown with.
+    /// A number and the decimals it is shown with. JSON has the number alone: one that was read back is shown with as
+    /// many decimals as it has.
     Number(f64, usize),
     /// No value.
     Empty,
 }
 
 /// A comparison with a bound that was set beforehand.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Gate {
     /// What is compared.
     pub what: String,
     /// As printed or measured.
     pub printed: String,
-    /// Ours.
-    pub ours: f64,
+    /// Ours; `null` where there is no number to compare, which no bound lets pass.
+    pub ours: Option<f64>,
     /// Lowest value that passes.
     pub low: f64,
     /// Highest value that passes.
@@ -131,6 +144,56 @@ pub struct Gate {
     pub holds: bool,
     /// Why it does not, where that is known.
     pub cause: Option<String>,
+}
+
+/// What is told is the same; with how many decimals it is shown does not matter.
+impl PartialEq for Cell {
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Text(a), Self::Text(b)) => a == b,
+            (Self::Number(a, _), Self::Number(b, _)) => a == b,
+            (Self::Empty, Self::Empty) => true,
+            _ => false,
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Cell {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Ok(match Plain::deserialize(deserializer)? {
+            Plain::Text(t) => Self::Text(t),
+            Plain::Number(x) => Self::Number(x, x.to_string().split_once('.').map_or(0, |(_, rest)| rest.len())),
+            Plain::Empty => Self::Empty,
+        })
+    }
+}
+
+/// A cell as it stands in JSON.
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(untagged)]
+enum Plain {
+    /// Words.
+    Text(String),
+    /// A number.
+    Number(f64),
+    /// No value.
+    Empty,
+}
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for Cell {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Cell".into()
+    }
+
+    fn json_schema(generator: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        Plain::json_schema(generator)
+    }
 }
 
 impl Serialize for Cell {
@@ -175,13 +238,15 @@ impl From<String> for Cell {
 }
 
 impl From<(f64, usize)> for Cell {
+    /// A number that is none leaves the cell empty.
     fn from((x, decimals): (f64, usize)) -> Self {
-        Self::Number(x, decimals)
+        if x.is_finite() { Self::Number(x, decimals) } else { Self::Empty }
     }
 }
 
 impl Section {
-    fn new(title: impl Into<String>, text: &[&str], columns: &[&str]) -> Self {
+    /// Without rows yet.
+    pub fn new(title: impl Into<String>, text: &[&str], columns: &[&str]) -> Self {
         Self {
             title: title.into(),
             text: text.iter().map(|t| (*t).to_owned()).collect(),
@@ -199,6 +264,7 @@ impl Section {
 impl Gate {
     fn new(what: impl Into<String>, printed: impl Into<String>, ours: f64, [low, high]: [f64; 2]) -> Self {
         let holds = (low..=high).contains(&ours);
+        let ours = Some(ours).filter(|x| x.is_finite());
         Self { what: what.into(), printed: printed.into(), ours, low, high, holds, cause: None }
     }
 
@@ -244,7 +310,7 @@ impl fmt::Display for Report {
             let row = [
                 g.what.as_str().into(),
                 g.printed.as_str().into(),
-                number(g.ours),
+                g.ours.map_or(Cell::Empty, number),
                 number(g.low),
                 number(g.high),
                 g.verdict().into(),

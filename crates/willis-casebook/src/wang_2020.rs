@@ -6,20 +6,22 @@ use std::sync::OnceLock;
 
 use serde::Deserialize;
 
-use super::{Gate, Report, Section, answer, decimal, solution, train, with};
-use crate::analysis::SolutionReport;
-use crate::catalogue::bearing::{self, Bearing, Kind};
-use crate::catalogue::oil::Base;
-use crate::losses::bearing::{BearingDuty, Skf, Skf6000, Supply};
-use crate::operating_point::{LossKind, Regime};
-use crate::train::Train;
+use crate::{Gate, Report, Section, answer, decimal, solution, train, with};
+use willis::analysis::SolutionReport;
+use willis::catalogue::bearing::{self, Bearing, Kind};
+use willis::catalogue::oil::Base;
+use willis::contract::Format;
+use willis::diagnostic::Code;
+use willis::losses::bearing::{BearingDuty, Skf, Skf6000, Supply};
+use willis::operating_point::{LossKind, Regime};
+use willis::train::Train;
 
 /// The gearbox with teeth, oil and bearings.
-const PHYSICAL: &str = include_str!("../../../../examples/wang-herringbone-physical.toml");
+const PHYSICAL: &str = include_str!("../data/examples/wang-herringbone-physical.toml");
 /// The gearbox with given efficiencies of its meshes.
-const GIVEN: &str = include_str!("../../../../examples/wang-herringbone.toml");
+const GIVEN: &str = include_str!("../data/examples/wang-herringbone.toml");
 /// Numbers of the paper.
-const PAPER: &str = include_str!("../../../../validation/wang-2020/paper.toml");
+const PAPER: &str = include_str!("../data/wang-2020/paper.toml");
 
 const PLANETS: [u32; 4] = [3, 4, 5, 6];
 /// The meshes of Table 4: column, mesh.
@@ -60,7 +62,7 @@ struct Fast {
 
 fn paper() -> &'static Paper {
     static PAPER_: OnceLock<Paper> = OnceLock::new();
-    PAPER_.get_or_init(|| toml::from_str(PAPER).expect("validation/wang-2020/paper.toml is read"))
+    PAPER_.get_or_init(|| toml::from_str(PAPER).expect("data/wang-2020/paper.toml is read"))
 }
 
 /// A point to compute: speed of the sun in rpm, input power in kW, oil temperature in °C.
@@ -395,7 +397,7 @@ fn shares(report: &mut Report, rated: &Loss) {
     let three = Variant { planets: 3, ..Variant::default() };
     for p in &paper().shares {
         let [t, w, b] = p.parts;
-        s.row([(p.speed, 0).into(), "printed".into(), (t, 1).into(), (w, 1).into(), (b, 1).into(), super::Cell::Empty]);
+        s.row([(p.speed, 0).into(), "printed".into(), (t, 1).into(), (w, 1).into(), (b, 1).into(), crate::Cell::Empty]);
         for (what, kw) in [("Willis, constant torque", POWER * p.speed / SPEED), ("Willis, constant power", POWER)] {
             let l = three.run(&[(p.speed, kw, 50.0)]).remove(0);
             let part = |x: f64| (100.0 * x / l.total(), 1).into();
@@ -546,7 +548,7 @@ fn planets(report: &mut Report) {
         for n in PLANETS {
             let l = Variant { planets: n, laws, replace }.rated();
             let percent = |x: f64| (100.0 * x, 3).into();
-            let theirs = notes(name, n).map_or([0; 4].map(|_| super::Cell::Empty), |v| v.map(|x| (x, 2).into()));
+            let theirs = notes(name, n).map_or([0; 4].map(|_| crate::Cell::Empty), |v| v.map(|x| (x, 2).into()));
             let [e, t, w, b] = theirs;
             s.row([
                 name.into(),
@@ -565,7 +567,7 @@ fn planets(report: &mut Report) {
                 let what = format!("{name}, n = {n}: efficiency, %");
                 let gate = Gate::new(what, decimal(e, 2), 100.0 * l.efficiency, [e - 0.3, e + 0.3]);
                 // Six planets: twice the difference in windage that is told below.
-                report.gates.push(if n == 6 && name.contains("AGMA") {
+                report.gates.push(if n == 6 && laws.contains(&SHARED) {
                     gate.because("windage of the planets relative to the carrier, and bearings of both stages")
                 } else {
                     gate
@@ -574,9 +576,9 @@ fn planets(report: &mut Report) {
             assert!(l.converged, "{name}, {n} planets");
             first.get_or_insert(l);
         }
-        let (Some(three), shared) = (first, name.contains("shared")) else { continue };
+        let Some(three) = first else { continue };
         let six = Variant { planets: 6, laws, replace }.rated();
-        if shared {
+        if laws.contains(&SHARED) {
             let growth = six.sliding / three.sliding;
             report.gates.push(Gate::new(format!("{name}: tooth loss, 6 over 3 planets"), "1", growth, [0.98, 1.0]));
         }
@@ -607,7 +609,7 @@ fn planets(report: &mut Report) {
 fn impossible(report: &mut Report) {
     let mut s = Section::new("What cannot be reproduced, and why", &[], &[]);
     let five = Variant { planets: 5, ..Variant::default() }.train(&[(SPEED, POWER, 50.0)]);
-    let remark = five.warnings().iter().map(|d| d.message.as_str()).find(|m| m.contains("spaced equally"));
+    let remark = five.warnings().iter().find(|d| d.code == Code::UnequalSpacing).map(|d| d.message.as_str());
     s.points.push(format!(
         "Five planets do not assemble. Willis: \"{}\". The paper computes them all the same.",
         remark.unwrap_or("no remark")
@@ -648,14 +650,16 @@ fn impossible(report: &mut Report) {
 }
 
 /// The paper beside Willis.
-pub(super) fn report() -> Report {
+pub(crate) fn report() -> Report {
     let mut report = Report {
-        format: "willis-validation-1",
-        case: "wang-2020",
-        title: "Wang and others 2020: a two-stage herringbone planetary gearbox",
-        source: "Y. Wang, W. Yang, X. Tang, X. Lin, Z. He, Power Flow and Efficiency Analysis of High-Speed Heavy Load \
+        format: Format::new(),
+        case: "wang-2020".into(),
+        title: "Wang and others 2020: a two-stage herringbone planetary gearbox".into(),
+        source:
+            "Y. Wang, W. Yang, X. Tang, X. Lin, Z. He, Power Flow and Efficiency Analysis of High-Speed Heavy Load \
                  Herringbone Planetary Transmission Using a Hypergraph-Based Method, Appl. Sci. 2020, 10(17), 5849. \
-                 Train: examples/wang-herringbone-physical.toml; its notes list what is assumed.",
+                 Train: examples/wang-herringbone-physical.toml; its notes list what is assumed."
+                .into(),
         sections: vec![],
         gates: vec![],
     };
@@ -689,7 +693,7 @@ impl Table {
 }
 
 /// The curves behind figures 10 to 19, as Willis computes them.
-pub(super) fn data() -> Vec<(&'static str, String)> {
+pub(crate) fn data() -> Vec<(&'static str, String)> {
     let by_kind = |l: &Loss, kw: f64| {
         let loss = |x: f64| x * kw;
         [100.0 * l.efficiency, loss(l.sliding), loss(l.windage), loss(l.bearing)]

@@ -2,22 +2,23 @@
 
 use std::f64::consts::PI;
 
-use super::{Cell, Gate, Report, Section, answer, decimal, solution, train, with};
-use crate::analysis::SolutionReport;
-use crate::catalogue::bearing::{self, Bearing, Kind, Seal, SealKind};
-use crate::catalogue::oil::{self, Base};
-use crate::losses::bearing::{BearingDuty, Law, Skf, Supply};
-use crate::operating_point::ContactReport;
-use crate::train::Train;
+use crate::{Cell, Gate, Report, Section, answer, decimal, solution, train, with};
+use willis::analysis::SolutionReport;
+use willis::catalogue::bearing::{self, Bearing, Kind, Seal, SealKind};
+use willis::catalogue::oil::{self, Base};
+use willis::contract::Format;
+use willis::losses::bearing::{BearingDuty, Law, Skf, Supply};
+use willis::operating_point::ContactReport;
+use willis::train::Train;
 
-const PJ2008: &str = include_str!("../../../../validation/losses/pj2008.toml");
-const C40: &str = include_str!("../../../../validation/losses/fzg-c40.toml");
-const C14: &str = include_str!("../../../../validation/losses/fzg-c14.toml");
-const H501: &str = include_str!("../../../../validation/losses/fzg-h501.toml");
-const FVA: &str = include_str!("../../../../validation/losses/fva.toml");
-const UTS: &str = include_str!("../../../../validation/losses/uts-60-1161.toml");
-const OH58: &str = include_str!("../../../../validation/losses/oh58.toml");
-const NREL: &str = include_str!("../../../../examples/nrel-5mw-stage-1.toml");
+const PJ2008: &str = include_str!("../data/losses/pj2008.toml");
+const C40: &str = include_str!("../data/losses/fzg-c40.toml");
+const C14: &str = include_str!("../data/losses/fzg-c14.toml");
+const H501: &str = include_str!("../data/losses/fzg-h501.toml");
+const FVA: &str = include_str!("../data/losses/fva.toml");
+const UTS: &str = include_str!("../data/losses/uts-60-1161.toml");
+const OH58: &str = include_str!("../data/losses/oh58.toml");
+const NREL: &str = include_str!("../data/examples/nrel-5mw-stage-1.toml");
 
 const COLUMNS: [&str; 6] = ["case", "quantity", "printed", "Willis", "difference", "verdict"];
 
@@ -430,14 +431,16 @@ fn wang(report: &mut Report) {
 }
 
 /// Every loss case.
-pub(super) fn report() -> Report {
+pub(crate) fn report() -> Report {
     let mut report = Report {
-        format: "willis-validation-1",
-        case: "losses",
-        title: "Losses, compared",
-        source: "Measured, computed by other programs, or worked by hand; every number called Willis is computed by the \
+        format: Format::new(),
+        case: "losses".into(),
+        title: "Losses, compared".into(),
+        source:
+            "Measured, computed by other programs, or worked by hand; every number called Willis is computed by the \
                  library when this page is made. No planetary set with its whole geometry and losses measured point by \
-                 point was at hand: the chain is validated in parts.",
+                 point was at hand: the chain is validated in parts."
+                .into(),
         sections: vec![],
         gates: vec![],
     };

@@ -7,13 +7,14 @@ use std::sync::OnceLock;
 
 use serde::Deserialize;
 
-use super::{Cell, Gate, Report, Section, train};
-use crate::dynamics::offset::{Driver, external, internal};
-use crate::dynamics::{
+use crate::{Cell, Gate, Report, Section, train};
+use willis::contract::Format;
+use willis::dynamics::offset::{Driver, external, internal};
+use willis::dynamics::{
     Column, Event, HappeningKind, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, simulate,
 };
 
-const CASES: &str = include_str!("../../../../validation/galvagno/cases.json");
+const CASES: &str = include_str!("../data/galvagno/cases.json");
 
 /// Ring, sun, carrier.
 const MEMBERS: [&str; 3] = ["ring", "sun", "carrier"];
@@ -817,16 +818,16 @@ fn jamming(report: &mut Report) {
     report.gates.push(Gate::new("jamming: verdicts that are right, of 4", "4", right as f64, [4.0, 4.0]));
 }
 
-pub(super) fn report() -> Report {
+pub(crate) fn report() -> Report {
     let mut report = Report {
-        format: "willis-validation-1",
-        case: "galvagno",
-        title: "Motion of a lossy planetary set, compared",
+        format: Format::new(),
+        case: "galvagno".into(),
+        title: "Motion of a lossy planetary set, compared".into(),
         source: "E. Galvagno, Epicyclic gear train dynamics including mesh efficiency, International Journal of Mechanics and \
                  Control 11 (2010): its experiment with every power flow, its equations with corrected \
                  signs, its force loop solved instead of lagged by a step. The numbers beside ours are those of an \
                  independent program (`cases.json`); every number called Willis is computed by the library when this \
-                 page is made. A difference is shown by the power of ten it stays below.",
+                 page is made. A difference is shown by the power of ten it stays below.".into(),
         sections: vec![],
         gates: vec![],
     };

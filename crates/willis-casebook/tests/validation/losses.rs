@@ -1,16 +1,11 @@
 //! Losses against measurements, other programs, worked examples and a paper: every gate of the case
 //! book; and the pages and curves that show them.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
 use willis::analysis::{Selection, analyze};
-use willis::casebook::{self, Report};
 use willis::train::Train;
+use willis_casebook::{self as casebook, Report};
 
-fn validation() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation")
-}
+use crate::{page, read};
 
 /// Every gate of a case whose name begins so holds, or is a miss with a known cause. A miss that
 /// comes to hold is told too: its cause is gone.
@@ -20,7 +15,7 @@ fn hold(case: &str, begin: &str, least: usize) {
     let wrong: Vec<_> = gates
         .iter()
         .filter(|g| g.holds == g.cause.is_some())
-        .map(|g| format!("{}: printed {}, ours {}, {} to {}", g.what, g.printed, g.ours, g.low, g.high))
+        .map(|g| format!("{}: printed {}, ours {:?}, {} to {}", g.what, g.printed, g.ours, g.low, g.high))
         .collect();
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
     assert!(gates.len() >= least, "{} gates of {begin}", gates.len());
@@ -88,7 +83,7 @@ fn val_wang_losses_do_not_grow_with_the_planets() {
 /// in air, and get it unless the file gives a mist.
 #[test]
 fn regress_windage_laws_have_their_own_fluid() {
-    let text = fs::read_to_string(validation().join("../examples/wang-herringbone-physical.toml")).expect("a train");
+    let text = read("../examples/wang-herringbone-physical.toml");
     let windage = |text: &str, law: &str| {
         let train = Train::from_toml(text).and_then(|t| t.with_law("windage", law)).expect("a train");
         let analysis = analyze(&train, &Selection::default()).expect("an answer");
@@ -104,23 +99,11 @@ fn regress_windage_laws_have_their_own_fluid() {
 /// 19/17/56 is off by three teeth and lies on one axis all the same: the shifts make up for it.
 #[test]
 fn regress_corrected_sets_are_coaxial_by_their_centre_distance() {
-    let text = fs::read_to_string(validation().join("../examples/nrel-5mw-stage-1.toml")).expect("a train");
+    let text = read("../examples/nrel-5mw-stage-1.toml");
     assert!(Train::from_toml(&text).is_ok());
     let without: String = text.lines().filter(|l| !l.starts_with("geometry")).map(|l| format!("{l}\n")).collect();
     let wrong = Train::from_toml(&without).expect_err("an error").to_string();
     assert!(wrong.contains("one axis"), "{wrong}");
-}
-
-/// What a page of `validation` holds; written with `WILLIS_WRITE=1`, else compared.
-fn page(name: &str, text: &str) {
-    let path = validation().join(name);
-    if std::env::var_os("WILLIS_WRITE").is_some() {
-        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
-        fs::write(path, text).expect("a page");
-    } else {
-        let committed = fs::read_to_string(path).unwrap_or_default();
-        assert!(committed == text, "validation/{name} is out of date: run `cargo xtask generate`");
-    }
 }
 
 #[test]
