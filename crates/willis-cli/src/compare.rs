@@ -1,6 +1,9 @@
 //! `willis compare`: variants side by side, differences first.
 
-use willis::study::{CompareRequest, Compared, Comparison, Datum, Difference, MapDifference, MapPair, TextDifference};
+use willis::study::{
+    CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapDifference, MapPair,
+    TextDifference,
+};
 
 use crate::csv::Writer;
 use crate::cycle::Studied;
@@ -173,20 +176,20 @@ fn results(c: &Comparison, all: &[&Compared], head: &str) -> String {
 /// Name with the unit in which it is shown, and how large that is in SI.
 fn shown_unit(d: &Difference) -> (String, f64) {
     match d.unit {
-        "efficiency" | "" => (d.quantity.clone(), 1.0),
-        "rad/s" => (format!("{} rpm", d.quantity), 1.0 / rpm(1.0)),
-        "Pa" => (format!("{} MPa", d.quantity), 1e6),
-        unit => (format!("{} {unit}", d.quantity), 1.0),
+        ComparedUnit::Efficiency | ComparedUnit::None => (d.quantity.clone(), 1.0),
+        ComparedUnit::RadianPerSecond => (format!("{} rpm", d.quantity), 1.0 / rpm(1.0)),
+        ComparedUnit::Pascal => (format!("{} MPa", d.quantity), 1e6),
+        unit => (format!("{} {}", d.quantity, unit.name()), 1.0),
     }
 }
 
-fn value(v: &Datum, unit: &str, scale: f64) -> String {
+fn value(v: &ComparedValue, unit: ComparedUnit, scale: f64) -> String {
     match v {
-        Datum::None => "-".into(),
-        Datum::Word(w) => w.clone(),
+        ComparedValue::None => "-".into(),
+        ComparedValue::Word(w) => w.clone(),
         // More digits than elsewhere: small differences are what this is about.
-        Datum::Number(x) if unit == "efficiency" => format!("{:.3} %", 100.0 * x),
-        Datum::Number(x) => significant(x / scale, 6),
+        ComparedValue::Number(x) if unit == ComparedUnit::Efficiency => format!("{:.3} %", 100.0 * x),
+        ComparedValue::Number(x) => significant(x / scale, 6),
     }
 }
 
@@ -194,14 +197,14 @@ fn difference(d: &Difference, k: usize, scale: f64) -> String {
     match d.differences[k] {
         None => String::new(),
         Some(x) if same_as_nothing(x, d) => "=".into(),
-        Some(x) if d.unit == "efficiency" => points(x),
+        Some(x) if d.unit == ComparedUnit::Efficiency => points(x),
         Some(x) => signed(x / scale, 4),
     }
 }
 
 /// Whether a difference is round-off beside the values.
 fn same_as_nothing(x: f64, d: &Difference) -> bool {
-    let most = d.values.iter().filter_map(|v| if let Datum::Number(x) = v { Some(x.abs()) } else { None });
+    let most = d.values.iter().filter_map(|v| if let ComparedValue::Number(x) = v { Some(x.abs()) } else { None });
     x.abs() <= 1e-9 * most.fold(0.0, f64::max)
 }
 
@@ -218,7 +221,7 @@ fn signed(x: f64, digits: i32) -> String {
 fn relative(d: &Difference, k: usize) -> String {
     match d.relative[k] {
         // Of an efficiency the difference in points says it.
-        Some(r) if d.unit != "efficiency" && !same_as_nothing(d.differences[k].unwrap_or(0.0), d) => {
+        Some(r) if d.unit != ComparedUnit::Efficiency && !same_as_nothing(d.differences[k].unwrap_or(0.0), d) => {
             format!("{} %", signed(100.0 * r, 3))
         }
         _ => String::new(),
@@ -337,11 +340,11 @@ pub fn csv(c: &Comparison) -> String {
                 out.row(head.into_iter().chain(p.values.iter().map(|v| v.clone().unwrap_or_default())));
             }
             for d in &x.differences {
-                let mut row = vec![x.name.clone(), d.quantity.clone(), d.unit.to_owned()];
+                let mut row = vec![x.name.clone(), d.quantity.clone(), d.unit.name().to_owned()];
                 row.extend(d.values.iter().map(|v| match v {
-                    Datum::None => String::new(),
-                    Datum::Word(w) => w.clone(),
-                    Datum::Number(x) => number(Some(*x)),
+                    ComparedValue::None => String::new(),
+                    ComparedValue::Word(w) => w.clone(),
+                    ComparedValue::Number(x) => number(Some(*x)),
                 }));
                 for k in 1..d.values.len() {
                     row.extend([number(d.differences[k]), number(d.relative[k])]);

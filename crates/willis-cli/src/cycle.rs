@@ -5,7 +5,10 @@ use std::path::{Path, PathBuf};
 
 use willis::Diagnostics;
 use willis::model::Model;
-use willis::study::{Basis, Cycle, CyclePart, CycleReport, Energies, Hold, Profile, Question, Said, Trains, WorstRow};
+use willis::study::{
+    Basis, Cycle, CyclePart, CycleReport, Energies, Hold, PointVerdict, Profile, Question, RepeatedMessage, Trains,
+    WorstRow,
+};
 
 use crate::csv::Writer;
 use crate::text::{bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
@@ -65,7 +68,7 @@ pub fn run(studied: &Studied, request: &Request<'_>) -> Result<CycleReport, Stri
     let cycle = Cycle::new(question, &profile);
     let parts = compute(&cycle);
     let points = || parts.iter().flat_map(|p| &p.points);
-    if let Some(first) = points().next().filter(|_| points().all(|p| p.verdict == "refused")) {
+    if let Some(first) = points().next().filter(|_| points().all(|p| p.verdict == PointVerdict::Refused)) {
         return Err(format!("{}: no row of it makes a question: {}\n", request.profile, first.reason));
     }
     if let Some(path) = request.rows {
@@ -123,7 +126,7 @@ fn rows(model: &Model, profile: &Profile, parts: &[CyclePart]) -> String {
         all.push(number(row.duration_s));
         all.extend(profile.cells(k).map(str::to_owned));
         all.push(p.state.and_then(|s| model.train().states().get(s)).map_or(String::new(), |s| s.name.clone()));
-        all.extend([p.verdict.to_owned(), p.way.map_or("", |w| w.name()).to_owned()]);
+        all.extend([p.verdict.to_string(), p.way.map_or("", |w| w.name()).to_owned()]);
         all.extend([p.efficiency, p.input_power_w, p.output_power_w, p.loss_w].map(number));
         all.extend([number(p.loss_w * row.duration_s), p.reason.to_string()]);
         out.row(&all);
@@ -173,7 +176,7 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
         facts.push(format!("{} different", r.conditions));
     }
     facts.push(format!("{} {hour}", scale.time(r.time_s)));
-    facts.push(r.rule.to_owned());
+    facts.push(r.rule.clone());
     out += &(wrap(&facts.join(" · "), "") + "\n");
     if let (Some(operation), false) = (&r.operation, r.held.is_empty()) {
         out += &(wrap(&format!("held from operation `{operation}`: {}", r.held.join(", ")), "") + "\n");
@@ -252,7 +255,7 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
         for s in &lossy {
             t.add_row([
                 s.name.clone(),
-                s.kind.to_owned(),
+                s.kind.name().to_owned(),
                 s.law.clone(),
                 significant(s.energy_j / scale.energy.1, 4),
                 percent(s.share),
@@ -279,7 +282,7 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
     out
 }
 
-fn more(s: &Said) -> String {
+fn more(s: &RepeatedMessage) -> String {
     if s.rows > 1 { format!(" and {}", plural(s.rows as usize - 1, "other row", "other rows")) } else { String::new() }
 }
 
@@ -288,7 +291,7 @@ fn verdicts(r: &CycleReport, scale: &Scale) -> String {
     set_header(&mut t, &["verdict", "rows", &format!("time {}", scale.time.0), "of the time"]);
     let mut reasons = String::new();
     for (name, v) in r.verdicts.iter() {
-        let word = if name == "multiple" { "several solutions" } else { name };
+        let word = if name == PointVerdict::Multiple.name() { "several solutions" } else { name };
         t.add_row([word.to_owned(), v.rows.to_string(), scale.time(v.time_s), percent(v.share_of_time)]);
         for s in &v.reasons {
             reasons += &(wrap(&format!("line {}{}: {}", s.line, more(s), s.message), &format!("  {word}  ")) + "\n");
@@ -356,7 +359,7 @@ pub fn csv(r: &CycleReport) -> String {
     out.0 += "\n# sources\n";
     out.row(["source", "kind", "law", "energy_j", "share"]);
     for s in &r.sources {
-        out.row([&s.name, s.kind, &s.law, &number(s.energy_j), &number(s.share)]);
+        out.row([&s.name, s.kind.name(), &s.law, &number(s.energy_j), &number(s.share)]);
     }
     out.0 += "\n# terminals\n";
     out.row(["member", "energy_in_j", "energy_out_j"]);

@@ -950,7 +950,7 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 threads: threads.map(usize::from),
                 fast: *fast,
             };
-            let report = match sweep::run(&job.model, job.model.to_toml(), law, &request) {
+            let report = match sweep::run(&job.model, &request) {
                 Ok(report) => report,
                 Err(sweep::Failure::Input(wrong)) => return Err(job.failure(wrong)),
                 Err(sweep::Failure::Told(text)) => return Err(text),

@@ -96,7 +96,7 @@ fn change(x: f64) -> String {
 
 /// The value in a unit that people use.
 fn value(q: &QuantitySensitivity) -> String {
-    let (x, unit) = willis::units::for_people(q.value, q.unit);
+    let (x, unit) = willis::units::for_people(q.value, &q.unit);
     format!("{} {unit}", significant(x, 6)).trim_end().to_owned()
 }
 
@@ -146,7 +146,7 @@ pub fn table_csv(all: &Sensitivity) -> String {
                 csv::verdict(o.verdict),
                 &q.name,
                 &q.value.to_string(),
-                q.unit,
+                &q.unit,
                 &q.assumed.to_string(),
                 q.step.label(),
                 &q.step_size.to_string(),

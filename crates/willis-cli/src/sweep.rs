@@ -3,7 +3,6 @@
 mod table;
 mod text;
 
-use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -12,7 +11,11 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use willis::diagnostic::Diagnostics;
 use willis::model::Model;
-use willis::study::{Axis, Cells, Column, CompiledSweep, Hold, Question, Room, Rows, Summary, Sweep, Trains};
+use willis::study::{
+    Hold, Shard, Summary, SweepMethod, SweepPlan, SweepReport as Report, SweepRequest, SweepStudy as Study,
+    SweepWorkspace,
+};
+use willis::work::Work;
 
 use crate::{interrupt, work};
 use table::Form;
@@ -59,54 +62,6 @@ impl From<Diagnostics> for Failure {
     }
 }
 
-/// An axis as it is told.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AxisReport {
-    pub quantity: String,
-    pub unit: String,
-    pub count: u64,
-    pub first: String,
-    pub last: String,
-}
-
-/// What a sweep is: the same for all its shards, and for every run of it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Study {
-    pub format: String,
-    pub version: String,
-    pub train: String,
-    /// Of the train file, of the tables that it names, and of all that was asked.
-    pub sha256: String,
-    pub operation: String,
-    pub state: Option<String>,
-    pub held: String,
-    /// `analyze`, or `compiled`.
-    pub method: String,
-    pub axes: Vec<AxisReport>,
-    pub points: u64,
-    pub columns: Vec<Column>,
-    /// Points of a piece.
-    pub piece: u64,
-    pub assumptions: Vec<String>,
-}
-
-/// A sweep that was run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Report {
-    #[serde(flatten)]
-    pub study: Study,
-    /// `3/16`, of a part of a sweep.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shard: Option<String>,
-    pub rows: u64,
-    /// Of the table, where one was written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub table_sha256: Option<String>,
-    pub summary: Summary,
-    /// The points of the extremes, in words.
-    pub places: BTreeMap<String, String>,
-}
-
 /// What is kept beside a piece.
 #[derive(Serialize, Deserialize)]
 struct Piece {
@@ -114,93 +69,16 @@ struct Piece {
     summary: Summary,
 }
 
-/// Points above which a sweep is tried for time and size first.
-const MANY: u64 = 20_000;
 /// What is done without asking: seconds and bytes.
 const UNASKED: (f64, f64) = (3600.0, 20e9);
-/// Points between two looks for Ctrl-C.
-const LOOK: u64 = 256;
 
-/// How points are answered.
-enum Engine<'a, 's> {
-    Analyze(&'a Sweep<'s>),
-    Compiled(CompiledSweep<'a, 's>),
-}
+/// Work that Ctrl-C stops.
+struct UntilInterrupted;
 
-/// What a thread needs of its own.
-#[derive(Default)]
-struct Own {
-    trains: Trains,
-    room: Room,
-}
-
-impl Engine<'_, '_> {
-    fn columns(&self) -> Vec<Column> {
-        match self {
-            Self::Analyze(s) => s.columns().cloned().collect(),
-            Self::Compiled(s) => s.columns().cloned().collect(),
-        }
+impl Work for UntilInterrupted {
+    fn cancelled(&self) -> bool {
+        interrupt::interrupted()
     }
-
-    /// Rows of a piece; none where Ctrl-C was pressed.
-    fn rows(&self, from: u64, to: u64, group: u64, own: &mut Own) -> Option<Rows> {
-        let Self::Analyze(sweep) = self else {
-            let Self::Compiled(sweep) = self else { unreachable!("one of the two") };
-            return (!interrupt::interrupted()).then(|| sweep.rows(from, to, &mut own.room));
-        };
-        let step = (LOOK / group).max(1) * group;
-        let mut all: Option<Rows> = None;
-        let mut point = from;
-        while point < to {
-            if interrupt::interrupted() {
-                return None;
-            }
-            let end = (point + step).min(to);
-            let rows = sweep.rows(point, end, &mut own.trains);
-            match &mut all {
-                None => all = Some(rows),
-                Some(all) => append(all, rows),
-            }
-            point = end;
-        }
-        all
-    }
-
-    fn summary(&self, from: u64, to: u64, group: u64, own: &mut Own) -> Option<Summary> {
-        match self {
-            Self::Analyze(_) => self.rows(from, to, group, own).map(|r| r.summary),
-            Self::Compiled(s) => (!interrupt::interrupted()).then(|| s.summary(from, to, &mut own.room)),
-        }
-    }
-}
-
-fn append(all: &mut Rows, more: Rows) {
-    for (to, from) in all.columns.iter_mut().zip(more.columns) {
-        match (to, from) {
-            (Cells::Numbers(to), Cells::Numbers(from)) => to.extend(from),
-            (Cells::Texts(to), Cells::Texts(from)) => to.extend(from),
-            _ => unreachable!("columns keep their kind"),
-        }
-    }
-    all.summary.join(&more.summary);
-}
-
-/// Points of a piece: a few dozen pieces of a small sweep, groups whole.
-fn piece(points: u64, group: u64, fast: bool) -> u64 {
-    let [least, most] = if fast { [1 << 16, 1 << 18] } else { [1 << 7, 1 << 13] };
-    // However many points, a list of the pieces fits anywhere.
-    let wanted = (points / 64).next_power_of_two().clamp(least, most).max(points / 1_000_000);
-    wanted.div_ceil(group) * group
-}
-
-fn sha256(parts: &[&str]) -> String {
-    let mut hash = Sha256::new();
-    for part in parts {
-        // With its length, so that no two lists mean the same bytes.
-        hash.update((part.len() as u64).to_le_bytes());
-        hash.update(part.as_bytes());
-    }
-    hex(&hash.finalize())
 }
 
 /// Of a file.
@@ -219,67 +97,50 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// Runs a sweep of a train file with `text`.
-pub fn run(model: &Model, text: &str, laws: &[String], request: &Request) -> Result<Report, Failure> {
-    let sweep = match &request.study {
-        Some(name) => Sweep::of_file(model, name)?,
-        None => {
-            let mut wrong = Diagnostics::default();
-            let mut axes = vec![];
-            for over in &request.over {
-                match Axis::parse(over, model) {
-                    Ok(axis) => axes.push(axis),
-                    Err(d) => wrong.push(*d),
-                }
-            }
-            if wrong.has_errors() {
-                return Err(wrong.into());
-            }
-            let (operation, state) = (request.operation.as_deref(), request.state.as_deref());
-            Sweep::new(Question::new(model, operation, state, request.hold)?, axes, &request.columns)?
-        }
-    };
-    let engine = if request.fast { Engine::Compiled(sweep.compile()?) } else { Engine::Analyze(&sweep) };
+/// Runs a sweep.
+pub fn run(model: &Model, request: &Request) -> Result<Report, Failure> {
+    let plan = SweepPlan::new(
+        model,
+        &SweepRequest {
+            study: request.study.clone(),
+            over: request.over.clone(),
+            operation: request.operation.clone(),
+            state: request.state.clone(),
+            hold: request.hold,
+            columns: request.columns.clone(),
+            method: if request.fast { SweepMethod::Compiled } else { SweepMethod::Analyze },
+            summary_only: request.out.is_none(),
+        },
+    )?;
     let form = request.out.as_deref().map(Form::of).transpose()?;
-    let group = sweep.group();
-    let piece = piece(sweep.len(), group, request.fast);
-    let pieces = sweep.len().div_ceil(piece);
-    let (first, last) = match request.shard {
-        None => (0, pieces),
-        Some((k, n)) => {
-            // Wide enough for any product.
-            let at = |k: u64| (u128::from(pieces) * u128::from(k) / u128::from(n)) as u64;
-            (at(k - 1), at(k))
-        }
-    };
-    let shard = request.shard.map(|(k, n)| format!("{k}/{n}"));
-    let rows = (last * piece).min(sweep.len()) - (first * piece).min(sweep.len());
-    let columns = engine.columns();
-    let study = study(model, text, laws, request, &sweep, columns, piece);
+    let shard = request.shard.and_then(|(k, n)| Shard::new(k, n));
+    let pieces = shard.map_or(0..plan.pieces(), |shard| shard.pieces(plan.pieces()));
+    let (first, last) = (pieces.start, pieces.end);
+    let rows = (first..last).map(|k| plan.points(k)).map(|p| p.end - p.start).sum();
+    let study = plan.study();
     let threads = request.threads.unwrap_or_else(work::cores);
 
-    refuse_nonsense(&sweep)?;
-    if !request.yes && rows > MANY {
-        ask(&engine, &sweep, form, &study.columns, rows, threads)?;
+    plan.check()?;
+    if !request.yes {
+        ask(&plan, form, rows, threads)?;
     }
     interrupt::listen(|| {});
-    let span = |k: u64| (k * piece, ((k + 1) * piece).min(sweep.len()));
+    let size = |k: u64| plan.points(k).end - plan.points(k).start;
     let summary = match (&request.out, form) {
         (Some(out), Some(form)) => {
-            let folder = Folder::open(out, form, &study, shard.as_deref(), request.force)?;
+            let folder = Folder::open(out, form, study, shard, request.force)?;
             let todo: Vec<u64> = (first..last).filter(|k| !folder.has(*k)).collect();
             let kept = (last - first) - todo.len() as u64;
             if kept > 0 {
                 eprintln!("going on: {kept} of {} pieces are there already", last - first);
             }
-            let done: u64 = rows - todo.iter().map(|k| span(*k).1 - span(*k).0).sum::<u64>();
-            let make = |k: u64, own: &mut Own| -> Result<Option<()>, String> {
-                let (from, to) = span(k);
-                let Some(rows) = engine.rows(from, to, group, own) else { return Ok(None) };
+            let done: u64 = rows - todo.iter().map(|k| size(*k)).sum::<u64>();
+            let make = |k: u64, room: &mut SweepWorkspace| -> Result<Option<()>, String> {
+                let Ok(rows) = plan.rows(plan.points(k), room, &UntilInterrupted) else { return Ok(None) };
                 let bytes = form.encode(&study.columns, &rows)?;
                 folder.keep(k, &bytes, &rows.summary).map(Some)
             };
-            let left = work::run(&todo, threads, (done, rows, "points"), |k| span(k).1 - span(k).0, make, |_, ()| {});
+            let left = work::run(&todo, threads, (done, rows, "points"), size, make, |_, ()| {});
             let left = left.map_err(|e| format!("{e}{}", folder.advice()))?;
             if left > 0 {
                 return Err(Failure::Interrupted(format!(
@@ -290,7 +151,7 @@ pub fn run(model: &Model, text: &str, laws: &[String], request: &Request) -> Res
                 )));
             }
             let summary = folder.summary(first..last)?;
-            let mut report = report(&sweep, study, shard, rows, summary);
+            let mut report = plan.report(shard, summary);
             folder.finish(first..last, &mut report)?;
             return Ok(report);
         }
@@ -298,20 +159,11 @@ pub fn run(model: &Model, text: &str, laws: &[String], request: &Request) -> Res
             let all: Vec<u64> = (first..last).collect();
             let mut ordered = work::InOrder::new(first);
             let mut summary = Summary::default();
-            let make = |k: u64, own: &mut Own| {
-                let (from, to) = span(k);
-                Ok(engine.summary(from, to, group, own))
-            };
-            let left = work::run(
-                &all,
-                threads,
-                (0, rows, "points"),
-                |k| span(k).1 - span(k).0,
-                make,
-                |k, s: Summary| {
-                    ordered.push(k, s, |s| summary.join(&s));
-                },
-            )?;
+            let make =
+                |k: u64, room: &mut SweepWorkspace| Ok(plan.summary(plan.points(k), room, &UntilInterrupted).ok());
+            let left = work::run(&all, threads, (0, rows, "points"), size, make, |k, s: Summary| {
+                ordered.push(k, s, |s| summary.join(&s));
+            })?;
             if left > 0 {
                 return Err(Failure::Interrupted(
                     "interrupted: nothing was written (give --out to keep pieces)\n".into(),
@@ -320,113 +172,21 @@ pub fn run(model: &Model, text: &str, laws: &[String], request: &Request) -> Res
             summary
         }
     };
-    Ok(report(&sweep, study, shard, rows, summary))
-}
-
-fn study(
-    model: &Model,
-    text: &str,
-    laws: &[String],
-    request: &Request,
-    sweep: &Sweep<'_>,
-    columns: Vec<Column>,
-    piece: u64,
-) -> Study {
-    let train = model.train();
-    let axis = |a: &Axis| AxisReport {
-        quantity: a.name.clone(),
-        unit: a.unit.clone(),
-        count: a.len() as u64,
-        first: a.setting(0),
-        last: a.setting(a.len() - 1),
-    };
-    let base = sweep.question().base();
-    let state = base.state.map(|k| train.states()[k].name.clone());
-    let method = if request.fast { "compiled" } else { "analyze" };
-    let held = serde_json::to_value(sweep.question().hold()).ok().and_then(|v| v.as_str().map(str::to_owned));
-    let held = held.unwrap_or_default();
-    let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
-    let (names, laws) = (names.join("\n"), laws.join("\n"));
-    let over = request.over.iter().map(|o| o.trim()).collect::<Vec<_>>().join("\n");
-    let over = request.study.as_ref().map_or(over, |name| format!("study {name}"));
-    let files = model.files().map(|(name, text)| format!("{name}\n{text}")).collect::<Vec<_>>().join("\n");
-    let version = env!("CARGO_PKG_VERSION");
-    let state_text = state.as_deref().unwrap_or_default();
-    let parts = [version, text, &files, &laws, &over, &base.name, state_text, &held, method, &names];
-    Study {
-        format: "willis-sweep-1".into(),
-        version: version.into(),
-        train: train.name().into(),
-        sha256: sha256(&parts),
-        operation: base.name.clone(),
-        state,
-        held,
-        method: method.into(),
-        axes: sweep.axes().iter().map(axis).collect(),
-        points: sweep.len(),
-        columns,
-        piece,
-        assumptions: willis::analysis::assumptions(train),
-    }
-}
-
-fn report(sweep: &Sweep<'_>, study: Study, shard: Option<String>, rows: u64, summary: Summary) -> Report {
-    let mut places = BTreeMap::new();
-    for (name, extent) in [("efficiency", &summary.efficiency), ("loss_w", &summary.loss_w)] {
-        if extent.count > 0 {
-            places.insert(format!("least_{name}"), sweep.describe(extent.least.1));
-            places.insert(format!("most_{name}"), sweep.describe(extent.most.1));
-        }
-    }
-    for (code, seen) in &summary.seen {
-        places.insert(code.clone(), sweep.describe(seen.point));
-    }
-    Report { study, shard, rows, table_sha256: None, summary, places }
-}
-
-/// A sweep none of whose first, last and middle points makes a question is wrong itself.
-fn refuse_nonsense(sweep: &Sweep<'_>) -> Result<(), Failure> {
-    let mut trains = Trains::default();
-    let mut first = None;
-    for k in 0..=4 {
-        let point = (sweep.len() - 1) * k / 4;
-        match sweep.ask(point, &mut trains).and_then(|(train, o)| willis::analysis::operate(&train, &o).map(drop)) {
-            Ok(()) => return Ok(()),
-            Err(wrong) => drop(first.get_or_insert(wrong)),
-        }
-    }
-    Err(first.map_or_else(|| Failure::Told(String::new()), Failure::Input))
+    Ok(plan.report(shard, summary))
 }
 
 /// Asks for `--yes` where a sweep is very long or very large.
-fn ask(
-    engine: &Engine<'_, '_>,
-    sweep: &Sweep<'_>,
-    form: Option<Form>,
-    columns: &[Column],
-    rows: u64,
-    threads: usize,
-) -> Result<(), Failure> {
-    // Compiled points are a matter of nanoseconds; nobody waits for those, only for what is written.
-    if matches!(engine, Engine::Compiled(_)) && form.is_none() && rows < 1_000_000_000 {
-        return Ok(());
-    }
-    let group = sweep.group();
-    let (mut own, mut tried, mut bytes) = (Own::default(), 0, 0);
-    let started = Instant::now();
-    const TRIALS: u64 = 32;
-    let mut spent = Duration::ZERO;
-    for k in 0..TRIALS {
-        let from = sweep.len() / TRIALS * k / group * group;
-        let wide = if matches!(engine, Engine::Compiled(_)) { 4096 } else { 1 };
-        let to = (from + wide.max(group).div_ceil(group) * group).min(sweep.len());
-        let before = Instant::now();
-        let Some(found) = engine.rows(from, to, group, &mut own) else { break };
+fn ask(plan: &SweepPlan<'_>, form: Option<Form>, rows: u64, threads: usize) -> Result<(), Failure> {
+    let (mut room, mut tried, mut bytes) = (SweepWorkspace::default(), 0, 0);
+    let (started, mut spent) = (Instant::now(), Duration::ZERO);
+    for (k, points) in plan.trials(rows, form.is_some()).enumerate() {
+        let (before, count) = (Instant::now(), points.end - points.start);
+        let Ok(found) = plan.rows(points, &mut room, &UntilInterrupted) else { break };
         // The first call pays for what is made once.
         if k > 0 {
             spent += before.elapsed();
-            tried += to - from;
-            bytes += form.map_or(0, |f| f.encode(columns, &found).map_or(0, |b| b.len()) as u64);
+            tried += count;
+            bytes += form.map_or(0, |f| f.encode(&plan.study().columns, &found).map_or(0, |b| b.len()) as u64);
         }
         if started.elapsed() > Duration::from_millis(300) {
             break;
@@ -435,7 +195,7 @@ fn ask(
     let tried = tried.max(1) as f64;
     let seconds = spent.as_secs_f64() / tried * rows as f64 / threads as f64;
     // A table of few rows is mostly its footer.
-    let each = if form == Some(Form::Parquet) { columns.len() as f64 * 6.0 } else { bytes as f64 / tried };
+    let each = if form == Some(Form::Parquet) { plan.columns().len() as f64 * 6.0 } else { bytes as f64 / tried };
     let size = form.map_or(0.0, |_| each * rows as f64);
     if seconds <= UNASKED.0 && size <= UNASKED.1 {
         return Ok(());
@@ -445,7 +205,7 @@ fn ask(
         what += &format!(" and about {} of disk", text::bytes(size));
     }
     let mut hint = "add --yes to go, --shard 1/16 to share it among machines, or take fewer values".to_owned();
-    if matches!(engine, Engine::Analyze(_)) && sweep.compile().is_ok() {
+    if plan.could_be_compiled() {
         hint += "; --fast is some thousand times faster here, to a part in 10^12";
     }
     Err(Failure::Told(format!("{what}; {hint}\n")))
@@ -491,7 +251,7 @@ fn sidecar(out: &Path) -> PathBuf {
 
 impl Folder {
     /// Takes up what an interrupted run left, or begins.
-    fn open(out: &Path, form: Form, study: &Study, shard: Option<&str>, force: bool) -> Result<Self, String> {
+    fn open(out: &Path, form: Form, study: &Study, shard: Option<Shard>, force: bool) -> Result<Self, String> {
         let name = out.display();
         if out.is_dir() {
             return Err(format!("{name}: is a directory; name a file in it\n"));
@@ -627,12 +387,8 @@ pub fn merge(out: &Path, shards: &[PathBuf], force: bool) -> Result<Report, Stri
             wrong += &format!("{}: {what}; make that shard again\n", shard.display());
             continue;
         }
-        let parsed = report.shard.as_deref().and_then(|s| {
-            let (k, n) = s.split_once('/')?;
-            Some((k.parse().ok()?, n.parse().ok()?))
-        });
-        match parsed {
-            Some((k, n)) => all.push((k, n, shard.clone(), report)),
+        match report.shard {
+            Some(own) => all.push((own.number, own.of, shard.clone(), report)),
             None => wrong += &format!("{}: is a whole sweep, no shard\n", shard.display()),
         }
     }
@@ -662,33 +418,8 @@ pub fn merge(out: &Path, shards: &[PathBuf], force: bool) -> Result<Report, Stri
     if !wrong.is_empty() {
         return Err(format!("{wrong}these shards do not make a sweep\n"));
     }
-    let Some((_, _, _, first)) = all.first() else { return Err("no shards to merge\n".into()) };
-    let mut report = Report {
-        shard: None,
-        rows: 0,
-        table_sha256: None,
-        summary: Summary::default(),
-        places: BTreeMap::new(),
-        ..first.clone()
-    };
-    for (.., own) in &all {
-        // Where an extreme or a warning is comes from the shard that had it first.
-        let before = report.summary.clone();
-        report.rows += own.rows;
-        report.summary.join(&own.summary);
-        for (name, place) in &own.places {
-            let is_new = match name.as_str() {
-                "least_efficiency" => report.summary.efficiency.least != before.efficiency.least,
-                "most_efficiency" => report.summary.efficiency.most != before.efficiency.most,
-                "least_loss_w" => report.summary.loss_w.least != before.loss_w.least,
-                "most_loss_w" => report.summary.loss_w.most != before.loss_w.most,
-                _ => !before.seen.contains_key(name),
-            };
-            if is_new {
-                report.places.insert(name.clone(), place.clone());
-            }
-        }
-    }
+    let reports: Vec<Report> = all.iter().map(|a| a.3.clone()).collect();
+    let Some(mut report) = Report::merged(&reports) else { return Err("no shards to merge\n".into()) };
     if report.rows != report.study.points {
         return Err(format!("the shards have {} rows, the sweep {} points\n", report.rows, report.study.points));
     }

@@ -3,7 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use comfy_table::CellAlignment;
-use willis::study::{Evaluated, Likely, Output, Seen, Trains, Uncertainty, UncertaintyPlan};
+use willis::diagnostic::Code;
+use willis::study::{
+    PointVerdict, SampleResult, Trains, UncertainResult, UncertainValue, Uncertainty, UncertaintyPlan, WarningCount,
+    WarningKind,
+};
 
 use crate::csv::Writer;
 use crate::losses::bar;
@@ -41,39 +45,39 @@ impl SamplesOut {
 }
 
 /// Evaluates every point, on all processors; the result does not depend on how many there are.
-pub fn evaluate(plan: &UncertaintyPlan<'_>) -> Evaluated {
+pub fn evaluate(plan: &UncertaintyPlan<'_>) -> SampleResult {
     let piece = plan.group() * (PIECE / plan.group()).max(1);
     let parts = work::all(plan.len(), piece, "points", |range, trains: &mut Trains| plan.evaluate(range, trains));
-    let mut all = Evaluated::default();
+    let mut all = SampleResult::default();
     parts.into_iter().for_each(|part| all.join(part));
     all
 }
 
 /// Every sample as a row.
-pub fn samples_csv(plan: &UncertaintyPlan<'_>, evaluated: &Evaluated) -> String {
+pub fn samples_csv(plan: &UncertaintyPlan<'_>, evaluated: &SampleResult) -> String {
     let mut out = Writer::default();
     let head = ["sample".to_owned(), "replicate".into()].into_iter();
     let quantities = plan.quantities().iter().map(|q| q.name.clone());
-    out.row(head.chain(quantities).chain(["verdict".into()]).chain(plan.outputs().map(str::to_owned)));
+    out.row(head.chain(quantities).chain(["verdict".into()]).chain(plan.outputs().iter().map(|c| c.name.clone())));
     for (k, (point, verdict, values)) in plan.samples(evaluated).enumerate() {
         let head = [k.to_string(), plan.design().replicate(point).to_string()].into_iter();
         let values = values.iter().map(|v| if v.is_nan() { String::new() } else { v.to_string() });
-        out.row(head.chain(plan.settings(point)).chain([verdict.to_owned()]).chain(values));
+        out.row(head.chain(plan.settings(point)).chain([verdict.to_string()]).chain(values));
     }
     out.0
 }
 
 /// How an output is shown: its name, and numbers with as many decimals as its spread deserves.
 struct Shown<'a> {
-    of: &'a Output,
+    of: &'a UncertainResult,
     scale: f64,
     unit: &'static str,
     decimals: usize,
 }
 
 impl<'a> Shown<'a> {
-    fn new(of: &'a Output) -> Self {
-        let (scale, unit) = match of.unit {
+    fn new(of: &'a UncertainResult) -> Self {
+        let (scale, unit) = match of.unit.as_str() {
             "" => (100.0, " %"),
             _ => (1.0, " W"),
         };
@@ -138,15 +142,16 @@ pub fn text(u: &Uncertainty) -> String {
         out += &dim(&wrap(line, "  * "));
         out.push('\n');
     }
-    for (code, seen) in u.seen.iter().filter(|(code, _)| !code.starts_with("reason")) {
-        out += &dim(&wrap(&warning(u, code, seen), "  * "));
-        out.push('\n');
+    for (kind, seen) in &u.seen {
+        if let WarningKind::Warning { code, .. } = kind {
+            out += &dim(&wrap(&warning(u, *code, seen), "  * "));
+            out.push('\n');
+        }
     }
     out
 }
 
-fn warning(u: &Uncertainty, code: &str, seen: &Seen) -> String {
-    let code = code.split(' ').next().unwrap_or(code);
+fn warning(u: &Uncertainty, code: Code, seen: &WarningCount) -> String {
     format!("{code} at {}, first: {}", share(seen.count as usize, u.samples), seen.message)
 }
 
@@ -157,7 +162,7 @@ fn share(count: usize, of: usize) -> String {
     }
 }
 
-fn sentence(o: &Output) -> String {
+fn sentence(o: &UncertainResult) -> String {
     let shown = Shown::new(o);
     let name = shown.name();
     let written = match o.nominal {
@@ -182,22 +187,22 @@ fn sentence(o: &Output) -> String {
 }
 
 fn verdicts(u: &Uncertainty) -> String {
-    let good = u.verdicts.get("unique").copied().unwrap_or(0);
+    let good = u.verdicts.get(&PointVerdict::Unique).copied().unwrap_or(0);
     if good == u.samples {
         return "  every sample has exactly one equilibrium\n".into();
     }
     let percent = significant(100.0 * (u.samples - good) as f64 / u.samples as f64, 3);
     let line = format!("{percent} % of the samples have no unique answer, and no part in what follows:");
     let mut out = bold(&wrap(&line, "  ")) + "\n";
-    for (verdict, count) in u.verdicts.iter().filter(|v| *v.0 != "unique") {
-        let word = match *verdict {
-            "multiple" => "have several equilibria",
-            "locked" => "lock",
-            "unloaded" => "carry no load",
-            "refused" => "are refused: no such train or operating point is possible",
+    for (verdict, count) in u.verdicts.iter().filter(|v| *v.0 != PointVerdict::Unique) {
+        let word = match verdict {
+            PointVerdict::Multiple => "have several equilibria",
+            PointVerdict::Locked => "lock",
+            PointVerdict::Unloaded => "carry no load",
+            PointVerdict::Refused => "are refused: no such train or operating point is possible",
             _ => "are not determined",
         };
-        let why = u.seen.get(&format!("reason: {verdict}")).map_or(String::new(), |s| format!("; {}", s.message));
+        let why = u.seen.get(&WarningKind::Reason(*verdict)).map_or(String::new(), |s| format!("; {}", s.message));
         out += &wrap(&format!("{count} {word}{why}"), "    ");
         out.push('\n');
     }
@@ -238,7 +243,7 @@ fn dominance(u: &Uncertainty) -> String {
     if u.quantities.len() == 1 {
         return String::new();
     }
-    let ranked = |o: &Output| -> Vec<String> {
+    let ranked = |o: &UncertainResult| -> Vec<String> {
         o.influences.iter().filter(|i| i.index.total > 0.05).map(|i| i.quantity.clone()).collect()
     };
     let mut out = String::new();
@@ -280,7 +285,7 @@ fn dominance(u: &Uncertainty) -> String {
 
 fn choices(u: &Uncertainty) -> String {
     let mut out = String::new();
-    for q in u.quantities.iter().filter(|q| matches!(q.likely, Likely::Each(_))) {
+    for q in u.quantities.iter().filter(|q| matches!(q.likely, UncertainValue::Each(_))) {
         let what = match q.name.strip_prefix("law.") {
             Some(family) => format!("Law beside law: {family}"),
             None => format!("Value beside value: {}", q.name),
@@ -323,8 +328,8 @@ fn quantities(u: &Uncertainty) -> String {
     for q in &u.quantities {
         let taken = match &q.likely {
             // They stand above, each in a line.
-            Likely::Each(all) => format!("{} values, equally likely", all.len()),
-            Likely::Between(_) => q.distribution.clone(),
+            UncertainValue::Each(all) => format!("{} values, equally likely", all.len()),
+            UncertainValue::Between(_) => q.distribution.clone(),
         };
         t.add_row([q.name.clone(), q.nominal.clone().unwrap_or("-".into()), taken]);
     }
@@ -360,7 +365,7 @@ pub fn csv(u: &Uncertainty) -> String {
     let mut influences = Writer::default();
     influences.row(["result", "quantity", "first", "first_error", "total", "total_error"]);
     for o in &u.outputs {
-        let mut row = vec![o.name.clone(), o.unit.to_owned(), number(o.nominal), number(o.below_nominal)];
+        let mut row = vec![o.name.clone(), o.unit.clone(), number(o.nominal), number(o.below_nominal)];
         match &o.statistics {
             None => row.resize(20, String::new()),
             Some(s) => {
@@ -413,7 +418,7 @@ pub fn csv(u: &Uncertainty) -> String {
     let mut verdicts = Writer::default();
     verdicts.row(["verdict", "samples"]);
     for (verdict, count) in &u.verdicts {
-        verdicts.row([(*verdict).to_owned(), count.to_string()]);
+        verdicts.row([verdict.to_string(), count.to_string()]);
     }
     format!(
         "# results\n{}\n# influences\n{}\n# choices\n{}\n# verdicts\n{}",
@@ -422,6 +427,6 @@ pub fn csv(u: &Uncertainty) -> String {
 }
 
 /// Writes the samples, where they are asked for.
-pub fn write_samples(path: &Path, plan: &UncertaintyPlan<'_>, evaluated: &Evaluated) -> Result<(), String> {
+pub fn write_samples(path: &Path, plan: &UncertaintyPlan<'_>, evaluated: &SampleResult) -> Result<(), String> {
     crate::output::write(path, samples_csv(plan, evaluated).as_bytes())
 }

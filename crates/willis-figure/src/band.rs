@@ -93,7 +93,7 @@ pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Re
         .map(|k| {
             let one = |j| {
                 let answer = plan.answer_along(Some(*k), &x, j, &mut trains);
-                if answer.verdict == "unique" { [answer.efficiency(), answer.loss()] } else { [f64::NAN; 2] }
+                if answer.is_unique() { [answer.efficiency(), answer.loss()] } else { [f64::NAN; 2] }
             };
             (0..x.len()).map(one).collect()
         })
@@ -111,7 +111,7 @@ pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Re
                     .then(|| QUANTILES.map(|p| willis::unstable::quantile(own, p)))
             };
             let nominal = plan.answer_along(None, &x, j, &mut trains);
-            let nominal = (nominal.verdict == "unique").then(|| [nominal.efficiency(), nominal.loss()]);
+            let nominal = (nominal.is_unique()).then(|| [nominal.efficiency(), nominal.loss()]);
             BandPoint {
                 efficiency: told(&efficiency),
                 loss_w: told(&loss),

@@ -6,7 +6,7 @@ use serde::Serialize;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::operating_point::LossKind;
-use willis::study::{Answer, Axis, Hold, Question, Sweep};
+use willis::study::{Axis, Hold, PointAnswer, Question, Sweep};
 
 use crate::kind::{Ask, Kind};
 use crate::parts::axes::{self, ChartAxis};
@@ -34,13 +34,13 @@ pub struct LossChart {
     pub x: ChartAxis,
     /// The sources, the largest (by its greatest loss) first; the last may be all others together.
     pub series: Vec<LossSeries>,
-    /// What can be said at each value: one of [`VERDICTS`](willis::study::VERDICTS).
+    /// What can be said at each value: one of [`PointVerdict`](willis::study::PointVerdict).
     pub verdicts: Vec<&'static str>,
     /// Output over input power at each value.
     pub efficiency: Vec<Option<f64>>,
     /// The operating point itself, in the unit of the axis, where it prescribes the quantity that varies.
     pub at: Option<f64>,
-    /// What can be said of the operating point: one of [`VERDICTS`](willis::study::VERDICTS).
+    /// What can be said of the operating point: one of [`PointVerdict`](willis::study::PointVerdict).
     pub verdict: &'static str,
     /// Input power of the operating point, W; absent where it has no single answer.
     pub input_power_w: Option<f64>,
@@ -66,8 +66,8 @@ pub struct LossSeries {
 }
 
 /// The losses of an answer: name, kind, law, W.
-fn sources(answer: &Answer) -> Option<Vec<(String, LossKind, String, f64)>> {
-    let s = answer.solution.as_ref().filter(|_| answer.verdict == "unique")?;
+fn sources(answer: &PointAnswer) -> Option<Vec<(String, LossKind, String, f64)>> {
+    let s = answer.solution.as_ref().filter(|_| answer.is_unique())?;
     if !s.sources.is_empty() {
         return Some(s.sources.iter().map(|x| (x.name.clone(), x.kind, x.law.clone(), x.loss_w)).collect());
     }
@@ -129,13 +129,13 @@ pub fn loss_chart(
     };
     let [x] = <[Axis; 1]>::try_from(axes::parse(&over, model)?).expect("one is parsed");
     let basis = axes::basis(&question, &[&x]);
-    let own = Answer::of(train, question.base());
+    let own = PointAnswer::of(train, question.base());
     let here = sources(&own);
     let at = here.is_some().then(|| prescribed(&question, &x)).flatten();
     let axis = ChartAxis::of(&x);
     let sweep = Sweep::new(question, vec![x], &[])?;
     let mut trains = Default::default();
-    let answers: Vec<Answer> = (0..sweep.len()).map(|k| sweep.answer(k, &mut trains)).collect();
+    let answers: Vec<PointAnswer> = (0..sweep.len()).map(|k| sweep.answer(k, &mut trains)).collect();
     let found: Vec<_> = answers.iter().map(sources).collect();
 
     // By name and kind: a mesh slides and rolls.
@@ -183,10 +183,10 @@ pub fn loss_chart(
         basis,
         x: axis,
         series: all,
-        verdicts: answers.iter().map(|a| a.verdict).collect(),
+        verdicts: answers.iter().map(|a| a.verdict.name()).collect(),
         efficiency: answers.iter().map(|a| Some(a.efficiency()).filter(|e| e.is_finite())).collect(),
         at,
-        verdict: own.verdict,
+        verdict: own.verdict.name(),
         input_power_w: own.solution.as_ref().filter(|_| here.is_some()).map(|s| s.input_power_w),
         loss_w: own.solution.as_ref().filter(|_| here.is_some()).map(|s| s.loss_w),
     })

@@ -6,7 +6,7 @@ use serde::Serialize;
 use willis::analysis::{self, Selection};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
-use willis::study::{Answer, Axis, Hold, Question, Sweep};
+use willis::study::{Axis, Hold, PointAnswer, Question, Sweep};
 use willis::train::{Load, MemberId, Operation};
 
 use crate::kind::{Ask, Kind};
@@ -49,7 +49,7 @@ pub struct EfficiencyMap {
 /// A point of a map.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MapPoint {
-    /// One of [`VERDICTS`](willis::study::VERDICTS); `beyond` where no state stays within the limits of the input.
+    /// One of [`PointVerdict`](willis::study::PointVerdict); `beyond` where no state stays within the limits of the input.
     pub verdict: &'static str,
     /// Output over input power.
     pub efficiency: Option<f64>,
@@ -71,10 +71,10 @@ pub struct MapMark {
 }
 
 impl MapPoint {
-    fn of(answer: &Answer) -> Self {
-        let s = answer.solution.as_ref().filter(|_| answer.verdict == "unique");
+    fn of(answer: &PointAnswer) -> Self {
+        let s = answer.solution.as_ref().filter(|_| answer.is_unique());
         Self {
-            verdict: answer.verdict,
+            verdict: answer.verdict.name(),
             efficiency: s.and_then(|s| s.efficiency),
             input_power_w: s.map(|s| s.input_power_w),
             loss_w: s.map(|s| s.loss_w),

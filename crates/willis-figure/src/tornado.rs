@@ -51,7 +51,7 @@ pub struct TornadoBar {
     /// Its value, SI.
     pub value: f64,
     /// SI unit of the value.
-    pub unit: &'static str,
+    pub unit: String,
     /// Whether it is not given but taken.
     pub assumed: bool,
     /// The step up.
@@ -115,7 +115,7 @@ pub fn tornado(all: &Sensitivity, operation: Option<&str>, most: usize) -> Resul
     let bars = ranked.iter().take(most.max(1)).map(|q| TornadoBar {
         name: q.name.clone(),
         value: q.value,
-        unit: q.unit,
+        unit: q.unit.clone(),
         assumed: q.assumed,
         step: q.step,
         loss_change_w: q.loss_change_w,

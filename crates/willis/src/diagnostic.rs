@@ -14,6 +14,8 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Patch, Renderer, Snippet};
 use serde::{Deserialize, Serialize};
 
+use crate::work::Cancelled;
+
 pub use codes::Code;
 
 /// How much a diagnostic matters.
@@ -129,6 +131,11 @@ impl Diagnostics {
         self.0.iter().any(|d| d.severity == Severity::Error)
     }
 
+    /// Whether nothing is wrong but that the computation was [stopped](Code::Cancelled).
+    pub fn is_cancelled(&self) -> bool {
+        self.0.iter().any(|d| d.code == Code::Cancelled)
+    }
+
     /// Whether there is nothing to say.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -199,6 +206,13 @@ impl Diagnostics {
 impl From<Diagnostic> for Diagnostics {
     fn from(one: Diagnostic) -> Self {
         [one].into_iter().collect()
+    }
+}
+
+/// A computation that was stopped has the code [`Code::Cancelled`].
+impl From<Cancelled> for Diagnostics {
+    fn from(cancelled: Cancelled) -> Self {
+        Diagnostic::new(Code::Cancelled, "", cancelled.to_string()).into()
     }
 }
 

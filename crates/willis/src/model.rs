@@ -112,6 +112,11 @@ impl Model {
         self.files.iter().filter_map(|(name, text)| Some((name.as_str(), text.as_deref().ok()?)))
     }
 
+    /// The laws in force over those of the text: pairs of family and name.
+    pub fn laws(&self) -> &[(String, String)] {
+        &self.laws
+    }
+
     /// Warnings about the train itself, each with its place in the text.
     pub fn warnings(&self) -> &[Diagnostic] {
         self.train.warnings()

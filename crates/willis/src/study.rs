@@ -4,7 +4,9 @@
 //! held while quantities vary; an [`Axis`] is one quantity and its values. A [`Sweep`] puts them together: a grid of
 //! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
 
+mod answer;
 mod axis;
+mod column;
 mod compare;
 mod compiled;
 mod cycle;
@@ -14,28 +16,36 @@ pub mod export;
 mod profile;
 mod question;
 mod sensitivity;
+mod summary;
 mod sweep;
 mod uncertainty;
 
+pub use answer::{PointAnswer, PointVerdict};
 pub use axis::{Axis, values};
+pub use column::{Column, ColumnKind, ColumnTable, ColumnValues, Rows};
 pub use compare::{
-    Band, CompareRequest, Compared, Comparison, Datum, Difference, MapComparison, MapDifference, MapPair, MapPlace,
-    TextDifference, Variant, compare,
+    Band, CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapComparison, MapDifference,
+    MapPair, MapPlace, TextDifference, Variant, compare,
 };
-pub use compiled::{CompiledSweep, Room};
+pub use compiled::{CompiledSweep, SweepWorkspace};
 pub use cycle::{
-    Cycle, CyclePart, CyclePoint, CycleReport, Energies, Said, SourceEnergy, TerminalEnergy, VerdictTime, Way, Worst,
-    WorstRow, cycle,
+    Cycle, CyclePart, CyclePoint, CycleReport, Energies, EnergyKind, PowerDirection, RepeatedMessage, SourceEnergy,
+    TerminalEnergy, VerdictTime, Worst, WorstRow, cycle,
 };
 pub(crate) use design::quantile;
-pub use design::{Design, Index, REPLICATES, SamplingError, Statistics};
+pub use design::{Design, REPLICATES, SamplingError, SobolIndices, Statistics};
 pub use distribution::{Distribution, standard_normal_quantile};
 pub use profile::{Basis, Profile, ProfileRow};
 pub use question::{Hold, Question, Trains};
 pub use sensitivity::{
     Checks, OperationSensitivity, QuantitySensitivity, Sensitivity, SourceChange, StepKind, sensitivity,
 };
-pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};
+pub use summary::{AxisValue, Extreme, LawChoice, MinMaxSum, Summary, WarningCount, WarningKind};
+pub use sweep::{
+    Shard, Sweep, SweepAnswer, SweepAxis, SweepColumn, SweepMethod, SweepPlace, SweepPlan, SweepReport, SweepRequest,
+    SweepStudy, sweep,
+};
 pub use uncertainty::{
-    Choice, Evaluated, Influence, Likely, Output, Reported, Uncertain, Uncertainty, UncertaintyPlan, UncertaintyRequest,
+    ChoiceResult, Influence, SampleResult, Uncertain, UncertainQuantity, UncertainResult, UncertainValue, Uncertainty,
+    UncertaintyPlan, UncertaintyRequest,
 };

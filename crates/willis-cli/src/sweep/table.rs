@@ -16,7 +16,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPrope
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
-use willis::study::{Cells, Column, Rows};
+use willis::study::{ColumnValues, Rows, SweepColumn};
 
 /// What a table is written as, by the end of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl Form {
     }
 
     /// Rows as a piece of the table.
-    pub fn encode(self, columns: &[Column], rows: &Rows) -> Result<Vec<u8>, String> {
+    pub fn encode(self, columns: &[SweepColumn], rows: &Rows) -> Result<Vec<u8>, String> {
         match self {
             Self::Csv => Ok(csv(rows).into_bytes()),
             Self::JsonLines => Ok(json_lines(columns, rows).into_bytes()),
@@ -55,7 +55,7 @@ impl Form {
     }
 
     /// Puts pieces together into a table.
-    pub fn join(self, columns: &[Column], told: &str, pieces: &[PathBuf], out: File) -> Result<(), String> {
+    pub fn join(self, columns: &[SweepColumn], told: &str, pieces: &[PathBuf], out: File) -> Result<(), String> {
         if self == Self::Parquet {
             return join_parquet(columns, told, pieces, out).map_err(words);
         }
@@ -97,7 +97,7 @@ fn number(out: &mut String, v: f64) {
 }
 
 fn csv(rows: &Rows) -> String {
-    let n = length(rows);
+    let n = rows.len();
     let mut out = String::with_capacity(n * rows.columns.len() * 12);
     for i in 0..n {
         for (k, cells) in rows.columns.iter().enumerate() {
@@ -105,8 +105,9 @@ fn csv(rows: &Rows) -> String {
                 out.push(',');
             }
             match cells {
-                Cells::Numbers(all) => number(&mut out, all[i]),
-                Cells::Texts(all) => crate::csv::field(&mut out, &all[i]),
+                ColumnValues::Numbers(all) => number(&mut out, all[i]),
+                ColumnValues::Integers(all) => drop(write!(out, "{}", all[i])),
+                ColumnValues::Texts(all) => crate::csv::field(&mut out, &all[i]),
             }
         }
         out.push('\n');
@@ -114,9 +115,9 @@ fn csv(rows: &Rows) -> String {
     out
 }
 
-fn json_lines(columns: &[Column], rows: &Rows) -> String {
+fn json_lines(columns: &[SweepColumn], rows: &Rows) -> String {
     let keys: Vec<String> = columns.iter().map(|c| serde_json::to_string(&c.name).expect("a text")).collect();
-    let n = length(rows);
+    let n = rows.len();
     let mut out = String::with_capacity(n * rows.columns.len() * 28);
     for i in 0..n {
         for (k, cells) in rows.columns.iter().enumerate() {
@@ -124,9 +125,10 @@ fn json_lines(columns: &[Column], rows: &Rows) -> String {
             out.push_str(&keys[k]);
             out.push(':');
             match cells {
-                Cells::Numbers(all) if all[i].is_nan() => out.push_str("null"),
-                Cells::Numbers(all) => number(&mut out, all[i]),
-                Cells::Texts(all) => out.push_str(&serde_json::to_string(&all[i]).expect("a text")),
+                ColumnValues::Numbers(all) if all[i].is_nan() => out.push_str("null"),
+                ColumnValues::Numbers(all) => number(&mut out, all[i]),
+                ColumnValues::Integers(all) => drop(write!(out, "{}", all[i])),
+                ColumnValues::Texts(all) => out.push_str(&serde_json::to_string(&all[i]).expect("a text")),
             }
         }
         out.push_str("}\n");
@@ -134,15 +136,8 @@ fn json_lines(columns: &[Column], rows: &Rows) -> String {
     out
 }
 
-fn length(rows: &Rows) -> usize {
-    rows.columns.first().map_or(0, |c| match c {
-        Cells::Numbers(all) => all.len(),
-        Cells::Texts(all) => all.len(),
-    })
-}
-
-fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
-    let field = |c: &Column| {
+fn schema(columns: &[SweepColumn]) -> Result<TypePtr, ParquetError> {
+    let field = |c: &SweepColumn| {
         let physical = if c.is_text { Physical::BYTE_ARRAY } else { Physical::DOUBLE };
         let mut field = Type::primitive_type_builder(&c.name, physical);
         if c.is_text {
@@ -165,13 +160,13 @@ fn properties() -> WriterPropertiesPtr {
     Arc::new(properties.build())
 }
 
-fn parquet(columns: &[Column], rows: &Rows) -> Result<Vec<u8>, ParquetError> {
+fn parquet(columns: &[SweepColumn], rows: &Rows) -> Result<Vec<u8>, ParquetError> {
     let mut writer = SerializedFileWriter::new(Vec::new(), schema(columns)?, properties())?;
     let mut group = writer.next_row_group()?;
     for cells in &rows.columns {
         let mut out = group.next_column()?.expect("as many as in the schema");
         match cells {
-            Cells::Numbers(all) => {
+            ColumnValues::Numbers(all) => {
                 let typed = out.typed::<DoubleType>();
                 let levels: Vec<i16> = all.iter().map(|v| i16::from(!v.is_nan())).collect();
                 if levels.contains(&0) {
@@ -181,7 +176,8 @@ fn parquet(columns: &[Column], rows: &Rows) -> Result<Vec<u8>, ParquetError> {
                     typed.write_batch(all, Some(&levels), None)?;
                 }
             }
-            Cells::Texts(all) => {
+            ColumnValues::Integers(_) => unreachable!("no column of a sweep counts"),
+            ColumnValues::Texts(all) => {
                 let bytes = |t: &Cow<'static, str>| match t {
                     Cow::Borrowed(t) => ByteArray::from(*t),
                     Cow::Owned(t) => ByteArray::from(t.as_str()),
@@ -207,7 +203,7 @@ fn parquet(columns: &[Column], rows: &Rows) -> Result<Vec<u8>, ParquetError> {
     writer.into_inner()
 }
 
-fn join_parquet(columns: &[Column], told: &str, pieces: &[PathBuf], out: File) -> Result<(), ParquetError> {
+fn join_parquet(columns: &[SweepColumn], told: &str, pieces: &[PathBuf], out: File) -> Result<(), ParquetError> {
     let mut writer = SerializedFileWriter::new(BufWriter::with_capacity(1 << 20, out), schema(columns)?, properties())?;
     for piece in pieces {
         let file = File::open(piece)?;

@@ -1,6 +1,6 @@
 //! A sweep in a few lines.
 
-use willis::study::Extent;
+use willis::study::{AxisValue, Extreme, Hold, MinMaxSum, SweepMethod, SweepPlace, WarningKind};
 
 use crate::text::{bold, dim, percent, right, set_header, show, significant, table, wrap};
 
@@ -57,15 +57,15 @@ pub fn text(report: &Report) -> String {
     }
     right(&mut t, 1..2);
     out += &show(&t);
-    let held = match study.held.as_str() {
-        "torque" => "torques",
-        "power" => "powers",
-        "output" => "the torque at the output",
+    let held = match study.held {
+        Hold::Torque => "torques",
+        Hold::Power => "powers",
+        Hold::Output => "the torque at the output",
         _ => "what the operation prescribes and no axis varies",
     };
     let state = study.state.as_ref().map_or(String::new(), |s| format!(", state {s}"));
-    let method = match study.method.as_str() {
-        "compiled" => "compiled: within a part in 10^12 of `analyze`",
+    let method = match study.method {
+        SweepMethod::Compiled => "compiled: within a part in 10^12 of `analyze`",
         _ => "every point is that of `analyze`",
     };
     out += &dim(&wrap(&format!("from operation `{}`{state}; held: {held}; {method}", study.operation), "  "));
@@ -73,8 +73,9 @@ pub fn text(report: &Report) -> String {
 
     let mut t = table();
     set_header(&mut t, &["", "least", "mean", "most"]);
-    let row = |name: &str, e: &Extent, show: &dyn Fn(f64) -> String| {
-        [name.to_owned(), show(e.least.0), e.mean().map_or("-".into(), show), show(e.most.0)]
+    let row = |name: &str, e: &MinMaxSum, show: &dyn Fn(f64) -> String| {
+        let [least, most] = [e.least, e.most].map(|x| x.map_or("-".into(), |x| show(x.value)));
+        [name.to_owned(), least, e.mean().map_or("-".into(), show), most]
     };
     if all.efficiency.count > 0 {
         t.add_row(row("efficiency", &all.efficiency, &|x| percent(x)));
@@ -85,8 +86,8 @@ pub fn text(report: &Report) -> String {
     right(&mut t, 1..4);
     if all.efficiency.count + all.loss_w.count > 0 {
         out += &show(&t);
-        for (key, what) in [("most_efficiency", "best"), ("least_efficiency", "worst")] {
-            if let Some(place) = report.places.get(key) {
+        for (key, what) in [(SweepPlace::MostEfficiency, "best"), (SweepPlace::LeastEfficiency, "worst")] {
+            if let Some(place) = report.places.get(&key) {
                 out += &dim(&wrap(&format!("{what} efficiency at {place}"), "  "));
                 out += "\n";
             }
@@ -100,15 +101,15 @@ pub fn text(report: &Report) -> String {
         }
         set_header(&mut t, &header);
         for (name, e) in ordered(report) {
-            let best = name.strip_prefix("state = ").and_then(|s| all.best.get(s));
+            let best = Some(&name.value).filter(|_| name.axis == "state").and_then(|s| all.best.get(s));
             let best = best.map_or(String::new(), |n| plural_points(*n));
-            let or_dash = |x: f64| if e.count > 0 { percent(x) } else { "-".into() };
+            let or_dash = |x: Option<Extreme>| x.map_or("-".into(), |x| percent(x.value));
             let mut row = vec![
-                name.clone(),
+                name.to_string(),
                 e.count.to_string(),
-                or_dash(e.least.0),
+                or_dash(e.least),
                 e.mean().map_or("-".into(), percent),
-                or_dash(e.most.0),
+                or_dash(e.most),
             ];
             if !all.best.is_empty() {
                 row.push(best);
@@ -121,23 +122,24 @@ pub fn text(report: &Report) -> String {
     }
     let counts: Vec<String> = all.verdicts.iter().map(|(v, n)| format!("{} {v}", points_only(*n))).collect();
     out += &format!("\nverdicts: {}\n", counts.join(", "));
-    for (code, seen) in &all.seen {
-        let place = report.places.get(code).map_or(String::new(), |p| format!(" (first at {p})"));
-        let code = code.strip_prefix("reason: ").unwrap_or(code);
-        out += &wrap(&format!("{}: {}: {}{place}", plural_points(seen.count), code, seen.message), "  ");
+    for (kind, seen) in &all.seen {
+        let place = report.places.get(&SweepPlace::First(kind.clone()));
+        let place = place.map_or(String::new(), |p| format!(" (first at {p})"));
+        let what = match kind {
+            WarningKind::Reason(verdict) => verdict.to_string(),
+            warning => warning.to_string(),
+        };
+        out += &wrap(&format!("{}: {what}: {}{place}", plural_points(seen.count), seen.message), "  ");
         out += "\n";
     }
     out
 }
 
 /// Text values in the order of their axis; as far as they are known, that of the states.
-fn ordered(report: &Report) -> Vec<(&String, &Extent)> {
+fn ordered(report: &Report) -> Vec<(&AxisValue, &MinMaxSum)> {
     let mut all: Vec<_> = report.summary.by_text.iter().collect();
     // Numbers among the names by their size.
-    let key = |name: &str| {
-        let value = name.rsplit(" = ").next().unwrap_or(name).to_owned();
-        (value.parse::<f64>().unwrap_or(f64::MAX), value)
-    };
+    let key = |name: &AxisValue| (name.value.parse::<f64>().unwrap_or(f64::MAX), name.value.clone());
     all.sort_by(|a, b| key(a.0).partial_cmp(&key(b.0)).unwrap_or(std::cmp::Ordering::Equal));
     all
 }

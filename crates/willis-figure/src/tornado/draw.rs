@@ -151,7 +151,7 @@ fn signed(x: f64) -> String {
 
 /// In a unit that people use.
 fn value(b: &TornadoBar) -> String {
-    let (x, unit) = units::for_people(b.value, b.unit);
+    let (x, unit) = units::for_people(b.value, &b.unit);
     let size = x.abs();
     // Four digits, at least those of the integer part.
     let text = if size == 0.0 || !(1e-3..1e6).contains(&size) {

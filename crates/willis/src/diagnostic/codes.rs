@@ -136,6 +136,9 @@ codes! {
     /// An axis of a study is a quantity and its values, `input.speed=500 rpm..12000 rpm:100`. Ranges run upwards, say how
     /// many values they have or how far apart, and are written in a unit of the quantity.
     E210 BadAxis: "the values of an axis cannot be used";
+    /// A long computation was told to stop before it was done, by Ctrl-C for example. Nothing is wrong with the question:
+    /// asked again, it begins anew.
+    E211 Cancelled: "the computation was stopped";
     /// Profile shift (or another number of planet teeth) has to close a difference of one or two
     /// teeth between ring and sun plus planets. Ratios and efficiencies do not depend on it.
     W301 NearlyCoaxial: "the set closes only with profile shift";

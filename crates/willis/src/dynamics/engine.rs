@@ -361,7 +361,9 @@ impl Engine {
 
     /// Makes a mode the present one. False if its equations have no unique solution.
     pub fn enter(&mut self, mode: &Mode) -> bool {
-        self.mode.clone_from(mode);
+        // Field by field: a derived `clone_from` would take new memory.
+        self.mode.slip.clone_from(&mode.slip);
+        self.mode.side.clone_from(&mode.side);
         self.varying = (0..self.system.elements.len())
             .any(|j| self.system.elements[j].varies() && mode.element_slip(&self.system, j) != 0);
         self.map = self.map_of(mode);

@@ -4,11 +4,9 @@ use std::collections::HashSet;
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
+use crate::model::{Model, Target, Who, quantity};
 use crate::train::Measure;
 use crate::units::{Dimension, Quantity};
-
-use crate::model::Model;
-use crate::model::{Target, Who, quantity};
 
 /// Most values of an axis.
 const MOST: u64 = 1_000_000_000_000_000;
@@ -63,19 +61,19 @@ impl Axis {
     ///
     /// # Errors
     /// No quantity of that name (with the nearest), and what is wrong with the values.
-    pub fn parse(text: &str, subject: &Model) -> Result<Self, Box<Diagnostic>> {
+    pub fn parse(text: &str, model: &Model) -> Result<Self, Box<Diagnostic>> {
         let Some((name, values)) = text.split_once('=') else {
             return Err(Box::new(fault(text, "there is no `=` between a quantity and its values").hint(GRAMMAR)));
         };
         let (name, values) = (name.trim(), values.trim());
-        let target = Target::parse(name, subject)?;
+        let target = Target::parse(name, model)?;
         if values.is_empty() {
             return Err(Box::new(fault(text, "there are no values").hint(GRAMMAR)));
         }
-        let axis = match target.measure(subject) {
+        let axis = match target.measure(model) {
             Measure::Text | Measure::Flag => {
                 let all: Vec<String> = values.split(',').map(|v| v.trim().to_owned()).collect();
-                let all = target.choices(subject, &all).unwrap_or(all);
+                let all = target.choices(model, &all).unwrap_or(all);
                 Self { name: name.to_owned(), target, unit: String::new(), values: Values::Texts(all), numbers: vec![] }
             }
             measure => {
@@ -87,7 +85,7 @@ impl Axis {
                 axis
             }
         };
-        axis.target.check(subject, &axis.first_and_last()).map_err(|what| {
+        axis.target.check(model, &axis.first_and_last()).map_err(|what| {
             let mut d = *what;
             d.message = format!("`{name}`: {}", d.message);
             Box::new(d)

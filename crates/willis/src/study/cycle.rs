@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::SolutionReport;
+use crate::contract::{Contract, Format};
+use crate::diagnostic::Code;
+use crate::model::{Target, Who};
 use crate::named::Named;
 use crate::operating_point::LossKind;
 use crate::train::{Load, Operation, Train};
 
+use super::answer::{PointAnswer, PointVerdict};
 use super::profile::{Basis, Held, Profile};
 use super::question::{Question, Trains};
-use super::sweep::{Answer, VERDICTS};
-use crate::model::{Target, Who};
 
 /// How many of the worst are told.
 const MOST_WORST: usize = 5;
@@ -20,9 +22,11 @@ const MOST_WORST: usize = 5;
 const MOST_REASONS: usize = 5;
 
 /// Which way power goes through the train.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-pub enum Way {
+#[non_exhaustive]
+pub enum PowerDirection {
     /// Power enters at the input and leaves at the output.
     Driving,
     /// Power enters at the output and leaves at the input: the engine brakes, or power is recuperated.
@@ -35,30 +39,31 @@ pub enum Way {
     Other,
 }
 
-const WAYS: [(Way, &str); 5] = [
-    (Way::Driving, "driving"),
-    (Way::Coasting, "coasting"),
-    (Way::Dissipating, "dissipating"),
-    (Way::Idle, "idle"),
-    (Way::Other, "other"),
-];
+impl PowerDirection {
+    /// All, in the order of tables.
+    pub const ALL: [Self; 5] = [Self::Driving, Self::Coasting, Self::Dissipating, Self::Idle, Self::Other];
 
-impl Way {
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
-        WAYS.iter().find(|w| w.0 == self).map_or("", |w| w.1)
+    /// Its name in contracts and tables: `driving`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Driving => "driving",
+            Self::Coasting => "coasting",
+            Self::Dissipating => "dissipating",
+            Self::Idle => "idle",
+            Self::Other => "other",
+        }
     }
 }
 
 /// The answer for one condition of a profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CyclePoint {
-    /// One of [`VERDICTS`].
-    pub verdict: &'static str,
+    /// What can be said of it.
+    pub verdict: PointVerdict,
     /// Why there is no answer; empty where there is one.
     pub reason: Box<str>,
     /// Which way power goes, where there is an answer.
-    pub way: Option<Way>,
+    pub way: Option<PowerDirection>,
     /// The state of the shift table, by its position.
     pub state: Option<usize>,
     /// Output over input power; NaN where there is none.
@@ -79,11 +84,11 @@ pub struct CyclePart {
     /// One for each condition.
     pub points: Vec<CyclePoint>,
     /// By name and kind: law, energy.
-    sources: BTreeMap<(String, &'static str), (String, f64)>,
+    sources: BTreeMap<(String, EnergyKind), (String, f64)>,
     kinds: [f64; 5],
     /// By member: energy in, energy out.
     terminals: BTreeMap<String, [f64; 2]>,
-    warnings: BTreeMap<&'static str, Vec<Told>>,
+    warnings: BTreeMap<Code, Vec<Told>>,
 }
 
 #[derive(Clone, Debug)]
@@ -95,7 +100,9 @@ struct Told {
 }
 
 /// Energies of some rows.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Energies {
     /// Rows with an answer.
     pub rows: u64,
@@ -125,13 +132,67 @@ impl Energies {
     }
 }
 
+/// What kind of loss takes energy.
+///
+/// Ordered by name: of equal energies the first by name stands first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum EnergyKind {
+    /// Friction of rolling bearings.
+    Bearing,
+    /// Gears that move oil.
+    Churning,
+    /// All losses of a mesh, where they are given as an efficiency.
+    Mesh,
+    /// Rolling of teeth through the oil film.
+    Rolling,
+    /// Friction of seals.
+    Seal,
+    /// Sliding of teeth.
+    Sliding,
+    /// Gears that move air.
+    Windage,
+}
+
+impl EnergyKind {
+    /// Its name in contracts and tables: `sliding`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bearing => "bearing",
+            Self::Churning => "churning",
+            Self::Mesh => "mesh",
+            Self::Rolling => "rolling",
+            Self::Seal => "seal",
+            Self::Sliding => "sliding",
+            Self::Windage => "windage",
+        }
+    }
+}
+
+impl From<LossKind> for EnergyKind {
+    fn from(kind: LossKind) -> Self {
+        match kind {
+            LossKind::Sliding => Self::Sliding,
+            LossKind::Rolling => Self::Rolling,
+            LossKind::Bearing => Self::Bearing,
+            LossKind::Windage => Self::Windage,
+            LossKind::Churning => Self::Churning,
+            LossKind::Seal => Self::Seal,
+        }
+    }
+}
+
 /// Energy lost by a source.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SourceEnergy {
     /// What loses it; a mesh where losses are given by efficiencies.
     pub name: String,
     /// What kind of loss it is.
-    pub kind: &'static str,
+    pub kind: EnergyKind,
     /// The law that it was last computed by; `given` for a given efficiency.
     pub law: String,
     /// The energy, J.
@@ -141,7 +202,9 @@ pub struct SourceEnergy {
 }
 
 /// Energy that crosses a member.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TerminalEnergy {
     /// Energy that enters the train here, J.
     pub energy_in_j: f64,
@@ -150,8 +213,10 @@ pub struct TerminalEnergy {
 }
 
 /// Rows that say the same.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Said {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct RepeatedMessage {
     /// What they say, at the first of them.
     pub message: String,
     /// How many rows.
@@ -163,7 +228,9 @@ pub struct Said {
 }
 
 /// Rows of a verdict.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct VerdictTime {
     /// How many rows.
     pub rows: u64,
@@ -172,11 +239,13 @@ pub struct VerdictTime {
     /// The part of the whole time.
     pub share_of_time: f64,
     /// Why, longest first; the first few of them.
-    pub reasons: Vec<Said>,
+    pub reasons: Vec<RepeatedMessage>,
 }
 
 /// A condition that is among the worst.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct WorstRow {
     /// Line of its first row.
     pub line: u32,
@@ -187,7 +256,7 @@ pub struct WorstRow {
     /// What they prescribe.
     pub condition: String,
     /// Which way power goes.
-    pub way: Option<Way>,
+    pub way: Option<PowerDirection>,
     /// Output over input power.
     pub efficiency: Option<f64>,
     /// Loss, W.
@@ -197,7 +266,9 @@ pub struct WorstRow {
 }
 
 /// The worst rows.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Worst {
     /// By loss power.
     pub loss: Vec<WorstRow>,
@@ -208,10 +279,12 @@ pub struct Worst {
 }
 
 /// What a profile costs. Serialised it is the contract `willis-cycle-1`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct CycleReport {
     /// `willis-cycle-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// The operation from which the question starts, where the file has one.
@@ -221,7 +294,7 @@ pub struct CycleReport {
     /// How rows weigh.
     pub basis: Basis,
     /// The same in a sentence.
-    pub rule: &'static str,
+    pub rule: String,
     /// Rows of the profile.
     pub rows: u64,
     /// Different conditions among them.
@@ -264,9 +337,13 @@ pub struct CycleReport {
     /// The worst rows.
     pub worst: Worst,
     /// Warnings by their code.
-    pub warnings: Named<Vec<Said>>,
+    pub warnings: Named<Vec<RepeatedMessage>>,
     /// What is remarkable about the profile.
     pub notes: Vec<String>,
+}
+
+impl Contract for CycleReport {
+    const FORMAT: &'static str = "willis-cycle-1";
 }
 
 /// A profile put to a train.
@@ -295,10 +372,10 @@ pub struct Cycle<'a> {
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 /// "#;
-/// let subject = Model::from_toml(text).unwrap();
+/// let model = Model::from_toml(text).unwrap();
 /// let spectrum = "hours,input.speed [rad/s],input.torque [N m]\n1,100,50\n3,100,10\n";
-/// let profile = Profile::parse(spectrum, &subject)?;
-/// let report = cycle(Question::new(&subject, None, None, Hold::AsGiven)?, &profile);
+/// let profile = Profile::parse(spectrum, &model)?;
+/// let report = cycle(Question::new(&model, None, None, Hold::AsGiven)?, &profile);
 /// assert!((report.energy_in_j - (5000.0 + 3.0 * 1000.0) * 3600.0).abs() < 1e-6);
 /// assert!((report.efficiency.unwrap() - 0.98607).abs() < 1e-9);
 /// # Ok::<(), willis::Diagnostics>(())
@@ -352,14 +429,14 @@ impl<'a> Cycle<'a> {
         let asked = self.question.at(&settings, trains);
         let (answer, way) = match &asked {
             Ok((train, operation)) => {
-                let answer = Answer::of(train, operation);
+                let answer = PointAnswer::of(train, operation);
                 let way = answer.solution.as_ref().map(|s| self.way(train, operation, s));
                 (answer, way)
             }
-            Err(wrong) => (Answer::refused(wrong.clone()), None),
+            Err(wrong) => (PointAnswer::refused(wrong.clone()), None),
         };
         for (code, message) in &answer.warnings {
-            let told = part.warnings.entry(code.as_str()).or_default();
+            let told = part.warnings.entry(*code).or_default();
             tell(told, message, held);
         }
         let mut point = CyclePoint {
@@ -382,13 +459,13 @@ impl<'a> Cycle<'a> {
         for (sum, power) in part.kinds.iter_mut().zip([l.mesh, l.bearing, l.windage, l.churning, l.seal]) {
             *sum += power * held.time_s;
         }
-        let mut lose = |name: &str, kind, law, power: f64| {
-            let own = part.sources.entry((name.to_owned(), kind)).or_insert_with(|| (law, 0.0));
+        let mut lose = |name: &str, kind, law: &str, power: f64| {
+            let own = part.sources.entry((name.to_owned(), kind)).or_insert_with(|| (law.to_owned(), 0.0));
             own.1 += power * held.time_s;
         };
         match s.sources.is_empty() {
-            true => s.meshes.iter().for_each(|(name, m)| lose(name, "mesh", "given".to_owned(), m.loss_w)),
-            false => s.sources.iter().for_each(|x| lose(&x.name, kind(x.kind), x.law.clone(), x.loss_w)),
+            true => s.meshes.iter().for_each(|(name, m)| lose(name, EnergyKind::Mesh, "given", m.loss_w)),
+            false => s.sources.iter().for_each(|x| lose(&x.name, x.kind.into(), &x.law, x.loss_w)),
         }
         for (name, m) in s.members.iter() {
             let energy = m.power_w.unwrap_or(0.0) * held.time_s;
@@ -400,20 +477,20 @@ impl<'a> Cycle<'a> {
         point
     }
 
-    fn way(&self, train: &Train, operation: &Operation, s: &SolutionReport) -> Way {
+    fn way(&self, train: &Train, operation: &Operation, s: &SolutionReport) -> PowerDirection {
         // What is round-off beside the power that enters is nothing.
         let least = 1e-12 * s.input_power_w.abs();
         if s.output_power_w <= least {
-            return if s.input_power_w > 0.0 { Way::Dissipating } else { Way::Idle };
+            return if s.input_power_w > 0.0 { PowerDirection::Dissipating } else { PowerDirection::Idle };
         }
         let power = |who| {
             let member = self.question.role(train, operation, who).ok()?;
             s.members.get(train.member_name(member))?.power_w
         };
         match (power(Who::Input), power(Who::Output)) {
-            (Some(i), Some(o)) if i > least && o < -least => Way::Driving,
-            (Some(i), Some(o)) if i < -least && o > least => Way::Coasting,
-            _ => Way::Other,
+            (Some(i), Some(o)) if i > least && o < -least => PowerDirection::Driving,
+            (Some(i), Some(o)) if i < -least && o > least => PowerDirection::Coasting,
+            _ => PowerDirection::Other,
         }
     }
 
@@ -459,9 +536,9 @@ impl<'a> Cycle<'a> {
         assert_eq!(points.len(), profile.conditions(), "a report needs every part of the cycle");
         let train = self.question.model().train();
         let mut whole = Energies::default();
-        let mut ways: BTreeMap<Way, Energies> = BTreeMap::new();
+        let mut ways: BTreeMap<PowerDirection, Energies> = BTreeMap::new();
         let mut states: Vec<Energies> = vec![Energies::default(); train.states().len() + 1];
-        let mut verdicts: BTreeMap<&str, (VerdictTime, Vec<Told>)> = BTreeMap::new();
+        let mut verdicts: BTreeMap<PointVerdict, (VerdictTime, Vec<Told>)> = BTreeMap::new();
         let (mut mean, mut mean_time, mut residual) = (0.0, 0.0, 0.0f64);
         // The condition in which a trace ends may have no row.
         let held = |k: usize| Some(profile.held(k)).filter(|h| h.rows > 0);
@@ -487,10 +564,10 @@ impl<'a> Cycle<'a> {
             }
         }
         whole.close();
-        let mut sources: BTreeMap<&(String, &'static str), (&str, f64)> = BTreeMap::new();
+        let mut sources: BTreeMap<&(String, EnergyKind), (&String, f64)> = BTreeMap::new();
         let mut terminals: BTreeMap<&str, TerminalEnergy> = BTreeMap::new();
         let mut kinds = [0.0; 5];
-        let mut warnings: BTreeMap<&str, Vec<Told>> = BTreeMap::new();
+        let mut warnings: BTreeMap<Code, Vec<Told>> = BTreeMap::new();
         for part in parts {
             for (key, (law, energy)) in &part.sources {
                 sources.entry(key).or_insert((law, 0.0)).1 += energy;
@@ -502,14 +579,14 @@ impl<'a> Cycle<'a> {
             }
             kinds.iter_mut().zip(part.kinds).for_each(|(sum, own)| *sum += own);
             for (code, all) in &part.warnings {
-                join(warnings.entry(code).or_default(), all);
+                join(warnings.entry(*code).or_default(), all);
             }
         }
         let mut sources: Vec<SourceEnergy> = sources
             .into_iter()
             .map(|((name, kind), (law, energy_j))| {
                 let share = if whole.energy_lost_j > 0.0 { energy_j / whole.energy_lost_j } else { 0.0 };
-                SourceEnergy { name: name.clone(), kind, law: law.to_owned(), energy_j, share }
+                SourceEnergy { name: name.clone(), kind: *kind, law: law.clone(), energy_j, share }
             })
             .collect();
         sources.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));
@@ -521,21 +598,21 @@ impl<'a> Cycle<'a> {
         let named: Vec<(String, Energies)> =
             states.into_iter().enumerate().map(|(k, e)| (of_state(k), energies(e))).filter(|s| s.1.rows > 0).collect();
         let time_s = profile.total_s();
-        let verdicts = VERDICTS.iter().filter_map(|name| {
-            let (mut own, told) = verdicts.remove(name)?;
+        let verdicts = PointVerdict::ALL.iter().filter_map(|verdict| {
+            let (mut own, told) = verdicts.remove(verdict)?;
             own.share_of_time = own.time_s / time_s;
             own.reasons = said(told);
-            Some(((*name).to_owned(), own))
+            Some((verdict.name().to_owned(), own))
         });
         let base = self.question.base();
         let is_own = train.operations().iter().any(|o| o.name == base.name);
         CycleReport {
-            format: "willis-cycle-1",
+            format: Format::new(),
             train: train.name().to_owned(),
             operation: is_own.then(|| base.name.clone()),
             held: self.base(),
             basis: profile.basis(),
-            rule: profile.basis().rule(),
+            rule: profile.basis().rule().to_owned(),
             rows: profile.rows().len() as u64,
             conditions: (0..points.len()).filter(|k| held(*k).is_some()).count() as u64,
             time_s,
@@ -559,14 +636,17 @@ impl<'a> Cycle<'a> {
                 .zip(kinds)
                 .collect(),
             sources,
-            ways: WAYS.iter().filter_map(|(w, n)| Some(((*n).to_owned(), energies(ways.remove(w)?)))).collect(),
+            ways: PowerDirection::ALL
+                .iter()
+                .filter_map(|w| Some((w.name().to_owned(), energies(ways.remove(w)?))))
+                .collect(),
             states: named.into_iter().collect(),
             terminals: (train.members().iter())
                 .filter_map(|m| Some((m.name.clone(), terminals.remove(m.name.as_str())?)))
                 .collect(),
             verdicts: verdicts.collect(),
             worst: self.worst(&points),
-            warnings: warnings.into_iter().map(|(code, told)| (code.to_owned(), said(told))).collect(),
+            warnings: warnings.into_iter().map(|(code, told)| (code.as_str().to_owned(), said(told))).collect(),
             notes: profile.notes().to_vec(),
         }
     }
@@ -606,17 +686,6 @@ fn short(x: f64) -> String {
     rounded.to_string()
 }
 
-fn kind(kind: LossKind) -> &'static str {
-    match kind {
-        LossKind::Sliding => "sliding",
-        LossKind::Rolling => "rolling",
-        LossKind::Bearing => "bearing",
-        LossKind::Windage => "windage",
-        LossKind::Churning => "churning",
-        LossKind::Seal => "seal",
-    }
-}
-
 /// A sentence without its numbers: what differs from row to row only in them is the same.
 fn gist(message: &str) -> String {
     message.chars().filter(|c| !c.is_ascii_digit() && !matches!(c, '.' | '-')).collect()
@@ -652,8 +721,8 @@ fn join(all: &mut Vec<Told>, more: &[Told]) {
     }
 }
 
-fn said(mut all: Vec<Told>) -> Vec<Said> {
+fn said(mut all: Vec<Told>) -> Vec<RepeatedMessage> {
     all.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));
     let all = all.into_iter().filter(|t| !t.message.is_empty()).take(MOST_REASONS);
-    all.map(|t| Said { message: t.message, rows: t.rows, time_s: t.time_s, line: t.line }).collect()
+    all.map(|t| RepeatedMessage { message: t.message, rows: t.rows, time_s: t.time_s, line: t.line }).collect()
 }

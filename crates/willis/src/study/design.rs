@@ -1,6 +1,6 @@
 //! Where to sample: scrambled Sobol points, and what follows from the values there.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sobol_burley::parts::{hash, owen_scramble_rev, sobol_rev};
 
 /// Independent scramblings of the same points; their disagreement is the sampling error.
@@ -49,7 +49,9 @@ pub struct Design {
 }
 
 /// What can be said of the values of one quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Statistics {
     /// Samples that have a value.
     pub answered: usize,
@@ -77,7 +79,9 @@ pub struct Statistics {
 
 /// How far a statistic may be off because the samples are finitely many: half the width of its 95 % confidence interval,
 /// `t s/√R` with the standard deviation s of the statistic over the R replicates (L'Ecuyer et al., 2023).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SamplingError {
     /// Of the mean.
     pub mean: f64,
@@ -93,9 +97,11 @@ pub struct SamplingError {
     pub p975: f64,
 }
 
-/// The share of the variance for which one coordinate answers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Index {
+/// The share of the variance for which one coordinate answers: its Sobol indices.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SobolIndices {
     /// First-order Sobol index `V[E(y|x_i)]/V(y)`: by itself.
     pub first: f64,
     /// Half the width of its 95 % confidence interval.
@@ -250,7 +256,7 @@ impl Design {
     /// square of f(A) − f(B) (compare Azzini, Mara and Rosati, 2021): what A and B have in common by chance is in both
     /// sums, so that a quantity that does nothing has exactly 0, and one that does everything exactly 1. Errors are those
     /// of a jackknife that leaves out one replicate after the other.
-    pub fn indices(&self, values: &[f64]) -> Option<Vec<Index>> {
+    pub fn indices(&self, values: &[f64]) -> Option<Vec<SobolIndices>> {
         let d = self.coordinates;
         if d < 2 {
             return None;
@@ -290,7 +296,7 @@ impl Design {
         let scatter = |i: usize, of: fn(&(f64, f64)) -> f64| {
             half_width(without.iter().map(|w| of(&w[i]))) * (REPLICATES - 1) as f64
         };
-        let index = |i: usize| Index {
+        let index = |i: usize| SobolIndices {
             first: all[i].0,
             first_error: scatter(i, |e| e.0),
             total: all[i].1,

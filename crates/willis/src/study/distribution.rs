@@ -1,6 +1,6 @@
 //! How an uncertain number is distributed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::train::Measure;
@@ -20,7 +20,8 @@ use crate::units::{self, Dimension};
 ///
 /// A unit at one number holds for those without. A share is one of the value of the file, of a temperature there is
 /// none.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Distribution {

@@ -3,21 +3,21 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::{Model, Target};
 use crate::train::Measure;
 use crate::units::{self, Dimension};
-
-use crate::model::Model;
-use crate::model::Target;
 
 /// More errors than these are counted, not kept.
 const MOST_ERRORS: usize = 1000;
 
 /// How rows of a profile weigh in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Basis {
     /// A recorded trace: each row holds from its time until that of the next; the last row only ends it.
     Trace,
@@ -99,11 +99,11 @@ pub(super) struct Held {
 ///     ring = { member = "frame", teeth = 70 }
 ///     carrier = "c"
 /// "#;
-/// let subject = Model::from_toml(text).unwrap();
-/// let profile = Profile::parse("time [s],input.speed [rpm]\n0,900\n2,1000\n3,0\n", &subject)?;
+/// let model = Model::from_toml(text).unwrap();
+/// let profile = Profile::parse("time [s],input.speed [rpm]\n0,900\n2,1000\n3,0\n", &model)?;
 /// assert_eq!((profile.basis(), profile.rows().len(), profile.total_s()), (Basis::Trace, 2, 3.0));
 /// assert_eq!(profile.describe(1), "input.speed = 1000 rpm");
-/// let wrong = Profile::parse("time [s],input.sped [rpm]\n0,900\n2,1000\n", &subject).unwrap_err();
+/// let wrong = Profile::parse("time [s],input.sped [rpm]\n0,900\n2,1000\n", &model).unwrap_err();
 /// assert!(wrong.to_string().contains("did you mean `input.speed`"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
@@ -221,7 +221,7 @@ fn weight_unit(name: &str, basis: Basis, unit: Option<&str>) -> Result<f64, Stri
     }
 }
 
-fn purpose(header: &str, subject: &Model) -> Result<Purpose, Box<Diagnostic>> {
+fn purpose(header: &str, model: &Model) -> Result<Purpose, Box<Diagnostic>> {
     let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
     let hinted = |message: String, hint: String| Box::new(fault(message).hint(hint));
     let (name, unit) = bracketed(header).map_or((header, None), |(n, u)| (n, Some(u)));
@@ -237,8 +237,8 @@ fn purpose(header: &str, subject: &Model) -> Result<Purpose, Box<Diagnostic>> {
     let setting = |target: Target, unit: String| {
         Purpose::Setting(Setting { header: header.to_owned(), target, unit, values: vec![] })
     };
-    match Target::parse(name, subject) {
-        Ok(target) => match (target.measure(subject), unit) {
+    match Target::parse(name, model) {
+        Ok(target) => match (target.measure(model), unit) {
             (Measure::Quantity(dimension), Some(unit)) => match units::parse(&format!("1 {unit}"), dimension) {
                 Ok(_) => Ok(setting(target, unit.to_owned())),
                 Err(why) => {
@@ -261,8 +261,8 @@ fn purpose(header: &str, subject: &Model) -> Result<Purpose, Box<Diagnostic>> {
         Err(unknown) => {
             // The unit may be a part of the name.
             for (at, _) in name.match_indices('_').filter(|_| unit.is_none()) {
-                let Ok(target) = Target::parse(&name[..at], subject) else { continue };
-                let Measure::Quantity(dimension) = target.measure(subject) else { continue };
+                let Ok(target) = Target::parse(&name[..at], model) else { continue };
+                let Measure::Quantity(dimension) = target.measure(model) else { continue };
                 let suffix = &name[at + 1..];
                 return match spelt(suffix, dimension) {
                     Some(unit) => Ok(setting(target, unit)),
@@ -302,7 +302,7 @@ impl Profile {
     /// All that is wrong with it, each with its line and column: no column that weighs the rows or several, unknown
     /// quantities (with the nearest) and states, units of another kind, empty cells and such that are no finite number,
     /// times that do not rise, a profile without rows or that lasts no time.
-    pub fn parse(text: &str, subject: &Model) -> Result<Self, Diagnostics> {
+    pub fn parse(text: &str, model: &Model) -> Result<Self, Diagnostics> {
         let mut wrong = Wrong { all: Diagnostics::default(), more: 0 };
         let mut at = 0;
         let mut lines = text.split_inclusive('\n').enumerate().filter_map(|(k, line)| {
@@ -333,7 +333,7 @@ impl Profile {
         for (k, (name, span)) in header_cells.iter().enumerate() {
             let place = format!("line {header_line}, column {}", k + 1);
             of_column.push(None);
-            match purpose(name, subject) {
+            match purpose(name, model) {
                 _ if name.is_empty() => {
                     wrong.at(place, header_at..header_at + header.len(), "the column has no name".into(), "");
                 }
@@ -438,7 +438,7 @@ impl Profile {
                         is_good = false;
                     }
                     None => {
-                        let value = setting.read(cell, subject);
+                        let value = setting.read(cell, model);
                         known[position].insert(cell, value.clone());
                         match value {
                             Ok(value) => condition[position] = value,
@@ -610,9 +610,9 @@ impl Profile {
 
 impl Setting {
     /// The position of a cell's value among those known, checked where it is new.
-    fn read(&mut self, cell: &str, subject: &Model) -> Result<u32, Box<Diagnostic>> {
+    fn read(&mut self, cell: &str, model: &Model) -> Result<u32, Box<Diagnostic>> {
         let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
-        let value = match self.target.measure(subject) {
+        let value = match self.target.measure(model) {
             Measure::Text | Measure::Flag => cell.to_owned(),
             measure => {
                 let plain = cell.replace('\u{2212}', "-");
@@ -624,7 +624,7 @@ impl Setting {
             }
         };
         let text = if self.unit.is_empty() { value.clone() } else { format!("{value} {}", self.unit) };
-        self.target.check(subject, std::slice::from_ref(&text)).map_err(|mut d| {
+        self.target.check(model, std::slice::from_ref(&text)).map_err(|mut d| {
             // A cell is one value.
             d.hints.iter_mut().for_each(|h| *h = h.replace("; `all` takes them all", ""));
             d

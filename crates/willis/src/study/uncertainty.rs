@@ -3,24 +3,23 @@
 mod assumed;
 mod report;
 
-use std::collections::BTreeMap;
-
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::Losses;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::{Model, Target, Who};
 use crate::train::{Load, Measure, Train};
 use crate::units::{self, Quantity};
 
+use super::answer::{PointAnswer, PointVerdict};
+use super::column::Column;
 use super::design::Design;
 use super::distribution::{Distribution, Reader, fault, plain};
 use super::question::{Hold, Question, Trains};
-use super::sweep::{Answer, Seen, VERDICTS};
+use super::summary::{self, LawChoice, Seen, WarningKind};
 use super::{Axis, Statistics};
-use crate::model::Model;
-use crate::model::{Target, Who};
 
-pub use report::{Choice, Influence, Output, Reported, Uncertainty};
+pub use report::{ChoiceResult, Influence, UncertainQuantity, UncertainResult, Uncertainty};
 
 /// Most samples of a plan.
 const MOST_SAMPLES: usize = 1 << 16;
@@ -51,9 +50,10 @@ impl Default for UncertaintyRequest {
 }
 
 /// How an uncertain quantity is distributed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
-pub enum Likely {
+pub enum UncertainValue {
     /// A number between others.
     Between(Distribution),
     /// Each of these is as likely as the others.
@@ -68,7 +68,7 @@ pub struct Uncertain {
     /// Its unit; empty for plain numbers and texts.
     pub unit: String,
     /// How it is distributed.
-    pub likely: Likely,
+    pub likely: UncertainValue,
     /// What the file has, as written.
     pub nominal: Option<String>,
     target: Target,
@@ -78,16 +78,16 @@ impl Uncertain {
     /// Its value at a coordinate from 0 to 1, as the train file writes it.
     pub fn setting(&self, p: f64) -> String {
         match &self.likely {
-            Likely::Between(d) => self.text(d.quantile(p)),
-            Likely::Each(all) => all[self.choice(p)].clone(),
+            UncertainValue::Between(d) => self.text(d.quantile(p)),
+            UncertainValue::Each(all) => all[self.choice(p)].clone(),
         }
     }
 
     /// The number of the choice at a coordinate; 0 for a number between others.
     fn choice(&self, p: f64) -> usize {
         match &self.likely {
-            Likely::Between(_) => 0,
-            Likely::Each(all) => ((p * all.len() as f64) as usize).min(all.len() - 1),
+            UncertainValue::Between(_) => 0,
+            UncertainValue::Each(all) => ((p * all.len() as f64) as usize).min(all.len() - 1),
         }
     }
 
@@ -99,8 +99,8 @@ impl Uncertain {
     /// Its distribution in words.
     pub fn describe(&self) -> String {
         match &self.likely {
-            Likely::Between(d) => d.describe(&self.unit),
-            Likely::Each(all) => all.join(", "),
+            UncertainValue::Between(d) => d.describe(&self.unit),
+            UncertainValue::Each(all) => all.join(", "),
         }
     }
 }
@@ -108,7 +108,7 @@ impl Uncertain {
 /// Uncertain quantities, an operating point, and the points at which it is evaluated.
 ///
 /// Work comes in pieces, so that a caller can spread it over processors: every piece is a range of points, and pieces
-/// [joined](Evaluated::join) in their order give the same result however they were cut.
+/// [joined](SampleResult::join) in their order give the same result however they were cut.
 ///
 /// # Example
 /// ```
@@ -131,10 +131,10 @@ impl Uncertain {
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Model::from_toml(text).unwrap();
+/// let model = Model::from_toml(text).unwrap();
 /// let vary = vec!["P1.mesh_efficiency=0.98..1".into()];
 /// let request = UncertaintyRequest { vary, samples: 256, ..Default::default() };
-/// let plan = UncertaintyPlan::new(&subject, &request)?;
+/// let plan = UncertaintyPlan::new(&model, &request)?;
 /// let evaluated = plan.evaluate(0..plan.len(), &mut Default::default());
 /// let found = plan.finish(&evaluated);
 /// // (1 − i0 η²)/(1 − i0) with i0 = −7/3 is monotonous in η: its median is that of η.
@@ -149,40 +149,28 @@ pub struct UncertaintyPlan<'s> {
     design: Design,
     assumptions: Vec<String>,
     warnings: Vec<String>,
-    /// Of the values of a point: name, unit.
-    outputs: Vec<(String, &'static str)>,
+    /// Of the values of a point.
+    outputs: Vec<Column>,
     nominal: Vec<f64>,
-    nominal_verdict: &'static str,
+    nominal_verdict: PointVerdict,
 }
 
 /// Values at some points.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Evaluated {
-    /// Of every point: its place in [`VERDICTS`].
-    verdicts: Vec<u8>,
+pub struct SampleResult {
+    /// Of every point.
+    verdicts: Vec<PointVerdict>,
     /// Of every point: one for each output; NaN where there is none.
     values: Vec<f64>,
-    seen: BTreeMap<String, Seen>,
+    seen: Seen,
 }
 
-impl Evaluated {
+impl SampleResult {
     /// Adds what was found at the points that follow.
     pub fn join(&mut self, later: Self) {
         self.verdicts.extend(later.verdicts);
         self.values.extend(later.values);
-        for (kind, seen) in later.seen {
-            match self.seen.get_mut(&kind) {
-                Some(own) => own.count += seen.count,
-                None => drop(self.seen.insert(kind, seen)),
-            }
-        }
-    }
-
-    fn see(&mut self, kind: String, message: &str, point: usize) {
-        match self.seen.get_mut(&kind) {
-            Some(own) => own.count += 1,
-            None => drop(self.seen.insert(kind, Seen { count: 1, message: message.into(), point: point as u64 })),
-        }
+        summary::join(&mut self.seen, &later.seen);
     }
 }
 
@@ -195,7 +183,7 @@ fn listed(all: &[String]) -> String {
 }
 
 fn errors(wrong: Diagnostics) -> String {
-    Answer::refused(wrong).reason
+    PointAnswer::refused(wrong).reason
 }
 
 impl<'s> UncertaintyPlan<'s> {
@@ -204,9 +192,9 @@ impl<'s> UncertaintyPlan<'s> {
     /// # Errors
     /// No operating point, unknown quantities, distributions that mean nothing, quantities named twice; a train that is
     /// refused with every quantity at the middle of its distribution.
-    pub fn new(subject: &'s Model, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
+    pub fn new(model: &'s Model, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
         let mut wrong = Diagnostics::default();
-        let question = Question::new(subject, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+        let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
         if question.base().loads.is_empty() {
             let message = match &request.state {
                 Some(state) => {
@@ -276,7 +264,7 @@ impl<'s> UncertaintyPlan<'s> {
             assumptions.push("the uncertain quantities are independent of each other".into());
         }
         let cut = |q: &Uncertain| {
-            matches!(&q.likely, Likely::Between(Distribution::Normal { .. } | Distribution::Lognormal { .. }))
+            matches!(&q.likely, UncertainValue::Between(Distribution::Normal { .. } | Distribution::Lognormal { .. }))
         };
         if quantities.iter().any(cut) {
             assumptions.push("normal and lognormal distributions are cut off at three standard deviations".into());
@@ -291,7 +279,7 @@ impl<'s> UncertaintyPlan<'s> {
             warnings: vec![],
             outputs: vec![],
             nominal: vec![],
-            nominal_verdict: "",
+            nominal_verdict: PointVerdict::Refused,
         };
         plan.name_outputs();
         plan.check()?;
@@ -300,10 +288,10 @@ impl<'s> UncertaintyPlan<'s> {
 
     fn name_outputs(&mut self) {
         let train = self.question.model().train();
-        self.outputs = vec![("efficiency".into(), ""), ("loss_w".into(), "W")];
-        self.outputs.extend(KINDS.iter().map(|kind| (format!("{kind}_loss_w"), "W")));
-        self.outputs.extend(sources(train).map(|name| (format!("loss.{name}_w"), "W")));
-        let answer = Answer::of(train, self.question.base());
+        self.outputs = vec![Column::number("efficiency", ""), Column::number("loss_w", "W")];
+        self.outputs.extend(KINDS.iter().map(|kind| Column::number(format!("{kind}_loss_w"), "W")));
+        self.outputs.extend(sources(train).map(|name| Column::number(format!("loss.{name}_w"), "W")));
+        let answer = PointAnswer::of(train, self.question.base());
         self.nominal = self.values(&answer);
         self.nominal_verdict = answer.verdict;
     }
@@ -320,8 +308,8 @@ impl<'s> UncertaintyPlan<'s> {
         let mut warnings = vec![];
         for (k, q) in self.quantities.iter().enumerate() {
             let at: Vec<f64> = match &q.likely {
-                Likely::Between(_) => vec![1e-9, 1.0 - 1e-9],
-                Likely::Each(all) => (0..all.len()).map(|c| (c as f64 + 0.5) / all.len() as f64).collect(),
+                UncertainValue::Between(_) => vec![1e-9, 1.0 - 1e-9],
+                UncertainValue::Each(all) => (0..all.len()).map(|c| (c as f64 + 0.5) / all.len() as f64).collect(),
             };
             for p in at {
                 let mut place = middle.clone();
@@ -329,8 +317,8 @@ impl<'s> UncertaintyPlan<'s> {
                 if let Err(why) = ask(&place) {
                     // The end itself, not a number beside it.
                     let shown = match &q.likely {
-                        Likely::Between(d) => q.text(d.ends()[usize::from(p > 0.5)]),
-                        Likely::Each(_) => q.setting(p),
+                        UncertainValue::Between(d) => q.text(d.ends()[usize::from(p > 0.5)]),
+                        UncertainValue::Each(_) => q.setting(p),
                     };
                     let message = format!(
                         "{} = {shown} is refused: {}; samples like it are counted, and have no result",
@@ -385,48 +373,44 @@ impl<'s> UncertaintyPlan<'s> {
     }
 
     /// The answer at a point.
-    pub fn answer(&self, point: usize, trains: &mut Trains) -> Answer {
+    pub fn answer(&self, point: usize, trains: &mut Trains) -> PointAnswer {
         match self.question.at(&self.settings_at(&self.design.at(point)), trains) {
-            Ok((train, operation)) => Answer::of(&train, &operation),
-            Err(wrong) => Answer::refused(wrong),
+            Ok((train, operation)) => PointAnswer::of(&train, &operation),
+            Err(wrong) => PointAnswer::refused(wrong),
         }
     }
 
     /// The answer at a value of an axis: at a point, or with the file as written. A quantity that is itself the axis
     /// takes the axis' value.
-    pub fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> Answer {
+    pub fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> PointAnswer {
         let mut settings = point.map_or_else(Vec::new, |p| self.settings_at(&self.design.at(p)));
         settings.retain(|s| *s.0 != axis.target);
         settings.push((&axis.target, axis.setting(k)));
         match self.question.at(&settings, trains) {
-            Ok((train, operation)) => Answer::of(&train, &operation),
-            Err(wrong) => Answer::refused(wrong),
+            Ok((train, operation)) => PointAnswer::of(&train, &operation),
+            Err(wrong) => PointAnswer::refused(wrong),
         }
     }
 
     /// The values at a range of points.
-    pub fn evaluate(&self, points: std::ops::Range<usize>, trains: &mut Trains) -> Evaluated {
-        let mut all = Evaluated::default();
+    pub fn evaluate(&self, points: std::ops::Range<usize>, trains: &mut Trains) -> SampleResult {
+        let mut all = SampleResult::default();
         for point in points {
             let answer = self.answer(point, trains);
-            let verdict = VERDICTS.iter().position(|v| *v == answer.verdict).expect("a verdict is one of them");
-            all.verdicts.push(verdict as u8);
+            all.verdicts.push(answer.verdict);
             all.values.extend(self.values(&answer));
             if !self.design.is_sample(point) {
                 continue;
             }
             if !answer.reason.is_empty() {
-                all.see(format!("reason: {}", answer.verdict), &answer.reason, point);
+                summary::see(&mut all.seen, WarningKind::Reason(answer.verdict), &answer.reason, point as u64);
             }
-            let mut told: Vec<String> = vec![];
+            let mut told: Vec<WarningKind> = vec![];
             for (code, message) in &answer.warnings {
-                // Laws are told apart, places and numbers are not.
-                let kind = match message.split_once(" of ") {
-                    Some((law, _)) if law.contains(" = ") => format!("{} {law}", code.as_str()),
-                    _ => code.as_str().to_owned(),
-                };
+                // Laws are counted one by one, places and numbers are not.
+                let kind = WarningKind::Warning { code: *code, law: law_of(message) };
                 if !told.contains(&kind) {
-                    all.see(kind.clone(), message, point);
+                    summary::see(&mut all.seen, kind.clone(), message, point as u64);
                     told.push(kind);
                 }
             }
@@ -434,8 +418,8 @@ impl<'s> UncertaintyPlan<'s> {
         all
     }
 
-    fn values(&self, answer: &Answer) -> Vec<f64> {
-        let Some(s) = answer.solution.as_ref().filter(|_| answer.verdict == "unique") else {
+    fn values(&self, answer: &PointAnswer) -> Vec<f64> {
+        let Some(s) = answer.solution.as_ref().filter(|_| answer.is_unique()) else {
             return vec![f64::NAN; self.outputs.len()];
         };
         let l: &Losses = &s.losses_w;
@@ -451,6 +435,12 @@ impl<'s> UncertaintyPlan<'s> {
     }
 }
 
+/// The law that a warning is about.
+fn law_of(message: &str) -> Option<LawChoice> {
+    let (family, law) = message.split_once(" of ")?.0.split_once(" = ")?;
+    Some(LawChoice { family: family.to_owned(), law: law.to_owned() })
+}
+
 /// Losses by kind, in the order in which they are among the values.
 const KINDS: [&str; 5] = ["mesh", "bearing", "windage", "churning", "seal"];
 
@@ -464,18 +454,18 @@ fn sources(train: &Train) -> impl Iterator<Item = &str> {
 
 /// Reads `QUANTITY=DISTRIBUTION`.
 fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> Result<Uncertain, Box<Diagnostic>> {
-    let subject = question.model();
+    let model = question.model();
     let Some((name, values)) = text.split_once('=') else {
         return Err(Box::new(fault(text, "there is no `=` between a quantity and its distribution")));
     };
     let (name, values) = (name.trim(), values.trim());
-    let target = Target::parse(name, subject)?;
+    let target = Target::parse(name, model)?;
     if values.is_empty() {
         return Err(Box::new(fault(text, "there is no distribution")));
     }
-    let measure = target.measure(subject);
+    let measure = target.measure(model);
     let nominal = nominal(&target, question);
-    let found = |unit: String, likely: Likely| Uncertain {
+    let found = |unit: String, likely: UncertainValue| Uncertain {
         name: name.to_owned(),
         unit,
         likely,
@@ -491,12 +481,12 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
             return Err(Box::new(fault(text, "this train can use no two laws of the family")));
         }
         assumptions.push(told);
-        return Ok(found(String::new(), Likely::Each(laws)));
+        return Ok(found(String::new(), UncertainValue::Each(laws)));
     }
     let base = nominal.as_deref().and_then(|b| Reader::base_of(b, measure));
     let reader = Reader { whole: text, measure, base };
     let all = match measure {
-        Measure::Text | Measure::Flag => target.choices(subject, &list()).unwrap_or_else(list),
+        Measure::Text | Measure::Flag => target.choices(model, &list()).unwrap_or_else(list),
         Measure::Integer if values.contains("..") => {
             let ends = values
                 .split_once("..")
@@ -516,7 +506,7 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
             }
             Some(read) => {
                 // What the file says of a number of this kind, before anything is computed.
-                return Ok(found(read.unit, Likely::Between(read.distribution)));
+                return Ok(found(read.unit, UncertainValue::Between(read.distribution)));
             }
             None => {
                 let mut all = list();
@@ -529,7 +519,7 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
             }
         },
     };
-    target.check(subject, &all).map_err(|what| {
+    target.check(model, &all).map_err(|what| {
         let mut d = *what;
         d.message = format!("`{name}`: {}", d.message);
         Box::new(d)
@@ -542,13 +532,13 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
     }
     let what = if matches!(target, Target::Law(_)) { "laws are" } else { "values are" };
     assumptions.push(format!("{name}: the {what} equally likely"));
-    Ok(found(String::new(), Likely::Each(all)))
+    Ok(found(String::new(), UncertainValue::Each(all)))
 }
 
 /// What the file has, as it writes it.
 fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
-    let (subject, base) = (question.model(), question.base());
-    let train = subject.train();
+    let (model, base) = (question.model(), question.base());
+    let train = model.train();
     // The unit in which people say it.
     let said = |q: &Quantity, unit: &str, turn: bool| {
         let one = units::parse(&format!("1 {unit}"), q.dimension).expect("a unit of it").si();
@@ -556,7 +546,7 @@ fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
         format!("{} {unit}", plain(if turn { -value } else { value }, 12))
     };
     match target {
-        Target::File(key) => subject.document().value(key),
+        Target::File(key) => model.document().value(key),
         Target::Law(family) => assumed::in_force(train, family).map(str::to_owned),
         Target::State => base.state.map(|k| train.states()[k].name.clone()),
         Target::Temperature => {

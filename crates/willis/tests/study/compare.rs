@@ -1,7 +1,7 @@
 //! Variants side by side: what the files differ in, and what that changes.
 
 use willis::model::Model;
-use willis::study::{CompareRequest, Compared, Comparison, Datum, compare};
+use willis::study::{CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, compare};
 
 use crate::common::example;
 
@@ -62,7 +62,7 @@ fn another_efficiency_changes_what_it_should() {
     assert!((loss.differences[1].unwrap() - power * (eta(0.99) - eta(0.98))).abs() < 1e-9);
     assert!((loss.relative[1].unwrap() - (eta(0.99) - eta(0.98)) / (1.0 - eta(0.99))).abs() < 1e-9);
     // Speeds and the input are what they were; the loss is twice as large, the output a little smaller.
-    assert!(load.equal > 0 && !load.differences.iter().any(|d| d.unit == "rad/s"));
+    assert!(load.equal > 0 && !load.differences.iter().any(|d| d.unit == ComparedUnit::RadianPerSecond));
     // What is asked first stands first, then the largest.
     let headline = load.differences.iter().take_while(|d| matches!(d.quantity.as_str(), "efficiency" | "loss")).count();
     assert!(headline > 0 && load.differences[headline..].windows(2).all(|w| w[0].size >= w[1].size));
@@ -115,7 +115,7 @@ fn a_changed_verdict_comes_first_with_its_reason() {
     let state = &c.states[0];
     assert_eq!(state.differences[0].size, 2.0);
     let verdict = quantity(state, "verdict coasting");
-    assert_eq!(verdict.values, [Datum::Word("locked".into()), Datum::Word("unique".into())]);
+    assert_eq!(verdict.values, [ComparedValue::Word("locked".into()), ComparedValue::Word("unique".into())]);
     assert!(state.reasons.iter().any(|r| r.0 == "A"), "{state:?}");
 }
 

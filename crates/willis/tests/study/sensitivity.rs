@@ -50,7 +50,7 @@ fn analysed(text: &str, operation: &str) -> (f64, f64, Vec<(String, f64)>) {
 
 /// Derivatives by differences: central, extrapolated to step zero after Richardson.
 fn differences(text: &str, operation: &str, q: &QuantitySensitivity) -> (f64, f64, Vec<(String, f64)>) {
-    let mut h = match q.unit {
+    let mut h = match q.unit.as_str() {
         "K" => 0.5,
         "rad" => 2e-4,
         "-" if q.step_size == 0.01 && q.name.ends_with(".shift") => 1e-3,
@@ -60,7 +60,7 @@ fn differences(text: &str, operation: &str, q: &QuantitySensitivity) -> (f64, f6
     if q.name.contains("efficiency") {
         h = h.min(0.4 * (1.0 - q.value));
     }
-    let at = |x: f64| analysed(&edited(text, operation, &q.name, x, q.unit), operation);
+    let at = |x: f64| analysed(&edited(text, operation, &q.name, x, &q.unit), operation);
     let slope = |h: f64| {
         let (above, below) = (at(q.value + h), at(q.value - h));
         let of = |name: &str, list: &[(String, f64)]| list.iter().find(|s| s.0 == name).map_or(0.0, |s| s.1);

@@ -4,7 +4,7 @@ use std::fs;
 
 use willis::analysis::{Analysis, Selection, analyze};
 use willis::model::Model;
-use willis::study::{Axis, Cells, Hold, Question, Rows, Sweep, sensitivity};
+use willis::study::{Axis, ColumnValues, Hold, PointVerdict, Question, Rows, Sweep, SweepRequest, sensitivity};
 use willis::train::{Document, Train};
 
 use crate::common::{self, example};
@@ -28,18 +28,18 @@ fn all(sweep: &Sweep<'_>) -> Rows {
     sweep.rows(0, sweep.len(), &mut Default::default())
 }
 
-fn column<'r>(sweep: &Sweep<'_>, rows: &'r Rows, name: &str) -> &'r Cells {
+fn column<'r>(sweep: &Sweep<'_>, rows: &'r Rows, name: &str) -> &'r ColumnValues {
     let k = sweep.columns().position(|c| c.name == name).unwrap_or_else(|| panic!("no column {name}"));
     &rows.columns[k]
 }
 
 fn numbers<'r>(sweep: &Sweep<'_>, rows: &'r Rows, name: &str) -> &'r [f64] {
-    let Cells::Numbers(all) = column(sweep, rows, name) else { panic!("{name} holds texts") };
+    let ColumnValues::Numbers(all) = column(sweep, rows, name) else { panic!("{name} holds texts") };
     all
 }
 
 fn texts(sweep: &Sweep<'_>, rows: &Rows, name: &str) -> Vec<String> {
-    let Cells::Texts(all) = column(sweep, rows, name) else { panic!("{name} holds numbers") };
+    let ColumnValues::Texts(all) = column(sweep, rows, name) else { panic!("{name} holds numbers") };
     all.iter().map(|t| t.to_string()).collect()
 }
 
@@ -191,11 +191,12 @@ fn compiled_rows_are_the_same_but_for_round_off() {
         let slow = all(&sweep);
         for (k, c) in compiled.columns().enumerate() {
             match &fast.columns[k] {
-                Cells::Texts(own) => {
+                ColumnValues::Integers(_) => panic!("{} counts", c.name),
+                ColumnValues::Texts(own) => {
                     let own: Vec<String> = own.iter().map(|t| t.to_string()).collect();
                     assert_eq!(own, texts(&sweep, &slow, &c.name), "{file} {}", c.name);
                 }
-                Cells::Numbers(own) => {
+                ColumnValues::Numbers(own) => {
                     let size = own.iter().filter(|x| !x.is_nan()).fold(0.0f64, |a, x| a.max(x.abs()));
                     for (i, (a, b)) in own.iter().zip(numbers(&sweep, &slow, &c.name)).enumerate() {
                         let near = (a - b).abs() <= 1e-12 * size || a.is_nan() && b.is_nan();
@@ -213,10 +214,12 @@ fn compiled_rows_are_the_same_but_for_round_off() {
         let pieces = [compiled.rows(0, middle, &mut room), compiled.rows(middle, lean.len(), &mut room)];
         for (k, whole) in fast.columns.iter().enumerate() {
             match (whole, &pieces[0].columns[k], &pieces[1].columns[k]) {
-                (Cells::Numbers(w), Cells::Numbers(a), Cells::Numbers(b)) => {
+                (ColumnValues::Numbers(w), ColumnValues::Numbers(a), ColumnValues::Numbers(b)) => {
                     assert!(w.iter().zip(a.iter().chain(b)).all(|(x, y)| x.to_bits() == y.to_bits()), "{file}");
                 }
-                (Cells::Texts(w), Cells::Texts(a), Cells::Texts(b)) => assert!(w.iter().eq(a.iter().chain(b))),
+                (ColumnValues::Texts(w), ColumnValues::Texts(a), ColumnValues::Texts(b)) => {
+                    assert!(w.iter().eq(a.iter().chain(b)))
+                }
                 _ => panic!("columns change their kind"),
             }
         }
@@ -308,7 +311,7 @@ fn ranked_quantities_are_axes() {
         let subject = subject(&example(file));
         for o in sensitivity(subject.train(), &Selection::default()).unwrap().operations {
             for q in &o.quantities {
-                let unit = if q.unit == "-" { "" } else { q.unit };
+                let unit = if q.unit == "-" { "" } else { &q.unit };
                 axes(&subject, &[&format!("{}={} {unit}", q.name, q.value)]);
             }
         }
@@ -359,6 +362,23 @@ fn axes_take_the_values_that_are_written() {
     assert_eq!(Axis::parse("sun.torque=1..2 Nm:2", &subject).unwrap().column(), "sun.torque_n_m");
     assert_eq!(Axis::parse("sun.power=1..2 MW:2", &subject).unwrap().column(), "sun.power_MW");
     assert_eq!(Axis::parse("oil.viscosity_40=80..120 mm^2/s:2", &subject).unwrap().column(), "oil.viscosity_40_mm_2_s");
+}
+
+/// Work that is stopped at its first piece.
+struct Stopped;
+
+impl willis::work::Work for Stopped {
+    fn cancelled(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn a_sweep_that_is_stopped_says_so() {
+    let model = subject(&example("zf-8hp70"));
+    let request = SweepRequest { over: vec!["state=all".into()], ..SweepRequest::default() };
+    let wrong = willis::study::sweep(&model, &request, &Stopped).unwrap_err();
+    assert!(wrong.is_cancelled(), "{wrong}");
 }
 
 #[test]
@@ -415,7 +435,7 @@ fn val_wang_trends() {
     let run = |name: &str| {
         let sweep = Sweep::of_file(&subject, name).unwrap_or_else(|d| panic!("{name}: {d}"));
         let rows = all(&sweep);
-        assert_eq!(rows.summary.verdicts.get("unique"), Some(&sweep.len()), "{name}");
+        assert_eq!(rows.summary.verdicts.get(&PointVerdict::Unique), Some(&sweep.len()), "{name}");
         let get = |c: &str| numbers(&sweep, &rows, c).to_vec();
         (get("efficiency"), get("loss_w"), get("windage_loss_w"), get("mesh_loss_w"))
     };

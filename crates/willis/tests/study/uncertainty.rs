@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use willis::diagnostic::Diagnostics;
 use willis::model::Model;
 use willis::study::{
-    Design, Distribution, Evaluated, Statistics, Trains, Uncertainty, UncertaintyPlan, UncertaintyRequest,
-    standard_normal_quantile,
+    Design, Distribution, PointVerdict, SampleResult, Statistics, Trains, Uncertainty, UncertaintyPlan,
+    UncertaintyRequest, WarningKind, standard_normal_quantile,
 };
 
 use crate::common::example;
@@ -313,7 +313,7 @@ fn formula_quantiles_of_one_set() {
     let loss = statistics(&u, "loss_w");
     let input = 10.0 * 1000.0 * PI / 30.0;
     assert!((loss.median - input * (1.0 - s.median)).abs() < 1e-6, "{}", loss.median);
-    assert_eq!(u.verdicts["unique"], 1024);
+    assert_eq!(u.verdicts[&PointVerdict::Unique], 1024);
 }
 
 /// Of speed, torque and efficiency, the efficiency answers for the efficiency, and the torque for the loss.
@@ -382,7 +382,7 @@ fn the_same_seed_gives_the_same_bytes_however_it_is_cut() {
     let vary = ["law.mesh_friction=schlenk,niemann", "oil.temperature=60..80 degC", "input.torque=+-5%"];
     let plan = UncertaintyPlan::new(&subject, &request(&vary, 128, 9)).unwrap();
     let whole = plan.evaluate(0..plan.len(), &mut Trains::default());
-    let mut parts = Evaluated::default();
+    let mut parts = SampleResult::default();
     for from in (0..plan.len()).step_by(77) {
         parts.join(plan.evaluate(from..plan.len().min(from + 77), &mut Trains::default()));
     }
@@ -429,10 +429,10 @@ fn a_sample_can_be_computed_again() {
 #[test]
 fn impossible_values_are_counted() {
     let u = found(ONE_SET, &["P1.mesh_efficiency=0.98..1.005"], 256, 1);
-    let refused = u.verdicts["refused"];
+    let refused = u.verdicts[&PointVerdict::Refused];
     assert!((48..=56).contains(&refused), "{refused} of 256: a fifth of them");
     assert!(u.warnings[0].contains("P1.mesh_efficiency = 1.005 is refused"), "{:?}", u.warnings);
-    assert!(u.seen["reason: refused"].message.contains("efficiency"), "{:?}", u.seen);
+    assert!(u.seen[&WarningKind::Reason(PointVerdict::Refused)].message.contains("efficiency"), "{:?}", u.seen);
     assert_eq!(statistics(&u, "efficiency").answered, 256 - refused);
     // Where most of it is impossible, it is no question.
     assert!(refused_text("P1.mesh_efficiency=0.99..1.2").contains("middle of its distribution"));
@@ -452,10 +452,10 @@ fn locked_samples_are_counted() {
     };
     let u = ask(&text, &request).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(u.verdicts.values().sum::<usize>(), 256);
-    let locked = u.verdicts["locked"];
+    let locked = u.verdicts[&PointVerdict::Locked];
     assert!(locked > 64 && locked < 256, "{:?}", u.verdicts);
-    assert_eq!(u.nominal_verdict, "locked");
-    assert!(u.seen.contains_key("reason: locked"), "{:?}", u.seen);
+    assert_eq!(u.nominal_verdict, PointVerdict::Locked);
+    assert!(u.seen.contains_key(&WarningKind::Reason(PointVerdict::Locked)), "{:?}", u.seen);
     assert!(u.output("efficiency").unwrap().statistics.is_none_or(|s| s.answered == 256 - locked));
 }
 
