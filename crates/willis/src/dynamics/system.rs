@@ -21,9 +21,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Link};
-use crate::train::{
-    Curve, Engagement, LossRow, MemberId, MeshId, Scenario, ShiftElementKind, Signal, SourceKind, Train,
-};
+use crate::train::{Curve, Engagement, LossRow, MemberId, Scenario, ShiftElementKind, Signal, SourceKind, Train};
 
 use super::element::{Element, MOST_LOST, Pass, element_name, shares};
 use super::laws::Laws;

@@ -1,8 +1,7 @@
 //! The mode of a step: one that agrees with the speeds at its end.
 
 use crate::dynamics::fused::NOISE;
-use crate::dynamics::mode::{Mode, Pattern, Side, compose, dot, dot_size, slope};
-use crate::dynamics::system::System;
+use crate::dynamics::mode::{Side, dot, dot_size, slope};
 
 use super::FixedStep;
 use super::groups::{GroupStep, LEAST_UNBOUNDED};
