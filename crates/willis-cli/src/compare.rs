@@ -8,6 +8,7 @@ use willis::study::{
 use crate::csv::Writer;
 use crate::cycle::Studied;
 use crate::text::{bold, dim, plural, right, rpm, set_header, show, significant, table, wrap};
+use crate::work::Threads;
 
 /// Results of a state or operation that are shown; the contract has all.
 const MOST_ROWS: usize = 20;
@@ -18,7 +19,7 @@ const MOST_LETTERS: usize = 48;
 pub fn run(files: &[Studied], request: &CompareRequest) -> Result<Comparison, String> {
     let all: Vec<_> = files.iter().map(|f| (f.file.as_str(), &f.model)).collect();
     // A message names its file, or concerns all.
-    willis::study::compare(&all, request).map_err(|wrong| wrong.render("", "", crate::color()))
+    willis::study::compare(&all, request, &Threads::default()).map_err(|wrong| wrong.render("", "", crate::color()))
 }
 
 /// The comparison for eyes.

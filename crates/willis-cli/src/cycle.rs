@@ -1,18 +1,17 @@
 //! `willis cycle`: what a duty cycle or a load spectrum costs.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use willis::Diagnostics;
 use willis::model::Model;
 use willis::study::{
-    Basis, Cycle, CyclePart, CycleReport, Energies, Hold, PointVerdict, Profile, Question, RepeatedMessage, Trains,
-    WorstRow,
+    Basis, Cycle, CycleReport, Energies, Hold, PointVerdict, Profile, Question, RepeatedMessage, WorstRow,
 };
 
 use crate::csv::Writer;
 use crate::text::{bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
-use crate::{input, losses, output, work};
+use crate::work::Threads;
+use crate::{input, losses, output};
 
 /// A train file that is studied, with its text for messages.
 pub struct Studied {
@@ -65,16 +64,11 @@ pub fn run(studied: &Studied, request: &Request<'_>) -> Result<CycleReport, Stri
     let profile = Profile::parse(&text, &studied.model).map_err(|wrong| refused(&wrong, request.profile, &text))?;
     let question = Question::new(&studied.model, request.operation, request.state, Hold::AsGiven)
         .map_err(|wrong| studied.failure(&wrong))?;
-    let cycle = Cycle::new(question, &profile);
-    let parts = compute(&cycle);
-    let points = || parts.iter().flat_map(|p| &p.points);
-    if let Some(first) = points().next().filter(|_| points().all(|p| p.verdict == PointVerdict::Refused)) {
-        return Err(format!("{}: no row of it makes a question: {}\n", request.profile, first.reason));
-    }
+    let answer = Cycle::new(question, &profile).run(&Threads::default()).map_err(|wrong| studied.failure(&wrong))?;
     if let Some(path) = request.rows {
-        write(path, rows(&studied.model, &profile, &parts).as_bytes(), request.force)?;
+        write(path, crate::sweep::csv(&answer.rows).as_bytes(), request.force)?;
     }
-    Ok(cycle.report(&parts))
+    Ok(answer.report)
 }
 
 /// What is wrong with a profile, underlined where the text is not too long to be shown.
@@ -82,56 +76,6 @@ fn refused(wrong: &Diagnostics, file: &str, text: &str) -> String {
     const MOST: usize = 1 << 20;
     let source = if text.len() > MOST { "" } else { text };
     crate::failure(wrong, file, source)
-}
-
-/// All parts, in order, by all cores.
-fn compute(cycle: &Cycle<'_>) -> Vec<CyclePart> {
-    let length = cycle.ranges().next().map_or(1, |(from, to)| to - from);
-    let part = |range: Range<usize>, trains: &mut Trains| cycle.part(range.start, range.end, trains);
-    work::all(cycle.profile().conditions(), length, "conditions", part)
-}
-
-/// One row of the profile a line, with its answer.
-fn rows(model: &Model, profile: &Profile, parts: &[CyclePart]) -> String {
-    let points: Vec<_> = parts.iter().flat_map(|p| &p.points).collect();
-    let mut out = Writer::default();
-    let is_trace = profile.basis() == Basis::Trace;
-    let mut header = vec!["line"];
-    if is_trace {
-        header.push("time_s");
-    }
-    header.push("duration_s");
-    header.extend(profile.columns());
-    header.extend([
-        "in_state",
-        "verdict",
-        "direction",
-        "efficiency",
-        "input_power_w",
-        "output_power_w",
-        "loss_w",
-        "energy_lost_j",
-        "reason",
-    ]);
-    out.row(&header);
-    // What is the same in every row of a condition is written once.
-    let number = |x: f64| if x.is_nan() { String::new() } else { format!("{:?}", x + 0.0) };
-    for row in profile.rows() {
-        let k = row.condition as usize;
-        let p = points[k];
-        let mut all = vec![row.line.to_string()];
-        if is_trace {
-            all.push(number(row.time_s));
-        }
-        all.push(number(row.duration_s));
-        all.extend(profile.cells(k).map(str::to_owned));
-        all.push(p.state.and_then(|s| model.train().states().get(s)).map_or(String::new(), |s| s.name.clone()));
-        all.extend([p.verdict.to_string(), p.way.map_or("", |w| w.name()).to_owned()]);
-        all.extend([p.efficiency, p.input_power_w, p.output_power_w, p.loss_w].map(number));
-        all.extend([number(p.loss_w * row.duration_s), p.reason.to_string()]);
-        out.row(&all);
-    }
-    out.0
 }
 
 /// Units in which a report is easy to read.

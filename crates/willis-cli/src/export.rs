@@ -4,22 +4,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use willis::study::export::{Export, KINDS};
-use willis::units::{Dimension, Quantity};
 
 use crate::output;
 
 /// The formats, one line each.
 pub fn list() -> String {
     KINDS.iter().map(|k| format!("{:<21}{}\n", k.id, k.about)).collect()
-}
-
-/// Values of an option: `500rpm..12000rpm:24`, both ends among the 24, or `500rpm,1000rpm`.
-pub fn axis(option: &str, text: Option<&str>, dimension: Dimension) -> Result<Vec<Quantity>, String> {
-    let Some(text) = text else { return Ok(vec![]) };
-    willis::study::values(text, dimension).map_err(|d| {
-        let hints: Vec<String> = d.hints.iter().map(|h| format!("; {h}")).collect();
-        format!("{option} {}{}\n", d.message, hints.concat())
-    })
 }
 
 /// Writes what came out, or gives it back where no place is named. Notes go to standard error.

@@ -31,7 +31,7 @@ use willis::dynamics::{Method, Options};
 use willis::model::Model;
 use willis::regimes::{Efficiencies, FormulaRequest, LocateRequest, Ratios, RegimeSelection};
 use willis::study::export::ExportRequest;
-use willis::study::{Hold, Sweep, UncertaintyPlan, UncertaintyRequest};
+use willis::study::{Hold, Sweep, UncertaintyRequest};
 use willis::symbolic::Notation;
 use willis::train::Train;
 use willis::units::{self, Dimension, Quantity};
@@ -1065,7 +1065,8 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 Paper::UsLetter => "us-letter",
             };
             let request = draw::report_request(file, job.model.to_toml(), operation.clone(), law);
-            let document = willis_figure::report(&job.model, &request).map_err(|wrong| job.failure(wrong))?;
+            let document = willis_figure::report(&job.model, &request, &willis::work::Serial)
+                .map_err(|wrong| job.failure(wrong))?;
             draw::deliver(&document, paper, output.as_deref())
         }
         Command::Flow { file, operation, format, output, law } => {
@@ -1296,14 +1297,13 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
             force,
         } => {
             let (Some(kind), Some(file)) = (kind, file) else { return Ok(export::list()) };
-            let temperature = values("--temperature", temperature, Dimension::TEMPERATURE)?;
             let request = ExportRequest {
                 state: state.clone(),
                 all_states: *all_states,
                 operation: operation.clone(),
-                speeds: export::axis("--speeds", speeds.as_deref(), Dimension::ANGULAR_SPEED)?,
-                torques: export::axis("--torques", torques.as_deref(), Dimension::TORQUE)?,
-                temperatures: temperature.iter().map(Quantity::si).collect(),
+                speeds: speeds.clone(),
+                torques: torques.clone(),
+                temperatures: (!temperature.is_empty()).then(|| temperature.join(", ")),
             };
             let job = Job::read(file, law)?;
             if let Some(out) = output {
@@ -1328,12 +1328,12 @@ fn run(command: &Command, status: &mut u8) -> Result<String, String> {
                 samples: *samples,
                 seed: *seed,
             };
-            let plan = UncertaintyPlan::new(&job.model, &request).map_err(|wrong| job.failure(wrong))?;
-            let evaluated = uncertainty::evaluate(&plan);
+            let answer = willis::study::uncertainty(&job.model, &request, &work::Threads::default())
+                .map_err(|wrong| job.failure(wrong))?;
             if let Some(target) = &target {
-                uncertainty::write_samples(&target.path, &plan, &evaluated)?;
+                uncertainty::write_samples(&target.path, &answer.samples)?;
             }
-            let found = plan.finish(&evaluated);
+            let found = answer.report;
             Ok(match format {
                 Format::Text => uncertainty::text(&found),
                 Format::Json => serde_json::to_string_pretty(&found).expect("plain data") + "\n",

@@ -20,6 +20,7 @@ use willis::work::Work;
 use crate::{interrupt, work};
 use table::Form;
 
+pub use table::table_csv as csv;
 pub use text::text;
 
 /// What is asked.

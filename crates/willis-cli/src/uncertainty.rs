@@ -5,17 +5,12 @@ use std::path::{Path, PathBuf};
 use comfy_table::CellAlignment;
 use willis::diagnostic::Code;
 use willis::study::{
-    PointVerdict, SampleResult, Trains, UncertainResult, UncertainValue, Uncertainty, UncertaintyPlan, WarningCount,
-    WarningKind,
+    ColumnTable, PointVerdict, UncertainResult, UncertainValue, Uncertainty, WarningCount, WarningKind,
 };
 
 use crate::csv::Writer;
 use crate::losses::bar;
 use crate::text::{bold, dim, right, set_header, show, significant, table, wrap};
-use crate::work;
-
-/// A piece of work has about so many points.
-const PIECE: usize = 64;
 
 /// Where the samples go.
 pub struct SamplesOut {
@@ -42,29 +37,6 @@ impl SamplesOut {
         }
         Ok(())
     }
-}
-
-/// Evaluates every point, on all processors; the result does not depend on how many there are.
-pub fn evaluate(plan: &UncertaintyPlan<'_>) -> SampleResult {
-    let piece = plan.group() * (PIECE / plan.group()).max(1);
-    let parts = work::all(plan.len(), piece, "points", |range, trains: &mut Trains| plan.evaluate(range, trains));
-    let mut all = SampleResult::default();
-    parts.into_iter().for_each(|part| all.join(part));
-    all
-}
-
-/// Every sample as a row.
-pub fn samples_csv(plan: &UncertaintyPlan<'_>, evaluated: &SampleResult) -> String {
-    let mut out = Writer::default();
-    let head = ["sample".to_owned(), "replicate".into()].into_iter();
-    let quantities = plan.quantities().iter().map(|q| q.name.clone());
-    out.row(head.chain(quantities).chain(["verdict".into()]).chain(plan.outputs().iter().map(|c| c.name.clone())));
-    for (k, (point, verdict, values)) in plan.samples(evaluated).enumerate() {
-        let head = [k.to_string(), plan.design().replicate(point).to_string()].into_iter();
-        let values = values.iter().map(|v| if v.is_nan() { String::new() } else { v.to_string() });
-        out.row(head.chain(plan.settings(point)).chain([verdict.to_string()]).chain(values));
-    }
-    out.0
 }
 
 /// How an output is shown: its name, and numbers with as many decimals as its spread deserves.
@@ -427,6 +399,6 @@ pub fn csv(u: &Uncertainty) -> String {
 }
 
 /// Writes the samples, where they are asked for.
-pub fn write_samples(path: &Path, plan: &UncertaintyPlan<'_>, evaluated: &SampleResult) -> Result<(), String> {
-    crate::output::write(path, samples_csv(plan, evaluated).as_bytes())
+pub fn write_samples(path: &Path, samples: &ColumnTable) -> Result<(), String> {
+    crate::output::write(path, crate::sweep::csv(samples).as_bytes())
 }

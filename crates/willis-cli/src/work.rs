@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
-use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -30,10 +30,7 @@ pub fn run<T: Send, S: Default>(
     let next = AtomicUsize::new(0);
     let (send, receive) = channel();
     let bar = std::io::stderr().is_terminal().then(|| {
-        let bar = ProgressBar::with_draw_target(Some(all), ProgressDrawTarget::hidden());
-        let style = "{bar:40} {percent:>3} %  {human_pos} of {human_len} {msg}  {per_sec}  {eta} left";
-        bar.set_message(what);
-        bar.set_style(ProgressStyle::with_template(style).expect("a good template"));
+        let bar = bar(what, all);
         bar.set_position(done);
         bar.reset_eta();
         bar
@@ -83,31 +80,55 @@ pub fn run<T: Send, S: Default>(
     failed.map_or(Ok(left), Err)
 }
 
-/// What `make` gives for every piece, in order, by all cores. The pieces are `length` of `all` things called `what`, the
-/// last one what is left.
-pub fn all<T: Send, S: Default>(
-    all: usize,
-    length: usize,
-    what: &'static str,
-    make: impl Fn(Range<usize>, &mut S) -> T + Sync,
-) -> Vec<T> {
-    let range = |k: u64| k as usize * length..((k as usize + 1) * length).min(all);
-    let pieces: Vec<u64> = (0..all.div_ceil(length) as u64).collect();
-    let (mut done, mut ordered) = (Vec::with_capacity(pieces.len()), InOrder::new(0));
-    let make = |k: u64, own: &mut S| Ok(Some(make(range(k), own)));
-    let counted = (0, all as u64, what);
-    let left = run(
-        &pieces,
-        cores(),
-        counted,
-        |k| range(k).len() as u64,
-        make,
-        |k, made| {
-            ordered.push(k, made, |made| done.push(made));
-        },
-    );
-    assert_eq!(left, Ok(0), "nothing stops this work");
-    done
+/// All cores, with a bar that counts what is done.
+#[derive(Default)]
+pub struct Threads(Mutex<Option<ProgressBar>>);
+
+impl Threads {
+    fn bar(&self) -> MutexGuard<'_, Option<ProgressBar>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl willis::work::Work for Threads {
+    fn begin(&self, what: &'static str, of: u64) {
+        if std::io::stderr().is_terminal() {
+            *self.bar() = Some(bar(what, of));
+        }
+    }
+
+    fn advance(&self, steps: u64) {
+        if let Some(bar) = &*self.bar() {
+            bar.inc(steps);
+            if bar.is_hidden() && bar.elapsed() > PATIENCE {
+                bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(5));
+            }
+        }
+    }
+
+    fn run(&self, parts: usize, job: &(dyn Fn(usize) + Sync)) {
+        let next = AtomicUsize::new(0);
+        std::thread::scope(|scope| {
+            for _ in 0..cores().min(parts) {
+                scope.spawn(|| {
+                    while let Some(part) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|k| *k < parts) {
+                        job(part);
+                    }
+                });
+            }
+        });
+        if let Some(bar) = self.bar().take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+fn bar(what: &'static str, of: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(of), ProgressDrawTarget::hidden());
+    let style = "{bar:40} {percent:>3} %  {human_pos} of {human_len} {msg}  {per_sec}  {eta} left";
+    bar.set_message(what);
+    bar.set_style(ProgressStyle::with_template(style).expect("a good template"));
+    bar
 }
 
 /// Passes results on in the order of their numbers.

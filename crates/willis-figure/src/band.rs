@@ -2,7 +2,7 @@
 
 pub mod draw;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Axis, UncertaintyPlan, UncertaintyRequest};
@@ -33,7 +33,9 @@ const MOST_POINTS: usize = 200_000;
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
 /// Bands in which efficiency and loss lie.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Bands {
     /// The train.
     pub title: String,
@@ -50,7 +52,9 @@ pub struct Bands {
 }
 
 /// The bands at one value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct BandPoint {
     /// [`QUANTILES`] of the efficiency; absent where fewer than half of the samples have an answer.
     pub efficiency: Option<[f64; 5]>,

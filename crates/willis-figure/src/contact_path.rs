@@ -3,7 +3,7 @@
 pub mod film;
 pub mod path;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::analysis::operate;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::operating_point::Regime;
@@ -11,7 +11,9 @@ use willis::train::{Operation, Train};
 use willis::unstable::{self, Along};
 
 /// Load, speeds, film, friction and loss along the paths of contact of an operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ContactPath {
     /// The train.
     pub title: String,
@@ -22,11 +24,11 @@ pub struct ContactPath {
     /// Its temperature, °C.
     pub temperature_celsius: f64,
     /// Law of tooth friction in force.
-    pub friction_law: &'static str,
+    pub friction_law: String,
     /// Whether it gives a coefficient for each place; else one mean value for the mesh.
     pub local: bool,
     /// Law of the film thickness in force.
-    pub film_law: &'static str,
+    pub film_law: String,
     /// Film thickness ratios λ at which mixed and full lubrication begin.
     pub limits: [f64; 2],
     /// Every loaded mesh that was asked for.
@@ -36,7 +38,9 @@ pub struct ContactPath {
 }
 
 /// One of the pairs in parallel of a mesh.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MeshPath {
     /// The mesh.
     pub name: String,
@@ -65,7 +69,9 @@ pub struct MeshPath {
 }
 
 /// A tooth pair at one place.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct PathPoint {
     /// Distance `s` from C along the line of action, mm.
     pub s_mm: f64,
@@ -182,9 +188,9 @@ pub fn contact_path(train: &Train, operation: Option<&str>, mesh: Option<&str>) 
                     operation: operation.name.clone(),
                     oil: lubrication.oil.name.clone(),
                     temperature_celsius: operation.temperature.unwrap_or(lubrication.temperature) - 273.15,
-                    friction_law: train.laws().mesh_friction(true).meta().id,
+                    friction_law: train.laws().mesh_friction(true).meta().id.to_owned(),
                     local: meshes.iter().any(|m| m.1),
-                    film_law: train.laws().film.meta().id,
+                    film_law: train.laws().film.meta().id.to_owned(),
                     limits: Regime::LIMITS,
                     meshes: meshes.into_iter().map(|m| m.0).collect(),
                     left_out,

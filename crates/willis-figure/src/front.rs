@@ -5,7 +5,7 @@ mod layout;
 mod nominal;
 mod profile;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::geometry::Pair;
 use willis::train::{Gear, MemberKind, Train};
@@ -25,7 +25,9 @@ pub(crate) const KIND: Kind<Front> = Kind {
 /// Lengths are in mm, angles in rad, counterclockwise. The axis of the carrier is the origin, the
 /// axis of the first planet stands above it, on the positive y axis. The carrier is at rest: speeds
 /// are relative to it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Front {
     /// The train.
     pub title: String,
@@ -60,7 +62,9 @@ pub struct Front {
 ///
 /// # Source
 /// `[iso21771]`, tooth thickness half angle.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FrontWheel {
     /// The member it sits on.
     pub name: String,
@@ -96,7 +100,9 @@ pub struct FrontWheel {
 }
 
 /// A wheel in its place.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FrontBody {
     /// Its axis, mm.
     pub centre_mm: [f64; 2],
@@ -105,7 +111,9 @@ pub struct FrontBody {
 }
 
 /// A pair of wheels, at the first planet. The first wheel drives.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FrontMesh {
     /// Its name.
     pub name: String,
@@ -137,7 +145,9 @@ pub struct FrontMesh {
 }
 
 /// Wheels that lie in one plane.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FrontPlane {
     /// The wheels.
     pub wheels: Vec<usize>,
@@ -146,7 +156,9 @@ pub struct FrontPlane {
 }
 
 /// How the planets stand around the axis.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FrontSpacing {
     /// How many there are drawn.
     pub planets: u32,

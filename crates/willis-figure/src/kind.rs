@@ -19,6 +19,7 @@ pub(crate) struct Kind<T> {
 
 /// A question of a [`FigureRequest`] or [`Drawing`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Ask {

@@ -14,7 +14,7 @@ pub mod draw;
 mod family;
 mod layout;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::analysis::{AS_DRAWN, OperationReport, SolutionReport, operate};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
@@ -60,7 +60,9 @@ pub enum LeverRequest {
 }
 
 /// The nomograph of a train.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Lever {
     /// The train, and what is shown of it.
     pub title: String,
@@ -80,7 +82,9 @@ pub struct Lever {
 }
 
 /// One motion.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LeverCase {
     /// A small letter.
     pub letter: String,
@@ -97,7 +101,9 @@ pub struct LeverCase {
 }
 
 /// A lever: one set, or several that share two members and so lie on one line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LeverBar {
     /// The sets on it.
     pub sets: Vec<LeverSet>,
@@ -106,7 +112,9 @@ pub struct LeverBar {
 }
 
 /// The forces of one set on its lever.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LeverSet {
     /// Name of the set, or of its meshes.
     pub name: String,
@@ -115,7 +123,8 @@ pub struct LeverSet {
 }
 
 /// What a point of a lever is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum LeverRole {
@@ -132,7 +141,9 @@ pub enum LeverRole {
 }
 
 /// A point of a lever.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LeverNode {
     /// The member.
     pub member: String,
@@ -148,7 +159,9 @@ pub struct LeverNode {
 }
 
 /// A torque on a lever.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LeverPull {
     /// Number of the node.
     pub node: usize,
@@ -164,7 +177,9 @@ pub struct LeverPull {
 }
 
 /// A member that stands on several levers: their points move alike.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LeverLink {
     /// The member.
     pub member: String,

@@ -2,11 +2,11 @@
 
 pub mod draw;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::operating_point::LossKind;
-use willis::study::{Axis, Hold, PointAnswer, Question, Sweep};
+use willis::study::{Axis, Hold, PointAnswer, PointVerdict, Question, Sweep};
 
 use crate::kind::{Ask, Kind};
 use crate::parts::axes::{self, ChartAxis};
@@ -24,7 +24,9 @@ const STEPS: usize = 49;
 const NAMED: usize = 8;
 
 /// Where the power goes, over a quantity and at the operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LossChart {
     /// The train.
     pub title: String,
@@ -35,13 +37,13 @@ pub struct LossChart {
     /// The sources, the largest (by its greatest loss) first; the last may be all others together.
     pub series: Vec<LossSeries>,
     /// What can be said at each value: one of [`PointVerdict`](willis::study::PointVerdict).
-    pub verdicts: Vec<&'static str>,
+    pub verdicts: Vec<PointVerdict>,
     /// Output over input power at each value.
     pub efficiency: Vec<Option<f64>>,
     /// The operating point itself, in the unit of the axis, where it prescribes the quantity that varies.
     pub at: Option<f64>,
     /// What can be said of the operating point: one of [`PointVerdict`](willis::study::PointVerdict).
-    pub verdict: &'static str,
+    pub verdict: PointVerdict,
     /// Input power of the operating point, W; absent where it has no single answer.
     pub input_power_w: Option<f64>,
     /// All losses of the operating point, W.
@@ -49,7 +51,9 @@ pub struct LossChart {
 }
 
 /// The losses of a source.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LossSeries {
     /// The source, as the losses name it; `others` for all that are too small to be told.
     pub name: String,
@@ -183,10 +187,10 @@ pub fn loss_chart(
         basis,
         x: axis,
         series: all,
-        verdicts: answers.iter().map(|a| a.verdict.name()).collect(),
+        verdicts: answers.iter().map(|a| a.verdict).collect(),
         efficiency: answers.iter().map(|a| Some(a.efficiency()).filter(|e| e.is_finite())).collect(),
         at,
-        verdict: own.verdict.name(),
+        verdict: own.verdict,
         input_power_w: own.solution.as_ref().filter(|_| here.is_some()).map(|s| s.input_power_w),
         loss_w: own.solution.as_ref().filter(|_| here.is_some()).map(|s| s.loss_w),
     })

@@ -2,11 +2,11 @@
 
 pub mod draw;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::analysis::{self, Selection};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
-use willis::study::{Axis, Hold, PointAnswer, Question, Sweep};
+use willis::study::{Axis, Hold, PointAnswer, PointVerdict, Question, Sweep};
 use willis::train::{Load, MemberId, Operation};
 
 use crate::kind::{Ask, Kind};
@@ -28,7 +28,9 @@ const FINER: usize = 2;
 const MOST_POINTS: u64 = 100_000;
 
 /// An efficiency map.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct EfficiencyMap {
     /// The train.
     pub title: String,
@@ -47,10 +49,12 @@ pub struct EfficiencyMap {
 }
 
 /// A point of a map.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MapPoint {
     /// One of [`PointVerdict`](willis::study::PointVerdict); `beyond` where no state stays within the limits of the input.
-    pub verdict: &'static str,
+    pub verdict: MapVerdict,
     /// Output over input power.
     pub efficiency: Option<f64>,
     /// Power in, W.
@@ -62,7 +66,9 @@ pub struct MapPoint {
 }
 
 /// An operation of the file in a map.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MapMark {
     /// Its name.
     pub operation: String,
@@ -70,11 +76,24 @@ pub struct MapMark {
     pub at: [f64; 2],
 }
 
+/// What can be said of a place on a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum MapVerdict {
+    /// Of the states of the train none reaches it.
+    Beyond,
+    /// The verdict on the operating point there.
+    #[serde(untagged)]
+    Point(PointVerdict),
+}
+
 impl MapPoint {
     fn of(answer: &PointAnswer) -> Self {
         let s = answer.solution.as_ref().filter(|_| answer.is_unique());
         Self {
-            verdict: answer.verdict.name(),
+            verdict: MapVerdict::Point(answer.verdict),
             efficiency: s.and_then(|s| s.efficiency),
             input_power_w: s.map(|s| s.input_power_w),
             loss_w: s.map(|s| s.loss_w),
@@ -247,8 +266,13 @@ fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnost
     let count = names.len() as u64;
     let points: Vec<MapPoint> = (0..sweep.len() / count)
         .map(|p| {
-            let mut best =
-                MapPoint { verdict: "beyond", efficiency: None, input_power_w: None, loss_w: None, best: None };
+            let mut best = MapPoint {
+                verdict: MapVerdict::Beyond,
+                efficiency: None,
+                input_power_w: None,
+                loss_w: None,
+                best: None,
+            };
             for k in 0..count {
                 let answer = sweep.answer(p * count + k, &mut trains);
                 let Some(m) = answer.solution.as_ref().and_then(|s| s.members.get(input_name)) else { continue };

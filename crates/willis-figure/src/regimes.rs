@@ -2,7 +2,7 @@
 
 pub mod draw;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::regimes::{Atlas, RegimeReport, RegimeSelection, RegionReport};
 use willis::train::Train;
@@ -25,7 +25,9 @@ pub(crate) const KIND: Kind<RegimeMap> = Kind {
 /// Angles are in degrees, counterclockwise from the direction of the first base speed, *as drawn*:
 /// a narrow sector is widened, so that it can be read, and the others shrink. Opposite directions
 /// stay opposite.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct RegimeMap {
     /// The train, and its state.
     pub title: String,
@@ -52,20 +54,24 @@ pub struct RegimeMap {
 }
 
 /// An assignment of inputs and outputs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MapPattern {
     /// A capital letter.
     pub letter: String,
     /// `engine, mg1 -> ring`.
     pub label: String,
-    /// Smallest and largest efficiency in the map.
-    pub efficiency: [f64; 2],
+    /// Smallest and largest efficiency in the map; absent where no regime of it is drawn.
+    pub efficiency: Option<[f64; 2]>,
     /// No output: all power turns into heat.
     pub dissipated: bool,
 }
 
 /// A region of speed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MapSector {
     /// Number of the region.
     pub region: usize,
@@ -80,7 +86,9 @@ pub struct MapSector {
 }
 
 /// A regime.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MapCell {
     /// Its name.
     pub regime: String,
@@ -95,7 +103,9 @@ pub struct MapCell {
 }
 
 /// A line between sectors, on both sides of the centre.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MapBoundary {
     /// A small letter.
     pub letter: String,
@@ -113,7 +123,9 @@ pub struct MapBoundary {
 }
 
 /// Efficiency of one ring over one sector.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Curve {
     /// The regime.
     pub regime: String,
@@ -196,12 +208,7 @@ pub fn regime_map(train: &Train, selection: &RegimeSelection) -> Result<RegimeMa
         let letter = char::from(b'A' + (patterns.len() % 26) as u8).to_string();
         patterns.push((
             plane.power_signs(r).to_vec(),
-            MapPattern {
-                letter,
-                label: arrow(&a.inputs, &a.outputs),
-                efficiency: [f64::INFINITY, f64::NEG_INFINITY],
-                dissipated: r.all_dissipated,
-            },
+            MapPattern { letter, label: arrow(&a.inputs, &a.outputs), efficiency: None, dissipated: r.all_dissipated },
         ));
     }
     let mut sectors = Vec::new();
@@ -217,7 +224,8 @@ pub fn regime_map(train: &Train, selection: &RegimeSelection) -> Result<RegimeMa
                 let efficiency = along(&plane, region, r, rays[k]);
                 let range = &mut patterns[pattern].1.efficiency;
                 for e in &efficiency {
-                    *range = [range[0].min(*e), range[1].max(*e)];
+                    let [least, most] = range.unwrap_or([*e; 2]);
+                    *range = Some([least.min(*e), most.max(*e)]);
                 }
                 let middle = from[k] + drawn[k] / 2.0;
                 if !(upright..upright + 180.0).contains(&middle) {

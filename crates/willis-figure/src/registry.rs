@@ -19,7 +19,8 @@ macro_rules! kinds {
         }
 
         /// A figure of any kind, as data.
-        #[derive(Clone, Debug, PartialEq, Serialize)]
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
         #[serde(tag = "figure")]
         #[non_exhaustive]
         pub enum Figure {

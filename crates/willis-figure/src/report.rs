@@ -7,12 +7,17 @@ mod laws;
 mod results;
 mod scheme;
 
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
 use willis::Diagnostics;
 use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
-use willis::diagnostic::Severity;
+use willis::contract;
+use willis::diagnostic::{Code, Severity};
 use willis::hypergraph::watts;
 use willis::model::Model;
 use willis::study::{Sensitivity, sensitivity};
+use willis::work::{self, Cancelled, Work};
 
 use crate::report::document::{Block, Column, Document, Level, Section};
 use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
@@ -44,36 +49,87 @@ struct Findings<'a> {
     figures: Figures,
 }
 
-/// Pictures by what they show, in the order in which they were asked for.
+/// A picture that was asked for: its kind, and what it is of where there are several.
+struct Made {
+    kind: FigureKind,
+    of: Option<String>,
+    picture: Picture,
+}
+
+/// What became of a picture.
+enum Picture {
+    /// It is there, as SVG.
+    Drawn(String),
+    /// The train has nothing of its kind, or it would say no more than a sentence.
+    Nothing,
+    /// It could not be made, for this reason.
+    Failed(String),
+}
+
+/// The pictures of a report.
 #[derive(Default)]
-struct Figures(Vec<(FigureKind, Option<String>, String)>);
+struct Figures(Vec<Made>);
 
 impl Figures {
-    /// Makes what applies, on all cores.
-    fn make(model: &Model, wanted: &[(FigureKind, FigureRequest)]) -> Self {
-        let one = |(kind, request): &(FigureKind, FigureRequest)| {
-            let figure = kind.make(model, request).ok().filter(worth_showing)?;
-            let picture = draw(&figure, Drawing::default());
+    /// Makes what is wanted. One that fails, or even panics, takes nothing else with it.
+    fn make(
+        work: &dyn Work,
+        wanted: &[(FigureKind, FigureRequest)],
+        make: impl Fn(FigureKind, &FigureRequest) -> Result<Figure, Diagnostics> + Sync,
+    ) -> Result<Self, Cancelled> {
+        work.begin("pictures", wanted.len() as u64);
+        let one = |k: usize| {
+            let (kind, request) = &wanted[k];
+            let drawn = || {
+                let figure = make(*kind, request)?;
+                Ok(worth_showing(&figure).then(|| draw(&figure, Drawing::default())))
+            };
+            // Nothing outlives a panic that it could have left half done.
+            let picture = match catch_unwind(AssertUnwindSafe(drawn)) {
+                Ok(Ok(Some(svg))) => Picture::Drawn(svg),
+                Ok(Ok(None)) => Picture::Nothing,
+                Ok(Err(wrong)) => Picture::of(&wrong),
+                Err(panic) => Picture::Failed(format!("a fault of the program: {}", last_words(&*panic))),
+            };
+            work.advance(1);
             // Of some kinds there is one for every set or operation.
             let of = match kind {
                 FigureKind::Front => request.part.clone(),
                 FigureKind::Sankey | FigureKind::Lever => request.operation.clone(),
                 _ => None,
             };
-            Some((*kind, of, picture))
+            Made { kind: *kind, of, picture }
         };
-        let all = std::thread::scope(|scope| {
-            let running: Vec<_> = wanted.iter().map(|w| scope.spawn(move || one(w))).collect();
-            running.into_iter().filter_map(|t| t.join().ok().flatten()).collect()
-        });
-        Self(all)
+        Ok(Self(work::map(work, wanted.len(), one)?))
     }
 
-    /// The picture of a kind, as a block; what it is of, where there are several.
+    /// The picture of a kind, as a block, or that it failed; what it is of, where there are several.
     fn block(&self, kind: FigureKind, of: Option<&str>, caption: &str) -> Option<Block> {
-        let (_, _, svg) = self.0.iter().find(|f| f.0 == kind && f.1.as_deref() == of)?;
-        Some(Block::Figure { caption: caption.to_owned(), svg: svg.clone() })
+        let made = self.0.iter().find(|f| f.kind == kind && f.of.as_deref() == of)?;
+        match &made.picture {
+            Picture::Drawn(svg) => Some(Block::Figure { caption: caption.to_owned(), svg: svg.clone() }),
+            Picture::Nothing => None,
+            Picture::Failed(why) => {
+                let text = format!("{caption}: this picture could not be made. {why}");
+                Some(Block::Notice { level: Level::Warning, text })
+            }
+        }
     }
+}
+
+impl Picture {
+    /// What a refusal means: a kind that does not fit the train is nothing to tell in a report.
+    fn of(wrong: &Diagnostics) -> Self {
+        let errors = wrong.iter().filter(|d| d.severity == Severity::Error);
+        let why: Vec<&str> = errors.filter(|d| d.code != Code::Unfit).map(|d| d.message.as_str()).collect();
+        if why.is_empty() { Self::Nothing } else { Self::Failed(why.join("; ")) }
+    }
+}
+
+/// What a panic says of itself.
+fn last_words(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason is known")
 }
 
 /// Whether a figure says more than a sentence would.
@@ -86,14 +142,15 @@ fn worth_showing(figure: &Figure) -> bool {
     }
 }
 
-/// Writes the report of a train.
+/// Writes the report of a train. A picture that fails is named in its place, with the reason.
 ///
 /// # Errors
-/// What [`analyze`] says.
+/// What [`analyze`] says; the work was cancelled.
 ///
 /// # Example
 /// ```
 /// use willis::model::Model;
+/// use willis::work::Serial;
 /// use willis_figure::{ReportRequest, html, report};
 ///
 /// let text = r#"
@@ -117,12 +174,13 @@ fn worth_showing(figure: &Figure) -> bool {
 /// assert!(html(&document).contains("98.607 %"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn report(model: &Model, request: &ReportRequest) -> Result<Document, Diagnostics> {
+pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result<Document, Diagnostics> {
     let train = model.train();
     let selection = Selection { state: None, operation: request.operation.clone() };
     let analysis = analyze(train, &selection)?;
     let sensitivity = sensitivity(train, &selection).ok();
-    let figures = Figures::make(model, &wanted(model, request, &analysis));
+    let wanted = wanted(model, request, &analysis);
+    let figures = Figures::make(work, &wanted, |kind, request| kind.make(model, request))?;
     let all = Findings { model, request, analysis, sensitivity, figures };
     let sections = [
         Some(summary(&all)),
@@ -138,7 +196,7 @@ pub fn report(model: &Model, request: &ReportRequest) -> Result<Document, Diagno
         Some(laws::again(&all)),
     ];
     Ok(Document {
-        format: Document::FORMAT.to_owned(),
+        format: Default::default(),
         title: train.name().to_owned(),
         subtitle: "Gear train report".to_owned(),
         facts: facts(&all),
@@ -263,7 +321,7 @@ fn summary(all: &Findings<'_>) -> Section {
             "At {} the quantity that matters most is {}: a step of {} changes the losses by {} W.",
             first.name,
             q.name,
-            q.step.label().trim_start_matches('+'),
+            q.step.size(),
             results::signed(q.loss_change_w)
         );
         blocks.push(Block::Text { text });
@@ -286,4 +344,49 @@ fn notice(o: &OperationReport) -> Block {
         text += &format!(". {reason}");
     }
     Block::Notice { level, text }
+}
+
+#[cfg(test)]
+mod tests {
+    use willis::diagnostic::Diagnostic;
+    use willis::work::Serial;
+
+    use super::*;
+
+    #[test]
+    fn a_picture_that_fails_is_named_with_its_reason_and_the_others_stand() {
+        let wanted = [FigureKind::Map, FigureKind::Band, FigureKind::Time, FigureKind::Shift, FigureKind::Regimes]
+            .map(|kind| (kind, FigureRequest::default()));
+        let train = Model::from_toml(
+            r#"
+            format = 1
+            name = "one set"
+            members = ["s", "c"]
+            terminals = ["s", "c"]
+            [[set]]
+            name = "P1"
+            sun = { member = "s", teeth = 30 }
+            ring = { member = "frame", teeth = 70 }
+            carrier = "c"
+            "#,
+        )
+        .expect("a good train");
+        let figures = Figures::make(&Serial, &wanted, |kind, _| match kind {
+            FigureKind::Map => panic!("index {} out of bounds", 7),
+            FigureKind::Band => Err(Diagnostic::new(Code::BadAxis, "", "too many points").into()),
+            FigureKind::Time => Err(Diagnostic::new(Code::Unfit, "", "there is no scenario").into()),
+            _ => FigureKind::Stick.make(&train, &FigureRequest::default()),
+        })
+        .expect("nobody cancels");
+        let said = |kind| figures.block(kind, None, "The caption");
+        let failed = |why: &str| {
+            let text = format!("The caption: this picture could not be made. {why}");
+            Some(Block::Notice { level: Level::Warning, text })
+        };
+        assert_eq!(said(FigureKind::Map), failed("a fault of the program: index 7 out of bounds"));
+        assert_eq!(said(FigureKind::Band), failed("too many points"));
+        assert_eq!(said(FigureKind::Time), None);
+        assert!(matches!(said(FigureKind::Shift), Some(Block::Figure { .. })));
+        assert!(matches!(said(FigureKind::Regimes), Some(Block::Figure { .. })));
+    }
 }

@@ -13,7 +13,7 @@
 pub mod draw;
 mod layers;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::analysis::Verdict;
 use willis::hypergraph::{FlowReport, Hypergraph, Node, NodeKind};
 
@@ -31,7 +31,9 @@ pub(crate) const KIND: Kind<Sankey> = Kind {
 const SMALL_LOSS: f64 = 0.01;
 
 /// The power flows of a train, one panel for each equilibrium.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Sankey {
     /// Name of the train.
     pub train: String,
@@ -40,7 +42,9 @@ pub struct Sankey {
 }
 
 /// One equilibrium, or why there is none.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SankeyPanel {
     /// The operation, its state, and which of several solutions.
     pub title: String,
@@ -53,7 +57,9 @@ pub struct SankeyPanel {
 /// The flow of one equilibrium in layers.
 ///
 /// At every node `Σ links in + input = Σ links out + output + Σ losses` up to round-off.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SankeyFlow {
     /// Power in, W.
     pub input_w: f64,
@@ -74,7 +80,9 @@ pub struct SankeyFlow {
 }
 
 /// A component, a tooth contact, a shift element, or an end.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SankeyNode {
     /// Its identifier in the hypergraph.
     pub id: String,
@@ -101,7 +109,9 @@ pub struct SankeyNode {
 }
 
 /// Power that turns into heat.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SankeyLoss {
     /// What loses it: teeth, bearings, seals, gears or rotors in their fluid.
     pub kind: NodeKind,
@@ -114,7 +124,9 @@ pub struct SankeyLoss {
 }
 
 /// Power from one node to another.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SankeyLink {
     /// Index of the node that the power leaves, at its right side.
     pub from: usize,

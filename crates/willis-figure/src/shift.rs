@@ -3,7 +3,7 @@
 
 pub mod draw;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::analysis::{Direction, Selection, StateReport, Verdict, analyze};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
@@ -16,7 +16,9 @@ pub(crate) const KIND: Kind<ShiftTable> =
     Kind { title: "Shift table", takes: &[], make: |s, _| shift(s.train()), draw: |data, _| draw::draw(data) };
 
 /// A shift table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ShiftTable {
     /// The train.
     pub title: String,
@@ -33,7 +35,9 @@ pub struct ShiftTable {
 }
 
 /// A shift element.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ShiftColumn {
     /// Its name.
     pub name: String,
@@ -42,7 +46,9 @@ pub struct ShiftColumn {
 }
 
 /// A state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ShiftRow {
     /// Its name.
     pub state: String,
@@ -63,7 +69,9 @@ pub struct ShiftRow {
 }
 
 /// Efficiency of a state in one direction.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ShiftEfficiency {
     /// Output over input power, where that is one number.
     pub value: Option<f64>,
@@ -72,7 +80,9 @@ pub struct ShiftEfficiency {
 }
 
 /// From one state to the next.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ShiftChange {
     /// Elements that open.
     pub opens: Vec<String>,
@@ -85,7 +95,9 @@ pub struct ShiftChange {
 }
 
 /// Largest over smallest ratio.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ShiftSpread {
     /// The quotient.
     pub value: f64,

@@ -17,7 +17,7 @@ mod load;
 mod members;
 mod shapes;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::train::Train;
 
@@ -34,7 +34,9 @@ pub(crate) const KIND: Kind<Stick> = Kind {
 pub type Place = [f64; 2];
 
 /// The schematic of a train, perhaps in a state of its shift table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Stick {
     /// Name of the train.
     pub title: String,
@@ -69,7 +71,9 @@ pub struct Stick {
 }
 
 /// Planets on one carrier with their gears, or one ordinary pair.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StickBlock {
     /// Name of the set, or of the first mesh.
     pub name: String,
@@ -80,7 +84,9 @@ pub struct StickBlock {
 }
 
 /// A member and its lines.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StickMember {
     /// Its name.
     pub name: String,
@@ -102,7 +108,9 @@ pub struct StickMember {
 }
 
 /// A line of a member, between two of its branches or ends.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StickPiece {
     /// Corners, the ends included.
     pub points: Vec<Place>,
@@ -111,7 +119,8 @@ pub struct StickPiece {
 }
 
 /// What a gear is in its block.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum GearRole {
@@ -128,7 +137,9 @@ pub enum GearRole {
 }
 
 /// A gear: its body and the lines of its teeth.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StickGear {
     /// Position in [`Stick::members`]; absent for the frame.
     pub member: Option<usize>,
@@ -147,7 +158,9 @@ pub struct StickGear {
 }
 
 /// A tooth contact.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StickMesh {
     /// Its name.
     pub name: String,
@@ -160,7 +173,8 @@ pub struct StickMesh {
 }
 
 /// What joins two members, or a member and the frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum JointKind {
@@ -175,7 +189,9 @@ pub enum JointKind {
 }
 
 /// A shift element, or an elastic shaft.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StickJoint {
     /// Its name.
     pub name: String,
@@ -192,7 +208,9 @@ pub struct StickJoint {
 }
 
 /// A mark of the frame.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StickGround {
     /// Where the frame begins.
     pub at: Place,
@@ -201,8 +219,10 @@ pub struct StickGround {
 }
 
 /// Direction of power at a terminal, driving.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Way {
     /// Power enters.
     In,
@@ -211,7 +231,9 @@ pub enum Way {
 }
 
 /// The end of a member at the border.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StickTerminal {
     /// The member.
     pub member: usize,

@@ -4,9 +4,11 @@ pub mod draw;
 
 use std::ops::ControlFlow;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::dynamics::{Column, ColumnKind, Event, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, simulate};
+use willis::dynamics::{
+    Column, ColumnKind, ColumnUnit, Event, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, simulate,
+};
 use willis::train::{MemberKind, Train};
 
 use crate::kind::{Ask, Kind};
@@ -47,7 +49,9 @@ fn scenario(train: &Train, name: Option<&str>) -> Result<TimePlot, Diagnostics> 
 }
 
 /// A run over time.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TimePlot {
     /// The train.
     pub train: String,
@@ -74,12 +78,14 @@ pub struct TimePlot {
 }
 
 /// Curves that share an axis.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TimePanel {
-    /// `Speed`
-    pub quantity: &'static str,
+    /// Its heading: `Speed`.
+    pub quantity: String,
     /// SI.
-    pub unit: &'static str,
+    pub unit: ColumnUnit,
     /// The curves, in the order of the columns.
     pub lines: Vec<TimeLine>,
     /// Curves that found no place: those with the smallest values.
@@ -87,7 +93,9 @@ pub struct TimePanel {
 }
 
 /// A curve.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TimeLine {
     /// Whose it is; several names where they agree throughout.
     pub names: Vec<String>,
@@ -97,7 +105,9 @@ pub struct TimeLine {
 }
 
 /// The modes of one element.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ModeRow {
     /// The element.
     pub element: String,
@@ -106,7 +116,9 @@ pub struct ModeRow {
 }
 
 /// A time in one mode.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ModeSegment {
     /// s
     pub from: f64,
@@ -117,7 +129,9 @@ pub struct ModeSegment {
 }
 
 /// A change of mode.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TimeMark {
     /// s
     pub time: f64,
@@ -204,7 +218,7 @@ impl TimePlotBuilder {
             if reached > start && reached - start < 0.2 * (end - start) { [start, reached] } else { [start, end] };
         let panels = KINDS.iter().filter_map(|(kind, quantity)| {
             let own: Vec<_> = self.curves.iter().filter(|(_, c, _)| c.kind == *kind).collect();
-            panel(quantity, own.first()?.1.unit.symbol(), own.iter().map(|(_, c, d)| (label(c), d.pieces())))
+            panel(quantity, own.first()?.1.unit, own.iter().map(|(_, c, d)| (label(c), d.pieces())))
         });
         let panels = panels.collect();
         let mut modes: Vec<_> = self
@@ -246,8 +260,8 @@ fn label(c: &Column) -> String {
 }
 
 fn panel(
-    quantity: &'static str,
-    unit: &'static str,
+    quantity: &str,
+    unit: ColumnUnit,
     curves: impl Iterator<Item = (String, Vec<Vec<[f64; 2]>>)>,
 ) -> Option<TimePanel> {
     let mut lines: Vec<TimeLine> = Vec::new();
@@ -273,7 +287,7 @@ fn panel(
             stays
         });
     }
-    (all > 0).then(|| TimePanel { quantity, unit, left_out: all - lines.len(), lines })
+    (all > 0).then(|| TimePanel { quantity: quantity.to_owned(), unit, left_out: all - lines.len(), lines })
 }
 
 /// Whether two curves are one to the eye and to any reader of numbers.

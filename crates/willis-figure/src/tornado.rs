@@ -2,7 +2,7 @@
 
 pub mod draw;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Sensitivity, StepKind, sensitivity};
@@ -27,7 +27,9 @@ fn ranking(model: &Model, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
 }
 
 /// Quantities of an operating point, ranked by what a small step of each does.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Tornado {
     /// The train, the operation and its state.
     pub title: String,
@@ -44,7 +46,9 @@ pub struct Tornado {
 }
 
 /// What one quantity does. Small steps down do the opposite of steps up.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TornadoBar {
     /// Its path, as the file has it.
     pub name: String,

@@ -29,7 +29,7 @@ pub use compare::{
 };
 pub use compiled::{CompiledSweep, SweepWorkspace};
 pub use cycle::{
-    Cycle, CyclePart, CyclePoint, CycleReport, Energies, EnergyKind, PowerDirection, RepeatedMessage, SourceEnergy,
+    Cycle, CycleAnswer, CycleReport, CycleRequest, Energies, EnergyKind, PowerDirection, RepeatedMessage, SourceEnergy,
     TerminalEnergy, VerdictTime, Worst, WorstRow, cycle,
 };
 pub(crate) use design::quantile;
@@ -47,5 +47,5 @@ pub use sweep::{
 };
 pub use uncertainty::{
     ChoiceResult, Influence, SampleResult, Uncertain, UncertainQuantity, UncertainResult, UncertainValue, Uncertainty,
-    UncertaintyPlan, UncertaintyRequest,
+    UncertaintyAnswer, UncertaintyPlan, UncertaintyRequest, uncertainty,
 };

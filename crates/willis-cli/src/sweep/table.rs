@@ -16,7 +16,7 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPrope
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
-use willis::study::{ColumnValues, Rows, SweepColumn};
+use willis::study::{ColumnTable, ColumnValues, Rows, SweepColumn};
 
 /// What a table is written as, by the end of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,7 +48,7 @@ impl Form {
     /// Rows as a piece of the table.
     pub fn encode(self, columns: &[SweepColumn], rows: &Rows) -> Result<Vec<u8>, String> {
         match self {
-            Self::Csv => Ok(csv(rows).into_bytes()),
+            Self::Csv => Ok(csv(&rows.columns).into_bytes()),
             Self::JsonLines => Ok(json_lines(columns, rows).into_bytes()),
             Self::Parquet => parquet(columns, rows).map_err(words),
         }
@@ -96,11 +96,19 @@ fn number(out: &mut String, v: f64) {
     }
 }
 
-fn csv(rows: &Rows) -> String {
-    let n = rows.len();
-    let mut out = String::with_capacity(n * rows.columns.len() * 12);
+/// A table as CSV.
+pub fn table_csv(table: &ColumnTable) -> String {
+    let mut header = crate::csv::Writer::default();
+    header.row(table.columns.iter().map(|c| &c.name));
+    header.0 + &csv(&table.values)
+}
+
+/// Rows of values, without a header.
+fn csv(columns: &[ColumnValues]) -> String {
+    let n = columns.first().map_or(0, ColumnValues::len);
+    let mut out = String::with_capacity(n * columns.len() * 12);
     for i in 0..n {
-        for (k, cells) in rows.columns.iter().enumerate() {
+        for (k, cells) in columns.iter().enumerate() {
             if k > 0 {
                 out.push(',');
             }

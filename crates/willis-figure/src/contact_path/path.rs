@@ -34,17 +34,20 @@ type Curve = (fn(&PathPoint) -> Option<f64>, bool);
 struct Row {
     title: &'static str,
     curves: &'static [Curve],
+    /// Whether the area under it means something: that is filled.
+    area: bool,
 }
 
 const ROWS: [Row; 5] = [
-    Row { title: "line load, N/mm", curves: &[(|p| Some(p.line_load_n_per_m / 1e3), false)] },
+    Row { title: "line load, N/mm", curves: &[(|p| Some(p.line_load_n_per_m / 1e3), false)], area: false },
     Row {
         title: "sliding speed (solid), rolling speed (dashed), m/s",
         curves: &[(|p| Some(p.sliding_m_s), false), (|p| Some(p.sum_speed_m_s / 2.0), true)],
+        area: false,
     },
-    Row { title: "film thickness, µm", curves: &[(|p| p.film_m.map(|h| h * 1e6), false)] },
-    Row { title: "coefficient of friction", curves: &[(|p| p.friction, false)] },
-    Row { title: "local power loss of one tooth pair, W", curves: &[(|p| p.loss_w, false)] },
+    Row { title: "film thickness, µm", curves: &[(|p| p.film_m.map(|h| h * 1e6), false)], area: false },
+    Row { title: "coefficient of friction", curves: &[(|p| p.friction, false)], area: false },
+    Row { title: "local power loss of one tooth pair, W", curves: &[(|p| p.loss_w, false)], area: true },
 ];
 
 /// Load, speeds, film, friction and loss of a tooth pair along the path of contact: a column for
@@ -248,7 +251,7 @@ fn panel(
                 continue;
             }
             drawn = true;
-            if row.title.contains("loss") {
+            if row.area {
                 let d = format!(
                     "M{} {} L{} L{} {}Z",
                     number(x(first.s_mm)),

@@ -3,6 +3,7 @@
 use svg::node::element::Group;
 use willis::hypergraph::watts;
 use willis::operating_point::LossKind;
+use willis::study::PointVerdict;
 
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
@@ -49,7 +50,7 @@ fn words(chart: &LossChart) -> String {
         }
         _ => out += &format!("The operating point itself is {}. ", chart.verdict),
     }
-    let missing = chart.verdicts.iter().filter(|v| **v != "unique").count();
+    let missing = chart.verdicts.iter().filter(|v| **v != PointVerdict::Unique).count();
     if missing > 0 {
         out += &format!("{missing} of {} values have no single answer.", chart.verdicts.len());
     }
@@ -102,7 +103,7 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
         layers.push((below, total.clone()));
     }
     // Where nothing is known, nothing is stacked.
-    let known = |k: usize| chart.verdicts[k] == "unique";
+    let known = |k: usize| chart.verdicts[k] == PointVerdict::Unique;
     let most = (0..count).filter(|k| known(*k)).filter_map(|k| total[k]).fold(0.0f64, f64::max);
     let (size, unit) = unit(most);
     let values = [0.0, if most > 0.0 { most * 1.06 / size } else { 1.0 }];
@@ -155,7 +156,7 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
     if let Some(k) = (0..count).find(|k| !known(*k)) {
         let run = (k..count).take_while(|j| !known(*j)).count();
         let x = (axes.x(chart.x.values[k]) + axes.x(chart.x.values[k + run - 1])) / 2.0;
-        let word = chart.verdicts[k];
+        let word = chart.verdicts[k].name();
         let half = wide(word, 11.0) / 2.0 + 3.0;
         let x = x.clamp(LEFT + half, RIGHT - half);
         g = g.add(text(x, (axes.top + axes.bottom) / 2.0, 11.0, Anchor::Middle, word).set("fill", FAINT));

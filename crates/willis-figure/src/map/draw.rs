@@ -6,12 +6,13 @@ use contour::ContourBuilder;
 use svg::Node as _;
 use svg::node::element::{ClipPath, Definitions, Group, Path};
 use willis::hypergraph::watts;
+use willis::study::PointVerdict;
 
-use crate::EfficiencyMap;
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
+use crate::{EfficiencyMap, MapVerdict};
 
 const WIDTH: f64 = 940.0;
 const LEFT: f64 = 92.0;
@@ -97,9 +98,9 @@ fn percent(x: f64) -> String {
 }
 
 /// Verdicts other than `unique` that occur, and how often.
-fn verdicts(map: &EfficiencyMap) -> Vec<(&'static str, usize)> {
-    let mut all: Vec<(&'static str, usize)> = vec![];
-    for p in map.points.iter().filter(|p| p.verdict != "unique") {
+fn verdicts(map: &EfficiencyMap) -> Vec<(MapVerdict, usize)> {
+    let mut all: Vec<(MapVerdict, usize)> = vec![];
+    for p in map.points.iter().filter(|p| p.verdict != UNIQUE) {
         match all.iter_mut().find(|v| v.0 == p.verdict) {
             Some(v) => v.1 += 1,
             None => all.push((p.verdict, 1)),
@@ -108,14 +109,16 @@ fn verdicts(map: &EfficiencyMap) -> Vec<(&'static str, usize)> {
     all
 }
 
-fn says(verdict: &str) -> &str {
+const UNIQUE: MapVerdict = MapVerdict::Point(PointVerdict::Unique);
+
+fn says(verdict: MapVerdict) -> &'static str {
     match verdict {
-        "locked" => "locked",
-        "multiple" => "several solutions",
-        "unloaded" => "no load",
-        "undetermined" => "not determined",
-        "beyond" => "beyond every state",
-        _ => "no question there",
+        MapVerdict::Point(PointVerdict::Locked) => "locked",
+        MapVerdict::Point(PointVerdict::Multiple) => "several solutions",
+        MapVerdict::Point(PointVerdict::Unloaded) => "no load",
+        MapVerdict::Point(PointVerdict::Undetermined) => "not determined",
+        MapVerdict::Beyond => "beyond every state",
+        MapVerdict::Point(_) => "no question there",
     }
 }
 
@@ -380,7 +383,7 @@ fn runs<T: Copy + PartialEq>(
 /// Cells around points without a single answer.
 fn hatching(map: &EfficiencyMap, chart: &Chart) -> Group {
     let (mut paper, mut hatch) = (Group::new(), Group::new());
-    let verdict = |k: usize| Some(map.points[k].verdict).filter(|v| *v != "unique");
+    let verdict = |k: usize| Some(map.points[k].verdict).filter(|v| *v != UNIQUE);
     runs(map, chart, &verdict, &mut |[x0, y0, x1, y1], verdict| {
         paper.append(rectangle(x0, y0, x1 - x0, y1 - y0, PAPER).set("stroke", PAPER).set("stroke-width", 0.5));
         hatch.append(strokes([x0, y0, x1, y1], verdict));
@@ -412,10 +415,10 @@ fn open_lines(
 }
 
 /// Slanted lines through a rectangle, the same on the whole page; where there is nothing to ask, none.
-fn strokes([x0, y0, x1, y1]: [f64; 4], verdict: &str) -> Path {
+fn strokes([x0, y0, x1, y1]: [f64; 4], verdict: MapVerdict) -> Path {
     let (gap, rising) = match verdict {
-        "locked" => (7.0, true),
-        "multiple" => (7.0, false),
+        MapVerdict::Point(PointVerdict::Locked) => (7.0, true),
+        MapVerdict::Point(PointVerdict::Multiple) => (7.0, false),
         _ => (14.0, true),
     };
     let mut path = String::new();
@@ -436,7 +439,7 @@ fn strokes([x0, y0, x1, y1]: [f64; 4], verdict: &str) -> Path {
             if path.is_empty() { format!("M{} {} h0.5", number(x0), number(y0)) } else { path.trim_end().to_owned() },
         )
         .set("fill", "none")
-        .set("stroke", if verdict == "locked" { INK } else { LINE })
+        .set("stroke", if verdict == MapVerdict::Point(PointVerdict::Locked) { INK } else { LINE })
         .set("stroke-width", 0.9)
 }
 
@@ -506,7 +509,7 @@ fn states(map: &EfficiencyMap, chart: &Chart) -> Group {
             let (fill, stroke) = (shade(state), shade(state));
             g.append(rectangle(x0, y0, x1 - x0, y1 - y0, &fill).set("stroke", stroke).set("stroke-width", 0.6));
         }
-        None => g.append(strokes([x0, y0, x1, y1], "beyond")),
+        None => g.append(strokes([x0, y0, x1, y1], MapVerdict::Beyond)),
     });
     // The middle of every region.
     for (k, p) in map.points.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Which quantities a chart of an operating point runs over.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Axis, Question};
@@ -8,7 +8,9 @@ use willis::train::{Load, MemberId};
 use willis::units::Quantity;
 
 /// A quantity along an axis of a chart.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ChartAxis {
     /// Its name, as `sweep --over` takes it: `sun.speed`.
     pub name: String,

@@ -210,9 +210,9 @@ fn legend(map: &RegimeMap) -> Group {
                     .set("stroke-width", 3),
             )
             .add(text(LEGEND + 36.0, y, 13.0, Anchor::Start, &short(&p.label.replace("->", "→"), 44)));
-        let range = match p.dissipated {
-            true => "no output".to_owned(),
-            false => format!("{} … {} %", percent(p.efficiency[0]), percent(p.efficiency[1])),
+        let range = match (p.dissipated, p.efficiency) {
+            (false, Some([least, most])) => format!("{} … {} %", percent(least), percent(most)),
+            _ => "no output".to_owned(),
         };
         g = g.add(text(WIDTH - 28.0, y, 12.0, Anchor::End, &range).set("fill", FAINT));
         y += 21.0;

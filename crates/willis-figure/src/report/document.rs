@@ -5,11 +5,15 @@
 
 use serde::{Deserialize, Serialize};
 
+// Of the module around it: this file is also part of the typesetter, which takes the source and not the crate.
+use super::contract::{Contract, Format};
+
 /// A report, ready to be typeset. Written as JSON it is the contract `willis-report-1`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Document {
     /// `willis-report-1`.
-    pub format: String,
+    pub format: Format<Self>,
     /// The train.
     pub title: String,
     /// What kind of document it is, in a few words.
@@ -22,6 +26,7 @@ pub struct Document {
 
 /// A part of a report with a heading.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Section {
     /// Its heading.
     pub title: String,
@@ -31,7 +36,9 @@ pub struct Section {
 
 /// A piece of a section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case", tag = "block")]
+#[non_exhaustive]
 pub enum Block {
     /// A heading within a section.
     Heading {
@@ -87,7 +94,9 @@ pub enum Block {
 
 /// How serious a notice is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Level {
     /// The answer is certain.
     Good,
@@ -101,6 +110,7 @@ pub enum Level {
 
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Column {
     /// Its head, with the unit where there is one.
     pub head: String,
@@ -108,9 +118,8 @@ pub struct Column {
     pub number: bool,
 }
 
-impl Document {
-    /// The contract that [`Document::format`] names.
-    pub const FORMAT: &'static str = "willis-report-1";
+impl Contract for Document {
+    const FORMAT: &'static str = "willis-report-1";
 }
 
 impl Column {

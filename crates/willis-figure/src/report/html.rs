@@ -42,7 +42,7 @@ const SMALLEST: f64 = 5.5;
 /// use willis_figure::report::document::{Block, Document, Section};
 ///
 /// let page = willis_figure::html(&Document {
-///     format: Document::FORMAT.into(),
+///     format: Default::default(),
 ///     title: "P1 <ring & sun>".into(),
 ///     subtitle: "Engineering report".into(),
 ///     facts: vec![],

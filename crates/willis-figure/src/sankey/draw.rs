@@ -490,17 +490,17 @@ impl Legend {
             return (Group::new(), top + 12.0);
         }
         let sample = |carries: Carries| band(&Ribbon::straight(0.0, 24.0, [-5.0, 5.0]), carries);
-        let mut entries: Vec<(Group, &str)> = vec![
-            (Group::new().add(end(24.0, [-5.0, 5.0], 24.0, true)), "external power enters"),
-            (sample(Carries::Power), "power, the wider the more"),
-            (Group::new().add(end(0.0, [-4.0, 4.0], 24.0, false)), "external power leaves"),
+        let mut entries: Vec<(Option<Group>, &str)> = vec![
+            (Some(Group::new().add(end(24.0, [-5.0, 5.0], 24.0, true))), "external power enters"),
+            (Some(sample(Carries::Power)), "power, the wider the more"),
+            (Some(Group::new().add(end(0.0, [-4.0, 4.0], 24.0, false))), "external power leaves"),
         ];
         if self.circle {
-            entries.push((sample(Carries::Circle), "runs in a circle"));
+            entries.push((Some(sample(Carries::Circle)), "runs in a circle"));
         }
         if self.loss {
             let arrow = triangle([(5.0, -4.0), (19.0, -4.0), (12.0, 6.0)], &Carries::Loss.colour());
-            entries.push((Group::new().add(arrow), "loss"));
+            entries.push((Some(Group::new().add(arrow)), "loss"));
         }
         for k in self.kinds {
             let words = match k {
@@ -509,13 +509,13 @@ impl Legend {
                 NodeKind::ShiftElement => "clutch or brake",
                 _ => continue,
             };
-            entries.push((bar(k, 12.0, -8.0, 16.0), words));
+            entries.push((Some(bar(k, 12.0, -8.0, 16.0)), words));
         }
-        entries.push((Group::new(), "%: of the external power that enters"));
+        entries.push((None, "%: of the external power that enters"));
         let mut g = Group::new();
         let (mut x, mut y) = (MARGIN, top + 14.0);
         for (mark, words) in entries {
-            let indent = if words.starts_with('%') { 0.0 } else { 32.0 };
+            let indent = if mark.is_some() { 32.0 } else { 0.0 };
             let room = indent + wide(words, SMALL) + 20.0;
             if x + room > width - MARGIN && x > MARGIN {
                 x = MARGIN;
@@ -523,7 +523,7 @@ impl Legend {
             }
             let at = format!("translate({} {})", number(x), number(y));
             let t = text(indent, 4.0, SMALL, Anchor::Start, words).set("fill", FAINT);
-            g = g.add(Group::new().set("transform", at).add(mark).add(t));
+            g = g.add(Group::new().set("transform", at).add(mark.unwrap_or_default()).add(t));
             x += room;
         }
         (g, (y + 24.0).ceil())

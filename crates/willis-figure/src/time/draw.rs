@@ -1,7 +1,7 @@
 //! A run over time: stacked panels on one time axis.
 
 use svg::node::element::{Circle, Group, Path};
-use willis::dynamics::{ModeLabel, Outcome};
+use willis::dynamics::{ColumnUnit, ModeLabel, Outcome};
 
 use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, colour, line, number, page, rectangle, text, ticks};
 use crate::{ModeRow, TimeLine, TimePanel, TimePlot};
@@ -94,7 +94,7 @@ fn description(plot: &TimePlot) -> String {
             let last = l.pieces.last().and_then(|p| p.last()).map_or(f64::NAN, |p| p[1]);
             format!("{} {}", l.names.join(", "), short_number(last))
         });
-        words.push(format!("{} at the end, {}: {}", p.quantity, p.unit, ends.collect::<Vec<_>>().join("; ")));
+        words.push(format!("{} at the end, {}: {}", p.quantity, p.unit.symbol(), ends.collect::<Vec<_>>().join("; ")));
     }
     words.join(". ")
 }
@@ -153,10 +153,11 @@ impl TimeAxis {
 }
 
 /// The unit to draw in, and how much of SI it is.
-fn unit(unit: &str, most: f64) -> (String, f64) {
-    let prefixes = match unit {
-        "W" | "J" | "N m" => true,
-        "rad" => most < 0.1,
+fn unit(of: ColumnUnit, most: f64) -> (String, f64) {
+    let unit = of.symbol();
+    let prefixes = match of {
+        ColumnUnit::Watt | ColumnUnit::Joule | ColumnUnit::NewtonMetre => true,
+        ColumnUnit::Radian => most < 0.1,
         _ => false,
     };
     if !prefixes || most == 0.0 {
@@ -199,7 +200,7 @@ fn panel(plot: &TimePlot, p: &TimePanel, time: &TimeAxis, top: f64) -> Group {
     let (unit, scale) = unit(p.unit, most);
     let (low, high) = range(&p.lines, scale);
     let y = |v: f64| bottom - (v / scale - low) / (high - low) * PANEL;
-    let head = if unit.is_empty() || unit == "1" { p.quantity.to_owned() } else { format!("{}, {unit}", p.quantity) };
+    let head = if unit.is_empty() { p.quantity.clone() } else { format!("{}, {unit}", p.quantity) };
     let mut g = Group::new()
         .add(text(28.0, top - 10.0, 13.0, Anchor::Start, &head).set("font-weight", "bold"))
         .add(absent(plot, time, top, bottom))
@@ -494,7 +495,7 @@ fn events(plot: &TimePlot, time: &TimeAxis, frames: &[(f64, f64)]) -> Group {
             .set("stroke-opacity", if drawn > 60 { 0.15 } else { 0.5 }),
     );
     // Beside the head of the first panel.
-    let head = plot.panels.first().map_or("Mode", |p| p.quantity).chars().count() + 8;
+    let head = plot.panels.first().map_or("Mode", |p| p.quantity.as_str()).chars().count() + 8;
     let mut free = LEFT.max(28.0 + 7.0 * head as f64);
     for (k, m) in plot.marks.iter().enumerate() {
         let x = time.x(m.time);

@@ -123,6 +123,12 @@ impl ColumnTable {
         self.len() == 0
     }
 
+    /// Adds a column.
+    pub(super) fn add(&mut self, column: Column, values: ColumnValues) {
+        self.columns.push(column);
+        self.values.push(values);
+    }
+
     /// The values of the column of that name.
     pub fn get(&self, name: &str) -> Option<&ColumnValues> {
         let k = self.columns.iter().position(|c| c.name == name)?;

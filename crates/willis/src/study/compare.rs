@@ -10,20 +10,25 @@ use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::Model;
 use crate::train::Train;
+use crate::work::Work;
 
 pub use map::{Band, MapComparison, MapDifference, MapPair, MapPlace};
 
 /// Differences below this part of a value are round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// What is compared.
-#[derive(Clone, Debug, Default)]
+/// What a comparison is asked.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
 pub struct CompareRequest {
-    /// Only this operation.
+    /// Compare this operation alone. Default: all operations of the same name.
     pub operation: Option<String>,
-    /// Only this state, and operations in it.
+    /// Compare this state of the shift table alone, and the operations in it. Default: all states of the same name.
     pub state: Option<String>,
-    /// The same axes applied to every variant; see [`Axis`].
+    /// Compare the efficiency over these axes too, up to a million points in all. Each is a quantity and its values,
+    /// `input.speed=500 rpm..6000 rpm:50` for 50 evenly spaced ones, both ends included, as in a sweep; every variant
+    /// must have the quantities. Default: none.
     pub over: Vec<String>,
 }
 
@@ -189,13 +194,17 @@ impl Contract for Comparison {
 
 /// Compares variants, each with what it is called.
 ///
+/// The answer does not depend on how `work` shares the points of axes out.
+///
 /// # Errors
-/// Fewer than two variants, a state or an operation that none of them has, axes that do not fit all of them.
+/// Fewer than two variants, a state or an operation that none of them has, axes that do not fit all of them, and
+/// [`Code::Cancelled`].
 ///
 /// # Example
 /// ```
 /// use willis::model::Model;
 /// use willis::study::{CompareRequest, compare};
+/// use willis::work::Serial;
 ///
 /// let text = r#"
 ///     format = 1
@@ -211,12 +220,16 @@ impl Contract for Comparison {
 /// "#;
 /// let model = |text: &str| Model::from_toml(text).unwrap();
 /// let (a, b) = (model(text), model(&text.replace("0.99", "0.98")));
-/// let all = compare(&[("a", &a), ("b", &b)], &CompareRequest::default())?;
+/// let all = compare(&[("a", &a), ("b", &b)], &CompareRequest::default(), &Serial)?;
 /// assert_eq!(all.files[0].path, "P1.mesh_efficiency");
 /// assert!(all.states[0].differences.iter().any(|d| d.quantity == "efficiency driving"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn compare(variants: &[(&str, &Model)], request: &CompareRequest) -> Result<Comparison, Diagnostics> {
+pub fn compare(
+    variants: &[(&str, &Model)],
+    request: &CompareRequest,
+    work: &dyn Work,
+) -> Result<Comparison, Diagnostics> {
     if variants.len() < 2 {
         let d = Diagnostic::new(Code::Unfit, "", "one train cannot be compared");
         return Err(d.hint("name two files or more").into());
@@ -227,7 +240,7 @@ pub fn compare(variants: &[(&str, &Model)], request: &CompareRequest) -> Result<
     let files = files::differences(variants.iter().map(|v| v.1));
     let map = match request.over.is_empty() {
         true => None,
-        false => Some(map::compare(variants, &labels, request)?),
+        false => Some(map::compare(variants, &labels, request, work)?),
     };
     Ok(Comparison {
         format: Format::new(),

@@ -1,20 +1,24 @@
 //! What a duty cycle or a load spectrum costs: energies by source, state and direction, and the worst rows.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::SolutionReport;
 use crate::contract::{Contract, Format};
-use crate::diagnostic::Code;
-use crate::model::{Target, Who};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::{Model, Target, Who};
 use crate::named::Named;
 use crate::operating_point::LossKind;
 use crate::train::{Load, Operation, Train};
+use crate::work::{self, Work};
 
 use super::answer::{PointAnswer, PointVerdict};
-use super::profile::{Basis, Held, Profile};
-use super::question::{Question, Trains};
+use super::column::{Column, ColumnTable, ColumnValues};
+use super::profile::{Basis, Held, Profile, ProfileRow};
+use super::question::{Hold, Question, Trains};
 
 /// How many of the worst are told.
 const MOST_WORST: usize = 5;
@@ -57,7 +61,7 @@ impl PowerDirection {
 
 /// The answer for one condition of a profile.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CyclePoint {
+struct CyclePoint {
     /// What can be said of it.
     pub verdict: PointVerdict,
     /// Why there is no answer; empty where there is one.
@@ -80,9 +84,9 @@ pub struct CyclePoint {
 
 /// The answers for some conditions, and what they say together.
 #[derive(Clone, Debug, Default)]
-pub struct CyclePart {
+struct CyclePart {
     /// One for each condition.
-    pub points: Vec<CyclePoint>,
+    points: Vec<CyclePoint>,
     /// By name and kind: law, energy.
     sources: BTreeMap<(String, EnergyKind), (String, f64)>,
     kinds: [f64; 5],
@@ -353,14 +357,47 @@ pub struct Cycle<'a> {
     profile: &'a Profile,
 }
 
-/// What a profile costs.
+/// What a cycle is asked.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct CycleRequest {
+    /// The duty cycle or load spectrum, the text of a CSV table: a header, then one operating condition a row. A column
+    /// is a quantity with its unit, `input.speed [rpm]`, `output.torque [N m]`, or `state`. One column weighs the rows:
+    /// `time [s]` (a trace: each row holds until the time of the next), `duration [min]` or `hours` (each row holds so
+    /// long), or `share [%]` (each row holds for this part of one hour).
+    pub profile: String,
+    /// The operation of the train file that says what no column does. Default: the first one that suits the state.
+    pub operation: Option<String>,
+    /// The state of the shift table, where no column says it. Default: that of the operation.
+    pub state: Option<String>,
+}
+
+/// A cycle in memory.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CycleAnswer {
+    /// The energies, and the worst rows.
+    pub report: CycleReport,
+    /// Every row of the profile with its answer.
+    pub rows: ColumnTable,
+}
+
+/// What a duty cycle or a load spectrum costs.
+///
+/// The answer does not depend on how `work` shares the rows out.
+///
+/// # Errors
+/// What is wrong with the profile, each with its place in the text of the profile; an operation or a state that there is
+/// not; a profile of which no row makes a question; and [`Code::Cancelled`].
 ///
 /// # Example
 /// ```
 /// use willis::model::Model;
-/// use willis::study::{Hold, Profile, Question, cycle};
+/// use willis::study::{CycleRequest, cycle};
+/// use willis::work::Serial;
 ///
-/// let text = r#"
+/// let model = Model::from_toml(r#"
 ///     format = 1
 ///     name = "reducer"
 ///     members = ["s", "c"]
@@ -371,20 +408,18 @@ pub struct Cycle<'a> {
 ///     ring = { member = "frame", teeth = 70 }
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
-/// "#;
-/// let model = Model::from_toml(text).unwrap();
-/// let spectrum = "hours,input.speed [rad/s],input.torque [N m]\n1,100,50\n3,100,10\n";
-/// let profile = Profile::parse(spectrum, &model)?;
-/// let report = cycle(Question::new(&model, None, None, Hold::AsGiven)?, &profile);
-/// assert!((report.energy_in_j - (5000.0 + 3.0 * 1000.0) * 3600.0).abs() < 1e-6);
-/// assert!((report.efficiency.unwrap() - 0.98607).abs() < 1e-9);
+/// "#)?;
+/// let profile = "hours,input.speed [rad/s],input.torque [N m]\n1,100,50\n3,100,10\n".to_owned();
+/// let answer = cycle(&model, &CycleRequest { profile, ..Default::default() }, &Serial)?;
+/// assert!((answer.report.energy_in_j - (5000.0 + 3.0 * 1000.0) * 3600.0).abs() < 1e-6);
+/// assert!((answer.report.efficiency.unwrap() - 0.98607).abs() < 1e-9);
+/// assert_eq!(answer.rows.len(), 2);
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn cycle(question: Question<'_>, profile: &Profile) -> CycleReport {
-    let cycle = Cycle::new(question, profile);
-    let mut trains = Trains::default();
-    let parts: Vec<CyclePart> = cycle.ranges().map(|(from, to)| cycle.part(from, to, &mut trains)).collect();
-    cycle.report(&parts)
+pub fn cycle(model: &Model, request: &CycleRequest, work: &dyn Work) -> Result<CycleAnswer, Diagnostics> {
+    let profile = Profile::parse(&request.profile, model)?;
+    let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+    Cycle::new(question, &profile).run(work)
 }
 
 impl<'a> Cycle<'a> {
@@ -401,16 +436,66 @@ impl<'a> Cycle<'a> {
         self.profile
     }
 
-    /// Ranges of conditions, each a [part](Self::part); the report is the same whoever computes them.
-    pub fn ranges(&self) -> impl ExactSizeIterator<Item = (usize, usize)> + use<> {
+    /// Computes every condition.
+    ///
+    /// # Errors
+    /// No condition makes a question; the work was cancelled.
+    pub fn run(&self, work: &dyn Work) -> Result<CycleAnswer, Diagnostics> {
         let n = self.profile.conditions();
-        (0..n.div_ceil(Self::AT_ONCE)).map(move |k| (k * Self::AT_ONCE, ((k + 1) * Self::AT_ONCE).min(n)))
+        work.begin("conditions", n as u64);
+        let parts = work::map(work, n.div_ceil(Self::AT_ONCE), |k| {
+            let conditions = k * Self::AT_ONCE..((k + 1) * Self::AT_ONCE).min(n);
+            let count = conditions.len() as u64;
+            let part = self.part(conditions, &mut Trains::default());
+            work.advance(count);
+            part
+        })?;
+        let points: Vec<&CyclePoint> = parts.iter().flat_map(|p| &p.points).collect();
+        if let Some(first) = points.first().filter(|_| points.iter().all(|p| p.verdict == PointVerdict::Refused)) {
+            let message = format!("no row of the profile makes a question: {}", first.reason);
+            return Err(Diagnostic::new(Code::Unfit, "", message).into());
+        }
+        Ok(CycleAnswer { report: self.report(&parts), rows: self.table(&points) })
     }
 
-    /// The answers for the conditions from `from` up to `to`.
-    pub fn part(&self, from: usize, to: usize, trains: &mut Trains) -> CyclePart {
+    /// Every row of the profile with its answer.
+    fn table(&self, points: &[&CyclePoint]) -> ColumnTable {
+        let (rows, states) = (self.profile.rows(), self.question.model().train().states());
+        let of = |row: &ProfileRow| points[row.condition as usize];
+        let mut table = ColumnTable::default();
+        let lines = rows.iter().map(|r| i64::from(r.line)).collect();
+        table.add(Column::integer("line"), ColumnValues::Integers(lines));
+        let number = |table: &mut ColumnTable, name: &str, unit: &str, value: &dyn Fn(&ProfileRow) -> f64| {
+            table.add(Column::number(name, unit), ColumnValues::Numbers(rows.iter().map(value).collect()));
+        };
+        if self.profile.basis() == Basis::Trace {
+            number(&mut table, "time_s", "s", &|r| r.time_s);
+        }
+        number(&mut table, "duration_s", "s", &|r| r.duration_s);
+        for (column, values) in self.profile.table_columns() {
+            table.add(column, values);
+        }
+        let text = |table: &mut ColumnTable, name: &str, value: &dyn Fn(&CyclePoint) -> Cow<'static, str>| {
+            let values = rows.iter().map(|r| value(of(r))).collect();
+            table.add(Column::text(name), ColumnValues::Texts(values));
+        };
+        let state = |p: &CyclePoint| p.state.and_then(|k| states.get(k)).map_or(String::new(), |s| s.name.clone());
+        text(&mut table, "in_state", &|p| state(p).into());
+        text(&mut table, "verdict", &|p| p.verdict.name().into());
+        text(&mut table, "direction", &|p| p.way.map_or("", PowerDirection::name).into());
+        number(&mut table, "efficiency", "", &|r| of(r).efficiency);
+        number(&mut table, "input_power_w", "W", &|r| of(r).input_power_w);
+        number(&mut table, "output_power_w", "W", &|r| of(r).output_power_w);
+        number(&mut table, "loss_w", "W", &|r| of(r).loss_w);
+        number(&mut table, "energy_lost_j", "J", &|r| of(r).loss_w * r.duration_s);
+        text(&mut table, "reason", &|p| p.reason.to_string().into());
+        table
+    }
+
+    /// The answers for some conditions.
+    fn part(&self, conditions: Range<usize>, trains: &mut Trains) -> CyclePart {
         let mut part = CyclePart::default();
-        for condition in from..to {
+        for condition in conditions {
             let point = self.point(condition, trains, &mut part);
             part.points.push(point);
         }
@@ -526,14 +611,10 @@ impl<'a> Cycle<'a> {
         all
     }
 
-    /// What all [parts](Self::part) say together, in the order of their [ranges](Self::ranges).
-    ///
-    /// # Panics
-    /// When parts are missing.
-    pub fn report(&self, parts: &[CyclePart]) -> CycleReport {
+    /// What all [parts](Self::part) say together.
+    fn report(&self, parts: &[CyclePart]) -> CycleReport {
         let profile = self.profile;
         let points: Vec<&CyclePoint> = parts.iter().flat_map(|p| &p.points).collect();
-        assert_eq!(points.len(), profile.conditions(), "a report needs every part of the cycle");
         let train = self.question.model().train();
         let mut whole = Energies::default();
         let mut ways: BTreeMap<PowerDirection, Energies> = BTreeMap::new();

@@ -113,11 +113,16 @@ impl Distribution {
     }
 }
 
-/// The shortest text of a number, rounded to so many digits.
-pub(super) fn plain(x: f64, digits: usize) -> String {
+/// A number rounded to so many digits.
+pub(super) fn rounded(x: f64, digits: usize) -> f64 {
     let rounded: f64 = format!("{x:.*e}", digits - 1).parse().expect("a number was written");
     // Adding zero turns -0 into 0.
-    (rounded + 0.0).to_string()
+    rounded + 0.0
+}
+
+/// The shortest text of a number, rounded to so many digits.
+pub(super) fn plain(x: f64, digits: usize) -> String {
+    rounded(x, digits).to_string()
 }
 
 /// The number below which a standard normal variable lies with probability `p`, for p from 1e-10 to 1 − 1e-10.

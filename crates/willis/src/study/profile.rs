@@ -10,6 +10,8 @@ use crate::model::{Model, Target};
 use crate::train::Measure;
 use crate::units::{self, Dimension};
 
+use super::column::{Column, ColumnValues};
+
 /// More errors than these are counted, not kept.
 const MOST_ERRORS: usize = 1000;
 
@@ -58,6 +60,8 @@ struct Setting {
     header: String,
     target: Target,
     unit: String,
+    /// Whether its values are texts, not numbers.
+    is_text: bool,
     /// Values, each once.
     values: Vec<String>,
 }
@@ -235,7 +239,8 @@ fn purpose(header: &str, model: &Model) -> Result<Purpose, Box<Diagnostic>> {
         return weight_unit(&name, basis, unit.as_deref()).map(|f| Purpose::Weight(basis, f)).map_err(fault);
     }
     let setting = |target: Target, unit: String| {
-        Purpose::Setting(Setting { header: header.to_owned(), target, unit, values: vec![] })
+        let is_text = matches!(target.measure(model), Measure::Text | Measure::Flag);
+        Purpose::Setting(Setting { header: header.to_owned(), target, unit, is_text, values: vec![] })
     };
     match Target::parse(name, model) {
         Ok(target) => match (target.measure(model), unit) {
@@ -576,6 +581,26 @@ impl Profile {
     /// The headers of its columns, without that of the weight.
     pub fn columns(&self) -> impl ExactSizeIterator<Item = &str> {
         self.settings.iter().map(|s| s.header.as_str())
+    }
+
+    /// Its columns without that of the weight, with the values of every row.
+    pub(super) fn table_columns(&self) -> impl Iterator<Item = (Column, ColumnValues)> + '_ {
+        self.settings.iter().enumerate().map(move |(k, s)| {
+            let cells = self.rows.iter().map(move |row| {
+                let value = self.conditions[row.condition as usize][k];
+                s.values[value as usize].as_str()
+            });
+            match s.is_text {
+                true => {
+                    (Column::text(s.header.clone()), ColumnValues::Texts(cells.map(|c| c.to_owned().into()).collect()))
+                }
+                // Every cell was read as a number before.
+                false => (
+                    Column::number(s.header.clone(), s.unit.clone()),
+                    ColumnValues::Numbers(cells.map(|c| c.parse().unwrap_or(f64::NAN)).collect()),
+                ),
+            }
+        })
     }
 
     /// The cells of a condition as they stand in the text.

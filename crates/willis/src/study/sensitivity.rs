@@ -128,6 +128,19 @@ impl StepKind {
             Self::Unit => "+1",
         }
     }
+
+    /// How large it is, in words.
+    pub fn size(self) -> &'static str {
+        match self {
+            Self::Percent => "1 %",
+            Self::Kelvin => "1 K",
+            Self::Degree => "1°",
+            Self::Hundredth => "0.01",
+            Self::Rpm => "1 rpm",
+            Self::TenthMillimetre => "0.1 mm",
+            Self::Unit => "1",
+        }
+    }
 }
 
 /// What one quantity does. Changes for a step are the derivative times the step: exact for small ones.

@@ -10,11 +10,13 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target, Who};
 use crate::train::{Load, Measure, Train};
 use crate::units::{self, Quantity};
+use crate::work::{self, Cancelled, Work};
 
 use super::answer::{PointAnswer, PointVerdict};
-use super::column::Column;
+use super::axis::with_unit;
+use super::column::{Column, ColumnTable};
 use super::design::Design;
-use super::distribution::{Distribution, Reader, fault, plain};
+use super::distribution::{Distribution, Reader, fault, plain, rounded};
 use super::question::{Hold, Question, Trains};
 use super::summary::{self, LawChoice, Seen, WarningKind};
 use super::{Axis, Statistics};
@@ -26,20 +28,29 @@ const MOST_SAMPLES: usize = 1 << 16;
 /// A sampled number is a decimal of so many digits, which the train file can say too.
 const DIGITS: usize = 9;
 
-/// What is asked.
-#[derive(Clone, Debug)]
+/// What an uncertainty is asked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
 pub struct UncertaintyRequest {
-    /// This operation of the file; else the first.
+    /// The operation of the train file whose efficiency and losses are asked. Default: the first one that suits the
+    /// state.
     pub operation: Option<String>,
-    /// In this state of the shift table.
+    /// The state of the shift table. Default: that of the operation.
     pub state: Option<String>,
-    /// `QUANTITY=DISTRIBUTION`; see [`Distribution`].
+    /// What is uncertain, each a quantity and its distribution. `P1.mesh_efficiency=0.985..0.995`: everything between is
+    /// equally likely; `oil.temperature=normal(70 degC, 5 K)`: mean and standard deviation;
+    /// `P1.sun.roughness=triangular(0.2, 0.4, 0.8 um)`: least, most likely, greatest;
+    /// `P1.sun.roughness=lognormal(0.4 um, 1.3)`: median and factor; `P1.face_width=+-5%`: about the value of the file;
+    /// `state=3,4`: these values, each as likely as the others. Default, where no laws are named either: the given
+    /// losses and roughnesses by ±20 %, the oil's temperature by ±5 K, and the friction laws.
     pub vary: Vec<String>,
-    /// Families whose laws are each as likely as the others, or `all`.
+    /// Families of loss laws whose laws are each as likely as the others, `mesh_friction`; `all` takes every family that
+    /// matters for this train.
     pub laws: Vec<String>,
-    /// How many samples; made a power of two.
+    /// How many samples are drawn, from 128 to 65536; made a power of two. Default: 1024.
     pub samples: usize,
-    /// Other seeds give other points.
+    /// The seed: the same seed gives the same samples everywhere, another one gives others. Default: 1.
     pub seed: u64,
 }
 
@@ -83,6 +94,14 @@ impl Uncertain {
         }
     }
 
+    /// Its column in a table of samples.
+    fn column(&self) -> Column {
+        match self.likely {
+            UncertainValue::Between(_) => Column::number(with_unit(&self.name, &self.unit), self.unit.clone()),
+            UncertainValue::Each(_) => Column::text(self.name.clone()),
+        }
+    }
+
     /// The number of the choice at a coordinate; 0 for a number between others.
     fn choice(&self, p: f64) -> usize {
         match &self.likely {
@@ -92,6 +111,7 @@ impl Uncertain {
     }
 
     fn text(&self, x: f64) -> String {
+        // Rounded as it is evaluated.
         let number = plain(x, DIGITS);
         if self.unit.is_empty() { number } else { format!("{number} {}", self.unit) }
     }
@@ -103,6 +123,60 @@ impl Uncertain {
             UncertainValue::Each(all) => all.join(", "),
         }
     }
+}
+
+/// An uncertainty in memory.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct UncertaintyAnswer {
+    /// The distributions, and what dominates them.
+    pub report: Uncertainty,
+    /// Every sample: the values of the uncertain quantities, the verdict and the results.
+    pub samples: ColumnTable,
+}
+
+/// How sure the results of an operating point are.
+///
+/// The answer does not depend on how `work` shares the points out.
+///
+/// # Errors
+/// What [`UncertaintyPlan::new`] refuses, and [`Code::Cancelled`].
+///
+/// # Example
+/// ```
+/// use willis::model::Model;
+/// use willis::study::{UncertaintyRequest, uncertainty};
+/// use willis::work::Serial;
+///
+/// let model = Model::from_toml(r#"
+///     format = 1
+///     name = "reducer"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+///     mesh_efficiency = 0.99
+///     [[operation]]
+///     name = "full load"
+///     speeds = { s = "1000 rpm" }
+///     torques = { s = "10 N m" }
+/// "#)?;
+/// let vary = vec!["P1.mesh_efficiency=0.98..1".into()];
+/// let answer = uncertainty(&model, &UncertaintyRequest { vary, samples: 256, ..Default::default() }, &Serial)?;
+/// assert_eq!(answer.samples.len(), 256);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn uncertainty(
+    model: &Model,
+    request: &UncertaintyRequest,
+    work: &dyn Work,
+) -> Result<UncertaintyAnswer, Diagnostics> {
+    let plan = UncertaintyPlan::new(model, request)?;
+    let evaluated = plan.evaluate_all(work)?;
+    Ok(UncertaintyAnswer { report: plan.finish(&evaluated), samples: plan.table(&evaluated) })
 }
 
 /// Uncertain quantities, an operating point, and the points at which it is evaluated.
@@ -390,6 +464,26 @@ impl<'s> UncertaintyPlan<'s> {
             Ok((train, operation)) => PointAnswer::of(&train, &operation),
             Err(wrong) => PointAnswer::refused(wrong),
         }
+    }
+
+    /// The values at every point.
+    ///
+    /// # Errors
+    /// The work was cancelled.
+    pub fn evaluate_all(&self, work: &dyn Work) -> Result<SampleResult, Cancelled> {
+        /// Points of a piece: whole groups, about so many points.
+        const PIECE: usize = 64;
+        let piece = self.group() * (PIECE / self.group()).max(1);
+        work.begin("points", self.len() as u64);
+        let parts = work::map(work, self.len().div_ceil(piece), |k| {
+            let points = k * piece..((k + 1) * piece).min(self.len());
+            let part = self.evaluate(points.clone(), &mut Trains::default());
+            work.advance(points.len() as u64);
+            part
+        })?;
+        let mut all = SampleResult::default();
+        parts.into_iter().for_each(|part| all.join(part));
+        Ok(all)
     }
 
     /// The values at a range of points.

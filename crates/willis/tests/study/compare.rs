@@ -2,6 +2,7 @@
 
 use willis::model::Model;
 use willis::study::{CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, compare};
+use willis::work::Serial;
 
 use crate::common::example;
 
@@ -34,7 +35,7 @@ fn all(texts: &[&str], request: &CompareRequest) -> Comparison {
     let subjects: Vec<Model> = texts.iter().map(|t| Model::from_toml(t).unwrap()).collect();
     let names = ["first.toml", "second.toml", "third.toml"];
     let variants: Vec<(&str, &Model)> = names.into_iter().zip(&subjects).collect();
-    compare(&variants, request).unwrap_or_else(|e| panic!("{e}"))
+    compare(&variants, request, &Serial).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn quantity<'a>(c: &'a Compared, name: &str) -> &'a willis::study::Difference {
@@ -148,7 +149,7 @@ fn over_axes_it_tells_where_which_is_better() {
 fn wrong_questions_are_refused() {
     let subject = Model::from_toml(REDUCER).unwrap();
     let two = [("a.toml", &subject), ("b.toml", &subject)];
-    let told = |request: CompareRequest| compare(&two, &request).unwrap_err().to_string();
+    let told = |request: CompareRequest| compare(&two, &request, &Serial).unwrap_err().to_string();
     let operation = told(CompareRequest { operation: Some("lod".into()), ..Default::default() });
     assert!(operation.contains("no variant has the operation `lod`; did you mean `load`?"), "{operation}");
     let axis = told(CompareRequest { over: vec!["input.sped=1 rpm..2 rpm:3".into()], ..Default::default() });
@@ -158,5 +159,5 @@ fn wrong_questions_are_refused() {
         ..Default::default()
     });
     assert!(many.contains("1002001 points are too many to compare"), "{many}");
-    assert!(compare(&two[..1], &Default::default()).is_err());
+    assert!(compare(&two[..1], &Default::default(), &Serial).is_err());
 }

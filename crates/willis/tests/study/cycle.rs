@@ -2,7 +2,8 @@
 
 use willis::analysis::{Selection, analyze};
 use willis::model::Model;
-use willis::study::{Basis, Cycle, CycleReport, Hold, Profile, Question, Trains, cycle};
+use willis::study::{Basis, ColumnValues, Cycle, CycleReport, CycleRequest, Hold, Profile, Question, cycle};
+use willis::work::{Serial, Work};
 use willis::{Diagnostics, Train};
 
 use crate::common::example;
@@ -46,7 +47,7 @@ fn question(subject: &Model) -> Question<'_> {
 fn report(train: &str, profile: &str) -> CycleReport {
     let subject = subject(train);
     let profile = Profile::parse(profile, &subject).unwrap_or_else(|e| panic!("{e}"));
-    cycle(question(&subject), &profile)
+    Cycle::new(question(&subject), &profile).run(&Serial).unwrap_or_else(|e| panic!("{e}")).report
 }
 
 fn wrong(train: &str, profile: &str) -> Diagnostics {
@@ -121,20 +122,23 @@ fn a_row_is_the_analysis_of_its_point_bit_for_bit() {
     let spectrum =
         "hours,carrier.speed [rpm],input.power [kW],oil.temperature [degC]\n7,12.1,5000,75\n5,8.3,1234.5,61\n";
     let profile = Profile::parse(spectrum, &subject).unwrap();
-    let part = Cycle::new(question(&subject), &profile).part(0, 2, &mut Trains::default());
-    for (point, (speed, power, oil)) in part.points.iter().zip([("12.1", "5000", "75"), ("8.3", "1234.5", "61")]) {
+    let rows = Cycle::new(question(&subject), &profile).run(&Serial).unwrap().rows;
+    let at = |name: &str, row: usize| match rows.get(name) {
+        Some(ColumnValues::Numbers(all)) => all[row],
+        other => panic!("{name}: {other:?}"),
+    };
+    for (row, (speed, power, oil)) in [("12.1", "5000", "75"), ("8.3", "1234.5", "61")].into_iter().enumerate() {
         let text = file
             .replace("carrier = \"12.1 rpm\"", &format!("carrier = \"{speed} rpm\""))
             .replace("carrier = \"5 MW\"", &format!("carrier = \"{power} kW\""))
             .replace("temperature = \"75 degC\"", &format!("temperature = \"{oil} degC\""));
         let analysis = analyze(&Train::from_toml(&text).unwrap(), &Selection::default()).unwrap();
         let s = &analysis.operations[0].solutions[0];
-        assert_eq!(point.efficiency.to_bits(), s.efficiency.unwrap().to_bits());
+        assert_eq!(at("efficiency", row).to_bits(), s.efficiency.unwrap().to_bits());
         for (a, b) in [
-            (point.loss_w, s.loss_w),
-            (point.input_power_w, s.input_power_w),
-            (point.output_power_w, s.output_power_w),
-            (point.residual_w, s.power_residual_w),
+            (at("loss_w", row), s.loss_w),
+            (at("input_power_w", row), s.input_power_w),
+            (at("output_power_w", row), s.output_power_w),
         ] {
             assert_eq!(a.to_bits(), b.to_bits());
         }
@@ -198,20 +202,24 @@ fn a_stop_costs_nothing_and_is_no_gap() {
     assert_eq!(r.ways.get("idle").unwrap().time_s, 10.0);
 }
 
+/// Work that does its parts from the last to the first.
+struct Backwards;
+
+impl Work for Backwards {
+    fn run(&self, parts: usize, job: &(dyn Fn(usize) + Sync)) {
+        (0..parts).rev().for_each(job);
+    }
+}
+
 #[test]
-fn parts_give_the_same_whoever_computes_them() {
+fn parts_give_the_same_in_any_order() {
     let subject = subject(REDUCER);
     let mut text = "time [s],input.speed [rpm],input.torque [N m]\n".to_owned();
     (0..1000).for_each(|k| text += &format!("{k},{},{}\n", 500 + 7 * (k % 300), (k % 211) - 50));
-    let profile = Profile::parse(&text, &subject).unwrap();
-    let whole = cycle(question(&subject), &profile);
-    let parted = Cycle::new(question(&subject), &profile);
-    assert!(parted.ranges().len() > 10);
-    let mut parts: Vec<_> = parted.ranges().collect();
-    parts.reverse();
-    let mut parts: Vec<_> = parts.into_iter().map(|(a, b)| parted.part(a, b, &mut Trains::default())).collect();
-    parts.reverse();
-    assert_eq!(parted.report(&parts), whole);
+    let request = CycleRequest { profile: text, ..CycleRequest::default() };
+    let whole = cycle(&subject, &request, &Serial).unwrap();
+    assert_eq!(cycle(&subject, &request, &Backwards).unwrap(), whole);
+    let whole = whole.report;
     assert_eq!(whole.rows, 999);
 }
 

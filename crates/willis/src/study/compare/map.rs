@@ -8,6 +8,7 @@ use crate::study::axis::Axis;
 use crate::study::question::{Hold, Question, Trains};
 use crate::study::sweep::Sweep;
 use crate::train::Operation;
+use crate::work::{self, Cancelled, Work};
 
 use super::results::{point, prescribed, same};
 use super::{CompareRequest, TextDifference};
@@ -118,6 +119,56 @@ pub struct MapPair {
     pub bands: Vec<Band>,
 }
 
+/// Efficiency and loss, W, of a variant at a point; none where it has not exactly one answer.
+type Found = Option<(f64, f64)>;
+
+impl MapPair {
+    fn new(first: &str, other: &str, bands: Vec<Band>) -> Self {
+        Self {
+            first: first.to_owned(),
+            other: other.to_owned(),
+            compared: 0,
+            only_first: 0,
+            only_other: 0,
+            neither: 0,
+            efficiency: MapDifference::default(),
+            loss_w: MapDifference::default(),
+            bands,
+        }
+    }
+
+    /// Adds a point of the sweep.
+    fn add(&mut self, sweep: &Sweep<'_>, point: u64, first: Found, other: Found) {
+        let ((a, lost_a), (b, lost_b)) = match (first, other) {
+            (Some(a), Some(b)) => (a, b),
+            (Some(_), None) => return self.only_first += 1,
+            (None, Some(_)) => return self.only_other += 1,
+            (None, None) => return self.neither += 1,
+        };
+        self.compared += 1;
+        self.efficiency.add(a, b, true, || sweep.describe(point));
+        self.loss_w.add(lost_a, lost_b, false, || sweep.describe(point));
+        let mut at = 0;
+        for (axis, k) in sweep.axes().iter().zip(sweep.place(point)) {
+            let count = band_count(axis);
+            let band = &mut self.bands[at + k * count / axis.len()];
+            at += count;
+            let n = (band.better + band.worse + band.equal) as f64;
+            band.mean = Some((band.mean.unwrap_or(0.0) * n + (b - a)) / (n + 1.0));
+            *match (same(a, b), b > a) {
+                (true, _) => &mut band.equal,
+                (false, true) => &mut band.better,
+                (false, false) => &mut band.worse,
+            } += 1;
+        }
+    }
+}
+
+/// How many parts an axis is cut into: every text is one.
+fn band_count(axis: &Axis) -> usize {
+    if axis.is_text() { axis.len() } else { axis.len().min(BANDS) }
+}
+
 /// Variants over the same axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -139,6 +190,7 @@ pub(super) fn compare(
     variants: &[(&str, &Model)],
     labels: &[String],
     request: &CompareRequest,
+    work: &dyn Work,
 ) -> Result<MapComparison, Diagnostics> {
     let mut sweeps = vec![];
     for (file, model) in variants {
@@ -174,66 +226,16 @@ pub(super) fn compare(
             .hint("fewer values tell where a variant is better")
             .into());
     }
-    let mut pairs: Vec<MapPair> = (1..sweeps.len())
-        .map(|k| MapPair {
-            first: labels[0].clone(),
-            other: labels[k].clone(),
-            compared: 0,
-            only_first: 0,
-            only_other: 0,
-            neither: 0,
-            efficiency: MapDifference::default(),
-            loss_w: MapDifference::default(),
-            bands: bands(first),
-        })
-        .collect();
-    let mut trains: Vec<Trains> = sweeps.iter().map(|_| Trains::default()).collect();
-    for point in 0..points {
-        let answers: Vec<Option<(f64, f64)>> = (sweeps.iter().zip(&mut trains))
-            .map(|(s, t)| {
-                let answer = s.answer(point, t);
-                let one = answer.is_unique() && !answer.efficiency().is_nan();
-                one.then(|| (answer.efficiency(), answer.loss()))
-            })
-            .collect();
-        let place = first.place(point);
+    let mut pairs: Vec<MapPair> =
+        (1..sweeps.len()).map(|k| MapPair::new(&labels[0], &labels[k], bands(first))).collect();
+    for (point, answers) in (0..points).zip(answers(&sweeps, points, work)?) {
         for (pair, other) in pairs.iter_mut().zip(&answers[1..]) {
-            let ((a, lost_a), (b, lost_b)) = match (answers[0], *other) {
-                (Some(a), Some(b)) => (a, b),
-                (Some(_), None) => {
-                    pair.only_first += 1;
-                    continue;
-                }
-                (None, Some(_)) => {
-                    pair.only_other += 1;
-                    continue;
-                }
-                (None, None) => {
-                    pair.neither += 1;
-                    continue;
-                }
-            };
-            pair.compared += 1;
-            pair.efficiency.add(a, b, true, || first.describe(point));
-            pair.loss_w.add(lost_a, lost_b, false, || first.describe(point));
-            let mut at = 0;
-            for (axis, k) in first.axes().iter().zip(&place) {
-                let count = axis.len().min(BANDS.max(if axis.is_text() { axis.len() } else { 0 }));
-                let band = &mut pair.bands[at + k * count / axis.len()];
-                at += count;
-                let n = (band.better + band.worse + band.equal) as f64;
-                band.mean = Some((band.mean.unwrap_or(0.0) * n + (b - a)) / (n + 1.0));
-                *match (same(a, b), b > a) {
-                    (true, _) => &mut band.equal,
-                    (false, true) => &mut band.better,
-                    (false, false) => &mut band.worse,
-                } += 1;
-            }
+            pair.add(first, point, answers[0], *other);
         }
     }
     let base: Vec<&Operation> = sweeps.iter().map(|s| s.question().base()).collect();
     // At the first point, so that what an axis sets is the same.
-    let begun = sweeps.iter().zip(&mut trains).zip(variants).map(|((s, trains), v)| match s.ask(0, trains) {
+    let begun = sweeps.iter().zip(variants).map(|(s, v)| match s.ask(0, &mut Trains::default()) {
         Ok((train, operation)) => Some(point(&train, &operation)),
         Err(_) => Some(point(v.1.train(), s.question().base())),
     });
@@ -247,11 +249,34 @@ pub(super) fn compare(
     })
 }
 
+/// Efficiency and loss of every variant at every point, where it has one answer.
+fn answers(sweeps: &[Sweep<'_>], points: u64, work: &dyn Work) -> Result<Vec<Vec<Found>>, Cancelled> {
+    /// Points of a piece.
+    const PIECE: u64 = 256;
+    work.begin("points", points);
+    let parts = work::map(work, points.div_ceil(PIECE) as usize, |k| {
+        let mut trains: Vec<Trains> = sweeps.iter().map(|_| Trains::default()).collect();
+        let (from, to) = (k as u64 * PIECE, ((k as u64 + 1) * PIECE).min(points));
+        let mut one = |point: u64| -> Vec<Found> {
+            let all = sweeps.iter().zip(&mut trains).map(|(s, t)| {
+                let answer = s.answer(point, t);
+                let one = answer.is_unique() && !answer.efficiency().is_nan();
+                one.then(|| (answer.efficiency(), answer.loss()))
+            });
+            all.collect()
+        };
+        let part: Vec<_> = (from..to).map(&mut one).collect();
+        work.advance(to - from);
+        part
+    })?;
+    Ok(parts.into_iter().flatten().collect())
+}
+
 /// Parts of every axis, still empty.
 fn bands(sweep: &Sweep<'_>) -> Vec<Band> {
     let of_axis = |axis: &Axis| -> Vec<Band> {
         let n = axis.len();
-        let count = n.min(BANDS.max(if axis.is_text() { n } else { 0 }));
+        let count = band_count(axis);
         let band = |b: usize| {
             let inside: Vec<usize> = (0..n).filter(|k| k * count / n == b).collect();
             let (from, to) = (inside.first().copied().unwrap_or(0), inside.last().copied().unwrap_or(0));

@@ -9,7 +9,7 @@ use crate::kinematics::Configuration;
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::{Dimension, Quantity};
 
-use super::ExportRequest;
+use super::Asked;
 use super::names::{short, verdict};
 
 /// The most points of one map.
@@ -261,7 +261,7 @@ fn wrong(code: Code, message: impl Into<String>, hint: impl Into<String>) -> Dia
 }
 
 /// The gears that are asked for, with their axes, and what must be told of the choice.
-pub(super) fn gears(train: &Train, request: &ExportRequest) -> Result<(Vec<Gear>, Vec<String>), Diagnostics> {
+pub(super) fn gears(train: &Train, request: &Asked) -> Result<(Vec<Gear>, Vec<String>), Diagnostics> {
     let operation = match &request.operation {
         None => None,
         Some(name) => {
@@ -341,7 +341,7 @@ pub(super) fn gears(train: &Train, request: &ExportRequest) -> Result<(Vec<Gear>
 }
 
 /// What can be wrong with a request before anything is computed.
-fn check(train: &Train, request: &ExportRequest) -> Result<(), Diagnostics> {
+fn check(train: &Train, request: &Asked) -> Result<(), Diagnostics> {
     let rising = |q: &[Quantity]| q.windows(2).all(|w| w[0].si() < w[1].si());
     for (what, axis) in [("speeds", &request.speeds), ("torques", &request.torques)] {
         if !rising(axis) {
@@ -371,7 +371,7 @@ fn gear(
     train: &Train,
     state: Option<usize>,
     row: &StateReport,
-    request: &ExportRequest,
+    request: &Asked,
     operation: Option<&Operation>,
 ) -> Result<Gear, Diagnostics> {
     let member = |name: &str| train.member(name).expect("a member of the train");

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::contract::{Contract, Format};
 use crate::study::answer::PointVerdict;
-use crate::study::column::Column;
+use crate::study::column::{Column, ColumnTable, ColumnValues};
 use crate::study::design::{REPLICATES, quantile};
 use crate::study::summary::{WarningCount, WarningKind};
 
-use super::{DIGITS, SampleResult, Statistics, UncertainValue, UncertaintyPlan, plain};
+use super::{DIGITS, SampleResult, Statistics, UncertainValue, UncertaintyPlan, plain, rounded};
 
 /// A quantity as the results show it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -149,6 +149,32 @@ impl UncertaintyPlan<'_> {
         let width = self.outputs.len();
         let points = (0..evaluated.verdicts.len()).filter(|k| self.design.is_sample(*k));
         points.map(move |k| (k, evaluated.verdicts[k], &evaluated.values[k * width..][..width]))
+    }
+
+    /// Every sample as a row: its number, its replicate, the uncertain quantities, the verdict and the results.
+    pub fn table(&self, evaluated: &SampleResult) -> ColumnTable {
+        let points: Vec<(usize, PointVerdict, &[f64])> = self.samples(evaluated).collect();
+        let mut table = ColumnTable::default();
+        table.add(Column::integer("sample"), ColumnValues::Integers((0..points.len() as i64).collect()));
+        let replicate = |p: &(usize, PointVerdict, &[f64])| self.design.replicate(p.0) as i64;
+        table.add(Column::integer("replicate"), ColumnValues::Integers(points.iter().map(replicate).collect()));
+        let places: Vec<Vec<f64>> = points.iter().map(|p| self.design.at(p.0)).collect();
+        for (k, q) in self.quantities.iter().enumerate() {
+            let at = places.iter().map(|place| place[k]);
+            let values = match &q.likely {
+                UncertainValue::Between(d) => {
+                    ColumnValues::Numbers(at.map(|p| rounded(d.quantile(p), DIGITS)).collect())
+                }
+                UncertainValue::Each(_) => ColumnValues::Texts(at.map(|p| q.setting(p).into()).collect()),
+            };
+            table.add(q.column(), values);
+        }
+        let verdicts = points.iter().map(|p| p.1.name().into()).collect();
+        table.add(Column::text("verdict"), ColumnValues::Texts(verdicts));
+        for (k, column) in self.outputs.iter().enumerate() {
+            table.add(column.clone(), ColumnValues::Numbers(points.iter().map(|p| p.2[k]).collect()));
+        }
+        table
     }
 
     /// The distributions of the results, once all points are evaluated.

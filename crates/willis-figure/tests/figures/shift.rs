@@ -1,16 +1,10 @@
 //! Shift tables as pictures: dots, ratios, steps and changes agree with each other.
 
-use std::fs;
-use std::path::Path;
-
 use willis::Train;
 use willis::train::{SetSpec, ShiftElementSpec, StateSpec};
 use willis_figure::{ShiftTable, shift};
 
-fn example(name: &str) -> Train {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name);
-    Train::from_toml(&fs::read_to_string(path).unwrap()).unwrap()
-}
+use crate::common::train as example;
 
 fn ratios(table: &ShiftTable) -> Vec<f64> {
     table.rows.iter().map(|r| (r.ratio.unwrap() * 1000.0).round() / 1000.0).collect()

@@ -173,7 +173,7 @@ fn a_run_has_its_panels_names_and_events() {
     let mut plot = TimePlotBuilder::new(&train(), [0.0, 3.0]);
     launch(&mut plot, 3.0, 20_000);
     let plot = plot.finish(&report(Outcome::Finished, 3.0));
-    assert_eq!(plot.panels.iter().map(|p| p.quantity).collect::<Vec<_>>(), ["Speed", "Torque", "Power"]);
+    assert_eq!(plot.panels.iter().map(|p| p.quantity.as_str()).collect::<Vec<_>>(), ["Speed", "Torque", "Power"]);
     // Planets and meshes give way; what turns together has one curve.
     let names: Vec<_> = plot.panels[0].lines.iter().map(|l| l.names.join("=")).collect();
     assert_eq!(names, ["sun", "ring", "carrier=out"]);

@@ -6,27 +6,13 @@ use willis::geometry::{involute, least_mesh_angle, neighbour_clearance};
 use willis::train::{GearSpec, GeometrySpec, MeshSpec, SetSpec, Train};
 use willis_figure::{Front, FrontMesh, FrontWheel, front};
 
-fn example(name: &str) -> Train {
-    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).expect("an example");
-    Train::from_toml(&text).expect("a good example")
-}
+use crate::common::train as example;
+use crate::trains::examples;
 
 /// Every view that the examples give, with names.
 fn all_views() -> Vec<(String, Train, Front)> {
-    let folder = format!("{}/../../examples", env!("CARGO_MANIFEST_DIR"));
-    let mut names: Vec<String> = std::fs::read_dir(folder)
-        .expect("examples")
-        .filter_map(|e| Some(e.ok()?.file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
-        .collect();
-    names.sort();
     let mut all = Vec::new();
-    for name in names {
-        let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        let text = std::fs::read_to_string(&path).expect("an example");
-        let Some(train) = Train::read_toml_with(&text, &mut |_| Ok("t,torque\n0,0\n1,0\n".to_owned())).train else {
-            continue;
-        };
+    for (name, train) in examples() {
         let sets: Vec<String> = train.sets().iter().map(|s| s.name.clone()).collect();
         for set in sets.iter().map(|s| Some(s.as_str())).chain(sets.is_empty().then_some(None)) {
             match front(&train, set, true) {

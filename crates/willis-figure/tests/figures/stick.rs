@@ -3,6 +3,8 @@
 use willis::train::{FRAME, GearSpec, MeshSpec, SetSpec, ShiftElementSpec, Train, TrainBuilder};
 use willis_figure::{JointKind, Place, Stick, stick};
 
+use crate::trains::examples;
+
 const NEAR: f64 = 1e-6;
 
 /// A straight line between two places.
@@ -151,22 +153,6 @@ fn check(train: &Train, s: &Stick) {
 fn meets(x: &Span, y: &Span) -> bool {
     let side = |s: &Span, p: Place| (s[1][0] - s[0][0]) * (p[1] - s[0][1]) - (s[1][1] - s[0][1]) * (p[0] - s[0][0]);
     side(x, y[0]) * side(x, y[1]) < -NEAR && side(y, x[0]) * side(y, x[1]) < -NEAR
-}
-
-fn examples() -> Vec<(String, Train)> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
-    let mut all: Vec<_> = std::fs::read_dir(folder).expect("examples").map(|e| e.expect("an entry").path()).collect();
-    all.retain(|p| p.extension().is_some_and(|e| e == "toml"));
-    all.sort();
-    all.into_iter()
-        .map(|p| {
-            let text = std::fs::read_to_string(&p).expect("readable");
-            let mut load =
-                |f: &str| std::fs::read_to_string(p.parent().expect("a folder").join(f)).map_err(|e| e.to_string());
-            let train = Train::read_toml_with(&text, &mut load).train.expect("a good example");
-            (p.file_stem().expect("a name").to_string_lossy().into_owned(), train)
-        })
-        .collect()
 }
 
 #[test]

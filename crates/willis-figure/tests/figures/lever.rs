@@ -1,33 +1,11 @@
 //! Levers: speeds on straight lines, forces in balance at the points that friction displaces.
 
-use std::fs;
-use std::path::Path;
-
 use willis::Train;
 use willis::train::SetSpec;
 use willis_figure::{Lever, LeverBar, LeverRequest, LeverRole, lever};
 
-fn examples() -> Vec<(String, Train)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    let mut all: Vec<_> = fs::read_dir(folder)
-        .unwrap()
-        .map(|e| e.unwrap().path())
-        .filter(|p| p.extension().is_some_and(|e| e == "toml"))
-        .map(|p| {
-            let text = fs::read_to_string(&p).unwrap();
-            let folder = p.parent().unwrap().to_owned();
-            let mut load = |file: &str| fs::read_to_string(folder.join(file)).map_err(|e| e.to_string());
-            let train = Train::read_toml_with(&text, &mut load).train.unwrap();
-            (p.file_stem().unwrap().to_string_lossy().into_owned(), train)
-        })
-        .collect();
-    all.sort_by(|a, b| a.0.cmp(&b.0));
-    all
-}
-
-fn example(name: &str) -> Train {
-    examples().into_iter().find(|e| e.0 == name).unwrap().1
-}
+use crate::common::train as example;
+use crate::trains::examples;
 
 /// Every lever that an example has.
 fn levers() -> Vec<(String, Lever)> {

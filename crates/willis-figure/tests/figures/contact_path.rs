@@ -4,11 +4,7 @@ use willis::analysis::{Selection, analyze};
 use willis::train::Train;
 use willis_figure::contact_path;
 
-fn example(name: &str) -> Train {
-    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(&path).expect("an example");
-    Train::from_toml(&text).expect("a good example")
-}
+use crate::common::train as example;
 
 const PHYSICAL: [&str; 3] = ["fva-planetary-stage", "nrel-5mw-stage-1", "wang-herringbone-physical"];
 /// Every law of friction between teeth: two local ones among them.

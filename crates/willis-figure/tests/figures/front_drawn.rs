@@ -3,10 +3,7 @@
 use willis::train::{SetSpec, Train};
 use willis_figure::{contact_path, front};
 
-fn example(name: &str) -> Train {
-    let path = format!("{}/../../examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-    Train::from_toml(&std::fs::read_to_string(path).expect("an example")).expect("a good example")
-}
+use crate::common::train as example;
 
 /// A picture in which nothing is undefined, and no text is finer than 10 px.
 fn sound(svg: &str) {

@@ -1,16 +1,10 @@
 //! Rankings of what moves the losses agree with the sensitivity that they show.
 
-use std::fs;
-use std::path::Path;
-
+use willis::Selection;
 use willis::study::sensitivity;
-use willis::{Selection, Train};
 use willis_figure::tornado;
 
-fn example(name: &str) -> Train {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name);
-    Train::from_toml(&fs::read_to_string(path).unwrap()).unwrap()
-}
+use crate::common::train as example;
 
 #[test]
 fn bars_are_the_largest_changes_in_their_order() {

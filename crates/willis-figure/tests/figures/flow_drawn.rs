@@ -3,16 +3,15 @@
 // Words are measured here as the figures measure them. Their measure is not public, and of the rest of its file this
 // test has no use.
 #[allow(dead_code)]
-#[path = "../src/parts/style.rs"]
+#[path = "../../src/parts/style.rs"]
 mod style;
-
-use std::fs;
-use std::path::Path;
 
 use willis::analysis::Selection;
 use willis::hypergraph::flows;
 use willis::train::{OperationSpec, SetSpec, Train};
 use willis::units::{AngularSpeed, Torque};
+
+use crate::trains::{self, stepped};
 
 /// A text on the page: what it says, left, right, top, bottom.
 type Label = (String, [f64; 4]);
@@ -94,14 +93,7 @@ fn check_all(at: &str, train: &Train) -> bool {
 
 #[test]
 fn labels_keep_apart_and_stay_on_the_page() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
-    files.sort();
-    let mut count = 0;
-    for file in files.iter().filter(|f| f.extension().is_some_and(|e| e == "toml")) {
-        let train = Train::from_toml(&fs::read_to_string(file).unwrap()).unwrap();
-        count += usize::from(check_all(&file.display().to_string(), &train));
-    }
+    let count = trains::examples().iter().filter(|(name, train)| check_all(name, train)).count();
     assert!(count > 10, "{count}");
 }
 
@@ -125,33 +117,9 @@ fn any_names_fit() {
     }
 }
 
-/// Up to four stepped sets on a few members, with fixed seeds.
-fn random(seed: u64) -> Option<Train> {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1);
-    let mut below = |n: u64| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) % n
-    };
-    let k = 1 + below(4) as usize;
-    let all: Vec<String> = (0..k + 2).map(|m| format!("shaft {m}")).collect();
-    let mut b = Train::builder("random").members(all.iter().map(String::as_str)).terminals([&*all[0], &*all[1]]);
-    for j in 0..k {
-        let mut own: Vec<usize> = (0..k + 2).collect();
-        let mut draw = || own.remove(below(own.len() as u64) as usize);
-        let [x, y, c] = [draw(), draw(), draw()];
-        let mut teeth = |low: u64, high: u64| (low + below(high - low)) as i64;
-        let [zx, zy, p, q] = [teeth(12, 90), teeth(12, 90), teeth(12, 60), teeth(12, 60)];
-        let set = SetSpec::stepped(format!("P{j}"), &all[c]).sun(&all[x], zx, p);
-        let set = if below(2) == 0 { set.ring(&all[y], zy + q, q) } else { set.sun(&all[y], zy, q) };
-        b = b.set(set.mesh_efficiency(0.9 + below(100) as f64 / 1000.0));
-    }
-    let load = OperationSpec::new("load").speed(&all[0], AngularSpeed::rpm(1000.0)).torque(&all[0], Torque::n_m(100.0));
-    b.operation(load.fixed(&all[k + 1])).build().ok()
-}
-
 #[test]
 fn prop_labels_of_random_trains_keep_apart() {
-    let drawn = |seed: &u64| random(*seed).is_some_and(|train| check_all(&format!("seed {seed}"), &train));
+    let drawn = |seed: &u64| stepped(*seed).is_some_and(|train| check_all(&format!("seed {seed}"), &train));
     let count = (0..60).filter(drawn).count();
     assert!(count > 20, "{count}");
 }

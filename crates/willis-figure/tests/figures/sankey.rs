@@ -1,27 +1,19 @@
 //! Sankey diagrams: at every node what enters is what leaves with the losses, to scale; ribbons do
 //! not overlap; sums are those of the power flow.
 
-use std::fs;
-use std::path::Path;
-
 use willis::analysis::Selection;
 use willis::hypergraph::{FlowReport, Hypergraph, NodeKind, flows};
-use willis::train::{OperationSpec, SetSpec, Train};
-use willis::units::{AngularSpeed, Torque};
 use willis_figure::{SankeyFlow, SankeyLink, sankey};
 
+use crate::trains::{self, stepped};
+
 fn examples() -> Vec<(String, FlowReport)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).collect();
-    files.retain(|p| p.extension().is_some_and(|e| e == "toml"));
-    files.sort();
-    let read = |p: &Path| Train::from_toml(&fs::read_to_string(p).unwrap()).unwrap();
-    let flow = |p: &Path| flows(&read(p), &Selection::default()).ok();
-    files.iter().filter_map(|p| Some((p.file_name()?.to_str()?.to_owned(), flow(p)?))).collect()
+    let all = trains::examples().into_iter();
+    all.filter_map(|(name, train)| Some((name, flows(&train, &Selection::default()).ok()?))).collect()
 }
 
 fn example(name: &str) -> FlowReport {
-    examples().into_iter().find(|e| e.0 == name).expect("there is such an example").1
+    flows(trains::model(name).train(), &Selection::default()).expect("it has operations")
 }
 
 /// The graphs in the order of the panels that have a flow.
@@ -140,38 +132,11 @@ fn every_operation_of_every_example_is_to_scale() {
     assert!(count > 40, "{count}");
 }
 
-/// Stepped sets on a few members with fixed seeds; many of them recirculate.
-fn random(seed: u64) -> Option<Train> {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1);
-    let mut below = |n: u64| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) % n
-    };
-    let k = 1 + below(4) as usize;
-    let all: Vec<String> = (0..k + 2).map(|m| format!("m{m}")).collect();
-    let mut b = Train::builder("random").members(all.iter().map(String::as_str)).terminals([&*all[0], &*all[1]]);
-    for j in 0..k {
-        let mut own: Vec<usize> = (0..k + 2).collect();
-        let mut draw = || own.remove(below(own.len() as u64) as usize);
-        let [x, y, c] = [draw(), draw(), draw()];
-        let mut teeth = |low: u64, high: u64| (low + below(high - low)) as i64;
-        let [zx, zy, p, q] = [teeth(12, 90), teeth(12, 90), teeth(12, 60), teeth(12, 60)];
-        let set = SetSpec::stepped(format!("P{j}"), &all[c]).sun(&all[x], zx, p);
-        let set = if below(2) == 0 { set.ring(&all[y], zy + q, q) } else { set.sun(&all[y], zy, q) };
-        b = b.set(set.mesh_efficiency(0.9 + below(100) as f64 / 1000.0));
-    }
-    let operation = OperationSpec::new("load")
-        .speed(&all[0], AngularSpeed::rpm(1000.0))
-        .torque(&all[0], Torque::n_m(100.0))
-        .fixed(&all[k + 1]);
-    b.operation(operation).build().ok()
-}
-
 #[test]
 fn prop_random_trains_are_to_scale() {
     let (mut count, mut back) = (0, 0);
     for seed in 0..200 {
-        let Some(all) = random(seed).and_then(|t| flows(&t, &Selection::default()).ok()) else { continue };
+        let Some(all) = stepped(seed).and_then(|t| flows(&t, &Selection::default()).ok()) else { continue };
         count += check_all(&format!("seed {seed}"), &all);
         let led = |p: &willis_figure::SankeyPanel| p.flow.iter().any(|f| f.links.iter().any(|l| l.back));
         back += sankey(&all).panels.iter().filter(|p| led(p)).count();

@@ -3,32 +3,15 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use resvg::usvg::{self, Options, Tree, fontdb, roxmltree};
 use willis::model::Model;
-use willis_figure::{Drawing, draw};
-use willis_figure::{FigureKind, FigureRequest};
+use willis_figure::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
-fn examples() -> Vec<PathBuf> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    let all = std::fs::read_dir(folder).expect("the examples are there").map(|e| e.expect("readable").path());
-    let mut all: Vec<PathBuf> = all.filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
-    all.sort();
-    all
-}
-
-fn model(path: &Path) -> Model {
-    let text = std::fs::read_to_string(path).expect("an example is text");
-    let folder = path.parent().expect("a file has a folder");
-    Model::read(&text, &mut |f| std::fs::read_to_string(folder.join(f)).map_err(|e| e.to_string()))
-        .unwrap_or_else(|reading| panic!("{}: {:?}", path.display(), reading))
-}
-
-fn stem(path: &Path) -> String {
-    path.file_stem().expect("a file has a name").to_string_lossy().into_owned()
-}
+use crate::common::examples;
+use crate::trains::model;
 
 /// Only the face that every machine has, so that the same boxes are measured everywhere.
 fn faces() -> Arc<fontdb::Database> {
@@ -127,24 +110,27 @@ fn faults(svg: &str, faces: &Arc<fontdb::Database>) -> Vec<String> {
 fn every_kind_of_every_example_is_fit_to_print() {
     let faces = faces();
     let (mut wrong, mut drawn) = (String::new(), BTreeMap::new());
-    for path in examples() {
-        let model = model(&path);
+    for (name, _) in examples() {
+        let model = model(&name);
         for kind in FigureKind::ALL {
             let request = FigureRequest { samples: 128, ..Default::default() };
             let figure = match kind.make(&model, &request) {
                 Ok(figure) => figure,
                 Err(why) => {
                     // A kind that does not apply says why.
-                    assert!(why.iter().all(|d| d.message.len() > 15), "{}: {}", stem(&path), kind.name());
+                    assert!(why.iter().all(|d| d.message.len() > 15), "{}: {}", name, kind.name());
                     continue;
                 }
             };
             *drawn.entry(kind.name()).or_insert(0) += 1;
+            let text = serde_json::to_string(&figure).expect("plain data");
+            let back: Figure = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{name} {}: {e}", kind.name()));
+            assert_eq!(back, figure, "{name} {}: another figure is read back", kind.name());
             let svg = draw(&figure, Drawing::default());
             assert_eq!(svg, draw(&figure, Drawing::default()), "the same figure, the same bytes");
             let found = faults(&svg, &faces);
             for fault in found.iter().take(5) {
-                let _ = writeln!(wrong, "{} {}: {fault}", stem(&path), kind.name());
+                let _ = writeln!(wrong, "{} {}: {fault}", name, kind.name());
             }
         }
     }
@@ -211,7 +197,7 @@ fn any_name_finds_its_place() {
 /// A few pictures as they were when somebody looked at them: words the same, places within a unit.
 #[test]
 fn regress_pictures() {
-    let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures");
+    let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/figures/pictures");
     let update = std::env::var_os("WILLIS_UPDATE").is_some();
     let chosen = [
         ("zf-8hp70", "stick"),
@@ -229,13 +215,11 @@ fn regress_pictures() {
         ("fva-planetary-stage", "band"),
         ("galvagno", "stick"),
     ];
-    let all = examples();
     let mut changed = vec![];
     for (train, kind) in chosen {
-        let path = all.iter().find(|p| stem(p) == train).expect("an example of that name");
         let kind = FigureKind::named(kind).expect("a kind of that name");
         let request = FigureRequest { samples: 128, ..Default::default() };
-        let figure = kind.make(&model(path), &request).expect("it applies");
+        let figure = kind.make(&model(train), &request).expect("it applies");
         let svg = draw(&figure, Drawing::default());
         let file = stored.join(format!("{train}.{}.svg", kind.name()));
         if update {
