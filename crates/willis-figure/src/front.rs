@@ -188,13 +188,13 @@ impl FrontWheel {
     /// ```
     /// # use willis_figure::front;
     /// # use willis::train::{GeometrySpec, SetSpec, Train};
+    /// # use willis::units::Length;
     /// let train = Train::builder("stage")
     ///     .members(["s", "c"])
-    ///     .set(SetSpec::simple("P1", ("s", 17), ("frame", 61), "c").planet(22, 3).geometry(GeometrySpec {
-    ///         module: 4e-3,
-    ///         width: 50e-3,
-    ///         ..GeometrySpec::default()
-    ///     }))
+    ///     .set(SetSpec::simple("P1", ("s", 17), ("frame", 61), "c").planet(22, 3).geometry(GeometrySpec::new(
+    ///         Length::mm(4.0),
+    ///         Length::mm(50.0),
+    ///     )))
     ///     .build()?;
     /// let sun = &front(&train, None, false)?.wheels[0];
     /// // Unshifted: a quarter of the pitch, π m/4, over the reference radius.

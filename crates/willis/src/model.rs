@@ -8,30 +8,33 @@ mod target;
 use std::collections::BTreeMap;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::train::{Document, Reading, Train};
+use crate::train::{Document, Reading, Specification, Train};
 
 pub use target::{Target, Who};
 pub(crate) use target::{oil_temperature, quantity};
 
-/// A gear train with the text that says it, any quantity of which can be set anew.
+/// A gear train as data, any quantity of which can be read and set anew.
+///
+/// It comes from the text of a train file ([`Model::from_toml`]) or from a [`Specification`] that code made
+/// ([`Model::new`]); what can be done with it is the same. It always has a text: what a person wrote stays as it is,
+/// with comments and order, but for what [`Model::set`] changes.
 ///
 /// # Example
 /// ```
-/// use willis::model::{Model, Target};
+/// use willis::Model;
+/// use willis::train::{SetSpec, Specification};
 ///
-/// let model = Model::from_toml(r#"
-///     format = 1
-///     name = "one set"
-///     members = ["s", "r", "c"]
-///     [[set]]
-///     name = "P1"
-///     sun = { member = "s", teeth = 30 }
-///     ring = { member = "r", teeth = 70 }
-///     carrier = "c"
-/// "#)?;
-/// let target = Target::parse("P1.mesh_efficiency", &model).unwrap();
-/// let train = model.train_with(&[(&target, "0.97".into())])?;
-/// assert_eq!(train.meshes()[1].efficiency.backward.to_f64(), 0.97);
+/// let mut model = Model::new(
+///     Specification::new("reducer")
+///         .members(["s", "c"])
+///         .terminals(["s", "c"])
+///         .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).mesh_efficiency(0.99)),
+/// )?;
+/// assert_eq!(model.get("P1.sun.teeth")?.as_deref(), Some("30"));
+/// model.set("P1.planet.count", "3")?;
+/// assert_eq!(model.train().meshes()[0].count, 3);
+/// let better = model.with([("P1.mesh_efficiency", "0.995")])?;
+/// assert!(better.to_toml().contains("mesh_efficiency = 0.995"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -43,15 +46,49 @@ pub struct Model {
     /// Laws in force over those of the text: family and name.
     laws: Vec<(String, String)>,
     train: Train,
+    specification: Specification,
     /// Where everything stands in the text, and what was said when it was read.
     reading: Reading,
 }
 
 impl Model {
+    /// Checks a specification that names no tables.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, by its place in the specification.
+    pub fn new(specification: Specification) -> Result<Self, Diagnostics> {
+        Self::new_with(specification, &mut |file| Err(format!("`{file}`: files are not read here")))
+    }
+
+    /// Checks a specification; `load` gives the text of a table that it names, or says why it cannot.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, by its place in the specification.
+    pub fn new_with(
+        specification: Specification,
+        load: &mut dyn FnMut(&str) -> Result<String, String>,
+    ) -> Result<Self, Diagnostics> {
+        specification.build_with(load)?;
+        Self::read(&specification.to_toml(), load).map_err(elsewhere)
+    }
+
     /// Reads a train file that names no tables.
     ///
     /// # Errors
     /// Everything that is wrong with the text, each with its place.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::Model;
+    ///
+    /// let text = "format = 1\nname = 'clutch'  # the one on the bench\nmembers = ['a', 'b']\nterminals = ['a', 'b']\n\
+    ///     shift_element = [{ name = 'C', kind = 'clutch', members = ['a', 'b'], capacity = '80 N m' }]\n";
+    /// let mut model = Model::from_toml(text)?;
+    /// assert_eq!(model.to_toml(), text);
+    /// model.set("C.capacity", "95 N m")?;
+    /// assert!(model.to_toml().contains("# the one on the bench") && model.to_toml().contains("95 N m"));
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
     pub fn from_toml(text: &str) -> Result<Self, Diagnostics> {
         Self::read(text, &mut |file| Err(format!("`{file}`: files are not read here")))
     }
@@ -68,9 +105,11 @@ impl Model {
             text
         };
         let mut reading = Train::read_toml_with(text, &mut keep);
-        let Some(train) = reading.train.take() else { return Err(reading.diagnostics) };
+        let (Some(train), Some(specification)) = (reading.train.take(), reading.specification.take()) else {
+            return Err(reading.diagnostics);
+        };
         let document = Document::parse(text).expect("the text was read as TOML");
-        Ok(Self { text: text.to_owned(), document, files, laws: vec![], train, reading })
+        Ok(Self { text: text.to_owned(), document, files, laws: vec![], train, specification, reading })
     }
 
     /// Puts laws into force over those of the text: pairs of family and name.
@@ -95,6 +134,58 @@ impl Model {
     /// The train, checked.
     pub fn train(&self) -> &Train {
         &self.train
+    }
+
+    /// All that the text says, as data.
+    pub fn specification(&self) -> &Specification {
+        &self.specification
+    }
+
+    /// The value of a quantity by its path, as written; none where it is not given.
+    ///
+    /// Paths are those of [`Document`]: `P1.planet.count`, `oil.viscosity_40`, `C.capacity`; [`Document::paths`] lists
+    /// them all.
+    ///
+    /// # Errors
+    /// There is no such quantity; with the nearest.
+    pub fn get(&self, path: &str) -> Result<Option<String>, Diagnostics> {
+        let key = self.document.find(&of_file(path)).map_err(one)?;
+        Ok(self.document.value(&key))
+    }
+
+    /// Sets a quantity by its path: `"23"`, `"12 mm"`, `"mineral"`. All else stays as written.
+    ///
+    /// # Errors
+    /// There is no such quantity, the text is no such value, or the train is wrong with it; nothing has changed then.
+    pub fn set(&mut self, path: &str, value: &str) -> Result<(), Diagnostics> {
+        *self = self.with([(path, value)])?;
+        Ok(())
+    }
+
+    /// The same model with other values of some quantities.
+    ///
+    /// # Errors
+    /// As of [`Model::set`]; the train is checked when all are set.
+    pub fn with<P: AsRef<str>, V: AsRef<str>>(
+        &self,
+        settings: impl IntoIterator<Item = (P, V)>,
+    ) -> Result<Self, Diagnostics> {
+        let mut document = self.document.clone();
+        let mut laws = self.laws.clone();
+        for (path, value) in settings {
+            let path = of_file(path.as_ref());
+            let key = document.find(&path).map_err(one)?;
+            document.set(&key, value.as_ref()).map_err(|what| one(bad_value(&path, &what)))?;
+            // What is set later holds.
+            laws.retain(|(family, _)| path.strip_prefix("laws.") != Some(family));
+        }
+        let read = Self::read(&document.text(), &mut |name| self.table(name)).map_err(elsewhere)?;
+        read.with_laws(laws)
+    }
+
+    /// The text of a table that was read before.
+    fn table(&self, name: &str) -> Result<String, String> {
+        self.files.get(name).cloned().unwrap_or_else(|| Err(format!("`{name}` was not read before")))
     }
 
     /// The text.
@@ -141,17 +232,10 @@ impl Model {
                 let mut document = self.document.clone();
                 for (target, value) in settings {
                     let Target::File(key) = target else { continue };
-                    document.set(key, value).map_err(|what| {
-                        Diagnostics::from_iter([Diagnostic::new(Code::BadAxis, "", format!("`{value}`: {what}"))])
-                    })?;
+                    document.set(key, value).map_err(|what| one(bad_value(value, &what)))?;
                 }
-                let mut load = |name: &str| {
-                    self.files.get(name).cloned().unwrap_or_else(|| Err(format!("`{name}` was not read before")))
-                };
-                let Reading { train, diagnostics, .. } = Train::read_toml_with(&document.text(), &mut load);
-                // Their places are those of another text.
-                let elsewhere =
-                    |d: Diagnostics| d.into_iter().map(|d| Diagnostic { span: None, ..d }).collect::<Diagnostics>();
+                let Reading { train, diagnostics, .. } =
+                    Train::read_toml_with(&document.text(), &mut |name| self.table(name));
                 let mut train = train.ok_or_else(|| elsewhere(diagnostics))?;
                 for (family, law) in &self.laws {
                     train = train.with_law(family, law)?;
@@ -166,4 +250,22 @@ impl Model {
         }
         Ok(train)
     }
+}
+
+/// Laws are called in the singular where a study varies them.
+fn of_file(path: &str) -> String {
+    path.strip_prefix("law.").map_or_else(|| path.to_owned(), |family| format!("laws.{family}"))
+}
+
+fn one(d: Box<Diagnostic>) -> Diagnostics {
+    Diagnostics::from_iter([*d])
+}
+
+fn bad_value(what: &str, why: &str) -> Box<Diagnostic> {
+    Box::new(Diagnostic::new(Code::BadAxis, "", format!("`{what}`: {why}")))
+}
+
+/// Diagnostics of another text than the one that a person sees: their places are not told.
+fn elsewhere(all: Diagnostics) -> Diagnostics {
+    all.into_iter().map(|d| Diagnostic { span: None, ..d }).collect()
 }

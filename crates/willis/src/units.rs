@@ -113,6 +113,11 @@ impl Quantity {
     }
 }
 
+/// Every symbol of a unit that the reader knows.
+pub(crate) fn symbols() -> impl Iterator<Item = &'static str> {
+    symbols::UNITS.iter().flat_map(|u| u.0).copied().chain(symbols::TOGETHER.iter().map(|t| t.0))
+}
+
 /// Why a quantity string was refused, and what would be read instead.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -514,6 +519,152 @@ quantity!(
     /// From kilowatts.
     kw = "kW"
 );
+quantity!(
+    /// A temperature on the scale of a thermometer: `"60 degC"` is 333.15 K.
+    Temperature, TEMPERATURE,
+    /// From kelvins.
+    k = "K"
+);
+quantity!(
+    /// A length.
+    Length, LENGTH,
+    /// From metres.
+    m = "m",
+    /// From millimetres.
+    mm = "mm",
+    /// From micrometres.
+    um = "um"
+);
+quantity!(
+    /// An angle.
+    Angle, ANGLE,
+    /// From radians.
+    rad = "rad",
+    /// From degrees.
+    deg = "deg"
+);
+quantity!(
+    /// A force.
+    Force, FORCE,
+    /// From newtons.
+    n = "N",
+    /// From kilonewtons.
+    kn = "kN"
+);
+quantity!(
+    /// A mass.
+    Mass, MASS,
+    /// From kilograms.
+    kg = "kg"
+);
+quantity!(
+    /// A volume.
+    Volume, VOLUME,
+    /// From cubic metres.
+    m3 = "m^3",
+    /// From litres.
+    l = "l"
+);
+quantity!(
+    /// A density.
+    Density, DENSITY,
+    /// From kilograms per cubic metre.
+    kg_m3 = "kg/m^3"
+);
+quantity!(
+    /// A pressure, or a modulus of elasticity.
+    Pressure, PRESSURE,
+    /// From pascals.
+    pa = "Pa",
+    /// From gigapascals.
+    gpa = "GPa"
+);
+quantity!(
+    /// A pressure-viscosity coefficient.
+    PressureCoefficient, PRESSURE_COEFFICIENT,
+    /// From 1/Pa.
+    per_pa = "1/Pa",
+    /// From 1/GPa.
+    per_gpa = "1/GPa"
+);
+quantity!(
+    /// A kinematic viscosity.
+    KinematicViscosity, KINEMATIC_VISCOSITY,
+    /// From m²/s.
+    m2_s = "m^2/s",
+    /// From mm²/s, which is centistokes.
+    mm2_s = "mm^2/s"
+);
+quantity!(
+    /// A dynamic viscosity.
+    DynamicViscosity, DYNAMIC_VISCOSITY,
+    /// From pascal seconds.
+    pa_s = "Pa s",
+    /// From millipascal seconds, which is centipoise.
+    mpa_s = "mPa s"
+);
+quantity!(
+    /// A time.
+    Time, TIME,
+    /// From seconds.
+    s = "s",
+    /// From milliseconds.
+    ms = "ms"
+);
+quantity!(
+    /// A frequency, or a rate of decay.
+    Frequency, FREQUENCY,
+    /// From hertz, 1/s.
+    hz = "Hz"
+);
+quantity!(
+    /// An area.
+    Area, AREA,
+    /// From square metres.
+    m2 = "m^2"
+);
+quantity!(
+    /// A moment of inertia.
+    MomentOfInertia, INERTIA,
+    /// From kg m².
+    kg_m2 = "kg m^2"
+);
+quantity!(
+    /// A torsional stiffness.
+    Stiffness, STIFFNESS,
+    /// From N m/rad.
+    n_m_rad = "N m/rad"
+);
+quantity!(
+    /// A torque over an angular speed.
+    ViscousCoefficient, VISCOUS,
+    /// From N m s/rad.
+    n_m_s_rad = "N m s/rad"
+);
+quantity!(
+    /// A torque over an angular acceleration.
+    TorquePerAcceleration, TORQUE_PER_ACCELERATION,
+    /// From N m s²/rad.
+    n_m_s2_rad = "N m s^2/rad"
+);
+quantity!(
+    /// A torque over the square of an angular speed.
+    TorquePerSpeedSquared, TORQUE_PER_SPEED_SQUARED,
+    /// From N m s²/rad².
+    n_m_s2_rad2 = "N m s^2/rad^2"
+);
+
+impl Temperature {
+    /// From degrees Celsius.
+    ///
+    /// # Panics
+    /// If `value` is NaN or infinite.
+    pub fn deg_c(value: f64) -> Self {
+        let Self(mut celsius) = Self::k(value);
+        celsius.value = celsius.value + Rational::new(27315, 100);
+        Self(celsius)
+    }
+}
 
 /// A value in SI units in the unit that people use for its size: mm for m, rpm for rad/s, °C for K. Units that people
 /// use as they are stay, and `-` becomes nothing.

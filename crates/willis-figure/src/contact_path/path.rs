@@ -56,8 +56,8 @@ const ROWS: [Row; 5] = [
 /// # Example
 /// ```
 /// # use willis::train::{GeometrySpec, OilSpec, OperationSpec, SetSpec, Train};
-/// # use willis::units::{AngularSpeed, Torque};
-/// # let geometry = GeometrySpec { module: 4e-3, width: 50e-3, ..GeometrySpec::default() };
+/// # use willis::units::{AngularSpeed, Length, Torque};
+/// # let geometry = GeometrySpec::new(Length::mm(4.0), Length::mm(50.0));
 /// # let train = Train::builder("stage")
 /// #     .members(["s", "c"])
 /// #     .terminals(["s", "c"])

@@ -293,7 +293,7 @@ fn a_bevel_set_and_missing_teeth_are_told() {
 
 #[test]
 fn a_pair_of_gears_has_a_front_view() {
-    let geometry = GeometrySpec { module: 4.5e-3, width: 14e-3, ..GeometrySpec::default() };
+    let geometry = GeometrySpec::new(willis::units::Length::mm(4.5), willis::units::Length::mm(14.0));
     let train = Train::builder("pair")
         .members(["a", "b"])
         .mesh(MeshSpec::new(GearSpec::external("a", 16), GearSpec::external("b", 24)).named("ab").geometry(geometry))

@@ -1,6 +1,6 @@
 //! Stick diagrams: their lines join what the train joins, and nothing else.
 
-use willis::train::{FRAME, GearSpec, MeshSpec, SetSpec, ShiftElementSpec, Train, TrainBuilder};
+use willis::train::{FRAME, GearSpec, MeshSpec, SetSpec, ShiftElementSpec, Specification, Train};
 use willis_figure::{JointKind, Place, Stick, stick};
 
 use crate::trains::examples;
@@ -234,7 +234,7 @@ fn random(seed: u64, sets: usize, name: &dyn Fn(usize) -> String) -> Result<Trai
     let mut names: Vec<String> = (1..=members).map(name).collect();
     names.push("wheel".to_owned());
     names.sort();
-    let mut b: TrainBuilder = Train::builder(format!("random {seed}")).members(names.iter().map(String::as_str));
+    let mut b: Specification = Train::builder(format!("random {seed}")).members(names.iter().map(String::as_str));
     b = b.terminals([name(1).as_str(), name(2).as_str()]);
     for k in 0..sets {
         let set = format!("P{k}");

@@ -325,6 +325,7 @@ fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<Loss
         convergence: solution.and_then(|s| s.convergence),
         warnings: (train.lubrication.iter())
             .filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)))
+            .map(|b| b.to_string())
             .map(|text| Diagnostic::new(Code::OutsideLaw, "", text))
             .chain(notes)
             .filter(|d| d.severity == Severity::Warning)

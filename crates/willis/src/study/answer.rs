@@ -101,7 +101,7 @@ impl PointAnswer {
             verdict: report.verdict.into(),
             reason: report.reason.unwrap_or_default(),
             solution: report.solutions.into_iter().next().filter(|_| is_one),
-            warnings: oil.map(|text| (Code::OutsideLaw, text)).chain(warnings).collect(),
+            warnings: oil.map(|beyond| (Code::OutsideLaw, beyond.to_string())).chain(warnings).collect(),
         }
     }
 

@@ -3,33 +3,35 @@
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
 
-use super::assemble::{Assembler, clip};
-use super::describe::physical::ToothSpec;
-use super::describe::{GearSpec, Parts, PlanetSpec, SetEfficiencySpec, SetSpec};
+use super::assembler::Assembler;
+use super::described::{GivenEfficiency, GivenGear, GivenPlanet, GivenSet, Parts};
 use super::physical::Teeth;
+use super::specification::field::Tabular;
+use super::specification::{PlainTooth, SetEfficiencySpec, ToothSpec};
+use super::words::clip;
 use super::{Efficiency, Gear, MemberId, Mesh, Set};
 
 /// Adds the planet rotors of a set, in the order in which [`expand`] uses them.
-pub(super) fn planets(a: &mut Assembler<'_>, set: &SetSpec) -> Vec<MemberId> {
+pub(super) fn planets(a: &mut Assembler<'_>, set: &GivenSet) -> Vec<MemberId> {
     set.planets().iter().map(|(role, _)| a.add_planet(format!("{}.{role}", set.name))).collect()
 }
 
 /// The two gears of a mesh to be, with the place of the first for messages.
 struct Pair<'a> {
     name: String,
-    central: Option<&'a GearSpec>,
+    central: Option<&'a GivenGear>,
     /// Members, tooth counts and teeth, first gear first.
-    gears: [(MemberId, Rational, bool, ToothSpec); 2],
+    gears: [(MemberId, Rational, bool, PlainTooth); 2],
     same_sense: bool,
     bevel: bool,
 }
 
 /// Adds the meshes of a set.
-pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId], index: usize) -> Option<Set> {
+pub(super) fn expand(a: &mut Assembler<'_>, set: &GivenSet, planets: &[MemberId], index: usize) -> Option<Set> {
     let place = format!("set[{index}]");
     let carrier = a.resolve(&set.carrier, &format!("{place}.carrier"));
     let name = &set.name;
-    let central = |a: &mut Assembler<'_>, g: &GearSpec, key: &str| {
+    let central = |a: &mut Assembler<'_>, g: &GivenGear, key: &str| {
         let teeth = a.teeth(g.teeth, &format!("{place}.{key}.teeth"));
         let id = a.resolve(&g.member, &format!("{place}.{key}.member"))?;
         if Some(id) == carrier {
@@ -39,11 +41,12 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                     .hint("a locked set is made with a clutch, not by naming one member twice"),
             );
         }
-        Some((id, teeth, g.internal, g.tooth))
+        Some((id, teeth, g.internal, g.tooth.clone()))
     };
-    let number =
-        |a: &mut Assembler<'_>, p: &PlanetSpec, key: &str| p.count.map(|c| a.count(c, &format!("{place}.{key}.count")));
-    let in_pairs = |a: &mut Assembler<'_>, first: (&PlanetSpec, &str), second: (&PlanetSpec, &str)| {
+    let number = |a: &mut Assembler<'_>, p: &GivenPlanet, key: &str| {
+        p.count.map(|c| a.count(c, &format!("{place}.{key}.count")))
+    };
+    let in_pairs = |a: &mut Assembler<'_>, first: (&GivenPlanet, &str), second: (&GivenPlanet, &str)| {
         let counts = (number(a, first.0, first.1), number(a, second.0, second.1));
         if let (Some(n), Some(other)) = counts
             && n != other
@@ -54,13 +57,13 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
         }
         counts.0.or(counts.1)
     };
-    let planet_teeth =
-        |a: &mut Assembler<'_>, p: &PlanetSpec, key: &str| p.teeth.map(|t| a.teeth(t, &format!("{place}.{key}.teeth")));
+    let planet_teeth = |a: &mut Assembler<'_>, p: &GivenPlanet, key: &str| {
+        p.teeth.map(|t| a.teeth(t, &format!("{place}.{key}.teeth")))
+    };
     let mut pairs: Vec<Pair<'_>> = Vec::new();
-    let (kind, count);
+    let count;
     match &set.parts {
         Parts::Simple { sun, ring, planet } => {
-            kind = "simple";
             count = number(a, planet, "planet");
             let given = planet_teeth(a, planet, "planet");
             let (s, r) = (central(a, sun, "sun"), central(a, ring, "ring"));
@@ -73,12 +76,11 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 equal_spacing(a, set, &place, &Rational::from(sun.z() + ring.z()), n, "z_sun + z_ring");
                 clearance(a, set, &place, &Rational::from(sun.z()), &teeth, n);
             }
-            let p = (planets[0], teeth, false, planet.tooth);
+            let p = (planets[0], teeth, false, planet.tooth.clone());
             pairs.push(pair("sun-planet", sun, s, p.clone()));
             pairs.push(Pair { central: Some(ring), ..pair("planet-ring", ring, p, r) });
         }
         Parts::DoublePlanet { sun, ring, inner, outer } => {
-            kind = "double-planet";
             count = in_pairs(a, (inner, "inner_planet"), (outer, "outer_planet"));
             let (z_i, z_o) = (planet_teeth(a, inner, "inner_planet"), planet_teeth(a, outer, "outer_planet"));
             let (s, r) = (central(a, sun, "sun"), central(a, ring, "ring"));
@@ -101,14 +103,13 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                     if z.sign() > 0 { z } else { Rational::from(sun.z()) }
                 })
             };
-            let i = (planets[0], or_nominal(z_i, "inner"), false, inner.tooth);
-            let o = (planets[1], or_nominal(z_o, "outer"), false, outer.tooth);
+            let i = (planets[0], or_nominal(z_i, "inner"), false, inner.tooth.clone());
+            let o = (planets[1], or_nominal(z_o, "outer"), false, outer.tooth.clone());
             pairs.push(pair("sun-inner_planet", sun, s, i.clone()));
             pairs.push(Pair { central: None, ..pair("inner_planet-outer_planet", sun, i, o.clone()) });
             pairs.push(pair("outer_planet-ring", ring, o, r));
         }
         Parts::Stepped { central: gears, planet } => {
-            kind = "stepped";
             count = number(a, planet, "planet");
             let (mut suns, mut rings) = (0, 0);
             let mut steps = Vec::new();
@@ -119,7 +120,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 let step = a.teeth(g.planet_teeth.unwrap_or(1), &format!("{place}.{key}.planet_teeth"));
                 let Some(c) = central(a, g, &key) else { continue };
                 steps.push((if g.internal { -g.z() } else { g.z() }, step.clone()));
-                let p = (planets[0], step, false, g.planet_tooth);
+                let p = (planets[0], step, false, g.planet_tooth.clone());
                 let many = gears.iter().filter(|o| o.internal == g.internal).count() > 1;
                 let label = if many { g.member.as_str() } else { g.role() };
                 pairs.push(match g.internal {
@@ -135,7 +136,6 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
             stepped_conditions(a, set, &place, &steps, count);
         }
         Parts::Ravigneaux { small_sun, large_sun, ring, short, long } => {
-            kind = "ravigneaux";
             count = in_pairs(a, (short, "short_planet"), (long, "long_planet"));
             let (z_short, z_long) = (planet_teeth(a, short, "short_planet"), planet_teeth(a, long, "long_planet"));
             if [small_sun, large_sun, ring].iter().filter(|g| g.is_some()).count() < 2 {
@@ -162,7 +162,8 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 );
                 z_long.clone()
             });
-            let (short, long) = ((planets[0], z_short, false, short.tooth), (planets[1], z_long, false, long.tooth));
+            let (short, long) =
+                ((planets[0], z_short, false, short.tooth.clone()), (planets[1], z_long, false, long.tooth.clone()));
             if let Some(g) = small_sun {
                 let c = central(a, g, "small_sun")?;
                 pairs.push(pair("small_sun-short_planet", g, c, short.clone()));
@@ -179,7 +180,6 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
             }
         }
         Parts::Bevel { sides, planet } => {
-            kind = "bevel";
             count = number(a, planet, "planet");
             let plain = planet_teeth(a, planet, "planet");
             if sides.len() < 2 {
@@ -199,7 +199,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
                 });
                 let Some(c) = central(a, g, &key) else { continue };
                 let right = g.right.unwrap_or(k > 0);
-                let p = (planets[0], step, false, ToothSpec::default());
+                let p = (planets[0], step, false, ToothSpec::default().twin());
                 let mut new = pair(&format!("{}-planet", g.member), g, c, p);
                 if right {
                     // Written planet first, as the mesh of a ring is.
@@ -251,28 +251,28 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &SetSpec, planets: &[MemberId],
     if count.is_none() {
         a.assume(name, "number of planets not given: assembly not checked, torques and losses are totals");
     }
-    Some(Set { name: name.clone(), kind, planets: count })
+    Some(Set { name: name.clone(), kind: set.kind, planets: count })
 }
 
 fn pair<'a>(
     name: &str,
-    central: &'a GearSpec,
-    first: (MemberId, Rational, bool, ToothSpec),
-    second: (MemberId, Rational, bool, ToothSpec),
+    central: &'a GivenGear,
+    first: (MemberId, Rational, bool, PlainTooth),
+    second: (MemberId, Rational, bool, PlainTooth),
 ) -> Pair<'a> {
     let same_sense = first.2 || second.2;
     Pair { name: name.into(), central: Some(central), gears: [first, second], same_sense, bevel: false }
 }
 
 /// The teeth of each mesh of the set, where its geometry is given, on one centre distance.
-fn teeth(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair<'_>]) -> Vec<Option<Teeth>> {
+fn teeth(a: &mut Assembler<'_>, set: &GivenSet, place: &str, pairs: &[Pair<'_>]) -> Vec<Option<Teeth>> {
     let mut all = Vec::with_capacity(pairs.len());
     for p in pairs {
-        let own = p.central.and_then(|c| c.geometry);
-        let geometry = if p.bevel { None } else { own.or(set.geometry) };
-        let gears = [&p.gears[0], &p.gears[1]].map(|g| (g.1.to_f64(), g.2, g.3));
+        let own = p.central.and_then(|c| c.geometry.as_ref());
+        let geometry = if p.bevel { None } else { own.or(set.geometry.as_ref()) };
+        let gears = [&p.gears[0], &p.gears[1]].map(|g| (g.1.to_f64(), g.2, &g.3));
         let title = format!("{}.{}", set.name, p.name);
-        all.push(geometry.and_then(|g| a.tooth_pair(&g, gears, &title, place)));
+        all.push(geometry.and_then(|g| a.tooth_pair(g, gears, &title, place)));
     }
     // Every central gear meshes with planets whose axes run on one circle.
     let central: Vec<(&Pair<'_>, &Teeth)> = pairs
@@ -318,14 +318,18 @@ fn a_central(p: &Pair<'_>) -> Option<MemberId> {
 }
 
 /// The efficiency of each mesh of the set.
-fn efficiencies(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair<'_>]) -> Vec<Efficiency> {
+fn efficiencies(a: &mut Assembler<'_>, set: &GivenSet, place: &str, pairs: &[Pair<'_>]) -> Vec<Efficiency> {
     let name = &set.name;
     match &set.efficiency {
         None => {
             a.assume(name, "no efficiency given, taken as lossless");
             vec![Efficiency::lossless(); pairs.len()]
         }
-        Some(SetEfficiencySpec::Meshes { external, internal }) => {
+        Some(GivenEfficiency::Meshes(given)) => {
+            let (external, internal) = match given {
+                SetEfficiencySpec::All(e) => (e, e),
+                SetEfficiencySpec::ByKind { external, internal } => (external, internal),
+            };
             let external = a.efficiency(external, &format!("{place}.mesh_efficiency"));
             let internal = a.efficiency(internal, &format!("{place}.mesh_efficiency"));
             pairs
@@ -333,7 +337,7 @@ fn efficiencies(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair
                 .map(|p| if p.gears.iter().any(|g| g.2) { internal.clone() } else { external.clone() })
                 .collect()
         }
-        Some(SetEfficiencySpec::Basic(spec)) => {
+        Some(GivenEfficiency::Basic(spec)) => {
             let place = format!("{place}.basic_efficiency");
             let eta = a.efficiency(spec, &place);
             let sources = pairs.iter().filter(|p| p.central.is_some()).count();
@@ -344,7 +348,7 @@ fn efficiencies(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair
                     let suns = if ring.is_some() { 2 } else { 1 };
                     let mut given = 0;
                     for (e, p) in all.iter_mut().zip(pairs) {
-                        let is = |s: &Option<GearSpec>| {
+                        let is = |s: &Option<GivenGear>| {
                             s.as_ref().is_some_and(|s| p.central.is_some_and(|c| std::ptr::eq(c, s)))
                         };
                         if (is(small_sun) || is(large_sun)) && given < suns {
@@ -382,7 +386,7 @@ fn efficiencies(a: &mut Assembler<'_>, set: &SetSpec, place: &str, pairs: &[Pair
 /// The planet that fits between unshifted sun and ring, `(z_r − z_s)/2`, where none is given.
 fn nominal(
     a: &mut Assembler<'_>,
-    set: &SetSpec,
+    set: &GivenSet,
     place: &str,
     given: Option<Rational>,
     sun: i64,
@@ -424,7 +428,7 @@ fn nominal(
 /// centre distances are compared instead.
 fn coaxial(
     a: &mut Assembler<'_>,
-    set: &SetSpec,
+    set: &GivenSet,
     place: &str,
     (sun, sun_key): (i64, &str),
     (ring, ring_key): (i64, &str),
@@ -450,7 +454,7 @@ fn coaxial(
     });
 }
 
-fn equal_spacing(a: &mut Assembler<'_>, set: &SetSpec, place: &str, sum: &Rational, n: u32, what: &str) {
+fn equal_spacing(a: &mut Assembler<'_>, set: &GivenSet, place: &str, sum: &Rational, n: u32, what: &str) {
     let each = sum / &Rational::from(n as i64);
     if !each.is_integer() {
         let message = format!(
@@ -469,7 +473,7 @@ fn equal_spacing(a: &mut Assembler<'_>, set: &SetSpec, place: &str, sum: &Ration
 }
 
 /// Tip circles of neighbouring planets: `(z_s + z_p) sin(π/n) > z_p + 2` in modules, addendum one.
-fn clearance(a: &mut Assembler<'_>, set: &SetSpec, place: &str, sun: &Rational, planet: &Rational, n: u32) {
+fn clearance(a: &mut Assembler<'_>, set: &GivenSet, place: &str, sun: &Rational, planet: &Rational, n: u32) {
     if n < 2 {
         return;
     }
@@ -487,7 +491,7 @@ fn clearance(a: &mut Assembler<'_>, set: &SetSpec, place: &str, sun: &Rational, 
 }
 
 /// Centre distances and spacing of a stepped set; ring teeth negative.
-fn stepped_conditions(a: &mut Assembler<'_>, set: &SetSpec, place: &str, steps: &[(i64, Rational)], n: Option<u32>) {
+fn stepped_conditions(a: &mut Assembler<'_>, set: &GivenSet, place: &str, steps: &[(i64, Rational)], n: Option<u32>) {
     let Some((first, rest)) = steps.split_first() else { return };
     // Twice the centre distance in modules: |z + y| for sun (z > 0) and ring (z < 0).
     let twice = |(z, y): &(i64, Rational)| (&Rational::from(*z) + y).abs();

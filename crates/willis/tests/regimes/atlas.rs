@@ -18,7 +18,7 @@ use willis::regimes::{
 };
 use willis::symbolic::Notation;
 use willis::train::{
-    EfficiencySpec, GearSpec, MeshSpec, OperationSpec, SetSpec, ShiftElementSpec, StateSpec, Train, TrainBuilder,
+    EfficiencySpec, GearSpec, MeshSpec, OperationSpec, SetSpec, ShiftElementSpec, Specification, StateSpec, Train,
 };
 use willis::units::{AngularSpeed, Torque};
 
@@ -100,7 +100,7 @@ const SHAPES: [Shape; 5] = [
 /// 1 drives, 4 drives; equal and different.
 const ETAS: [[i64; 2]; 2] = [[950, 950], [960, 930]];
 
-fn fig1(shape: &Shape, eta: [i64; 2], order: [&str; 3]) -> TrainBuilder {
+fn fig1(shape: &Shape, eta: [i64; 2], order: [&str; 3]) -> Specification {
     let set = match shape.1 {
         Some([z1, p1, z4, p4]) => SetSpec::stepped("P", "2").sun("1", z1, p1).sun("4", z4, p4),
         None => SetSpec::simple("P", ("1", 30), ("4", 78), "2"),
@@ -570,15 +570,12 @@ fn prop_every_way_of_writing_gives_the_same_value() {
     for shape in &SHAPES {
         let base = fig1(shape, ETAS[1], LINKS);
         let by_meshes = {
-            let meshes = willis::train::SetEfficiencySpec::Meshes {
-                external: EfficiencySpec::directed(0.98, 0.97),
-                internal: EfficiencySpec::directed(0.99, 0.96),
-            };
+            let (external, internal) = (EfficiencySpec::directed(0.98, 0.97), EfficiencySpec::directed(0.99, 0.96));
             let set = match shape.1 {
                 Some([z1, p1, z4, p4]) => SetSpec::stepped("P", "2").sun("1", z1, p1).sun("4", z4, p4),
                 None => SetSpec::simple("P", ("1", 30), ("4", 78), "2").planet(24, 3),
             };
-            Train::builder("Fig. 1").members(LINKS).terminals(LINKS).set(set.efficiency(meshes))
+            Train::builder("Fig. 1").members(LINKS).terminals(LINKS).set(set.mesh_efficiencies(external, internal))
         };
         for (builder, eta) in [
             (base, ETAS[1].map(|e| q(e, 1000))),
@@ -1322,7 +1319,7 @@ impl Net {
         (0..self.members).map(|m| if self.frame && m == 0 { "frame".into() } else { format!("m{m}") }).collect()
     }
 
-    fn builder(&self) -> TrainBuilder {
+    fn builder(&self) -> Specification {
         let names = self.names();
         let terminals: Vec<&str> = self.terminals.iter().map(|&t| names[t].as_str()).collect();
         let mut builder = Train::builder("random")

@@ -4,12 +4,12 @@ use allocation_counter::measure;
 use willis::analysis::{Selection, Verdict, analyze};
 use willis::compiled::{CompiledTrain, Duty, Output, PointVerdict, Points, PowerLoss, ShaftDrag};
 use willis::diagnostic::Code;
-use willis::train::{OperationSpec, SetSpec, Train, TrainBuilder};
+use willis::train::{OperationSpec, SetSpec, Specification, Train};
 use willis::units::{AngularSpeed, Torque};
 
 use crate::common::{self, Uniform};
 
-fn power_split() -> TrainBuilder {
+fn power_split() -> Specification {
     Train::builder("power split")
         .members(["sun", "ring", "carrier"])
         .terminals(["sun", "ring", "carrier"])
@@ -17,7 +17,7 @@ fn power_split() -> TrainBuilder {
 }
 
 /// Two coupled sets with two freedoms and three terminals: sign patterns change with the speeds.
-fn compound_split() -> TrainBuilder {
+fn compound_split() -> Specification {
     Train::builder("compound split")
         .members(["a", "b", "c", "d"])
         .terminals(["a", "b", "d"])

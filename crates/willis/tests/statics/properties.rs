@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use proptest::prelude::*;
 use willis::analysis::{OperationReport, Role, Selection, SolutionReport, Verdict, analyze};
-use willis::train::{OperationSpec, SetSpec, Train, TrainBuilder};
+use willis::train::{OperationSpec, SetSpec, Specification, Train};
 use willis::units::{AngularSpeed, Torque};
 
 const NAMES: [&str; 8] = ["m0", "m1", "m2", "m3", "m4", "m5", "m6", "m7"];
@@ -48,7 +48,7 @@ impl RandomTrain {
     }
 
     /// With another order of members and other names, if asked for.
-    fn builder(&self, name: &dyn Fn(usize) -> String, lossless: bool) -> TrainBuilder {
+    fn builder(&self, name: &dyn Fn(usize) -> String, lossless: bool) -> Specification {
         let names: Vec<String> = (0..self.members()).map(name).collect();
         let mut sorted: Vec<&str> = names.iter().map(String::as_str).collect();
         sorted.sort_unstable();

@@ -6,7 +6,7 @@
 use serde_json::Value;
 use willis::analysis::{Analysis, Direction, Selection, Verdict, analyze};
 use willis::exact::Rational;
-use willis::train::{EfficiencySpec, OperationSpec, SetSpec, ShiftElementSpec, StateSpec, Train, TrainBuilder};
+use willis::train::{EfficiencySpec, OperationSpec, SetSpec, ShiftElementSpec, Specification, StateSpec, Train};
 use willis::units::{AngularSpeed, Torque};
 
 use crate::common::Dice;
@@ -19,7 +19,7 @@ fn set(name: &str, [a, b, c]: [&str; 3], r: (i64, i64), eta: Rational) -> SetSpe
     SetSpec::stepped(name, c).sun(a, r.0, 20).sun(b, r.1, 20).basic_efficiency(EfficiencySpec::from(eta))
 }
 
-fn analysis(builder: TrainBuilder) -> Analysis {
+fn analysis(builder: Specification) -> Analysis {
     analyze(&builder.build().unwrap(), &Selection::default()).unwrap()
 }
 

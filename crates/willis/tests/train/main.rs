@@ -6,3 +6,4 @@ mod common;
 mod bad_input;
 mod diagnostics;
 mod dynamic_format;
+mod specification;

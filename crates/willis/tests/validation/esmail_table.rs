@@ -13,7 +13,7 @@ use willis::regimes::{
     ClosedFormula, Family, FamilyRange, FormulaRequest, Group, RegimeSelection, Row, family, formulas,
 };
 use willis::train::{
-    EfficiencySpec, GearSpec, MeshSpec, OperationSpec, ShiftElementSpec, StateSpec, Train, TrainBuilder,
+    EfficiencySpec, GearSpec, MeshSpec, OperationSpec, ShiftElementSpec, Specification, StateSpec, Train,
 };
 use willis::units::{AngularSpeed, Torque};
 
@@ -249,7 +249,7 @@ fn fraction(r: (i64, i64)) -> Rational {
 }
 
 /// The train of Fig. 1 with `R = Z1/Z4` and two meshes of their own efficiency on one planet.
-fn figure(r: (i64, i64), meshes: &[Rational; 2]) -> TrainBuilder {
+fn figure(r: (i64, i64), meshes: &[Rational; 2]) -> Specification {
     let mesh = |link: &str, teeth: i64, eta: &Rational| {
         MeshSpec::new(GearSpec::external(link, teeth), GearSpec::external("p", 20))
             .carrier("2")
@@ -262,7 +262,7 @@ fn figure(r: (i64, i64), meshes: &[Rational; 2]) -> TrainBuilder {
         .mesh(mesh("4", r.1, &meshes[1]))
 }
 
-fn solve(builder: TrainBuilder) -> Analysis {
+fn solve(builder: Specification) -> Analysis {
     analyze(&builder.build().unwrap(), &Selection::default()).unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! Columns of a CSV file: a header row, commas, numbers with a decimal point.
 
-use crate::train::assemble::clip;
+use super::words::clip;
 
 /// After so many bad cells the file is another one than was meant.
 const MOST_ERRORS: usize = 5;

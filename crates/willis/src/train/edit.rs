@@ -4,10 +4,11 @@ use toml_edit::{Array, DocumentMut, Formatted, InlineTable, Item, TableLike, Val
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
-use crate::train::assemble::clip;
 use crate::units::{self, Dimension};
 
-use super::keys::{FILE, Kind, Table};
+use super::format::keys::{Kind, Table};
+use super::specification::FILE;
+use super::words::clip;
 
 /// What the value of a key is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -96,7 +97,7 @@ fn place<'a>(item: Option<&'a Item>, kind: &'static Kind) -> Place<'a> {
         Kind::Flag => Place::Value(Measure::Flag),
         Kind::Number => Place::Value(Measure::Number),
         Kind::Quantity(dimension) => Place::Value(Measure::Quantity(*dimension)),
-        Kind::Signal(signal) => match (table(), signal.of) {
+        Kind::Signal(signal) => match (table(), signal().of) {
             (Some(_), _) => Place::Other,
             (None, Some(dimension)) => Place::Value(Measure::Quantity(dimension)),
             (None, None) => Place::Value(Measure::Number),
@@ -154,11 +155,11 @@ impl Document {
     /// There is no such key: which are near, or where the path stops to lead anywhere.
     pub fn find(&self, path: &str) -> Result<Key, Box<Diagnostic>> {
         let mut steps = vec![];
-        if let Some(measure) = walk(Some(self.0.as_table()), &FILE, path, &mut steps) {
+        if let Some(measure) = walk(Some(self.0.as_table()), FILE, path, &mut steps) {
             return Ok(Key { steps, measure });
         }
         // A name alone, without that of its list.
-        for key in FILE.keys {
+        for key in FILE.keys() {
             let Place::List(entries) = place(self.0.get(key.name), &key.kind) else { continue };
             for (k, (name, table, of)) in entries.into_iter().enumerate() {
                 let Some(rest) = name.and_then(|name| after(path, &name)).filter(|rest| !rest.is_empty()) else {
@@ -188,7 +189,7 @@ impl Document {
     /// The paths of all quantities that the format has for what is in this file, given or not.
     pub fn paths(&self) -> Vec<String> {
         let mut all = vec![];
-        collect(Some(self.0.as_table()), &FILE, "", &mut all);
+        collect(Some(self.0.as_table()), FILE, "", &mut all);
         all
     }
 
@@ -258,7 +259,7 @@ fn scalar(value: &Value) -> Option<String> {
 
 /// The measure of what a path leads to.
 fn walk(table: Option<&dyn TableLike>, of: &'static Table, path: &str, steps: &mut Vec<Step>) -> Option<Measure> {
-    let key = of.keys.iter().find(|k| after(path, k.name).is_some())?;
+    let key = of.keys().find(|k| after(path, k.name).is_some())?;
     let rest = after(path, key.name)?;
     let item = table.and_then(|t| t.get(key.name));
     steps.push(Step::Key(key.name.to_owned()));
@@ -303,7 +304,7 @@ fn walk(table: Option<&dyn TableLike>, of: &'static Table, path: &str, steps: &m
 
 fn collect(table: Option<&dyn TableLike>, of: &'static Table, before: &str, all: &mut Vec<String>) {
     // Motions have studies of their own.
-    let keys = of.keys.iter().filter(|k| !(before.is_empty() && matches!(k.name, "scenario" | "study" | "state")));
+    let keys = of.keys().filter(|k| !(before.is_empty() && matches!(k.name, "scenario" | "study" | "state")));
     for key in keys {
         let item = table.and_then(|t| t.get(key.name));
         let path = format!("{before}{}", key.name);
