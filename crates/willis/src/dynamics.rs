@@ -5,9 +5,11 @@
 //! a mode the right-hand side is smooth, and changes of mode are located as events. Source:
 //! Galvagno 2010 with corrected signs and its loop solved.
 
+mod balance;
 mod batch;
 mod certificate;
 mod choose;
+mod element;
 mod energy;
 mod engine;
 mod event;
@@ -17,13 +19,19 @@ mod handles;
 mod integrator;
 mod lagged;
 mod laws;
+mod margins;
 mod mode;
 mod modes;
 pub mod offset;
 mod output;
+mod rate;
 mod report;
 mod run;
+mod shows;
 mod signal;
+mod simulate;
+mod source;
+mod start;
 mod system;
 
 pub use batch::Batch;
@@ -34,4 +42,5 @@ pub use report::{
     Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind, Method,
     ModeLabel, Options, Outcome, Recorder, RunReport, Sample, SourceEnergy,
 };
-pub use run::{Simulation, simulate};
+pub use run::Simulation;
+pub use simulate::simulate;

@@ -6,7 +6,8 @@
 use crate::diagnostic::Diagnostics;
 use crate::train::{SourceKind, Train};
 
-use super::fixed::{FixedStep, UNBOUNDED};
+use super::fixed::FixedStep;
+use super::fixed::groups::UNBOUNDED;
 use super::fused::BLOCK;
 use super::mode::{Side, dot};
 

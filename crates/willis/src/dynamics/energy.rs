@@ -192,7 +192,7 @@ impl Engine {
         let mut losses = Vec::new();
         let mut at = n;
         for (k, f) in s.frictions.iter().enumerate() {
-            if let (Some(kind), false) = (self.kind(k), f.open) {
+            if let (Some(kind), false) = (s.loss_kind(k), f.open) {
                 losses.push(EnergyLoss { name: f.name.clone(), kind, energy_j: energies[at + k] });
             }
         }

@@ -3,9 +3,10 @@
 use crate::named::Named;
 use crate::train::{ShiftElementKind, Train};
 
-use super::engine::{Engine, Touch, Watch};
+use super::element::element_name;
+use super::engine::{Engine, Touch};
+use super::margins::Watch;
 use super::report::{Event, Happening, HappeningKind, ModeLabel};
-use super::system::element_name;
 
 /// Modes by element.
 pub(super) type Labels = [(String, ModeLabel)];

@@ -8,72 +8,34 @@
 //! Systems*, 2008, ch. 10.
 
 mod energies;
+pub(super) mod groups;
 mod inputs;
-mod recorded;
+mod look;
+pub(super) mod map;
+pub(super) mod recorded;
 mod settle;
+mod step;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::train::{MemberId, SourceKind, Train};
+use crate::train::Train;
 
+use super::element::{Loss, element_name};
 use super::engine::Engine;
-use super::fused::{ByKey, Exactly, Fused, add_column};
+use super::fused::{ByKey, Exactly, Fused};
 use super::handles::{Input, InputInfo, InputRefused, Output};
 use super::mode::{Mode, Pattern, Side, dot};
-use super::output::Shows;
 use super::report::Column;
-use super::run::initial_state;
-use super::system::{Loss, System, element_name, signals_of};
+use super::shows::Shows;
+use super::source::signals_of;
+use super::start::initial_state;
+use super::system::System;
 
-pub(super) use recorded::fixed;
-pub(super) use settle::StepMap;
-use settle::{Key, Settle};
+use groups::{GroupStep, Rub};
+use map::{Key, StepMap};
 
 /// Groups and elements that fit the key of a mode.
 const MOST_GROUPS: usize = 48;
 const MOST_ELEMENTS: usize = 64;
-
-/// Stands for a torque without bound: of a rigid lock, of a one-way clutch.
-pub(super) const UNBOUNDED: f64 = 1e30;
-/// What counts as such when multiplied by a ratio of gears.
-const LEAST_UNBOUNDED: f64 = 1e24;
-
-/// A friction element of a group, ready for the step.
-#[derive(Clone)]
-pub(super) struct Rub {
-    pub friction: usize,
-    pub port: usize,
-    pub factor: f64,
-    /// Holds any torque, or none.
-    pub is_rigid: bool,
-    peak: f64,
-    /// At this step: its viscous torque, and the torques with which it opposes slip of its group forward and
-    /// backward.
-    viscous: f64,
-    opposes: [f64; 2],
-}
-
-impl Rub {
-    /// Its torque at this step beside its viscous one, at least and at most, times a factor.
-    fn range(&self, factor: f64) -> [f64; 2] {
-        let [forward, backward] = self.opposes;
-        let [low, high] = if self.factor > 0.0 { [-forward, backward] } else { [-backward, forward] };
-        [low * factor, high * factor]
-    }
-}
-
-/// What a group needs in a step.
-#[derive(Clone)]
-pub(super) struct GroupStep {
-    pub row: Vec<f64>,
-    pub rubs: Vec<Rub>,
-    pub elements: Vec<usize>,
-    pub lead: (usize, f64),
-    pub driven: bool,
-    /// Whether several parts, teeth among them, share in holding it.
-    shares: bool,
-    /// Elements with losses that do not depend on load: port, torques when driving and coasting.
-    pub constants: Vec<(usize, usize, [f64; 2])>,
-}
 
 /// A scenario in steps of fixed length.
 ///
@@ -510,152 +472,6 @@ impl FixedStep {
         for _ in 0..steps {
             self.step();
         }
-    }
-
-    /// The mode in every detail.
-    fn exactly(&self) -> Exactly {
-        let mut key = Exactly::default();
-        for (g, group) in self.groups.iter().enumerate() {
-            let bit = 1 << g;
-            if self.sign[g] == 0 && !group.driven {
-                key.held |= bit;
-            } else if self.capacity[g] == [0.0; 2] && group.elements.is_empty() {
-                key.idle |= bit;
-            } else if self.sign[g] > 0 {
-                key.forward |= bit;
-            }
-        }
-        key.coast = self.coasting();
-        key
-    }
-
-    /// Makes the fused step of the mode just settled the present one.
-    fn fuse(&mut self) {
-        self.present = None;
-        let Some((_, map)) = self.last else { return };
-        let map = &self.maps[map as usize];
-        let held_shares = self.groups.iter().zip(&self.sign).any(|(group, sign)| *sign == 0 && group.shares);
-        if self.swept || !self.energies.is_empty() || held_shares && !map.is_redundant() {
-            return;
-        }
-        for (j, row) in &map.still {
-            let torque = dot(row, &self.tau);
-            self.side[usize::from(*j)] = if torque >= 0.0 { Side::Drive } else { Side::Coast };
-        }
-        let key = self.exactly();
-        let k = match self.by_exact_key.get(&key) {
-            Some(&k) => k,
-            None => {
-                let s = &self.engine.system;
-                self.fused.push(Fused::new(s, &self.groups, &self.teeth, map, &key, self.h));
-                let k = self.fused.len() as u32 - 1;
-                self.by_exact_key.insert(key, k);
-                k
-            }
-        };
-        let fused = &self.fused[k as usize];
-        fused.settle(&self.v, &self.inputs, &self.varying, &mut self.base, &mut self.least);
-        self.ends.resize(fused.rows, 0.0);
-        self.present = Some(k);
-    }
-
-    /// Takes the step in the mode of the last one; false, and nothing done, if that does not go on.
-    #[inline]
-    fn glide(&mut self, middle: f64) -> bool {
-        let Some(k) = self.present else { return false };
-        if !self.engine.system.elastic.is_empty() {
-            self.look_at_shafts();
-        }
-        let fused = &self.fused[k as usize];
-        let all = self.v.len();
-        self.ends.copy_from_slice(&self.base);
-        for (k, v) in self.v.iter().enumerate() {
-            add_column(&mut self.ends, fused.column(k), *v);
-        }
-        let s = &self.engine.system;
-        let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
-        for &k in &self.varying {
-            let u = self.enters(k, middle);
-            // What opens, closes or locks is more than a change of torque.
-            if k >= drivers && k < drivers + frictions {
-                let was = self.inputs[k];
-                if (u == 0.0) != (was == 0.0) || (u == UNBOUNDED) != (was == UNBOUNDED) {
-                    return false;
-                }
-            }
-            add_column(&mut self.ends, fused.column(all + k), u);
-            self.inputs[k] = u;
-        }
-        let broken = self.ends.iter().zip(&self.least).fold(false, |broken, (end, least)| broken | (end < least));
-        if broken {
-            return false;
-        }
-        self.next[..s.free].copy_from_slice(&self.ends[..s.free]);
-        if s.prescribed > 0 {
-            for (driver, u) in s.drivers.iter().zip(&self.inputs) {
-                if let Some(i) = driver.prescribed {
-                    self.next[s.free + i] = *u;
-                }
-            }
-        }
-        true
-    }
-
-    /// The middle of the next step, s.
-    pub(super) fn middle(&self) -> f64 {
-        self.time() + 0.5 * self.h
-    }
-
-    /// Whether what was level is no longer.
-    pub(super) fn is_over(&self, middle: f64) -> bool {
-        middle >= self.until || self.until == f64::NEG_INFINITY
-    }
-
-    /// Whether all speeds are finite.
-    fn is_finite(&self) -> bool {
-        self.v.iter().all(|v| v.is_finite())
-    }
-
-    /// Takes one step.
-    pub fn step(&mut self) {
-        let middle = self.middle();
-        if self.is_over(middle) {
-            let ended = self.until;
-            self.refresh(middle);
-            self.count_jumps(ended, middle);
-            self.present = None;
-        }
-        if !self.glide(middle) {
-            self.load(middle);
-            let free = self.engine.system.free;
-            let cols = self.tau.len();
-            self.swept = false;
-            if !self.arch.dispatch(Settle { step: self, free, cols }) && !self.sweep(free, cols) {
-                self.unsettled += 1;
-            }
-            if !self.energies.is_empty() {
-                self.count_energies();
-            }
-            self.fuse();
-        }
-        // What is held is at rest exactly, not but for round-off.
-        if self.keeps_angles {
-            let all = self.engine.system.all();
-            for i in 0..all {
-                self.rest[i] += self.h * self.next[i];
-            }
-        }
-        if self.engine.system.integrals > 0 {
-            let s = &self.engine.system;
-            for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
-                if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
-                    let set = setpoint.value(middle, middle, &|m: MemberId| dot(&s.speeds[m.index()], &self.next));
-                    self.rest[s.all() + i] += self.h * (set - dot(&s.speeds[driver.member.index()], &self.next));
-                }
-            }
-        }
-        std::mem::swap(&mut self.v, &mut self.next);
-        self.count += 1;
     }
 }
 

@@ -8,8 +8,8 @@ use std::fmt;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{Signal, SourceKind};
 
-use super::output::Shows;
 use super::report::{Column, ColumnUnit};
+use super::shows::Shows;
 use super::system::System;
 
 /// An input of a run. It belongs to runs of one scenario of one train.

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::system::{Loss, System};
+use super::element::Loss;
+use super::system::System;
 
 /// Which side of its kink a mesh's loss is on: whose gear drives.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]

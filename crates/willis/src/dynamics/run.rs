@@ -5,20 +5,19 @@ mod locate;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-use nalgebra::{DMatrix, DVector};
-
 use crate::contract::Format;
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::Diagnostics;
 use crate::train::{MemberId, Train};
 
+use super::certificate::{rolling_is_unique, sticking_is_unique};
 use super::choose::Trouble;
-use super::engine::{Engine, Margin, NOISE, Watch};
+use super::engine::Engine;
 use super::event::{Why, event, short};
-use super::fixed::fixed;
 use super::handles::{Input, InputInfo, InputRefused, Output};
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
-use super::lagged::lagged;
+use super::margins::{Margin, NOISE, Watch};
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
+use super::start::initial_state;
 use super::system::System;
 
 /// How often in a run what a formula does to a held element is looked at, at least.
@@ -666,7 +665,7 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     if engine.certified {
         return None;
     }
-    let what = match (engine.system.rolling_is_unique(), engine.system.sticking_is_unique()) {
+    let what = match (rolling_is_unique(&engine.system), sticking_is_unique(&engine.system)) {
         (Some(false), _) => "the tooth forces may have several solutions, or none, in some states of this train",
         (_, Some(false)) => "sticking and sliding may both be possible in some states of this train",
         _ => return Some("too many meshes and friction elements for a certificate that the forces are unique".into()),
@@ -704,92 +703,4 @@ fn take_in(stepper: &impl Stepper, states: usize, came_in: &mut [f64]) {
         let turn = stepper.interpolate_component(0.5 * (low + high), at);
         *sum += (turn - from).max(0.0) + (to - turn).max(0.0);
     }
-}
-
-/// Runs a scenario from its start to its end and hands rows and events to a recorder as they come.
-///
-/// # Errors
-/// What is wrong with the scenario: inertia that is missing, speeds that contradict each other.
-pub fn simulate(
-    train: &Train,
-    scenario: &str,
-    options: &Options,
-    recorder: &mut dyn Recorder,
-) -> Result<RunReport, Diagnostics> {
-    match options.method {
-        Method::Fixed { step_s } if options.lagged_forces => lagged(train, scenario, options, step_s, recorder),
-        Method::Fixed { step_s } => fixed(train, scenario, options, step_s, recorder),
-        Method::Adaptive => {
-            let mut run = Simulation::new(train, scenario, options)?;
-            if recorder.columns(&run.columns).is_continue() {
-                run.advance(f64::INFINITY, recorder);
-            }
-            Ok(run.report())
-        }
-    }
-}
-
-/// The state at the start, without energies; the engine looks at it.
-pub(super) fn initial_state(engine: &mut Engine) -> Result<Vec<f64>, Diagnostics> {
-    let start = engine.system.scenario.start;
-    engine.inside = start;
-    let mut x = vec![0.0; engine.states() + engine.quadratures()];
-    initial_speeds(engine, &mut x)?;
-    engine.look(start, &x);
-    engine.rescale(&x);
-    Ok(x)
-}
-
-/// Sets the speeds of the start: those given, others at rest as far as the gears leave them free.
-fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostics> {
-    let start = engine.system.scenario.start;
-    engine.look(start, x);
-    let s = &engine.system;
-    let free = s.free;
-    // Rows of conditions over the free coordinates, in order of preference.
-    let mut rows: Vec<(MemberId, Vec<f64>, f64, bool)> = Vec::new();
-    let prescribed = |row: &[f64]| -> f64 { row[free..].iter().zip(&engine.speed[free..]).map(|(a, b)| a * b).sum() };
-    for &(m, w) in &s.scenario.initial_speeds {
-        let row = &s.speeds[m.index()];
-        rows.push((m, row[..free].to_vec(), w - prescribed(row), true));
-    }
-    for &m in &s.coordinates[..free] {
-        rows.push((m, s.speeds[m.index()][..free].to_vec(), -prescribed(&s.speeds[m.index()]), false));
-    }
-    let mut taken: Vec<&(MemberId, Vec<f64>, f64, bool)> = Vec::new();
-    for row in &rows {
-        let mut matrix: Vec<&[f64]> = taken.iter().map(|r| r.1.as_slice()).collect();
-        matrix.push(&row.1);
-        let m = DMatrix::from_fn(matrix.len(), free, |i, k| matrix[i][k]);
-        let norms: Vec<f64> = (0..m.nrows()).map(|i| m.row(i).norm()).collect();
-        let independent = norms.iter().all(|n| *n > 0.0)
-            && taken.len() < free
-            && DMatrix::from_fn(m.nrows(), free, |i, k| m[(i, k)] / norms[i]).rank(1e-10) == m.nrows();
-        if independent {
-            taken.push(row);
-        }
-    }
-    let a = DMatrix::from_fn(taken.len(), free, |i, k| taken[i].1[k]);
-    let b = DVector::from_fn(taken.len(), |i, _| taken[i].2);
-    if free > 0 {
-        let v = a.lu().solve(&b).unwrap_or_else(|| DVector::zeros(free));
-        x[..free].copy_from_slice(v.as_slice());
-    }
-    for (m, row, w, given) in &rows {
-        let is: f64 = row.iter().zip(&x[..free]).map(|(a, b)| a * b).sum();
-        let size: f64 = row.iter().zip(&x[..free]).map(|(a, b)| (a * b).abs()).sum::<f64>() + w.abs();
-        if *given && (is - w).abs() > 1e-9 * size {
-            let row = &s.speeds[m.index()];
-            let name = s.train.member_name(*m);
-            let message = format!(
-                "`{name}` cannot start at {} rad/s: the gears and the other speeds given make it {} rad/s",
-                short(w + prescribed(row)),
-                short(is + prescribed(row))
-            );
-            let place = format!("{}.initial_speeds.{name}", s.scenario.place);
-            let error = Diagnostic::new(Code::ContradictorySpeeds, place, message);
-            return Err(error.hint("leave out one of the speeds").into());
-        }
-    }
-    Ok(())
 }

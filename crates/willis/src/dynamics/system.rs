@@ -21,156 +21,12 @@ use nalgebra::{DMatrix, DVector};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Link};
-use crate::train::{
-    Curve, Engagement, LossRow, MemberId, MeshId, Scenario, ShiftElementKind, Signal, SourceKind, Train,
-};
+use crate::train::{Curve, Engagement, LossRow, MemberId, Scenario, ShiftElementKind, Signal, SourceKind, Train};
 
+use super::element::{Element, MOST_LOST, Pass, element_name, shares};
 use super::laws::Laws;
-
-/// Standard acceleration of free fall, m/s² (ISO 80000-3).
-const GRAVITY: f64 = 9.80665;
-
-/// Part of its power up to which the certificates of unique forces let a mesh under a law lose: several times what
-/// good gears do.
-pub(super) const MOST_LOST: f64 = 0.1;
-
-/// Pulses of one signal in a scenario; each of them stops the integrator twice.
-const MOST_PULSES: f64 = 1e6;
-
-fn shortest_pulse(signal: &Signal) -> Option<f64> {
-    match signal {
-        Signal::Pulse { period, .. } => Some(*period),
-        Signal::Product(of) => of.iter().filter_map(shortest_pulse).min_by(f64::total_cmp),
-        _ => None,
-    }
-}
-
-/// A mesh element: one gear pair, or a chain of them.
-#[derive(Clone)]
-pub(super) struct Element {
-    pub links: Vec<Link>,
-    /// `a` and `b` of its Willis equation.
-    pub factors: [f64; 2],
-    /// Rows of losses by amount of speed; one row where they are constant, and where they follow a law, as the
-    /// most that it may lose.
-    pub rows: Vec<LossRow>,
-    /// Its mesh, if its loss follows a law.
-    pub law: Option<MeshId>,
-    /// Speed of the first gear relative to the carrier over the coordinates.
-    pub row: Vec<f64>,
-    /// Its group and its speed over that of the group; `None` if it loses nothing or never moves.
-    pub group: Option<(usize, f64)>,
-    pub port: usize,
-    /// How its loss divides among its meshes when its first gear drives and when the second does: mesh and part.
-    pub shares: [Vec<(usize, f64)>; 2],
-    /// What its torque becomes from mesh to mesh.
-    pub passes: Vec<Pass>,
-}
-
-/// A mesh of an element: what leaves it for what enters it.
-#[derive(Clone, Copy)]
-pub(super) struct Pass {
-    pub mesh: usize,
-    /// Whether it is passed from its first gear to its second.
-    pub along: bool,
-    /// Torque behind it over that before it, without loss.
-    ratio: f64,
-    /// Its efficiency when its first gear drives, and when its second does; 1 where it is an element alone.
-    efficiency: [f64; 2],
-}
-
-impl Pass {
-    fn of(train: &Train, links: &[Link]) -> Vec<Self> {
-        let pass = |link: &Link| {
-            let mesh = &train.meshes()[link.mesh.index()];
-            let (from, to) = if link.along { (0, 1) } else { (1, 0) };
-            let ratio = (&mesh.gears[to].teeth / &mesh.gears[from].teeth).to_f64();
-            let own = &mesh.efficiency;
-            Self {
-                mesh: link.mesh.index(),
-                along: link.along,
-                ratio: if mesh.same_sense { -ratio } else { ratio },
-                efficiency: if links.len() == 1 { [1.0; 2] } else { [own.forward.to_f64(), own.backward.to_f64()] },
-            }
-        };
-        links.iter().map(pass).collect()
-    }
-
-    /// The torque behind it; `drive` if the first gear of the element drives.
-    pub fn exit(&self, entry: f64, drive: bool, at_rest: bool) -> f64 {
-        let efficiency = if at_rest { 1.0 } else { self.efficiency[usize::from(self.along != drive)] };
-        self.ratio * entry * if drive { efficiency } else { 1.0 / efficiency }
-    }
-}
-
-/// Part of each mesh of a chain in the loss of all: the power that reaches it, less what leaves it.
-fn shares(train: &Train, links: &[Link]) -> [Vec<(usize, f64)>; 2] {
-    [true, false].map(|drive| {
-        let mut reaches = 1.0;
-        let mut parts: Vec<(usize, f64)> = Vec::new();
-        let order: Vec<&Link> = if drive { links.iter().collect() } else { links.iter().rev().collect() };
-        for link in order {
-            let own = &train.meshes()[link.mesh.index()].efficiency;
-            let efficiency = if link.along == drive { own.forward.to_f64() } else { own.backward.to_f64() };
-            parts.push((link.mesh.index(), reaches * (1.0 - efficiency)));
-            reaches *= efficiency;
-        }
-        let whole: f64 = parts.iter().map(|p| p.1).sum();
-        let alone = 1.0 / parts.len() as f64;
-        parts.iter().map(|&(mesh, part)| (mesh, if whole > 0.0 { part / whole } else { alone })).collect()
-    })
-}
-
-/// Efficiency and bearing torque of an element at a speed.
-#[derive(Clone, Copy)]
-pub(super) struct Loss {
-    /// Slope of the loss over the torque at the first gear when that gear drives, `1 − η`.
-    pub drive: f64,
-    /// The same when the second gear drives, `1 − 1/η`.
-    pub coast: f64,
-    pub drive_torque: f64,
-    pub coast_torque: f64,
-}
-
-impl Element {
-    pub fn is_lossless(&self) -> bool {
-        self.rows
-            .iter()
-            .all(|r| r.forward == 1.0 && r.backward == 1.0 && r.forward_torque == 0.0 && r.backward_torque == 0.0)
-    }
-
-    /// Whether its slopes depend on its speed or load.
-    pub fn varies(&self) -> bool {
-        self.law.is_some()
-            || self.rows.windows(2).any(|w| (w[0].forward, w[0].backward) != (w[1].forward, w[1].backward))
-    }
-
-    /// Losses at an amount of speed: straight between rows; those of the last row beyond it.
-    pub fn loss(&self, speed: f64) -> Loss {
-        let rows = &self.rows;
-        let row = if rows.len() == 1 {
-            rows[0]
-        } else {
-            let k = rows.partition_point(|r| r.speed <= speed).clamp(1, rows.len() - 1);
-            let (a, b) = (rows[k - 1], rows[k]);
-            let part = ((speed - a.speed) / (b.speed - a.speed)).clamp(0.0, 1.0);
-            let mix = |x: f64, y: f64| x + part * (y - x);
-            LossRow {
-                speed,
-                forward: mix(a.forward, b.forward),
-                backward: mix(a.backward, b.backward),
-                forward_torque: mix(a.forward_torque, b.forward_torque),
-                backward_torque: mix(a.backward_torque, b.backward_torque),
-            }
-        };
-        Loss {
-            drive: 1.0 - row.forward,
-            coast: 1.0 - 1.0 / row.backward,
-            drive_torque: row.forward_torque,
-            coast_torque: row.backward_torque,
-        }
-    }
-}
+use super::report::EnergyLossKind;
+use super::source::{GRAVITY, MOST_PULSES, shortest_pulse, signals_of, upright};
 
 /// What rubs without regard to tooth loads.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -837,73 +693,20 @@ impl System {
         }
     }
 
+    /// What a friction element is among the energies; nothing of its own where it belongs to a source.
+    pub fn loss_kind(&self, f: usize) -> Option<EnergyLossKind> {
+        match self.frictions[f].what {
+            Rubs::Drag(_) => Some(EnergyLossKind::Drag),
+            Rubs::Shift(_) => Some(EnergyLossKind::ShiftElement),
+            Rubs::Rolling(_) => None,
+            Rubs::Law(place) => self.laws.as_ref().map(|laws| laws.places[place].loss_kind()),
+        }
+    }
+
     /// The signals of the scenario.
     pub fn signals(&self) -> impl Iterator<Item = &Signal> {
         let sources = self.scenario.sources.iter().flat_map(|s| signals_of(&s.kind));
         sources.chain(self.scenario.engagements.iter().map(|e| &e.signal))
-    }
-}
-
-pub(super) fn signals_of(kind: &SourceKind) -> impl Iterator<Item = &Signal> {
-    let [first, second] = match kind {
-        SourceKind::Torque(s) | SourceKind::Speed(s) => [Some(s), None],
-        SourceKind::Controller { setpoint, feed_forward, .. } => [Some(setpoint), Some(feed_forward)],
-        SourceKind::Vehicle { grade, .. } => [Some(grade), None],
-        SourceKind::Motor { throttle, .. } => [Some(throttle), None],
-        SourceKind::Linear { .. } | SourceKind::Quadratic { .. } => [None, None],
-    };
-    first.into_iter().chain(second)
-}
-
-/// Torque of a source whose member turns at `w` and whose error has the integral `sum`. `value` tells what its first or
-/// second signal is worth, `rate` how fast one changes. A prescribed speed has no torque of its own: 0. The derivative of
-/// a controller's speed is not in it: it acts through the acceleration.
-#[inline]
-pub(super) fn source_torque(
-    kind: &SourceKind,
-    w: f64,
-    sum: f64,
-    value: impl Fn(usize, &Signal) -> f64,
-    rate: impl Fn(&Signal) -> f64,
-) -> f64 {
-    match kind {
-        SourceKind::Torque(signal) => value(0, signal),
-        SourceKind::Speed(_) => 0.0,
-        SourceKind::Controller { setpoint, feed_forward, proportional, integral, derivative } => {
-            let rate = if *derivative == 0.0 { 0.0 } else { rate(setpoint) };
-            value(1, feed_forward) + proportional * (value(0, setpoint) - w) + integral * sum + derivative * rate
-        }
-        SourceKind::Linear { torque, about, slope } => torque - slope * (w - about),
-        SourceKind::Quadratic { torque, about, factor, even } => {
-            let d = w - about;
-            torque - factor * if *even { d * d } else { d * d.abs() }
-        }
-        SourceKind::Vehicle { mass, wheel_radius, final_drive, drag_area, air_density, grade, .. } => {
-            let arm = wheel_radius / final_drive;
-            let v = w * arm;
-            let grade = value(0, grade);
-            let weight = mass * GRAVITY * grade * upright(grade);
-            -(0.5 * air_density * drag_area * v * v.abs() + weight) * arm
-        }
-        SourceKind::Motor { full_load, closed, throttle } => {
-            let (low, high) = (closed.at(w), full_load.at(w));
-            low + value(0, throttle).clamp(0.0, 1.0) * (high - low)
-        }
-    }
-}
-
-/// Cosine of a slope whose tangent is `grade`: the part of a weight that presses on it.
-pub(super) fn upright(grade: f64) -> f64 {
-    1.0 / grade.hypot(1.0)
-}
-
-/// The name of a mesh, or of the set of a chain.
-pub(super) fn element_name(train: &Train, links: &[Link]) -> String {
-    let first = &train.meshes()[links[0].mesh.index()];
-    match (links, first.set) {
-        ([_], _) => first.name.clone(),
-        (_, Some(set)) => format!("{} ({} meshes)", train.sets()[set].name, links.len()),
-        _ => links.iter().map(|l| train.meshes()[l.mesh.index()].name.as_str()).collect::<Vec<_>>().join("+"),
     }
 }
 

@@ -1,10 +1,11 @@
 //! What enters a step: torques and end speeds of sources, what friction elements can hold, torques of shafts.
 
 use crate::dynamics::mode::dot;
-use crate::dynamics::system::{signals_of, source_torque};
+use crate::dynamics::source::{signals_of, source_torque};
 use crate::train::{MemberId, Signal, SourceKind};
 
-use super::{FixedStep, LEAST_UNBOUNDED, UNBOUNDED, jumps};
+use super::groups::{LEAST_UNBOUNDED, UNBOUNDED};
+use super::{FixedStep, jumps};
 
 impl FixedStep {
     /// Sets what the signals that are level for a while are worth, and which inputs are not.
