@@ -50,6 +50,6 @@ pub mod style;
 pub mod table;
 
 pub use question::{Answer, Attachment, Entry, Extra, File, Form, Given, Of, Options, Question, Request};
-pub use questions::{QUESTIONS, question};
 pub use questions::quoted;
+pub use questions::{QUESTIONS, question};
 pub use refusal::{Refusal, RefusalReport};

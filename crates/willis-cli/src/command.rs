@@ -82,7 +82,8 @@ pub fn forms(entry: &Entry) -> Vec<&'static str> {
 /// The command of a question.
 fn of(entry: &Entry) -> Command {
     let mut c = entry.options(Command::new(entry.name));
-    let file = |name: &'static str| Arg::new("file").value_name(name).help("Train file (TOML), or - for standard input");
+    let file =
+        |name: &'static str| Arg::new("file").value_name(name).help("Train file (TOML), or - for standard input");
     c = match entry.of {
         Of::Nothing => c,
         Of::AtMostOne => c.arg(file("FILE")),
@@ -92,9 +93,11 @@ fn of(entry: &Entry) -> Command {
     if entry.of != Of::Nothing {
         let many = |name: &'static str| Arg::new(name).long(name).action(ArgAction::Append);
         c = c
-            .arg(many("law").value_name("FAMILY=LAW").help(
-                "Put a law into force: mesh_friction=niemann. Several times for several families",
-            ))
+            .arg(
+                many("law")
+                    .value_name("FAMILY=LAW")
+                    .help("Put a law into force: mesh_friction=niemann. Several times for several families"),
+            )
             .arg(many("set").value_name("QUANTITY=VALUE").help(
                 "Give a quantity of the file another value: P1.sun.teeth=23. Several times for several quantities",
             ));
@@ -137,12 +140,7 @@ fn of(entry: &Entry) -> Command {
                 .value_parser(value_parser!(PathBuf))
                 .help("Write into this file; its ending says in which form. A folder where there are several files"),
         )
-        .arg(
-            Arg::new("force")
-                .long("force")
-                .action(ArgAction::SetTrue)
-                .help("Replace files that are there already"),
-        );
+        .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Replace files that are there already"));
     match entry.name {
         "sweep" => crate::sweep::options(c),
         "report" => crate::pdf::options(c),

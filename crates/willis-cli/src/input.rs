@@ -81,7 +81,8 @@ fn of_kind(file: &str, kind: &Kind) -> Result<String, Diagnostics> {
     text.map_err(|(message, hint)| {
         let d = Diagnostic::new(Code::Unreadable, "", message);
         let near = neighbours(Path::new(file), kind);
-        let d = if file == "-" || Path::new(file).exists() { d } else { d.suggest(file, near.iter().map(String::as_str)) };
+        let d =
+            if file == "-" || Path::new(file).exists() { d } else { d.suggest(file, near.iter().map(String::as_str)) };
         // A suggestion is for the command line and replaces nothing in a text.
         let mut d = d.hint(hint);
         d.replacement = None;

@@ -30,9 +30,8 @@ fn write(table: &Table) -> Result<Vec<u8>, ParquetError> {
     let fields = table.columns.iter().map(field).collect::<Result<Vec<_>, _>>()?;
     let schema = Arc::new(Type::group_type_builder(&table.name).with_fields(fields).build()?);
     let units = table.columns.iter().filter(|c| !c.unit.is_empty());
-    let units = units.map(|c| {
-        parquet::file::metadata::KeyValue::new(format!("willis.unit.{}", c.name), c.unit.clone())
-    });
+    let units =
+        units.map(|c| parquet::file::metadata::KeyValue::new(format!("willis.unit.{}", c.name), c.unit.clone()));
     let properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::default()))
         .set_key_value_metadata(Some(units.collect()))

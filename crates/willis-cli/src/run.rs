@@ -64,10 +64,7 @@ impl<'a> Asked<'a> {
             return Ended::Interrupted(String::new());
         }
         let json = || serde_json::to_string_pretty(&refusal.report(of)).expect("plain data") + "\n";
-        Ended::Refused {
-            out: if self.form == JSON { json() } else { String::new() },
-            told: refusal.render(of, true),
-        }
+        Ended::Refused { out: if self.form == JSON { json() } else { String::new() }, told: refusal.render(of, true) }
     }
 
     /// Refuses to write over what is read, or over what is there.
@@ -80,12 +77,7 @@ impl<'a> Asked<'a> {
 }
 
 /// The form that the name of a file promises.
-fn promised(
-    entry: &Entry,
-    known: &[&'static str],
-    path: &Path,
-    natural: &'static str,
-) -> Result<&'static str, Ended> {
+fn promised(entry: &Entry, known: &[&'static str], path: &Path, natural: &'static str) -> Result<&'static str, Ended> {
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     let own = |e: &str| entry.forms.iter().find(|f| f.endings.contains(&e)).map(|f| f.name);
     let shared = |e: &str| match e {
@@ -118,7 +110,8 @@ fn promised(
                 own.iter().copied().chain([shared]).filter(|e| !e.is_empty() && !e.contains('-'))
             });
             let list = endings.map(|e| format!(".{e}")).collect::<Vec<_>>().join(", ");
-            Err(format!("{}: its ending is none of {list}; name one of them, or give --format\n", path.display()).into())
+            Err(format!("{}: its ending is none of {list}; name one of them, or give --format\n", path.display())
+                .into())
         }
     }
 }

@@ -210,13 +210,7 @@ fn compute(
 }
 
 /// Asks for `--yes` where a sweep is very long or very large.
-fn ask(
-    plan: &SweepPlan<'_>,
-    form: Option<Form>,
-    rows: u64,
-    threads: usize,
-    terminal: &Terminal,
-) -> Result<(), Ended> {
+fn ask(plan: &SweepPlan<'_>, form: Option<Form>, rows: u64, threads: usize, terminal: &Terminal) -> Result<(), Ended> {
     let (mut room, mut tried, mut bytes) = (SweepWorkspace::default(), 0, 0);
     let (started, mut spent) = (Instant::now(), Duration::ZERO);
     for (k, points) in plan.trials(rows, form.is_some()).enumerate() {
@@ -514,15 +508,12 @@ pub fn merge_command() -> Command {
     Command::new("merge")
         .about("Put the shards of a sweep together, after checking that they belong together")
         .arg(path("out", "OUT").help("The table to write"))
-        .arg(path("shards", "SHARDS").num_args(1..).help(
-            "The shards, in any order; what was written beside them must be there too",
-        ))
         .arg(
-            Arg::new("force")
-                .long("force")
-                .action(ArgAction::SetTrue)
-                .help("Replace files that are there already"),
+            path("shards", "SHARDS")
+                .num_args(1..)
+                .help("The shards, in any order; what was written beside them must be there too"),
         )
+        .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Replace files that are there already"))
 }
 
 /// Puts shards together.

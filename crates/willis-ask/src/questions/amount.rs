@@ -24,11 +24,7 @@ pub fn values(field: &str, given: &[String], dimension: Dimension) -> Result<Vec
 }
 
 /// `member=value` pairs of a field; all that is wrong with them at once.
-pub fn of_members(
-    field: &str,
-    given: &[String],
-    dimension: Dimension,
-) -> Result<Vec<(String, Quantity)>, Diagnostics> {
+pub fn of_members(field: &str, given: &[String], dimension: Dimension) -> Result<Vec<(String, Quantity)>, Diagnostics> {
     let (_, example) = dimension.describe();
     let mut all = vec![];
     let mut told = Diagnostics::default();

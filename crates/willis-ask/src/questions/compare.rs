@@ -38,11 +38,8 @@ impl Question for Compare {
     type Answer = Comparison;
 
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<Comparison, Refusal> {
-        let request = CompareRequest {
-            operation: self.operation.clone(),
-            state: self.state.clone(),
-            over: self.over.clone(),
-        };
+        let request =
+            CompareRequest { operation: self.operation.clone(), state: self.state.clone(), over: self.over.clone() };
         let all: Vec<_> = of.iter().map(|g| (g.name.as_str(), &g.model)).collect();
         // A message names its file, or concerns all.
         study::compare(&all, &request, work).map_err(|wrong| Refusal::Wrong(wrong, usize::MAX))

@@ -64,9 +64,11 @@ impl Question for Cycle {
             state: self.state.clone(),
         };
         // What is wrong with the profile stands in the profile.
-        let answer = study::cycle(&of[0].model, &request, work).map_err(|wrong| match wrong.iter().any(|d| d.span.is_some()) {
-            true => Refusal::File(wrong, self.profile.clone()),
-            false => wrong.into(),
+        let answer = study::cycle(&of[0].model, &request, work).map_err(|wrong| {
+            match wrong.iter().any(|d| d.span.is_some()) {
+                true => Refusal::File(wrong, self.profile.clone()),
+                false => wrong.into(),
+            }
         })?;
         Ok(CycleAnswer { report: answer.report, rows: answer.rows })
     }

@@ -211,10 +211,8 @@ impl Question for Laws {
             }
             return vec![t];
         }
-        let columns =
-            ["family", "law", "default", "title", "gives", "unit", "source", "place", "trust", "range"].map(|name| {
-                (name, if name == "default" { Flag } else { Text })
-            });
+        let columns = ["family", "law", "default", "title", "gives", "unit", "source", "place", "trust", "range"]
+            .map(|name| (name, if name == "default" { Flag } else { Text }));
         let mut t = Table::new("laws", columns);
         for l in &answer.list.laws {
             t.row([

@@ -70,8 +70,11 @@ impl Question for Regimes {
         Form { name: "latex", endings: &["tex"], about: "a table for typesetting" },
         Form { name: "map-json", endings: &[], about: "the wheel of regimes as data (two freedoms)" },
     ];
-    const EXTRAS: &'static [Extra] =
-        &[Extra { name: "map", value: "FILE.svg", about: "Draw the wheel of regimes (two freedoms) into this SVG file" }];
+    const EXTRAS: &'static [Extra] = &[Extra {
+        name: "map",
+        value: "FILE.svg",
+        about: "Draw the wheel of regimes (two freedoms) into this SVG file",
+    }];
     type Answer = RegimesAnswer;
 
     fn ask(&self, of: &[Given], _: &dyn Work) -> Result<RegimesAnswer, Refusal> {

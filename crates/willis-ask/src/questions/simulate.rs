@@ -45,7 +45,10 @@ pub struct Simulate {
     #[cfg_attr(feature = "clap", arg(long, value_name = "TOLERANCE", value_parser = tolerance))]
     pub tolerance: Option<f64>,
     /// Advance in steps of this length, each of bounded cost: '1 ms'.
-    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME", conflicts_with = "tolerance", allow_hyphen_values = true))]
+    #[cfg_attr(
+        feature = "clap",
+        arg(long, value_name = "TIME", conflicts_with = "tolerance", allow_hyphen_values = true)
+    )]
     pub fixed_step: Option<String>,
     /// Take the sign of each tooth force from the step before, as in Galvagno 2010, to show the error of that.
     #[cfg_attr(feature = "clap", arg(long, requires = "fixed_step"))]

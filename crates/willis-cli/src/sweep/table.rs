@@ -16,8 +16,8 @@ use parquet::file::properties::{EnabledStatistics, WriterProperties, WriterPrope
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
-use willis_ask::table::{field, number};
 use willis::study::{ColumnValues, Rows, SweepColumn};
+use willis_ask::table::{field, number};
 
 /// What a table is written as, by the end of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -190,13 +190,7 @@ fn losses(a: &Analysis) -> Table {
     let columns = [("source", Text), ("kind", Text), ("law", Text), ("loss_w", Number), ("share", Number)];
     of_solutions(a, "losses", &columns, |s| {
         let row = |x: &willis::operating_point::LossSource| {
-            vec![
-                (&x.name).into(),
-                word(&x.kind).into(),
-                x.law.to_string().into(),
-                x.loss_w.into(),
-                x.share.into(),
-            ]
+            vec![(&x.name).into(), word(&x.kind).into(), x.law.to_string().into(), x.loss_w.into(), x.share.into()]
         };
         s.sources.iter().map(row).collect()
     })

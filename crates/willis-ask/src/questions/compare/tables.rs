@@ -9,10 +9,8 @@ pub fn tables(c: &Comparison) -> Vec<Table> {
     let labels: Vec<String> = c.variants.iter().map(|v| v.label.to_lowercase()).collect();
     let per_variant = |kind: Kind| labels.iter().map(move |l| (l.as_str(), kind));
     let mut all = vec![];
-    let against: Vec<String> = labels[1..]
-        .iter()
-        .flat_map(|l| [format!("{l}_less_{}", labels[0]), format!("{l}_relative")])
-        .collect();
+    let against: Vec<String> =
+        labels[1..].iter().flat_map(|l| [format!("{l}_less_{}", labels[0]), format!("{l}_relative")]).collect();
     let mut t = Table::new("variants", [("variant", Text), ("file", Text), ("train", Text)]);
     for v in &c.variants {
         t.row([(&v.label).into(), (&v.file).into(), (&v.train).into()]);

@@ -1,8 +1,7 @@
 //! Variants side by side, differences first, for eyes.
 
 use willis::study::{
-    Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapDifference, MapPair,
-    TextDifference,
+    Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapDifference, MapPair, TextDifference,
 };
 
 use crate::style::{bold, dim, plural, right, rpm, set_header, show, significant, table, wrap};

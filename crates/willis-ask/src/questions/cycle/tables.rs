@@ -56,13 +56,7 @@ pub fn tables(r: &CycleReport) -> Vec<Table> {
     let columns = [("source", Text), ("kind", Text), ("law", Text), ("energy_j", Number), ("share", Number)];
     let mut t = Table::new("sources", columns);
     for s in &r.sources {
-        t.row([
-            (&s.name).into(),
-            s.kind.name().into(),
-            s.law.to_string().into(),
-            s.energy_j.into(),
-            s.share.into(),
-        ]);
+        t.row([(&s.name).into(), s.kind.name().into(), s.law.to_string().into(), s.energy_j.into(), s.share.into()]);
     }
     all.push(t);
     let mut t = Table::new("terminals", [("member", Text), ("energy_in_j", Number), ("energy_out_j", Number)]);
@@ -75,13 +69,7 @@ pub fn tables(r: &CycleReport) -> Vec<Table> {
     let mut t = Table::new("verdicts", columns);
     for (name, v) in r.verdicts.iter() {
         let reason = v.reasons.first().map(|s| s.message.to_string());
-        t.row([
-            name.to_string().into(),
-            v.rows.into(),
-            v.time_s.into(),
-            v.share_of_time.into(),
-            reason.into(),
-        ]);
+        t.row([name.to_string().into(), v.rows.into(), v.time_s.into(), v.share_of_time.into(), reason.into()]);
     }
     all.push(t);
     let mut t = Table::new(

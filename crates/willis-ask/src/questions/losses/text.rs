@@ -30,10 +30,9 @@ pub fn of_solution(s: &SolutionReport) -> String {
         out += &show(&t);
         if let Some(c) = &s.convergence {
             let text = match c.converged {
-                true if c.rounds < 3 => format!(
-                    "losses and torques agree within 10⁻⁹ of the loss: {}",
-                    plural(c.rounds, "round", "rounds")
-                ),
+                true if c.rounds < 3 => {
+                    format!("losses and torques agree within 10⁻⁹ of the loss: {}", plural(c.rounds, "round", "rounds"))
+                }
                 true => format!(
                     "losses and torques agree within 10⁻⁹ of the loss: {}, each error {} of the last",
                     plural(c.rounds, "round", "rounds"),

@@ -136,4 +136,3 @@ pub fn family_latex(f: &Family) -> String {
     }
     out
 }
-

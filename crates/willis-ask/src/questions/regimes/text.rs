@@ -332,7 +332,6 @@ fn atlas(a: &Atlas) -> String {
     out
 }
 
-
 /// A set over all basic ratios, for eyes.
 pub fn family(f: &Family) -> String {
     let mut out = bold(&f.train) + "\n";
@@ -399,4 +398,3 @@ pub fn family(f: &Family) -> String {
     }
     out
 }
-

@@ -2,9 +2,7 @@
 
 use comfy_table::CellAlignment;
 use willis::diagnostic::Code;
-use willis::study::{
-    PointVerdict, UncertainResult, UncertainValue, Uncertainty, WarningCount, WarningKind,
-};
+use willis::study::{PointVerdict, UncertainResult, UncertainValue, Uncertainty, WarningCount, WarningKind};
 
 use crate::style::{bar, bold, dim, right, set_header, show, significant, table, wrap};
 
