@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{self, SolutionReport, Verdict};
+use crate::analysis::{self, OutsideLaw, SolutionReport, Verdict};
 use crate::diagnostic::{Code, Diagnostics, Severity};
 use crate::train::{Operation, Train};
 
@@ -78,30 +78,27 @@ pub struct PointAnswer {
     pub solution: Option<SolutionReport>,
     /// Warnings of this point, by code.
     pub warnings: Vec<(Code, String)>,
+    /// Those of them that say that a law was used outside its range, as data.
+    pub outside_laws: Vec<OutsideLaw>,
 }
 
 impl PointAnswer {
     /// What [`analyze`](crate::analyze) says of an operation.
     pub fn of(train: &Train, operation: &Operation) -> Self {
-        let (report, notes) = match analysis::operate(train, operation) {
+        let (report, notes) = match analysis::operate_unnamed(train, operation) {
             Ok(answer) => answer,
-            Err(wrong) => {
-                let title = format!("operation `{}`: ", operation.name);
-                let mut answer = Self::refused(wrong);
-                answer.reason = answer.reason.replace(&title, "");
-                return answer;
-            }
+            Err(wrong) => return Self::refused(wrong),
         };
         let is_one = matches!(report.verdict, Verdict::Unique | Verdict::Unloaded);
-        let title = format!("operation `{}`: ", operation.name);
         let oil = train.lubrication.iter().filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)));
         let warnings = notes.into_iter().filter(|d| d.severity == Severity::Warning && d.code != Code::SelfLocking);
-        let warnings = warnings.map(|d| (d.code, d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned()));
+        let warnings = warnings.map(|d| (d.code, d.message));
         Self {
             verdict: report.verdict.into(),
             reason: report.reason.unwrap_or_default(),
             solution: report.solutions.into_iter().next().filter(|_| is_one),
             warnings: oil.map(|text| (Code::OutsideLaw, text)).chain(warnings).collect(),
+            outside_laws: report.outside_laws,
         }
     }
 
@@ -109,7 +106,13 @@ impl PointAnswer {
     pub fn refused(wrong: Diagnostics) -> Self {
         let errors: Vec<String> =
             wrong.into_iter().filter(|d| d.severity == Severity::Error).map(|d| d.message).collect();
-        Self { verdict: PointVerdict::Refused, reason: errors.join("; "), solution: None, warnings: vec![] }
+        Self {
+            verdict: PointVerdict::Refused,
+            reason: errors.join("; "),
+            solution: None,
+            warnings: vec![],
+            outside_laws: vec![],
+        }
     }
 
     /// Whether there is exactly one equilibrium.

@@ -441,7 +441,7 @@ impl<'a> Cycle<'a> {
         }
         let mut point = CyclePoint {
             verdict: answer.verdict,
-            reason: answer.reason.replace(&format!("operation `{}`: ", self.question.base().name), "").into(),
+            reason: answer.reason.into(),
             way,
             state,
             efficiency: answer.efficiency(),

@@ -408,7 +408,7 @@ impl<'s> UncertaintyPlan<'s> {
             let mut told: Vec<WarningKind> = vec![];
             for (code, message) in &answer.warnings {
                 // Laws are counted one by one, places and numbers are not.
-                let kind = WarningKind::Warning { code: *code, law: law_of(message) };
+                let kind = WarningKind::Warning { code: *code, law: law_of(&answer, message) };
                 if !told.contains(&kind) {
                     summary::see(&mut all.seen, kind.clone(), message, point as u64);
                     told.push(kind);
@@ -435,10 +435,10 @@ impl<'s> UncertaintyPlan<'s> {
     }
 }
 
-/// The law that a warning is about.
-fn law_of(message: &str) -> Option<LawChoice> {
-    let (family, law) = message.split_once(" of ")?.0.split_once(" = ")?;
-    Some(LawChoice { family: family.to_owned(), law: law.to_owned() })
+/// The law that a warning of an answer is about.
+fn law_of(answer: &PointAnswer, message: &str) -> Option<LawChoice> {
+    let outside = answer.outside_laws.iter().find(|o| o.to_string() == message)?;
+    Some(LawChoice { family: outside.family.clone(), law: outside.law.clone() })
 }
 
 /// Losses by kind, in the order in which they are among the values.

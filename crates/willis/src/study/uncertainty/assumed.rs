@@ -9,7 +9,7 @@ use crate::study::distribution::{Distribution, Reader};
 use crate::study::question::Question;
 use crate::train::{Measure, Train};
 
-use super::{LawChoice, Uncertain, UncertainValue, law_of, listed, nominal};
+use super::{Uncertain, UncertainValue, listed, nominal};
 
 /// Share of a given loss `1 − η` that is doubtful, each way.
 const LOSS: f64 = 0.2;
@@ -48,8 +48,7 @@ pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: boo
             continue;
         };
         let answer = PointAnswer::of(&with, question.base());
-        let own = LawChoice { family: family.to_owned(), law: e.id.to_owned() };
-        match answer.warnings.iter().any(|w| law_of(&w.1).as_ref() == Some(&own)) {
+        match answer.outside_laws.iter().any(|o| o.family == family && o.law == e.id) {
             true => outside.push(e.id.to_owned()),
             false => within.push(e.id.to_owned()),
         }

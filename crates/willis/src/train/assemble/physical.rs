@@ -265,7 +265,7 @@ impl Assembler<'_> {
             let message = format!("an oil temperature of {:.1} °C is none that a gearbox has", temperature - 273.15);
             self.report(Diagnostic::new(Code::OutOfRange, place, message).hint("from -73 to 327 °C is computed"));
         } else if let Some(message) = lubrication.beyond(temperature) {
-            let hint = match message.contains("alone") {
+            let hint = match matches!(lubrication.oil.viscosity, oil::Viscosity::Fixed { .. }) {
                 true => "give viscosity_40 and viscosity_100, and it follows the temperature",
                 false => "the viscosity is extrapolated",
             };

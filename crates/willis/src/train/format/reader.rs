@@ -505,7 +505,9 @@ impl Reader<'_, '_> {
         for d in self.diagnostics.iter_mut().skip(before) {
             let own = d.place.strip_prefix(place).is_some_and(|rest| !rest[1..].contains(['.', '[']));
             if own && matches!(d.code, Code::UnknownKey | Code::MissingKey) {
-                d.hints.retain(|h| !h.starts_with("the keys here are"));
+                // What it takes is told with its name instead.
+                let listed = format!("the keys here are: {}", keys.join(", "));
+                d.hints.retain(|h| *h != listed);
                 d.hints.push(hint.clone());
             }
         }
