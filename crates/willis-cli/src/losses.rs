@@ -2,7 +2,7 @@
 
 use willis::analysis::{LossPoint, LossTable, Named, SolutionReport, Verdict};
 use willis::catalogue::{bearing, oil};
-use willis::losses::{Entry, Tag, Trust};
+use willis::losses::{Entry, Trust};
 use willis::operating_point::{BearingReport, ContactReport, Regime};
 
 use crate::csv::Writer;
@@ -354,15 +354,7 @@ pub fn laws(all: &[Entry]) -> String {
             marks.push("default".to_owned());
         }
         for t in e.tags {
-            marks.push(
-                match t {
-                    Tag::Local => "local, averaged along the path",
-                    Tag::SlidingOnly => "sliding only, rolling is added",
-                    Tag::Estimate => "estimate ±50 %",
-                    Tag::Compatibility => "reproduces a published error",
-                }
-                .to_owned(),
-            );
+            marks.push(t.words().to_owned());
         }
         let marks = if marks.is_empty() { String::new() } else { format!(" ({})", marks.join("; ")) };
         out += &format!("  {}{marks}\n", bold(e.id));

@@ -269,7 +269,7 @@ fn losses_refuse_what_makes_no_question() {
     for (args, said) in [
         (vec!["--operation", "ratd"], "did you mean `rated`?"),
         (vec!["--speeds", "1500"], "unit is missing"),
-        (vec!["--speeds", "10 N m"], "measures something else"),
+        (vec!["--speeds", "10 N m"], "measures a torque"),
         (vec!["--temperature", "9000 degC"], "none that a gearbox has"),
         (vec!["--compare", "mesh_frictions"], "did you mean `mesh_friction`?"),
     ] {

@@ -607,7 +607,8 @@ fn planets(report: &mut Report) {
 fn impossible(report: &mut Report) {
     let mut s = Section::new("What cannot be reproduced, and why", &[], &[]);
     let five = Variant { planets: 5, ..Variant::default() }.train(&[(SPEED, POWER, 50.0)]);
-    let remark = five.warnings().iter().find(|d| d.code == crate::diagnostic::Code::UnequalSpacing).map(|d| d.message.as_str());
+    let remark =
+        five.warnings().iter().find(|d| d.code == crate::diagnostic::Code::UnequalSpacing).map(|d| d.message.as_str());
     s.points.push(format!(
         "Five planets do not assemble. Willis: \"{}\". The paper computes them all the same.",
         remark.unwrap_or("no remark")

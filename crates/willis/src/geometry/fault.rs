@@ -1,5 +1,7 @@
 use std::fmt;
 
+use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
+
 /// Why there is no such pair of gears. The numbers are SI; the text shows mm and degrees.
 ///
 /// Wheels are counted from zero here and from one in the text.
@@ -327,6 +329,14 @@ impl fmt::Display for Fault {
 }
 
 impl std::error::Error for Fault {}
+
+impl From<Fault> for Diagnostic {
+    fn from(fault: Fault) -> Self {
+        Self::new(Code::ImpossibleGeometry, "", fault.to_string())
+    }
+}
+
+through_diagnostic!(Fault);
 
 impl Remark {
     /// The wheel that it is about; none where it is about the pair.

@@ -185,8 +185,6 @@ pub(crate) fn oil_temperature(kelvin: f64) -> Result<f64, Box<Diagnostic>> {
 
 /// A value with a unit.
 pub(crate) fn quantity(text: &str, dimension: Dimension) -> Result<Quantity, String> {
-    units::parse(text, dimension).map_err(|e| {
-        let (kind, example) = dimension.describe();
-        format!("\"{text}\" is not {kind}: {e}; an example is \"{example}\"")
-    })
+    units::parse(text, dimension)
+        .map_err(|e| format!("\"{text}\" is not {}: {e}; {}", dimension.describe().0, e.hint()))
 }

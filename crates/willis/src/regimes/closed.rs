@@ -2,7 +2,7 @@
 //! regime.
 
 use crate::analysis::{AS_DRAWN, Named};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::symbolic::{Function, Notation, Symbol};
@@ -165,6 +165,14 @@ impl std::fmt::Display for Outside {
 }
 
 impl std::error::Error for Outside {}
+
+impl From<Outside> for Diagnostic {
+    fn from(outside: Outside) -> Self {
+        Self::new(Code::Unfit, "", outside.to_string())
+    }
+}
+
+through_diagnostic!(Outside);
 
 /// A derivative of the efficiency.
 #[derive(Clone, Debug, PartialEq)]

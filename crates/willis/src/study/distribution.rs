@@ -248,7 +248,13 @@ impl Reader<'_> {
         let at = |n: &str| {
             units::parse(&format!("{n} {unit}"), dimension).map(|q| q.si()).map_err(|e| {
                 let (kind, example) = dimension.describe();
-                self.fault(format!("`{unit}` is no unit of {kind}: {e}; an example is `{example}`"))
+                match e.instead.as_slice() {
+                    [one] => self.fault(format!(
+                        "`{unit}` is no unit of {kind}: {e}; did you mean `{}`?",
+                        one.trim_start_matches("0 ")
+                    )),
+                    _ => self.fault(format!("`{unit}` is no unit of {kind}: {e}; an example is `{example}`")),
+                }
             })
         };
         let zero = at("0")?;

@@ -143,7 +143,7 @@ impl Wrong {
         }
         // What is underlined is replaced by hints only where that is the whole cell.
         d.replacement = None;
-        d.span = Some(span);
+        d.span = Some(span.into());
         self.all.push(if hint.is_empty() { d } else { d.hint(hint) });
     }
 }
@@ -243,7 +243,8 @@ fn purpose(header: &str, model: &Model) -> Result<Purpose, Box<Diagnostic>> {
                 Ok(_) => Ok(setting(target, unit.to_owned())),
                 Err(why) => {
                     let (kind, example) = dimension.describe();
-                    let good = example.split_once(' ').map_or("", |e| e.1);
+                    // The unit that may be meant, or the usual one.
+                    let good = why.instead.first().map_or(example, String::as_str).split_once(' ').map_or("", |e| e.1);
                     Err(hinted(
                         format!("the unit `{unit}` is not that of {kind}: {why}"),
                         format!("write `{name} [{good}]`"),
@@ -475,6 +476,7 @@ impl Profile {
             wrong.all.push(Diagnostic::new(Code::BadTable, "", message));
         }
         if wrong.all.has_errors() {
+            wrong.all.stand_in(None, text);
             return Err(wrong.all);
         }
         let mut numbered: Vec<(Box<[u32]>, u32)> = conditions.into_iter().collect();

@@ -13,7 +13,7 @@ mod physical;
 mod reader;
 mod schema;
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, Span};
 use crate::train::{ShiftElementKind, Train};
 
 use super::describe::{
@@ -45,15 +45,16 @@ impl Reading {
 
 fn locate(spans: &reader::Spans, text: &str, diagnostics: &mut Diagnostics) {
     give_places(spans, text, diagnostics);
+    diagnostics.stand_in(None, text);
     diagnostics.sort();
 }
 
 fn give_places(spans: &reader::Spans, text: &str, diagnostics: &mut Diagnostics) {
     for d in diagnostics.iter_mut().filter(|d| d.span.is_none()) {
-        d.span = spans.nearest(&d.place);
+        d.span = spans.nearest(&d.place).map(Span::from);
         // A suggestion replaces a name; inside quotes, if that is what stands there.
         if let (Some(span), Some(new)) = (&d.span, &mut d.replacement)
-            && let Some(quote) = text[span.clone()].chars().next().filter(|c| matches!(c, '"' | '\''))
+            && let Some(quote) = text[span.range()].chars().next().filter(|c| matches!(c, '"' | '\''))
         {
             *new = format!("{quote}{new}{quote}");
         }

@@ -218,8 +218,8 @@ macro_rules! every_law {
             #[test]
             fn every_law_is_documented() {
                 assert_eq!($laws::ALL.len(), $laws::SOURCES.len());
-                for (name, text) in $laws::SOURCES {
-                    documented(name, text);
+                for (law, (name, text)) in $laws::ALL.iter().zip($laws::SOURCES) {
+                    documented(name, text, !law.meta().valid.is_empty());
                 }
             }
         }
@@ -262,8 +262,11 @@ every_law!(windage: Windage, Disc {
 /// Its state holds a pair of numbers with derivatives, which the macro does not know.
 #[test]
 fn every_loss_factor_is_documented_finite_and_has_its_derivative() {
-    for (name, text) in LossFactor::SOURCES.iter().chain(LoadSharing::SOURCES) {
-        documented(name, text);
+    for (law, (name, text)) in LossFactor::ALL.iter().zip(LossFactor::SOURCES) {
+        documented(name, text, !law.meta().valid.is_empty());
+    }
+    for (law, (name, text)) in LoadSharing::ALL.iter().zip(LoadSharing::SOURCES) {
+        documented(name, text, !law.meta().valid.is_empty());
     }
     for law in LossFactor::ALL {
         let path = Path::typical();
@@ -287,8 +290,8 @@ fn every_loss_factor_is_documented_finite_and_has_its_derivative() {
     }
 }
 
-/// One sentence and six sections in order, with a formula and a doctest.
-fn documented(name: &str, text: &str) {
+/// One sentence and six sections in order, with a formula and a doctest of a number inside the law's own range.
+fn documented(name: &str, text: &str, bounded: bool) {
     let end = text.find("\n#[derive").or(text.find("\npub struct")).unwrap_or_else(|| panic!("{name}: no struct"));
     let docs: Vec<&str> = text[..end].lines().filter_map(|l| l.strip_prefix("///")).map(str::trim).collect();
     let sections = ["# Formula", "# Symbols", "# Valid for", "# Departs from the source", "# Source", "# Example"];
@@ -311,14 +314,41 @@ fn documented(name: &str, text: &str) {
         part(5).to_lowercase().contains("by hand") && part(5).contains("assert_eq!"),
         "{name}: no number worked by hand"
     );
+    let inside = format!("assert!({name}::DEFAULT.outside(&");
+    assert!(!bounded || part(5).contains(&inside), "{name}: the number worked by hand is not shown to be in range");
 }
 
-/// Keys of the list of references.
+/// Keys of the list of references, each of which stands once and is an entry in itself.
 fn references() -> BTreeSet<String> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/data/references.bib");
     let text = std::fs::read_to_string(path).unwrap();
-    let keys = text.lines().filter_map(|l| l.strip_prefix('@')?.split_once('{')?.1.strip_suffix(','));
-    keys.map(str::to_owned).collect()
+    let mut keys = BTreeSet::new();
+    let mut fields: Option<BTreeSet<&str>> = None;
+    for line in text.lines().filter(|l| !l.is_empty() && !l.starts_with('%')) {
+        match (&mut fields, line.strip_prefix('@')) {
+            (None, Some(head)) => {
+                let key = head.split_once('{').and_then(|h| h.1.strip_suffix(',')).expect(line);
+                assert!(keys.insert(key.to_owned()), "{key} stands twice");
+                fields = Some(BTreeSet::new());
+            }
+            (Some(of), None) if line == "}" => {
+                assert!(of.contains("title"), "no title before line `{line}` of {keys:?}");
+                fields = None;
+            }
+            (Some(of), None) => {
+                let (name, value) = line.trim().split_once(" = {").unwrap_or_else(|| panic!("{line}"));
+                assert!(value.ends_with("},") && of.insert(name), "{line}");
+                let count = |c| line.matches(c).count();
+                assert_eq!(count('{'), count('}'), "{line}");
+                if name == "doi" {
+                    assert!(value.starts_with("10.") && !value.contains(' '), "{line}");
+                }
+            }
+            _ => panic!("an entry begins inside another, or a field outside: {line}"),
+        }
+    }
+    assert!(fields.is_none(), "the last entry has no end");
+    keys
 }
 
 #[test]
@@ -363,6 +393,25 @@ fn every_key_named_in_the_docs_is_in_the_references() {
         for key in keys.filter_map(|k| k.split_once("]`")).map(|k| k.0) {
             assert!(references.contains(key), "{name}: `{key}` is not in references.bib");
         }
+    }
+}
+
+/// With another oil and another film a law that needs none gives the same, and every other does not.
+#[test]
+fn laws_say_truly_whether_they_need_an_oil() {
+    let typical = MeshContact::typical();
+    let other = MeshContact {
+        film: 1.1 * typical.film,
+        dynamic_viscosity: 1.1 * typical.dynamic_viscosity,
+        kinematic_viscosity: 1.1 * typical.kinematic_viscosity,
+        pressure_viscosity: 1.1 * typical.pressure_viscosity,
+        lubricant_factor: Some(0.7),
+        film_ratio: 2.0,
+        ..typical
+    };
+    for law in MeshFriction::ALL {
+        let same = law.eval(&typical) == law.eval(&other);
+        assert_eq!(!same, law.needs_oil(), "{}", law.meta().id);
     }
 }
 

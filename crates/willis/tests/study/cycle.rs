@@ -280,7 +280,7 @@ fn every_mistake_is_told_with_its_line_and_column() {
         (
             REDUCER,
             "hours,input.speed [N m]\n1,1000\n".into(),
-            "the unit `N m` is not that of an angular speed: its unit measures something else (at line 1, column 2); write `input.speed [rpm]`",
+            "the unit `N m` is not that of an angular speed: `N m` measures a torque (at line 1, column 2); write `input.speed [rpm]`",
         ),
         (REDUCER, "hours,input.speed [rpn]\n1,1000\n".into(), "`rpn` is not a unit known here"),
         (
@@ -346,7 +346,7 @@ fn all_mistakes_are_told_at_once_and_underlined() {
     let all = wrong(REDUCER, text);
     // The misspelt column, the empty cell, the number, the time; nothing is said of cells that mean nothing.
     assert_eq!(all.len(), 4, "{all}");
-    let underlined: Vec<&str> = all.iter().map(|d| &text[d.span.clone().unwrap()]).collect();
+    let underlined: Vec<&str> = all.iter().map(|d| &text[d.span.unwrap().range()]).collect();
     assert_eq!(underlined, ["input.sped [rpm]", "1,1000,", "1", "nan"]);
     let many: String = (0..5000).map(|_| "0,x\n").collect();
     let all = wrong(REDUCER, &format!("hours,input.speed [rpm]\n{many}"));

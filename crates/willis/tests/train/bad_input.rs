@@ -685,7 +685,7 @@ fn regress_line_ends_and_byte_order_marks() {
         let text = with(&text, "carrier = \"carrier\"", "carrier = \"spider\"");
         let wrong = answer(&text).expect_err("a wrong name");
         let d = wrong.iter().find(|d| d.code == Code::UnknownName).expect("it is told");
-        assert_eq!(&text[d.span.clone().expect("a span")], "\"spider\"");
+        assert_eq!(&text[d.span.expect("a span").range()], "\"spider\"");
     }
 }
 

@@ -344,7 +344,10 @@ fn collect(table: Option<&dyn TableLike>, of: &'static Table, before: &str, all:
 fn literal(measure: Measure, text: &str) -> Result<Value, String> {
     let text = text.trim();
     let number = |whole: bool| -> Result<Value, String> {
-        let value: Rational = text.parse().map_err(|_| format!("`{}` is not a number", clip(text)))?;
+        let value: Rational = text.parse().map_err(|_| match units::decimal_point(text) {
+            Some(number) => format!("`{}` is not a number; with a decimal point it is {number}", clip(text)),
+            None => format!("`{}` is not a number", clip(text)),
+        })?;
         if whole {
             let wrong = || format!("`{}` is not a whole number", clip(text));
             return value.to_string().parse::<i64>().map(Value::from).map_err(|_| wrong());
@@ -358,10 +361,7 @@ fn literal(measure: Measure, text: &str) -> Result<Value, String> {
         Measure::Integer => number(true),
         Measure::Quantity(dimension) => match units::parse(text, dimension) {
             Ok(_) => Ok(Value::String(Formatted::new(text.to_owned()))),
-            Err(e) => {
-                let (kind, example) = dimension.describe();
-                Err(format!("\"{}\" is not {kind}: {e}; an example is \"{example}\"", clip(text)))
-            }
+            Err(e) => Err(format!("\"{}\" is not {}: {e}; {}", clip(text), dimension.describe().0, e.hint())),
         },
         Measure::Text => Ok(Value::String(Formatted::new(text.to_owned()))),
         Measure::Flag => text.parse::<bool>().map(Value::from).map_err(|_| format!("`{text}` is not true or false")),

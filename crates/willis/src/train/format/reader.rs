@@ -11,7 +11,7 @@ use crate::exact::Rational;
 use crate::train::Efficiency;
 use crate::train::assemble::clip;
 use crate::train::describe::EfficiencySpec;
-use crate::units::{self, Dimension, Quantity, QuantityError};
+use crate::units::{self, Dimension, Quantity, QuantityFault};
 
 use super::csv;
 use super::keys::{Kind, Measure, NUMBER_SIGNAL, SignalKind, Table};
@@ -141,8 +141,12 @@ pub(super) fn read(text: &str, table: &Table, load: &mut Load<'_>, diagnostics: 
     };
     for error in errors.iter().take(MOST_ERRORS) {
         let mut d = Diagnostic::new(Code::Syntax, "", error.message().trim().replace('\n', ", "));
-        d.span = error.span().map(|s| s.start.min(text.len())..s.end.min(text.len()));
-        diagnostics.push(d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"));
+        d.span = error.span().map(|s| (s.start.min(text.len())..s.end.min(text.len())).into());
+        let comma = d.span.and_then(|span| decimal_comma(text, span.start));
+        diagnostics.push(match comma {
+            Some(number) => d.hint(format!("the decimal sign is a decimal point: write {number}")),
+            None => d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"),
+        });
     }
     let mut reader = Reader { diagnostics, spans: Spans::default(), load, files: BTreeMap::new() };
     if !errors.is_empty() {
@@ -150,6 +154,17 @@ pub(super) fn read(text: &str, table: &Table, load: &mut Load<'_>, diagnostics: 
     }
     let fields = reader.table(root.get_ref(), table, "", 0..text.len().min(1));
     (fields, reader.spans)
+}
+
+/// The number that is meant in the line of a syntax error, if a decimal comma is the cause: `backlash = 20,5`.
+fn decimal_comma(text: &str, at: usize) -> Option<String> {
+    let start = text.get(..at)?.rfind('\n').map_or(0, |k| k + 1);
+    let numeric = |c: char| c.is_ascii_digit() || matches!(c, ',' | '.' | '+' | '-');
+    text[start..].lines().next()?.split('=').skip(1).find_map(|value| {
+        let value = value.trim_start();
+        let end = value.find(|c| !numeric(c)).unwrap_or(value.len());
+        units::decimal_point(value[..end].trim_end_matches(','))
+    })
 }
 
 struct Reader<'d, 'l> {
@@ -195,7 +210,7 @@ impl Reader<'_, '_> {
                         let known: Vec<_> = table.keys.iter().map(|k| k.name).collect();
                         d = d.hint(format!("the keys here are: {}", known.join(", ")));
                     }
-                    d.span = Some(key.span());
+                    d.span = Some(key.span().into());
                     self.diagnostics.push(d);
                 }
             }
@@ -212,7 +227,7 @@ impl Reader<'_, '_> {
                     _ => format!("{}: {}", key.name, key.doc),
                 };
                 let mut d = Diagnostic::new(Code::MissingKey, place, message).hint(hint);
-                d.span = Some(own.clone());
+                d.span = Some(own.clone().into());
                 self.diagnostics.push(d);
             }
         }
@@ -483,7 +498,7 @@ impl Reader<'_, '_> {
         let at = join(place, "type");
         let Some(given) = map.get("type") else {
             let mut d = Diagnostic::new(Code::MissingKey, at, format!("`type` is missing in {place}"));
-            d.span = Some(value.span());
+            d.span = Some(value.span().into());
             self.diagnostics.push(d.hint(listed()));
             return None;
         };
@@ -562,7 +577,7 @@ impl Reader<'_, '_> {
                 None => {
                     let message = format!("there is no key `{}` here", clip(key.get_ref()));
                     let mut d = Diagnostic::new(Code::UnknownKey, place, message).suggest(key.get_ref(), names);
-                    d.span = Some(key.span());
+                    d.span = Some(key.span().into());
                     self.diagnostics.push(d.hint(format!("the keys here are: {}", names.join(", "))));
                 }
             }
@@ -571,7 +586,7 @@ impl Reader<'_, '_> {
             if found[k].is_none() {
                 let message = format!("`{name}` is missing: give both {} and {}", names[0], names[1]);
                 let mut d = Diagnostic::new(Code::MissingKey, join(place, name), message);
-                d.span = Some(span.clone());
+                d.span = Some(span.clone().into());
                 self.diagnostics.push(d);
             }
         }
@@ -607,7 +622,8 @@ impl Reader<'_, '_> {
             DeValue::Float(x) => x.as_str(),
             DeValue::String(s) => {
                 let message = format!("`{}` is a number without quotes, here is \"{}\"", last(place), clip(s));
-                self.report(Code::WrongType, place, message, hint);
+                let comma = units::decimal_point(s).map(|n| format!("the decimal sign is a decimal point: write {n}"));
+                self.report(Code::WrongType, place, message, comma.unwrap_or_else(|| hint.to_owned()));
                 return None;
             }
             _ => {
@@ -629,22 +645,22 @@ impl Reader<'_, '_> {
         let (kind, example) = dimension.describe();
         let unit = example.split_once(' ').map_or("", |e| e.1);
         let at = value.span();
-        let mut report = |message: String, hint: String| {
+        let mut report = |message: String, hint: String, replacement: Option<String>| {
             let mut d = Diagnostic::new(Code::Quantity, place, message).hint(hint);
-            d.span = Some(at.clone());
+            d.span = Some(at.clone().into());
+            d.replacement = replacement;
             self.diagnostics.push(d);
         };
         match value.get_ref() {
             DeValue::String(text) => match units::parse(text, dimension) {
                 Ok(q) => return Some(q),
                 Err(error) => {
-                    let shown = clip(text);
-                    let hint = match &error {
-                        QuantityError::NoUnit => format!("write \"{} {unit}\" if that is the unit meant", shown.trim()),
-                        QuantityError::UnknownUnit(_, Some(near)) => format!("did you mean `{near}`?"),
-                        _ => format!("{kind} looks like \"{example}\""),
+                    let replacement = match error.instead.as_slice() {
+                        // Without a unit nobody knows which is meant.
+                        [one] if error.fault != QuantityFault::NoUnit => Some(format!("\"{one}\"")),
+                        _ => None,
                     };
-                    report(format!("\"{shown}\" is not {kind}: {error}"), hint);
+                    report(format!("\"{}\" is not {kind}: {error}", clip(text)), error.hint(), replacement);
                 }
             },
             DeValue::Integer(_) | DeValue::Float(_) => {
@@ -654,11 +670,15 @@ impl Reader<'_, '_> {
                     _ => unreachable!(),
                 };
                 let hint = format!("write \"{shown} {unit}\" if that is the unit meant");
-                report(format!("{shown} has no unit; {kind} is a text with one"), hint);
+                report(format!("{shown} has no unit; {kind} is a text with one"), hint, None);
             }
             other => {
                 let found = describe(other);
-                report(format!("{kind} is a text with a unit, here is {found}"), format!("an example: \"{example}\""));
+                report(
+                    format!("{kind} is a text with a unit, here is {found}"),
+                    format!("an example: \"{example}\""),
+                    None,
+                );
             }
         }
         None
