@@ -13,6 +13,7 @@ mod engine;
 mod event;
 mod fixed;
 mod fused;
+mod handles;
 mod integrator;
 mod lagged;
 mod laws;
@@ -27,6 +28,7 @@ mod system;
 
 pub use batch::Batch;
 pub use fixed::FixedStep;
+pub use handles::{Input, InputInfo, InputKind, InputRefused, Output};
 pub use modes::{Mode, ModesReport, Part, RigidMode, modes};
 pub use report::{
     Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind, Method,

@@ -236,7 +236,7 @@ impl Batch {
         let one = &mut self.one;
         self.common.clear();
         for &k in &one.varying {
-            self.common.push((!one.depends_on_speed(k)).then(|| one.input(k, middle)));
+            self.common.push((!one.depends_on_speed(k)).then(|| one.enters(k, middle)));
         }
         let count = one.count;
         for (b, block) in self.blocks.iter_mut().enumerate() {

@@ -72,8 +72,7 @@ impl Engine {
             let (p, m) = (self.sliding(f, 0.0, 1, true, t), self.sliding(f, 0.0, -1, true, t));
             p != 0.0 || m != 0.0
         };
-        let holding: Vec<usize> = group.frictions.iter().copied().filter(|&f| can_hold(f)).collect();
-        let alone = group.elements.is_empty() && holding.len() == 1;
+        let alone = group.elements.is_empty() && group.frictions.iter().filter(|&&f| can_hold(f)).count() == 1;
         let torque = match (&self.map, can_hold(k)) {
             (_, false) => viscous,
             (Some(map), _) if alone && !map.open_groups[g] && !group.driven => {
@@ -161,6 +160,16 @@ impl Engine {
         let kinetic = 0.5 * (w.transpose() * &self.system.energy * &w)[(0, 0)];
         let twisted: f64 = (0..self.system.elastic.len()).map(|k| self.spring_energy(k, x)).sum();
         kinetic + twisted
+    }
+
+    /// The same up to round-off, without room of its own.
+    pub fn stored_now(&self, x: &[f64]) -> f64 {
+        let w = &self.speed;
+        let of_row = |(i, w_i): (usize, &f64)| {
+            w_i * w.iter().enumerate().map(|(j, w_j)| self.system.energy[(i, j)] * w_j).sum::<f64>()
+        };
+        let kinetic: f64 = w.iter().enumerate().map(of_row).sum();
+        0.5 * kinetic + (0..self.system.elastic.len()).map(|k| self.spring_energy(k, x)).sum::<f64>()
     }
 
     /// The report at the end of a run: `stored` at the start and at the end, the energies, and of those of the

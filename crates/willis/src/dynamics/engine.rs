@@ -6,6 +6,7 @@ use crate::train::{Contact, MemberId, SourceKind};
 
 use super::integrator::Smooth;
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
+use super::output::Shows;
 use super::report::EnergyLossKind;
 use super::system::{Rubs, System, source_torque};
 
@@ -70,6 +71,7 @@ const LEAST_SCALE: f64 = 1e-3;
 const LEAST_ENERGY: f64 = 1e-6;
 
 /// A system in a mode.
+#[derive(Clone)]
 pub(crate) struct Engine {
     pub system: System,
     pub maps: Maps,
@@ -99,6 +101,8 @@ pub(crate) struct Engine {
     pub unsearched: usize,
     /// Size of the energies, J, likewise.
     pub energy_scale: f64,
+    /// What can be read, in the order of the columns.
+    pub shows: Vec<Shows>,
     /// Room for port torques.
     pub spare: Vec<f64>,
     /// By how many times its round-off a force has to be beyond its limit before that counts as an event: what
@@ -127,6 +131,7 @@ impl Engine {
             energy_scale: LEAST_ENERGY,
             unsearched: 0,
             spare: vec![0.0; system.ports],
+            shows: Shows::all(&system),
             agrees: true,
             slack: 1.0,
             counts: true,
@@ -379,7 +384,9 @@ impl Engine {
 
     /// Makes a mode the present one. False if its equations have no unique solution.
     pub fn enter(&mut self, mode: &Mode) -> bool {
-        self.mode.clone_from(mode);
+        // Field by field: a derived `clone_from` would take new memory.
+        self.mode.slip.clone_from(&mode.slip);
+        self.mode.side.clone_from(&mode.side);
         self.varying = (0..self.system.elements.len())
             .any(|j| self.system.elements[j].varies() && mode.element_slip(&self.system, j) != 0);
         self.map = self.map_of(mode);

@@ -17,7 +17,10 @@ use crate::train::{MemberId, SourceKind, Train};
 
 use super::engine::Engine;
 use super::fused::{ByKey, Exactly, Fused, add_column};
-use super::mode::{Pattern, Side, dot};
+use super::handles::{Input, InputInfo, InputRefused, Output};
+use super::mode::{Mode, Pattern, Side, dot};
+use super::output::Shows;
+use super::report::Column;
 use super::run::initial_state;
 use super::system::{Loss, System, element_name, signals_of};
 
@@ -35,6 +38,7 @@ pub(super) const UNBOUNDED: f64 = 1e30;
 const LEAST_UNBOUNDED: f64 = 1e24;
 
 /// A friction element of a group, ready for the step.
+#[derive(Clone)]
 pub(super) struct Rub {
     pub friction: usize,
     pub port: usize,
@@ -58,6 +62,7 @@ impl Rub {
 }
 
 /// What a group needs in a step.
+#[derive(Clone)]
 pub(super) struct GroupStep {
     pub row: Vec<f64>,
     pub rubs: Vec<Rub>,
@@ -100,6 +105,56 @@ pub(super) struct GroupStep {
 /// assert_eq!(run.speed("rotor"), Some(0.0));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
+///
+/// # In a co-simulation or a control loop
+/// Inputs and outputs are found once by name; to set and to read them allocates nothing. A clone is the whole state:
+/// keep one to come back to it, and the same steps from there give the same numbers to the last bit.
+///
+/// ```
+/// use willis::dynamics::{FixedStep, ModeLabel};
+/// use willis::train::Train;
+///
+/// let train = Train::from_toml(r#"
+///     format = 1
+///     name = "a motor on a rotor"
+///     members = ["rotor"]
+///     terminals = ["rotor"]
+///     inertias = { rotor = "2 kg m^2" }
+///
+///     [[drag]]
+///     name = "bearing"
+///     members = ["rotor"]
+///     coulomb = "4 N m"
+///
+///     [[scenario]]
+///     name = "drive"
+///     duration = "10 s"
+///
+///     [[scenario.source]]
+///     name = "motor"
+///     member = "rotor"
+///     torque = "0 N m"
+/// "#)?;
+/// let mut run = FixedStep::new(&train, "drive", 1e-3)?;
+/// let motor = run.input("motor")?;
+/// let (speed, bearing) = (run.output("speed.rotor")?, run.output("mode.bearing")?);
+/// let wrong = run.output("speed.roter").unwrap_err();
+/// assert!(wrong.to_string().contains("did you mean `speed.rotor`?"));
+///
+/// run.rehearse();
+/// let saved = run.clone();
+/// run.set(motor, 3.0).unwrap();
+/// run.run(1000);
+/// assert_eq!(run.read(speed), 0.0);
+/// assert_eq!(ModeLabel::of_value(run.read(bearing)), Some(ModeLabel::Stuck));
+/// // The host rejects that second and takes another one.
+/// run = saved;
+/// run.set(motor, 6.0).unwrap();
+/// run.run(1000);
+/// assert!((run.read(speed) - 1.0).abs() < 1e-9);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+#[derive(Clone)]
 pub struct FixedStep {
     pub(super) engine: Engine,
     pub(super) h: f64,
@@ -167,6 +222,12 @@ pub struct FixedStep {
     swept: bool,
     pub(super) unsettled: u64,
     pub(super) impacts: u64,
+    /// State and mode as the engine knows them, and the step after which they were taken over.
+    seen: Vec<f64>,
+    seen_mode: Mode,
+    seen_at: Option<u64>,
+    /// Whether an output that takes forces was asked for.
+    shows_forces: bool,
 }
 
 impl FixedStep {
@@ -201,6 +262,7 @@ impl FixedStep {
         }
         let mut engine = Engine::new(system);
         let x = initial_state(&mut engine)?;
+        engine.counts = false;
         let s = &engine.system;
         let groups: Vec<GroupStep> = (s.groups.iter())
             .map(|g| GroupStep {
@@ -302,6 +364,10 @@ impl FixedStep {
             swept: false,
             unsettled: 0,
             impacts: 0,
+            seen: vec![],
+            seen_mode: engine.mode.clone(),
+            seen_at: None,
+            shows_forces: false,
             engine,
         })
     }
@@ -332,19 +398,77 @@ impl FixedStep {
         self.keeps_angles = !self.engine.system.elastic.is_empty();
     }
 
-    /// Replaces what a source does from now on by a constant: torque, N m; speed or set point, rad/s; throttle or grade.
-    /// A prescribed speed that jumps counts as an impact.
+    /// The inputs that can be set.
+    pub fn inputs(&self) -> Vec<InputInfo> {
+        self.engine.system.inputs()
+    }
+
+    /// The input of that name: that of a source, or `engagement.` and the name of a shift element that the scenario
+    /// engages.
     ///
     /// # Errors
-    /// If there is no such source, or it is a load that follows the speed.
-    pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
-        self.engine.system.set_input(source, value)?;
+    /// If there is none, with the nearest name; if it is a load that follows the speed.
+    pub fn input(&self, name: &str) -> Result<Input, Diagnostics> {
+        self.engine.system.input(name)
+    }
+
+    /// Sets an input: from now on it has this value. A prescribed speed that jumps counts as an impact.
+    ///
+    /// # Errors
+    /// If the value is not finite.
+    pub fn set(&mut self, input: Input, value: f64) -> Result<(), InputRefused> {
+        self.engine.system.set(input, value)?;
         let s = &self.engine.system;
-        for (driver, _) in s.drivers.iter().zip(&s.scenario.sources).filter(|(_, of)| of.name == source) {
-            self.impacts += u64::from(driver.prescribed.is_some_and(|i| jumps(self.v[s.free + i], value)));
-        }
-        self.until = f64::NEG_INFINITY;
+        let prescribed = s.prescribed_by(input);
+        self.impacts += u64::from(prescribed.is_some_and(|i| jumps(self.v[s.free + i], value)));
+        (self.until, self.seen_at) = (f64::NEG_INFINITY, None);
         Ok(())
+    }
+
+    /// The outputs that can be read: the columns of a recorded run.
+    pub fn outputs(&self) -> Vec<Column> {
+        self.engine.columns()
+    }
+
+    /// The output of that name, as in `speed.sun`, `angle.sun`, `acceleration.sun`, `torque.motor`, `mode.B`,
+    /// `stored_energy`.
+    ///
+    /// # Errors
+    /// If there is none, with the nearest name.
+    pub fn output(&mut self, name: &str) -> Result<Output, Diagnostics> {
+        let output = Output::of(&self.engine.columns(), name)?;
+        self.shows_forces |= !output.shows(&self.engine.shows).is_motion();
+        Ok(output)
+    }
+
+    /// The value of an output at the time reached, in the unit of its column; NaN where it is not determined. Modes
+    /// are those of the last step, read by [`ModeLabel::of_value`](super::ModeLabel::of_value); forces are those that
+    /// act in them at the present speeds.
+    ///
+    /// Speeds and angles cost a sum. The first of the others after a step solves for the forces once.
+    pub fn read(&mut self, output: Output) -> f64 {
+        let shows = output.shows(&self.engine.shows);
+        let s = &self.engine.system;
+        match shows {
+            Shows::Time => self.time(),
+            Shows::Speed(m) => dot(&s.speeds[m], &self.v),
+            Shows::Angle(m) => dot(&s.speeds[m], &self.rest[..s.all()]),
+            _ => {
+                self.look_at_forces();
+                match shows {
+                    Shows::Stored => self.engine.stored_now(&self.seen),
+                    _ => self.engine.value(shows, self.time(), &self.seen),
+                }
+            }
+        }
+    }
+
+    /// Begins to count where the energy goes: `lost_energy` can be read. Steps take several times as long.
+    pub fn with_energies(&mut self) {
+        self.engine.counts = true;
+        self.energies = vec![0.0; self.engine.energies()];
+        self.came_in = vec![0.0; self.engine.system.drivers.len()];
+        (self.present, self.seen_at) = (None, None);
     }
 
     /// Goes back to the start. What was learned about modes stays, and so do inputs that were replaced.
@@ -358,6 +482,7 @@ impl FixedStep {
         self.came_in.fill(0.0);
         (self.count, self.unsettled, self.impacts) = (0, 0, 0);
         (self.present, self.last, self.until) = (None, None, f64::NEG_INFINITY);
+        self.seen_at = None;
     }
 
     /// Runs the whole scenario once and goes back to its start.
@@ -366,7 +491,12 @@ impl FixedStep {
     /// memory. After a rehearsal the same run meets no new mode: its steps allocate nothing and take bounded time.
     pub fn rehearse(&mut self) {
         self.reset();
-        self.run(self.steps());
+        for _ in 0..self.steps() {
+            self.step();
+            if self.shows_forces {
+                self.look_at_forces();
+            }
+        }
         self.reset();
     }
 
@@ -445,7 +575,7 @@ impl FixedStep {
         let s = &self.engine.system;
         let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
         for &k in &self.varying {
-            let u = self.input(k, middle);
+            let u = self.enters(k, middle);
             // What opens, closes or locks is more than a change of torque.
             if k >= drivers && k < drivers + frictions {
                 let was = self.inputs[k];

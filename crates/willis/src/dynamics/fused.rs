@@ -15,6 +15,7 @@ pub(super) const BLOCK: usize = 4;
 pub(super) const NOISE: f64 = 1e-11;
 
 /// The affine map of a step in a mode.
+#[derive(Clone)]
 pub(super) struct Fused {
     /// Speeds after the step, then margins, then zeros up to a whole number of blocks.
     pub rows: usize,

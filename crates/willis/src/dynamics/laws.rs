@@ -25,8 +25,9 @@ const ROUND_OFF: f64 = 1e-13;
 const MOST_ROUNDS: usize = 100;
 
 /// The laws of a train, and what they gave last.
+#[derive(Clone)]
 pub(super) struct Laws {
-    physics: Physics<'static>,
+    physics: Arc<Physics<'static>>,
     pub places: Vec<Place>,
     /// The friction element of the first place; those of the others follow.
     pub first: usize,
@@ -53,7 +54,7 @@ impl Laws {
         let flow = Flow { speeds: vec![0.0; train.members().len()], meshes: meshes.collect(), ..Flow::default() };
         let step = physics.follow(&flow);
         let torques = places.iter().map(|p| step.drag(p)).collect();
-        Some(Self { physics, places, first: 0, flow, step, torques })
+        Some(Self { physics: Arc::new(physics), places, first: 0, flow, step, torques })
     }
 
     /// Amount of torque at a place, N m.

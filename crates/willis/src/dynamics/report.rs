@@ -201,6 +201,23 @@ pub enum ModeLabel {
     Free,
 }
 
+impl ModeLabel {
+    /// As a number in the rows: -1 backward, 0 stuck, 1 forward, 2 free.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Backward => -1.0,
+            Self::Stuck => 0.0,
+            Self::Forward => 1.0,
+            Self::Free => 2.0,
+        }
+    }
+
+    /// The label of such a number.
+    pub fn of_value(value: f64) -> Option<Self> {
+        [Self::Backward, Self::Stuck, Self::Forward, Self::Free].into_iter().find(|label| label.value() == value)
+    }
+}
+
 /// A change of mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -15,6 +15,7 @@ use super::choose::Trouble;
 use super::engine::{Engine, Margin, NOISE, Watch};
 use super::event::{Why, event, short};
 use super::fixed::fixed;
+use super::handles::{Input, InputInfo, InputRefused, Output};
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
 use super::lagged::lagged;
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
@@ -53,6 +54,9 @@ const LOOKS: f64 = 1000.0;
 /// assert_eq!(run.speed("rotor"), Some(0.0));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
+///
+/// Inputs and outputs have handles, as in [`FixedStep`](super::FixedStep); a clone is the whole state.
+#[derive(Clone)]
 pub struct Simulation {
     pub(super) engine: Engine,
     options: Options,
@@ -77,6 +81,8 @@ pub struct Simulation {
     told: String,
     pub(super) columns: Vec<Column>,
     pub(super) row: Vec<f64>,
+    /// Whether the row is that of the time reached.
+    row_is_present: bool,
     pub(super) next_sample: usize,
     samples: usize,
     recent: VecDeque<f64>,
@@ -140,6 +146,7 @@ impl Simulation {
             told: String::new(),
             columns,
             row: vec![],
+            row_is_present: false,
             next_sample: 0,
             samples,
             recent: VecDeque::new(),
@@ -181,32 +188,63 @@ impl Simulation {
         Some(super::mode::dot(&s.speeds[m.index()], &self.x[s.free..s.free + s.all()]))
     }
 
-    /// Replaces what a source does from now on by a constant: torque, N m; set point, rad/s; throttle or grade.
+    /// The inputs that can be set.
+    pub fn inputs(&self) -> Vec<InputInfo> {
+        self.engine.system.inputs()
+    }
+
+    /// The input of that name: that of a source, or `engagement.` and the name of a shift element that the scenario
+    /// engages.
     ///
     /// # Errors
-    /// If there is no such source, if it is a load that follows the speed, or if it prescribes a speed that would
-    /// jump.
-    pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
+    /// If there is none, with the nearest name; if it is a load that follows the speed.
+    pub fn input(&self, name: &str) -> Result<Input, Diagnostics> {
+        self.engine.system.input(name)
+    }
+
+    /// Sets an input: from now on it has this value.
+    ///
+    /// # Errors
+    /// If the value is not finite, or if a prescribed speed would jump.
+    pub fn set(&mut self, input: Input, value: f64) -> Result<(), InputRefused> {
         let s = &self.engine.system;
-        let jump = (s.drivers.iter().zip(&s.scenario.sources)).find_map(|(driver, of)| {
-            let now = self.engine.speed[s.free + driver.prescribed?];
-            (of.name == source && (value - now).abs() > 1e-9 * (value.abs() + now.abs())).then_some(now)
-        });
-        if let Some(now) = jump {
-            return Err(format!(
-                "`{source}` prescribes a speed of {now} rad/s, which cannot jump to {value} rad/s; use a torque or a controller"
-            ));
+        if let Some(i) = s.prescribed_by(input) {
+            let now = self.engine.speed[s.free + i];
+            if (value - now).abs() > 1e-9 * (value.abs() + now.abs()) {
+                return Err(InputRefused::Jump { from_rad_s: now, to_rad_s: value });
+            }
         }
-        self.engine.system.set_input(source, value)?;
-        self.rolling = false;
+        self.engine.system.set(input, value)?;
+        (self.rolling, self.row_is_present) = (false, false);
         Ok(())
     }
 
-    /// The present row, in the order of the columns.
+    /// The output of that name, which is that of its column.
+    ///
+    /// # Errors
+    /// If there is none, with the nearest name.
+    pub fn output(&self, name: &str) -> Result<Output, Diagnostics> {
+        Output::of(&self.columns, name)
+    }
+
+    /// The value of an output at the time reached, in the unit of its column; NaN where it is not determined.
+    pub fn read(&mut self, output: Output) -> f64 {
+        if !self.row_is_present {
+            self.row();
+            self.row_is_present = true;
+        }
+        output.in_row(&self.row)
+    }
+
+    /// The present row, in the order of the columns. The run goes on as if nobody had looked.
     pub fn row(&mut self) -> &[f64] {
         let (t, x) = (self.t, std::mem::take(&mut self.x));
         let mut row = std::mem::take(&mut self.row);
+        let found = self.engine.system.laws.as_ref().map(|laws| laws.found());
         self.engine.row(t, &x, &mut row);
+        if let (Some(laws), Some(found)) = (&mut self.engine.system.laws, found) {
+            laws.recall(found);
+        }
         self.x = x;
         self.row = row;
         &self.row
@@ -218,6 +256,7 @@ impl Simulation {
         if self.outcome.is_some() {
             return self.outcome.clone();
         }
+        self.row_is_present = false;
         let end = self.engine.system.scenario.end;
         let target = if until.is_nan() { self.t } else { until.min(end) };
         let outcome = loop {

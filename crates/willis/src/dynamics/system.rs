@@ -46,6 +46,7 @@ fn shortest_pulse(signal: &Signal) -> Option<f64> {
 }
 
 /// A mesh element: one gear pair, or a chain of them.
+#[derive(Clone)]
 pub(super) struct Element {
     pub links: Vec<Link>,
     /// `a` and `b` of its Willis equation.
@@ -62,6 +63,44 @@ pub(super) struct Element {
     pub port: usize,
     /// How its loss divides among its meshes when its first gear drives and when the second does: mesh and part.
     pub shares: [Vec<(usize, f64)>; 2],
+    /// What its torque becomes from mesh to mesh.
+    pub passes: Vec<Pass>,
+}
+
+/// A mesh of an element: what leaves it for what enters it.
+#[derive(Clone, Copy)]
+pub(super) struct Pass {
+    pub mesh: usize,
+    /// Whether it is passed from its first gear to its second.
+    pub along: bool,
+    /// Torque behind it over that before it, without loss.
+    ratio: f64,
+    /// Its efficiency when its first gear drives, and when its second does; 1 where it is an element alone.
+    efficiency: [f64; 2],
+}
+
+impl Pass {
+    fn of(train: &Train, links: &[Link]) -> Vec<Self> {
+        let pass = |link: &Link| {
+            let mesh = &train.meshes()[link.mesh.index()];
+            let (from, to) = if link.along { (0, 1) } else { (1, 0) };
+            let ratio = (&mesh.gears[to].teeth / &mesh.gears[from].teeth).to_f64();
+            let own = &mesh.efficiency;
+            Self {
+                mesh: link.mesh.index(),
+                along: link.along,
+                ratio: if mesh.same_sense { -ratio } else { ratio },
+                efficiency: if links.len() == 1 { [1.0; 2] } else { [own.forward.to_f64(), own.backward.to_f64()] },
+            }
+        };
+        links.iter().map(pass).collect()
+    }
+
+    /// The torque behind it; `drive` if the first gear of the element drives.
+    pub fn exit(&self, entry: f64, drive: bool, at_rest: bool) -> f64 {
+        let efficiency = if at_rest { 1.0 } else { self.efficiency[usize::from(self.along != drive)] };
+        self.ratio * entry * if drive { efficiency } else { 1.0 / efficiency }
+    }
 }
 
 /// Part of each mesh of a chain in the loss of all: the power that reaches it, less what leaves it.
@@ -147,6 +186,7 @@ pub(super) enum Rubs {
 }
 
 /// A friction element between two members.
+#[derive(Clone)]
 pub(super) struct Friction {
     pub what: Rubs,
     pub name: String,
@@ -172,6 +212,7 @@ pub(super) struct Friction {
 }
 
 /// Elements whose relative speeds are always proportional: they stick and slip together.
+#[derive(Clone)]
 pub(super) struct Group {
     /// Of its friction and mesh elements.
     pub names: Vec<String>,
@@ -187,6 +228,7 @@ pub(super) struct Group {
 }
 
 /// An elastic shaft.
+#[derive(Clone)]
 pub(super) struct Elastic {
     pub row: Vec<f64>,
     pub port: usize,
@@ -195,6 +237,7 @@ pub(super) struct Elastic {
 }
 
 /// What a source needs beside its description.
+#[derive(Clone)]
 pub(super) struct Driver {
     pub member: MemberId,
     /// Port of its torque; `None` for a prescribed speed.
@@ -208,6 +251,7 @@ pub(super) struct Driver {
 }
 
 /// A train in a scenario.
+#[derive(Clone)]
 pub(crate) struct System {
     pub train: Train,
     pub scenario: Scenario,
@@ -617,6 +661,7 @@ impl System {
                 group: None,
                 port: columns.len() - 1,
                 shares: shares(train, &e.links),
+                passes: Pass::of(train, &e.links),
             });
         }
         let port_of_prescribed = columns.len();
@@ -790,29 +835,6 @@ impl System {
             (None, None) => 1.0,
             (None, Some(k)) => value(&self.scenario.engagements[k].signal),
         }
-    }
-
-    /// Replaces what a source does by a constant.
-    pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
-        let sources = &mut self.scenario.sources;
-        let Some(k) = sources.iter().position(|s| s.name == source) else {
-            let known: Vec<&str> = sources.iter().map(|s| s.name.as_str()).collect();
-            return Err(format!("there is no source `{source}`; the sources are: {}", known.join(", ")));
-        };
-        if !value.is_finite() {
-            return Err(format!("`{source}` takes a finite number, not {value}"));
-        }
-        match &mut sources[k].kind {
-            SourceKind::Torque(signal)
-            | SourceKind::Speed(signal)
-            | SourceKind::Controller { setpoint: signal, .. }
-            | SourceKind::Motor { throttle: signal, .. }
-            | SourceKind::Vehicle { grade: signal, .. } => *signal = Signal::Constant(value),
-            SourceKind::Linear { .. } | SourceKind::Quadratic { .. } => {
-                return Err(format!("`{source}` is a load that follows the speed; it takes no value"));
-            }
-        }
-        Ok(())
     }
 
     /// The signals of the scenario.

@@ -37,7 +37,7 @@ impl FixedStep {
     /// What enters a step: torque or end speed of each source, torque with which each friction element can
     /// oppose slip, torque of each shaft, one.
     #[inline]
-    pub(in crate::dynamics) fn input(&self, k: usize, middle: f64) -> f64 {
+    pub(in crate::dynamics) fn enters(&self, k: usize, middle: f64) -> f64 {
         let w = dot(self.row_of_input(k), &self.v);
         let sum = self.integral_of(k).map_or(0.0, |i| self.rest[i]);
         self.factors[k] * self.input_at(k, middle, w, sum)
@@ -122,7 +122,7 @@ impl FixedStep {
             self.look_at_shafts();
         }
         for k in 0..self.inputs.len() {
-            self.inputs[k] = self.input(k, middle);
+            self.inputs[k] = self.enters(k, middle);
         }
         let s = &self.engine.system;
         let p = s.ports;

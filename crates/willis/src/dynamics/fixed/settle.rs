@@ -7,6 +7,7 @@ use crate::dynamics::system::System;
 use super::{FixedStep, GroupStep, LEAST_UNBOUNDED};
 
 /// The map of a mode, flat: rows over ports and slips.
+#[derive(Clone)]
 pub(in crate::dynamics) struct StepMap {
     /// Accelerations of the free coordinates, then holding torques of `held`, then torques of `moving`.
     pub rows: Vec<f64>,
