@@ -441,7 +441,7 @@ impl<'a> Cycle<'a> {
         }
         let mut point = CyclePoint {
             verdict: answer.verdict,
-            reason: answer.reason.into(),
+            reason: answer.reason.clone().into(),
             way,
             state,
             efficiency: answer.efficiency(),
