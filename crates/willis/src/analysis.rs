@@ -21,6 +21,7 @@ pub use why::Why;
 
 pub use crate::named::Named;
 pub(crate) use operation::Point;
+pub(crate) use words::named;
 
 use serde::{Deserialize, Serialize};
 

@@ -19,6 +19,8 @@
 //! lie anywhere between, which is reported, not guessed. An element with zero force is idle: it
 //! has no driver and no loss (the one deterministic rule for idle meshes).
 
+mod problem;
+
 use std::collections::HashSet;
 
 use nalgebra::{DMatrix, DVector};
@@ -26,6 +28,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Node};
+
+pub use problem::{Balanced, Equilibria, Problem, Unposed};
 
 /// How uniqueness was established.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -76,6 +80,19 @@ pub enum Unsolvable {
     UndeterminedSpeed,
 }
 
+impl std::fmt::Display for Unsolvable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::MissingLoads(n) => write!(f, "{n} more loads must be given"),
+            Self::TooManyLoads(n) => write!(f, "{n} loads too many: that many freedoms are left over"),
+            Self::Indeterminate => f.write_str("statically indeterminate"),
+            Self::UndeterminedSpeed => f.write_str("a loaded mesh has no determined relative speed"),
+        }
+    }
+}
+
+impl std::error::Error for Unsolvable {}
+
 /// One element as the statics sees it.
 #[derive(Clone, Debug)]
 struct Column {
@@ -94,7 +111,7 @@ struct Column {
 
 /// An equilibrium of the train.
 #[derive(Clone, Debug)]
-pub struct Solution {
+pub(crate) struct Solution {
     /// Force variable of each element of the configuration; the torque on end p is `a f`.
     pub(crate) forces: Vec<f64>,
     /// ρ of each element.
@@ -108,7 +125,7 @@ pub struct Solution {
 
 /// What the statics says for one load.
 #[derive(Clone, Debug)]
-pub struct Answer {
+pub(crate) struct Answer {
     /// Every solution found; none means that friction locks the train.
     pub solutions: Vec<Solution>,
     /// What is known about their number.
@@ -120,7 +137,7 @@ pub struct Answer {
 /// The equilibrium problem of a configuration with given directions of motion: which torques are
 /// known is fixed, their values are not.
 #[derive(Clone, Debug)]
-pub struct Equilibrium {
+pub(crate) struct Equilibrium {
     columns: Vec<Column>,
     /// Node of each row.
     rows: Vec<usize>,

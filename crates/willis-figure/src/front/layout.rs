@@ -95,8 +95,8 @@ pub fn build(links: &[Link], pairs: Vec<Pair>, count: Option<u32>) -> Result<Bui
         };
         for r in t.pair.remarks().iter().filter(|r| seen(r)) {
             // Wheels have other numbers in the picture than in their mesh.
-            let words = r.to_string().replace("wheel 1", "first gear").replace("wheel 2", "second gear");
-            notes.push(format!("{}: {words}.", links[t.link].name));
+            let wheel = r.wheel().map_or("", |w| ["first gear: ", "second gear: "][w.min(1)]);
+            notes.push(format!("{}: {wheel}{}.", links[t.link].name, r.matter()));
         }
     }
     if locked {

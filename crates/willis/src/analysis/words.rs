@@ -56,7 +56,7 @@ pub(super) fn found(train: &Train, operation: &Operation, all: &[Finding]) -> Di
 }
 
 /// Puts the operation's name before each message.
-pub(super) fn named(operation: &Operation, all: Diagnostics) -> Diagnostics {
+pub(crate) fn named(operation: &Operation, all: Diagnostics) -> Diagnostics {
     let name = |mut d: Diagnostic| {
         d.message = format!("operation `{}`: {}", operation.name, d.message);
         d

@@ -148,7 +148,7 @@ impl Target {
                             Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{value}`"));
                         let known = states.clone().collect::<Vec<_>>().join(", ");
                         let d = d.suggest(value, states);
-                        return Err(Box::new(d.hint(format!("its states are: {known}; `all` takes them all"))));
+                        return Err(Box::new(d.hint(format!("its states are: {known}"))));
                     }
                 }
                 Self::Law(family) => {

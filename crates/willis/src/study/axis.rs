@@ -88,6 +88,9 @@ impl Axis {
         axis.target.check(model, &axis.first_and_last()).map_err(|what| {
             let mut d = *what;
             d.message = format!("`{name}`: {}", d.message);
+            if let (Target::State, Some(states)) = (&axis.target, d.hints.last_mut()) {
+                states.push_str("; `all` takes them all");
+            }
             Box::new(d)
         })?;
         if let Values::Texts(_) | Values::Numbers(_) = &axis.values {

@@ -283,7 +283,7 @@ fn purpose(header: &str, model: &Model) -> Result<Purpose, Box<Diagnostic>> {
                 };
             }
             let mut d = unknown;
-            d.message = d.message.replace("` to vary", "` to set");
+            d.message = format!("there is no quantity `{name}` to set");
             Err(d)
         }
     }
@@ -651,11 +651,7 @@ impl Setting {
             }
         };
         let text = if self.unit.is_empty() { value.clone() } else { format!("{value} {}", self.unit) };
-        self.target.check(model, std::slice::from_ref(&text)).map_err(|mut d| {
-            // A cell is one value.
-            d.hints.iter_mut().for_each(|h| *h = h.replace("; `all` takes them all", ""));
-            d
-        })?;
+        self.target.check(model, std::slice::from_ref(&text))?;
         self.values.push(value);
         Ok(self.values.len() as u32 - 1)
     }

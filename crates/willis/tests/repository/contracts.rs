@@ -20,12 +20,19 @@ use willis::work::Serial;
 
 /// Writes an answer, reads it back, writes it again; says how long the text is.
 fn round<T: Contract + Serialize + DeserializeOwned + PartialEq + Debug>(what: &str, answer: &T) -> usize {
+    let (back, length) = bytes(what, answer);
+    assert_eq!(&back, answer, "{what}: {}", T::FORMAT);
+    length
+}
+
+/// The same without comparing the values; gives the one read back. A list of regimes also holds exact numbers that
+/// its pictures are made from and that it does not tell.
+fn bytes<T: Contract + Serialize + DeserializeOwned>(what: &str, answer: &T) -> (T, usize) {
     let text = serde_json::to_string(answer).unwrap();
     assert!(text.starts_with(&format!("{{\"format\":\"{}\"", T::FORMAT)), "{what}");
     let back: T = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{what}: {} reads not back: {e}", T::FORMAT));
-    assert_eq!(&back, answer, "{what}: {}", T::FORMAT);
     assert_eq!(serde_json::to_string(&back).unwrap(), text, "{what}: {}", T::FORMAT);
-    text.len()
+    (back, text.len())
 }
 
 fn examples() -> Vec<(String, Train)> {
@@ -57,7 +64,7 @@ fn answers_about_every_example_read_back() {
             told(1, round::<FlowReport>(&name, &a));
         }
         if let Ok(a) = regimes(&train, &RegimeSelection::default()) {
-            told(2, round::<Regimes>(&name, &a));
+            told(2, bytes::<Regimes>(&name, &a).1);
         }
         if let Ok(a) = family(&train, &RegimeSelection::default()) {
             told(3, round::<Family>(&name, &a));

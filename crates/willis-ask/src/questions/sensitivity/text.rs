@@ -108,9 +108,8 @@ fn moves(q: &QuantitySensitivity) -> String {
     let worth = q.sources.iter().filter(|s| s.change_w.abs() >= 0.1 * most && most > 0.0);
     let named = worth.take(2).map(|s| {
         let what = match s.kind {
-            LossKind::Sliding | LossKind::Rolling => {
-                format!("{} {}", s.name, s.kind.words().trim_start_matches("tooth "))
-            }
+            LossKind::Sliding => format!("{} sliding", s.name),
+            LossKind::Rolling => format!("{} rolling", s.name),
             LossKind::Windage | LossKind::Churning => format!("{} {}", s.name, s.kind.words()),
             _ => s.name.clone(),
         };

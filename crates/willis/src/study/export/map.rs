@@ -2,6 +2,7 @@
 
 use crate::analysis::{
     AS_DRAWN, Direction, OperationReport, Selection, SolutionReport, StateReport, Verdict, analyze, operate,
+    operate_unnamed,
 };
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::exact::Rational;
@@ -161,13 +162,14 @@ impl Gear {
             temperature,
             place: String::new(),
         };
-        let (report, notes) = operate(&self.train, &operation)?;
-        self.read(report, &notes, &operation.name, &mut point);
+        let (report, notes) =
+            operate_unnamed(&self.train, &operation).map_err(|wrong| crate::analysis::named(&operation, wrong))?;
+        self.read(report, &notes, &mut point);
         Ok(point)
     }
 
     /// Takes the answer from a report: the only equilibrium, or the only one in which a load is driven.
-    fn read(&self, report: OperationReport, notes: &Diagnostics, name: &str, point: &mut Point) {
+    fn read(&self, report: OperationReport, notes: &Diagnostics, point: &mut Point) {
         point.verdict = report.verdict;
         point.reason = report.reason;
         let several = report.solutions.len();
@@ -186,10 +188,9 @@ impl Gear {
             ));
         }
         // A one-way clutch that would have to hold against its free direction carries nothing.
-        let title = format!("operation `{name}`: ");
         if let Some(d) = notes.iter().find(|d| d.code == Code::OneWay && d.severity == Severity::Warning) {
             point.verdict = Verdict::Undetermined;
-            point.reason = Some(d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned());
+            point.reason = Some(d.message.clone());
             return;
         }
         let Some(solution) = chosen else { return };
