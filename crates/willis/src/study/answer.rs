@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{self, OutsideLaw, SolutionReport, Verdict};
+use crate::analysis::{self, SolutionReport, Verdict};
 use crate::diagnostic::{Code, Diagnostics, Severity};
 use crate::train::{Operation, Train};
 
@@ -125,13 +125,7 @@ impl PointAnswer {
     pub fn refused(wrong: Diagnostics) -> Self {
         let errors: Vec<String> =
             wrong.into_iter().filter(|d| d.severity == Severity::Error).map(|d| d.message).collect();
-        Self {
-            verdict: PointVerdict::Refused,
-            reason: errors.join("; "),
-            solution: None,
-            warnings: vec![],
-            outside_laws: vec![],
-        }
+        Self { verdict: PointVerdict::Refused, reason: errors.join("; "), solution: None, warnings: vec![] }
     }
 
     /// Whether there is exactly one equilibrium.

@@ -163,6 +163,8 @@ fn files_import_in_no_circle() {
     circles.sort_unstable();
     circles.dedup();
     assert_eq!(circles, CIRCLES);
+}
+
 /// Sources of all programs and libraries, without comments and without their own tests. The chores of the repository
 /// read what other programs print; that is their work.
 fn programs() -> Vec<(String, String)> {
