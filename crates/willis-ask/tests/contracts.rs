@@ -86,6 +86,10 @@ fn every_answer_reads_back_and_is_what_its_schema_says() {
         let of: Vec<&[Given]> = match entry.of {
             Of::Nothing => vec![&[]],
             Of::Trains => examples.windows(2).take(6).collect(),
+            // These take long; every fifth train has all that is in their answers.
+            _ if ["draw", "report", "uncertainty", "formula"].contains(&entry.name) => {
+                examples.chunks(1).step_by(5).collect()
+            }
             _ => examples.chunks(1).collect(),
         };
         for of in of {

@@ -37,7 +37,8 @@ impl<'a> Asked<'a> {
         };
         let table = matches.try_get_one::<String>("table").ok().flatten();
         if table.is_some() && ![CSV, JSON_LINES, PARQUET].contains(&form) {
-            return Err(format!("--table belongs to --format {CSV}, {JSON_LINES} or {PARQUET}\n").into());
+            let told = format!("--table belongs to --format {CSV}, {JSON_LINES} or {PARQUET}");
+            crate::command::command().error(clap::error::ErrorKind::ArgumentConflict, told).exit();
         }
         if form == PARQUET && output.is_none() {
             return Err(format!("{PARQUET} is not for the screen: name a file with -o\n").into());
@@ -100,15 +101,9 @@ fn promised(entry: &Entry, known: &[&'static str], path: &Path, natural: &'stati
             Ok(own(e).or(shared(e)).expect("it was just found"))
         }
         _ => {
-            let endings = known.iter().flat_map(|form| {
-                let own = entry.forms.iter().find(|f| f.name == *form).map_or(&[][..], |f| f.endings);
-                let shared = match *form {
-                    TEXT => "txt",
-                    other if own.is_empty() => other,
-                    _ => "",
-                };
-                own.iter().copied().chain([shared]).filter(|e| !e.is_empty() && !e.contains('-'))
-            });
+            let own = entry.forms.iter().flat_map(|f| f.endings.iter().copied());
+            let shared = known.iter().filter(|form| entry.forms.iter().all(|f| f.name != **form));
+            let endings = own.chain(shared.map(|form| if *form == TEXT { "txt" } else { form }));
             let list = endings.map(|e| format!(".{e}")).collect::<Vec<_>>().join(", ");
             Err(format!("{}: its ending is none of {list}; name one of them, or give --format\n", path.display())
                 .into())
@@ -124,10 +119,14 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
     let files: Vec<&String> = matches.try_get_many("file").ok().flatten().into_iter().flatten().collect();
     let read: Vec<&str> = files.iter().map(|f| f.as_str()).chain(names.iter().map(String::as_str)).collect();
     if read.iter().filter(|f| **f == "-").count() > 1 {
-        return Err("standard input is one file only\n".to_owned().into());
+        return Err("standard input is either the train file or the profile\n".to_owned().into());
     }
     let extras: Vec<(&str, &PathBuf)> =
         (entry.extras.iter()).filter_map(|e| Some((e, matches.get_one(e.name)?))).map(|(e, p)| (e.name, p)).collect();
+    let several = asked.output.is_some_and(|p| p.is_dir() || p.extension().is_none());
+    if let (Some(path), false) = (asked.output, several) {
+        asked.guard(path, &read)?;
+    }
     for (name, path) in &extras {
         match entry.extras.iter().any(|e| e.name == *name && e.value == "FOLDER") {
             true if path.exists() && !path.is_dir() => {
@@ -136,10 +135,6 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
             true => {}
             false => asked.guard(path, &read)?,
         }
-    }
-    let several = asked.output.is_some_and(|p| p.is_dir() || p.extension().is_none());
-    if let (Some(path), false) = (asked.output, several) {
-        asked.guard(path, &read)?;
     }
     for file in request.attachments() {
         match input::table(&file.name) {
@@ -231,8 +226,9 @@ pub fn tell(lines: &[String]) {
 /// Writes files where they are to be, or gives the only one back where no place is named. Says what was written.
 fn deliver(files: Vec<File>, place: Option<&Path>, force: bool) -> Result<String, Ended> {
     let Some(place) = place else {
+        let count = files.len();
         let Ok([one]) = <[File; 1]>::try_from(files) else {
-            return Err("this makes several files: name a folder for them with -o\n".to_owned().into());
+            return Err(format!("this makes {count} files: name a folder for them with -o\n").into());
         };
         return String::from_utf8(one.bytes)
             .map_err(|_| format!("{} is not for the screen: name a file with -o\n", one.name).into());

@@ -9,6 +9,29 @@ use crate::tested::{test, test_with};
 /// Files that are generated, and committed; so are the [`FIGURES`].
 const GENERATED: &[&str] = &[
     "schema/willis-1.schema.json",
+    "README.md",
+    "schema/answers/analyze.schema.json",
+    "schema/answers/new.schema.json",
+    "schema/answers/check.schema.json",
+    "schema/answers/flow.schema.json",
+    "schema/answers/losses.schema.json",
+    "schema/answers/sensitivity.schema.json",
+    "schema/answers/uncertainty.schema.json",
+    "schema/answers/sweep.schema.json",
+    "schema/answers/cycle.schema.json",
+    "schema/answers/compare.schema.json",
+    "schema/answers/regimes.schema.json",
+    "schema/answers/formula.schema.json",
+    "schema/answers/locate.schema.json",
+    "schema/answers/simulate.schema.json",
+    "schema/answers/modes.schema.json",
+    "schema/answers/draw.schema.json",
+    "schema/answers/report.schema.json",
+    "schema/answers/export.schema.json",
+    "schema/answers/laws.schema.json",
+    "schema/answers/validate.schema.json",
+    "schema/answers/explain.schema.json",
+    "schema/answers/refusal.schema.json",
     "validation/README.md",
     "validation/esmail-2018-table-1/README.md",
     "validation/losses/README.md",
@@ -116,8 +139,49 @@ const FIGURES: &[(&str, &[&str])] = &[
     ("book/src/figures/nrel-film.svg", &["draw", "film", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
 ];
 
+/// Where the schemas of answers lie; each is called by its question.
+const ANSWERS: &str = "schema/answers/";
+
+/// Writes the JSON Schema of every answer.
+fn write_schemas(context: &Context) -> Result<(), String> {
+    for file in GENERATED.iter().filter(|f| f.starts_with(ANSWERS)) {
+        let question = file[ANSWERS.len()..].split('.').next().unwrap_or_default();
+        let schema = context.output(context.willis().args(["schema", question]))?.stdout;
+        let path = context.root.join(file);
+        fs::create_dir_all(path.parent().expect("a folder")).map_err(|e| format!("{file}: {e}"))?;
+        fs::write(&path, schema).map_err(|e| format!("{file}: {e}"))?;
+    }
+    Ok(())
+}
+
+/// Writes the table of questions into the README, between its marks.
+fn write_questions(context: &Context) -> Result<(), String> {
+    const MARKS: [&str; 2] = ["<!-- questions -->\n", "<!-- /questions -->"];
+    let list = context.output(context.willis().args(["schema", "list"]))?.stdout;
+    let list: serde_json::Value = serde_json::from_slice(&list).map_err(|e| format!("the list of questions: {e}"))?;
+    let mut table = "| question | what it answers |\n|---|---|\n".to_owned();
+    for question in list.as_array().into_iter().flatten() {
+        let (name, about) = (&question["name"], question["about"].as_str().unwrap_or_default());
+        let trains = match question["of"].as_str() {
+            Some("train") => " FILE",
+            Some("trains") => " FILES",
+            Some("at-most-one") => " KIND FILE",
+            _ => "",
+        };
+        let first = about.split("\n\n").next().unwrap_or_default().replace('\n', " ");
+        table += &format!("| `willis {}{trains}` | {first} |\n", name.as_str().unwrap_or_default());
+    }
+    let path = context.root.join("README.md");
+    let text = fs::read_to_string(&path).map_err(|e| format!("README.md: {e}"))?;
+    let (before, rest) = text.split_once(MARKS[0]).ok_or("README.md has no table of questions")?;
+    let (_, after) = rest.split_once(MARKS[1]).ok_or("README.md has no end of the table of questions")?;
+    fs::write(&path, format!("{before}{}{table}{}{after}", MARKS[0], MARKS[1])).map_err(|e| format!("README.md: {e}"))
+}
+
 /// Writes every generated file. Needs the optimised program.
 fn write_generated(context: &Context) -> Result<(), String> {
+    write_schemas(context)?;
+    write_questions(context)?;
     let schema = context.output(context.willis().arg("schema"))?.stdout;
     let file = context.root.join(GENERATED[0]);
     fs::create_dir_all(file.parent().expect("a folder")).map_err(|e| format!("the folder schema: {e}"))?;
@@ -125,7 +189,7 @@ fn write_generated(context: &Context) -> Result<(), String> {
     for (file, arguments) in FIGURES {
         let path = context.root.join(file);
         fs::create_dir_all(path.parent().expect("a folder")).map_err(|e| format!("{file}: {e}"))?;
-        context.output(context.willis().args(*arguments).arg(&path))?;
+        context.output(context.willis().args(*arguments).arg(&path).arg("--force"))?;
     }
     for copy in GENERATED.iter().filter_map(|file| file.strip_prefix(COPIES)) {
         let from = context.root.join("examples").join(&copy[1..]);
