@@ -185,7 +185,7 @@ fn set_and_get_agree() {
     let mut model = Model::new(full()).unwrap();
     for (path, value) in [
         ("P1.planet.count", "3"),
-        ("P1.sun.teeth", "31"),
+        ("P1.sun.roughness", "0.6 um"),
         ("P1.geometry.module", "2.25 mm"),
         ("oil.temperature", "80 degC"),
         ("laws.mesh_friction", "niemann"),
