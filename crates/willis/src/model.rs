@@ -257,6 +257,8 @@ fn of_file(path: &str) -> String {
     path.strip_prefix("law.").map_or_else(|| path.to_owned(), |family| format!("laws.{family}"))
 }
 
+// As the finders of keys give it.
+#[allow(clippy::boxed_local)]
 fn one(d: Box<Diagnostic>) -> Diagnostics {
     Diagnostics::from_iter([*d])
 }

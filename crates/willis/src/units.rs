@@ -661,7 +661,7 @@ impl Temperature {
     /// If `value` is NaN or infinite.
     pub fn deg_c(value: f64) -> Self {
         let Self(mut celsius) = Self::k(value);
-        celsius.value = celsius.value + Rational::new(27315, 100);
+        celsius.value += Rational::new(27315, 100);
         Self(celsius)
     }
 }

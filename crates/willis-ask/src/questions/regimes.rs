@@ -42,9 +42,9 @@ pub struct Regimes {
 #[serde(untagged)]
 pub enum RegimesAnswer {
     /// `willis-regimes-1`.
-    Train(regimes::Regimes),
+    Train(Box<regimes::Regimes>),
     /// `willis-family-1`.
-    Family(Family),
+    Family(Box<Family>),
 }
 
 impl Contract for RegimesAnswer {
@@ -80,8 +80,8 @@ impl Question for Regimes {
     fn ask(&self, of: &[Given], _: &dyn Work) -> Result<RegimesAnswer, Refusal> {
         let (train, selection) = (of[0].model.train(), self.selection()?);
         Ok(match self.family {
-            true => RegimesAnswer::Family(regimes::family(train, &selection)?),
-            false => RegimesAnswer::Train(regimes::regimes(train, &selection)?),
+            true => RegimesAnswer::Family(Box::new(regimes::family(train, &selection)?)),
+            false => RegimesAnswer::Train(Box::new(regimes::regimes(train, &selection)?)),
         })
     }
 

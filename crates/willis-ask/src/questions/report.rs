@@ -30,7 +30,8 @@ impl Report {
         let hash: String = Sha256::digest(text.as_bytes()).iter().map(|b| format!("{b:02x}")).collect();
         // Without its folder: the same file makes the same report anywhere.
         let name = given.name.rsplit(['/', '\\']).next().unwrap_or(&given.name);
-        let name = if given.name == "standard input" { "train.toml" } else { name };
+        // What came without a file has a name to save it under.
+        let name = if name.contains('.') { name } else { "train.toml" };
         let shown = quoted(name);
         let mut more: Vec<String> = given.changes.iter().map(|c| format!(" {c}")).collect();
         more.extend(self.operation.as_ref().map(|o| format!(" --operation {}", quoted(o))));

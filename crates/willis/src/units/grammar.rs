@@ -138,7 +138,7 @@ impl Reader<'_> {
         let start = self.rest;
         let ends =
             |&c: &char| matches!(c, '·' | '/' | '(' | ')' | '^' | '-') || c.is_ascii_digit() || raised(c).is_some();
-        let end = start.iter().position(|c| ends(c)).unwrap_or(start.len());
+        let end = start.iter().position(ends).unwrap_or(start.len());
         let name: String = start[..end].iter().collect();
         self.rest = &start[end..];
         let whole = |rest: &[char]| &start[..start.len() - rest.len()];

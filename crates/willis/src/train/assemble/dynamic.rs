@@ -523,12 +523,12 @@ impl Assembler<'_> {
     /// The one thing that a source is.
     fn source_kind(&mut self, spec: &PlainSource, place: &str) -> Option<SourceKind> {
         let given = given(spec);
-        let hint = "keep one of torque, speed, controller, linear, quadratic, vehicle, motor";
+        let hint = |verb: &str| format!("{verb} one of torque, speed, controller, linear, quadratic, vehicle, motor");
         match given.as_slice() {
             [_] => {}
             [] => {
                 let message = "this source does not say what acts on its member";
-                self.refuse(Code::MissingKey, place, message, &hint.replace("keep", "give"));
+                self.refuse(Code::MissingKey, place, message, &hint("give"));
                 return None;
             }
             [first, second, ..] => {
