@@ -218,7 +218,10 @@ fn parts_give_the_same_in_any_order() {
     (0..1000).for_each(|k| text += &format!("{k},{},{}\n", 500 + 7 * (k % 300), (k % 211) - 50));
     let request = CycleRequest { profile: text, ..CycleRequest::default() };
     let whole = cycle(&subject, &request, &Serial).unwrap();
-    assert_eq!(cycle(&subject, &request, &Backwards).unwrap(), whole);
+    let other = cycle(&subject, &request, &Backwards).unwrap();
+    // As written: a row without a value has none in both.
+    assert_eq!(format!("{:?}", other.rows), format!("{:?}", whole.rows));
+    assert_eq!(other.report, whole.report);
     let whole = whole.report;
     assert_eq!(whole.rows, 999);
 }

@@ -199,7 +199,7 @@ fn vecto_refuses_what_it_cannot_hold() {
     fails("zf-8hp70", &state("R"), "forward gears only");
     let only = |t: &[&str]| ExportRequest { torques: list(t), ..state("1") };
     fails("zf-8hp70", &only(&["10 N m", "20 N m"]), "needs driving and coasting");
-    fails("zf-8hp70", &only(&["-200 kN m", "20 N m"]), "from -100000 to 100000");
+    fails("zf-8hp70", &only(&["-200000 N m", "20 N m"]), "from -100000 to 100000");
     fails("zf-8hp70", &ExportRequest { speeds: list(&["12000 rpm"]), ..state("1") }, "from 0 to 10000 rpm");
     fails("zf-8hp70", &ExportRequest { speeds: list(&["0 rpm"]), ..state("1") }, "standing gear");
     // 0 rpm among others is filled from the lowest that moves.
