@@ -283,7 +283,10 @@ fn purpose(header: &str, model: &Model) -> Result<Purpose, Box<Diagnostic>> {
                 };
             }
             let mut d = unknown;
-            d.message = format!("there is no quantity `{name}` to set");
+            // What the train lacks for these is told already.
+            if !matches!(name, "state" | "oil.temperature" | "temperature") && !name.starts_with("law.") {
+                d.message = format!("there is no quantity `{name}` to set");
+            }
             Err(d)
         }
     }

@@ -1898,7 +1898,6 @@ fn regress_a_train_too_large_is_told_at_once() {
     for _ in 0..200 {
         let net = Net::random(16, 4, 8, 900, &mut random);
         let Ok(train) = net.builder().build() else { continue };
-        let start = Instant::now();
         let atlas = as_drawn(&train);
         let sheet = formulas(&train, &request_as_drawn()).unwrap();
         if atlas.reason.is_some_and(|why| why.contains("willis locate")) {
@@ -2074,7 +2073,6 @@ fn prop_no_question_about_any_train_panics() {
                 [(None, None), (Some(chosen), None), (Some(members.clone()), None), (None, balance)]
             {
                 let selection = RegimeSelection { state: None, terminals, balance };
-                let start = Instant::now();
                 if let Ok(all) = regimes(&train, &selection) {
                     for a in &all.states {
                         // Something is listed, or it is said why not.

@@ -1,7 +1,5 @@
 //! Regimes at their edges: boundaries, balanced powers, trains that are large, odd or wrong.
 
-use std::time::{Duration, Instant};
-
 use willis::analysis::{Selection, analyze};
 use willis::diagnostic::Diagnostics;
 use willis::regimes::{
@@ -177,12 +175,10 @@ fn row(sets: usize, efficiency: f64, terminals: &[usize]) -> String {
 #[test]
 fn regress_five_sets_with_two_freedoms_take_seconds() {
     for efficiency in [0.99, 0.8] {
-        let start = Instant::now();
         let atlas = as_drawn(&row(5, efficiency, &[0, 1, 6]));
         assert!(atlas.reason.is_none() && atlas.regimes.len() >= 16 && !atlas.formulas.is_empty());
     }
     // Four terminals: two independent torques.
-    let start = Instant::now();
     let atlas = as_drawn(&row(5, 0.95, &[0, 1, 3, 6]));
     assert!(!atlas.regimes.is_empty() || atlas.reason.is_some_and(|r| r.contains("willis locate")));
 }
@@ -191,7 +187,6 @@ fn regress_five_sets_with_two_freedoms_take_seconds() {
 fn regress_too_large_says_how_large_and_offers_a_place() {
     let terminals: Vec<usize> = (0..14).collect();
     let text = row(12, 0.9, &terminals);
-    let start = Instant::now();
     let reason = as_drawn(&text).reason.expect("too large");
     assert!(reason.contains("regions") && reason.contains("willis locate"), "{reason}");
     // Which answers.

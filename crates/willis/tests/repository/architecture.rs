@@ -239,7 +239,7 @@ fn looks_into_sentences(code: &str) -> Vec<&str> {
             let sign = argument.starts_with(['\'', '|', '[']) || argument.starts_with("char::");
             let before = code[..at].trim_end().rsplit(|c: char| !(c.is_alphanumeric() || "_.()".contains(c))).next();
             let of = before.unwrap_or_default().split('.').rfind(|part| !part.contains(['(', ')']));
-            let sentence = of.is_some_and(|name| SENTENCES.iter().any(|s| name == *s));
+            let sentence = of.is_some_and(|name| SENTENCES.contains(&name));
             if literal(argument).is_some_and(words) || sentence && !sign {
                 found.push(line(at));
             }
