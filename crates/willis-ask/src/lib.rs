@@ -50,6 +50,11 @@ pub mod style;
 pub mod table;
 
 pub use question::{Answer, Attachment, Entry, Extra, File, Form, Given, Of, Options, Question, Request};
-pub use questions::quoted;
 pub use questions::{QUESTIONS, question};
 pub use refusal::{Refusal, RefusalReport};
+pub use style::quoted;
+
+/// The code of the page of this crate runs as a doctest.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -5,6 +5,7 @@ mod analyze;
 mod check;
 mod compare;
 mod cycle;
+#[cfg(feature = "pictures")]
 mod draw;
 mod explain;
 mod export;
@@ -16,6 +17,7 @@ mod losses;
 mod modes;
 mod new;
 mod regimes;
+#[cfg(feature = "pictures")]
 mod report;
 mod sensitivity;
 mod simulate;
@@ -27,6 +29,7 @@ pub use analyze::Analyze;
 pub use check::Check;
 pub use compare::Compare;
 pub use cycle::{Cycle, CycleAnswer};
+#[cfg(feature = "pictures")]
 pub use draw::{Draw, DrawAnswer, Look};
 pub use explain::Explain;
 pub use export::Export;
@@ -38,7 +41,8 @@ pub use losses::Losses;
 pub use modes::Modes;
 pub use new::New;
 pub use regimes::{Regimes, RegimesAnswer};
-pub use report::{Report, quoted};
+#[cfg(feature = "pictures")]
+pub use report::Report;
 pub use sensitivity::Sensitivity;
 pub use simulate::{MOST_EVENTS, Simulate, run_text as simulation_text};
 pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
@@ -64,7 +68,9 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Locate>(),
     Entry::of::<Simulate>(),
     Entry::of::<Modes>(),
+    #[cfg(feature = "pictures")]
     Entry::of::<Draw>(),
+    #[cfg(feature = "pictures")]
     Entry::of::<Report>(),
     Entry::of::<Export>(),
     Entry::of::<Laws>(),

@@ -58,9 +58,14 @@ impl Refusal {
                 let mut wrong = wrong.clone();
                 let Some(given) = of.get(*k) else { return (wrong, None) };
                 given.model.locate(&mut wrong);
+                wrong.stand_in(Some(&given.name), given.model.to_toml());
                 (wrong, Some((&given.name, given.model.to_toml())))
             }
-            Self::File(wrong, file) => (wrong.clone(), Some((&file.name, &file.text))),
+            Self::File(wrong, file) => {
+                let mut wrong = wrong.clone();
+                wrong.stand_in(Some(&file.name), &file.text);
+                (wrong, Some((&file.name, &file.text)))
+            }
             Self::Cancelled => (Diagnostics::default(), None),
         }
     }

@@ -385,3 +385,8 @@ fn with(text: &str, from: &str, to: &str) -> String {
     assert!(text.contains(from), "the train of the case has no `{from}`");
     text.replace(from, to)
 }
+
+/// The code of the page of this crate runs as a doctest.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

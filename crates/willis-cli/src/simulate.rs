@@ -6,6 +6,7 @@
 mod csv;
 #[cfg(feature = "parquet")]
 mod parquet;
+mod plot;
 
 use std::fs::File;
 use std::ops::ControlFlow;
@@ -17,13 +18,13 @@ use willis::dynamics::{Column, Event, Outcome, Recorder, RunReport, Sample};
 use willis::work::Work;
 use willis_ask::questions::{MOST_EVENTS, Simulate, simulation_text};
 use willis_ask::{Entry, Refusal};
-use willis_figure::{TimePlotBuilder, draw_time};
 
 use crate::command::{JSON, TEXT};
 use crate::interrupt::{interrupted, listen};
 use crate::run::Asked;
 use crate::work::Terminal;
 use crate::{Ended, output};
+use plot::Plot;
 
 /// The unfinished file, for a second Ctrl-C.
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
@@ -71,7 +72,7 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
     let asked = Asked::screen(entry, matches, form);
     let file = matches.get_one::<String>("file").map_or("-", String::as_str);
     asked.guard(out, &[file])?;
-    let plot = matches.get_one::<PathBuf>("plot");
+    let plot = matches.try_get_one::<PathBuf>("plot").ok().flatten();
     if let Some(path) = plot {
         asked.guard(path, &[file])?;
         if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg")) {
@@ -103,7 +104,7 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
         kept: vec![],
         row: vec![],
         sink,
-        plot: plot.is_some().then(|| TimePlotBuilder::new(train, span)),
+        plot: plot.and_then(|_| Plot::new(train, span)),
         all_events: form == JSON,
         events: vec![],
         wrong: None,
@@ -125,8 +126,8 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
     };
     closed.map_err(|why| format!("{}: {why}\n", out.display()))?;
     unfinished.complete()?;
-    if let (Some(path), Some(builder)) = (plot, listener.plot) {
-        output::write(path, (draw_time(&builder.finish(&report)) + "\n").as_bytes())?;
+    if let (Some(path), Some(plot)) = (plot, listener.plot) {
+        output::write(path, plot.svg(&report).as_bytes())?;
     }
     let told = match form {
         JSON => serde_json::to_string_pretty(&report).expect("plain data") + "\n",
@@ -209,7 +210,7 @@ struct Listener<'a> {
     kept: Vec<usize>,
     row: Vec<f64>,
     sink: Sink,
-    plot: Option<TimePlotBuilder>,
+    plot: Option<Plot>,
     all_events: bool,
     events: Vec<Event>,
     wrong: Option<Wrong>,
@@ -238,7 +239,7 @@ impl Recorder for Listener<'_> {
         }
         let columns: Vec<Column> = self.kept.iter().map(|&k| columns[k].clone()).collect();
         if let Some(plot) = &mut self.plot {
-            let _ = plot.columns(&columns);
+            let _ = plot.listener().columns(&columns);
         }
         let started = match &mut self.sink {
             Sink::Csv(rows) => rows.columns(&columns),
@@ -252,7 +253,7 @@ impl Recorder for Listener<'_> {
         self.row.clear();
         self.row.extend(self.kept.iter().map(|&k| sample.values[k]));
         if let Some(plot) = &mut self.plot {
-            let _ = plot.sample(Sample { time_s: sample.time_s, values: &self.row });
+            let _ = plot.listener().sample(Sample { time_s: sample.time_s, values: &self.row });
         }
         let written = match &mut self.sink {
             Sink::Csv(rows) => rows.row(&self.row),
@@ -266,7 +267,7 @@ impl Recorder for Listener<'_> {
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
         if let Some(plot) = &mut self.plot {
-            let _ = plot.event(event);
+            let _ = plot.listener().event(event);
         }
         // The text shows the first of them only.
         if self.all_events || self.events.len() < MOST_EVENTS {

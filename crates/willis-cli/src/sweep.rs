@@ -1,5 +1,7 @@
 //! `willis sweep`: many points on all cores, to a table in a file piece by piece, or to a few numbers.
 
+#[cfg(feature = "parquet")]
+mod parquet;
 mod table;
 
 use std::fs::{self, File};

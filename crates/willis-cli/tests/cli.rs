@@ -1345,14 +1345,15 @@ fn regress_simulate_interrupted() {
     std::fs::write(&train, BRAKED).expect("written");
     for name in ["run.csv", "run.parquet"] {
         let (train, out) = (train.to_str().expect("text"), folder.join(name));
+        let entries = || std::fs::read_dir(&folder).expect("the folder").filter_map(Result::ok);
+        let before: Vec<_> = entries().map(|e| e.path()).collect();
         let arguments = ["simulate", train, "--samples", "1000000000", "--out", out.to_str().expect("text")];
         let child = command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
-        // Rows are on their way: the file that will take the name is there.
-        let begun = || std::fs::read_dir(&folder).expect("the folder").count() > 1 + usize::from(name != "run.csv");
+        // Rows are on their way: the file that will take the name has some.
+        let begun = || entries().any(|e| !before.contains(&e.path()) && e.metadata().is_ok_and(|m| m.len() > 4096));
         while !begun() {
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
-        std::thread::sleep(std::time::Duration::from_millis(200));
         let pid = child.id().to_string();
         assert!(Command::new("kill").args(["-INT", &pid]).status().expect("a signal").success());
         let output = child.wait_with_output().expect("it ends");

@@ -64,3 +64,8 @@ pub use time::draw::draw as draw_time;
 pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder};
 pub use tornado::draw::draw as draw_tornado;
 pub use tornado::{Tornado, TornadoBar, tornado};
+
+/// The code of the page of this crate runs as a doctest.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -108,8 +108,7 @@
 //! 12. [`analysis`]: the whole answer, as every front end shows it;
 //! 13. [`hypergraph`]: where the power runs, as a graph of components and contacts;
 //! 14. [`regimes`]: every way a train can run, with closed formulas;
-//! 15. [`study`]: many operating points, what matters most, how sure it is, files for other programs;
-//! 16. [`casebook`]: published losses beside ours.
+//! 15. [`study`]: many operating points, what matters most, how sure it is, files for other programs.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 

@@ -7,7 +7,7 @@
 
 mod assemble;
 mod assembler;
-mod csv;
+pub(crate) mod csv;
 mod described;
 mod dynamic;
 mod edit;

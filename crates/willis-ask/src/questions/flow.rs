@@ -30,6 +30,7 @@ pub struct Flow {
 
 impl Question for Flow {
     const NAME: &'static str = "flow";
+    #[cfg(feature = "pictures")]
     const FORMS: &'static [Form] = &[
         Form { name: "dot", endings: &["dot", "gv"], about: "Graphviz" },
         Form { name: "svg", endings: &["svg"], about: "a figure" },
@@ -49,6 +50,7 @@ impl Question for Flow {
         &answer.diagnostics
     }
 
+    #[cfg(feature = "pictures")]
     fn write(&self, answer: &FlowReport, form: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
         Ok(vec![match form {
             "dot" => File::text("flow.dot", willis_figure::flow_dot(answer)),

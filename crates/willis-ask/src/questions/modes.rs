@@ -29,7 +29,9 @@ pub struct Modes {
 impl Question for Modes {
     const NAME: &'static str = "modes";
     const TABLES: &'static [&'static str] = &["modes"];
+    #[cfg(feature = "pictures")]
     const FORMS: &'static [Form] = &[Form { name: "svg", endings: &["svg"], about: "the shapes as a figure" }];
+    #[cfg(feature = "pictures")]
     const EXTRAS: &'static [Extra] =
         &[Extra { name: "plot", value: "FILE.svg", about: "Draw the shapes into this SVG file" }];
     type Answer = ModesReport;
@@ -47,10 +49,12 @@ impl Question for Modes {
         vec![tables::table_of(answer)]
     }
 
+    #[cfg(feature = "pictures")]
     fn write(&self, answer: &ModesReport, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
         Ok(vec![File::text("modes.svg", willis_figure::draw_modes(answer) + "\n")])
     }
 
+    #[cfg(feature = "pictures")]
     fn extra(&self, answer: &ModesReport, _: &str, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
         self.write(answer, "svg", of)
     }

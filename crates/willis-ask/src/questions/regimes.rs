@@ -58,6 +58,7 @@ impl Regimes {
     }
 
     /// The wheel of regimes.
+    #[cfg(feature = "pictures")]
     fn map(&self, of: &[Given]) -> Result<willis_figure::RegimeMap, Refusal> {
         Ok(willis_figure::regime_map(of[0].model.train(), &self.selection()?)?)
     }
@@ -68,8 +69,10 @@ impl Question for Regimes {
     const TABLES: &'static [&'static str] = &["regimes", "family"];
     const FORMS: &'static [Form] = &[
         Form { name: "latex", endings: &["tex"], about: "a table for typesetting" },
+        #[cfg(feature = "pictures")]
         Form { name: "map-json", endings: &[], about: "the wheel of regimes as data (two freedoms)" },
     ];
+    #[cfg(feature = "pictures")]
     const EXTRAS: &'static [Extra] = &[Extra {
         name: "map",
         value: "FILE.svg",
@@ -101,6 +104,7 @@ impl Question for Regimes {
 
     fn write(&self, answer: &RegimesAnswer, form: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
         Ok(vec![match (form, answer) {
+            #[cfg(feature = "pictures")]
             ("map-json", _) => {
                 let map = serde_json::to_string_pretty(&self.map(of)?).expect("plain data") + "\n";
                 File::text("regimes.json", map)
@@ -110,6 +114,7 @@ impl Question for Regimes {
         }])
     }
 
+    #[cfg(feature = "pictures")]
     fn extra(&self, _: &RegimesAnswer, _: &str, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
         Ok(vec![File::text("regimes.svg", willis_figure::draw_regimes(&self.map(of)?))])
     }

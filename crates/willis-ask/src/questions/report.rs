@@ -7,7 +7,7 @@ use willis::work::Work;
 use willis_figure::report::document::Document;
 use willis_figure::{ReportRequest, html};
 
-use crate::{File, Form, Given, Question, Refusal};
+use crate::{File, Form, Given, Question, Refusal, quoted};
 
 /// Write the engineering report of a train: one file that explains itself, as web page or PDF.
 ///
@@ -40,15 +40,6 @@ impl Report {
             vec![format!("willis analyze {shown}{more}"), format!("willis report {shown}{more} -o report.html")];
         let version = format!("willis {}", env!("CARGO_PKG_VERSION"));
         ReportRequest { operation: self.operation.clone(), file: name.to_owned(), hash, version, commands }
-    }
-}
-
-/// As a shell takes it.
-pub fn quoted(text: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:".contains(c);
-    match !text.is_empty() && text.chars().all(plain) {
-        true => text.to_owned(),
-        false => format!("'{}'", text.replace('\'', "'\\''")),
     }
 }
 

@@ -11,6 +11,7 @@ use willis::dynamics::{Column, ColumnKind, Event, Method, Options, Recorder, Run
 use willis::train::{Scenario, Train};
 use willis::units::Dimension;
 use willis::work::Work;
+#[cfg(feature = "pictures")]
 use willis_figure::TimePlotBuilder;
 
 use super::amount::values;
@@ -216,6 +217,7 @@ pub fn run_text(report: &RunReport) -> String {
 impl Question for Simulate {
     const NAME: &'static str = "simulate";
     const TABLES: &'static [&'static str] = &["rows", "events"];
+    #[cfg(feature = "pictures")]
     const EXTRAS: &'static [Extra] =
         &[Extra { name: "plot", value: "FILE.svg", about: "Draw the run into this SVG file" }];
     type Answer = RunReport;
@@ -277,6 +279,7 @@ impl Question for Simulate {
         vec![rows, events]
     }
 
+    #[cfg(feature = "pictures")]
     fn extra(&self, answer: &RunReport, _: &str, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
         let mut plot = TimePlotBuilder::new(of[0].model.train(), [answer.start_s, answer.scenario_end_s]);
         let _ = plot.columns(answer.columns.as_deref().unwrap_or_default());

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 use sobol_burley::parts::{hash, owen_scramble_rev, sobol_rev};
 
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+
 /// Independent scramblings of the same points; their disagreement is the sampling error.
 pub const REPLICATES: usize = 8;
 /// Student's t with `REPLICATES − 1` degrees of freedom: 95 % lie within ± this.
@@ -112,6 +114,10 @@ pub struct SobolIndices {
     pub total_error: f64,
 }
 
+fn wrong(message: String) -> Diagnostics {
+    Diagnostic::new(Code::BadAxis, "", message).into()
+}
+
 /// One step of SplitMix64 (Steele, Lea and Flood, 2014): well mixed bits of any number.
 fn mix(n: u64) -> u64 {
     let n = n.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -125,15 +131,15 @@ impl Design {
     ///
     /// # Errors
     /// No coordinate or more than 128; `samples` that are no power of two from 128 to 1 048 576.
-    pub fn new(coordinates: usize, samples: usize, seed: u64) -> Result<Self, String> {
+    pub fn new(coordinates: usize, samples: usize, seed: u64) -> Result<Self, Diagnostics> {
         if !(1..=MOST_COORDINATES / 2).contains(&coordinates) {
             let most = MOST_COORDINATES / 2;
-            return Err(format!("{coordinates} uncertain quantities are not possible; from 1 to {most} are"));
+            return Err(wrong(format!("{coordinates} uncertain quantities are not possible; from 1 to {most} are")));
         }
         let points = samples / (2 * REPLICATES);
         if !samples.is_power_of_two() || !(8..=MOST_POINTS).contains(&points) {
             let most = 2 * REPLICATES * MOST_POINTS;
-            return Err(format!("{samples} samples are not possible; powers of two from 128 to {most} are"));
+            return Err(wrong(format!("{samples} samples are not possible; powers of two from 128 to {most} are")));
         }
         let scrambles = (0..REPLICATES as u64)
             .flat_map(|r| (0..2 * coordinates as u64).map(move |c| (r, c)))

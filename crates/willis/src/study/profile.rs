@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target};
 use crate::train::Measure;
+use crate::train::csv::{self, Cell, Row};
 use crate::units::{self, Dimension};
 
 use super::column::{Column, ColumnValues};
@@ -152,34 +153,6 @@ impl Wrong {
     }
 }
 
-/// Cells of a line that begins at `at`, without blanks and quotes around them.
-fn cells(line: &str, at: usize) -> Vec<(&str, Range<usize>)> {
-    let mut all = vec![];
-    let (mut from, mut quoted) = (0, false);
-    let mut push = |from: usize, to: usize| {
-        let raw = &line[from..to];
-        let inner = raw.trim();
-        let start = from + (raw.len() - raw.trim_start().len());
-        let (inner, start) = match inner.strip_prefix('"').and_then(|c| c.strip_suffix('"')) {
-            Some(bare) => (bare.trim(), start + 1),
-            None => (inner, start),
-        };
-        all.push((inner, at + start..at + start + inner.len()));
-    };
-    for (k, b) in line.bytes().enumerate() {
-        match b {
-            b'"' => quoted = !quoted,
-            b',' if !quoted => {
-                push(from, k);
-                from = k + 1;
-            }
-            _ => {}
-        }
-    }
-    push(from, line.len());
-    all
-}
-
 /// Name and unit of a header: `input.speed [rpm]`, `input.speed (rpm)`.
 fn bracketed(header: &str) -> Option<(&str, &str)> {
     let (open, close) = if header.ends_with(']') { ('[', ']') } else { ('(', ')') };
@@ -292,16 +265,25 @@ fn purpose(header: &str, model: &Model) -> Result<Purpose, Box<Diagnostic>> {
     }
 }
 
-/// A finite number as the train file would write it.
-fn number(cell: &str) -> Result<f64, String> {
-    if cell.is_empty() {
-        return Err("the cell is empty".into());
-    }
-    let plain = cell.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'.' | b'+' | b'-' | b'e' | b'E'));
-    match cell.parse::<f64>() {
-        Ok(x) if plain && x.is_finite() => Ok(x),
-        _ => Err(format!("`{}` is no finite number", cell.chars().take(64).collect::<String>())),
-    }
+/// What the columns are for.
+struct Header<'t> {
+    cells: Vec<Cell<'t>>,
+    /// The column that weighs the rows, and the factor to seconds or to the whole.
+    weighing: Option<(usize, f64)>,
+    /// For each column the position of its setting.
+    settings: Vec<Option<usize>>,
+}
+
+/// What was read so far.
+#[derive(Default)]
+struct Progress<'t> {
+    /// For each setting what its cells say, each once.
+    known: Vec<HashMap<&'t str, Result<u32, Box<Diagnostic>>>>,
+    conditions: HashMap<Box<[u32]>, u32>,
+    /// Time and line of the last row of a trace.
+    last: Option<(f64, usize)>,
+    /// The weights together.
+    sum: f64,
 }
 
 impl Profile {
@@ -313,20 +295,37 @@ impl Profile {
     /// times that do not rise, a profile without rows or that lasts no time.
     pub fn parse(text: &str, model: &Model) -> Result<Self, Diagnostics> {
         let mut wrong = Wrong { all: Diagnostics::default(), more: 0 };
-        let mut at = 0;
-        let mut lines = text.split_inclusive('\n').enumerate().filter_map(|(k, line)| {
-            let start = at;
-            at += line.len();
-            let skip = if start == 0 && line.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
-            let line = line[skip..].trim_end_matches(['\n', '\r']);
-            let is_row = !line.trim().is_empty() && !line.trim_start().starts_with('#');
-            is_row.then_some((k + 1, start + skip, line))
-        });
-        let Some((header_line, header_at, header)) = lines.next() else {
+        let mut rows = csv::rows(text);
+        let Some(header) = rows.next() else {
             let d = Diagnostic::new(Code::BadTable, "", "the profile is empty");
             return Err(d.hint("a header row comes first: `time [s],input.speed [rpm],output.torque [N m]`").into());
         };
-        let header_cells = cells(header, header_at);
+        let whole = header.span.clone();
+        let (mut profile, header) = Self::headed(header, model, &mut wrong);
+        let mut progress = Progress { known: vec![HashMap::new(); profile.settings.len()], ..Progress::default() };
+        for row in rows {
+            profile.take(&row, &header, &mut progress, model, &mut wrong);
+        }
+        if wrong.all.is_empty() {
+            profile.weigh(progress.sum, &mut wrong, whole);
+        }
+        if wrong.more > 0 {
+            let message = format!("{} more errors of these kinds", wrong.more);
+            wrong.all.push(Diagnostic::new(Code::BadTable, "", message));
+        }
+        if wrong.all.has_errors() {
+            wrong.all.stand_in(None, text);
+            return Err(wrong.all);
+        }
+        let mut numbered: Vec<(Box<[u32]>, u32)> = progress.conditions.into_iter().collect();
+        numbered.sort_by_key(|c| c.1);
+        profile.conditions = numbered.into_iter().map(|c| c.0).collect();
+        profile.gather();
+        Ok(profile)
+    }
+
+    /// A profile without rows, from its header.
+    fn headed<'t>(row: Row<'t>, model: &Model, wrong: &mut Wrong) -> (Self, Header<'t>) {
         let mut profile = Self {
             basis: Basis::Trace,
             settings: vec![],
@@ -336,19 +335,16 @@ impl Profile {
             total_s: 0.0,
             notes: vec![],
         };
+        let Row { line, span: whole, cells } = row;
         let mut weighing: Option<(usize, f64)> = None;
-        // For each column the position of its setting.
-        let mut of_column: Vec<Option<usize>> = vec![];
-        for (k, (name, span)) in header_cells.iter().enumerate() {
-            let place = format!("line {header_line}, column {}", k + 1);
-            of_column.push(None);
+        let mut settings = vec![None; cells.len()];
+        for (k, Cell { text: name, span }) in cells.iter().enumerate() {
+            let place = format!("line {line}, column {}", k + 1);
             match purpose(name, model) {
-                _ if name.is_empty() => {
-                    wrong.at(place, header_at..header_at + header.len(), "the column has no name".into(), "");
-                }
+                _ if name.is_empty() => wrong.at(place, whole.clone(), "the column has no name".into(), ""),
                 Ok(Purpose::Weight(basis, factor)) => match weighing {
                     Some((other, _)) => {
-                        let message = format!("`{}` and `{name}` both weigh the rows", header_cells[other].0);
+                        let message = format!("`{}` and `{name}` both weigh the rows", cells[other].text);
                         wrong.at(place, span.clone(), message, "keep one of the two columns");
                     }
                     None => {
@@ -362,13 +358,13 @@ impl Profile {
                         wrong.at(place, span.clone(), message, "");
                     }
                     None => {
-                        of_column[k] = Some(profile.settings.len());
+                        settings[k] = Some(profile.settings.len());
                         profile.settings.push(setting);
                     }
                 },
                 Err(mut d) => {
                     d.place = place;
-                    let hint = match header_cells.len() == 1 && (name.contains(';') || name.contains('\t')) {
+                    let hint = match cells.len() == 1 && (name.contains(';') || name.contains('\t')) {
                         true => "commas separate columns",
                         false => "",
                     };
@@ -376,122 +372,82 @@ impl Profile {
                 }
             }
         }
-        let whole = header_at..header_at + header.len();
         if weighing.is_none() {
             let message = "no column weighs the rows in time".to_owned();
             let hint = "add `time [s]` (a trace), or `duration [s]`, `hours` or `share` (a load spectrum)";
-            wrong.at(format!("line {header_line}"), whole.clone(), message, hint);
+            wrong.at(format!("line {line}"), whole.clone(), message, hint);
         }
         if profile.settings.is_empty() && wrong.all.is_empty() {
             let message = "no column sets a quantity".to_owned();
-            wrong.at(format!("line {header_line}"), whole.clone(), message, "add one: `input.speed [rpm]`");
+            wrong.at(format!("line {line}"), whole, message, "add one: `input.speed [rpm]`");
         }
+        (profile, Header { cells, weighing, settings })
+    }
 
-        let mut known: Vec<HashMap<&str, Result<u32, Box<Diagnostic>>>> = vec![HashMap::new(); profile.settings.len()];
-        let mut conditions: HashMap<Box<[u32]>, u32> = HashMap::new();
-        let mut last: Option<(f64, usize)> = None;
-        let mut shares = 0.0;
-        for (line, line_at, row) in lines {
-            let all = cells(row, line_at);
-            if all.len() != header_cells.len() {
-                let message = format!("line {line} has {} cells, the header has {}", all.len(), header_cells.len());
-                wrong.at(format!("line {line}"), line_at..line_at + row.len(), message, "");
-                continue;
-            }
-            let mut weight = None;
-            let mut condition = vec![0u32; profile.settings.len()].into_boxed_slice();
-            let mut is_good = true;
-            for (k, (cell, span)) in all.iter().enumerate() {
-                let is_weight = weighing.is_some_and(|w| w.0 == k);
-                let setting = of_column[k];
-                if !is_weight && setting.is_none() {
-                    continue;
+    /// Takes a row, or says what is wrong with it.
+    fn take<'t>(
+        &mut self,
+        row: &Row<'t>,
+        header: &Header<'_>,
+        progress: &mut Progress<'t>,
+        model: &Model,
+        wrong: &mut Wrong,
+    ) {
+        let line = row.line;
+        if row.cells.len() != header.cells.len() {
+            let message = format!("line {line} has {} cells, the header has {}", row.cells.len(), header.cells.len());
+            return wrong.at(format!("line {line}"), row.span.clone(), message, "");
+        }
+        let mut weight = None;
+        let mut condition = vec![0u32; self.settings.len()].into_boxed_slice();
+        let mut is_good = true;
+        for (k, Cell { text: cell, span }) in row.cells.iter().enumerate() {
+            // An empty cell is underlined where it would stand.
+            let span = if span.is_empty() { row.span.clone() } else { span.clone() };
+            let place = || format!("line {line}, column `{}`", header.cells[k].text);
+            let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
+            let read = match (header.weighing, header.settings[k]) {
+                (Some((column, factor)), _) if column == k => {
+                    self.weight(cell, factor, line, progress).map(|w| weight = Some(w)).map_err(fault)
                 }
-                // An empty cell is underlined where it would stand.
-                let span = if span.is_empty() { line_at..line_at + row.len() } else { span.clone() };
-                let place = || format!("line {line}, column `{}`", header_cells[k].0);
-                let mut fail = |message: String| {
-                    wrong.at(place(), span.clone(), message, "");
-                    is_good = false;
-                };
-                if is_weight {
-                    let factor = weighing.map_or(1.0, |w| w.1);
-                    match number(cell) {
-                        Err(why) => fail(why),
-                        Ok(x) if profile.basis == Basis::Trace => {
-                            if let Some((before, other)) = last.filter(|l| x * factor <= l.0) {
-                                let word = if x * factor < before { "falls" } else { "does not rise" };
-                                fail(format!("the time {word}: {} s here, {} s in line {other}", x * factor, before));
-                            } else {
-                                last = Some((x * factor, line));
-                                weight = Some(x * factor);
-                            }
-                        }
-                        Ok(x) if x < 0.0 => fail(format!("`{cell}` is below zero, and this weighs a row")),
-                        Ok(x) => weight = Some(x * factor),
-                    }
-                    continue;
+                (_, Some(_)) if cell.is_empty() => Err(fault("the cell is empty".into())),
+                (_, Some(at)) => {
+                    let setting = &mut self.settings[at];
+                    let value = progress.known[at].entry(cell).or_insert_with(|| setting.read(cell, model));
+                    value.clone().map(|value| condition[at] = value)
                 }
-                let position = setting.expect("checked above");
-                let setting = &mut profile.settings[position];
-                if cell.is_empty() {
-                    fail("the cell is empty".into());
-                    continue;
-                }
-                match known[position].get(cell) {
-                    Some(Ok(value)) => condition[position] = *value,
-                    Some(Err(d)) => {
-                        let mut d = d.as_ref().clone();
-                        d.place = place();
-                        wrong.push(d, span, "");
-                        is_good = false;
-                    }
-                    None => {
-                        let value = setting.read(cell, model);
-                        known[position].insert(cell, value.clone());
-                        match value {
-                            Ok(value) => condition[position] = value,
-                            Err(mut d) => {
-                                d.place = place();
-                                wrong.push(*d, span, "");
-                                is_good = false;
-                            }
-                        }
-                    }
-                }
-            }
-            let (Some(weight), true) = (weight, is_good) else { continue };
-            let next = conditions.len() as u32;
-            let condition = match conditions.get(&condition) {
-                Some(known) => *known,
-                None => {
-                    conditions.insert(condition, next);
-                    next
-                }
+                _ => continue,
             };
-            shares += weight;
-            let (time_s, duration_s) = match profile.basis {
-                Basis::Trace => (weight, 0.0),
-                _ => (f64::NAN, weight),
-            };
-            profile.rows.push(ProfileRow { line: line as u32, time_s, duration_s, condition });
+            if let Err(mut d) = read {
+                d.place = place();
+                wrong.push(*d, span, "");
+                is_good = false;
+            }
         }
-        if wrong.all.is_empty() {
-            profile.weigh(shares, &mut wrong, whole);
+        let (Some(weight), true) = (weight, is_good) else { return };
+        let next = progress.conditions.len() as u32;
+        let condition = *progress.conditions.entry(condition).or_insert(next);
+        progress.sum += weight;
+        let (time_s, duration_s) = match self.basis {
+            Basis::Trace => (weight, 0.0),
+            _ => (f64::NAN, weight),
+        };
+        self.rows.push(ProfileRow { line: line as u32, time_s, duration_s, condition });
+    }
+
+    /// What a cell of the weighing column says, in seconds or parts of the whole.
+    fn weight(&self, cell: &str, factor: f64, line: usize, progress: &mut Progress<'_>) -> Result<f64, String> {
+        let x = csv::number(cell)?;
+        if self.basis == Basis::Trace {
+            if let Some((before, other)) = progress.last.filter(|l| x * factor <= l.0) {
+                let word = if x * factor < before { "falls" } else { "does not rise" };
+                return Err(format!("the time {word}: {} s here, {} s in line {other}", x * factor, before));
+            }
+            progress.last = Some((x * factor, line));
+        } else if x < 0.0 {
+            return Err(format!("`{cell}` is below zero, and this weighs a row"));
         }
-        if wrong.more > 0 {
-            let message = format!("{} more errors of these kinds", wrong.more);
-            wrong.all.push(Diagnostic::new(Code::BadTable, "", message));
-        }
-        if wrong.all.has_errors() {
-            wrong.all.stand_in(None, text);
-            return Err(wrong.all);
-        }
-        let mut numbered: Vec<(Box<[u32]>, u32)> = conditions.into_iter().collect();
-        numbered.sort_by_key(|c| c.1);
-        profile.conditions = numbered.into_iter().map(|c| c.0).collect();
-        profile.gather();
-        Ok(profile)
+        Ok(x * factor)
     }
 
     /// Durations of the rows, and what is remarkable about them.
@@ -646,7 +602,7 @@ impl Setting {
             Measure::Text | Measure::Flag => cell.to_owned(),
             measure => {
                 let plain = cell.replace('\u{2212}', "-");
-                let x = number(&plain).map_err(fault)?;
+                let x = csv::number(&plain).map_err(fault)?;
                 if measure == Measure::Integer && x.fract() != 0.0 {
                     return Err(fault(format!("`{cell}` is not a whole number, and this quantity is one")));
                 }

@@ -343,8 +343,7 @@ impl<'s> UncertaintyPlan<'s> {
         if quantities.iter().any(cut) {
             assumptions.push("normal and lognormal distributions are cut off at three standard deviations".into());
         }
-        let one = |message: String| Diagnostics::from_iter([Diagnostic::new(Code::BadAxis, "", message)]);
-        let design = Design::new(quantities.len(), samples, request.seed).map_err(one)?;
+        let design = Design::new(quantities.len(), samples, request.seed)?;
         let mut plan = Self {
             question,
             quantities,

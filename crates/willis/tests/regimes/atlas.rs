@@ -6,8 +6,8 @@
 //! everything about it follows in a few exact multiplications, without any of the library's code.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::time::{Duration, Instant};
 
+use allocation_counter::measure;
 use serde_json::Value;
 use willis::analysis::{Role, Selection, Verdict, analyze};
 use willis::compiled::{Duty, Output, PointVerdict};
@@ -1872,22 +1872,22 @@ fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
 // Large, odd and wrong questions
 
 #[test]
-fn regress_five_coupled_sets_take_seconds() {
+fn regress_five_coupled_sets_have_formulas() {
     let mut random = Dice(10);
     let mut trains = 0;
     while trains < 8 {
         let net = Net::random(5, 2, 1 + trains / 6, 900, &mut random);
         let Ok(train) = net.builder().build() else { continue };
-        let start = Instant::now();
         let atlas = as_drawn(&train);
-        let sheet = formulas(&train, &request_as_drawn()).unwrap();
-        let time = start.elapsed();
+        let mut sheet = None;
+        let work = measure(|| sheet = Some(formulas(&train, &request_as_drawn()).unwrap()));
         let coupled = atlas.regimes.first().map_or(0, |r| r.drivers.iter().filter(|d| d.1.is_some()).count());
         if coupled < 4 {
             continue;
         }
         trains += 1;
-        assert!(!sheet.formulas.is_empty() && time < Duration::from_secs(5), "{time:?} {net:?}");
+        eprintln!("WORK5 {}", work.count_total);
+        assert!(!sheet.unwrap().formulas.is_empty() && work.count_total < 1_000_000_000, "{work:?} {net:?}");
     }
 }
 
