@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use willis_ask::{Entry, QUESTIONS, RefusalReport};
+use willis_ask::{QUESTIONS, RefusalReport};
 
 use crate::{Ended, command, sweep};
 
@@ -46,7 +46,7 @@ fn schema(matches: &ArgMatches) -> Result<Ended, Ended> {
         return Ok(Ended::Answered(pretty(&willis::train::schema())));
     };
     match name.as_str() {
-        "list" => return Ok(Ended::Answered(pretty(&QUESTIONS.iter().map(Entry::told).collect()))),
+        "list" => return Ok(Ended::Answered(pretty(&list()))),
         "refusal" => return Ok(Ended::Answered(pretty(RefusalReport::schema().as_value()))),
         _ => {}
     }
@@ -56,6 +56,22 @@ fn schema(matches: &ArgMatches) -> Result<Ended, Ended> {
     };
     let schema = if matches.get_flag("request") { entry.request_schema() } else { entry.answer_schema() };
     Ok(Ended::Answered(pretty(schema.as_value())))
+}
+
+/// All questions as data, each with what its command line begins with: `willis draw KIND FILE`.
+fn list() -> serde_json::Value {
+    let command = command::command();
+    let all = QUESTIONS.iter().map(|entry| {
+        let mut told = entry.told();
+        let own = command.find_subcommand(entry.name).expect("every question is a command");
+        let places = own.get_positionals().map(|arg| {
+            let names = arg.get_value_names().unwrap_or_default().join(" ");
+            if arg.is_required_set() { format!(" {names}") } else { format!(" [{names}]") }
+        });
+        told["usage"] = format!("willis {}{}", entry.name, places.collect::<String>()).into();
+        told
+    });
+    all.collect()
 }
 
 fn completions_command() -> Command {

@@ -1,6 +1,9 @@
 //! Files that are generated and committed: `cargo xtask generate`, `validate`, and the step that compares.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+
+use serde_json::Value;
 
 use crate::context::Context;
 use crate::step::{Outcome, outcome};
@@ -10,28 +13,6 @@ use crate::tested::{test, test_with};
 const GENERATED: &[&str] = &[
     "schema/willis-1.schema.json",
     "README.md",
-    "schema/answers/analyze.schema.json",
-    "schema/answers/new.schema.json",
-    "schema/answers/check.schema.json",
-    "schema/answers/flow.schema.json",
-    "schema/answers/losses.schema.json",
-    "schema/answers/sensitivity.schema.json",
-    "schema/answers/uncertainty.schema.json",
-    "schema/answers/sweep.schema.json",
-    "schema/answers/cycle.schema.json",
-    "schema/answers/compare.schema.json",
-    "schema/answers/regimes.schema.json",
-    "schema/answers/formula.schema.json",
-    "schema/answers/locate.schema.json",
-    "schema/answers/simulate.schema.json",
-    "schema/answers/modes.schema.json",
-    "schema/answers/draw.schema.json",
-    "schema/answers/report.schema.json",
-    "schema/answers/export.schema.json",
-    "schema/answers/laws.schema.json",
-    "schema/answers/validate.schema.json",
-    "schema/answers/explain.schema.json",
-    "schema/answers/refusal.schema.json",
     "validation/README.md",
     "validation/esmail-2018-table-1/README.md",
     "validation/losses/README.md",
@@ -139,37 +120,37 @@ const FIGURES: &[(&str, &[&str])] = &[
     ("book/src/figures/nrel-film.svg", &["draw", "film", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
 ];
 
-/// Where the schemas of answers lie; each is called by its question.
-const ANSWERS: &str = "schema/answers/";
+/// Where the schemas of answers lie, each called by its question; and that of what is told instead of an answer.
+const ANSWERS: &str = "schema/answers";
+const REFUSAL: &str = "refusal";
 
-/// Writes the JSON Schema of every answer.
-fn write_schemas(context: &Context) -> Result<(), String> {
-    for file in GENERATED.iter().filter(|f| f.starts_with(ANSWERS)) {
-        let question = file[ANSWERS.len()..].split('.').next().unwrap_or_default();
-        let schema = context.output(context.willis().args(["schema", question]))?.stdout;
-        let path = context.root.join(file);
-        fs::create_dir_all(path.parent().expect("a folder")).map_err(|e| format!("{file}: {e}"))?;
-        fs::write(&path, schema).map_err(|e| format!("{file}: {e}"))?;
+/// Every question, as the program tells of it.
+fn questions(context: &Context) -> Result<Vec<Value>, String> {
+    let list = context.output(context.willis().args(["schema", "list"]))?.stdout;
+    serde_json::from_slice(&list).map_err(|e| format!("the list of questions: {e}"))
+}
+
+/// Writes the JSON Schema of every answer, and none of a question that is gone.
+fn write_schemas(context: &Context, questions: &[Value]) -> Result<(), String> {
+    let folder = context.root.join(ANSWERS);
+    let fail = |e: std::io::Error| format!("{ANSWERS}: {e}");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).map_err(fail)?;
+    for name in questions.iter().filter_map(|q| q["name"].as_str()).chain([REFUSAL]) {
+        let schema = context.output(context.willis().args(["schema", name]))?.stdout;
+        fs::write(folder.join(format!("{name}.schema.json")), schema).map_err(fail)?;
     }
     Ok(())
 }
 
 /// Writes the table of questions into the README, between its marks.
-fn write_questions(context: &Context) -> Result<(), String> {
+fn write_questions(context: &Context, questions: &[Value]) -> Result<(), String> {
     const MARKS: [&str; 2] = ["<!-- questions -->\n", "<!-- /questions -->"];
-    let list = context.output(context.willis().args(["schema", "list"]))?.stdout;
-    let list: serde_json::Value = serde_json::from_slice(&list).map_err(|e| format!("the list of questions: {e}"))?;
     let mut table = "| question | what it answers |\n|---|---|\n".to_owned();
-    for question in list.as_array().into_iter().flatten() {
-        let (name, about) = (&question["name"], question["about"].as_str().unwrap_or_default());
-        let trains = match question["of"].as_str() {
-            Some("train") => " FILE",
-            Some("trains") => " FILES",
-            Some("at-most-one") => " KIND FILE",
-            _ => "",
-        };
-        let first = about.split("\n\n").next().unwrap_or_default().replace('\n', " ");
-        table += &format!("| `willis {}{trains}` | {first} |\n", name.as_str().unwrap_or_default());
+    for question in questions {
+        let told = |field: &str| question[field].as_str().unwrap_or_default();
+        let first = told("about").split("\n\n").next().unwrap_or_default().replace('\n', " ");
+        table += &format!("| `{}` | {first} |\n", told("usage"));
     }
     let path = context.root.join("README.md");
     let text = fs::read_to_string(&path).map_err(|e| format!("README.md: {e}"))?;
@@ -180,8 +161,9 @@ fn write_questions(context: &Context) -> Result<(), String> {
 
 /// Writes every generated file. Needs the optimised program.
 fn write_generated(context: &Context) -> Result<(), String> {
-    write_schemas(context)?;
-    write_questions(context)?;
+    let questions = questions(context)?;
+    write_schemas(context, &questions)?;
+    write_questions(context, &questions)?;
     let schema = context.output(context.willis().arg("schema"))?.stdout;
     let file = context.root.join(GENERATED[0]);
     fs::create_dir_all(file.parent().expect("a folder")).map_err(|e| format!("the folder schema: {e}"))?;
@@ -200,7 +182,8 @@ fn write_generated(context: &Context) -> Result<(), String> {
 
 /// Writes the pages of `validation`.
 fn write_pages(context: &Context) -> Result<(), String> {
-    let words = "cargo test -p willis -p willis-casebook --test validation -- --nocapture write_page";
+    // With the features that all tests have, so that nothing is built twice.
+    let words = "cargo test --workspace --test validation -- --nocapture write_page";
     context.output(context.words(words).env("WILLIS_WRITE", "1")).map(drop)
 }
 
@@ -210,8 +193,7 @@ pub(crate) fn validate(context: &Context) -> Outcome {
         Ok(()) => match &context.options.modelica {
             None => test(context, "cargo test --workspace --tests --no-fail-fast -- val_"),
             Some(folder) => {
-                let words =
-                    "cargo test -p willis-casebook --test validation -- --ignored --nocapture whole_trajectories";
+                let words = "cargo test --workspace --test validation -- --ignored --nocapture whole_trajectories";
                 test_with(context, words, &[("WILLIS_MODELICA", folder.as_os_str())])
             }
         },
@@ -224,35 +206,47 @@ pub(crate) fn generate(context: &Context) -> Outcome {
     outcome(build_willis(context).and_then(|()| write_generated(context)))
 }
 
+/// Every generated file that is there, with what is in it.
+fn there(context: &Context) -> Result<BTreeMap<String, Vec<u8>>, String> {
+    let mut names: Vec<String> =
+        GENERATED.iter().chain(FIGURES.iter().map(|f| &f.0)).map(|n| (*n).to_owned()).collect();
+    // A folder that is not there has no file.
+    for entry in fs::read_dir(context.root.join(ANSWERS)).into_iter().flatten() {
+        let name = entry.map_err(|e| format!("{ANSWERS}: {e}"))?.file_name();
+        names.push(format!("{ANSWERS}/{}", name.to_string_lossy()));
+    }
+    Ok(names.into_iter().filter_map(|name| Some((name.clone(), fs::read(context.root.join(name)).ok()?))).collect())
+}
+
 /// Writes the generated files, compares them with what was there, and puts that back.
 pub(crate) fn generated(context: &Context) -> Outcome {
-    let names = || GENERATED.iter().copied().chain(FIGURES.iter().map(|f| f.0));
-    let read = || names().map(|name| fs::read(context.root.join(name)).ok()).collect::<Vec<_>>();
-    let before = read();
-    if let Err(e) = build_willis(context).and_then(|()| write_generated(context)) {
-        return Outcome::Failed(e);
-    }
-    let after = read();
+    outcome(build_willis(context).and_then(|()| compare(context)))
+}
+
+fn compare(context: &Context) -> Result<(), String> {
+    let before = there(context)?;
+    let written = write_generated(context);
+    let after = there(context)?;
     let mut stale = Vec::new();
-    for ((name, before), after) in names().zip(before).zip(after) {
-        if before == after {
+    for name in before.keys().chain(after.keys()).collect::<BTreeSet<_>>() {
+        let (old, new) = (before.get(name), after.get(name));
+        if old == new {
             continue;
         }
-        let line = match (&before, &after) {
-            (Some(before), Some(after)) => {
-                let same = before.split(|b| *b == b'\n').zip(after.split(|b| *b == b'\n')).take_while(|(a, b)| a == b);
+        stale.push(match (old, new) {
+            (Some(old), Some(new)) => {
+                let same = old.split(|b| *b == b'\n').zip(new.split(|b| *b == b'\n')).take_while(|(a, b)| a == b);
                 format!("{name} differs from line {} on", same.count() + 1)
             }
-            _ => format!("{name} is missing"),
-        };
-        stale.push(line);
+            (None, _) => format!("{name} is missing"),
+            (_, None) => format!("{name} is no longer generated"),
+        });
         let file = context.root.join(name);
-        let _ = before.map_or_else(|| fs::remove_file(&file), |bytes| fs::write(&file, bytes));
+        let back = old.map_or_else(|| fs::remove_file(&file), |bytes| fs::write(&file, bytes));
+        back.map_err(|e| format!("{name}: {e}"))?;
     }
-    if stale.is_empty() {
-        return Outcome::Passed;
-    }
-    Outcome::Failed(format!("{}: run `cargo xtask generate`", stale.join("; ")))
+    written?;
+    if stale.is_empty() { Ok(()) } else { Err(format!("{}: run `cargo xtask generate`", stale.join("; "))) }
 }
 
 /// The optimised program.

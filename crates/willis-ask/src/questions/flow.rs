@@ -9,7 +9,9 @@ use willis::diagnostic::Diagnostic;
 use willis::hypergraph::{FlowReport, flows};
 use willis::work::Work;
 
-use crate::{File, Form, Given, Question, Refusal};
+#[cfg(feature = "pictures")]
+use crate::{File, Form};
+use crate::{Given, Question, Refusal};
 
 /// Show where the power runs in an operating point: components, contacts, paths, losses.
 ///

@@ -9,7 +9,9 @@ use willis::dynamics::{self, ModesReport};
 use willis::work::Work;
 
 use crate::table::Table;
-use crate::{Extra, File, Form, Given, Question, Refusal};
+#[cfg(feature = "pictures")]
+use crate::{Extra, File, Form};
+use crate::{Given, Question, Refusal};
 
 /// List torsional natural frequencies: shapes, damping, where the energy is.
 ///

@@ -11,8 +11,10 @@ use willis::regimes::{self, Family, RegimeSelection};
 use willis::work::Work;
 
 use super::amount::pair;
+#[cfg(feature = "pictures")]
+use crate::Extra;
 use crate::table::Table;
-use crate::{Extra, File, Form, Given, Question, Refusal};
+use crate::{File, Form, Given, Question, Refusal};
 
 /// List every regime of a train: who drives whom, in which speeds, with which formula.
 ///
@@ -103,6 +105,8 @@ impl Question for Regimes {
     }
 
     fn write(&self, answer: &RegimesAnswer, form: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
+        // Only a map needs the train again.
+        let _ = of;
         Ok(vec![match (form, answer) {
             #[cfg(feature = "pictures")]
             ("map-json", _) => {

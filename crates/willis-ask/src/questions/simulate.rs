@@ -16,7 +16,9 @@ use willis_figure::TimePlotBuilder;
 
 use super::amount::values;
 use crate::table::{Cell, Kind, Table};
-use crate::{Extra, File, Given, Question, Refusal};
+#[cfg(feature = "pictures")]
+use crate::{Extra, File};
+use crate::{Given, Question, Refusal};
 
 pub use text::MOST_EVENTS;
 
