@@ -93,7 +93,7 @@ impl File {
 pub struct Extra {
     /// The option's name: `plot`.
     pub name: &'static str,
-    /// What the option takes: `FILE.svg`.
+    /// What the option takes: `FILE.svg`, a name that ends so; or `FOLDER`.
     pub value: &'static str,
     /// One line about it.
     pub about: &'static str,
@@ -186,12 +186,12 @@ pub trait Question: Options + Clone + fmt::Debug + Serialize + DeserializeOwned 
         unreachable!("`{}` has no form `{form}`", Self::NAME)
     }
 
-    /// One of [`Question::EXTRAS`], for a file whose name ends with `ending`.
+    /// One of [`Question::EXTRAS`].
     ///
     /// # Errors
     /// Why it cannot be had.
-    fn extra(&self, answer: &Self::Answer, name: &str, ending: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
-        let _ = (answer, ending, of);
+    fn extra(&self, answer: &Self::Answer, name: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
+        let _ = (answer, of);
         unreachable!("`{}` has no `{name}` beside its answer", Self::NAME)
     }
 
@@ -260,7 +260,7 @@ pub trait Answer {
     ///
     /// # Errors
     /// Why it cannot be had.
-    fn extra(&self, name: &str, ending: &str) -> Result<Vec<File>, Refusal>;
+    fn extra(&self, name: &str) -> Result<Vec<File>, Refusal>;
 
     /// See [`Question::told`].
     fn told(&self) -> Vec<String>;
@@ -293,8 +293,8 @@ impl<Q: Question> Answer for Answered<'_, Q> {
         self.question.write(&self.answer, form, self.of)
     }
 
-    fn extra(&self, name: &str, ending: &str) -> Result<Vec<File>, Refusal> {
-        self.question.extra(&self.answer, name, ending, self.of)
+    fn extra(&self, name: &str) -> Result<Vec<File>, Refusal> {
+        self.question.extra(&self.answer, name, self.of)
     }
 
     fn told(&self) -> Vec<String> {

@@ -121,6 +121,8 @@ pub struct Table {
     pub columns: Vec<Column>,
     /// The rows, each with as many cells as there are columns.
     pub rows: Vec<Vec<Cell>>,
+    /// Whether it is had only by its name, not among all tables of its answer: thousands of rows beside a few.
+    pub is_aside: bool,
 }
 
 impl Table {
@@ -140,7 +142,7 @@ impl Table {
             let unit = UNITS.iter().find(|u| kind == Kind::Number && name.ends_with(u.0)).map_or("", |u| u.1);
             Column { name: name.to_owned(), unit: unit.to_owned(), kind }
         });
-        Self { name: name.to_owned(), columns: columns.collect(), rows: vec![] }
+        Self { name: name.to_owned(), columns: columns.collect(), rows: vec![], is_aside: false }
     }
 
     /// The rows of a study.
@@ -159,7 +161,13 @@ impl Table {
             ColumnValues::Texts(all) => Cell::Text(all[k].to_string()),
         };
         let row = |k: usize| all.values.iter().map(|v| cell(v, k)).collect();
-        Self { name: name.to_owned(), columns: columns.collect(), rows: (0..all.len()).map(row).collect() }
+        let rows = (0..all.len()).map(row).collect();
+        Self { name: name.to_owned(), columns: columns.collect(), rows, is_aside: false }
+    }
+
+    /// The same, had only by its name.
+    pub fn aside(self) -> Self {
+        Self { is_aside: true, ..self }
     }
 
     /// Adds a row.

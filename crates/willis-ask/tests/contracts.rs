@@ -1,6 +1,6 @@
 //! Every answer for every example reads back as the same text and is what its JSON Schema says.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -81,6 +81,9 @@ impl Checker {
 #[test]
 fn every_answer_reads_back_and_is_what_its_schema_says() {
     let (checker, examples) = (Checker::new(), examples());
+    // Tables that were promised and not yet seen.
+    let mut promised: BTreeSet<(&str, &str)> =
+        QUESTIONS.iter().flat_map(|q| q.tables.iter().map(|t| (q.name, *t))).collect();
     let mut answered: BTreeMap<&str, usize> = QUESTIONS.iter().map(|q| (q.name, 0)).collect();
     for entry in QUESTIONS {
         let of: Vec<&[Given]> = match entry.of {
@@ -114,6 +117,7 @@ fn every_answer_reads_back_and_is_what_its_schema_says() {
                 assert!(!answer.text().is_empty() || entry.name == "sweep", "{what}");
                 for table in answer.tables() {
                     assert!(entry.tables.contains(&table.name.as_str()), "{what}: {}", table.name);
+                    promised.remove(&(entry.name, table.name.as_str()));
                     assert!(!table.csv().contains("NaN") && !table.csv().contains("inf,"), "{what}");
                 }
                 *answered.get_mut(entry.name).unwrap() += 1;
@@ -122,6 +126,7 @@ fn every_answer_reads_back_and_is_what_its_schema_says() {
     }
     let silent: Vec<_> = answered.iter().filter(|a| *a.1 == 0).collect();
     assert!(silent.is_empty(), "nothing was answered to {silent:?}");
+    assert!(promised.is_empty(), "no answer has the tables {promised:?}");
 }
 
 #[test]

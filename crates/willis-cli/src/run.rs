@@ -7,7 +7,7 @@ use clap::ArgMatches;
 use willis::Diagnostics;
 use willis::diagnostic::Diagnostic;
 use willis_ask::table::{self, Table};
-use willis_ask::{Answer, Entry, File, Given, Refusal, style};
+use willis_ask::{Answer, Entry, Extra, File, Given, Refusal, style};
 
 use crate::command::{CSV, JSON, JSON_LINES, PARQUET, TEXT, forms};
 use crate::work::{Terminal, cores};
@@ -75,6 +75,19 @@ impl<'a> Asked<'a> {
         output::free(path, self.force)?;
         Ok(())
     }
+
+    /// The same for something beside the answer, which says how its name ends or that it is a folder.
+    pub fn guard_extra(&self, extra: &Extra, path: &Path, files: &[&str]) -> Result<(), Ended> {
+        let wrong = |why: String| Err(format!("{}: {why}\n", path.display()).into());
+        match Path::new(extra.value).extension() {
+            None if path.exists() && !path.is_dir() => wrong("is no folder".into()),
+            None => Ok(()),
+            Some(ending) if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case(ending)) => {
+                wrong(format!("--{} writes {1}; end the name with .{1}", extra.name, ending.to_string_lossy()))
+            }
+            Some(_) => self.guard(path, files),
+        }
+    }
 }
 
 /// The form that the name of a file promises.
@@ -121,20 +134,14 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
     if read.iter().filter(|f| **f == "-").count() > 1 {
         return Err("standard input is either the train file or the profile\n".to_owned().into());
     }
-    let extras: Vec<(&str, &PathBuf)> =
-        (entry.extras.iter()).filter_map(|e| Some((e, matches.get_one(e.name)?))).map(|(e, p)| (e.name, p)).collect();
+    let extras: Vec<(&Extra, &PathBuf)> =
+        entry.extras.iter().filter_map(|e| Some((e, matches.get_one(e.name)?))).collect();
     let several = asked.output.is_some_and(|p| p.is_dir() || p.extension().is_none());
     if let (Some(path), false) = (asked.output, several) {
         asked.guard(path, &read)?;
     }
-    for (name, path) in &extras {
-        match entry.extras.iter().any(|e| e.name == *name && e.value == "FOLDER") {
-            true if path.exists() && !path.is_dir() => {
-                return Err(format!("{}: is no folder\n", path.display()).into());
-            }
-            true => {}
-            false => asked.guard(path, &read)?,
-        }
+    for (extra, path) in &extras {
+        asked.guard_extra(extra, path, &read)?;
     }
     for file in request.attachments() {
         match input::table(&file.name) {
@@ -146,9 +153,8 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
     let terminal = Terminal::new(cores());
     let answer = request.ask(&of, &terminal).map_err(|refusal| asked.refused(&refusal, &of))?;
     terminal.finish();
-    for (name, path) in extras {
-        let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let files = answer.extra(name, &ending).map_err(|refusal| asked.refused(&refusal, &of))?;
+    for (extra, path) in extras {
+        let files = answer.extra(extra.name).map_err(|refusal| asked.refused(&refusal, &of))?;
         deliver(files, Some(path), asked.force)?;
     }
     hand_out(&asked, &*answer, &of)
@@ -186,7 +192,7 @@ fn hand_out(asked: &Asked<'_>, answer: &dyn Answer, of: &[Given]) -> Result<Ende
 /// Tables of an answer as a file.
 fn tables(asked: &Asked<'_>, all: &[Table]) -> Result<File, Ended> {
     let wanted = asked.matches.try_get_one::<String>("table").ok().flatten();
-    let named = |t: &&Table| wanted.is_none_or(|w| *w == t.name);
+    let named = |t: &&Table| wanted.map_or(!t.is_aside, |w| *w == t.name);
     let chosen: Vec<Table> = all.iter().filter(named).cloned().collect();
     let list = || all.iter().map(|t| t.name.as_str()).collect::<Vec<_>>().join(", ");
     if chosen.is_empty() {

@@ -73,11 +73,8 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
     let file = matches.get_one::<String>("file").map_or("-", String::as_str);
     asked.guard(out, &[file])?;
     let plot = matches.try_get_one::<PathBuf>("plot").ok().flatten();
-    if let Some(path) = plot {
-        asked.guard(path, &[file])?;
-        if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg")) {
-            return Err(format!("{}: a plot is written as SVG; end the name with .svg\n", path.display()).into());
-        }
+    if let (Some(path), Some(extra)) = (plot, entry.extras.first()) {
+        asked.guard_extra(extra, path, &[file])?;
     }
     let of = asked.trains()?;
     let train = of[0].model.train();

@@ -746,7 +746,7 @@ fn regress_export_wrong_questions() {
         all += &format!("willis {}\n{message}\n", question.join(" "));
     }
     snapshot!(all);
-    let usage = refused(&run(&["export", "vecto"]), 2);
+    let usage = refused(&run(&["export", "vecto"]), 1);
     assert!(usage.contains("name a train file after the kind of export"), "{usage}");
 }
 

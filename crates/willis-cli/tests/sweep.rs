@@ -196,7 +196,7 @@ fn what_cannot_be_done_is_told_and_leaves_nothing() {
         let told = refused(&sweep(&folder.file(name), &[]));
         assert!(told.contains(says), "{told}");
     };
-    at("map.xlsx", "end the name with .csv, .jsonl or .parquet");
+    at("map.xlsx", "its ending is none of .txt, .json, .csv, .jsonl, .parquet");
     at("nowhere/map.csv", "its folder does not exist");
     fs::create_dir(folder.file("folder.csv")).unwrap();
     at("folder.csv", "is a directory");

@@ -170,7 +170,7 @@ fn worth_showing(figure: &Figure) -> bool {
 ///     torques = { s = "10 N m" }
 /// "#;
 /// let model = Model::from_toml(text).unwrap();
-/// let document = report(&job.model, &ReportRequest::default())?;
+/// let document = report(&model, &ReportRequest::default(), &Serial)?;
 /// assert!(html(&document).contains("98.607 %"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```

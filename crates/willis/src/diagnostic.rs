@@ -11,11 +11,11 @@
 //! ```
 //! use willis::{Diagnostics, Train};
 //!
-//! let wrong = Train::from_toml("format = 1\nname = \"one\"\nmembres = []\n").unwrap_err();
+//! let wrong = Train::from_toml("format = 1\nname = \"one\"\nmembers = [\"s\"]\nterminels = [\"s\"]\n").unwrap_err();
 //! let json = serde_json::to_value(&wrong)?;
 //! assert_eq!(json[0]["code"], "E004");
-//! assert_eq!(json[0]["span"]["line"], 3);
-//! assert_eq!(json[0]["replacement"], "members");
+//! assert_eq!(json[0]["span"]["line"], 4);
+//! assert_eq!(json[0]["replacement"], "terminals");
 //! assert_eq!(serde_json::from_value::<Diagnostics>(json)?, wrong);
 //! # Ok::<(), serde_json::Error>(())
 //! ```

@@ -78,10 +78,12 @@ impl Question for Cycle {
     }
 
     fn tables(&self, answer: &CycleAnswer) -> Vec<Table> {
-        tables::tables(&answer.report)
+        let mut all = tables::tables(&answer.report);
+        all.push(Table::of_columns("rows", &answer.rows).aside());
+        all
     }
 
-    fn extra(&self, answer: &CycleAnswer, _: &str, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
+    fn extra(&self, answer: &CycleAnswer, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
         Ok(vec![File::text("rows.csv", Table::of_columns("rows", &answer.rows).csv())])
     }
 

@@ -57,7 +57,7 @@ impl Question for Modes {
     }
 
     #[cfg(feature = "pictures")]
-    fn extra(&self, answer: &ModesReport, _: &str, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
+    fn extra(&self, answer: &ModesReport, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
         self.write(answer, "svg", of)
     }
 }

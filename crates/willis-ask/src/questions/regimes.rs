@@ -119,7 +119,7 @@ impl Question for Regimes {
     }
 
     #[cfg(feature = "pictures")]
-    fn extra(&self, _: &RegimesAnswer, _: &str, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
+    fn extra(&self, _: &RegimesAnswer, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
         Ok(vec![File::text("regimes.svg", willis_figure::draw_regimes(&self.map(of)?))])
     }
 }

@@ -282,7 +282,7 @@ impl Question for Simulate {
     }
 
     #[cfg(feature = "pictures")]
-    fn extra(&self, answer: &RunReport, _: &str, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
+    fn extra(&self, answer: &RunReport, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
         let mut plot = TimePlotBuilder::new(of[0].model.train(), [answer.start_s, answer.scenario_end_s]);
         let _ = plot.columns(answer.columns.as_deref().unwrap_or_default());
         for row in answer.rows.iter().flatten() {

@@ -91,10 +91,12 @@ impl Question for Uncertainty {
     }
 
     fn tables(&self, answer: &UncertaintyAnswer) -> Vec<Table> {
-        tables::tables(&answer.report)
+        let mut all = tables::tables(&answer.report);
+        all.push(Table::of_columns("samples", &answer.samples).aside());
+        all
     }
 
-    fn extra(&self, answer: &UncertaintyAnswer, _: &str, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
+    fn extra(&self, answer: &UncertaintyAnswer, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
         Ok(vec![File::text("samples.csv", Table::of_columns("samples", &answer.samples).csv())])
     }
 }

@@ -91,7 +91,7 @@ impl Question for Validate {
         }
     }
 
-    fn extra(&self, _: &ValidateAnswer, _: &str, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
+    fn extra(&self, _: &ValidateAnswer, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
         let Some(name) = &self.case else {
             let d = Diagnostic::new(Code::UnknownSelection, "", "curves are those of a case, and none is named");
             return Err(d.hint("name the case: `willis validate wang-2020 --data FOLDER`").into());

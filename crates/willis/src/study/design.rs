@@ -38,7 +38,7 @@ const FEWEST_VALUES: usize = 4;
 /// assert!((found.p05 - 0.1f64.sqrt()).abs() < 0.01);
 /// let indices = design.indices(&values).unwrap();
 /// assert!((indices[0].first - 0.5).abs() < 0.02 && (indices[0].total - 0.5).abs() < 0.02);
-/// # Ok::<(), String>(())
+/// # Ok::<(), willis::Diagnostics>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Design {
