@@ -533,3 +533,24 @@ fn answers_read_back() {
         assert_eq!(serde_json::to_value(read.unit()).expect("plain data"), read.unit().symbol());
     }
 }
+
+/// Nothing acts on it: there is no torque in the equations at all, and the speed stays.
+#[test]
+fn a_rotor_that_nothing_acts_on_keeps_its_speed() {
+    let text = r#"
+        format = 1
+        name = "lone rotor"
+        members = ["rotor"]
+        inertias = { rotor = "2 kg m^2" }
+        [[scenario]]
+        name = "run"
+        duration = "3 s"
+        initial_speeds = { rotor = "10 rad/s" }
+    "#;
+    for method in [Method::Adaptive, Method::Fixed { step_s: 1e-2 }] {
+        let (rows, report) = run(text, &Options { method, ..Options::default() });
+        assert_eq!(report.outcome, Outcome::Finished);
+        assert!(rows.of("speed").all(|w| (w - 10.0).abs() < 1e-12));
+        assert_eq!(report.energy.expect("counted").residual_j, 0.0);
+    }
+}

@@ -63,6 +63,7 @@ impl<'c> Ports<'c> {
 
     /// All columns: nodes × ports.
     pub fn matrix(&self) -> DMatrix<f64> {
-        DMatrix::from_columns(&self.columns)
+        // There may be none: a rotor that nothing acts on.
+        DMatrix::from_fn(self.configuration.nodes, self.columns.len(), |node, port| self.columns[port][node])
     }
 }
