@@ -12,6 +12,7 @@
 
 pub(crate) mod arrangement;
 mod atlas;
+mod cells;
 mod closed;
 mod emit;
 mod family;
@@ -31,7 +32,8 @@ use crate::train::{FRAME, MemberId, Train};
 use atlas::atlas;
 use setup::{Pattern, Setup};
 
-pub(crate) use atlas::{arrow, efficiency_at};
+pub(crate) use atlas::arrow;
+pub(crate) use cells::efficiency_at;
 pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
 pub use family::{Case, Family, FamilyRange, Group, Row, family};
 pub use formula::{Efficiencies, Ratios, SymbolKind};

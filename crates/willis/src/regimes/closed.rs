@@ -8,7 +8,8 @@ use crate::kinematics::Configuration;
 use crate::symbolic::{Function, Notation, Symbol};
 use crate::train::{MemberId, Train};
 
-use super::atlas::{arrow, atlas, drivers, enumerate, power_signs};
+use super::atlas::{arrow, atlas, drivers};
+use super::cells::{enumerate, power_signs};
 use super::formula::{Efficiencies, Formula, Names, Ratios, Shape, SymbolKind, identifier};
 use super::setup::Setup;
 use super::{RegimeReport, RegimeSelection, selected};
