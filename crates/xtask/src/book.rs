@@ -57,11 +57,10 @@ pub(crate) fn pages(context: &Context) -> Outcome {
     outcome(passes(&mut build, &said))
 }
 
-/// Runs all of them in a folder of their own. How many there were, or what differs.
-fn run(context: &Context) -> Result<String, String> {
-    let folder = context.target.join("book");
+/// A new folder with the examples in it, where the reader of a page begins.
+fn reader(context: &Context, folder: &Path) -> Result<(), String> {
     let fail = |e: std::io::Error| format!("{}: {e}", folder.display());
-    let _ = fs::remove_dir_all(&folder);
+    let _ = fs::remove_dir_all(folder);
     fs::create_dir_all(folder.join("examples")).map_err(fail)?;
     for file in example_files(context)? {
         fs::copy(context.root.join(&file), folder.join(&file)).map_err(fail)?;
@@ -73,6 +72,13 @@ fn run(context: &Context) -> Result<String, String> {
             fs::copy(&file, folder.join("examples").join(name)).map_err(fail)?;
         }
     }
+    Ok(())
+}
+
+/// Runs all of them, those of a page in a folder of their own. How many there were, or what differs.
+fn run(context: &Context) -> Result<String, String> {
+    let folder = context.target.join("book");
+    let fail = |e: std::io::Error| format!("{}: {e}", folder.display());
     let mut pages = vec!["README.md".to_owned()];
     let chapters = fs::read_dir(context.root.join("book/src")).map_err(fail)?;
     let names = chapters.filter_map(|c| c.ok()?.file_name().into_string().ok());
@@ -81,6 +87,7 @@ fn run(context: &Context) -> Result<String, String> {
     let (mut commands, mut lines, mut wrong) = (0, 0, Vec::new());
     for page in &pages {
         let text = fs::read_to_string(context.root.join(page)).map_err(|e| format!("{page}: {e}"))?;
+        reader(context, &folder)?;
         for shown in commands_of(&text) {
             if let Some(train) = &shown.train {
                 let bare = |w: &&String| w.ends_with(".toml") && Path::new(w).components().count() == 1;
