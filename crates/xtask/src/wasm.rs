@@ -1,11 +1,11 @@
-//! The library builds for the browser.
+//! The library and everything that answers with it are fit for the browser.
 
 use std::path::Path;
 
 use crate::context::Context;
 use crate::step::{Outcome, outcome};
 
-/// Builds the library for the browser.
+/// Checks what a browser needs.
 pub(crate) fn wasm(context: &Context) -> Outcome {
     const TARGET: &str = "wasm32-unknown-unknown";
     let there = || {
@@ -18,5 +18,5 @@ pub(crate) fn wasm(context: &Context) -> Outcome {
             return Outcome::Skipped(format!("the target {TARGET} cannot be had here"));
         }
     }
-    outcome(context.run(&format!("cargo build -p willis -p willis-figure --target {TARGET}")))
+    outcome(context.run(&format!("cargo check -p willis -p willis-figure -p willis-ask --target {TARGET}")))
 }

@@ -135,6 +135,7 @@ impl System {
         for column in prescribed {
             ports.add(column);
         }
+        ports.at_least_one();
         let (ports, port_columns) = (ports.count(), ports.matrix());
         massless(&mass, &coordinates.speeds, train, scenario)?;
 

@@ -57,13 +57,19 @@ impl<'c> Ports<'c> {
         self.add(on_nodes(self.configuration, [(member, 1.0), (FRAME, -1.0)]))
     }
 
+    /// Adds one without torque where there is none, so that rotors that nothing acts on are no special case.
+    pub fn at_least_one(&mut self) {
+        if self.columns.is_empty() {
+            self.add(DVector::zeros(self.configuration.nodes));
+        }
+    }
+
     pub fn count(&self) -> usize {
         self.columns.len()
     }
 
     /// All columns: nodes × ports.
     pub fn matrix(&self) -> DMatrix<f64> {
-        // There may be none: a rotor that nothing acts on.
-        DMatrix::from_fn(self.configuration.nodes, self.columns.len(), |node, port| self.columns[port][node])
+        DMatrix::from_columns(&self.columns)
     }
 }
