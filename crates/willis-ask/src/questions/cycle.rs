@@ -16,7 +16,7 @@ use crate::{Attachment, Extra, File, Given, Question, Refusal};
 ///
 /// Each row of the profile, a CSV file, is one operating condition. A column weighs the rows in time: `time [s]` of a
 /// trace (each row holds until the next), or `duration [s]`, `hours` or `share` of a spectrum. The other columns set
-/// quantities, with the unit in the header: input.speed [rpm], output.torque [N m], oil.temperature [degC], state, or any
+/// quantities, with the unit in the header: `input.speed [rpm]`, `output.torque [N m]`, `oil.temperature [degC]`, state, or any
 /// quantity of the train file. Rows without an answer are told with their reason, and the energies say which part of the
 /// time they cover.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -34,7 +34,7 @@ const MOST_VALUES: u64 = 1 << 27;
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(default, deny_unknown_fields)]
 pub struct SweepRequest {
-    /// The name of a [[study]] of the train file. Axes, operation, state, hold and columns are then those of the study
+    /// The name of a `[[study]]` of the train file. Axes, operation, state, hold and columns are then those of the study
     /// and must not be given.
     pub study: Option<String>,
     /// The axes, each a quantity and its values: `input.speed=500 rpm..6000 rpm:50` takes 50 evenly spaced values, both
