@@ -3,7 +3,10 @@
 use std::io::Read;
 use std::path::Path;
 
+use clap::ArgMatches;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::model::Model;
+use willis_ask::{Attachment, Given, Refusal, quoted};
 
 /// What is read: its limits, and what to do when it is not that.
 struct Kind {
@@ -12,6 +15,8 @@ struct Kind {
     too_large: &'static str,
     directory: &'static str,
     no_text: &'static str,
+    /// What the names of such files end with.
+    ending: &'static str,
 }
 
 const TRAIN: Kind = Kind {
@@ -19,6 +24,7 @@ const TRAIN: Kind = Kind {
     too_large: "a train file is a few kilobytes",
     directory: "name a train file in it",
     no_text: "a train file is TOML text",
+    ending: "toml",
 };
 
 /// A table that a train file names.
@@ -27,28 +33,71 @@ const TABLE: Kind = Kind {
     too_large: "thin out the table",
     directory: "name a CSV file in it",
     no_text: "a table is CSV text",
+    ending: "csv",
 };
 
 const PERMISSIONS: &str = "check the path and its permissions";
 
 /// Why a file was not read, and what to do.
-type Refusal = (String, &'static str);
+type Unread = (String, &'static str);
 
-pub fn read(file: &str) -> Result<String, Diagnostics> {
-    let text = match file {
-        "-" => text_of(std::io::stdin(), "standard input", &TRAIN),
-        _ => open(Path::new(file), file, &TRAIN),
-    };
-    text.map_err(|(message, hint)| [Diagnostic::new(Code::Unreadable, "", message).hint(hint)].into_iter().collect())
+/// Reads a train file, with the laws and values that the command line puts in.
+pub fn train(file: &str, matches: &ArgMatches) -> Result<Given, Refusal> {
+    let name = if file == "-" { "standard input" } else { file };
+    let text = of_kind(file, &TRAIN).map_err(|wrong| Refusal::File(wrong, name.into()))?;
+    let refused = |wrong| Refusal::File(wrong, Attachment { name: name.to_owned(), text: text.clone() });
+    let mut given = Given::new(name, Model::read(&text, &mut tables_beside(file)).map_err(refused)?);
+    let all = |name: &str| matches.try_get_many::<String>(name).ok().flatten().into_iter().flatten();
+    let laws = all("law").map(|law| pair("law", law, "family=law", "mesh_friction=niemann"));
+    let laws: Vec<(&str, &str)> = laws.collect::<Result<_, _>>()?;
+    let sets = all("set").map(|set| pair("set", set, "quantity=value", "P1.sun.teeth=23"));
+    let sets: Vec<(&str, &str)> = sets.collect::<Result<_, _>>()?;
+    given.changes.extend(all("set").map(|s| format!("--set {}", quoted(s))));
+    given.changes.extend(all("law").map(|l| format!("--law {}", quoted(l))));
+    given.model = given.model.with(sets).map_err(refused)?;
+    given.model = given.model.with_laws(laws).map_err(refused)?;
+    Ok(given)
+}
+
+/// The two sides of an option `name=value`.
+fn pair<'a>(option: &str, text: &'a str, form: &str, example: &str) -> Result<(&'a str, &'a str), Diagnostics> {
+    let sides = text.split_once('=').map(|(name, value)| (name.trim(), value.trim()));
+    sides.ok_or_else(|| {
+        let d = Diagnostic::new(Code::UnknownSelection, "", format!("--{option} {text}: there is no `=` in it"));
+        d.hint(format!("write {form}, as in --{option} {example}")).into()
+    })
 }
 
 /// Reads a table that is named on the command line.
 pub fn table(file: &str) -> Result<String, Diagnostics> {
+    of_kind(file, &TABLE)
+}
+
+fn of_kind(file: &str, kind: &Kind) -> Result<String, Diagnostics> {
     let text = match file {
-        "-" => text_of(std::io::stdin(), "standard input", &TABLE),
-        _ => open(Path::new(file), file, &TABLE),
+        "-" => text_of(std::io::stdin(), "standard input", kind),
+        _ => open(Path::new(file), file, kind),
     };
-    text.map_err(|(message, hint)| [Diagnostic::new(Code::Unreadable, "", message).hint(hint)].into_iter().collect())
+    text.map_err(|(message, hint)| {
+        let d = Diagnostic::new(Code::Unreadable, "", message);
+        let near = neighbours(Path::new(file), kind);
+        let d =
+            if file == "-" || Path::new(file).exists() { d } else { d.suggest(file, near.iter().map(String::as_str)) };
+        // A suggestion is for the command line and replaces nothing in a text.
+        let mut d = d.hint(hint);
+        d.replacement = None;
+        d.into()
+    })
+}
+
+/// Files of that kind where a file was looked for.
+fn neighbours(file: &Path, kind: &Kind) -> Vec<String> {
+    const MOST: usize = 10_000;
+    let folder = file.parent().filter(|p| !p.as_os_str().is_empty());
+    let Ok(entries) = std::fs::read_dir(folder.unwrap_or(Path::new("."))) else { return vec![] };
+    let names = entries.take(MOST).flatten().map(|e| Path::new(&e.file_name()).to_owned());
+    let fitting = names.filter(|n| n.extension().is_some_and(|e| e.eq_ignore_ascii_case(kind.ending)));
+    fitting.map(|n| folder.map_or(n.clone(), |f| f.join(&n)).to_string_lossy().into_owned()).collect()
 }
 
 /// Reads the tables that a train file names, seen from its folder.
@@ -57,7 +106,7 @@ pub fn tables_beside(file: &str) -> impl FnMut(&str) -> Result<String, String> {
     move |name| open(&folder.join(name), name, &TABLE).map_err(|(message, hint)| format!("{message}; {hint}"))
 }
 
-fn open(path: &Path, name: &str, kind: &Kind) -> Result<String, Refusal> {
+fn open(path: &Path, name: &str, kind: &Kind) -> Result<String, Unread> {
     let io = |e: std::io::Error| (format!("{name}: {e}"), PERMISSIONS);
     let handle = std::fs::File::open(path).map_err(io)?;
     if handle.metadata().map_err(io)?.is_dir() {
@@ -66,7 +115,7 @@ fn open(path: &Path, name: &str, kind: &Kind) -> Result<String, Refusal> {
     text_of(handle, name, kind)
 }
 
-fn text_of(from: impl Read, name: &str, kind: &Kind) -> Result<String, Refusal> {
+fn text_of(from: impl Read, name: &str, kind: &Kind) -> Result<String, Unread> {
     let most = kind.most_mib << 20;
     let mut bytes = Vec::new();
     let read = from.take(most + 1).read_to_end(&mut bytes);

@@ -1,80 +1,30 @@
-//! `willis simulate`: rows into a file or the answer, a figure, and the run for eyes.
+//! `willis simulate -o rows.csv`: rows into a file as they come, for runs of any length.
 //!
-//! Rows are written as they come, into a file beside the target that takes its name at the end, also
-//! after an interruption: a run that ended early is a whole file that says so. Only an error leaves
-//! nothing behind.
+//! They go into a file beside the target that takes its name at the end, also after an interruption: a run that ended
+//! early is a whole file that says so. Only an error leaves nothing behind.
 
 mod csv;
+#[cfg(feature = "parquet")]
 mod parquet;
-mod text;
+mod plot;
 
 use std::fs::File;
-use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::{Value, json};
-use willis::dynamics::{Column, Event, Options, Outcome, Recorder, RunReport, Sample};
-use willis::figure::{TimePlotBuilder, outcome_in_words};
-use willis::train::Train;
+use clap::ArgMatches;
+use willis::dynamics::{Column, Event, Outcome, Recorder, RunReport, Sample};
+use willis::work::Work;
+use willis_ask::questions::{MOST_EVENTS, Simulate, simulation_text};
+use willis_ask::{Entry, Refusal};
 
+use crate::command::{JSON, TEXT};
 use crate::interrupt::{interrupted, listen};
-
-pub use text::text;
-
-/// What to do with a run beside telling it.
-pub struct Request {
-    pub scenario: Option<String>,
-    pub out: Option<PathBuf>,
-    pub plot: Option<PathBuf>,
-    pub columns: Vec<String>,
-    pub options: Options,
-    /// The answer is JSON: all events, and the rows unless a file takes them.
-    pub json: bool,
-}
-
-impl Request {
-    fn rows(&self) -> bool {
-        self.json && self.out.is_none()
-    }
-}
-
-/// A run and what was kept of it.
-pub struct Run {
-    pub report: RunReport,
-    pub scenario_end_s: f64,
-    pub events: Vec<Event>,
-    columns: Vec<Column>,
-    rows: Vec<Vec<f64>>,
-    with_rows: bool,
-}
-
-impl Run {
-    /// Whether Ctrl-C ended the run.
-    pub fn interrupted(&self) -> bool {
-        self.report.outcome == Outcome::Interrupted
-    }
-}
-
-/// Why there is no run.
-pub enum Failure {
-    /// The train or its scenario are wrong.
-    Input(willis::Diagnostics),
-    /// Anything else, in words.
-    Told(String),
-}
-
-impl From<String> for Failure {
-    fn from(text: String) -> Self {
-        Self::Told(text)
-    }
-}
-
-/// Rows that are kept in memory for an answer.
-const MOST_ROWS: usize = 1_000_000;
+use crate::run::Asked;
+use crate::work::Terminal;
+use crate::{Ended, output};
+use plot::Plot;
 
 /// The unfinished file, for a second Ctrl-C.
 static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
@@ -86,160 +36,108 @@ fn clear() {
     }
 }
 
-/// Runs a scenario with the engine.
-pub fn run(train: &Train, request: &Request) -> Result<Run, Failure> {
-    let target = request.out.as_deref().map(Target::of).transpose()?;
-    if let Some(path) = &request.plot {
-        // Said before the run rather than after it.
-        let told = |why: &str| Err(Failure::Told(format!("{}: {why}\n", path.display())));
-        if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg")) {
-            return told("--plot writes SVG; end the name with .svg");
-        }
-        if path.is_dir() {
-            return told("is a directory; name a file in it");
-        }
-        if path.parent().is_some_and(|p| !p.as_os_str().is_empty() && !p.is_dir()) {
-            return told("its folder does not exist");
+/// Whether rows go into this file as they come.
+pub fn streams(out: &Path) -> bool {
+    Target::of(out).is_some()
+}
+
+/// A form of rows.
+#[derive(Clone, Copy, PartialEq)]
+enum Target {
+    Csv,
+    #[cfg(feature = "parquet")]
+    Parquet,
+}
+
+impl Target {
+    fn of(path: &Path) -> Option<Self> {
+        match path.extension()?.to_str()?.to_ascii_lowercase().as_str() {
+            "csv" => Some(Self::Csv),
+            #[cfg(feature = "parquet")]
+            "parquet" => Some(Self::Parquet),
+            _ => None,
         }
     }
-    let names: Vec<&str> = train.scenarios().iter().map(|s| s.name.as_str()).collect();
-    let scenario = &train.scenarios()[choose(train.name(), &names, request.scenario.as_deref())?];
-    let rows = request.options.samples.unwrap_or(scenario.samples);
-    if request.rows() && rows > MOST_ROWS {
-        let why =
-            format!("{rows} rows are too many for one JSON document; stream them with --out run.csv or run.parquet\n");
-        return Err(Failure::Told(why));
+}
+
+/// Runs a scenario with its rows going into a file.
+pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<Ended, Ended> {
+    let request = entry.of_matches(matches).unwrap_or_else(|e| e.exit());
+    let request = request.as_any().downcast_ref::<Simulate>().expect("the question of this command");
+    // What is told on the screen; the rows have a file.
+    let form = match matches.get_one::<String>("format").map(String::as_str) {
+        Some(JSON) => JSON,
+        _ => TEXT,
+    };
+    let asked = Asked::screen(entry, matches, form);
+    let file = matches.get_one::<String>("file").map_or("-", String::as_str);
+    asked.guard(out, &[file])?;
+    let plot = matches.try_get_one::<PathBuf>("plot").ok().flatten();
+    if let (Some(path), Some(extra)) = (plot, entry.extras.first()) {
+        asked.guard_extra(extra, path, &[file])?;
     }
+    let of = asked.trains()?;
+    let train = of[0].model.train();
+    let (scenario, options) = request
+        .scenario(train)
+        .and_then(|s| Ok((s, request.options()?)))
+        .map_err(|refusal| asked.refused(&refusal, &of))?;
+    let span = [scenario.start, scenario.end];
     listen(clear);
-    let engine = |recorder: &mut dyn Recorder| {
-        willis::dynamics::simulate(train, &scenario.name, &request.options, recorder).map_err(Failure::Input)
+    let unfinished = Unfinished::create(out)?;
+    let handle = unfinished.file.try_clone().map_err(|e| format!("{}: {e}\n", out.display()))?;
+    let sink = match Target::of(out).expect("it streams") {
+        Target::Csv => Sink::Csv(csv::Rows::new(handle)),
+        #[cfg(feature = "parquet")]
+        Target::Parquet => Sink::Parquet(Box::new(parquet::Rows::new(handle))),
     };
-    record(train, [scenario.start, scenario.end], target, request, engine)
-}
-
-/// Position of the scenario of that name, or of the only one.
-fn choose(train: &str, all: &[&str], name: Option<&str>) -> Result<usize, String> {
-    let known = || all.iter().map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
-    match (name, all) {
-        (_, []) => Err(format!("`{train}` has no scenario to simulate; add a [[scenario]] to its file\n")),
-        (None, [_]) => Ok(0),
-        (None, _) => Err(format!("name one of the scenarios with --scenario: {}\n", known())),
-        (Some(name), _) => all
-            .iter()
-            .position(|n| *n == name)
-            .ok_or_else(|| format!("there is no scenario `{name}`; the scenarios are: {}\n", known())),
-    }
-}
-
-/// A file for rows.
-#[derive(Clone, Copy)]
-struct Target<'a> {
-    path: &'a Path,
-    parquet: bool,
-}
-
-impl<'a> Target<'a> {
-    fn of(path: &'a Path) -> Result<Self, String> {
-        let ending = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-        let told = |why: &str| Err(format!("{}: {why}\n", path.display()));
-        match ending.as_deref() {
-            _ if path.is_dir() => told("is a directory; name a file in it"),
-            _ if path.exists() && !path.is_file() => told("is no ordinary file"),
-            Some("csv") => Ok(Self { path, parquet: false }),
-            Some("parquet") => Ok(Self { path, parquet: true }),
-            _ => told("rows are written as .csv or .parquet; end the name with one of them"),
-        }
-    }
-}
-
-/// Runs what feeds a recorder, with everything that was asked for listening.
-fn record(
-    train: &Train,
-    span: [f64; 2],
-    target: Option<Target<'_>>,
-    request: &Request,
-    engine: impl FnOnce(&mut dyn Recorder) -> Result<RunReport, Failure>,
-) -> Result<Run, Failure> {
-    let unfinished = target.map(|t| Unfinished::create(t.path)).transpose()?;
-    let sink = match (&unfinished, target) {
-        (Some(u), Some(t)) => {
-            let fail = |e: std::io::Error| format!("{}: {e}\n", t.path.display());
-            let file = u.file.try_clone().map_err(fail)?;
-            Some(if t.parquet {
-                Sink::Parquet(Box::new(parquet::Rows::new(file)))
-            } else {
-                Sink::Csv(csv::Rows::new(file))
-            })
-        }
-        _ => None,
-    };
+    let terminal = Terminal::new(1);
+    terminal.begin("thousandths of the scenario", STEPS);
     let mut listener = Listener {
-        wanted: &request.columns,
+        request,
+        terminal: &terminal,
+        span,
+        told: 0,
         kept: vec![],
-        columns: vec![],
         row: vec![],
         sink,
-        plot: request.plot.is_some().then(|| TimePlotBuilder::new(train, span)),
-        with_rows: request.rows(),
-        rows: vec![],
-        all_events: request.json,
+        plot: plot.and_then(|_| Plot::new(train, span)),
+        all_events: form == JSON,
         events: vec![],
-        progress: Progress::new(span),
         wrong: None,
     };
-    let result = engine(&mut listener);
-    listener.progress.finish();
-    if let Some(wrong) = listener.wrong {
-        return Err(Failure::Told(match &target {
-            Some(t) if !wrong.starts_with("--") => format!("{}: {wrong}\n", t.path.display()),
-            _ => wrong + "\n",
-        }));
+    let result = willis::dynamics::simulate(train, &scenario.name, &options, &mut listener);
+    terminal.finish();
+    match listener.wrong {
+        Some(Wrong::File(why)) => return Err(format!("{}: {why}\n", out.display()).into()),
+        Some(Wrong::Request(refusal)) => return Err(asked.refused(&refusal, &of)),
+        None => {}
     }
-    let report = result?;
-    if let (Some(sink), Some(u), Some(t)) = (listener.sink, unfinished, target) {
-        let early = (report.outcome != Outcome::Finished).then(|| early(&report, span[1]));
-        let closed = match sink {
-            Sink::Csv(rows) => rows.finish(early.as_deref()),
-            Sink::Parquet(rows) => rows.finish(&report, early.as_deref()),
-        };
-        closed.map_err(|why| format!("{}: {why}\n", t.path.display()))?;
-        u.complete()?;
+    let mut report = result.map_err(|wrong| asked.refused(&wrong.into(), &of))?;
+    report.events = listener.events;
+    let early = (report.outcome != Outcome::Finished).then(|| early(&report, span[1]));
+    let closed = match listener.sink {
+        Sink::Csv(rows) => rows.finish(early.as_deref()),
+        #[cfg(feature = "parquet")]
+        Sink::Parquet(rows) => rows.finish(&report, early.as_deref()),
+    };
+    closed.map_err(|why| format!("{}: {why}\n", out.display()))?;
+    unfinished.complete()?;
+    if let (Some(path), Some(plot)) = (plot, listener.plot) {
+        output::write(path, plot.svg(&report).as_bytes())?;
     }
-    if let (Some(path), Some(plot)) = (&request.plot, listener.plot) {
-        crate::output::write(path, (willis_report::time_plot(&plot.finish(&report)) + "\n").as_bytes())?;
-    }
-    Ok(Run {
-        report,
-        scenario_end_s: span[1],
-        events: listener.events,
-        columns: listener.columns,
-        rows: listener.rows,
-        with_rows: request.rows(),
-    })
+    let told = match form {
+        JSON => serde_json::to_string_pretty(&report).expect("plain data") + "\n",
+        _ => simulation_text(&report),
+    };
+    Ok(if report.outcome == Outcome::Interrupted { Ended::Interrupted(told) } else { Ended::Answered(told) })
 }
 
 /// What a file says of a run that did not reach its end.
 fn early(r: &RunReport, end: f64) -> String {
     let word = if r.outcome == Outcome::Interrupted { "interrupted" } else { "ended" };
     let why = if r.outcome.why().is_empty() { String::new() } else { format!("; {}", r.outcome.why()) };
-    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, outcome_in_words(&r.outcome))
-}
-
-/// `willis-simulation-1`
-pub fn json(run: &Run) -> String {
-    let mut all = serde_json::to_value(&run.report).expect("plain data");
-    let fields = all.as_object_mut().expect("a report has fields");
-    fields.insert("scenario_end_s".into(), json!(run.scenario_end_s));
-    // The count makes room for the events themselves.
-    fields.insert("event_count".into(), json!(run.report.events));
-    let events: Vec<Value> = run.events.iter().map(|e| serde_json::to_value(e).expect("plain data")).collect();
-    fields.insert("events".into(), Value::Array(events));
-    if run.with_rows {
-        fields.insert("columns".into(), serde_json::to_value(&run.columns).expect("plain data"));
-        // A value that is not determined becomes null.
-        fields.insert("rows".into(), serde_json::to_value(&run.rows).expect("plain data"));
-    }
-    serde_json::to_string_pretty(&all).expect("plain data") + "\n"
+    format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, r.outcome.words())
 }
 
 /// A file that has its name only when it is whole.
@@ -286,24 +184,33 @@ impl Drop for Unfinished {
 
 enum Sink {
     Csv(csv::Rows<File>),
+    #[cfg(feature = "parquet")]
     Parquet(Box<parquet::Rows<File>>),
 }
 
+/// Why a run was ended from here.
+enum Wrong {
+    File(String),
+    Request(Refusal),
+}
+
+/// Steps of the bar.
+const STEPS: u64 = 1000;
+
 /// Hands a run to everyone who wants it.
 struct Listener<'a> {
-    wanted: &'a [String],
+    request: &'a Simulate,
+    terminal: &'a Terminal,
+    span: [f64; 2],
+    told: u64,
     /// Positions of the columns that were asked for.
     kept: Vec<usize>,
-    columns: Vec<Column>,
     row: Vec<f64>,
-    sink: Option<Sink>,
-    plot: Option<TimePlotBuilder>,
-    with_rows: bool,
-    rows: Vec<Vec<f64>>,
+    sink: Sink,
+    plot: Option<Plot>,
     all_events: bool,
     events: Vec<Event>,
-    progress: Progress,
-    wrong: Option<String>,
+    wrong: Option<Wrong>,
 }
 
 impl Listener<'_> {
@@ -311,7 +218,7 @@ impl Listener<'_> {
         match result {
             Ok(()) => ControlFlow::Continue(()),
             Err(why) => {
-                self.wrong.get_or_insert(why);
+                self.wrong.get_or_insert(Wrong::File(why));
                 ControlFlow::Break(())
             }
         }
@@ -320,18 +227,21 @@ impl Listener<'_> {
 
 impl Recorder for Listener<'_> {
     fn columns(&mut self, columns: &[Column]) -> ControlFlow<()> {
-        match select(columns, self.wanted) {
+        match self.request.select(columns) {
             Ok(kept) => self.kept = kept,
-            Err(why) => return self.check(Err(why)),
+            Err(refusal) => {
+                self.wrong = Some(Wrong::Request(refusal));
+                return ControlFlow::Break(());
+            }
         }
-        self.columns = self.kept.iter().map(|&k| columns[k].clone()).collect();
+        let columns: Vec<Column> = self.kept.iter().map(|&k| columns[k].clone()).collect();
         if let Some(plot) = &mut self.plot {
-            let _ = plot.columns(&self.columns);
+            let _ = plot.listener().columns(&columns);
         }
         let started = match &mut self.sink {
-            Some(Sink::Csv(rows)) => rows.columns(&self.columns),
-            Some(Sink::Parquet(rows)) => rows.columns(&self.columns),
-            None => Ok(()),
+            Sink::Csv(rows) => rows.columns(&columns),
+            #[cfg(feature = "parquet")]
+            Sink::Parquet(rows) => rows.columns(&columns),
         };
         self.check(started)
     }
@@ -340,107 +250,37 @@ impl Recorder for Listener<'_> {
         self.row.clear();
         self.row.extend(self.kept.iter().map(|&k| sample.values[k]));
         if let Some(plot) = &mut self.plot {
-            let _ = plot.sample(Sample { time: sample.time, values: &self.row });
-        }
-        if self.with_rows {
-            self.rows.push(self.row.clone());
+            let _ = plot.listener().sample(Sample { time_s: sample.time_s, values: &self.row });
         }
         let written = match &mut self.sink {
-            Some(Sink::Csv(rows)) => rows.row(&self.row),
-            Some(Sink::Parquet(rows)) => rows.row(&self.row),
-            None => Ok(()),
+            Sink::Csv(rows) => rows.row(&self.row),
+            #[cfg(feature = "parquet")]
+            Sink::Parquet(rows) => rows.row(&self.row),
         };
         self.check(written)?;
         // One step may have many rows.
-        self.progress(sample.time)
+        self.progress(sample.time_s)
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
         if let Some(plot) = &mut self.plot {
-            let _ = plot.event(event);
+            let _ = plot.listener().event(event);
         }
         // The text shows the first of them only.
-        if self.all_events || self.events.len() < text::MOST_EVENTS {
+        if self.all_events || self.events.len() < MOST_EVENTS {
             self.events.push(event.clone());
         }
         ControlFlow::Continue(())
     }
 
-    fn progress(&mut self, time: f64) -> ControlFlow<()> {
-        self.progress.reached(time);
+    fn progress(&mut self, time_s: f64) -> ControlFlow<()> {
+        let [start, end] = self.span;
+        let now = ((time_s - start) / (end - start) * STEPS as f64).clamp(0.0, STEPS as f64) as u64;
+        if now > self.told {
+            self.terminal.advance(now - self.told);
+            self.told = now;
+        }
         if interrupted() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
-}
-
-/// Positions of the time and of the columns that were asked for, by kind or by name.
-fn select(columns: &[Column], wanted: &[String]) -> Result<Vec<usize>, String> {
-    if wanted.is_empty() {
-        return Ok((0..columns.len()).collect());
-    }
-    let named = |c: &Column, w: &str| c.kind == w || c.name == w;
-    for w in wanted {
-        if !columns.iter().any(|c| named(c, w)) {
-            let mut kinds: Vec<&str> = Vec::new();
-            for c in columns {
-                if !kinds.contains(&c.kind) {
-                    kinds.push(c.kind);
-                }
-            }
-            let example = columns.iter().find(|c| c.kind != "time").map_or("time_s", |c| c.name.as_str());
-            return Err(format!(
-                "--columns {w}: this run has no such column; give kinds ({}) or names such as {example}",
-                kinds.join(", ")
-            ));
-        }
-    }
-    let kept = |c: &Column| c.kind == "time" || wanted.iter().any(|w| named(c, w));
-    Ok((0..columns.len()).filter(|&k| kept(&columns[k])).collect())
-}
-
-/// A bar on standard error, where that is a terminal and the run takes its time.
-struct Progress {
-    span: [f64; 2],
-    since: Instant,
-    bar: Option<ProgressBar>,
-    shown: bool,
-    calls: u32,
-}
-
-impl Progress {
-    const STEPS: u64 = 1000;
-
-    fn new(span: [f64; 2]) -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| {
-            let bar = ProgressBar::with_draw_target(Some(Self::STEPS), ProgressDrawTarget::hidden());
-            let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {eta} left");
-            bar.set_style(style.expect("a good template"));
-            bar
-        });
-        Self { span, since: Instant::now(), bar, shown: false, calls: 0 }
-    }
-
-    fn reached(&mut self, time: f64) {
-        let Some(bar) = &self.bar else { return };
-        self.calls = self.calls.wrapping_add(1);
-        if self.calls % 16 != 1 {
-            return;
-        }
-        if !self.shown && self.since.elapsed() > Duration::from_millis(500) {
-            self.shown = true;
-            bar.set_draw_target(ProgressDrawTarget::stderr());
-        }
-        if self.shown {
-            let [start, end] = self.span;
-            let part = ((time - start) / (end - start)).clamp(0.0, 1.0);
-            bar.set_message(format!("t = {time:.4} s of {end} s"));
-            bar.set_position((part * Self::STEPS as f64) as u64);
-        }
-    }
-
-    fn finish(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
     }
 }
 

@@ -1,109 +1,103 @@
-//! Sweeps: many points on all cores, to a table or to a few numbers.
+//! `willis sweep`: many points on all cores, to a table in a file piece by piece, or to a few numbers.
 
+#[cfg(feature = "parquet")]
+mod parquet;
 mod table;
-mod text;
 
-use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
-use willis::diagnostic::Diagnostics;
-use willis::study::{Axis, Cells, Column, CompiledSweep, Hold, Question, Room, Rows, Subject, Summary, Sweep, Trains};
+use willis::study::{Shard, Summary, SweepPlan, SweepReport as Report, SweepStudy as Study, SweepWorkspace};
+use willis::work::{self, Work};
+use willis_ask::questions::{Sweep, bytes_in_words, duration_in_words, points_in_words, sweep_text};
+use willis_ask::{Entry, Given};
 
-use crate::{interrupt, work};
+use crate::command::{CSV, JSON, JSON_LINES, PARQUET, TEXT};
+use crate::run::{Asked, notes};
+use crate::work::{Terminal, cores};
+use crate::{Ended, output};
 use table::Form;
 
-pub use text::text;
-
-/// What is asked.
-pub struct Request {
-    /// Of the train file; then the axes and what follows up to the columns are its.
-    pub study: Option<String>,
-    pub over: Vec<String>,
-    pub operation: Option<String>,
-    pub state: Option<String>,
-    pub hold: Hold,
-    pub columns: Vec<String>,
-    pub out: Option<PathBuf>,
-    pub force: bool,
-    pub yes: bool,
-    /// Which of how many, from 1.
-    pub shard: Option<(u64, u64)>,
-    pub threads: Option<usize>,
-    pub fast: bool,
+/// The options of a sweep that only a terminal has.
+pub fn options(command: Command) -> Command {
+    command
+        .arg(
+            Arg::new("yes")
+                .long("yes")
+                .action(ArgAction::SetTrue)
+                .help("Go, however long it takes and however large it gets"),
+        )
+        .arg(
+            Arg::new("shard")
+                .long("shard")
+                .value_name("K/N")
+                .value_parser(shard)
+                .help("Only this part of the sweep, 3/16; `willis merge` puts the parts together"),
+        )
+        .arg(
+            Arg::new("threads")
+                .long("threads")
+                .value_name("THREADS")
+                .value_parser(value_parser!(u16).range(1..=1024))
+                .help("Threads. Default: as many as there are cores"),
+        )
 }
 
-/// Why there is no answer.
-pub enum Failure {
-    /// The question is wrong.
-    Input(Diagnostics),
-    /// Anything else, in words.
-    Told(String),
-    /// Ctrl-C, with what is left.
-    Interrupted(String),
-}
-
-impl From<String> for Failure {
-    fn from(text: String) -> Self {
-        Self::Told(text)
+/// `3/16`
+fn shard(text: &str) -> Result<Shard, String> {
+    let parts = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+    match parts {
+        Some((_, n)) if n > 1_000_000 => Err("more than a million parts are not made".into()),
+        Some((k, n)) => Shard::new(k, n).ok_or_else(|| format!("there is no part {k} of {n}; parts count from 1")),
+        None => Err("write which of how many, as in 3/16".into()),
     }
 }
 
-impl From<Diagnostics> for Failure {
-    fn from(wrong: Diagnostics) -> Self {
-        Self::Input(wrong)
+/// Runs a sweep.
+pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> {
+    let named = matches.get_one::<String>("format").map(String::as_str);
+    let out = matches.get_one::<PathBuf>("output").map(PathBuf::as_path);
+    let form = out.and_then(Form::of);
+    // A small table for the screen, and an answer in another file, are made in memory as any.
+    let is_table = named.is_some_and(|f| [CSV, JSON_LINES, PARQUET].contains(&f));
+    if form.is_none() && (is_table || out.is_some()) {
+        return crate::run::run(entry, matches);
     }
+    if let (Some(form), true, Some(named)) = (form, is_table, named)
+        && form.name() != named
+    {
+        return Err(format!("the name of the file says {}, --format {named}\n", form.name()).into());
+    }
+    let request = entry.of_matches(matches).unwrap_or_else(|e| e.exit());
+    let request = request.as_any().downcast_ref::<Sweep>().expect("the question of this command");
+    let request = Sweep { summary_only: out.is_none(), ..request.clone() };
+    let asked = Asked::screen(entry, matches, if named == Some(JSON) { JSON } else { TEXT });
+    if let Some(out) = out {
+        let file = matches.get_one::<String>("file").map_or("-", String::as_str);
+        output::apart(out, &[file.as_ref()])?;
+    }
+    let of = asked.trains()?;
+    let plan = SweepPlan::new(&of[0].model, &request.request())
+        .and_then(|plan| plan.check().map(|()| plan))
+        .map_err(|wrong| asked.refused(&wrong.into(), &of))?;
+    let shard = matches.get_one::<Shard>("shard").copied();
+    let threads = matches.get_one::<u16>("threads").map_or_else(cores, |n| usize::from(*n));
+    let report = compute(&plan, out.zip(form), shard, threads, asked.force, matches.get_flag("yes"))?;
+    Ok(Ended::Answered(told(&asked, &report, &of)))
 }
 
-/// An axis as it is told.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AxisReport {
-    pub quantity: String,
-    pub unit: String,
-    pub count: u64,
-    pub first: String,
-    pub last: String,
-}
-
-/// What a sweep is: the same for all its shards, and for every run of it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Study {
-    pub format: String,
-    pub version: String,
-    pub train: String,
-    /// Of the train file, of the tables that it names, and of all that was asked.
-    pub sha256: String,
-    pub operation: String,
-    pub state: Option<String>,
-    pub held: String,
-    /// `analyze`, or `compiled`.
-    pub method: String,
-    pub axes: Vec<AxisReport>,
-    pub points: u64,
-    pub columns: Vec<Column>,
-    /// Points of a piece.
-    pub piece: u64,
-    pub assumptions: Vec<String>,
-}
-
-/// A sweep that was run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Report {
-    #[serde(flatten)]
-    pub study: Study,
-    /// `3/16`, of a part of a sweep.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shard: Option<String>,
-    pub rows: u64,
-    /// Of the table, where one was written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub table_sha256: Option<String>,
-    pub summary: Summary,
-    /// The points of the extremes, in words.
-    pub places: BTreeMap<String, String>,
+/// A report for the screen.
+fn told(asked: &Asked<'_>, report: &Report, of: &[Given]) -> String {
+    match asked.form {
+        JSON => serde_json::to_string_pretty(report).expect("plain data") + "\n",
+        _ => sweep_text(report) + &notes(of[0].model.warnings(), of),
+    }
 }
 
 /// What is kept beside a piece.
@@ -113,94 +107,8 @@ struct Piece {
     summary: Summary,
 }
 
-/// Points above which a sweep is tried for time and size first.
-const MANY: u64 = 20_000;
 /// What is done without asking: seconds and bytes.
 const UNASKED: (f64, f64) = (3600.0, 20e9);
-/// Points between two looks for Ctrl-C.
-const LOOK: u64 = 256;
-
-/// How points are answered.
-enum Engine<'a, 's> {
-    Analyze(&'a Sweep<'s>),
-    Compiled(CompiledSweep<'a, 's>),
-}
-
-/// What a thread needs of its own.
-#[derive(Default)]
-struct Own {
-    trains: Trains,
-    room: Room,
-}
-
-impl Engine<'_, '_> {
-    fn columns(&self) -> Vec<Column> {
-        match self {
-            Self::Analyze(s) => s.columns().cloned().collect(),
-            Self::Compiled(s) => s.columns().cloned().collect(),
-        }
-    }
-
-    /// Rows of a piece; none where Ctrl-C was pressed.
-    fn rows(&self, from: u64, to: u64, group: u64, own: &mut Own) -> Option<Rows> {
-        let Self::Analyze(sweep) = self else {
-            let Self::Compiled(sweep) = self else { unreachable!("one of the two") };
-            return (!interrupt::interrupted()).then(|| sweep.rows(from, to, &mut own.room));
-        };
-        let step = (LOOK / group).max(1) * group;
-        let mut all: Option<Rows> = None;
-        let mut point = from;
-        while point < to {
-            if interrupt::interrupted() {
-                return None;
-            }
-            let end = (point + step).min(to);
-            let rows = sweep.rows(point, end, &mut own.trains);
-            match &mut all {
-                None => all = Some(rows),
-                Some(all) => append(all, rows),
-            }
-            point = end;
-        }
-        all
-    }
-
-    fn summary(&self, from: u64, to: u64, group: u64, own: &mut Own) -> Option<Summary> {
-        match self {
-            Self::Analyze(_) => self.rows(from, to, group, own).map(|r| r.summary),
-            Self::Compiled(s) => (!interrupt::interrupted()).then(|| s.summary(from, to, &mut own.room)),
-        }
-    }
-}
-
-fn append(all: &mut Rows, more: Rows) {
-    for (to, from) in all.columns.iter_mut().zip(more.columns) {
-        match (to, from) {
-            (Cells::Numbers(to), Cells::Numbers(from)) => to.extend(from),
-            (Cells::Texts(to), Cells::Texts(from)) => to.extend(from),
-            _ => unreachable!("columns keep their kind"),
-        }
-    }
-    all.summary.join(&more.summary);
-}
-
-/// Points of a piece: a few dozen pieces of a small sweep, groups whole.
-fn piece(points: u64, group: u64, fast: bool) -> u64 {
-    let [least, most] = if fast { [1 << 16, 1 << 18] } else { [1 << 7, 1 << 13] };
-    // However many points, a list of the pieces fits anywhere.
-    let wanted = (points / 64).next_power_of_two().clamp(least, most).max(points / 1_000_000);
-    wanted.div_ceil(group) * group
-}
-
-fn sha256(parts: &[&str]) -> String {
-    let mut hash = Sha256::new();
-    for part in parts {
-        // With its length, so that no two lists mean the same bytes.
-        hash.update((part.len() as u64).to_le_bytes());
-        hash.update(part.as_bytes());
-    }
-    hex(&hash.finalize())
-}
 
 /// Of a file.
 fn sha256_of(path: &Path) -> std::io::Result<String> {
@@ -218,214 +126,103 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// Runs a sweep of a train file with `text`.
-pub fn run(subject: &Subject, text: &str, laws: &[String], request: &Request) -> Result<Report, Failure> {
-    let sweep = match &request.study {
-        Some(name) => Sweep::of_file(subject, name)?,
-        None => {
-            let mut wrong = Diagnostics::default();
-            let mut axes = vec![];
-            for over in &request.over {
-                match Axis::parse(over, subject) {
-                    Ok(axis) => axes.push(axis),
-                    Err(d) => wrong.push(*d),
+/// Computes a sweep, or a shard of it, into a table or to a few numbers.
+fn compute(
+    plan: &SweepPlan<'_>,
+    out: Option<(&Path, Form)>,
+    shard: Option<Shard>,
+    threads: usize,
+    force: bool,
+    yes: bool,
+) -> Result<Report, Ended> {
+    let pieces = shard.map_or(0..plan.pieces(), |shard| shard.pieces(plan.pieces()));
+    let size = |k: u64| plan.points(k).end - plan.points(k).start;
+    let rows: u64 = pieces.clone().map(size).sum();
+    let terminal = Terminal::new(threads);
+    if !yes {
+        ask(plan, out.map(|o| o.1), rows, threads, &terminal)?;
+    }
+    let rooms = Mutex::new(Vec::new());
+    // Each thread has a workspace of its own while it works.
+    let with_room = |job: &mut dyn FnMut(&mut SweepWorkspace)| {
+        let mut room = rooms.lock().ok().and_then(|mut all| all.pop()).unwrap_or_default();
+        job(&mut room);
+        if let Ok(mut all) = rooms.lock() {
+            all.push(room);
+        }
+    };
+    let count = pieces.end - pieces.start;
+    let Some((out, form)) = out else {
+        terminal.begin("points", rows);
+        let parts = work::map(&terminal, count as usize, |k| {
+            let points = plan.points(pieces.start + k as u64);
+            let mut part = Err(work::Cancelled);
+            with_room(&mut |room| part = plan.summary(points.clone(), room, &terminal));
+            terminal.advance(points.end - points.start);
+            part
+        });
+        let parts: Result<Vec<Summary>, _> = parts.and_then(|all| all.into_iter().collect());
+        let Ok(parts) = parts else {
+            let told = "interrupted: nothing was written (give --output to keep pieces)\n";
+            return Err(Ended::Interrupted(told.into()));
+        };
+        let mut summary = Summary::default();
+        parts.iter().for_each(|part| summary.join(part));
+        return Ok(plan.report(shard, summary));
+    };
+    let folder = Folder::open(out, form, plan.study(), shard, force)?;
+    let todo: Vec<u64> = pieces.clone().filter(|k| !folder.has(*k)).collect();
+    if (todo.len() as u64) < count {
+        eprintln!("going on: {} of {count} pieces are there already", count - todo.len() as u64);
+    }
+    let (failed, kept) = (Mutex::new(None), AtomicU64::new(0));
+    terminal.begin("points", todo.iter().map(|k| size(*k)).sum());
+    terminal.run(todo.len(), &|at| {
+        let k = todo[at];
+        if failed.lock().is_ok_and(|f| f.is_some()) {
+            return;
+        }
+        with_room(&mut |room| {
+            let Ok(rows) = plan.rows(plan.points(k), room, &terminal) else { return };
+            let bytes = form.encode(&plan.study().columns, &rows);
+            match bytes.and_then(|bytes| folder.keep(k, &bytes, &rows.summary)) {
+                Ok(()) => drop(kept.fetch_add(1, Ordering::Relaxed)),
+                Err(why) => {
+                    if let Ok(mut failed) = failed.lock() {
+                        failed.get_or_insert(why);
+                    }
                 }
             }
-            if wrong.has_errors() {
-                return Err(wrong.into());
-            }
-            let (operation, state) = (request.operation.as_deref(), request.state.as_deref());
-            Sweep::new(Question::new(subject, operation, state, request.hold)?, axes, &request.columns)?
-        }
-    };
-    let engine = if request.fast { Engine::Compiled(sweep.compile()?) } else { Engine::Analyze(&sweep) };
-    let form = request.out.as_deref().map(Form::of).transpose()?;
-    let group = sweep.group();
-    let piece = piece(sweep.len(), group, request.fast);
-    let pieces = sweep.len().div_ceil(piece);
-    let (first, last) = match request.shard {
-        None => (0, pieces),
-        Some((k, n)) => {
-            // Wide enough for any product.
-            let at = |k: u64| (u128::from(pieces) * u128::from(k) / u128::from(n)) as u64;
-            (at(k - 1), at(k))
-        }
-    };
-    let shard = request.shard.map(|(k, n)| format!("{k}/{n}"));
-    let rows = (last * piece).min(sweep.len()) - (first * piece).min(sweep.len());
-    let columns = engine.columns();
-    let study = study(subject, text, laws, request, &sweep, columns, piece);
-    let threads = request.threads.unwrap_or_else(work::cores);
-
-    refuse_nonsense(&sweep)?;
-    if !request.yes && rows > MANY {
-        ask(&engine, &sweep, form, &study.columns, rows, threads)?;
+        });
+        terminal.advance(size(k));
+    });
+    terminal.finish();
+    if let Ok(Some(why)) = failed.into_inner() {
+        return Err(format!("{why}{}", folder.advice()).into());
     }
-    interrupt::listen(|| {});
-    let span = |k: u64| (k * piece, ((k + 1) * piece).min(sweep.len()));
-    let summary = match (&request.out, form) {
-        (Some(out), Some(form)) => {
-            let folder = Folder::open(out, form, &study, shard.as_deref(), request.force)?;
-            let todo: Vec<u64> = (first..last).filter(|k| !folder.has(*k)).collect();
-            let kept = (last - first) - todo.len() as u64;
-            if kept > 0 {
-                eprintln!("going on: {kept} of {} pieces are there already", last - first);
-            }
-            let done: u64 = rows - todo.iter().map(|k| span(*k).1 - span(*k).0).sum::<u64>();
-            let make = |k: u64, own: &mut Own| -> Result<Option<()>, String> {
-                let (from, to) = span(k);
-                let Some(rows) = engine.rows(from, to, group, own) else { return Ok(None) };
-                let bytes = form.encode(&study.columns, &rows)?;
-                folder.keep(k, &bytes, &rows.summary).map(Some)
-            };
-            let left = work::run(&todo, threads, (done, rows, "points"), |k| span(k).1 - span(k).0, make, |_, ()| {});
-            let left = left.map_err(|e| format!("{e}{}", folder.advice()))?;
-            if left > 0 {
-                return Err(Failure::Interrupted(format!(
-                    "interrupted: {} of {} pieces are kept in {}; the same command goes on from there\n",
-                    (last - first) - left,
-                    last - first,
-                    folder.path.display()
-                )));
-            }
-            let summary = folder.summary(first..last)?;
-            let mut report = report(&sweep, study, shard, rows, summary);
-            folder.finish(first..last, &mut report)?;
-            return Ok(report);
-        }
-        _ => {
-            let all: Vec<u64> = (first..last).collect();
-            let mut ordered = work::InOrder::new(first);
-            let mut summary = Summary::default();
-            let make = |k: u64, own: &mut Own| {
-                let (from, to) = span(k);
-                Ok(engine.summary(from, to, group, own))
-            };
-            let left = work::run(
-                &all,
-                threads,
-                (0, rows, "points"),
-                |k| span(k).1 - span(k).0,
-                make,
-                |k, s: Summary| {
-                    ordered.push(k, s, |s| summary.join(&s));
-                },
-            )?;
-            if left > 0 {
-                return Err(Failure::Interrupted(
-                    "interrupted: nothing was written (give --out to keep pieces)\n".into(),
-                ));
-            }
-            summary
-        }
-    };
-    Ok(report(&sweep, study, shard, rows, summary))
-}
-
-fn study(
-    subject: &Subject,
-    text: &str,
-    laws: &[String],
-    request: &Request,
-    sweep: &Sweep<'_>,
-    columns: Vec<Column>,
-    piece: u64,
-) -> Study {
-    let train = subject.train();
-    let axis = |a: &Axis| AxisReport {
-        quantity: a.name.clone(),
-        unit: a.unit.clone(),
-        count: a.len() as u64,
-        first: a.setting(0),
-        last: a.setting(a.len() - 1),
-    };
-    let base = sweep.question().base();
-    let state = base.state.map(|k| train.states()[k].name.clone());
-    let method = if request.fast { "compiled" } else { "analyze" };
-    let held = serde_json::to_value(sweep.question().hold()).ok().and_then(|v| v.as_str().map(str::to_owned));
-    let held = held.unwrap_or_default();
-    let names: Vec<&str> = columns.iter().map(|c| c.name.as_str()).collect();
-    let (names, laws) = (names.join("\n"), laws.join("\n"));
-    let over = request.over.iter().map(|o| o.trim()).collect::<Vec<_>>().join("\n");
-    let over = request.study.as_ref().map_or(over, |name| format!("study {name}"));
-    let files = subject.files().map(|(name, text)| format!("{name}\n{text}")).collect::<Vec<_>>().join("\n");
-    let version = env!("CARGO_PKG_VERSION");
-    let state_text = state.as_deref().unwrap_or_default();
-    let parts = [version, text, &files, &laws, &over, &base.name, state_text, &held, method, &names];
-    Study {
-        format: "willis-sweep-1".into(),
-        version: version.into(),
-        train: train.name().into(),
-        sha256: sha256(&parts),
-        operation: base.name.clone(),
-        state,
-        held,
-        method: method.into(),
-        axes: sweep.axes().iter().map(axis).collect(),
-        points: sweep.len(),
-        columns,
-        piece,
-        assumptions: willis::analysis::assumptions(train),
+    let left = todo.len() as u64 - kept.into_inner();
+    if left > 0 {
+        let told = "the same command goes on from there";
+        let kept = format!("{} of {count} pieces are kept in {}", count - left, folder.path.display());
+        return Err(Ended::Interrupted(format!("interrupted: {kept}; {told}\n")));
     }
-}
-
-fn report(sweep: &Sweep<'_>, study: Study, shard: Option<String>, rows: u64, summary: Summary) -> Report {
-    let mut places = BTreeMap::new();
-    for (name, extent) in [("efficiency", &summary.efficiency), ("loss_w", &summary.loss_w)] {
-        if extent.count > 0 {
-            places.insert(format!("least_{name}"), sweep.describe(extent.least.1));
-            places.insert(format!("most_{name}"), sweep.describe(extent.most.1));
-        }
-    }
-    for (code, seen) in &summary.seen {
-        places.insert(code.clone(), sweep.describe(seen.point));
-    }
-    Report { study, shard, rows, table_sha256: None, summary, places }
-}
-
-/// A sweep none of whose first, last and middle points makes a question is wrong itself.
-fn refuse_nonsense(sweep: &Sweep<'_>) -> Result<(), Failure> {
-    let mut trains = Trains::default();
-    let mut first = None;
-    for k in 0..=4 {
-        let point = (sweep.len() - 1) * k / 4;
-        match sweep.ask(point, &mut trains).and_then(|(train, o)| willis::analysis::operate(&train, &o).map(drop)) {
-            Ok(()) => return Ok(()),
-            Err(wrong) => drop(first.get_or_insert(wrong)),
-        }
-    }
-    Err(first.map_or_else(|| Failure::Told(String::new()), Failure::Input))
+    let mut report = plan.report(shard, folder.summary(pieces.clone())?);
+    folder.finish(pieces, &mut report)?;
+    Ok(report)
 }
 
 /// Asks for `--yes` where a sweep is very long or very large.
-fn ask(
-    engine: &Engine<'_, '_>,
-    sweep: &Sweep<'_>,
-    form: Option<Form>,
-    columns: &[Column],
-    rows: u64,
-    threads: usize,
-) -> Result<(), Failure> {
-    // Compiled points are a matter of nanoseconds; nobody waits for those, only for what is written.
-    if matches!(engine, Engine::Compiled(_)) && form.is_none() && rows < 1_000_000_000 {
-        return Ok(());
-    }
-    let group = sweep.group();
-    let (mut own, mut tried, mut bytes) = (Own::default(), 0, 0);
-    let started = Instant::now();
-    const TRIALS: u64 = 32;
-    let mut spent = Duration::ZERO;
-    for k in 0..TRIALS {
-        let from = sweep.len() / TRIALS * k / group * group;
-        let wide = if matches!(engine, Engine::Compiled(_)) { 4096 } else { 1 };
-        let to = (from + wide.max(group).div_ceil(group) * group).min(sweep.len());
-        let before = Instant::now();
-        let Some(found) = engine.rows(from, to, group, &mut own) else { break };
+fn ask(plan: &SweepPlan<'_>, form: Option<Form>, rows: u64, threads: usize, terminal: &Terminal) -> Result<(), Ended> {
+    let (mut room, mut tried, mut bytes) = (SweepWorkspace::default(), 0, 0);
+    let (started, mut spent) = (Instant::now(), Duration::ZERO);
+    for (k, points) in plan.trials(rows, form.is_some()).enumerate() {
+        let (before, count) = (Instant::now(), points.end - points.start);
+        let Ok(found) = plan.rows(points, &mut room, terminal) else { break };
         // The first call pays for what is made once.
         if k > 0 {
             spent += before.elapsed();
-            tried += to - from;
-            bytes += form.map_or(0, |f| f.encode(columns, &found).map_or(0, |b| b.len()) as u64);
+            tried += count;
+            bytes += form.map_or(0, |f| f.encode(&plan.study().columns, &found).map_or(0, |b| b.len()) as u64);
         }
         if started.elapsed() > Duration::from_millis(300) {
             break;
@@ -434,20 +231,22 @@ fn ask(
     let tried = tried.max(1) as f64;
     let seconds = spent.as_secs_f64() / tried * rows as f64 / threads as f64;
     // A table of few rows is mostly its footer.
-    let each = if form == Some(Form::Parquet) { columns.len() as f64 * 6.0 } else { bytes as f64 / tried };
+    let is_parquet = form.is_some_and(|f| f.name() == PARQUET);
+    let each = if is_parquet { plan.columns().len() as f64 * 6.0 } else { bytes as f64 / tried };
     let size = form.map_or(0.0, |_| each * rows as f64);
     if seconds <= UNASKED.0 && size <= UNASKED.1 {
         return Ok(());
     }
-    let mut what = format!("{} would take about {} on {threads} threads", text::points(rows), text::duration(seconds));
+    let mut what =
+        format!("{} would take about {} on {threads} threads", points_in_words(rows), duration_in_words(seconds));
     if size > 0.0 {
-        what += &format!(" and about {} of disk", text::bytes(size));
+        what += &format!(" and about {} of disk", bytes_in_words(size));
     }
     let mut hint = "add --yes to go, --shard 1/16 to share it among machines, or take fewer values".to_owned();
-    if matches!(engine, Engine::Analyze(_)) && sweep.compile().is_ok() {
+    if plan.could_be_compiled() {
         hint += "; --fast is some thousand times faster here, to a part in 10^12";
     }
-    Err(Failure::Told(format!("{what}; {hint}\n")))
+    Err(format!("{what}; {hint}\n").into())
 }
 
 /// The folder beside the table in which finished pieces are kept.
@@ -490,7 +289,7 @@ fn sidecar(out: &Path) -> PathBuf {
 
 impl Folder {
     /// Takes up what an interrupted run left, or begins.
-    fn open(out: &Path, form: Form, study: &Study, shard: Option<&str>, force: bool) -> Result<Self, String> {
+    fn open(out: &Path, form: Form, study: &Study, shard: Option<Shard>, force: bool) -> Result<Self, String> {
         let name = out.display();
         if out.is_dir() {
             return Err(format!("{name}: is a directory; name a file in it\n"));
@@ -600,7 +399,9 @@ fn write_table(out: &Path, form: Form, pieces: &[PathBuf], report: &mut Report) 
 
 /// Puts the shards of a sweep together.
 pub fn merge(out: &Path, shards: &[PathBuf], force: bool) -> Result<Report, String> {
-    let form = Form::of(out)?;
+    let Some(form) = Form::of(out) else {
+        return Err(format!("{}: end the name with .csv, .jsonl or .parquet\n", out.display()));
+    };
     if out.exists() && !force {
         return Err(format!("{}: exists already; add --force to replace it\n", out.display()));
     }
@@ -617,7 +418,7 @@ pub fn merge(out: &Path, shards: &[PathBuf], force: bool) -> Result<Report, Stri
                 continue;
             }
         };
-        if Form::of(shard).ok() != Some(form) || !shard.exists() {
+        if Form::of(shard) != Some(form) || !shard.exists() {
             wrong += &format!("{}: is no table written as {}\n", shard.display(), form.name());
             continue;
         }
@@ -626,12 +427,8 @@ pub fn merge(out: &Path, shards: &[PathBuf], force: bool) -> Result<Report, Stri
             wrong += &format!("{}: {what}; make that shard again\n", shard.display());
             continue;
         }
-        let parsed = report.shard.as_deref().and_then(|s| {
-            let (k, n) = s.split_once('/')?;
-            Some((k.parse().ok()?, n.parse().ok()?))
-        });
-        match parsed {
-            Some((k, n)) => all.push((k, n, shard.clone(), report)),
+        match report.shard {
+            Some(own) => all.push((own.number, own.of, shard.clone(), report)),
             None => wrong += &format!("{}: is a whole sweep, no shard\n", shard.display()),
         }
     }
@@ -661,33 +458,8 @@ pub fn merge(out: &Path, shards: &[PathBuf], force: bool) -> Result<Report, Stri
     if !wrong.is_empty() {
         return Err(format!("{wrong}these shards do not make a sweep\n"));
     }
-    let Some((_, _, _, first)) = all.first() else { return Err("no shards to merge\n".into()) };
-    let mut report = Report {
-        shard: None,
-        rows: 0,
-        table_sha256: None,
-        summary: Summary::default(),
-        places: BTreeMap::new(),
-        ..first.clone()
-    };
-    for (.., own) in &all {
-        // Where an extreme or a warning is comes from the shard that had it first.
-        let before = report.summary.clone();
-        report.rows += own.rows;
-        report.summary.join(&own.summary);
-        for (name, place) in &own.places {
-            let is_new = match name.as_str() {
-                "least_efficiency" => report.summary.efficiency.least != before.efficiency.least,
-                "most_efficiency" => report.summary.efficiency.most != before.efficiency.most,
-                "least_loss_w" => report.summary.loss_w.least != before.loss_w.least,
-                "most_loss_w" => report.summary.loss_w.most != before.loss_w.most,
-                _ => !before.seen.contains_key(name),
-            };
-            if is_new {
-                report.places.insert(name.clone(), place.clone());
-            }
-        }
-    }
+    let reports: Vec<Report> = all.iter().map(|a| a.3.clone()).collect();
+    let Some(mut report) = Report::merged(&reports) else { return Err("no shards to merge\n".into()) };
     if report.rows != report.study.points {
         return Err(format!("the shards have {} rows, the sweep {} points\n", report.rows, report.study.points));
     }
@@ -728,4 +500,30 @@ impl Drop for Bodies {
             self.0.iter().for_each(|p| drop(fs::remove_file(p)));
         }
     }
+}
+
+/// The command that puts shards together.
+pub fn merge_command() -> Command {
+    let path = |name: &'static str, value: &'static str| {
+        Arg::new(name).value_name(value).required(true).value_parser(value_parser!(PathBuf))
+    };
+    Command::new("merge")
+        .about("Put the shards of a sweep together, after checking that they belong together")
+        .arg(path("out", "OUT").help("The table to write"))
+        .arg(
+            path("shards", "SHARDS")
+                .num_args(1..)
+                .help("The shards, in any order; what was written beside them must be there too"),
+        )
+        .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Replace files that are there already"))
+}
+
+/// Puts shards together.
+pub fn run_merge(matches: &ArgMatches) -> Result<Ended, Ended> {
+    let out = matches.get_one::<PathBuf>("out").expect("it is required");
+    let shards: Vec<PathBuf> = matches.get_many("shards").into_iter().flatten().cloned().collect();
+    let read: Vec<&Path> = shards.iter().map(PathBuf::as_path).collect();
+    output::apart(out, &read)?;
+    let report = merge(out, &shards, matches.get_flag("force"))?;
+    Ok(Ended::Answered(sweep_text(&report)))
 }

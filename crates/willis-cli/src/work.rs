@@ -1,13 +1,14 @@
-//! Pieces of work on all cores, with a bar that tells how fast and how long yet.
+//! Work on all cores, with a bar that tells how fast and how long yet.
 
-use std::collections::BTreeMap;
 use std::io::IsTerminal;
-use std::ops::Range;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use willis::work::Work;
+
+use crate::interrupt;
 
 /// Threads to use where nothing is said.
 pub fn cores() -> usize {
@@ -17,115 +18,86 @@ pub fn cores() -> usize {
 /// How long work lasts before a bar shows it.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Works off pieces in any order; `told` hears of each on this thread. Returns how many are left, because `make` gave
-/// nothing. `(done, all)` is what the bar counts, of things called `what`; `size` is what a piece adds.
-pub fn run<T: Send, S: Default>(
-    pieces: &[u64],
+/// The terminal as the surroundings of work: its cores, its standard error, Ctrl-C.
+pub struct Terminal {
     threads: usize,
-    (done, all, what): (u64, u64, &'static str),
-    size: impl Fn(u64) -> u64,
-    make: impl Fn(u64, &mut S) -> Result<Option<T>, String> + Sync,
-    mut told: impl FnMut(u64, T),
-) -> Result<u64, String> {
-    let next = AtomicUsize::new(0);
-    let (send, receive) = channel();
-    let bar = std::io::stderr().is_terminal().then(|| {
-        let bar = ProgressBar::with_draw_target(Some(all), ProgressDrawTarget::hidden());
-        let style = "{bar:40} {percent:>3} %  {human_pos} of {human_len} {msg}  {per_sec}  {eta} left";
-        bar.set_message(what);
-        bar.set_style(ProgressStyle::with_template(style).expect("a good template"));
-        bar.set_position(done);
-        bar.reset_eta();
-        bar
-    });
-    let (mut left, started, mut is_shown) = (pieces.len() as u64, Instant::now(), false);
-    let mut failed = None;
-    std::thread::scope(|scope| {
-        for _ in 0..threads.min(pieces.len()).max(1) {
-            let (send, next, make) = (send.clone(), &next, &make);
-            scope.spawn(move || {
-                let mut own = S::default();
-                while let Some(&piece) = pieces.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let made = make(piece, &mut own);
-                    let ends = !matches!(made, Ok(Some(_)));
-                    if send.send((piece, made)).is_err() || ends {
-                        // The others see that there is no more.
-                        next.fetch_max(pieces.len(), Ordering::Relaxed);
-                        return;
-                    }
-                }
-            });
-        }
-        drop(send);
-        loop {
-            if let Some(bar) = bar.as_ref().filter(|_| !is_shown && started.elapsed() > PATIENCE) {
-                bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(5));
-                is_shown = true;
-            }
-            match receive.recv_timeout(Duration::from_millis(200)) {
-                Ok((piece, Ok(Some(made)))) => {
-                    left -= 1;
-                    if let Some(bar) = &bar {
-                        bar.inc(size(piece));
-                    }
-                    told(piece, made);
-                }
-                Ok((_, Ok(None))) => {}
-                Ok((_, Err(e))) => drop(failed.get_or_insert(e)),
-                Err(RecvTimeoutError::Timeout) => bar.iter().for_each(ProgressBar::tick),
-                Err(RecvTimeoutError::Disconnected) => break,
-            }
-        }
-    });
-    if let Some(bar) = bar {
-        bar.finish_and_clear();
-    }
-    failed.map_or(Ok(left), Err)
+    stage: Mutex<Option<Stage>>,
 }
 
-/// What `make` gives for every piece, in order, by all cores. The pieces are `length` of `all` things called `what`, the
-/// last one what is left.
-pub fn all<T: Send, S: Default>(
-    all: usize,
-    length: usize,
-    what: &'static str,
-    make: impl Fn(Range<usize>, &mut S) -> T + Sync,
-) -> Vec<T> {
-    let range = |k: u64| k as usize * length..((k as usize + 1) * length).min(all);
-    let pieces: Vec<u64> = (0..all.div_ceil(length) as u64).collect();
-    let (mut done, mut ordered) = (Vec::with_capacity(pieces.len()), InOrder::new(0));
-    let make = |k: u64, own: &mut S| Ok(Some(make(range(k), own)));
-    let counted = (0, all as u64, what);
-    let left = run(
-        &pieces,
-        cores(),
-        counted,
-        |k| range(k).len() as u64,
-        make,
-        |k, made| {
-            ordered.push(k, made, |made| done.push(made));
-        },
-    );
-    assert_eq!(left, Ok(0), "nothing stops this work");
-    done
+/// A stage with its bar, which is shown once it takes long.
+struct Stage {
+    bar: ProgressBar,
+    since: Instant,
+    is_shown: bool,
 }
 
-/// Passes results on in the order of their numbers.
-pub struct InOrder<T> {
-    next: u64,
-    waiting: BTreeMap<u64, T>,
-}
-
-impl<T> InOrder<T> {
-    pub fn new(first: u64) -> Self {
-        Self { next: first, waiting: BTreeMap::new() }
+impl Terminal {
+    /// With so many threads. From now on Ctrl-C ends the work and not the program.
+    pub fn new(threads: usize) -> Self {
+        interrupt::listen(|| {});
+        Self { threads: threads.max(1), stage: Mutex::new(None) }
     }
 
-    pub fn push(&mut self, number: u64, value: T, mut pass: impl FnMut(T)) {
-        self.waiting.insert(number, value);
-        while let Some(value) = self.waiting.remove(&self.next) {
-            pass(value);
-            self.next += 1;
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        if let Ok(Some(stage)) = self.stage.lock().as_deref() {
+            stage.bar.finish_and_clear();
         }
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        self.finish();
+    }
+}
+
+impl Work for Terminal {
+    fn begin(&self, what: &'static str, of: u64) {
+        self.finish();
+        let bar = std::io::stderr().is_terminal().then(|| {
+            let bar = ProgressBar::with_draw_target(Some(of), ProgressDrawTarget::hidden());
+            let style = "{bar:40} {percent:>3} %  {human_pos} of {human_len} {msg}  {per_sec}  {eta} left";
+            bar.set_message(what);
+            bar.set_style(ProgressStyle::with_template(style).expect("a good template"));
+            Stage { bar, since: Instant::now(), is_shown: false }
+        });
+        if let Ok(mut stage) = self.stage.lock() {
+            *stage = bar;
+        }
+    }
+
+    fn advance(&self, steps: u64) {
+        // Somebody else shows it just now.
+        let Ok(mut stage) = self.stage.try_lock() else { return };
+        let Some(stage) = stage.as_mut() else { return };
+        stage.bar.inc(steps);
+        if !stage.is_shown && stage.since.elapsed() > PATIENCE {
+            stage.is_shown = true;
+            stage.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(5));
+        }
+    }
+
+    fn cancelled(&self) -> bool {
+        interrupt::interrupted()
+    }
+
+    fn run(&self, parts: usize, job: &(dyn Fn(usize) + Sync)) {
+        let next = AtomicUsize::new(0);
+        let one = || {
+            loop {
+                let part = next.fetch_add(1, Ordering::Relaxed);
+                if part >= parts || self.cancelled() {
+                    return;
+                }
+                job(part);
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..self.threads.min(parts) {
+                scope.spawn(one);
+            }
+            one();
+        });
     }
 }

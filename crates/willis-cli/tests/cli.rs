@@ -269,7 +269,7 @@ fn losses_refuse_what_makes_no_question() {
     for (args, said) in [
         (vec!["--operation", "ratd"], "did you mean `rated`?"),
         (vec!["--speeds", "1500"], "unit is missing"),
-        (vec!["--speeds", "10 N m"], "measures something else"),
+        (vec!["--speeds", "10 N m"], "measures a torque"),
         (vec!["--temperature", "9000 degC"], "none that a gearbox has"),
         (vec!["--compare", "mesh_frictions"], "did you mean `mesh_friction`?"),
     ] {
@@ -448,7 +448,7 @@ fn regress_map_is_whole_or_not_there() {
     let folder = folder("map");
     let file = folder.join("wheel.svg");
     let map = ["regimes", "examples/prius-p112.toml", "--map", path(&file)];
-    assert_eq!(answered(&map), "");
+    assert!(answered(&map).contains("16 regimes"));
     let svg = std::fs::read_to_string(&file).expect("written");
     assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
     let missing = folder.join("missing").join("wheel.svg");
@@ -487,7 +487,7 @@ fn regress_csv_quotes() {
     let train = "format = 1\nname = \"x\"\nmembers = [\"a, \\\"b\\\"\", \"c\"]\nterminals = [\"a, \\\"b\\\"\", \"c\"]\n\
                  [[mesh]]\ngears = [ { member = \"a, \\\"b\\\"\", teeth = 20 }, { member = \"c\", teeth = 40 } ]\n";
     let output = piped(&["analyze", "-", "--format", "csv", "--table", "states"], train.as_bytes());
-    assert!(text(&output.stdout).contains("as drawn,,\"a, \"\"b\"\"\",c,1,-2/1,-2.0"), "{}", text(&output.stdout));
+    assert!(text(&output.stdout).contains("as drawn,,\"a, \"\"b\"\"\",c,1,-2/1,-2,"), "{}", text(&output.stdout));
 }
 
 fn json(arguments: &[&str]) -> Value {
@@ -596,7 +596,10 @@ fn regress_validate_json() {
         let all = [&["validate", "--format", "json"], arguments].concat();
         serde_json::from_str(&answered(&all)).expect("JSON")
     };
-    assert_eq!(json(&[]), serde_json::json!(["wang-2020", "losses", "galvagno"]));
+    let listed = json(&[]);
+    assert_eq!(listed["format"], "willis-cases-1");
+    let names: Vec<_> = listed["cases"].as_array().unwrap().iter().map(|c| c["name"].clone()).collect();
+    assert_eq!(names, ["wang-2020", "losses", "galvagno"]);
     for case in ["wang-2020", "losses", "galvagno"] {
         let report = json(&[case]);
         assert_eq!(report["format"], "willis-validation-1");
@@ -608,7 +611,7 @@ fn regress_validate_json() {
 #[test]
 fn regress_validate_data() {
     let folder = folder("curves");
-    assert_eq!(answered(&["validate", "wang-2020", "--data", path(&folder)]), "");
+    assert!(answered(&["validate", "wang-2020", "--data", path(&folder)]).contains("Wang"));
     let files = std::fs::read_dir(&folder).expect("the folder").count();
     assert_eq!(files, 6);
 }
@@ -708,7 +711,7 @@ fn exports_are_whole_and_do_not_overwrite() {
     assert!(text(&output.stdout).contains("zf-8hp70-1.vtlm: state 1, gear ratio 4.69565"), "{}", text(&output.stdout));
     assert_eq!(std::fs::read_dir(&gears).expect("the folder").count(), 8);
     let there = refused(&run(&into), 1);
-    assert!(there.contains("is there already; --force writes over it"), "{there}");
+    assert!(there.contains("is there already; --force replaces it"), "{there}");
     assert_eq!(run(&[&into[..], &["--force"]].concat()).status.code(), Some(0));
     let file = folder.join("gear.xml");
     let one = ["export", "mujoco", "examples/wolfrom-236.toml", "-o", path(&file)];
@@ -743,7 +746,7 @@ fn regress_export_wrong_questions() {
         all += &format!("willis {}\n{message}\n", question.join(" "));
     }
     snapshot!(all);
-    let usage = refused(&run(&["export", "vecto"]), 2);
+    let usage = refused(&run(&["export", "vecto"]), 1);
     assert!(usage.contains("name a train file after the kind of export"), "{usage}");
 }
 
@@ -935,8 +938,17 @@ fn regress_e002_name_that_is_no_text() {
 
 #[test]
 fn regress_wrong_train() {
-    let wrong = refused(&piped(&["analyze", "-", "--format", "json"], b"format = 1\n"), 1);
-    assert!(wrong.contains("standard input: 2 errors"), "{wrong}");
+    // For machines too: on standard output, with places and replacements.
+    let output = piped(&["analyze", "-", "--format", "json"], b"format = 1\n");
+    assert_eq!(output.status.code(), Some(1));
+    assert!(text(&output.stderr).contains("standard input: 2 errors"), "{}", text(&output.stderr));
+    let refusal: Value = serde_json::from_str(&text(&output.stdout)).expect("JSON");
+    assert_eq!(
+        (refusal["format"].as_str(), refusal["file"].as_str()),
+        (Some("willis-refusal-1"), Some("standard input"))
+    );
+    assert_eq!(refusal["diagnostics"][0]["code"], "E005");
+    assert_eq!(refusal["diagnostics"][0]["span"]["start"], 0);
 }
 
 #[test]
@@ -1103,7 +1115,6 @@ fn regress_simulate_usage() {
         &["simulate", prius, "--samples", "1"],
         &["simulate", prius, "--lagged-forces"],
         &["simulate", prius, "--fixed-step", "1 ms", "--tolerance", "1e-6"],
-        &["simulate", prius, "--format", "csv"],
     ] {
         refused(&run(arguments), 2);
     }
@@ -1320,7 +1331,7 @@ fn regress_simulate_wrong_trains() {
         all += &refused(&piped(&["simulate", "-"], train.as_bytes()), 1);
         all.push('\n');
     }
-    let rows = ["simulate", "-", "--format", "json", "--samples", "1000000000"];
+    let rows = ["simulate", "-", "--samples", "1000000000"];
     all += &refused(&piped(&rows, BRAKED.as_bytes()), 1);
     snapshot!(all);
 }
@@ -1334,14 +1345,15 @@ fn regress_simulate_interrupted() {
     std::fs::write(&train, BRAKED).expect("written");
     for name in ["run.csv", "run.parquet"] {
         let (train, out) = (train.to_str().expect("text"), folder.join(name));
+        let entries = || std::fs::read_dir(&folder).expect("the folder").filter_map(Result::ok);
+        let before: Vec<_> = entries().map(|e| e.path()).collect();
         let arguments = ["simulate", train, "--samples", "1000000000", "--out", out.to_str().expect("text")];
         let child = command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it runs");
-        // Rows are on their way: the file that will take the name is there.
-        let begun = || std::fs::read_dir(&folder).expect("the folder").count() > 1 + usize::from(name != "run.csv");
+        // Rows are on their way: the file that will take the name has some.
+        let begun = || entries().any(|e| !before.contains(&e.path()) && e.metadata().is_ok_and(|m| m.len() > 4096));
         while !begun() {
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
-        std::thread::sleep(std::time::Duration::from_millis(200));
         let pid = child.id().to_string();
         assert!(Command::new("kill").args(["-INT", &pid]).status().expect("a signal").success());
         let output = child.wait_with_output().expect("it ends");
@@ -1552,7 +1564,7 @@ fn variants_are_compared_as_tables_too() {
     let (_folder, file) = variant("compare-csv");
     let csv = answered(&["compare", "examples/zf-8hp70.toml", path(&file), "--format", "csv"]);
     assert!(csv.contains("\nP4.sun.teeth,23,24\n"), "{csv}");
-    assert!(csv.contains("\nreverse,missing in A\n"), "{csv}");
+    assert!(csv.contains("\nreverse,missing in A,"), "{csv}");
 }
 
 #[test]

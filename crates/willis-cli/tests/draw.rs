@@ -50,7 +50,7 @@ fn a_figure_is_svg_png_and_data() {
 fn all_that_applies_goes_into_a_folder() {
     let folder = folder("draw-all");
     let out = willis(&["draw", "all", &example("galvagno.toml"), "-o", folder.to_str().expect("letters")]);
-    let said = String::from_utf8(out.stdout).expect("text");
+    let said = String::from_utf8(out.stderr).expect("text");
     assert!(folder.join("stick.svg").is_file() && folder.join("sankey.svg").is_file());
     assert!(said.contains("front: not drawn"), "{said}");
     assert!(refused(&["draw", "all", &example("galvagno.toml")]).contains("name a folder"));

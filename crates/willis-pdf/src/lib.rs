@@ -9,11 +9,14 @@ use serde_json::{Value, json};
 use typst_layout::PagedDocument;
 use typst_pdf::PdfOptions;
 
+use crate::contract::Contract;
 use crate::document::{Block, Document};
 use crate::world::Desk;
 
 // The source itself, not its crate: the physics would have to be built with it.
-#[path = "../../willis-report/src/document.rs"]
+#[path = "../../willis/src/contract.rs"]
+mod contract;
+#[path = "../../willis-figure/src/report/document.rs"]
 pub mod document;
 
 /// The size of the pages.

@@ -43,7 +43,7 @@ fn document(rows: usize) -> Document {
     );
     let sections = vec![Section { title: text(), blocks }, Section { title: text(), blocks: vec![] }];
     let facts = vec![[text(), text()]];
-    Document { format: Document::FORMAT.into(), title: text(), subtitle: text(), facts, sections }
+    Document { format: Default::default(), title: text(), subtitle: text(), facts, sections }
 }
 
 fn words(document: &PagedDocument) -> String {
@@ -107,7 +107,7 @@ fn a_short_report_is_one_page_without_contents() {
 #[test]
 fn empty_parts_do_no_harm() {
     let empty = Document {
-        format: Document::FORMAT.into(),
+        format: Default::default(),
         title: String::new(),
         subtitle: String::new(),
         facts: vec![],

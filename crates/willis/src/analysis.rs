@@ -4,25 +4,38 @@
 //! Serialised as JSON it is the results contract `willis-analysis-1`; fields are added, never
 //! renamed. Units are SI and stand in the names.
 
+mod balance;
+mod loads;
 mod losses;
+mod margin;
 mod operation;
+mod outside;
+mod solution;
 mod table;
+mod why;
+mod words;
 
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
+pub use outside::{OutsideAt, OutsideLaw};
+pub use why::Why;
 
 pub use crate::named::Named;
 pub(crate) use operation::Point;
+pub(crate) use words::named;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource};
 use crate::statics::Certificate;
-use crate::train::{Efficiency, Operation, ShiftElementId, ShiftElementKind, Train};
+use crate::train::{Efficiency, Operation, ShiftElementKind, Train};
 
 /// What can be said of a load case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Verdict {
@@ -52,22 +65,26 @@ impl Verdict {
 }
 
 /// Whether the answer is the only one, and how that is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct CertificateReport {
     /// Whether exactly one solution exists whatever the loads (with these directions of motion).
     pub unique_for_every_load: bool,
-    /// `spectral-radius`, `determinants`, `enumeration` or `undecided`.
-    pub method: &'static str,
+    /// How that is known.
+    pub method: Certificate,
 }
 
 impl From<Certificate> for CertificateReport {
     fn from(c: Certificate) -> Self {
-        Self { unique_for_every_load: c.unique_for_every_load(), method: c.method() }
+        Self { unique_for_every_load: c.unique_for_every_load(), method: c }
     }
 }
 
 /// One direction of power through a state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Direction {
     /// What can be said of it.
     pub verdict: Verdict,
@@ -79,17 +96,22 @@ pub struct Direction {
     pub certificate: Option<CertificateReport>,
     /// One sentence that explains a verdict other than `unique`.
     pub reason: Option<String>,
+    /// The same as data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<Why>,
 }
 
 /// A row of the shift table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StateReport {
     /// Where power enters when driving.
     pub input: String,
     /// Where power leaves when driving.
     pub output: String,
-    /// `ω_input/ω_output` as a fraction `p/q`; absent when there is no such number.
-    pub exact: Option<String>,
+    /// `ω_input/ω_output`, exactly; absent when there is no such number.
+    pub exact: Option<Rational>,
     /// The same as a decimal.
     pub value: Option<f64>,
     /// Why there is no ratio.
@@ -107,7 +129,8 @@ pub struct StateReport {
 }
 
 /// What a member does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Role {
@@ -122,7 +145,9 @@ pub enum Role {
 }
 
 /// A member in an operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MemberReport {
     /// Absolute speed (for a bevel planet: carrier speed plus spin), rad/s; absent when not
     /// determined.
@@ -140,7 +165,9 @@ pub struct MemberReport {
 }
 
 /// A mesh in an operating point; totals over its `count` pairs in parallel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct MeshReport {
     /// The member that drives, seen from the carrier; absent when idle or without relative motion.
     pub driver: Option<String>,
@@ -163,7 +190,9 @@ pub struct MeshReport {
 }
 
 /// An engaged shift element in an operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ShiftElementReport {
     /// What it is.
     pub kind: ShiftElementKind,
@@ -174,7 +203,9 @@ pub struct ShiftElementReport {
 }
 
 /// Losses by kind, W.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Losses {
     /// Tooth friction.
     pub mesh: f64,
@@ -205,7 +236,9 @@ impl Losses {
 }
 
 /// Power that goes round in circles.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct CirculationReport {
     /// The power, W.
     pub power_w: f64,
@@ -216,7 +249,9 @@ pub struct CirculationReport {
 }
 
 /// How far a solution is from a change.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Margin {
     /// The smallest change of a prescribed torque that unloads a mesh (and beyond which another
     /// loss formula holds).
@@ -230,7 +265,9 @@ pub struct Margin {
 }
 
 /// A boundary of the region in which the present loss formula holds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Boundary {
     /// The member whose prescribed value moves.
     pub member: String,
@@ -243,7 +280,9 @@ pub struct Boundary {
 }
 
 /// The nearest self-locking threshold of one efficiency.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LockMargin {
     /// The mesh, or the meshes in a row that share one efficiency.
     pub meshes: Vec<String>,
@@ -254,23 +293,67 @@ pub struct LockMargin {
 }
 
 /// A torque range that friction in a mesh at rest leaves open.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct StictionRange {
-    /// What varies: `efficiency`, or `torque on <member>`.
+    /// What varies, in words.
     pub what: String,
+    /// The same as data.
+    pub quantity: StictionQuantity,
     /// Smallest value; absent when too many meshes rest to bound it.
     pub low: Option<f64>,
     /// Largest value.
     pub high: Option<f64>,
 }
 
+/// What friction in a mesh at rest leaves open.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum StictionQuantity {
+    /// The efficiency.
+    Efficiency,
+    /// The torque on a member, N m.
+    Torque {
+        /// The member.
+        member: String,
+    },
+    /// Every torque behind loaded meshes at rest, too many to bound it.
+    Unbounded {
+        /// How many there are.
+        meshes: usize,
+    },
+}
+
+impl StictionRange {
+    fn new(quantity: StictionQuantity, range: Option<(f64, f64)>) -> Self {
+        Self { what: quantity.to_string(), quantity, low: range.map(|r| r.0), high: range.map(|r| r.1) }
+    }
+}
+
+impl std::fmt::Display for StictionQuantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Efficiency => f.write_str("the efficiency"),
+            Self::Torque { member } => write!(f, "the torque on {member} in N m"),
+            Self::Unbounded { meshes } => {
+                write!(f, "{meshes} loaded meshes at rest: too many to bound; any torque behind them")
+            }
+        }
+    }
+}
+
 /// One equilibrium.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SolutionReport {
     /// Output over input power; 0 when everything is dissipated, absent when nothing is loaded.
     pub efficiency: Option<f64>,
-    /// The exact efficiency as a fraction, where it was computed.
-    pub efficiency_exact: Option<String>,
+    /// The efficiency exactly, where it was computed so.
+    pub efficiency_exact: Option<Rational>,
     /// Whether every loaded member is an input.
     pub all_dissipated: bool,
     /// Power in, W.
@@ -290,19 +373,19 @@ pub struct SolutionReport {
     /// Losses by kind.
     pub losses_w: Losses,
     /// Losses by source, largest first, where they are computed.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sources: Vec<LossSource>,
     /// Tooth contacts of the meshes whose teeth are given.
-    #[serde(skip_serializing_if = "Named::is_empty")]
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub contacts: Named<ContactReport>,
     /// Rolling bearings.
-    #[serde(skip_serializing_if = "Named::is_empty")]
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub bearings: Named<BearingReport>,
     /// Drag torques between members, where losses are computed.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drags: Vec<DragReport>,
     /// How losses and torques were brought into agreement, where losses are computed.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub convergence: Option<Convergence>,
     /// Recirculating powers.
     pub recirculation: Vec<CirculationReport>,
@@ -313,7 +396,9 @@ pub struct SolutionReport {
 }
 
 /// An operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct OperationReport {
     /// Its name.
     pub name: String,
@@ -327,6 +412,12 @@ pub struct OperationReport {
     pub certificate: Option<CertificateReport>,
     /// One sentence that explains the verdict.
     pub reason: Option<String>,
+    /// The same as data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<Why>,
+    /// Laws that were used outside their ranges.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outside_laws: Vec<OutsideLaw>,
     /// Speeds, also when the torques have no answer; rad/s.
     pub speeds_rad_s: Named<Option<f64>>,
     /// Every equilibrium that drives a load (or, with two or more freedoms, any equilibrium).
@@ -335,11 +426,37 @@ pub struct OperationReport {
     pub dissipative_solutions: Vec<SolutionReport>,
 }
 
+impl OperationReport {
+    /// An operating point before anything but its speeds is known.
+    fn new(train: &Train, operation: &Operation, freedoms: usize, speeds: Named<Option<f64>>) -> Self {
+        Self {
+            name: operation.name.clone(),
+            state: operation.state.map(|k| train.states[k].name.clone()),
+            degrees_of_freedom: freedoms,
+            verdict: Verdict::Undetermined,
+            certificate: None,
+            reason: None,
+            why: None,
+            outside_laws: vec![],
+            speeds_rad_s: speeds,
+            solutions: vec![],
+            dissipative_solutions: vec![],
+        }
+    }
+
+    fn explain(&mut self, why: &Why) {
+        self.reason = Some(why.to_string());
+        self.why = Some(why.clone());
+    }
+}
+
 /// Everything that is known about a train.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Analysis {
     /// `willis-analysis-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// Source of its data.
@@ -354,6 +471,10 @@ pub struct Analysis {
     pub assumptions: Vec<String>,
     /// Warnings and notes.
     pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Contract for Analysis {
+    const FORMAT: &'static str = "willis-analysis-1";
 }
 
 /// Which states and operations to analyse; `None` means all.
@@ -377,6 +498,7 @@ pub const AS_DRAWN: &str = "as drawn";
 /// # Example
 /// ```
 /// use willis::analysis::{analyze, Selection, Verdict};
+/// use willis::exact::Rational;
 /// use willis::train::Train;
 ///
 /// let train = Train::from_toml(r#"
@@ -398,7 +520,7 @@ pub const AS_DRAWN: &str = "as drawn";
 /// "#)?;
 /// let analysis = analyze(&train, &Selection::default())?;
 /// let row = analysis.ratios.get("as drawn").unwrap();
-/// assert_eq!(row.exact.as_deref(), Some("10/3"));
+/// assert_eq!(row.exact, Some(Rational::new(10, 3)));
 /// let load = &analysis.operations[0];
 /// assert_eq!(load.verdict, Verdict::Unique);
 /// assert!(load.certificate.unwrap().unique_for_every_load);
@@ -432,8 +554,11 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
         if !selection.wants(train, operation) {
             continue;
         }
-        match operation::report(train, operation, &mut diagnostics) {
-            Ok(report) => operations.push(report),
+        match operate(train, operation) {
+            Ok((report, notes)) => {
+                operations.push(report);
+                diagnostics.extend(notes);
+            }
             Err(wrong) => errors.extend(wrong),
         }
     }
@@ -450,7 +575,7 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
     }
     let degrees_of_freedom = Configuration::new(train, &[], &[], &[]).degrees_of_freedom();
     Ok(Analysis {
-        format: "willis-analysis-1",
+        format: Format::new(),
         train: train.name.clone(),
         source: train.source.clone(),
         degrees_of_freedom,
@@ -506,9 +631,10 @@ pub(crate) fn settle<'t>(
     train: &'t Train,
     operation: &Operation,
 ) -> Result<(OperationReport, Option<Point<'t>>, Diagnostics), Diagnostics> {
-    let mut notes = Diagnostics::default();
-    let (report, point) = operation::settle(train, operation, &mut notes)?;
-    Ok((report, point, notes))
+    let settled = operation::settle(train, operation);
+    let settled = settled.map_err(|wrong| words::named(operation, words::refused(train, operation, &wrong)))?;
+    let notes = words::named(operation, words::found(train, operation, &settled.findings));
+    Ok((settled.report, settled.point, notes))
 }
 
 /// Analyses one operating point that need not stand in the file; [`analyze`] says the same of one that does. Beside
@@ -517,9 +643,17 @@ pub(crate) fn settle<'t>(
 /// # Errors
 /// What the operation prescribes makes no question: contradictory speeds, loads missing or too many.
 pub fn operate(train: &Train, operation: &Operation) -> Result<(OperationReport, Diagnostics), Diagnostics> {
-    let mut notes = Diagnostics::default();
-    let report = operation::report(train, operation, &mut notes)?;
-    Ok((report, notes))
+    settle(train, operation).map(|(report, _, notes)| (report, notes))
+}
+
+/// The same with warnings, notes and errors that do not name the operation, for one of many points that are told
+/// apart otherwise.
+///
+/// # Errors
+/// As [`operate`].
+pub fn operate_unnamed(train: &Train, operation: &Operation) -> Result<(OperationReport, Diagnostics), Diagnostics> {
+    let settled = operation::settle(train, operation).map_err(|wrong| words::refused(train, operation, &wrong))?;
+    Ok((settled.report, words::found(train, operation, &settled.findings)))
 }
 
 /// What the model leaves out, then what stands in for missing data.
@@ -607,15 +741,4 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
         all.push("no drag of carriers (give a [[rotor]])".into());
     }
     all.push("no drag of open shift elements, no oil pump".into());
-}
-
-/// Names of members, for sentences.
-fn names(train: &Train, members: impl IntoIterator<Item = crate::train::MemberId>) -> String {
-    let all: Vec<_> = members.into_iter().map(|m| train.member_name(m)).collect();
-    all.join(", ")
-}
-
-/// Names of shift elements.
-fn element_names(train: &Train, elements: &[ShiftElementId]) -> Vec<String> {
-    elements.iter().map(|e| train.shift_elements[e.0].name.clone()).collect()
 }

@@ -1,23 +1,47 @@
 //! What is wrong, where, with which numbers, and what to do about it.
 //!
 //! The user's mistakes are [`Diagnostics`]: all of them at once, each with a stable [`Code`], the
-//! place in the train (`set[1].ring.teeth`) and, when the train came from text, the bytes it
-//! stands on. An unusual answer of the physics (locked, several solutions) is no error: it is a
+//! place in the train (`set[1].ring.teeth`) and, when the train came from text, the bytes, lines and
+//! columns it stands on. [`Diagnostics`] is the error of every function here that can refuse its input; the errors of
+//! single values ([`QuantityError`](crate::units::QuantityError), [`Fault`](crate::geometry::Fault), …) become
+//! diagnostics by `?`.
+//!
+//! Diagnostics serialise and read back: a front end in another process or language shows the same list.
+//!
+//! ```
+//! use willis::{Diagnostics, Train};
+//!
+//! let wrong = Train::from_toml("format = 1\nname = \"one\"\nmembers = [\"s\"]\nterminels = [\"s\"]\n").unwrap_err();
+//! let json = serde_json::to_value(&wrong)?;
+//! assert_eq!(json[0]["code"], "E004");
+//! assert_eq!(json[0]["span"]["line"], 4);
+//! assert_eq!(json[0]["replacement"], "terminals");
+//! assert_eq!(serde_json::from_value::<Diagnostics>(json)?, wrong);
+//! # Ok::<(), serde_json::Error>(())
+//! ```
+//!
+//! An unusual answer of the physics (locked, several solutions) is no error: it is a
 //! verdict in the result, with a diagnostic of severity [`Severity::Warning`] or
 //! [`Severity::Note`] beside it.
 
 mod codes;
+mod conversions;
+mod span;
 
 use std::fmt;
-use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Patch, Renderer, Snippet};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+use crate::work::Cancelled;
 
 pub use codes::Code;
+pub(crate) use conversions::through_diagnostic;
+pub use span::{Lines, Span};
 
 /// How much a diagnostic matters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// The input cannot be answered.
@@ -29,7 +53,8 @@ pub enum Severity {
 }
 
 /// One thing to tell the user.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Diagnostic {
     /// Stable code; `willis explain CODE` tells more.
@@ -42,11 +67,14 @@ pub struct Diagnostic {
     pub message: String,
     /// What to do; may name a value that works.
     pub hints: Vec<String>,
-    /// Bytes of the source text it stands on, when there is one.
-    #[serde(skip)]
-    pub span: Option<Range<usize>>,
+    /// The file whose text it stands on, as the caller names it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// The part of the source text it stands on, when there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub span: Option<Span>,
     /// What to put in place of the spanned text, when that is known.
-    #[serde(skip)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub replacement: Option<String>,
 }
 
@@ -59,6 +87,7 @@ impl Diagnostic {
             place: place.into(),
             message: message.into(),
             hints: Vec::new(),
+            file: None,
             span: None,
             replacement: None,
         }
@@ -101,7 +130,8 @@ fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<
 }
 
 /// Everything there is to say about one input.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(transparent)]
 pub struct Diagnostics(Vec<Diagnostic>);
 
@@ -126,6 +156,11 @@ impl Diagnostics {
         self.0.iter().any(|d| d.severity == Severity::Error)
     }
 
+    /// Whether nothing is wrong but that the computation was [stopped](Code::Cancelled).
+    pub fn is_cancelled(&self) -> bool {
+        self.0.iter().any(|d| d.code == Code::Cancelled)
+    }
+
     /// Whether there is nothing to say.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -142,7 +177,17 @@ impl Diagnostics {
 
     /// Puts them in the order in which they stand in the text.
     pub(crate) fn sort(&mut self) {
-        self.0.sort_by_key(|d| d.span.as_ref().map(|s| s.start));
+        self.0.sort_by_key(|d| d.span.map(|s| s.start));
+    }
+
+    /// Counts lines and columns of every span in `text`, the text it was found in, and says which `file` that is.
+    ///
+    /// What has its lines, or a file, keeps them.
+    pub fn stand_in(&mut self, file: Option<&str>, text: &str) {
+        span::count_lines(self.0.iter_mut().filter_map(|d| d.span.as_mut()), text);
+        for d in self.0.iter_mut().filter(|d| d.span.is_some() && d.file.is_none()) {
+            d.file = file.map(str::to_owned);
+        }
     }
 
     /// The text for people, each place underlined in `source` where there is one. `file` is what
@@ -165,7 +210,7 @@ impl Diagnostics {
             };
             let title = level.primary_title(message.as_str()).id(d.code.as_str());
             let mut group = Group::with_title(title);
-            let span = d.span.clone().filter(|s| source.get(s.clone()).is_some());
+            let span = d.span.map(|s| s.range()).filter(|s| source.get(s.clone()).is_some());
             if let Some(span) = &span {
                 let label = AnnotationKind::Primary.span(span.clone()).label(place.as_str());
                 group = group.element(Snippet::source(source).path(file).annotation(label));
@@ -193,9 +238,10 @@ impl Diagnostics {
     }
 }
 
-impl From<Diagnostic> for Diagnostics {
-    fn from(one: Diagnostic) -> Self {
-        [one].into_iter().collect()
+/// A computation that was stopped has the code [`Code::Cancelled`].
+impl From<Cancelled> for Diagnostics {
+    fn from(cancelled: Cancelled) -> Self {
+        Diagnostic::new(Code::Cancelled, "", cancelled.to_string()).into()
     }
 }
 

@@ -5,31 +5,42 @@
 //! a mode the right-hand side is smooth, and changes of mode are located as events. Source:
 //! Galvagno 2010 with corrected signs and its loop solved.
 
+mod balance;
 mod batch;
 mod certificate;
 mod choose;
+mod element;
 mod energy;
 mod engine;
 mod event;
 mod fixed;
 mod fused;
+mod handles;
 mod integrator;
 mod lagged;
 mod laws;
+mod margins;
 mod mode;
 mod modes;
 pub mod offset;
 mod output;
+mod rate;
 mod report;
 mod run;
+mod shows;
 mod signal;
+mod simulate;
+mod source;
+mod start;
 mod system;
 
 pub use batch::Batch;
 pub use fixed::FixedStep;
+pub use handles::{Input, InputInfo, InputKind, InputRefused, Output};
 pub use modes::{Mode, ModesReport, Part, RigidMode, modes};
 pub use report::{
-    Column, EnergyLoss, EnergyReport, Event, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample,
-    SourceEnergy,
+    Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind, Method,
+    ModeLabel, Options, Outcome, Recorder, RunReport, Sample, SourceEnergy,
 };
-pub use run::{Simulation, simulate};
+pub use run::Simulation;
+pub use simulate::simulate;

@@ -5,6 +5,7 @@
 //! with ratio 10000/9999 is a real thing), so they are computed here. A [`Rational`] is a pair of
 //! `i128` until it no longer fits, then a big integer; no operation can overflow or round.
 
+use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -13,6 +14,8 @@ use std::str::FromStr;
 use num_bigint::BigInt;
 use num_rational::{BigRational, Ratio};
 use num_traits::{CheckedAdd, CheckedDiv, CheckedMul, CheckedSub, Signed, ToPrimitive, Zero};
+use serde::de::{Deserialize, Deserializer, Error, Unexpected};
+use serde::ser::{Serialize, Serializer};
 
 /// An exact rational number, as small as it can be and as large as it must be.
 ///
@@ -22,6 +25,10 @@ use num_traits::{CheckedAdd, CheckedDiv, CheckedMul, CheckedSub, Signed, ToPrimi
 /// let eta: Rational = "0.985".parse().unwrap();
 /// assert_eq!(eta.to_string(), "197/200");
 /// assert_eq!((Rational::from(1) / Rational::from(3) * Rational::from(3)), Rational::from(1));
+/// // In answers for machines it is a text.
+/// assert_eq!(serde_json::to_string(&eta)?, "\"197/200\"");
+/// assert_eq!(serde_json::from_str::<Rational>("\"197/200\"")?, eta);
+/// # Ok::<(), serde_json::Error>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Rational(Repr);
@@ -301,6 +308,48 @@ impl Ord for Rational {
             (Repr::Small(a), Repr::Small(b)) => a.cmp(b),
             _ => self.big().cmp(&other.big()),
         }
+    }
+}
+
+/// Longest fraction that is read back: what an answer can hold, and no text that keeps a reader busy.
+const LONGEST: usize = 100_000;
+
+impl Rational {
+    /// Reads what [`Rational::to_fraction`] writes, however long.
+    fn from_fraction(text: &str) -> Option<Self> {
+        let (n, d) = text.split_once('/').filter(|_| text.len() <= LONGEST)?;
+        let (n, d): (BigInt, BigInt) = (n.parse().ok()?, d.parse().ok()?);
+        d.is_positive().then(|| Self::from_big(BigRational::new(n, d)))
+    }
+}
+
+/// As text, `p/q`: no format for machines has a number that would hold it.
+impl Serialize for Rational {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.to_fraction())
+    }
+}
+
+impl<'de> Deserialize<'de> for Rational {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = Cow::<str>::deserialize(deserializer)?;
+        let wrong = || D::Error::invalid_value(Unexpected::Str(&text), &"a fraction `p/q`");
+        Self::from_fraction(&text).ok_or_else(wrong)
+    }
+}
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for Rational {
+    fn schema_name() -> Cow<'static, str> {
+        "Fraction".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "description": "An exact number as a fraction `p/q` in lowest terms, also a whole one: `3/1`.",
+            "type": "string",
+            "pattern": "^-?[0-9]+/[1-9][0-9]*$",
+        })
     }
 }
 

@@ -30,9 +30,10 @@
 
 use std::collections::{BTreeMap, BinaryHeap};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::{Role, Selection, SolutionReport, Verdict, analyze};
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::operating_point::DragSource;
 use crate::power_flow::{families, take_out_cycles};
@@ -46,7 +47,8 @@ const ROUND_OFF: f64 = 1e-12;
 const SMALLEST_LOOP: f64 = 1e-9;
 
 /// What a node of the graph is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum NodeKind {
@@ -73,7 +75,9 @@ pub enum NodeKind {
 }
 
 /// A component, a contact, or an end of the graph.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Node {
     /// Unique: kind and name, as in `member:sun`, `teeth:P1.sun-planet`, `input:sun`; or `frame`.
     pub id: String,
@@ -94,14 +98,16 @@ pub struct Node {
     /// Outgoing over incoming absolute power; absent where none passes.
     pub efficiency: Option<f64>,
     /// Of a tooth contact: efficiency of sliding seen from the carrier.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub carrier_frame_efficiency: Option<f64>,
     /// Power in less power out less loss, W: round-off.
     pub residual_w: f64,
 }
 
 /// Power, or only torque, between two nodes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Edge {
     /// The node that the power leaves.
     pub from: String,
@@ -119,7 +125,9 @@ pub struct Edge {
 }
 
 /// Power that runs in a circle.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Loop {
     /// The power, W.
     pub power_w: f64,
@@ -136,7 +144,9 @@ pub struct Loop {
 }
 
 /// A node on a path.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Station {
     /// Identifier of the node.
     pub node: String,
@@ -145,7 +155,9 @@ pub struct Station {
 }
 
 /// A way from an input to an output.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Path {
     /// Part of the input power that takes it.
     pub share_of_input: f64,
@@ -158,7 +170,9 @@ pub struct Path {
 }
 
 /// The power flow of one equilibrium.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Hypergraph {
     /// Output over input power; 0 when everything is dissipated, absent when nothing is loaded.
     pub efficiency: Option<f64>,
@@ -187,7 +201,9 @@ pub struct Hypergraph {
 }
 
 /// The power flow of an operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct OperationFlow {
     /// Its name.
     pub name: String,
@@ -204,10 +220,12 @@ pub struct OperationFlow {
 }
 
 /// Power flows of a train: the results contract `willis-flow-1`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FlowReport {
     /// `willis-flow-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// Source of its data.
@@ -218,6 +236,10 @@ pub struct FlowReport {
     pub assumptions: Vec<String>,
     /// Warnings and notes.
     pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Contract for FlowReport {
+    const FORMAT: &'static str = "willis-flow-1";
 }
 
 /// The power flow of every operating point, or of one.
@@ -275,7 +297,7 @@ pub fn flows(train: &Train, selection: &Selection) -> Result<FlowReport, Diagnos
         dissipative_solutions: graphs(&o.dissipative_solutions),
     });
     Ok(FlowReport {
-        format: "willis-flow-1",
+        format: Format::new(),
         train: analysis.train.clone(),
         source: analysis.source.clone(),
         operations: operations.collect(),

@@ -1,28 +1,12 @@
-//! Planetary (epicyclic) gear trains: exact ratios, speeds, torques with mesh losses, power flow,
-//! efficiency, and a certificate that the answer is the only one.
+//! Planetary (epicyclic) gear trains: exact ratios, speeds, torques with mesh losses, power flow, efficiency, and a
+//! certificate that the answer is the only one.
 //!
-//! The modules are listed in the order of the pipeline, and a module uses only those above it:
-//!
-//! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions, [`units`] and values by name ([`named`]);
-//! 2. [`diagnostic`]: what is wrong, where, and what to do;
-//! 3. [`catalogue`] of oils and bearings, [`geometry`] of involute teeth, [`losses`]: the laws;
-//! 4. [`train`]: what a gear train is, and the train file;
-//! 5. [`kinematics`]: exact speeds, what is locked, free or redundant;
-//! 6. [`statics`]: torques with losses, the certificate, the verdict;
-//! 7. [`power_flow`]: torque and power everywhere, recirculation;
-//! 8. [`compiled`]: a train made ready for many points;
-//! 9. [`operating_point`]: losses and torques in agreement;
-//! 10. [`analysis`]: the whole answer, as every front end shows it;
-//! 11. [`hypergraph`]: where the power runs, as a graph of components and contacts;
-//! 12. [`regimes`]: every way a train can run, with closed formulas;
-//! 13. [`study`]: what matters most at an operating point;
-//! 14. [`figure`]: charts and diagrams as data;
-//! 15. [`casebook`]: published losses beside ours.
-//!
-//! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
+//! A train is a [`Train`]: checked, and valid by construction. It comes from the text of a train file or from the builder,
+//! and every question is a function of it. Everything that can be wrong with an input comes back at once, as
+//! [`Diagnostics`].
 //!
 //! ```
-//! use willis::{Selection, Train, analyze};
+//! use willis::prelude::*;
 //!
 //! let train = Train::from_toml(r#"
 //!     format = 1
@@ -39,22 +23,108 @@
 //!     mesh_efficiency = 0.99
 //! "#)?;
 //! let analysis = analyze(&train, &Selection::default())?;
-//! let (_, row) = &analysis.ratios.0[0];
-//! assert_eq!(row.exact.as_deref(), Some("10/3"));
+//! let row = analysis.ratios.get("as drawn").unwrap();
+//! assert_eq!(row.exact, Some(Rational::new(10, 3)));
 //! assert!(row.drive.certificate.unwrap().unique_for_every_load);
-//! # Ok::<(), willis::Diagnostics>(())
+//! # Ok::<(), Diagnostics>(())
 //! ```
+//!
+//! The same in code, with a load:
+//!
+//! ```
+//! use willis::prelude::*;
+//!
+//! let train = Train::builder("sun drives, ring held")
+//!     .members(["sun", "carrier"])
+//!     .terminals(["sun", "carrier"])
+//!     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4).mesh_efficiency(0.99))
+//!     .operation(OperationSpec::new("full").speed("sun", AngularSpeed::rpm(1000.0)).torque("sun", Torque::n_m(10.0)))
+//!     .build()?;
+//! let analysis = analyze(&train, &Selection::default())?;
+//! let full = &analysis.operations[0];
+//! assert_eq!(full.verdict, Verdict::Unique);
+//! let carrier = full.solutions[0].members.get("carrier").unwrap();
+//! assert!((carrier.torque_n_m.unwrap() + 32.869).abs() < 1e-3);        // the load resists
+//! # Ok::<(), Diagnostics>(())
+//! ```
+//!
+//! # I want to …
+//!
+//! | I want to … | call |
+//! |---|---|
+//! | read a train file | [`Train::from_toml`] |
+//! | build a train in code | [`Train::builder`] |
+//! | change a quantity of a train and keep its text | [`Model`] |
+//! | know ratios, torques, losses, and whether they are the only ones | [`analyze`] |
+//! | ask one operating point | [`analysis::operate`] |
+//! | see losses over speed, load, temperature, and law beside law | [`analysis::losses`](fn@analysis::losses) |
+//! | follow the power through the train | [`hypergraph::flows`] |
+//! | know every way a train can run, with closed formulas | [`regimes::regimes`], [`regimes::formulas`] |
+//! | know how far an operating point is from the next regime | [`regimes::locate`](fn@regimes::locate) |
+//! | rank what matters most | [`study::sensitivity`](fn@study::sensitivity) |
+//! | know how sure a number is | [`study::UncertaintyPlan`] |
+//! | vary quantities over a grid | [`study::sweep`](fn@study::sweep) |
+//! | compute the energy of a duty cycle | [`study::cycle`](fn@study::cycle) |
+//! | compare variants | [`study::compare`](fn@study::compare) |
+//! | evaluate millions of points | [`Train::compile`] |
+//! | simulate motion: clutches, sticking, shafts | [`dynamics::simulate`], in real time [`dynamics::FixedStep`] |
+//! | find natural frequencies | [`dynamics::modes`](fn@dynamics::modes) |
+//! | write a model or a map for another program | [`study::export`] |
+//! | choose a law of losses, or read its page | [`losses`], [`losses::Laws`] |
+//! | compute one pair of teeth | [`geometry::Pair`] |
+//! | read `"1450 rpm"` | [`units::parse`] |
+//! | give an answer to another program | serialise it; it reads back: [`contract`] |
+//!
+//! Charts, diagrams and reports are in the crate `willis-figure`.
+//!
+//! # What is exact
+//!
+//! Tooth counts, ratios, speeds and whether shafts turn alike are rational numbers ([`exact`]), with the power of π beside
+//! them; so are the signs that decide which gear drives, and the conditions between regimes. Torques, powers and losses
+//! are floating point, with their balance in the answer. A verdict says whether a torque is unique and how that is known;
+//! what cannot be decided is said ([`analysis::Verdict`]).
+//!
+//! # Units
+//!
+//! Inside, and in every field, numbers are SI: the name of a field of an answer ends in its unit (`torque_n_m`,
+//! `speed_rad_s`), the page of any other number says it. At the boundary [`units::AngularSpeed`], [`units::Torque`] and
+//! their kin are made from numbers with a unit or from text.
+//!
+//! # Modules
+//!
+//! They are listed in the order of the pipeline, and a module uses only those above it:
+//!
+//! 1. [`exact`] and [`real`] numbers, [`symbolic`] functions, [`units`] and values by name ([`named`]);
+//! 2. [`contract`]: answers that read back; [`work`]: progress, stopping and threads of long work;
+//! 3. [`diagnostic`]: what is wrong, where, and what to do;
+//! 4. [`catalogue`] of oils and bearings, [`geometry`] of involute teeth, [`losses`]: the laws;
+//! 5. [`train`]: what a gear train is, and the train file; [`model`]: a train as data;
+//! 6. [`kinematics`]: exact speeds, what is locked, free or redundant;
+//! 7. [`statics`]: torques with losses, the certificate, the verdict;
+//! 8. [`power_flow`]: torque and power everywhere, recirculation;
+//! 9. [`compiled`]: a train made ready for many points;
+//! 10. [`operating_point`]: losses and torques in agreement;
+//! 11. [`dynamics`]: motion over time, natural frequencies;
+//! 12. [`analysis`]: the whole answer, as every front end shows it;
+//! 13. [`hypergraph`]: where the power runs, as a graph of components and contacts;
+//! 14. [`regimes`]: every way a train can run, with closed formulas;
+//! 15. [`study`]: many operating points, what matters most, how sure it is, files for other programs.
+//!
+//! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 
 pub mod exact;
 pub mod symbolic;
 pub mod real;
 pub mod units;
 pub mod named;
+pub mod contract;
+pub mod work;
 pub mod diagnostic;
 pub mod catalogue;
 pub mod geometry;
 pub mod losses;
 pub mod train;
+pub mod model;
 pub mod kinematics;
 pub mod statics;
 pub mod power_flow;
@@ -65,13 +135,24 @@ pub mod analysis;
 pub mod hypergraph;
 pub mod regimes;
 pub mod study;
-pub mod figure;
-pub mod casebook;
+#[doc(hidden)]
+pub mod unstable;
 
 pub use analysis::{Analysis, Selection, analyze};
 pub use diagnostic::Diagnostics;
+pub use model::Model;
 pub use real::Real;
 pub use train::Train;
+
+/// The names that most programs need: `use willis::prelude::*;`.
+pub mod prelude {
+    pub use crate::analysis::{Analysis, Selection, Verdict, analyze};
+    pub use crate::diagnostic::Diagnostics;
+    pub use crate::exact::Rational;
+    pub use crate::model::Model;
+    pub use crate::train::{MeshSpec, OperationSpec, SetSpec, ShiftElementSpec, StateSpec, Train};
+    pub use crate::units::{AngularSpeed, Power, Torque};
+}
 
 /// The Rust code of the README and of the book runs as doctests.
 #[cfg(doctest)]

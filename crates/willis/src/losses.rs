@@ -3,7 +3,7 @@
 //!
 //! A *family* is a set of laws that answer the same question and can be exchanged: one state in,
 //! one number out, one file a law, one line to register it. A law states its formula, symbols,
-//! range, source and a number worked by hand; outside its range a warning is attached, nothing is
+//! range, source and a number worked by hand inside that range; outside it a warning is attached, nothing is
 //! clamped silently. Laws never know a train: [`crate::operating_point`] asks them.
 //!
 //! All quantities are SI; a law that is written in other units converts inside its own function.
@@ -29,6 +29,15 @@ pub struct Meta<S: 'static> {
     pub valid: &'static [Range<S>],
 }
 
+impl<S> Meta<S> {
+    /// Quantities of a state that lie outside the range of the source.
+    pub fn outside(&self, state: &S) -> Vec<Outside> {
+        let of =
+            |r: &Range<S>| Outside { symbol: r.symbol, unit: r.unit, value: (r.get)(state), range: (r.min, r.max) };
+        self.valid.iter().map(of).filter(|o| !(o.range.0..=o.range.1).contains(&o.value)).collect()
+    }
+}
+
 /// What a caller must know to use a law rightly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tag {
@@ -40,6 +49,21 @@ pub enum Tag {
     Estimate,
     /// Reproduces a published number that follows from an error; never the default.
     Compatibility,
+    /// A law of tooth friction that reads neither the oil nor its film; every other has no value without an oil.
+    WithoutOil,
+}
+
+impl Tag {
+    /// The same in a few words, for lists.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Local => "local, averaged along the path",
+            Self::SlidingOnly => "sliding only, rolling is added",
+            Self::Estimate => "estimate ±50 %",
+            Self::Compatibility => "reproduces a published error",
+            Self::WithoutOil => "needs no oil",
+        }
+    }
 }
 
 /// How far a formula and its constants were checked against their source.
@@ -119,6 +143,10 @@ macro_rules! family {
             const META: crate::losses::Meta<$state<f64>>;
             #[doc = concat!("`", $symbol, "`, ", $unit)]
             fn eval<D: crate::Real>(&self, state: &$state<D>) -> D;
+            /// Quantities that lie outside the range of the source.
+            fn outside(&self, state: &$state<f64>) -> Vec<crate::losses::Outside> {
+                Self::META.outside(state)
+            }
         }
 
         $(#[$doc])*
@@ -154,12 +182,7 @@ macro_rules! family {
             }
             /// Quantities that lie outside the range of the source.
             pub fn outside(&self, state: &$state<f64>) -> Vec<crate::losses::Outside> {
-                self.meta().valid.iter()
-                    .map(|r| crate::losses::Outside {
-                        symbol: r.symbol, unit: r.unit, value: (r.get)(state), range: (r.min, r.max),
-                    })
-                    .filter(|o| !(o.range.0..=o.range.1).contains(&o.value))
-                    .collect()
+                self.meta().outside(state)
             }
             /// Every law as lists show it.
             pub fn entries() -> Vec<crate::losses::Entry> {
@@ -186,6 +209,7 @@ pub mod bearing;
 pub mod churning;
 pub mod film;
 pub mod film_reduction;
+mod list;
 pub mod load_sharing;
 pub mod loss_factor;
 pub mod mesh_friction;
@@ -193,6 +217,8 @@ pub mod rolling;
 pub mod rotor_drag;
 pub mod seal;
 pub mod windage;
+
+pub use list::{Bounds, Checked, LawList, LawReport, Symbol, list};
 
 /// The laws in force, one of each family.
 macro_rules! laws {

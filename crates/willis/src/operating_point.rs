@@ -22,13 +22,13 @@
 
 mod bearing;
 mod body;
-mod contact;
+pub(crate) mod contact;
 mod motion;
 mod numbers;
 
 use std::borrow::Cow;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion};
@@ -38,7 +38,6 @@ use crate::real::{self, Real};
 use crate::train::{Efficiency, Gear, Lubrication, MemberId, Operation, Train};
 
 pub use bearing::BearingReport;
-pub(crate) use contact::Along;
 pub use contact::{ContactReport, Regime};
 pub(crate) use motion::{LEAST_SPEED, Place};
 pub(crate) use numbers::{MountNumbers, Numbers, OilState, RotorNumbers};
@@ -55,7 +54,8 @@ const LEAST_DRAG: f64 = 1e-50;
 const MOST_LOST: f64 = 0.95;
 
 /// What kind of loss it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum LossKind {
@@ -88,14 +88,16 @@ impl LossKind {
 }
 
 /// One place where power is lost.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LossSource {
     /// What loses it.
     pub name: String,
     /// What kind of loss it is.
     pub kind: LossKind,
     /// Its name in the list of laws; `given` for a given efficiency.
-    pub law: &'static str,
+    pub law: String,
     /// The power, W.
     pub loss_w: f64,
     /// The part of all losses.
@@ -103,7 +105,8 @@ pub struct LossSource {
 }
 
 /// What exerts a drag torque between two members.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum DragSource {
@@ -124,7 +127,9 @@ pub enum DragSource {
 /// Of a bearing that the teeth load there are several: the part that is there without load, and one
 /// for each mesh whose load it carries. The latter is contained in that mesh's efficiency, so the
 /// mesh's torques include it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct DragReport {
     /// What exerts it: name of the bearing, seal, gear or rotor; of rolling, of the mesh.
     pub name: String,
@@ -137,12 +142,14 @@ pub struct DragReport {
     /// Loss, W: torque times speed of the second relative to the first.
     pub loss_w: f64,
     /// The mesh whose torques contain it.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contained_in: Option<String>,
 }
 
 /// How the agreement of losses and torques was reached.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Convergence {
     /// Whether it was reached.
     pub converged: bool,
@@ -398,7 +405,12 @@ impl<'t, R: Real> Physics<'t, R> {
             for (bearing, part) in &own.bearings {
                 let loss = m.potential_power * *part;
                 teeth -= loss;
-                add(&train.bearings[*bearing].name, LossKind::Bearing, step.bearings[*bearing].law, loss);
+                add(
+                    &train.bearings[*bearing].name,
+                    LossKind::Bearing,
+                    self.bearing_law(&train.bearings[*bearing]).meta().id,
+                    loss,
+                );
             }
             let law = if mesh.computed { self.friction.meta().id } else { "given" };
             add(&mesh.name, LossKind::Sliding, law, teeth);
@@ -410,7 +422,12 @@ impl<'t, R: Real> Physics<'t, R> {
                     add(&train.meshes[k].name, LossKind::Rolling, law, *loss);
                 }
                 Source::Bearing(k) => {
-                    add(&train.bearings[k].name, LossKind::Bearing, step.bearings[k].law, *loss);
+                    add(
+                        &train.bearings[k].name,
+                        LossKind::Bearing,
+                        self.bearing_law(&train.bearings[k]).meta().id,
+                        *loss,
+                    );
                 }
                 Source::Seal(k) => add(&train.seals[k].name, LossKind::Seal, train.laws.seal.meta().id, *loss),
                 Source::Body(k) => {
@@ -525,8 +542,9 @@ impl Physics<'_> {
     /// Every loss of a solved step by its source, largest first; their sum is the flow's loss.
     pub fn sources(&self, step: &Step, flow: &Flow) -> Vec<LossSource> {
         let parts = self.parts(step, &flow.meshes, &flow.drag_losses).into_iter();
-        let mut all: Vec<LossSource> =
-            parts.map(|(name, kind, law, loss_w)| LossSource { name, kind, law, loss_w, share: 0.0 }).collect();
+        let mut all: Vec<LossSource> = parts
+            .map(|(name, kind, law, loss_w)| LossSource { name, kind, law: law.to_owned(), loss_w, share: 0.0 })
+            .collect();
         let total: f64 = all.iter().map(|s| s.loss_w).sum();
         for s in &mut all {
             s.loss_w += 0.0;

@@ -12,6 +12,7 @@
 
 pub(crate) mod arrangement;
 mod atlas;
+mod cells;
 mod closed;
 mod emit;
 mod family;
@@ -19,9 +20,10 @@ mod locate;
 pub(crate) mod formula;
 pub(crate) mod setup;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::{AS_DRAWN, Named, Role};
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
@@ -30,11 +32,12 @@ use crate::train::{FRAME, MemberId, Train};
 use atlas::atlas;
 use setup::{Pattern, Setup};
 
-pub(crate) use atlas::{arrow, efficiency_at};
+pub(crate) use atlas::arrow;
+pub(crate) use cells::efficiency_at;
 pub use closed::{Argument, ClosedFormula, Derivative, FormulaRequest, FormulaSheet, Outside, formulas};
 pub use family::{Case, Family, FamilyRange, Group, Row, family};
-pub use formula::{Efficiencies, Ratios};
-pub use locate::{Edge, LocateRequest, Located, Location, Range, locate};
+pub use formula::{Efficiencies, Ratios, SymbolKind};
+pub use locate::{Edge, LocateRequest, Located, Location, Prescribes, Range, locate};
 
 /// Which part of a train, and from which terminals.
 #[derive(Clone, Debug, Default)]
@@ -49,18 +52,26 @@ pub struct RegimeSelection {
 }
 
 /// All regimes of a train.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Regimes {
     /// `willis-regimes-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// One for each state asked for.
     pub states: Vec<Atlas>,
 }
 
+impl Contract for Regimes {
+    const FORMAT: &'static str = "willis-regimes-1";
+}
+
 /// The regimes of one state.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Atlas {
     /// Name of the state, or `as drawn`.
     pub state: String,
@@ -90,17 +101,22 @@ pub struct Atlas {
     pub boundaries: Vec<BoundaryReport>,
     /// Every assignment of inputs and outputs, and whether it can be reached.
     pub assignments: Vec<AssignmentReport>,
+    /// Elements without loss: it does not matter who drives them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub lossless: Vec<String>,
     /// What else a reader must know.
     pub notes: Vec<String>,
 }
 
 /// A symbol of the formulas.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SymbolReport {
     /// Value in this train, for ratios and efficiencies.
     pub value: Option<f64>,
-    /// The same as a fraction.
-    pub exact: Option<String>,
+    /// The same, exactly.
+    pub exact: Option<Rational>,
     /// In words.
     pub meaning: String,
     /// In LaTeX.
@@ -108,7 +124,9 @@ pub struct SymbolReport {
 }
 
 /// A plane through the origin of the speed space.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct PlaneReport {
     /// What is the case on it: `sun1 at rest`.
     pub label: String,
@@ -123,7 +141,9 @@ pub struct PlaneReport {
 }
 
 /// A region of speeds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct RegionReport {
     /// Its number, from 1.
     pub number: usize,
@@ -153,7 +173,9 @@ pub struct RegionReport {
 }
 
 /// An interval of a speed ratio.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct RatioRange {
     /// The quotient, such as `w_ring/w_engine`.
     pub of: String,
@@ -166,7 +188,9 @@ pub struct RatioRange {
 }
 
 /// What a torque prescribed on one terminal leads to.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Prescribed {
     /// The terminal.
     pub terminal: String,
@@ -177,7 +201,9 @@ pub struct Prescribed {
 }
 
 /// One regime.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct RegimeReport {
     /// Its name: number of the region, and the torque cell (`+` or `-` for the sign of the first
     /// torque that is not zero, else a number).
@@ -219,7 +245,9 @@ pub struct RegimeReport {
 }
 
 /// An operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ExamplePoint {
     /// Speeds by terminal, in any unit.
     pub speeds: Named<f64>,
@@ -227,12 +255,14 @@ pub struct ExamplePoint {
     pub torques: Named<f64>,
     /// Efficiency there; zero when all is dissipated.
     pub efficiency: f64,
-    /// The same as a fraction.
-    pub efficiency_exact: String,
+    /// The same, exactly.
+    pub efficiency_exact: Rational,
 }
 
 /// A regime across a plane.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Neighbour {
     /// The plane between.
     pub plane: String,
@@ -241,7 +271,9 @@ pub struct Neighbour {
 }
 
 /// A closed formula.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FormulaReport {
     /// Its name, `F1`.
     pub id: String,
@@ -268,7 +300,9 @@ pub struct FormulaReport {
 }
 
 /// A condition of a formula.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ConditionReport {
     /// An expression that must be positive.
     pub positive: String,
@@ -278,7 +312,9 @@ pub struct ConditionReport {
 
 /// The open interval of one ratio or efficiency in which the torque signs of a formula hold, all
 /// others as they are.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Threshold {
     /// The symbol.
     pub symbol: String,
@@ -291,7 +327,9 @@ pub struct Threshold {
 }
 
 /// The boundary between two neighbouring regions of a train with two freedoms.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct BoundaryReport {
     /// What is the case on it.
     pub label: String,
@@ -306,7 +344,9 @@ pub struct BoundaryReport {
 }
 
 /// A regime's passage over a boundary.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Crossing {
     /// Regime before.
     pub from: String,
@@ -321,7 +361,9 @@ pub struct Crossing {
 }
 
 /// An assignment of inputs and outputs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct AssignmentReport {
     /// Terminals where power enters.
     pub inputs: Vec<String>,
@@ -329,8 +371,44 @@ pub struct AssignmentReport {
     pub outputs: Vec<String>,
     /// Regimes that realise it; none when it cannot be reached.
     pub regimes: Vec<String>,
-    /// In words: how it is reached, or why not.
-    pub reach: String,
+    /// How it is reached, or why not.
+    pub reach: Reach,
+}
+
+/// Whether an assignment of inputs and outputs is reached; a sentence in answers for machines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub enum Reach {
+    /// It is reached.
+    #[serde(rename = "reached")]
+    Reached,
+    /// Only where friction turns a torque round, although without friction it exists too.
+    #[serde(rename = "reached where friction turns a torque round, and nowhere else")]
+    WhereFrictionTurns,
+    /// Only because friction turns a torque round.
+    #[serde(rename = "only because friction turns a torque round")]
+    ByFrictionOnly,
+    /// All inputs, and reached.
+    #[serde(rename = "reached: friction takes everything")]
+    Dissipated,
+    /// All inputs, and not reached.
+    #[serde(rename = "cannot be reached: friction never takes everything")]
+    NeverDissipated,
+    /// Not reached, although without friction it exists.
+    #[serde(rename = "cannot be reached: friction prevents it (without losses it exists)")]
+    PreventedByFriction,
+    /// Not reached, friction or not.
+    #[serde(rename = "cannot be reached: speeds and torques never have these signs together")]
+    Never,
+}
+
+impl std::fmt::Display for Reach {
+    /// The sentence.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        // The names under which it is serialised are the sentences.
+        self.serialize(f)
+    }
 }
 
 /// Enumerates the regimes of a train.
@@ -361,7 +439,7 @@ pub fn regimes(train: &Train, selection: &RegimeSelection) -> Result<Regimes, Di
     if selection.state.is_none() && states.iter().any(|a: &Atlas| a.reason.is_none()) {
         states.retain(|a| a.reason.is_none() || a.state != AS_DRAWN);
     }
-    Ok(Regimes { format: "willis-regimes-1", train: train.name.clone(), states })
+    Ok(Regimes { format: Format::new(), train: train.name.clone(), states })
 }
 
 /// A configuration that a selection names, with its terminals.

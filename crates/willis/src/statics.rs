@@ -19,15 +19,22 @@
 //! lie anywhere between, which is reported, not guessed. An element with zero force is idle: it
 //! has no driver and no loss (the one deterministic rule for idle meshes).
 
+mod problem;
+
 use std::collections::HashSet;
 
 use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Node};
 
+pub use problem::{Balanced, Equilibria, Problem, Unposed};
+
 /// How uniqueness was established.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Certificate {
     /// One solution for every load: verified bound on the spectral radius over the whole box.
@@ -49,7 +56,7 @@ impl Certificate {
     }
 
     /// The name in the machine-readable results.
-    pub fn method(self) -> &'static str {
+    pub fn as_str(self) -> &'static str {
         match self {
             Self::SpectralRadius => "spectral-radius",
             Self::Determinants => "determinants",
@@ -73,6 +80,19 @@ pub enum Unsolvable {
     UndeterminedSpeed,
 }
 
+impl std::fmt::Display for Unsolvable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::MissingLoads(n) => write!(f, "{n} more loads must be given"),
+            Self::TooManyLoads(n) => write!(f, "{n} loads too many: that many freedoms are left over"),
+            Self::Indeterminate => f.write_str("statically indeterminate"),
+            Self::UndeterminedSpeed => f.write_str("a loaded mesh has no determined relative speed"),
+        }
+    }
+}
+
+impl std::error::Error for Unsolvable {}
+
 /// One element as the statics sees it.
 #[derive(Clone, Debug)]
 struct Column {
@@ -91,7 +111,7 @@ struct Column {
 
 /// An equilibrium of the train.
 #[derive(Clone, Debug)]
-pub struct Solution {
+pub(crate) struct Solution {
     /// Force variable of each element of the configuration; the torque on end p is `a f`.
     pub(crate) forces: Vec<f64>,
     /// ρ of each element.
@@ -105,7 +125,7 @@ pub struct Solution {
 
 /// What the statics says for one load.
 #[derive(Clone, Debug)]
-pub struct Answer {
+pub(crate) struct Answer {
     /// Every solution found; none means that friction locks the train.
     pub solutions: Vec<Solution>,
     /// What is known about their number.
@@ -117,7 +137,7 @@ pub struct Answer {
 /// The equilibrium problem of a configuration with given directions of motion: which torques are
 /// known is fixed, their values are not.
 #[derive(Clone, Debug)]
-pub struct Equilibrium {
+pub(crate) struct Equilibrium {
     columns: Vec<Column>,
     /// Node of each row.
     rows: Vec<usize>,
@@ -488,6 +508,41 @@ impl Equilibrium {
         }
         s
     }
+}
+
+/// External torque on a node, from the forces of the elements.
+pub(crate) fn torque(c: &Configuration<'_>, s: &Solution, node: usize) -> f64 {
+    let mut sum = 0.0;
+    for (j, e) in c.elements.iter().enumerate() {
+        let (a, b) = (e.a.to_f64(), e.b.to_f64() * s.rho[j]);
+        for (member, coefficient) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
+            if c.node(member) == Some(node) {
+                sum += s.forces[j] * coefficient;
+            }
+        }
+    }
+    sum
+}
+
+/// The same in rationals.
+pub(crate) fn torque_exact(
+    c: &Configuration<'_>,
+    equilibrium: &Equilibrium,
+    s: &Solution,
+    forces: &[Rational],
+    node: usize,
+) -> Rational {
+    let mut sum = Rational::ZERO;
+    for (j, e) in c.elements.iter().enumerate() {
+        let b = &e.b * &equilibrium.rho_of(s, j);
+        let carrier = -(&e.a + &b);
+        for (member, coefficient) in [(e.p, &e.a), (e.q, &b), (e.carrier, &carrier)] {
+            if c.node(member) == Some(node) {
+                sum += &forces[j] * coefficient;
+            }
+        }
+    }
+    sum
 }
 
 /// Which nodes have an equation and which elements can carry a force at all.

@@ -1,10 +1,12 @@
 //! Many operating points: maps, trends, what matters most, how sure it is, and files for other programs.
 //!
-//! A [`Subject`] is a train file whose quantities can be set anew; a [`Question`] says what is prescribed and what is
+//! A [`Model`](crate::model::Model) is a train whose quantities can be set anew; a [`Question`] says what is prescribed and what is
 //! held while quantities vary; an [`Axis`] is one quantity and its values. A [`Sweep`] puts them together: a grid of
 //! points, each of which is one row, computed as [`analyze`](crate::analyze) computes it.
 
+mod answer;
 mod axis;
+mod column;
 mod compare;
 mod compiled;
 mod cycle;
@@ -14,32 +16,36 @@ pub mod export;
 mod profile;
 mod question;
 mod sensitivity;
-mod subject;
+mod summary;
 mod sweep;
-mod target;
 mod uncertainty;
 
+pub use answer::{PointAnswer, PointVerdict, PointWarning};
 pub use axis::{Axis, values};
+pub use column::{Column, ColumnKind, ColumnTable, ColumnValues, Rows};
 pub use compare::{
-    Band, CompareRequest, Compared, Comparison, Datum, Difference, MapComparison, MapDifference, MapPair, MapPlace,
-    TextDifference, Variant, compare,
+    Band, CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapComparison, MapDifference,
+    MapPair, MapPlace, TextDifference, Variant, compare,
 };
-pub use compiled::{CompiledSweep, Room};
+pub use compiled::{CompiledSweep, SweepWorkspace};
 pub use cycle::{
-    Cycle, CyclePart, CyclePoint, CycleReport, Energies, Said, SourceEnergy, TerminalEnergy, VerdictTime, Way, Worst,
-    WorstRow, cycle,
+    Cycle, CycleAnswer, CycleReport, CycleRequest, Energies, EnergyKind, PowerDirection, RepeatedMessage, SourceEnergy,
+    TerminalEnergy, VerdictTime, Worst, WorstRow, cycle,
 };
 pub(crate) use design::quantile;
-pub use design::{Design, Index, REPLICATES, SamplingError, Statistics};
+pub use design::{Design, REPLICATES, SamplingError, SobolIndices, Statistics};
 pub use distribution::{Distribution, standard_normal_quantile};
 pub use profile::{Basis, Profile, ProfileRow};
 pub use question::{Hold, Question, Trains};
 pub use sensitivity::{
     Checks, OperationSensitivity, QuantitySensitivity, Sensitivity, SourceChange, StepKind, sensitivity,
 };
-pub use subject::Subject;
-pub use sweep::{Answer, Cells, Column, Extent, Rows, Seen, Summary, Sweep, VERDICTS};
-pub use target::{Target, Who};
+pub use summary::{AxisValue, Extreme, LawChoice, MinMaxSum, Summary, WarningCount, WarningKind};
+pub use sweep::{
+    Shard, Sweep, SweepAnswer, SweepAxis, SweepColumn, SweepMethod, SweepPlace, SweepPlan, SweepReport, SweepRequest,
+    SweepStudy, sweep,
+};
 pub use uncertainty::{
-    Choice, Evaluated, Influence, Likely, Output, Reported, Uncertain, Uncertainty, UncertaintyPlan, UncertaintyRequest,
+    ChoiceResult, Influence, SampleResult, Uncertain, UncertainQuantity, UncertainResult, UncertainValue, Uncertainty,
+    UncertaintyAnswer, UncertaintyPlan, UncertaintyRequest, uncertainty,
 };

@@ -6,42 +6,49 @@
 //! members and meshes.
 
 mod assemble;
-mod describe;
+mod assembler;
+pub(crate) mod csv;
+mod described;
 mod dynamic;
+mod edit;
 mod expand;
 mod format;
 mod formula;
 mod input;
 mod physical;
+mod reading;
+mod schema;
+mod specification;
+mod words;
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::losses::Laws;
-use crate::units::Quantity;
+use crate::units::{AngularSpeed, Power, Quantity, Temperature, Torque};
 
-pub use describe::dynamic::{
-    DragSpec, PlanetBodySpec, ScenarioSpec, ShaftSpec, SignalSpec, SourceKindSpec, SourceSpec,
-};
-pub use describe::physical::{
-    BearingSpec, Fluid, GeometrySpec, HousingSpec, OilSpec, OilSupply, RotorSpec, SealSpec, ToothSpec,
-};
-pub use describe::{
-    EfficiencySpec, GearSpec, MeshSpec, OperationSpec, SetEfficiencySpec, SetSpec, ShiftElementSpec, StateSpec,
-    StudySpec, TrainBuilder,
-};
 pub use dynamic::{
     Contact, Curve, DragMount, Engagement, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal, Source,
     SourceKind,
 };
-pub use format::{Document, Key, Measure, Reading, schema};
+pub use edit::{Document, Key, Measure};
 pub use formula::Formula;
 pub(crate) use input::{BearingNumber, Input, RotorNumber, Slot};
 pub(crate) use physical::steel_mass;
-pub use physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
+pub use physical::{BearingMount, Housing, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
+pub use reading::Reading;
+pub use schema::schema;
+pub use specification::{
+    BearingSpec, BevelSpec, CentralSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec, EfficiencySpec,
+    EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec, LinearSpec,
+    LossRowSpec, MeshSpec, MotorSpec, OilSpec, OilSupply, OperationSpec, PairKind, PlanetBodySpec, PlanetSpec,
+    QuadraticSpec, RavigneauxSpec, RotorSpec, ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts, SetSpec,
+    ShaftSpec, ShiftElementSpec, Side, SideSpec, SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec,
+    StepSpec, SteppedPlanetSpec, SteppedSpec, StudySpec, ToothSpec, VehicleSpec,
+};
 
 /// A member's number within its train. The frame is number 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -164,7 +171,8 @@ pub struct Set {
 }
 
 /// Kind of shift element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum ShiftElementKind {
     /// Joins two members.
@@ -240,6 +248,87 @@ pub struct Operation {
     pub(crate) place: String,
 }
 
+impl Operation {
+    /// An operating point of the train as drawn, in which nothing is prescribed yet.
+    ///
+    /// By the names of members and states it is made with [`Train::operation`].
+    ///
+    /// # Example
+    /// ```
+    /// use willis::train::{Operation, SetSpec, Train};
+    /// use willis::units::{AngularSpeed, Torque};
+    ///
+    /// let train = Train::builder("reducer")
+    ///     .members(["s", "c"])
+    ///     .terminals(["s", "c"])
+    ///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).mesh_efficiency(0.99))
+    ///     .build()?;
+    /// let sun = train.member("s").unwrap();
+    /// let point = Operation::new("20 N m").speed(sun, AngularSpeed::rpm(1000.0)).load(sun, Torque::n_m(20.0));
+    /// let (report, _) = willis::analysis::operate(&train, &point)?;
+    /// assert!(report.solutions[0].efficiency.unwrap() > 0.98);
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn new(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            state: None,
+            speeds: vec![],
+            fixed: vec![],
+            loads: vec![],
+            temperature: None,
+            place: String::new(),
+        }
+    }
+
+    /// In a state of the shift table, by its position in [`Train::states`].
+    #[must_use]
+    pub fn state(mut self, state: usize) -> Self {
+        self.state = Some(state);
+        self
+    }
+
+    /// Prescribes a speed.
+    #[must_use]
+    pub fn speed(mut self, member: MemberId, speed: AngularSpeed) -> Self {
+        self.speeds.push((member, speed.into()));
+        self
+    }
+
+    /// Holds a member at rest from outside.
+    #[must_use]
+    pub fn fixed(mut self, member: MemberId) -> Self {
+        self.fixed.push(member);
+        self
+    }
+
+    /// Prescribes an external torque, or a power into the train.
+    #[must_use]
+    pub fn load(mut self, member: MemberId, load: impl Into<Load>) -> Self {
+        self.loads.push((member, load.into()));
+        self
+    }
+
+    /// Prescribes the oil temperature.
+    #[must_use]
+    pub fn temperature(mut self, temperature: Temperature) -> Self {
+        self.temperature = Some(temperature.si());
+        self
+    }
+}
+
+impl From<Torque> for Load {
+    fn from(torque: Torque) -> Self {
+        Self::Torque(torque.into())
+    }
+}
+
+impl From<Power> for Load {
+    fn from(power: Power) -> Self {
+        Self::Power(power.into())
+    }
+}
+
 /// A gear train that passed every check.
 ///
 /// # Example
@@ -274,7 +363,7 @@ pub struct Train {
     pub(crate) assumptions: Vec<String>,
     pub(crate) lubrication: Option<Lubrication>,
     pub(crate) laws: Laws,
-    pub(crate) housing: HousingSpec,
+    pub(crate) housing: Housing,
     pub(crate) bearings: Vec<BearingMount>,
     pub(crate) seals: Vec<SealMount>,
     pub(crate) rotors: Vec<Rotor>,
@@ -289,8 +378,8 @@ pub struct Train {
 
 impl Train {
     /// Starts a train.
-    pub fn builder(name: impl Into<String>) -> TrainBuilder {
-        TrainBuilder::new(name)
+    pub fn builder(name: impl Into<String>) -> Specification {
+        Specification::new(name)
     }
 
     /// Reads the text of a train file (TOML, format 1). No file is touched.
@@ -337,7 +426,7 @@ impl Train {
     /// assert_eq!(train.scenarios()[0].sources[0].name, "torque on wheel");
     /// ```
     pub fn read_toml_with(text: &str, load: &mut dyn FnMut(&str) -> Result<String, String>) -> Reading {
-        format::read(text, load)
+        reading::read(text, load)
     }
 
     /// Its name.
@@ -378,6 +467,30 @@ impl Train {
     /// The operating points of the file.
     pub fn operations(&self) -> &[Operation] {
         &self.operations
+    }
+
+    /// An operating point of this train, by the names of members and states.
+    ///
+    /// # Errors
+    /// A name that the train does not have; a member that is held and driven; a load where no torque may act.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::train::{OperationSpec, SetSpec, Train};
+    /// use willis::units::{AngularSpeed, Torque};
+    ///
+    /// let train = Train::builder("reducer")
+    ///     .members(["s", "c"])
+    ///     .terminals(["s", "c"])
+    ///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).mesh_efficiency(0.99))
+    ///     .build()?;
+    /// let asked = OperationSpec::new("20 N m").speed("s", AngularSpeed::rpm(1000.0)).torque("s", Torque::n_m(20.0));
+    /// let (report, _) = willis::analysis::operate(&train, &train.operation(&asked)?)?;
+    /// assert!(report.solutions[0].efficiency.unwrap() > 0.98);
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn operation(&self, spec: &OperationSpec) -> Result<Operation, Diagnostics> {
+        assemble::operating_point(self, spec)
     }
 
     /// Members on which an external torque may act.
@@ -421,7 +534,7 @@ impl Train {
     }
 
     /// What surrounds the gears.
-    pub fn housing(&self) -> HousingSpec {
+    pub fn housing(&self) -> Housing {
         self.housing
     }
 

@@ -9,6 +9,9 @@ use std::process::Command;
 
 use serde_json::Value;
 
+use crate::context::Context;
+use crate::step::{Outcome, outcome};
+
 /// Task, peer, ratio asked for (`performance` goals of the project).
 const GOALS: &[(&str, &str, Option<f64>)] = &[
     ("map-all", "numpy-whole-array", Some(10.0)),
@@ -61,8 +64,27 @@ const STEPS: &[(&str, f64)] = &[
 /// The longest step of the automatic, modes known, at most, ns.
 const LONGEST_STEP: f64 = 1000.0;
 
+/// `cargo xtask bench`
+pub(crate) fn bench(context: &Context) -> Outcome {
+    match run(&context.root) {
+        Ok(()) => Outcome::Passed,
+        Err(why) => Outcome::Failed(why),
+    }
+}
+
+/// Work counts against their committed values, once that benchmark exists.
+pub(crate) fn bench_gate(context: &Context) -> Outcome {
+    if !context.root.join("crates/willis/benches/gate.rs").exists() {
+        return Outcome::Skipped("there is no crates/willis/benches/gate.rs".into());
+    }
+    if !context.succeeds("valgrind --version") {
+        return Outcome::Skipped("valgrind, which counts the instructions, is not installed".into());
+    }
+    outcome(context.run("cargo bench -p willis --bench gate"))
+}
+
 /// Runs everything and prints the table. `Err` when a program failed or checksums differ.
-pub fn run(root: &Path) -> Result<(), String> {
+fn run(root: &Path) -> Result<(), String> {
     let folder = root.join("target/willis-bench");
     fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
     let checksums = folder.join("checksums.jsonl");

@@ -6,7 +6,10 @@
 use std::fs;
 use std::path::Path;
 
-use crate::{Context, example_files};
+use crate::context::{Context, passes, said};
+use crate::examples::example_files;
+use crate::generate::build_willis;
+use crate::step::{Outcome, outcome};
 
 /// A command of the prose and what it is said to print.
 struct Shown {
@@ -17,11 +20,47 @@ struct Shown {
     train: Option<String>,
 }
 
-/// Runs all of them in a folder of their own. How many there were, or what differs.
-pub fn run(context: &Context) -> Result<String, String> {
-    let folder = context.target.join("book");
+/// Runs the commands of README and book and compares.
+pub(crate) fn book(context: &Context) -> Outcome {
+    match build_willis(context).and_then(|()| run(context)) {
+        Ok(told) => {
+            println!("{told}");
+            Outcome::Passed
+        }
+        Err(e) => Outcome::Failed(e),
+    }
+}
+
+/// `cargo xtask pages`: the book as web pages, by the tool that it is written for.
+///
+/// The tool is built once, without what serves and searches pages and without optimisation, and kept beside the other
+/// build results.
+pub(crate) fn pages(context: &Context) -> Outcome {
+    let tools = context.target.join("tools");
+    let own = tools.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX));
+    let runs = |program: &Path| {
+        context.output(context.command(program).arg("--version")).is_ok_and(|o| o.stdout.starts_with(b"mdbook v0.5"))
+    };
+    let program = if runs(Path::new("mdbook")) { Path::new("mdbook") } else { &own };
+    if !runs(program) {
+        let words = "cargo install --quiet --locked mdbook --version ^0.5 --no-default-features --debug";
+        let mut install = context.words(words);
+        install.arg("--root").arg(&tools).arg("--target-dir").arg(tools.join("build"));
+        if passes(&mut install, words).is_err() || !runs(program) {
+            return Outcome::Skipped("mdbook is not installed, and cannot be had here".into());
+        }
+        let _ = fs::remove_dir_all(tools.join("build"));
+    }
+    let mut build = context.command(program);
+    build.args(["build", "book", "--dest-dir"]).arg(context.target.join("book-pages"));
+    let said = said(&build);
+    outcome(passes(&mut build, &said))
+}
+
+/// A new folder with the examples in it, where the reader of a page begins.
+fn reader(context: &Context, folder: &Path) -> Result<(), String> {
     let fail = |e: std::io::Error| format!("{}: {e}", folder.display());
-    let _ = fs::remove_dir_all(&folder);
+    let _ = fs::remove_dir_all(folder);
     fs::create_dir_all(folder.join("examples")).map_err(fail)?;
     for file in example_files(context)? {
         fs::copy(context.root.join(&file), folder.join(&file)).map_err(fail)?;
@@ -33,6 +72,13 @@ pub fn run(context: &Context) -> Result<String, String> {
             fs::copy(&file, folder.join("examples").join(name)).map_err(fail)?;
         }
     }
+    Ok(())
+}
+
+/// Runs all of them, those of a page in a folder of their own. How many there were, or what differs.
+fn run(context: &Context) -> Result<String, String> {
+    let folder = context.target.join("book");
+    let fail = |e: std::io::Error| format!("{}: {e}", folder.display());
     let mut pages = vec!["README.md".to_owned()];
     let chapters = fs::read_dir(context.root.join("book/src")).map_err(fail)?;
     let names = chapters.filter_map(|c| c.ok()?.file_name().into_string().ok());
@@ -41,6 +87,7 @@ pub fn run(context: &Context) -> Result<String, String> {
     let (mut commands, mut lines, mut wrong) = (0, 0, Vec::new());
     for page in &pages {
         let text = fs::read_to_string(context.root.join(page)).map_err(|e| format!("{page}: {e}"))?;
+        reader(context, &folder)?;
         for shown in commands_of(&text) {
             if let Some(train) = &shown.train {
                 let bare = |w: &&String| w.ends_with(".toml") && Path::new(w).components().count() == 1;

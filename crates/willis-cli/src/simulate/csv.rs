@@ -3,6 +3,7 @@
 use std::io::{BufWriter, Write};
 
 use willis::dynamics::Column;
+use willis_ask::table::{field, number};
 
 /// A header, then a row a sample; empty where a value is not determined.
 ///
@@ -18,25 +19,24 @@ impl<W: Write> Rows<W> {
     }
 
     pub fn columns(&mut self, columns: &[Column]) -> Result<(), String> {
-        let mut header = crate::csv::Writer::default();
-        header.row(columns.iter().map(|c| &c.name));
-        self.out.write_all(header.0.as_bytes()).map_err(|e| e.to_string())
+        let mut header = String::new();
+        for (k, column) in columns.iter().enumerate() {
+            if k > 0 {
+                header.push(',');
+            }
+            field(&mut header, &column.name);
+        }
+        header.push('\n');
+        self.out.write_all(header.as_bytes()).map_err(|e| e.to_string())
     }
 
     pub fn row(&mut self, values: &[f64]) -> Result<(), String> {
-        use std::fmt::Write as _;
         self.line.clear();
         for (k, v) in values.iter().enumerate() {
             if k > 0 {
                 self.line.push(',');
             }
-            if !v.is_nan() {
-                // The shortest text that reads back as the same number; adding zero turns -0.0 into 0.0.
-                let _ = write!(self.line, "{:?}", v + 0.0);
-                if self.line.ends_with(".0") {
-                    self.line.truncate(self.line.len() - 2);
-                }
-            }
+            number(&mut self.line, *v);
         }
         self.line.push('\n');
         self.out.write_all(self.line.as_bytes()).map_err(|e| e.to_string())

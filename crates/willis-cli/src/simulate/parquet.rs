@@ -10,7 +10,7 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
-use willis::dynamics::{Column, RunReport};
+use willis::dynamics::{Column, ColumnKind, RunReport};
 
 /// Rows in a group, unless there are many columns.
 const ROWS: usize = 65_536;
@@ -42,7 +42,7 @@ impl<W: Write + Send> Rows<W> {
 
     fn start(&mut self) -> Result<(), ParquetError> {
         let field = |c: &Column| {
-            let repetition = if c.kind == "time" { Repetition::REQUIRED } else { Repetition::OPTIONAL };
+            let repetition = if c.kind == ColumnKind::Time { Repetition::REQUIRED } else { Repetition::OPTIONAL };
             Type::primitive_type_builder(&c.name, Physical::DOUBLE).with_repetition(repetition).build().map(Arc::new)
         };
         let fields = self.columns.iter().map(field).collect::<Result<Vec<_>, _>>()?;
@@ -73,7 +73,7 @@ impl<W: Write + Send> Rows<W> {
         for (column, values) in self.columns.iter().zip(&mut self.values) {
             let mut out = group.next_column()?.expect("as many as in the schema");
             let typed = out.typed::<DoubleType>();
-            if column.kind == "time" {
+            if column.kind == ColumnKind::Time {
                 typed.write_batch(values, None, None)?;
             } else {
                 defined.clear();
@@ -101,7 +101,7 @@ impl<W: Write + Send> Rows<W> {
         let mut tell = |key: &str, value: String| {
             writer.append_key_value_metadata(KeyValue::new(format!("willis.{key}"), value));
         };
-        tell("format", report.format.to_owned());
+        tell("format", report.format.to_string());
         tell("train", report.train.clone());
         tell("scenario", report.scenario.clone());
         tell("columns", columns);

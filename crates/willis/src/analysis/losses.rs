@@ -1,13 +1,14 @@
 //! Losses at a few points: over speed, load and temperature, and law beside law.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::losses::{self, Entry, Tag};
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::Quantity;
 
-use super::{Convergence, LossSource, Losses, Named, Verdict, operation};
+use super::{Convergence, LossSource, Losses, Named, OutsideLaw, Verdict, Why, operate_unnamed, words};
 
 /// Where to evaluate the losses of a train. An empty list leaves a quantity as the file has it.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +28,9 @@ pub struct LossRequest {
 }
 
 /// One point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LossPoint {
     /// The operation it comes from.
     pub operation: String,
@@ -42,11 +45,14 @@ pub struct LossPoint {
     /// Oil temperature, K; absent without an oil.
     pub temperature_k: Option<f64>,
     /// The law in force, where laws are compared.
-    pub law: Option<&'static str>,
+    pub law: Option<String>,
     /// What can be said of the point.
     pub verdict: Verdict,
     /// One sentence that explains the verdict.
     pub reason: Option<String>,
+    /// The same as data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<Why>,
     /// Output over input power.
     pub efficiency: Option<f64>,
     /// Power in, W.
@@ -63,17 +69,22 @@ pub struct LossPoint {
     pub convergence: Option<Convergence>,
     /// Warnings of this point.
     pub warnings: Vec<String>,
+    /// Those of them that say that a law was used outside its range, as data.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outside_laws: Vec<OutsideLaw>,
 }
 
 /// How far the laws of a family disagree at a point: the honest uncertainty of a prediction. Laws
 /// outside their range count only where fewer than two are inside; laws that reproduce a published
 /// error never count.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Spread {
     /// Smallest loss, W, and the law that gives it.
-    pub least_w: (f64, &'static str),
+    pub least_w: (f64, String),
     /// Largest loss, W, and the law that gives it.
-    pub most_w: (f64, &'static str),
+    pub most_w: (f64, String),
     /// Laws that were used inside their ranges.
     pub inside: usize,
     /// Laws in all.
@@ -81,10 +92,12 @@ pub struct Spread {
 }
 
 /// Losses at the points asked for.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct LossTable {
     /// `willis-losses-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// The family whose laws are compared.
@@ -93,6 +106,10 @@ pub struct LossTable {
     pub points: Vec<LossPoint>,
     /// Where laws are compared: the spread over each group of points that differ in the law alone.
     pub spreads: Vec<Spread>,
+}
+
+impl Contract for LossTable {
+    const FORMAT: &'static str = "willis-losses-1";
 }
 
 /// Evaluates losses.
@@ -168,7 +185,7 @@ pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnos
         None => vec![None],
     };
     let mut table = LossTable {
-        format: "willis-losses-1",
+        format: Format::new(),
         train: train.name.clone(),
         family: request.compare.clone(),
         points: vec![],
@@ -276,9 +293,8 @@ fn quantity(load: &Load) -> &Quantity {
     }
 }
 
-fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Result<LossPoint, Diagnostics> {
-    let mut notes = Diagnostics::default();
-    let report = operation::report(train, operation, &mut notes)?;
+fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<LossPoint, Diagnostics> {
+    let (report, notes) = operate_unnamed(train, operation).map_err(|wrong| words::named(operation, wrong))?;
     let solution = report.solutions.first();
     let speed = operation.speeds.first().map_or(0.0, |s| s.1.si());
     let torque = operation.loads.first().and_then(|(m, load)| match load {
@@ -288,7 +304,6 @@ fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Res
             speed.map(|w| p.si() / w)
         }
     });
-    let title = format!("operation `{}`: ", operation.name);
     Ok(LossPoint {
         operation: operation.name.clone(),
         speed_of: operation.speeds.first().map(|s| train.member_name(s.0).to_owned()),
@@ -296,7 +311,7 @@ fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Res
         torque_of: operation.loads.first().map(|l| train.member_name(l.0).to_owned()),
         torque_n_m: torque,
         temperature_k: train.lubrication.as_ref().map(|l| operation.temperature.unwrap_or(l.temperature)),
-        law,
+        law: law.map(str::to_owned),
         verdict: report.verdict,
         reason: report.reason.clone(),
         efficiency: solution.and_then(|s| s.efficiency),
@@ -310,21 +325,24 @@ fn point(train: &Train, operation: &Operation, law: Option<&'static str>) -> Res
         convergence: solution.and_then(|s| s.convergence),
         warnings: (train.lubrication.iter())
             .filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)))
+            .map(|b| b.to_string())
             .map(|text| Diagnostic::new(Code::OutsideLaw, "", text))
             .chain(notes)
             .filter(|d| d.severity == Severity::Warning)
-            .map(|d| d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned())
+            .map(|d| d.message)
             .collect(),
+        why: report.why,
+        outside_laws: report.outside_laws,
     })
 }
 
 fn spread(points: &[LossPoint], family: &str, compatibility: impl Fn(&str) -> bool) -> Option<Spread> {
     // Laws that reproduce errors are shown, and not counted.
-    let counts = |p: &&LossPoint| p.verdict == Verdict::Unique && p.law.is_some_and(|l| !compatibility(l));
+    let counts = |p: &&LossPoint| p.verdict == Verdict::Unique && p.law.as_ref().is_some_and(|l| !compatibility(l));
     let all: Vec<&LossPoint> = points.iter().filter(counts).collect();
     let inside = |p: &&LossPoint| {
-        let own = format!("{family} = {} of ", p.law.unwrap_or_default());
-        !p.warnings.iter().any(|w| w.starts_with(&own))
+        let own = |o: &OutsideLaw| o.family == family && Some(&o.law) == p.law.as_ref();
+        !p.outside_laws.iter().any(own)
     };
     let within: Vec<&LossPoint> = all.iter().copied().filter(inside).collect();
     let counted = if within.len() > 1 { &within } else { &all };
@@ -332,8 +350,8 @@ fn spread(points: &[LossPoint], family: &str, compatibility: impl Fn(&str) -> bo
     let least = counted.iter().min_by(by_loss)?;
     let most = counted.iter().max_by(by_loss)?;
     Some(Spread {
-        least_w: (least.loss_w, least.law?),
-        most_w: (most.loss_w, most.law?),
+        least_w: (least.loss_w, least.law.clone()?),
+        most_w: (most.loss_w, most.law.clone()?),
         inside: within.len(),
         laws: all.len(),
     })

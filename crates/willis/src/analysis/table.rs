@@ -4,10 +4,11 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, Ratio};
 use crate::power_flow::{self, demand};
-use crate::statics::{Certificate, Equilibrium, Unsolvable};
-use crate::train::{FRAME, MemberId, ShiftElementId, ShiftElementKind, Train};
+use crate::statics::{Certificate, Equilibrium, Unsolvable, torque, torque_exact};
+use crate::train::{MemberId, ShiftElementId, ShiftElementKind, Train};
 
-use super::{Direction, Named, StateReport, Verdict, element_names, names};
+use super::words::{element_names, names};
+use super::{Direction, Named, StateReport, Verdict, Why};
 
 /// The row of a state; `None` when the train has no input and output.
 pub(super) fn row(
@@ -36,11 +37,10 @@ pub(super) fn row(
     };
     let c = Configuration::new(train, engaged, &[], &[]);
     let ratio = c.ratio(input, output);
+    let name_of = |m: MemberId| train.member_name(m).to_owned();
     let (exact, no_ratio) = match &ratio {
         Ratio::Exact(r) => (Some(r.clone()), None),
-        Ratio::OutputAtRest => {
-            (None, Some(format!("{} stands still while {} turns", names(train, [output]), names(train, [input]))))
-        }
+        Ratio::OutputAtRest => (None, Some(Why::OutputAtRest { output: name_of(output), input: name_of(input) })),
         Ratio::InputLocked => (None, Some(locked(&c, input))),
         Ratio::Undetermined => (None, Some(free(&c, input, output))),
     };
@@ -64,18 +64,18 @@ pub(super) fn row(
     }
     let (drive, coast) = match &exact {
         Some(_) if beyond => {
-            let none = || verdict(Verdict::Undetermined, "the ratio is beyond floating point");
-            (none(), none())
+            let none = Direction::without(Verdict::Undetermined, Why::RatioTooLarge);
+            (none.clone(), none)
         }
         Some(_) if redundant.is_empty() => (direction(&c, input, output, input), direction(&c, output, input, input)),
         Some(_) => {
-            let none = || verdict(Verdict::Undetermined, "statically indeterminate");
-            (none(), none())
+            let none = Direction::without(Verdict::Undetermined, Why::Indeterminate);
+            (none.clone(), none)
         }
         None => {
             let v = if ratio == Ratio::Undetermined { Verdict::Undetermined } else { Verdict::Locked };
-            let none = || verdict(v, no_ratio.as_deref().unwrap_or_default());
-            (none(), none())
+            let none = Direction::without(v, no_ratio.clone().expect("without a ratio there is a reason"));
+            (none.clone(), none)
         }
     };
     for (way, from, to, d) in [("driving", input, output, &drive), ("coasting", output, input, &coast)] {
@@ -99,7 +99,7 @@ pub(super) fn row(
             }
             _ => {}
         }
-        if d.certificate.is_some_and(|c| c.method == Certificate::Undecided.method()) {
+        if d.certificate.is_some_and(|c| c.method == Certificate::Undecided) {
             diagnostics.push(Diagnostic::new(
                 Code::NotEnumerated,
                 &place,
@@ -114,8 +114,8 @@ pub(super) fn row(
         input: train.member_name(input).to_owned(),
         output: train.member_name(output).to_owned(),
         value: exact.as_ref().filter(|_| !beyond).map(Rational::to_f64),
-        exact: exact.map(|r| r.to_fraction()),
-        no_ratio,
+        exact,
+        no_ratio: no_ratio.map(|why| why.to_string()),
         step: None,
         engaged: element_names(train, engaged),
         degrees_of_freedom: c.degrees_of_freedom(),
@@ -134,37 +134,41 @@ pub(super) fn steps(ratios: &mut Named<StateReport>) {
     }
 }
 
-fn verdict(verdict: Verdict, reason: &str) -> Direction {
-    Direction { verdict, efficiency: None, efficiencies: vec![], certificate: None, reason: Some(reason.to_owned()) }
+impl Direction {
+    fn without(verdict: Verdict, why: Why) -> Self {
+        Self {
+            verdict,
+            efficiency: None,
+            efficiencies: vec![],
+            certificate: None,
+            reason: Some(why.to_string()),
+            why: Some(why),
+        }
+    }
 }
 
 /// Power from `from` to a resisting load at `to`: the load is given, what drives it is found.
 /// The train's input turns forward.
 fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberId) -> Direction {
     let train = c.train;
+    let name = |m: MemberId| train.member_name(m).to_owned();
     let transfer = c.transfer(&[from]);
     let motion =
         Motion { speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(), pi_power: 0 };
     let (Some(node_from), Some(node_to)) = (c.node(from), c.node(to)) else {
-        return verdict(Verdict::Locked, &format!("{} cannot turn", names(train, [from])));
+        return Direction::without(Verdict::Locked, Why::CannotTurn { member: name(from) });
     };
     let (Some(w_from), Some(w_to)) = (&motion.speeds[from.0], &motion.speeds[to.0]) else {
-        return verdict(Verdict::Undetermined, "the speeds are not determined");
+        return Direction::without(Verdict::Undetermined, Why::SpeedsNotDetermined);
     };
     if !transfer.conflicts.is_empty() || w_to.is_zero() || w_from.is_zero() {
-        return verdict(
-            Verdict::Locked,
-            &format!("{} cannot drive {}", train.member_name(from), train.member_name(to)),
-        );
+        return Direction::without(Verdict::Locked, Why::CannotDrive { from: name(from), to: name(to) });
     }
     let forward = if from == input { f64::from(w_from.sign()) } else { f64::from(w_to.sign()) };
     let load = -f64::from(w_to.sign());
     if node_from == node_to {
-        if let Some(name) = overrunning(c, &vec![0.0; train.members.len()], [(from, -load), (to, load)], forward) {
-            return verdict(
-                Verdict::Undetermined,
-                &format!("the one-way clutch {name} overruns: no load is carried this way"),
-            );
+        if let Some(clutch) = overrunning(c, &vec![0.0; train.members.len()], [(from, -load), (to, load)], forward) {
+            return Direction::without(Verdict::Undetermined, Why::Overruns { clutch });
         }
         return Direction {
             verdict: Verdict::Unique,
@@ -172,12 +176,13 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
             efficiencies: vec![1.0],
             certificate: Some(Certificate::SpectralRadius.into()),
             reason: None,
+            why: None,
         };
     }
     let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
     let equilibrium = match Equilibrium::new(c, &sigma, &[node_from], &[node_to]) {
         Ok(e) => e,
-        Err(why) => return verdict(Verdict::Undetermined, unsolvable(&why)),
+        Err(why) => return Direction::without(Verdict::Undetermined, unsolvable(&why)),
     };
     let mut loads = vec![Rational::ZERO; c.nodes];
     loads[node_to] = Rational::from(-i64::from(w_to.sign()));
@@ -185,11 +190,8 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
     let w_in = w_from.to_f64();
     for s in &answer.solutions {
         let ends = [(from, torque(c, s, node_from)), (to, load)];
-        if let Some(name) = overrunning(c, &demand(c, s), ends, forward) {
-            return verdict(
-                Verdict::Undetermined,
-                &format!("the one-way clutch {name} overruns: no load is carried this way"),
-            );
+        if let Some(clutch) = overrunning(c, &demand(c, s), ends, forward) {
+            return Direction::without(Verdict::Undetermined, Why::Overruns { clutch });
         }
     }
     let mut efficiencies: Vec<f64> = answer
@@ -206,21 +208,12 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
         .collect();
     efficiencies.sort_by(f64::total_cmp);
     let undecided = answer.certificate == Certificate::Undecided;
-    let (v, reason) = match efficiencies[..] {
-        _ if undecided => (
-            Verdict::Undetermined,
-            Some("too many interacting meshes to decide how many equilibria there are".to_owned()),
-        ),
-        [] => (
-            Verdict::Locked,
-            Some(format!("friction lets {} drive no load at {}", train.member_name(from), train.member_name(to))),
-        ),
-        _ if answer.continuum => (
-            Verdict::Multiple,
-            Some("the load lies on a self-locking threshold: a whole range of torques balances it".to_owned()),
-        ),
+    let (v, why) = match efficiencies[..] {
+        _ if undecided => (Verdict::Undetermined, Some(Why::TooManyMeshes)),
+        [] => (Verdict::Locked, Some(Why::FrictionLocks { from: name(from), to: name(to) })),
+        _ if answer.continuum => (Verdict::Multiple, Some(Why::Threshold)),
         [_] => (Verdict::Unique, None),
-        _ => (Verdict::Multiple, Some("several equilibria carry the same load".to_owned())),
+        _ => (Verdict::Multiple, Some(Why::Several)),
     };
     Direction {
         verdict: v,
@@ -230,7 +223,8 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
         },
         efficiencies,
         certificate: Some(answer.certificate.into()),
-        reason,
+        reason: why.as_ref().map(ToString::to_string),
+        why,
     }
 }
 
@@ -248,78 +242,39 @@ fn overrunning(c: &Configuration<'_>, demand: &[f64], ends: [(MemberId, f64); 2]
         .map(|(e, _)| e.name.clone())
 }
 
-/// External torque on a node, from the forces of the elements.
-pub(super) fn torque(c: &Configuration<'_>, s: &crate::statics::Solution, node: usize) -> f64 {
-    let mut sum = 0.0;
-    for (j, e) in c.elements.iter().enumerate() {
-        let (a, b) = (e.a.to_f64(), e.b.to_f64() * s.rho[j]);
-        for (member, coefficient) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
-            if c.node(member) == Some(node) {
-                sum += s.forces[j] * coefficient;
-            }
-        }
-    }
-    sum
-}
-
-/// The same in rationals.
-pub(super) fn torque_exact(
-    c: &Configuration<'_>,
-    equilibrium: &Equilibrium,
-    s: &crate::statics::Solution,
-    forces: &[Rational],
-    node: usize,
-) -> Rational {
-    let mut sum = Rational::ZERO;
-    for (j, e) in c.elements.iter().enumerate() {
-        let b = &e.b * &equilibrium.rho_of(s, j);
-        let carrier = -(&e.a + &b);
-        for (member, coefficient) in [(e.p, &e.a), (e.q, &b), (e.carrier, &carrier)] {
-            if c.node(member) == Some(node) {
-                sum += &forces[j] * coefficient;
-            }
-        }
-    }
-    sum
-}
-
-/// What stands in the way of an equilibrium problem, in words.
-pub(super) fn unsolvable(why: &Unsolvable) -> &'static str {
-    match why {
-        Unsolvable::MissingLoads(_) => "a load is missing",
-        Unsolvable::TooManyLoads(_) => "a freedom is left over: the load is not carried",
-        Unsolvable::Indeterminate => "statically indeterminate",
-        Unsolvable::UndeterminedSpeed => "a loaded mesh has no determined relative speed",
+/// What stands in the way of an equilibrium problem.
+fn unsolvable(unsolvable: &Unsolvable) -> Why {
+    match unsolvable {
+        Unsolvable::MissingLoads(_) => Why::LoadMissing,
+        Unsolvable::TooManyLoads(_) => Why::LoadNotCarried,
+        Unsolvable::Indeterminate => Why::Indeterminate,
+        Unsolvable::UndeterminedSpeed => Why::RelativeSpeedNotDetermined,
     }
 }
 
-fn locked(c: &Configuration<'_>, input: MemberId) -> String {
+fn locked(c: &Configuration<'_>, input: MemberId) -> Why {
     let train = c.train;
-    let held: Vec<_> = c.locked_members();
-    let engaged = element_names(train, &c.engaged).join(", ");
-    let with = if engaged.is_empty() { String::new() } else { format!(" with {engaged} engaged") };
-    if c.degrees_of_freedom() == 0 {
-        format!("nothing can turn{with}; release a shift element")
-    } else {
-        format!("{} cannot turn{with}; locked: {}", names(train, [input]), names(train, held))
+    let engaged = element_names(train, &c.engaged);
+    match c.degrees_of_freedom() {
+        0 => Why::NothingTurns { engaged },
+        _ => Why::InputLocked {
+            input: train.member_name(input).to_owned(),
+            engaged,
+            locked: names(train, c.locked_members()),
+        },
     }
 }
 
-fn free(c: &Configuration<'_>, input: MemberId, output: MemberId) -> String {
+fn free(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Why {
     let train = c.train;
-    let freedoms = c.degrees_of_freedom();
     let transfer = c.transfer(&[input]);
-    let loose: Vec<_> = (1..train.members.len())
-        .map(MemberId)
-        .filter(|m| transfer.speeds[m.0].is_none() && *m != FRAME && !c.inner[m.0])
-        .collect();
-    format!(
-        "{freedoms} degrees of freedom: the speed of {} does not settle that of {} (open: {}); \
-         hold one member, or prescribe {freedoms} speeds in an [[operation]]",
-        names(train, [input]),
-        names(train, [output]),
-        names(train, loose)
-    )
+    let loose = (1..train.members.len()).map(MemberId).filter(|m| transfer.speeds[m.0].is_none() && !c.inner[m.0]);
+    Why::SpeedNotSettled {
+        freedoms: c.degrees_of_freedom(),
+        input: train.member_name(input).to_owned(),
+        output: train.member_name(output).to_owned(),
+        open: names(train, loose),
+    }
 }
 
 /// One-way clutches that are not engaged must not turn the way they block.

@@ -538,7 +538,7 @@ struct PalmgrenRow {
 fn skf_file() -> &'static SkfFile {
     static FILE: OnceLock<SkfFile> = OnceLock::new();
     FILE.get_or_init(|| {
-        toml::from_str(include_str!("../../../../data/skf-friction-constants.toml"))
+        toml::from_str(include_str!("../../data/skf-friction-constants.toml"))
             .expect("data/skf-friction-constants.toml is read")
     })
 }
@@ -570,7 +570,7 @@ pub fn skf_constants(kind: Kind, series: &str) -> Option<SkfConstants> {
 pub fn palmgren_constants(kind: Kind, series: &str) -> PalmgrenConstants {
     static FILE: OnceLock<PalmgrenFile> = OnceLock::new();
     let file = FILE.get_or_init(|| {
-        toml::from_str(include_str!("../../../../data/palmgren-friction-constants.toml"))
+        toml::from_str(include_str!("../../data/palmgren-friction-constants.toml"))
             .expect("data/palmgren-friction-constants.toml is read")
     });
     let row = file
@@ -607,7 +607,7 @@ pub fn all() -> &'static [Bearing] {
     static ALL: OnceLock<Vec<Bearing>> = OnceLock::new();
     ALL.get_or_init(|| {
         let file: Geometry =
-            toml::from_str(include_str!("../../../../data/bearings.toml")).expect("data/bearings.toml is read");
+            toml::from_str(include_str!("../../data/bearings.toml")).expect("data/bearings.toml is read");
         let mut all = Vec::new();
         for group in &file.group {
             for (series, row) in group.series.iter().flat_map(|s| group.rows.iter().map(move |r| (s, r))) {

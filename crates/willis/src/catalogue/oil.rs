@@ -394,7 +394,7 @@ fn oil(row: Row) -> Oil {
 pub fn all() -> &'static [Oil] {
     static ALL: OnceLock<Vec<Oil>> = OnceLock::new();
     ALL.get_or_init(|| {
-        let file: File = toml::from_str(include_str!("../../../../data/oils.toml")).expect("data/oils.toml is read");
+        let file: File = toml::from_str(include_str!("../../data/oils.toml")).expect("data/oils.toml is read");
         file.oil.into_iter().map(oil).collect()
     })
 }

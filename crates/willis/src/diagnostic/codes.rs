@@ -1,8 +1,10 @@
 //! Every code there is. A code is never reused for something else.
 
+use std::borrow::Cow;
 use std::fmt;
 
-use serde::{Serialize, Serializer};
+use serde::de::{Deserialize, Deserializer, Error, Unexpected};
+use serde::ser::{Serialize, Serializer};
 
 use super::Severity;
 
@@ -134,6 +136,9 @@ codes! {
     /// An axis of a study is a quantity and its values, `input.speed=500 rpm..12000 rpm:100`. Ranges run upwards, say how
     /// many values they have or how far apart, and are written in a unit of the quantity.
     E210 BadAxis: "the values of an axis cannot be used";
+    /// A long computation was told to stop before it was done, by Ctrl-C for example. Nothing is wrong with the question:
+    /// asked again, it begins anew.
+    E211 Cancelled: "the computation was stopped";
     /// Profile shift (or another number of planet teeth) has to close a difference of one or two
     /// teeth between ring and sun plus planets. Ratios and efficiencies do not depend on it.
     W301 NearlyCoaxial: "the set closes only with profile shift";
@@ -227,5 +232,28 @@ impl fmt::Display for Code {
 impl Serialize for Code {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(self.as_str())
+    }
+}
+
+impl<'de> Deserialize<'de> for Code {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = Cow::<str>::deserialize(deserializer)?;
+        let wrong = || D::Error::invalid_value(Unexpected::Str(&text), &"a diagnostic code as in `E101`");
+        Self::parse(&text).ok_or_else(wrong)
+    }
+}
+
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for Code {
+    fn schema_name() -> Cow<'static, str> {
+        "Code".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({
+            "description": "A stable diagnostic code: `E…` an error, `W…` a warning, `N…` a note.",
+            "type": "string",
+            "pattern": "^[EWN][0-9]{3}$",
+        })
     }
 }

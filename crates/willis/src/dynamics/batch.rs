@@ -3,10 +3,11 @@
 //! Runs that are in the same mode share the affine map of its step ([`super::fused`]), so that a block of them is stepped by
 //! vector instructions. A run that leaves its mode takes that one step alone.
 
-use crate::diagnostic::Diagnostics;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{SourceKind, Train};
 
-use super::fixed::{FixedStep, UNBOUNDED};
+use super::fixed::FixedStep;
+use super::fixed::groups::UNBOUNDED;
 use super::fused::BLOCK;
 use super::mode::{Side, dot};
 
@@ -14,6 +15,10 @@ use super::mode::{Side, dot};
 const LANES: usize = 8;
 
 type Lanes = [f64; LANES];
+
+fn wrong(message: String) -> Diagnostics {
+    Diagnostic::new(Code::UnknownName, "", message).into()
+}
 
 /// Runs that are stepped together.
 struct Block {
@@ -59,7 +64,7 @@ struct Block {
 /// "#)?;
 /// let mut runs = Batch::new(&train, "coast", 1e-3, 20)?;
 /// for k in 0..runs.len() {
-///     runs.scale(k, "bearing", 1.0 + 0.1 * k as f64).unwrap();
+///     runs.scale(k, "bearing", 1.0 + 0.1 * k as f64)?;
 /// }
 /// runs.run(3000);
 /// assert!((runs.speed(0, "rotor").unwrap() - 6.0).abs() < 1e-9);
@@ -147,11 +152,11 @@ impl Batch {
     ///
     /// # Errors
     /// If the member is no free coordinate: its speed follows from others or is prescribed.
-    pub fn set_speed(&mut self, run: usize, member: &str, speed: f64) -> Result<(), String> {
+    pub fn set_speed(&mut self, run: usize, member: &str, speed: f64) -> Result<(), Diagnostics> {
         let s = &self.one.engine.system;
         let names: Vec<&str> = s.coordinates[..s.free].iter().map(|m| s.train.member_name(*m)).collect();
         let Some(k) = names.iter().position(|n| *n == member) else {
-            return Err(format!("`{member}` is no free coordinate; those are: {}", names.join(", ")));
+            return Err(wrong(format!("`{member}` is no free coordinate; those are: {}", names.join(", "))));
         };
         let block = self.block(run, speed)?;
         block.v[k][run % LANES] = speed;
@@ -165,7 +170,7 @@ impl Batch {
     /// # Errors
     /// If there is no such source, drag or shift element; if it prescribes a speed, controls one, or is a one-way clutch;
     /// if the factor of a friction is negative.
-    pub fn scale(&mut self, run: usize, name: &str, factor: f64) -> Result<(), String> {
+    pub fn scale(&mut self, run: usize, name: &str, factor: f64) -> Result<(), Diagnostics> {
         let s = &self.one.engine.system;
         let drivers = s.drivers.len();
         let source = s.scenario.sources.iter().position(|x| x.name == name);
@@ -174,18 +179,20 @@ impl Batch {
             let sources = s.scenario.sources.iter().map(|x| x.name.as_str());
             let frictions = s.frictions.iter().filter(|f| f.group.is_some()).map(|f| f.name.as_str());
             let known: Vec<&str> = sources.chain(frictions).collect();
-            return Err(format!("there is no source or friction `{name}`; there are: {}", known.join(", ")));
+            return Err(wrong(format!("there is no source or friction `{name}`; there are: {}", known.join(", "))));
         };
         let refused = match s.scenario.sources.get(k).map(|source| &source.kind) {
             Some(SourceKind::Speed(_)) => Some("a prescribed speed"),
             Some(SourceKind::Controller { .. }) => Some("a controller"),
             Some(_) => None,
             None if s.frictions[k - drivers].blocks.is_some() => Some("a one-way clutch"),
-            None if factor < 0.0 => return Err(format!("the friction of `{name}` cannot be multiplied by {factor}")),
+            None if factor < 0.0 => {
+                return Err(wrong(format!("the friction of `{name}` cannot be multiplied by {factor}")));
+            }
             None => None,
         };
         if let Some(what) = refused {
-            return Err(format!("`{name}` is {what}, which has no size to multiply"));
+            return Err(wrong(format!("`{name}` is {what}, which has no size to multiply")));
         }
         let block = self.block(run, factor)?;
         block.factors[k][run % LANES] = factor;
@@ -193,13 +200,13 @@ impl Batch {
         Ok(())
     }
 
-    fn block(&mut self, run: usize, value: f64) -> Result<&mut Block, String> {
+    fn block(&mut self, run: usize, value: f64) -> Result<&mut Block, Diagnostics> {
         if !value.is_finite() {
-            return Err(format!("a finite number is needed, not {value}"));
+            return Err(wrong(format!("a finite number is needed, not {value}")));
         }
         match self.blocks.get_mut(run / LANES) {
             Some(block) if run < self.len => Ok(block),
-            _ => Err(format!("there is no run {run}; there are {}", self.len)),
+            _ => Err(wrong(format!("there is no run {run}; there are {}", self.len))),
         }
     }
 
@@ -236,7 +243,7 @@ impl Batch {
         let one = &mut self.one;
         self.common.clear();
         for &k in &one.varying {
-            self.common.push((!one.depends_on_speed(k)).then(|| one.input(k, middle)));
+            self.common.push((!one.depends_on_speed(k)).then(|| one.enters(k, middle)));
         }
         let count = one.count;
         for (b, block) in self.blocks.iter_mut().enumerate() {

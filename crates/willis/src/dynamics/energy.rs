@@ -4,7 +4,7 @@ use crate::train::SourceKind;
 
 use super::engine::Engine;
 use super::mode::{Side, dot, slope};
-use super::report::{EnergyLoss, EnergyReport, SourceEnergy};
+use super::report::{EnergyLoss, EnergyLossKind, EnergyReport, SourceEnergy};
 use super::system::Rubs;
 
 /// What a friction element does to its first member, and what it costs.
@@ -72,8 +72,7 @@ impl Engine {
             let (p, m) = (self.sliding(f, 0.0, 1, true, t), self.sliding(f, 0.0, -1, true, t));
             p != 0.0 || m != 0.0
         };
-        let holding: Vec<usize> = group.frictions.iter().copied().filter(|&f| can_hold(f)).collect();
-        let alone = group.elements.is_empty() && holding.len() == 1;
+        let alone = group.elements.is_empty() && group.frictions.iter().filter(|&&f| can_hold(f)).count() == 1;
         let torque = match (&self.map, can_hold(k)) {
             (_, false) => viscous,
             (Some(map), _) if alone && !map.open_groups[g] && !group.driven => {
@@ -163,38 +162,53 @@ impl Engine {
         kinetic + twisted
     }
 
+    /// The same up to round-off, without room of its own.
+    pub fn stored_now(&self, x: &[f64]) -> f64 {
+        let w = &self.speed;
+        let of_row = |(i, w_i): (usize, &f64)| {
+            w_i * w.iter().enumerate().map(|(j, w_j)| self.system.energy[(i, j)] * w_j).sum::<f64>()
+        };
+        let kinetic: f64 = w.iter().enumerate().map(of_row).sum();
+        0.5 * kinetic + (0..self.system.elastic.len()).map(|k| self.spring_energy(k, x)).sum::<f64>()
+    }
+
     /// The report at the end of a run: `stored` at the start and at the end, the energies, and of those of the
-    /// sources what came in.
-    pub fn energy_report(&self, stored: [f64; 2], energies: &[f64], came_in: &[f64]) -> EnergyReport {
+    /// sources what came in. None if they were not counted or are no longer finite.
+    pub fn energy_report(&self, stored: [f64; 2], energies: &[f64], came_in: &[f64]) -> Option<EnergyReport> {
+        if !self.counts || energies.iter().chain(&stored).chain(came_in).any(|e| !e.is_finite()) {
+            return None;
+        }
         let s = &self.system;
         let n = s.drivers.len();
-        let none = vec![f64::NAN; n + s.frictions.len() + s.elastic.len() + s.train.meshes().len()];
-        let energies = if self.counts { energies } else { &none };
         let sources: Vec<SourceEnergy> = (0..n)
             .map(|k| SourceEnergy {
                 name: s.scenario.sources[k].name.clone(),
                 member: s.train.member_name(s.drivers[k].member).to_owned(),
                 energy_j: energies[k],
-                in_j: if self.counts { came_in[k] } else { f64::NAN },
-                out_j: if self.counts { (came_in[k] - energies[k]).max(0.0) } else { f64::NAN },
+                in_j: came_in[k],
+                out_j: (came_in[k] - energies[k]).max(0.0),
             })
             .collect();
         let mut losses = Vec::new();
         let mut at = n;
         for (k, f) in s.frictions.iter().enumerate() {
-            if !f.open && !matches!(f.what, Rubs::Rolling(_)) {
-                losses.push(EnergyLoss { name: f.name.clone(), kind: self.kind(k), energy_j: energies[at + k] });
+            if let (Some(kind), false) = (s.loss_kind(k), f.open) {
+                losses.push(EnergyLoss { name: f.name.clone(), kind, energy_j: energies[at + k] });
             }
         }
         at += s.frictions.len();
         for (k, shaft) in s.train.shafts().iter().enumerate() {
             if shaft.damping > 0.0 || shaft.backlash > 0.0 {
-                losses.push(EnergyLoss { name: shaft.name.clone(), kind: "shaft", energy_j: energies[at + k] });
+                losses.push(EnergyLoss {
+                    name: shaft.name.clone(),
+                    kind: EnergyLossKind::Shaft,
+                    energy_j: energies[at + k],
+                });
             }
         }
         at += s.elastic.len();
         for (k, mesh) in s.train.meshes().iter().enumerate() {
-            losses.push(EnergyLoss { name: mesh.name.clone(), kind: "mesh", energy_j: energies[at + k] });
+            losses.push(EnergyLoss { name: mesh.name.clone(), kind: EnergyLossKind::Mesh, energy_j: energies[at + k] });
         }
         losses.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));
         let stored_j = stored[1] - stored[0];
@@ -203,13 +217,13 @@ impl Engine {
         let came_in: f64 = sources.iter().map(|s| s.in_j).sum();
         let went_out: f64 = sources.iter().map(|s| s.out_j).sum();
         let turned_over_j = came_in + (-stored_j).max(0.0);
-        EnergyReport {
+        Some(EnergyReport {
             stored_j,
             residual_j: net - stored_j - lost,
             turned_over_j,
             efficiency: (came_in > 0.0 && stored_j.abs() <= 1e-9 * came_in).then(|| went_out / came_in),
             sources,
             losses,
-        }
+        })
     }
 }

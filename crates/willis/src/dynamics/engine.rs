@@ -2,11 +2,15 @@
 
 use std::sync::Arc;
 
+use crate::operating_point::LEAST_SPEED;
 use crate::train::{Contact, MemberId, SourceKind};
 
-use super::integrator::Smooth;
+use super::certificate::{rolling_is_unique, sticking_is_unique};
+use super::element::Loss;
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
-use super::system::{Rubs, System, source_torque};
+use super::shows::Shows;
+use super::source::source_torque;
+use super::system::{Rubs, System};
 
 /// What a backlash does.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -21,37 +25,6 @@ pub(super) enum Touch {
     Parting(i8),
 }
 
-/// What is watched within a mode: it changes where a margin becomes negative.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Watch {
-    /// A sliding group comes to rest.
-    Slip(usize),
-    /// A held group breaks away, forward or backward.
-    Hold(usize, i8),
-    /// Held groups, held several times over, break away.
-    HoldAll,
-    /// The drive of an element reverses.
-    Side(usize),
-    /// A backlash or its damper changes.
-    Touch(usize),
-    /// A shift element begins or ceases to be engaged.
-    Engage(usize),
-}
-
-/// A margin and the size of its round-off.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Margin {
-    pub watch: Watch,
-    pub value: f64,
-    pub noise: f64,
-}
-
-impl Margin {
-    pub fn is_broken(&self) -> bool {
-        self.value < -self.noise
-    }
-}
-
 /// Torque with which a group can oppose its slip, forward and backward, in units of its slip.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Capacity {
@@ -59,8 +32,14 @@ pub(super) struct Capacity {
     pub backward: f64,
 }
 
-/// Round-off of a sum, relative to the sum of amounts.
-pub(super) const NOISE: f64 = 1e-12;
+/// Change in a round that counts as none, over the sum of the losses as torques.
+const AGREEMENT: f64 = 1e-11;
+
+/// The same over the size of the forces, where the losses themselves are round-off.
+const ROUND_OFF: f64 = 1e-13;
+
+/// Most rounds at a state.
+const MOST_ROUNDS: usize = 100;
 
 /// Size below which a speed, rad/s, or an angle, rad, counts as small at the start of a run.
 const LEAST_SCALE: f64 = 1e-3;
@@ -69,6 +48,7 @@ const LEAST_SCALE: f64 = 1e-3;
 const LEAST_ENERGY: f64 = 1e-6;
 
 /// A system in a mode.
+#[derive(Clone)]
 pub(crate) struct Engine {
     pub system: System,
     pub maps: Maps,
@@ -98,6 +78,8 @@ pub(crate) struct Engine {
     pub unsearched: usize,
     /// Size of the energies, J, likewise.
     pub energy_scale: f64,
+    /// What can be read, in the order of the columns.
+    pub shows: Vec<Shows>,
     /// Room for port torques.
     pub spare: Vec<f64>,
     /// By how many times its round-off a force has to be beyond its limit before that counts as an event: what
@@ -126,10 +108,11 @@ impl Engine {
             energy_scale: LEAST_ENERGY,
             unsearched: 0,
             spare: vec![0.0; system.ports],
+            shows: Shows::all(&system),
             agrees: true,
             slack: 1.0,
             counts: true,
-            certified: system.rolling_is_unique() == Some(true) && system.sticking_is_unique() == Some(true),
+            certified: rolling_is_unique(&system) == Some(true) && sticking_is_unique(&system) == Some(true),
             system,
         }
     }
@@ -350,7 +333,7 @@ impl Engine {
     }
 
     /// The part of an element's loss that does not depend on its load.
-    fn constant_loss(&self, j: usize, mode: &Mode) -> f64 {
+    pub fn constant_loss(&self, j: usize, mode: &Mode) -> f64 {
         let sign = mode.element_slip(&self.system, j);
         if sign == 0 {
             return 0.0;
@@ -378,7 +361,9 @@ impl Engine {
 
     /// Makes a mode the present one. False if its equations have no unique solution.
     pub fn enter(&mut self, mode: &Mode) -> bool {
-        self.mode.clone_from(mode);
+        // Field by field: a derived `clone_from` would take new memory.
+        self.mode.slip.clone_from(&mode.slip);
+        self.mode.side.clone_from(&mode.side);
         self.varying = (0..self.system.elements.len())
             .any(|j| self.system.elements[j].varies() && mode.element_slip(&self.system, j) != 0);
         self.map = self.map_of(mode);
@@ -413,255 +398,109 @@ impl Engine {
         (a * map.unknown(row, &self.tau), a.abs() * map.size(row, &self.tau))
     }
 
-    /// How much the present side of an element is the right one: positive if it is.
-    fn side_margin(&self, j: usize, mode: &Mode, torque: f64, size: f64) -> (f64, f64) {
-        let sign = f64::from(mode.element_slip(&self.system, j));
-        let loss = self.loss(j);
-        let spread = loss.drive - loss.coast;
-        let extra = loss.drive_torque - loss.coast_torque;
-        let value = sign * spread * torque + extra;
-        let noise = NOISE * (spread * size + loss.drive_torque + loss.coast_torque);
-        match mode.side[j] {
-            Side::Drive => (value, noise),
-            Side::Coast => (-value, noise),
-        }
-    }
-
-    /// Whether an element, at the state solved last, carries no more than what the integrator leaves open.
-    pub fn is_between_sides(&self, j: usize) -> bool {
-        let (torque, size) = self.element_torque(j);
-        let (value, noise) = self.side_margin(j, &self.mode, torque, size);
-        value.abs() <= 1e3 * self.slack * noise
-    }
-
     /// Torques of all elements at their first gears, at the state solved last, and their round-off.
     pub fn element_torques(&self) -> Vec<(f64, f64)> {
         (0..self.system.elements.len()).map(|j| self.element_torque(j)).collect()
     }
 
-    /// Turns the sides that disagree with these torques, at the speeds looked at last.
-    pub fn turn_sides(&self, mode: &mut Mode, torques: &[(f64, f64)]) {
-        for (j, &(torque, size)) in torques.iter().enumerate() {
-            if mode.element_slip(&self.system, j) != 0 {
-                let (value, noise) = self.side_margin(j, mode, torque, size);
-                if value < -noise {
-                    mode.side[j] = mode.side[j].other();
+    /// Loss of an element at the speeds looked at; where it follows a law, as the forces found last have it.
+    pub fn loss(&self, j: usize) -> Loss {
+        self.loss_at(j, dot(&self.system.elements[j].row, &self.speed).abs())
+    }
+
+    /// The same where only tables take another speed.
+    pub fn loss_at(&self, j: usize, speed: f64) -> Loss {
+        let e = &self.system.elements[j];
+        match (e.law, &self.system.laws) {
+            (Some(mesh), Some(laws)) => laws.loss(mesh),
+            _ => e.loss(speed),
+        }
+    }
+
+    /// Brings forces and laws into agreement at the state looked at, in the present mode.
+    pub fn agree(&mut self, t: f64, x: &[f64]) {
+        let mode = self.mode.clone();
+        self.agrees = false;
+        for _ in 0..MOST_ROUNDS {
+            let Some(map) = self.map.clone() else { return };
+            let tau = std::mem::take(&mut self.tau);
+            self.agrees = self.ask(&mode, &map, &tau);
+            self.tau = tau;
+            if self.agrees {
+                return;
+            }
+            self.load(t, x);
+            self.map = self.map_of(&mode);
+        }
+    }
+
+    /// The map of a mode tried at the state looked at, with laws that agree with it; `tau` is made that of the mode.
+    pub fn agreed_map(&mut self, mode: &Mode, t: f64, tau: &mut [f64]) -> Option<Arc<Map>> {
+        for _ in 0..MOST_ROUNDS {
+            for k in 0..self.system.frictions.len() {
+                if matches!(self.system.frictions[k].what, Rubs::Law(_)) {
+                    tau[self.system.frictions[k].port] = self.friction_torque(k, mode, true, t);
                 }
             }
+            let map = self.map_of(mode)?;
+            if self.system.laws.is_none() || self.ask(mode, &map, tau) {
+                return Some(map);
+            }
         }
+        None
     }
 
-    /// Margins of the present mode at a state, after [`Engine::solve`] there.
-    pub fn margins(&mut self, t: f64, x: &[f64], out: &mut Vec<Margin>) {
-        out.clear();
-        let Some(map) = self.map.clone() else { return };
-        for g in 0..self.system.groups.len() {
-            let slip = self.group_slip(g);
-            match self.mode.slip[g] {
-                0 if self.system.groups[g].driven => {}
-                0 if map.is_redundant() => {}
-                0 => self.hold_margins(g, t, x, &map, out),
-                sign => {
-                    let noise = NOISE
-                        * 1e-3
-                        * self.system.groups[g].row.iter().zip(&self.speed).map(|(a, b)| (a * b).abs()).sum::<f64>();
-                    out.push(Margin { watch: Watch::Slip(g), value: f64::from(sign) * slip, noise });
+    /// Asks the laws at the forces of a map. True if the answer is that of the last time, which then stands.
+    fn ask(&mut self, mode: &Mode, map: &Map, tau: &[f64]) -> bool {
+        let Some(mut laws) = self.system.laws.take() else { return true };
+        for (speed, row) in laws.flow.speeds.iter_mut().zip(&self.system.speeds) {
+            *speed = dot(row, &self.speed);
+        }
+        let (mut lost, mut size) = (0.0, 0.0);
+        for (j, e) in self.system.elements.iter().enumerate() {
+            let [link] = &e.links[..] else { continue };
+            let [a, b] = e.factors;
+            let row = self.system.all() + j;
+            let torque = a * map.unknown(row, tau);
+            let sign = mode.element_slip(&self.system, j);
+            let side = mode.side[j];
+            let own = match e.law {
+                Some(mesh) if sign != 0 => {
+                    size += a.abs() * map.size(row, tau);
+                    slope(laws.loss(mesh), side) * torque
                 }
+                _ => 0.0,
+            };
+            lost += own.abs();
+            let flow = &mut laws.flow.meshes[link.mesh.index()];
+            // Of the second gear by the Willis equation: relative to the carrier a ω_p + b ω_q = 0.
+            let other = b / a * (torque - own);
+            flow.torques = [torque, other, -torque - other];
+            let speed = dot(&e.row, &self.speed);
+            flow.relative_speeds = [speed, a / b * speed].map(|w| w.abs().max(LEAST_SPEED));
+            let driver = usize::from(side == Side::Coast);
+            flow.driver = Some(driver);
+            flow.potential_power = (flow.torques[driver] * flow.relative_speeds[driver]).abs();
+        }
+        let next = laws.physics.follow(&laws.flow);
+        let torques: Vec<f64> = laws.places.iter().map(|p| next.drag(p)).collect();
+        let mut change = 0.0;
+        for e in &self.system.elements {
+            if let Some(mesh) = e.law {
+                change +=
+                    (next.lost(mesh) - laws.step.lost(mesh)).abs() * laws.flow.meshes[mesh.index()].torques[0].abs();
             }
         }
-        if map.is_redundant() {
-            out.push(Margin { watch: Watch::HoldAll, value: if self.holds(t, x) { 1.0 } else { -1.0 }, noise: 0.0 });
+        for (new, old) in torques.iter().zip(&laws.torques) {
+            change += (new - old).abs();
+            lost += new;
         }
-        for j in 0..self.system.elements.len() {
-            if self.mode.element_slip(&self.system, j) != 0 {
-                let (torque, size) = self.element_torque(j);
-                let (value, noise) = self.side_margin(j, &self.mode, torque, size);
-                out.push(Margin { watch: Watch::Side(j), value, noise: self.slack * noise });
-            }
+        let agrees = change <= AGREEMENT * lost + ROUND_OFF * size;
+        if !agrees {
+            laws.step = next;
+            laws.torques = torques;
         }
-        for k in 0..self.system.elastic.len() {
-            let shaft = &self.system.train.shafts()[k];
-            if shaft.backlash > 0.0 {
-                out.push(Margin { watch: Watch::Touch(k), value: self.touch_margin(k, x), noise: 0.0 });
-            }
-        }
-        for k in 0..self.system.frictions.len() {
-            let f = &self.system.frictions[k];
-            if let Some(e) = f.engagement
-                && f.group.is_some()
-                && self.system.scenario.engagements[e].signal.crosses_unannounced()
-            {
-                let threshold = if f.rigid { 0.5 } else { 0.0 };
-                let value = self.engagement(k, t) - threshold;
-                let value = if self.engaged[k] { value } else { -value };
-                out.push(Margin { watch: Watch::Engage(k), value, noise: NOISE });
-            }
-        }
-    }
-
-    fn touch_margin(&self, k: usize, x: &[f64]) -> f64 {
-        let shaft = &self.system.train.shafts()[k];
-        let twist = self.twist(k, x);
-        let half = shaft.backlash / 2.0;
-        let (spring, damper) = self.shaft_parts(k, x);
-        match self.touch[k] {
-            Touch::Gap => half - twist.abs(),
-            Touch::On(side) => {
-                let s = f64::from(side);
-                let limit = if shaft.contact == Contact::Soft { (spring - damper) * s } else { f64::INFINITY };
-                (twist * s - half).min((spring + damper) * s).min(limit)
-            }
-            Touch::Limited(side) => {
-                let s = f64::from(side);
-                (twist * s - half).min((damper - spring) * s)
-            }
-            Touch::Parting(side) => {
-                let s = f64::from(side);
-                (twist * s - half).min(-(spring + damper) * s)
-            }
-        }
-    }
-
-    /// Margins of a held group against breaking away forward and backward.
-    fn hold_margins(&mut self, g: usize, t: f64, x: &[f64], map: &Map, out: &mut Vec<Margin>) {
-        let capacity = self.capacity(g, true, t);
-        if self.system.groups[g].elements.is_empty() {
-            let (_, lead) = self.system.groups[g].lead;
-            // What holds must not exceed what can be held against slip in either direction.
-            let force = lead * map.held(g, &self.tau);
-            let noise = NOISE * (map.held_size(g, &self.tau) + 1e-300);
-            for (sign, most) in [(1, capacity.forward), (-1, capacity.backward)] {
-                if most.is_finite() {
-                    let value = most + f64::from(sign) * force;
-                    let noise = self.slack * (noise + NOISE * most);
-                    out.push(Margin { watch: Watch::Hold(g, sign), value, noise });
-                }
-            }
-            return;
-        }
-        for (sign, most) in [(1, capacity.forward), (-1, capacity.backward)] {
-            if most.is_finite() {
-                let (value, noise) = self.breakaway(g, sign, t, x);
-                out.push(Margin { watch: Watch::Hold(g, sign), value, noise: self.slack * noise });
-            }
-        }
-    }
-
-    /// Slip acceleration, against its direction, that a held group would have if it slid: positive if
-    /// friction holds it. The sides of its elements are those that agree.
-    fn breakaway(&mut self, g: usize, sign: i8, t: f64, x: &[f64]) -> (f64, f64) {
-        let _ = x;
-        let mut mode = self.mode.clone();
-        mode.slip[g] = sign;
-        let members = self.system.groups[g].elements.clone();
-        let direction = usize::from(sign < 0);
-        for (k, &j) in members.iter().enumerate() {
-            mode.side[j] = self.away[g][direction][k];
-        }
-        let mut tau = std::mem::take(&mut self.spare);
-        let mut answer = (f64::NAN, 0.0);
-        let held = self.system.laws.as_ref().map(|laws| laws.found());
-        // First from the sides of the last time, flipping what disagrees; then all.
-        let tries = 6 + (1usize << members.len().min(10));
-        for attempt in 0..tries {
-            if attempt >= 6 {
-                for (k, &j) in members.iter().enumerate() {
-                    mode.side[j] = if (attempt - 6) >> k & 1 == 0 { Side::Drive } else { Side::Coast };
-                }
-            }
-            tau.copy_from_slice(&self.tau);
-            for &f in &self.system.groups[g].frictions {
-                tau[self.system.frictions[f].port] += self.friction_torque(f, &mode, true, t);
-            }
-            for &j in &members {
-                tau[self.system.elements[j].port] = self.constant_loss(j, &mode);
-            }
-            let Some(map) = self.agreed_map(&mode, t, &mut tau) else { continue };
-            let group = &self.system.groups[g];
-            let mut value = 0.0;
-            let mut size = 0.0;
-            for i in 0..self.system.free {
-                value += group.row[i] * map.unknown(i, &tau);
-                size += group.row[i].abs() * map.size(i, &tau);
-            }
-            for i in self.system.free..self.system.all() {
-                value += group.row[i] * self.acceleration[i];
-            }
-            let mut agrees = true;
-            for &j in &members {
-                let a = self.system.elements[j].factors[0];
-                let row = self.system.all() + j;
-                let (torque, amount) = (a * map.unknown(row, &tau), a.abs() * map.size(row, &tau));
-                let (margin, noise) = self.side_margin(j, &mode, torque, amount);
-                if margin < -noise {
-                    agrees = false;
-                    if attempt < 5 {
-                        mode.side[j] = mode.side[j].other();
-                    }
-                }
-            }
-            if agrees || answer.0.is_nan() {
-                answer = (-f64::from(sign) * value, NOISE * size);
-            }
-            if agrees {
-                for (k, &j) in members.iter().enumerate() {
-                    self.away[g][direction][k] = mode.side[j];
-                }
-                break;
-            }
-        }
-        self.spare = tau;
-        if let (Some(laws), Some(held)) = (&mut self.system.laws, held) {
-            laws.recall(held);
-        }
-        answer
-    }
-}
-
-impl Smooth for Engine {
-    fn states(&self) -> usize {
-        self.integrals() + self.system.integrals
-    }
-
-    fn quadratures(&self) -> usize {
-        self.energies()
-    }
-
-    fn rate(&mut self, t: f64, x: &[f64], rate: &mut [f64]) {
-        self.solve(t, x);
-        if !self.agrees {
-            rate.fill(f64::NAN);
-            return;
-        }
-        let (free, all) = (self.system.free, self.system.all());
-        rate[..free].copy_from_slice(&self.acceleration[..free]);
-        rate[free..free + all].copy_from_slice(&self.speed);
-        let integrals = self.integrals();
-        for (k, driver) in self.system.drivers.iter().enumerate() {
-            if let (Some(i), SourceKind::Controller { setpoint, .. }) =
-                (driver.integral, &self.system.scenario.sources[k].kind)
-            {
-                let set = setpoint.value(t, self.inside, &|m| self.member_speed(m));
-                rate[integrals + i] = set - self.member_speed(driver.member);
-            }
-        }
-        let states = self.states();
-        self.powers(t, x, &mut rate[states..]);
-    }
-
-    fn scale(&self, state: usize) -> f64 {
-        self.scales.get(state).copied().unwrap_or(self.energy_scale)
-    }
-}
-
-impl Engine {
-    /// What a friction element is, for names of columns and losses.
-    pub fn kind(&self, f: usize) -> &'static str {
-        match self.system.frictions[f].what {
-            Rubs::Drag(_) => "drag",
-            Rubs::Shift(_) => "shift-element",
-            Rubs::Rolling(_) => "source",
-            Rubs::Law(place) => self.system.laws.as_ref().map_or("drag", |laws| laws.places[place].label()),
-        }
+        self.system.laws = Some(laws);
+        agrees
     }
 }

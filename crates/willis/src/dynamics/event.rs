@@ -1,10 +1,12 @@
-//! Changes of mode in words.
+//! Changes of mode: what happened to which elements, and in words.
 
+use crate::named::Named;
 use crate::train::{ShiftElementKind, Train};
 
-use super::engine::{Engine, Touch, Watch};
-use super::report::{Event, ModeLabel};
-use super::system::element_name;
+use super::element::element_name;
+use super::engine::{Engine, Touch};
+use super::margins::Watch;
+use super::report::{Event, Happening, HappeningKind, ModeLabel};
 
 /// Modes by element.
 pub(super) type Labels = [(String, ModeLabel)];
@@ -18,93 +20,101 @@ pub(super) enum Why {
     Watch(Watch),
 }
 
-/// A verb for one and for several, and what stands before them.
-type Verb = [&'static str; 3];
-
-const RESTS: Verb = ["", " comes to rest", " come to rest"];
-const BREAKS_AWAY: Verb = ["", " breaks away", " break away"];
-const TURNS: Verb = ["", " turns round", " turn round"];
-const ENGAGES: Verb = ["", " engages", " engage"];
-const OPENS: Verb = ["", " opens", " open"];
-const LOCKS: Verb = ["", " locks", " lock"];
-const OVERRUNS: Verb = ["", " overruns", " overrun"];
-const TOUCHES: Verb = ["contact in ", "", ""];
-const PARTS: Verb = ["contact lost in ", "", ""];
-
 /// The event that leads to modes; none where nothing happened but the choice itself: at a break of the inputs
 /// everything may stay, and at its limit by round-off only, a held element stays held and breaks away next time.
 pub(super) fn event(engine: &Engine, t: f64, why: Option<Why>, before: &Labels, now: &Labels) -> Option<Event> {
-    let changed = || now.iter().enumerate().filter(|(k, l)| before.get(*k) != Some(l)).map(|(_, l)| l.clone());
-    let happening = |cause| Some(Event { time_s: t, cause, modes: changed().collect() });
-    if why == Some(Why::Start) {
-        return happening("start".to_owned());
-    }
-    if changed().next().is_some() {
-        return happening(changes(&engine.system.train, before, now));
-    }
+    let modes: Named<ModeLabel> =
+        now.iter().enumerate().filter(|(k, l)| before.get(*k) != Some(l)).map(|(_, l)| l.clone()).collect();
+    let happenings = if why == Some(Why::Start) {
+        vec![Happening { kind: HappeningKind::Start, of: vec![] }]
+    } else if !modes.is_empty() {
+        changes(&engine.system.train, before, now)
+    } else {
+        vec![unseen(engine, why)?]
+    };
+    Some(Event { time_s: t, cause: words(&happenings), happenings, modes })
+}
+
+/// What happened where no mode changed.
+fn unseen(engine: &Engine, why: Option<Why>) -> Option<Happening> {
     let s = &engine.system;
     let Some(Why::Watch(watch)) = why else { return None };
-    match watch {
-        Watch::Slip(g) => happening(format!("{} at rest for an instant", list(s.groups[g].name.split(", ")))),
-        Watch::Side(j) => happening(format!("drive reverses in {}", element_name(&s.train, &s.elements[j].links))),
-        Watch::Touch(k) => happening(format!(
-            "{} in {}",
-            match engine.touch[k] {
-                Touch::Gap => "no contact",
-                Touch::On(_) => "full damping",
-                Touch::Limited(_) => "damping limited to the spring's torque",
-                Touch::Parting(_) => "contact without force",
-            },
-            s.train.shafts()[k].name
-        )),
-        Watch::Engage(k) => {
-            let verb = if engine.engaged[k] { ENGAGES } else { OPENS };
-            happening(format!("{}{}", s.frictions[k].name, verb[1]))
+    let (kind, of) = match watch {
+        Watch::Slip(g) => (HappeningKind::RestsForAnInstant, s.groups[g].names.clone()),
+        Watch::Side(j) => (HappeningKind::DriveReverses, vec![element_name(&s.train, &s.elements[j].links)]),
+        Watch::Touch(k) => {
+            let kind = match engine.touch[k] {
+                Touch::Gap => HappeningKind::NoContact,
+                Touch::On(_) => HappeningKind::FullDamping,
+                Touch::Limited(_) => HappeningKind::DampingLimited,
+                Touch::Parting(_) => HappeningKind::ContactWithoutForce,
+            };
+            (kind, vec![s.train.shafts()[k].name.clone()])
         }
-        Watch::Hold(..) | Watch::HoldAll => None,
-    }
+        Watch::Engage(k) => {
+            let kind = if engine.engaged[k] { HappeningKind::Engages } else { HappeningKind::Opens };
+            (kind, vec![s.frictions[k].name.clone()])
+        }
+        Watch::Hold(..) | Watch::HoldAll => return None,
+    };
+    Some(Happening { kind, of })
 }
 
 /// What changed, those together that did the same.
-fn changes(train: &Train, before: &Labels, now: &Labels) -> String {
-    let mut clauses: Vec<(Verb, Vec<&str>)> = Vec::new();
+fn changes(train: &Train, before: &Labels, now: &Labels) -> Vec<Happening> {
+    let mut all: Vec<Happening> = Vec::new();
     for ((name, a), (_, b)) in before.iter().zip(now).filter(|(a, b)| a.1 != b.1) {
-        let verb = verb(train, name, *a, *b);
-        match clauses.iter_mut().find(|c| c.0 == verb) {
-            Some((_, names)) => names.push(name),
-            None => clauses.push((verb, vec![name])),
+        let kind = kind(train, name, *a, *b);
+        match all.iter_mut().find(|h| h.kind == kind) {
+            Some(known) => known.of.push(name.clone()),
+            None => all.push(Happening { kind, of: vec![name.clone()] }),
         }
     }
-    let told = clauses.iter().map(|([before, one, several], names)| {
-        format!("{before}{}{}", list(names.iter().copied()), if names.len() == 1 { one } else { several })
-    });
-    told.collect::<Vec<_>>().join(", ")
+    all
 }
 
-fn verb(train: &Train, name: &str, before: ModeLabel, now: ModeLabel) -> Verb {
+fn kind(train: &Train, name: &str, before: ModeLabel, now: ModeLabel) -> HappeningKind {
+    use HappeningKind::*;
     let shaft = train.shafts().iter().any(|s| s.name == name);
     let one_way = || train.shift_elements().iter().any(|e| e.name == name && e.kind == ShiftElementKind::OneWay);
     match (before, now) {
-        (_, ModeLabel::Free) if shaft => PARTS,
-        _ if shaft => TOUCHES,
-        (_, ModeLabel::Free) => {
-            if one_way() {
-                OVERRUNS
-            } else {
-                OPENS
-            }
-        }
-        (ModeLabel::Free, _) => {
-            if one_way() {
-                LOCKS
-            } else {
-                ENGAGES
-            }
-        }
-        (_, ModeLabel::Stuck) => RESTS,
-        (ModeLabel::Stuck, _) => BREAKS_AWAY,
-        _ => TURNS,
+        (_, ModeLabel::Free) if shaft => ContactLost,
+        _ if shaft => Touches,
+        (_, ModeLabel::Free) if one_way() => Overruns,
+        (_, ModeLabel::Free) => Opens,
+        (ModeLabel::Free, _) if one_way() => Locks,
+        (ModeLabel::Free, _) => Engages,
+        (_, ModeLabel::Stuck) => ComesToRest,
+        (ModeLabel::Stuck, _) => BreaksAway,
+        _ => TurnsRound,
     }
+}
+
+/// Happenings in a sentence.
+fn words(happenings: &[Happening]) -> String {
+    let clause = |h: &Happening| {
+        // What stands before the names, and behind one of them or several.
+        let [before, one, several] = match h.kind {
+            HappeningKind::Start => return "start".to_owned(),
+            HappeningKind::ComesToRest => ["", " comes to rest", " come to rest"],
+            HappeningKind::BreaksAway => ["", " breaks away", " break away"],
+            HappeningKind::TurnsRound => ["", " turns round", " turn round"],
+            HappeningKind::RestsForAnInstant => ["", " at rest for an instant", " at rest for an instant"],
+            HappeningKind::Engages => ["", " engages", " engage"],
+            HappeningKind::Opens => ["", " opens", " open"],
+            HappeningKind::Locks => ["", " locks", " lock"],
+            HappeningKind::Overruns => ["", " overruns", " overrun"],
+            HappeningKind::DriveReverses => ["drive reverses in ", "", ""],
+            HappeningKind::Touches => ["contact in ", "", ""],
+            HappeningKind::ContactLost => ["contact lost in ", "", ""],
+            HappeningKind::NoContact => ["no contact in ", "", ""],
+            HappeningKind::FullDamping => ["full damping in ", "", ""],
+            HappeningKind::DampingLimited => ["damping limited to the spring's torque in ", "", ""],
+            HappeningKind::ContactWithoutForce => ["contact without force in ", "", ""],
+        };
+        format!("{before}{}{}", list(h.of.iter().map(String::as_str)), if h.of.len() == 1 { one } else { several })
+    };
+    happenings.iter().map(clause).collect::<Vec<_>>().join(", ")
 }
 
 /// A number for a sentence: six decimals at most.

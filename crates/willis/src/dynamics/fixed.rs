@@ -8,67 +8,34 @@
 //! Systems*, 2008, ch. 10.
 
 mod energies;
+pub(super) mod groups;
 mod inputs;
-mod recorded;
+mod look;
+pub(super) mod map;
+pub(super) mod recorded;
 mod settle;
+mod step;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::train::{MemberId, SourceKind, Train};
+use crate::train::Train;
 
+use super::element::{Loss, element_name};
 use super::engine::Engine;
-use super::fused::{ByKey, Exactly, Fused, add_column};
-use super::mode::{Pattern, Side, dot};
-use super::run::initial_state;
-use super::system::{Loss, System, element_name, signals_of};
+use super::fused::{ByKey, Exactly, Fused};
+use super::handles::{Input, InputInfo, InputRefused, Output};
+use super::mode::{Mode, Pattern, Side, dot};
+use super::report::Column;
+use super::shows::Shows;
+use super::source::signals_of;
+use super::start::initial_state;
+use super::system::System;
 
-pub(super) use recorded::fixed;
-pub(super) use settle::StepMap;
-use settle::{Key, Settle};
+use groups::{GroupStep, Rub};
+use map::{Key, StepMap};
 
 /// Groups and elements that fit the key of a mode.
 const MOST_GROUPS: usize = 48;
 const MOST_ELEMENTS: usize = 64;
-
-/// Stands for a torque without bound: of a rigid lock, of a one-way clutch.
-pub(super) const UNBOUNDED: f64 = 1e30;
-/// What counts as such when multiplied by a ratio of gears.
-const LEAST_UNBOUNDED: f64 = 1e24;
-
-/// A friction element of a group, ready for the step.
-pub(super) struct Rub {
-    pub friction: usize,
-    pub port: usize,
-    pub factor: f64,
-    /// Holds any torque, or none.
-    pub is_rigid: bool,
-    peak: f64,
-    /// At this step: its viscous torque, and the torques with which it opposes slip of its group forward and
-    /// backward.
-    viscous: f64,
-    opposes: [f64; 2],
-}
-
-impl Rub {
-    /// Its torque at this step beside its viscous one, at least and at most, times a factor.
-    fn range(&self, factor: f64) -> [f64; 2] {
-        let [forward, backward] = self.opposes;
-        let [low, high] = if self.factor > 0.0 { [-forward, backward] } else { [-backward, forward] };
-        [low * factor, high * factor]
-    }
-}
-
-/// What a group needs in a step.
-pub(super) struct GroupStep {
-    pub row: Vec<f64>,
-    pub rubs: Vec<Rub>,
-    pub elements: Vec<usize>,
-    pub lead: (usize, f64),
-    pub driven: bool,
-    /// Whether several parts, teeth among them, share in holding it.
-    shares: bool,
-    /// Elements with losses that do not depend on load: port, torques when driving and coasting.
-    pub constants: Vec<(usize, usize, [f64; 2])>,
-}
 
 /// A scenario in steps of fixed length.
 ///
@@ -100,6 +67,56 @@ pub(super) struct GroupStep {
 /// assert_eq!(run.speed("rotor"), Some(0.0));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
+///
+/// # In a co-simulation or a control loop
+/// Inputs and outputs are found once by name; to set and to read them allocates nothing. A clone is the whole state:
+/// keep one to come back to it, and the same steps from there give the same numbers to the last bit.
+///
+/// ```
+/// use willis::dynamics::{FixedStep, ModeLabel};
+/// use willis::train::Train;
+///
+/// let train = Train::from_toml(r#"
+///     format = 1
+///     name = "a motor on a rotor"
+///     members = ["rotor"]
+///     terminals = ["rotor"]
+///     inertias = { rotor = "2 kg m^2" }
+///
+///     [[drag]]
+///     name = "bearing"
+///     members = ["rotor"]
+///     coulomb = "4 N m"
+///
+///     [[scenario]]
+///     name = "drive"
+///     duration = "10 s"
+///
+///     [[scenario.source]]
+///     name = "motor"
+///     member = "rotor"
+///     torque = "0 N m"
+/// "#)?;
+/// let mut run = FixedStep::new(&train, "drive", 1e-3)?;
+/// let motor = run.input("motor")?;
+/// let (speed, bearing) = (run.output("speed.rotor")?, run.output("mode.bearing")?);
+/// let wrong = run.output("speed.roter").unwrap_err();
+/// assert!(wrong.to_string().contains("did you mean `speed.rotor`?"));
+///
+/// run.rehearse();
+/// let saved = run.clone();
+/// run.set(motor, 3.0).unwrap();
+/// run.run(1000);
+/// assert_eq!(run.read(speed), 0.0);
+/// assert_eq!(ModeLabel::of_value(run.read(bearing)), Some(ModeLabel::Stuck));
+/// // The host rejects that second and takes another one.
+/// run = saved;
+/// run.set(motor, 6.0).unwrap();
+/// run.run(1000);
+/// assert!((run.read(speed) - 1.0).abs() < 1e-9);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+#[derive(Clone)]
 pub struct FixedStep {
     pub(super) engine: Engine,
     pub(super) h: f64,
@@ -167,6 +184,12 @@ pub struct FixedStep {
     swept: bool,
     pub(super) unsettled: u64,
     pub(super) impacts: u64,
+    /// State and mode as the engine knows them, and the step after which they were taken over.
+    seen: Vec<f64>,
+    seen_mode: Mode,
+    seen_at: Option<u64>,
+    /// Whether an output that takes forces was asked for.
+    shows_forces: bool,
 }
 
 impl FixedStep {
@@ -201,6 +224,7 @@ impl FixedStep {
         }
         let mut engine = Engine::new(system);
         let x = initial_state(&mut engine)?;
+        engine.counts = false;
         let s = &engine.system;
         let groups: Vec<GroupStep> = (s.groups.iter())
             .map(|g| GroupStep {
@@ -302,6 +326,10 @@ impl FixedStep {
             swept: false,
             unsettled: 0,
             impacts: 0,
+            seen: vec![],
+            seen_mode: engine.mode.clone(),
+            seen_at: None,
+            shows_forces: false,
             engine,
         })
     }
@@ -332,19 +360,77 @@ impl FixedStep {
         self.keeps_angles = !self.engine.system.elastic.is_empty();
     }
 
-    /// Replaces what a source does from now on by a constant: torque, N m; speed or set point, rad/s; throttle or grade.
-    /// A prescribed speed that jumps counts as an impact.
+    /// The inputs that can be set.
+    pub fn inputs(&self) -> Vec<InputInfo> {
+        self.engine.system.inputs()
+    }
+
+    /// The input of that name: that of a source, or `engagement.` and the name of a shift element that the scenario
+    /// engages.
     ///
     /// # Errors
-    /// If there is no such source, or it is a load that follows the speed.
-    pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
-        self.engine.system.set_input(source, value)?;
+    /// If there is none, with the nearest name; if it is a load that follows the speed.
+    pub fn input(&self, name: &str) -> Result<Input, Diagnostics> {
+        self.engine.system.input(name)
+    }
+
+    /// Sets an input: from now on it has this value. A prescribed speed that jumps counts as an impact.
+    ///
+    /// # Errors
+    /// If the value is not finite.
+    pub fn set(&mut self, input: Input, value: f64) -> Result<(), InputRefused> {
+        self.engine.system.set(input, value)?;
         let s = &self.engine.system;
-        for (driver, _) in s.drivers.iter().zip(&s.scenario.sources).filter(|(_, of)| of.name == source) {
-            self.impacts += u64::from(driver.prescribed.is_some_and(|i| jumps(self.v[s.free + i], value)));
-        }
-        self.until = f64::NEG_INFINITY;
+        let prescribed = s.prescribed_by(input);
+        self.impacts += u64::from(prescribed.is_some_and(|i| jumps(self.v[s.free + i], value)));
+        (self.until, self.seen_at) = (f64::NEG_INFINITY, None);
         Ok(())
+    }
+
+    /// The outputs that can be read: the columns of a recorded run.
+    pub fn outputs(&self) -> Vec<Column> {
+        self.engine.columns()
+    }
+
+    /// The output of that name, as in `speed.sun`, `angle.sun`, `acceleration.sun`, `torque.motor`, `mode.B`,
+    /// `stored_energy`.
+    ///
+    /// # Errors
+    /// If there is none, with the nearest name.
+    pub fn output(&mut self, name: &str) -> Result<Output, Diagnostics> {
+        let output = Output::of(&self.engine.columns(), name)?;
+        self.shows_forces |= !output.shows(&self.engine.shows).is_motion();
+        Ok(output)
+    }
+
+    /// The value of an output at the time reached, in the unit of its column; NaN where it is not determined. Modes
+    /// are those of the last step, read by [`ModeLabel::of_value`](super::ModeLabel::of_value); forces are those that
+    /// act in them at the present speeds.
+    ///
+    /// Speeds and angles cost a sum. The first of the others after a step solves for the forces once.
+    pub fn read(&mut self, output: Output) -> f64 {
+        let shows = output.shows(&self.engine.shows);
+        let s = &self.engine.system;
+        match shows {
+            Shows::Time => self.time(),
+            Shows::Speed(m) => dot(&s.speeds[m], &self.v),
+            Shows::Angle(m) => dot(&s.speeds[m], &self.rest[..s.all()]),
+            _ => {
+                self.look_at_forces();
+                match shows {
+                    Shows::Stored => self.engine.stored_now(&self.seen),
+                    _ => self.engine.value(shows, self.time(), &self.seen),
+                }
+            }
+        }
+    }
+
+    /// Begins to count where the energy goes: `lost_energy` can be read. Steps take several times as long.
+    pub fn with_energies(&mut self) {
+        self.engine.counts = true;
+        self.energies = vec![0.0; self.engine.energies()];
+        self.came_in = vec![0.0; self.engine.system.drivers.len()];
+        (self.present, self.seen_at) = (None, None);
     }
 
     /// Goes back to the start. What was learned about modes stays, and so do inputs that were replaced.
@@ -358,6 +444,7 @@ impl FixedStep {
         self.came_in.fill(0.0);
         (self.count, self.unsettled, self.impacts) = (0, 0, 0);
         (self.present, self.last, self.until) = (None, None, f64::NEG_INFINITY);
+        self.seen_at = None;
     }
 
     /// Runs the whole scenario once and goes back to its start.
@@ -366,7 +453,12 @@ impl FixedStep {
     /// memory. After a rehearsal the same run meets no new mode: its steps allocate nothing and take bounded time.
     pub fn rehearse(&mut self) {
         self.reset();
-        self.run(self.steps());
+        for _ in 0..self.steps() {
+            self.step();
+            if self.shows_forces {
+                self.look_at_forces();
+            }
+        }
         self.reset();
     }
 
@@ -380,152 +472,6 @@ impl FixedStep {
         for _ in 0..steps {
             self.step();
         }
-    }
-
-    /// The mode in every detail.
-    fn exactly(&self) -> Exactly {
-        let mut key = Exactly::default();
-        for (g, group) in self.groups.iter().enumerate() {
-            let bit = 1 << g;
-            if self.sign[g] == 0 && !group.driven {
-                key.held |= bit;
-            } else if self.capacity[g] == [0.0; 2] && group.elements.is_empty() {
-                key.idle |= bit;
-            } else if self.sign[g] > 0 {
-                key.forward |= bit;
-            }
-        }
-        key.coast = self.coasting();
-        key
-    }
-
-    /// Makes the fused step of the mode just settled the present one.
-    fn fuse(&mut self) {
-        self.present = None;
-        let Some((_, map)) = self.last else { return };
-        let map = &self.maps[map as usize];
-        let held_shares = self.groups.iter().zip(&self.sign).any(|(group, sign)| *sign == 0 && group.shares);
-        if self.swept || !self.energies.is_empty() || held_shares && !map.is_redundant() {
-            return;
-        }
-        for (j, row) in &map.still {
-            let torque = dot(row, &self.tau);
-            self.side[usize::from(*j)] = if torque >= 0.0 { Side::Drive } else { Side::Coast };
-        }
-        let key = self.exactly();
-        let k = match self.by_exact_key.get(&key) {
-            Some(&k) => k,
-            None => {
-                let s = &self.engine.system;
-                self.fused.push(Fused::new(s, &self.groups, &self.teeth, map, &key, self.h));
-                let k = self.fused.len() as u32 - 1;
-                self.by_exact_key.insert(key, k);
-                k
-            }
-        };
-        let fused = &self.fused[k as usize];
-        fused.settle(&self.v, &self.inputs, &self.varying, &mut self.base, &mut self.least);
-        self.ends.resize(fused.rows, 0.0);
-        self.present = Some(k);
-    }
-
-    /// Takes the step in the mode of the last one; false, and nothing done, if that does not go on.
-    #[inline]
-    fn glide(&mut self, middle: f64) -> bool {
-        let Some(k) = self.present else { return false };
-        if !self.engine.system.elastic.is_empty() {
-            self.look_at_shafts();
-        }
-        let fused = &self.fused[k as usize];
-        let all = self.v.len();
-        self.ends.copy_from_slice(&self.base);
-        for (k, v) in self.v.iter().enumerate() {
-            add_column(&mut self.ends, fused.column(k), *v);
-        }
-        let s = &self.engine.system;
-        let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
-        for &k in &self.varying {
-            let u = self.input(k, middle);
-            // What opens, closes or locks is more than a change of torque.
-            if k >= drivers && k < drivers + frictions {
-                let was = self.inputs[k];
-                if (u == 0.0) != (was == 0.0) || (u == UNBOUNDED) != (was == UNBOUNDED) {
-                    return false;
-                }
-            }
-            add_column(&mut self.ends, fused.column(all + k), u);
-            self.inputs[k] = u;
-        }
-        let broken = self.ends.iter().zip(&self.least).fold(false, |broken, (end, least)| broken | (end < least));
-        if broken {
-            return false;
-        }
-        self.next[..s.free].copy_from_slice(&self.ends[..s.free]);
-        if s.prescribed > 0 {
-            for (driver, u) in s.drivers.iter().zip(&self.inputs) {
-                if let Some(i) = driver.prescribed {
-                    self.next[s.free + i] = *u;
-                }
-            }
-        }
-        true
-    }
-
-    /// The middle of the next step, s.
-    pub(super) fn middle(&self) -> f64 {
-        self.time() + 0.5 * self.h
-    }
-
-    /// Whether what was level is no longer.
-    pub(super) fn is_over(&self, middle: f64) -> bool {
-        middle >= self.until || self.until == f64::NEG_INFINITY
-    }
-
-    /// Whether all speeds are finite.
-    fn is_finite(&self) -> bool {
-        self.v.iter().all(|v| v.is_finite())
-    }
-
-    /// Takes one step.
-    pub fn step(&mut self) {
-        let middle = self.middle();
-        if self.is_over(middle) {
-            let ended = self.until;
-            self.refresh(middle);
-            self.count_jumps(ended, middle);
-            self.present = None;
-        }
-        if !self.glide(middle) {
-            self.load(middle);
-            let free = self.engine.system.free;
-            let cols = self.tau.len();
-            self.swept = false;
-            if !self.arch.dispatch(Settle { step: self, free, cols }) && !self.sweep(free, cols) {
-                self.unsettled += 1;
-            }
-            if !self.energies.is_empty() {
-                self.count_energies();
-            }
-            self.fuse();
-        }
-        // What is held is at rest exactly, not but for round-off.
-        if self.keeps_angles {
-            let all = self.engine.system.all();
-            for i in 0..all {
-                self.rest[i] += self.h * self.next[i];
-            }
-        }
-        if self.engine.system.integrals > 0 {
-            let s = &self.engine.system;
-            for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
-                if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
-                    let set = setpoint.value(middle, middle, &|m: MemberId| dot(&s.speeds[m.index()], &self.next));
-                    self.rest[s.all() + i] += self.h * (set - dot(&s.speeds[driver.member.index()], &self.next));
-                }
-            }
-        }
-        std::mem::swap(&mut self.v, &mut self.next);
-        self.count += 1;
     }
 }
 

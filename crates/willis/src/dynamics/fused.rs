@@ -4,9 +4,11 @@
 //! group within what holds it, a mesh whose drive does not reverse) are sums over the speeds before it
 //! and over what enters it. One small product says both where the step ends and whether it may be taken.
 
-use super::fixed::{GroupStep, StepMap, UNBOUNDED};
+use super::element::Loss;
+use super::fixed::groups::{GroupStep, UNBOUNDED};
+use super::fixed::map::StepMap;
 use super::mode::Side;
-use super::system::{Loss, System};
+use super::system::System;
 
 /// Rows come in blocks of as many, so that the product runs without a remainder.
 pub(super) const BLOCK: usize = 4;
@@ -15,6 +17,7 @@ pub(super) const BLOCK: usize = 4;
 pub(super) const NOISE: f64 = 1e-11;
 
 /// The affine map of a step in a mode.
+#[derive(Clone)]
 pub(super) struct Fused {
     /// Speeds after the step, then margins, then zeros up to a whole number of blocks.
     pub rows: usize,

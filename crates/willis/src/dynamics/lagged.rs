@@ -52,7 +52,7 @@ pub(super) fn lagged(
         run.t = t;
         if run.is_row_due(t, h) {
             run.engine.row(t, &x, &mut run.row);
-            if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
+            if recorder.sample(Sample { time_s: t, values: &run.row }).is_break() {
                 run.outcome = Some(Outcome::Interrupted);
             }
         }

@@ -12,27 +12,20 @@ use crate::operating_point::{LEAST_SPEED, LossKind, Physics, Place, Step};
 use crate::power_flow::{Flow, MeshFlow};
 use crate::train::{MeshId, Train};
 
-use super::engine::Engine;
-use super::mode::{Map, Mode, Side, dot, slope};
-use super::system::{Loss, MOST_LOST, Rubs};
-
-/// Change in a round that counts as none, over the sum of the losses as torques.
-const AGREEMENT: f64 = 1e-11;
-/// The same over the size of the forces, where the losses themselves are round-off.
-const ROUND_OFF: f64 = 1e-13;
-/// Most rounds at a state.
-const MOST_ROUNDS: usize = 100;
+use super::element::{Loss, MOST_LOST};
+use super::report::EnergyLossKind;
 
 /// The laws of a train, and what they gave last.
+#[derive(Clone)]
 pub(super) struct Laws {
-    physics: Physics<'static>,
+    pub physics: Arc<Physics<'static>>,
     pub places: Vec<Place>,
     /// The friction element of the first place; those of the others follow.
     pub first: usize,
-    flow: Flow,
-    step: Step,
+    pub flow: Flow,
+    pub step: Step,
     /// Torque by place, N m.
-    torques: Vec<f64>,
+    pub torques: Vec<f64>,
 }
 
 impl Laws {
@@ -52,7 +45,7 @@ impl Laws {
         let flow = Flow { speeds: vec![0.0; train.members().len()], meshes: meshes.collect(), ..Flow::default() };
         let step = physics.follow(&flow);
         let torques = places.iter().map(|p| step.drag(p)).collect();
-        Some(Self { physics, places, first: 0, flow, step, torques })
+        Some(Self { physics: Arc::new(physics), places, first: 0, flow, step, torques })
     }
 
     /// Amount of torque at a place, N m.
@@ -76,7 +69,7 @@ impl Laws {
     }
 
     /// The loss of a mesh in proportion to its load.
-    fn loss(&self, mesh: MeshId) -> Loss {
+    pub fn loss(&self, mesh: MeshId) -> Loss {
         let lost = self.step.lost(mesh);
         Loss { drive: lost, coast: 1.0 - 1.0 / (1.0 - lost), drive_torque: 0.0, coast_torque: 0.0 }
     }
@@ -88,8 +81,9 @@ impl Laws {
             all.push(format!("tooth friction `{}`", self.physics.friction_law()));
         }
         for place in &self.places {
-            if all.iter().all(|known| known != place.label()) {
-                all.push(place.label().to_owned());
+            let kind = place.loss_kind().to_string();
+            if !all.contains(&kind) {
+                all.push(kind);
             }
         }
         let oil = match self.physics.temperature() {
@@ -109,118 +103,15 @@ impl Laws {
 }
 
 impl Place {
-    /// For names of losses.
-    pub fn label(&self) -> &'static str {
+    /// What it is called among the energies.
+    pub(super) fn loss_kind(&self) -> EnergyLossKind {
         match self.kind {
-            LossKind::Sliding => "mesh",
-            LossKind::Rolling => "rolling",
-            LossKind::Bearing => "bearing",
-            LossKind::Windage => "windage",
-            LossKind::Churning => "churning",
-            LossKind::Seal => "seal",
+            LossKind::Sliding => EnergyLossKind::Mesh,
+            LossKind::Rolling => EnergyLossKind::Rolling,
+            LossKind::Bearing => EnergyLossKind::Bearing,
+            LossKind::Windage => EnergyLossKind::Windage,
+            LossKind::Churning => EnergyLossKind::Churning,
+            LossKind::Seal => EnergyLossKind::Seal,
         }
-    }
-}
-
-impl Engine {
-    /// Loss of an element at the speeds looked at; where it follows a law, as the forces found last have it.
-    pub fn loss(&self, j: usize) -> Loss {
-        self.loss_at(j, dot(&self.system.elements[j].row, &self.speed).abs())
-    }
-
-    /// The same where only tables take another speed.
-    pub fn loss_at(&self, j: usize, speed: f64) -> Loss {
-        let e = &self.system.elements[j];
-        match (e.law, &self.system.laws) {
-            (Some(mesh), Some(laws)) => laws.loss(mesh),
-            _ => e.loss(speed),
-        }
-    }
-
-    /// Brings forces and laws into agreement at the state looked at, in the present mode.
-    pub fn agree(&mut self, t: f64, x: &[f64]) {
-        let mode = self.mode.clone();
-        self.agrees = false;
-        for _ in 0..MOST_ROUNDS {
-            let Some(map) = self.map.clone() else { return };
-            let tau = std::mem::take(&mut self.tau);
-            self.agrees = self.ask(&mode, &map, &tau);
-            self.tau = tau;
-            if self.agrees {
-                return;
-            }
-            self.load(t, x);
-            self.map = self.map_of(&mode);
-        }
-    }
-
-    /// The map of a mode tried at the state looked at, with laws that agree with it; `tau` is made that of the mode.
-    pub fn agreed_map(&mut self, mode: &Mode, t: f64, tau: &mut [f64]) -> Option<Arc<Map>> {
-        for _ in 0..MOST_ROUNDS {
-            for k in 0..self.system.frictions.len() {
-                if matches!(self.system.frictions[k].what, Rubs::Law(_)) {
-                    tau[self.system.frictions[k].port] = self.friction_torque(k, mode, true, t);
-                }
-            }
-            let map = self.map_of(mode)?;
-            if self.system.laws.is_none() || self.ask(mode, &map, tau) {
-                return Some(map);
-            }
-        }
-        None
-    }
-
-    /// Asks the laws at the forces of a map. True if the answer is that of the last time, which then stands.
-    fn ask(&mut self, mode: &Mode, map: &Map, tau: &[f64]) -> bool {
-        let Some(mut laws) = self.system.laws.take() else { return true };
-        for (speed, row) in laws.flow.speeds.iter_mut().zip(&self.system.speeds) {
-            *speed = dot(row, &self.speed);
-        }
-        let (mut lost, mut size) = (0.0, 0.0);
-        for (j, e) in self.system.elements.iter().enumerate() {
-            let [link] = &e.links[..] else { continue };
-            let [a, b] = e.factors;
-            let row = self.system.all() + j;
-            let torque = a * map.unknown(row, tau);
-            let sign = mode.element_slip(&self.system, j);
-            let side = mode.side[j];
-            let own = match e.law {
-                Some(mesh) if sign != 0 => {
-                    size += a.abs() * map.size(row, tau);
-                    slope(laws.loss(mesh), side) * torque
-                }
-                _ => 0.0,
-            };
-            lost += own.abs();
-            let flow = &mut laws.flow.meshes[link.mesh.index()];
-            // Of the second gear by the Willis equation: relative to the carrier a ω_p + b ω_q = 0.
-            let other = b / a * (torque - own);
-            flow.torques = [torque, other, -torque - other];
-            let speed = dot(&e.row, &self.speed);
-            flow.relative_speeds = [speed, a / b * speed].map(|w| w.abs().max(LEAST_SPEED));
-            let driver = usize::from(side == Side::Coast);
-            flow.driver = Some(driver);
-            flow.potential_power = (flow.torques[driver] * flow.relative_speeds[driver]).abs();
-        }
-        let next = laws.physics.follow(&laws.flow);
-        let torques: Vec<f64> = laws.places.iter().map(|p| next.drag(p)).collect();
-        let mut change = 0.0;
-        for e in &self.system.elements {
-            if let Some(mesh) = e.law {
-                change +=
-                    (next.lost(mesh) - laws.step.lost(mesh)).abs() * laws.flow.meshes[mesh.index()].torques[0].abs();
-            }
-        }
-        for (new, old) in torques.iter().zip(&laws.torques) {
-            change += (new - old).abs();
-            lost += new;
-        }
-        let agrees = change <= AGREEMENT * lost + ROUND_OFF * size;
-        if !agrees {
-            laws.step = next;
-            laws.torques = torques;
-        }
-        self.system.laws = Some(laws);
-        agrees
     }
 }

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::system::{Loss, System};
+use super::element::Loss;
+use super::system::System;
 
 /// Which side of its kink a mesh's loss is on: whose gear drives.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
@@ -125,6 +126,7 @@ pub(super) fn dot_size(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// What follows from the loss slopes alone: unknowns × ports, and slip accelerations of all groups × ports.
+#[derive(Clone)]
 pub(super) struct Pattern {
     pub ports: usize,
     pub response: Vec<f64>,
@@ -173,7 +175,7 @@ impl Pattern {
 }
 
 /// The maps met so far.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Maps {
     patterns: HashMap<Vec<u8>, Option<Pattern>>,
     by_mode: HashMap<Mode, usize>,

@@ -1,9 +1,12 @@
-//! Rows of output and labels of modes.
+//! Values of the columns at a state.
+
+use crate::train::MemberId;
 
 use super::engine::{Engine, Touch};
 use super::mode::{Side, dot};
 use super::report::{Column, ModeLabel};
-use super::system::{Rubs, element_name};
+use super::shows::{Moves, Shows};
+use super::system::Rubs;
 
 fn label(slip: i8) -> ModeLabel {
     match slip {
@@ -13,123 +16,117 @@ fn label(slip: i8) -> ModeLabel {
     }
 }
 
-/// A label as a number in the rows.
-fn number(label: ModeLabel) -> f64 {
-    match label {
-        ModeLabel::Backward => -1.0,
-        ModeLabel::Stuck => 0.0,
-        ModeLabel::Forward => 1.0,
-        ModeLabel::Free => 2.0,
-    }
-}
-
 impl Engine {
-    /// Whether a law's friction element can hold, and its slip is not told of by another of its group.
-    fn speaks(&self, k: usize) -> bool {
-        let group = self.system.frictions[k].group.map(|(g, _)| &self.system.groups[g]);
-        matches!(self.kind(k), "bearing" | "seal")
-            && group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
-    }
-
     /// Everything that has a mode, and the mode.
     pub fn labels(&self) -> Vec<(String, ModeLabel)> {
+        let moves = self.shows.iter().filter_map(|shows| match shows {
+            Shows::Mode(moves) => Some((moves.name(&self.system), self.label(*moves))),
+            _ => None,
+        });
+        moves.collect()
+    }
+
+    fn label(&self, moves: Moves) -> ModeLabel {
         let s = &self.system;
-        let mut all = Vec::new();
-        for (k, f) in s.frictions.iter().enumerate() {
-            let shift = matches!(f.what, Rubs::Shift(_));
-            if matches!(f.what, Rubs::Law(_)) && !self.speaks(k) {
-                continue;
-            }
-            match f.group {
-                Some((g, factor)) => {
-                    let slip = self.mode.slip[g] * factor.signum() as i8;
-                    let overruns = f.blocks.is_some() && slip != 0;
-                    let free = shift && f.blocks.is_none() && !self.engaged[k] || overruns;
-                    all.push((f.name.clone(), if free { ModeLabel::Free } else { label(slip) }));
+        match moves {
+            Moves::Friction(k) => {
+                let f = &s.frictions[k];
+                let shift = matches!(f.what, Rubs::Shift(_));
+                match f.group {
+                    Some((g, factor)) => {
+                        let slip = self.mode.slip[g] * factor.signum() as i8;
+                        let overruns = f.blocks.is_some() && slip != 0;
+                        let free = shift && f.blocks.is_none() && !self.engaged[k] || overruns;
+                        if free { ModeLabel::Free } else { label(slip) }
+                    }
+                    None if !f.open && f.row.iter().all(|x| *x == 0.0) => ModeLabel::Stuck,
+                    None => ModeLabel::Free,
                 }
-                None if shift => {
-                    let held = !f.open && f.row.iter().all(|x| *x == 0.0);
-                    all.push((f.name.clone(), if held { ModeLabel::Stuck } else { ModeLabel::Free }));
-                }
-                None => {}
             }
+            Moves::Element(j) => label(self.mode.element_slip(s, j)),
+            Moves::Shaft(k) => match self.touch[k] {
+                Touch::Gap => ModeLabel::Free,
+                Touch::On(side) | Touch::Limited(side) | Touch::Parting(side) => label(side),
+            },
         }
-        for (j, e) in s.elements.iter().enumerate() {
-            if e.group.is_some() {
-                all.push((element_name(&s.train, &e.links), label(self.mode.element_slip(s, j))));
-            }
-        }
-        for (k, shaft) in s.train.shafts().iter().enumerate() {
-            if shaft.backlash > 0.0 {
-                let l = match self.touch[k] {
-                    Touch::Gap => ModeLabel::Free,
-                    Touch::On(side) | Touch::Limited(side) | Touch::Parting(side) => label(side),
-                };
-                all.push((shaft.name.clone(), l));
-            }
-        }
-        all
     }
 
     /// The columns of a row.
     pub fn columns(&self) -> Vec<Column> {
-        let s = &self.system;
-        let mut all = Vec::new();
-        let mut add = |prefix: &str, of: &str, unit: &'static str, kind: &'static str| {
-            let name = if of.is_empty() { prefix.to_owned() } else { format!("{prefix}.{of}") };
-            all.push(Column { name, unit, kind, of: of.to_owned() });
-        };
-        let members = || s.train.members()[1..].iter().map(|m| m.name.as_str());
-        add("time_s", "", "s", "time");
-        members().for_each(|m| add("speed", m, "rad/s", "speed"));
-        members().for_each(|m| add("angle", m, "rad", "angle"));
-        members().for_each(|m| add("acceleration", m, "rad/s^2", "acceleration"));
-        for source in &s.scenario.sources {
-            add("torque", &source.name, "N m", "torque");
-        }
-        for source in &s.scenario.sources {
-            add("power", &source.name, "W", "power");
-        }
-        for f in s.frictions.iter().filter(|f| !f.open && !matches!(f.what, Rubs::Rolling(_))) {
-            add("torque", &f.name, "N m", "torque");
-        }
-        for shaft in s.train.shafts() {
-            add("torque", &shaft.name, "N m", "torque");
-            add("twist", &shaft.name, "rad", "twist");
-        }
-        for mesh in s.train.meshes() {
-            add("torque", &mesh.name, "N m", "torque");
-        }
-        add("loss", "", "W", "power");
-        add("stored_energy", "", "J", "energy");
-        add("lost_energy", "", "J", "energy");
-        add("efficiency", "", "", "efficiency");
-        for (name, _) in self.labels() {
-            add("mode", &name, "", "mode");
-        }
-        all
+        self.shows.iter().map(|shows| shows.column(&self.system)).collect()
     }
 
-    /// Torque that the first gear of every mesh takes from its shaft, at the state solved last.
-    fn mesh_torques(&self, out: &mut [f64]) {
+    /// Torque that the first gear of a mesh takes from its shaft, at the state solved last.
+    fn mesh_torque(&self, mesh: usize) -> f64 {
         let s = &self.system;
         for (j, e) in s.elements.iter().enumerate() {
-            let meshing = self.meshing(j);
-            let sign = self.mode.element_slip(s, j);
+            if e.passes.iter().all(|p| p.mesh != mesh) {
+                continue;
+            }
             let drive = self.mode.side[j] == Side::Drive;
-            let mut entry = meshing.torque;
-            for link in &e.links {
-                let mesh = &s.train.meshes()[link.mesh.index()];
-                let (from, to) = if link.along { (0, 1) } else { (1, 0) };
-                let ratio = (&mesh.gears[to].teeth / &mesh.gears[from].teeth).to_f64();
-                let ratio = if mesh.same_sense { -ratio } else { ratio };
-                let efficiency = if link.along == drive { &mesh.efficiency.forward } else { &mesh.efficiency.backward };
-                let efficiency = if e.links.len() == 1 || sign == 0 { 1.0 } else { efficiency.to_f64() };
-                let exit = ratio * entry * if drive { efficiency } else { 1.0 / efficiency };
-                out[link.mesh.index()] = if link.along { entry } else { exit };
+            let at_rest = self.mode.element_slip(s, j) == 0;
+            let mut entry = self.meshing(j).torque;
+            for pass in &e.passes {
+                let exit = pass.exit(entry, drive, at_rest);
+                if pass.mesh == mesh {
+                    // A single mesh written backwards cannot occur: its element starts at its first gear.
+                    return if pass.along { entry } else { exit };
+                }
                 entry = -exit;
             }
-            // A single mesh written backwards cannot occur: its element starts at its first gear.
+        }
+        f64::NAN
+    }
+
+    fn source_power(&self, k: usize, t: f64) -> f64 {
+        self.applied_torque(k, t) * self.member_speed(self.system.drivers[k].member)
+    }
+
+    /// Everything that is lost, at the state solved last.
+    fn lost_power(&self, t: f64, x: &[f64]) -> f64 {
+        let s = &self.system;
+        let mut loss = 0.0;
+        for (k, f) in s.frictions.iter().enumerate() {
+            if !matches!(f.what, Rubs::Rolling(_)) {
+                loss += self.rubbing(k, t).loss;
+            }
+        }
+        for k in 0..s.elastic.len() {
+            loss += self.damper_power(k, x);
+        }
+        for j in 0..s.elements.len() {
+            loss += self.meshing(j).loss;
+        }
+        loss
+    }
+
+    /// What a column shows at the state solved last; NaN where that is not determined.
+    pub fn value(&self, shows: Shows, t: f64, x: &[f64]) -> f64 {
+        let s = &self.system;
+        match shows {
+            Shows::Time => t,
+            Shows::Speed(m) => self.member_speed(MemberId(m)),
+            Shows::Angle(m) => dot(&s.speeds[m], &x[s.free..s.free + s.all()]),
+            Shows::Acceleration(m) => dot(&s.speeds[m], &self.acceleration),
+            Shows::SourceTorque(k) => self.applied_torque(k, t),
+            Shows::SourcePower(k) => self.source_power(k, t),
+            Shows::FrictionTorque(k) => self.rubbing(k, t).torque,
+            Shows::ShaftTorque(k) => self.tau[s.elastic[k].port],
+            Shows::Twist(k) => self.twist(k, x),
+            Shows::MeshTorque(k) => self.mesh_torque(k),
+            Shows::Loss => self.lost_power(t, x),
+            Shows::Stored => self.stored(x),
+            Shows::Lost => {
+                let sources = self.integrals() + s.integrals + s.drivers.len();
+                x.get(sources..).filter(|_| self.counts).map_or(f64::NAN, |e| e.iter().sum())
+            }
+            Shows::Efficiency => {
+                let powers = || (0..s.drivers.len()).map(|k| self.source_power(k, t));
+                let came_in: f64 = powers().filter(|p| *p > 0.0).sum();
+                let went_out: f64 = -powers().filter(|p| *p < 0.0).sum::<f64>();
+                if came_in > 0.0 { went_out / came_in } else { f64::NAN }
+            }
+            Shows::Mode(moves) => self.label(moves).value(),
         }
     }
 
@@ -137,47 +134,6 @@ impl Engine {
     pub fn row(&mut self, t: f64, x: &[f64], out: &mut Vec<f64>) {
         self.solve(t, x);
         out.clear();
-        out.push(t);
-        let s = &self.system;
-        let (free, all) = (s.free, s.all());
-        let members = 1..s.speeds.len();
-        out.extend(members.clone().map(|m| dot(&s.speeds[m], &self.speed)));
-        out.extend(members.clone().map(|m| dot(&s.speeds[m], &x[free..free + all])));
-        out.extend(members.map(|m| dot(&s.speeds[m], &self.acceleration)));
-        let torques: Vec<f64> = (0..s.drivers.len()).map(|k| self.applied_torque(k, t)).collect();
-        let powers: Vec<f64> =
-            torques.iter().zip(&s.drivers).map(|(torque, d)| torque * self.member_speed(d.member)).collect();
-        out.extend(&torques);
-        out.extend(&powers);
-        let mut loss = 0.0;
-        for (k, f) in s.frictions.iter().enumerate() {
-            if matches!(f.what, Rubs::Rolling(_)) {
-                continue;
-            }
-            let rubbing = self.rubbing(k, t);
-            loss += rubbing.loss;
-            if !f.open {
-                out.push(rubbing.torque);
-            }
-        }
-        for (k, e) in s.elastic.iter().enumerate() {
-            loss += self.damper_power(k, x);
-            out.push(self.tau[e.port]);
-            out.push(self.twist(k, x));
-        }
-        let mut meshes = vec![f64::NAN; s.train.meshes().len()];
-        self.mesh_torques(&mut meshes);
-        out.extend(&meshes);
-        for j in 0..s.elements.len() {
-            loss += self.meshing(j).loss;
-        }
-        out.push(loss);
-        out.push(self.stored(x));
-        let states = self.integrals() + s.integrals;
-        out.push(x.get(states + s.drivers.len()..).filter(|_| self.counts).map_or(f64::NAN, |e| e.iter().sum()));
-        let came_in: f64 = powers.iter().filter(|p| **p > 0.0).sum();
-        let went_out: f64 = -powers.iter().filter(|p| **p < 0.0).sum::<f64>();
-        out.push(if came_in > 0.0 { went_out / came_in } else { f64::NAN });
-        out.extend(self.labels().iter().map(|(_, l)| number(*l)));
+        out.extend(self.shows.iter().map(|shows| self.value(*shows, t, x)));
     }
 }

@@ -1,9 +1,11 @@
-//! What a simulation tells.
+//! What a simulation is asked, and what it answers: the results contract `willis-simulation-1`.
 
+use std::fmt;
 use std::ops::ControlFlow;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::contract::{Contract, Format};
 use crate::named::Named;
 
 /// How to run a scenario.
@@ -20,8 +22,7 @@ pub struct Options {
     /// The sign of each tooth force is that of the step before (Galvagno 2010, section 5): compatibility
     /// with the paper, to show its error. With [`Method::Fixed`] only.
     pub lagged_forces: bool,
-    /// Whether to count where the energy goes. Without it the energies of the report are NaN, and the run is
-    /// faster.
+    /// Whether to count where the energy goes. Without it the report has no energies, and the run is faster.
     pub energies: bool,
     /// How many rows; that of the scenario unless given.
     pub samples: Option<usize>,
@@ -46,35 +47,148 @@ impl Default for Options {
 pub enum Method {
     /// Dormand–Prince 5(4) within a mode, changes of mode located; implicit where shafts are stiff.
     Adaptive,
-    /// Steps of this length, s, each of bounded cost.
-    Fixed(f64),
+    /// Steps of one length, each of bounded cost.
+    Fixed {
+        /// The length, s.
+        step_s: f64,
+    },
 }
 
 /// A column of the output.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Column {
     /// `time_s`, `speed.sun`, `torque.P1.sun-planet`, …
     pub name: String,
-    /// Unit, empty for modes.
-    pub unit: &'static str,
-    /// What it is: `time`, `speed`, `angle`, `acceleration`, `torque`, `power`, `mode`, `twist`, `efficiency`, `energy`.
-    pub kind: &'static str,
+    /// In what the values are; nothing for modes and efficiencies.
+    pub unit: ColumnUnit,
+    /// What the values are.
+    pub kind: ColumnKind,
     /// The member, mesh, source, shaft or shift element; empty for the train as a whole.
     pub of: String,
+}
+
+/// What the values of a column are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum ColumnKind {
+    /// Time.
+    Time,
+    /// Speed of a member.
+    Speed,
+    /// Angle that a member has turned through since the start.
+    Angle,
+    /// Acceleration of a member.
+    Acceleration,
+    /// Torque of a source on its member, of friction or a shaft on its first member, of a mesh at its first gear.
+    Torque,
+    /// Power of a source, or lost in all.
+    Power,
+    /// State of motion of an element: -1 backward, 0 stuck, 1 forward, 2 free ([`ModeLabel`]).
+    Mode,
+    /// Twist of a shaft.
+    Twist,
+    /// Power that goes out over power that comes in.
+    Efficiency,
+    /// Energy stored or lost.
+    Energy,
+}
+
+impl ColumnKind {
+    /// As in the contract: `speed`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Time => "time",
+            Self::Speed => "speed",
+            Self::Angle => "angle",
+            Self::Acceleration => "acceleration",
+            Self::Torque => "torque",
+            Self::Power => "power",
+            Self::Mode => "mode",
+            Self::Twist => "twist",
+            Self::Efficiency => "efficiency",
+            Self::Energy => "energy",
+        }
+    }
+
+    /// The unit of its values.
+    pub fn unit(self) -> ColumnUnit {
+        match self {
+            Self::Time => ColumnUnit::Second,
+            Self::Speed => ColumnUnit::RadianPerSecond,
+            Self::Angle | Self::Twist => ColumnUnit::Radian,
+            Self::Acceleration => ColumnUnit::RadianPerSecondSquared,
+            Self::Torque => ColumnUnit::NewtonMetre,
+            Self::Power => ColumnUnit::Watt,
+            Self::Energy => ColumnUnit::Joule,
+            Self::Mode | Self::Efficiency => ColumnUnit::None,
+        }
+    }
+}
+
+/// Unit of the values of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub enum ColumnUnit {
+    /// A number without unit.
+    #[serde(rename = "")]
+    None,
+    /// s
+    #[serde(rename = "s")]
+    Second,
+    /// rad/s
+    #[serde(rename = "rad/s")]
+    RadianPerSecond,
+    /// rad
+    #[serde(rename = "rad")]
+    Radian,
+    /// rad/s²
+    #[serde(rename = "rad/s^2")]
+    RadianPerSecondSquared,
+    /// N m
+    #[serde(rename = "N m")]
+    NewtonMetre,
+    /// W
+    #[serde(rename = "W")]
+    Watt,
+    /// J
+    #[serde(rename = "J")]
+    Joule,
+}
+
+impl ColumnUnit {
+    /// As in the contract: `rad/s`; empty for a number without unit.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::None => "",
+            Self::Second => "s",
+            Self::RadianPerSecond => "rad/s",
+            Self::Radian => "rad",
+            Self::RadianPerSecondSquared => "rad/s^2",
+            Self::NewtonMetre => "N m",
+            Self::Watt => "W",
+            Self::Joule => "J",
+        }
+    }
 }
 
 /// A row of output: values in the order of the columns, SI. NaN where a value is not determined:
 /// how locked teeth share the torque that holds them.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
-    /// s
-    pub time: f64,
+    /// Time, s.
+    pub time_s: f64,
     /// In the order of the columns; the first is the time.
     pub values: &'a [f64],
 }
 
 /// The state of motion of an element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum ModeLabel {
     /// Relative speed positive.
@@ -87,16 +201,97 @@ pub enum ModeLabel {
     Free,
 }
 
+impl ModeLabel {
+    /// As a number in the rows: -1 backward, 0 stuck, 1 forward, 2 free.
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Backward => -1.0,
+            Self::Stuck => 0.0,
+            Self::Forward => 1.0,
+            Self::Free => 2.0,
+        }
+    }
+
+    /// The label of such a number.
+    pub fn of_value(value: f64) -> Option<Self> {
+        [Self::Backward, Self::Stuck, Self::Forward, Self::Free].into_iter().find(|label| label.value() == value)
+    }
+}
+
 /// A change of mode.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Event {
-    /// s
+    /// When, s.
     pub time_s: f64,
-    /// What happened: `start`; `B comes to rest`, `B and P1.sun-planet break away`, `bearing turns round`,
-    /// `C engages, B opens`, `side shafts: contact`, `drive reverses in P1.sun-planet`.
+    /// What happened, in words, some names left out where they are many: `start`; `B comes to rest`, `B and
+    /// P1.sun-planet break away`, `bearing turns round`, `C engages, B opens`, `side shafts: contact`, `drive reverses
+    /// in P1.sun-planet`.
     pub cause: String,
+    /// The same as data.
+    #[serde(default)]
+    pub happenings: Vec<Happening>,
     /// The modes after it that differ from those before, by element.
     pub modes: Named<ModeLabel>,
+}
+
+impl Event {
+    /// Whether it is the start of the run, which changes nothing.
+    pub fn is_start(&self) -> bool {
+        self.happenings.iter().any(|h| h.kind == HappeningKind::Start)
+    }
+}
+
+/// What happened to some elements at once.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Happening {
+    /// What.
+    pub kind: HappeningKind,
+    /// The elements.
+    pub of: Vec<String>,
+}
+
+/// What may happen to elements in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum HappeningKind {
+    /// The run begins.
+    Start,
+    /// Friction holds what was sliding.
+    ComesToRest,
+    /// What was held slides.
+    BreaksAway,
+    /// It slides in the other direction.
+    TurnsRound,
+    /// Its relative speed is zero for an instant, and it slides on as before.
+    RestsForAnInstant,
+    /// A shift element begins to be engaged.
+    Engages,
+    /// A shift element ceases to be engaged.
+    Opens,
+    /// A one-way clutch takes torque.
+    Locks,
+    /// A one-way clutch is overrun.
+    Overruns,
+    /// The other gear of a mesh drives.
+    DriveReverses,
+    /// A shaft has passed its backlash.
+    Touches,
+    /// A shaft is within its backlash.
+    ContactLost,
+    /// A shaft without contact is looked at again; it stays without.
+    NoContact,
+    /// The damper of a shaft acts in full.
+    FullDamping,
+    /// The damper of a shaft is limited to the torque of its spring.
+    DampingLimited,
+    /// A shaft is in contact, and its damper would pull.
+    ContactWithoutForce,
 }
 
 /// Takes the output as it comes; [`ControlFlow::Break`] ends the run there.
@@ -129,8 +324,10 @@ pub trait Recorder {
 impl Recorder for () {}
 
 /// How a run ended.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case", tag = "verdict", content = "why")]
+#[non_exhaustive]
 pub enum Outcome {
     /// The end of the scenario was reached.
     Finished,
@@ -149,6 +346,19 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// How the run ended, as in `the run …`; [`Outcome::why`] says more.
+    pub fn words(&self) -> &'static str {
+        match self {
+            Self::Finished => "reached the end of the scenario",
+            Self::Interrupted => "was interrupted",
+            Self::NoSolution(_) => "jammed: no tooth forces fit the motion",
+            Self::SeveralSolutions(_) => "stopped where several motions are possible",
+            Self::TooManyEvents(_) => "stopped: modes change too often",
+            Self::NotConverged(_) => "stopped: the equations could not be solved",
+            Self::Impact(_) => "stopped at an impact: a speed would have to change at once",
+        }
+    }
+
     /// Why the run ended there, in words; empty where the outcome itself says it.
     pub fn why(&self) -> &str {
         match self {
@@ -163,18 +373,65 @@ impl Outcome {
 }
 
 /// Energy that went into one cause of loss.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct EnergyLoss {
     /// Mesh, drag, shift element, shaft; place of a loss that follows a law.
     pub name: String,
-    /// `mesh`, `drag`, `shift-element`, `shaft`; by laws `rolling`, `bearing`, `windage`, `churning`, `seal`
-    pub kind: &'static str,
-    /// J
+    /// What loses it.
+    pub kind: EnergyLossKind,
+    /// The energy, J.
     pub energy_j: f64,
 }
 
+/// What loses energy in a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum EnergyLossKind {
+    /// Teeth: by a given efficiency, or sliding by a law.
+    Mesh,
+    /// A drag of the train.
+    Drag,
+    /// A shift element.
+    ShiftElement,
+    /// The damper of a shaft.
+    Shaft,
+    /// Teeth: rolling, by a law.
+    Rolling,
+    /// A bearing, by a law.
+    Bearing,
+    /// A gear or rotor in air or mist, by a law.
+    Windage,
+    /// A gear or rotor in oil, by a law.
+    Churning,
+    /// A seal, by a law.
+    Seal,
+}
+
+impl fmt::Display for EnergyLossKind {
+    /// For people: `shift element`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mesh => "mesh",
+            Self::Drag => "drag",
+            Self::ShiftElement => "shift element",
+            Self::Shaft => "shaft",
+            Self::Rolling => "rolling",
+            Self::Bearing => "bearing",
+            Self::Windage => "windage",
+            Self::Churning => "churning",
+            Self::Seal => "seal",
+        })
+    }
+}
+
 /// Energy that came in at one place (negative: that went out).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SourceEnergy {
     /// The source.
     pub name: String,
@@ -189,7 +446,9 @@ pub struct SourceEnergy {
 }
 
 /// Where the energy of a run went: in = stored + losses + residual.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct EnergyReport {
     /// By source.
     pub sources: Vec<SourceEnergy>,
@@ -205,12 +464,17 @@ pub struct EnergyReport {
     pub efficiency: Option<f64>,
 }
 
-/// The whole answer beside rows and events. Serialised it is the head of the results contract
-/// `willis-simulation-1`: fields are added, never renamed; units are SI and stand in the names.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+/// A run: the results contract `willis-simulation-1`. Fields are added, never renamed; units are SI and stand in the
+/// names.
+///
+/// [`simulate`](super::simulate) hands rows and events to its recorder, which may keep them in [`RunReport::events`],
+/// [`RunReport::columns`] and [`RunReport::rows`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct RunReport {
     /// `willis-simulation-1`
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// The train.
     pub train: String,
     /// The scenario.
@@ -227,14 +491,28 @@ pub struct RunReport {
     pub unique_for_every_load: bool,
     /// Steps taken.
     pub steps: usize,
-    /// Changes of mode.
-    pub events: usize,
-    /// Speeds of all members at the end, rad/s.
+    /// Changes of mode, where they were kept.
+    pub events: Vec<Event>,
+    /// Speeds of all members at the end, rad/s; without those that are no longer finite.
     pub final_speeds_rad_s: Named<f64>,
-    /// Where the energy went.
-    pub energy: EnergyReport,
+    /// Where the energy went; nothing where it was not counted, or is no longer finite.
+    pub energy: Option<EnergyReport>,
     /// What stands in for data that were not given.
     pub assumptions: Vec<String>,
     /// What the reader must know.
     pub notes: Vec<String>,
+    /// Where the scenario ends, s.
+    pub scenario_end_s: f64,
+    /// Number of changes of mode, the start among them.
+    pub event_count: usize,
+    /// What is in the rows, where rows were kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub columns: Option<Vec<Column>>,
+    /// Values in the order of the columns, SI; nothing where a value is not determined.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rows: Option<Vec<Vec<Option<f64>>>>,
+}
+
+impl Contract for RunReport {
+    const FORMAT: &'static str = "willis-simulation-1";
 }

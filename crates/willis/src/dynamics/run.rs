@@ -5,18 +5,19 @@ mod locate;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-use nalgebra::{DMatrix, DVector};
-
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::contract::Format;
+use crate::diagnostic::Diagnostics;
 use crate::train::{MemberId, Train};
 
+use super::certificate::{rolling_is_unique, sticking_is_unique};
 use super::choose::Trouble;
-use super::engine::{Engine, Margin, NOISE, Watch};
+use super::engine::Engine;
 use super::event::{Why, event, short};
-use super::fixed::fixed;
+use super::handles::{Input, InputInfo, InputRefused, Output};
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
-use super::lagged::lagged;
+use super::margins::{Margin, NOISE, Watch};
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
+use super::start::initial_state;
 use super::system::System;
 
 /// How often in a run what a formula does to a held element is looked at, at least.
@@ -52,6 +53,9 @@ const LOOKS: f64 = 1000.0;
 /// assert_eq!(run.speed("rotor"), Some(0.0));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
+///
+/// Inputs and outputs have handles, as in [`FixedStep`](super::FixedStep); a clone is the whole state.
+#[derive(Clone)]
 pub struct Simulation {
     pub(super) engine: Engine,
     options: Options,
@@ -76,6 +80,8 @@ pub struct Simulation {
     told: String,
     pub(super) columns: Vec<Column>,
     pub(super) row: Vec<f64>,
+    /// Whether the row is that of the time reached.
+    row_is_present: bool,
     pub(super) next_sample: usize,
     samples: usize,
     recent: VecDeque<f64>,
@@ -139,6 +145,7 @@ impl Simulation {
             told: String::new(),
             columns,
             row: vec![],
+            row_is_present: false,
             next_sample: 0,
             samples,
             recent: VecDeque::new(),
@@ -180,32 +187,63 @@ impl Simulation {
         Some(super::mode::dot(&s.speeds[m.index()], &self.x[s.free..s.free + s.all()]))
     }
 
-    /// Replaces what a source does from now on by a constant: torque, N m; set point, rad/s; throttle or grade.
+    /// The inputs that can be set.
+    pub fn inputs(&self) -> Vec<InputInfo> {
+        self.engine.system.inputs()
+    }
+
+    /// The input of that name: that of a source, or `engagement.` and the name of a shift element that the scenario
+    /// engages.
     ///
     /// # Errors
-    /// If there is no such source, if it is a load that follows the speed, or if it prescribes a speed that would
-    /// jump.
-    pub fn set_input(&mut self, source: &str, value: f64) -> Result<(), String> {
+    /// If there is none, with the nearest name; if it is a load that follows the speed.
+    pub fn input(&self, name: &str) -> Result<Input, Diagnostics> {
+        self.engine.system.input(name)
+    }
+
+    /// Sets an input: from now on it has this value.
+    ///
+    /// # Errors
+    /// If the value is not finite, or if a prescribed speed would jump.
+    pub fn set(&mut self, input: Input, value: f64) -> Result<(), InputRefused> {
         let s = &self.engine.system;
-        let jump = (s.drivers.iter().zip(&s.scenario.sources)).find_map(|(driver, of)| {
-            let now = self.engine.speed[s.free + driver.prescribed?];
-            (of.name == source && (value - now).abs() > 1e-9 * (value.abs() + now.abs())).then_some(now)
-        });
-        if let Some(now) = jump {
-            return Err(format!(
-                "`{source}` prescribes a speed of {now} rad/s, which cannot jump to {value} rad/s; use a torque or a controller"
-            ));
+        if let Some(i) = s.prescribed_by(input) {
+            let now = self.engine.speed[s.free + i];
+            if (value - now).abs() > 1e-9 * (value.abs() + now.abs()) {
+                return Err(InputRefused::Jump { from_rad_s: now, to_rad_s: value });
+            }
         }
-        self.engine.system.set_input(source, value)?;
-        self.rolling = false;
+        self.engine.system.set(input, value)?;
+        (self.rolling, self.row_is_present) = (false, false);
         Ok(())
     }
 
-    /// The present row, in the order of the columns.
+    /// The output of that name, which is that of its column.
+    ///
+    /// # Errors
+    /// If there is none, with the nearest name.
+    pub fn output(&self, name: &str) -> Result<Output, Diagnostics> {
+        Output::of(&self.columns, name)
+    }
+
+    /// The value of an output at the time reached, in the unit of its column; NaN where it is not determined.
+    pub fn read(&mut self, output: Output) -> f64 {
+        if !self.row_is_present {
+            self.row();
+            self.row_is_present = true;
+        }
+        output.in_row(&self.row)
+    }
+
+    /// The present row, in the order of the columns. The run goes on as if nobody had looked.
     pub fn row(&mut self) -> &[f64] {
         let (t, x) = (self.t, std::mem::take(&mut self.x));
         let mut row = std::mem::take(&mut self.row);
+        let found = self.engine.system.laws.as_ref().map(|laws| laws.found());
         self.engine.row(t, &x, &mut row);
+        if let (Some(laws), Some(found)) = (&mut self.engine.system.laws, found) {
+            laws.recall(found);
+        }
         self.x = x;
         self.row = row;
         &self.row
@@ -217,6 +255,7 @@ impl Simulation {
         if self.outcome.is_some() {
             return self.outcome.clone();
         }
+        self.row_is_present = false;
         let end = self.engine.system.scenario.end;
         let target = if until.is_nan() { self.t } else { until.min(end) };
         let outcome = loop {
@@ -326,7 +365,7 @@ impl Simulation {
             let mut flow = ControlFlow::Continue(());
             if self.events > 1 || self.next_sample > 0 {
                 self.engine.row(self.t, &x, &mut self.row);
-                flow = recorder.sample(Sample { time: self.t, values: &self.row });
+                flow = recorder.sample(Sample { time_s: self.t, values: &self.row });
             }
             if flow.is_break() || recorder.event(&event).is_break() {
                 self.x = x;
@@ -456,7 +495,7 @@ impl Simulation {
         let x = std::mem::take(&mut self.x);
         self.engine.row(self.t, &x, &mut self.row);
         self.x = x;
-        match recorder.sample(Sample { time: self.t, values: &self.row }) {
+        match recorder.sample(Sample { time_s: self.t, values: &self.row }) {
             ControlFlow::Break(()) => Stretch::Ended(Outcome::Interrupted),
             ControlFlow::Continue(()) => Stretch::Again,
         }
@@ -556,7 +595,7 @@ impl Simulation {
                 self.state = x;
             }
             self.next_sample += 1;
-            if recorder.sample(Sample { time: t, values: &self.row }).is_break() {
+            if recorder.sample(Sample { time_s: t, values: &self.row }).is_break() {
                 return ControlFlow::Break(t);
             }
         }
@@ -577,7 +616,8 @@ impl Simulation {
         let s = &self.engine.system;
         let states = self.engine.states();
         let final_speeds = (s.train.members().iter().enumerate().skip(1))
-            .map(|(m, member)| (member.name.clone(), self.engine.member_speed(MemberId(m))));
+            .map(|(m, member)| (member.name.clone(), self.engine.member_speed(MemberId(m))))
+            .filter(|(_, speed)| speed.is_finite());
         let mut notes = self.notes.clone();
         if self.engine.unsearched > 0 {
             notes.push(format!(
@@ -594,7 +634,7 @@ impl Simulation {
             notes.push("stiff: an implicit integrator was used".into());
         }
         RunReport {
-            format: "willis-simulation-1",
+            format: Format::new(),
             train: s.train.name().to_owned(),
             scenario: s.scenario.name.clone(),
             outcome: self.outcome.clone().unwrap_or(Outcome::Interrupted),
@@ -603,7 +643,7 @@ impl Simulation {
             coordinates: s.coordinates.iter().map(|m| s.train.member_name(*m).to_owned()).collect(),
             unique_for_every_load: self.engine.certified,
             steps: self.steps,
-            events: self.events,
+            events: vec![],
             final_speeds_rad_s: final_speeds.collect(),
             energy: self.engine.energy_report(
                 [self.stored_at_start, self.engine.stored(&self.x)],
@@ -612,6 +652,10 @@ impl Simulation {
             ),
             assumptions: s.assumptions.clone(),
             notes,
+            scenario_end_s: s.scenario.end,
+            event_count: self.events,
+            columns: None,
+            rows: None,
         }
     }
 }
@@ -621,14 +665,14 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     if engine.certified {
         return None;
     }
-    let what = match (engine.system.rolling_is_unique(), engine.system.sticking_is_unique()) {
+    let what = match (rolling_is_unique(&engine.system), sticking_is_unique(&engine.system)) {
         (Some(false), _) => "the tooth forces may have several solutions, or none, in some states of this train",
         (_, Some(false)) => "sticking and sliding may both be possible in some states of this train",
         _ => return Some("too many meshes and friction elements for a certificate that the forces are unique".into()),
     };
     let done = match method {
         Method::Adaptive => "every change of mode was searched for all of them",
-        Method::Fixed(_) => {
+        Method::Fixed { .. } => {
             "steps of fixed length go on with what they find first, and do not notice where there is none"
         }
     };
@@ -659,92 +703,4 @@ fn take_in(stepper: &impl Stepper, states: usize, came_in: &mut [f64]) {
         let turn = stepper.interpolate_component(0.5 * (low + high), at);
         *sum += (turn - from).max(0.0) + (to - turn).max(0.0);
     }
-}
-
-/// Runs a scenario from its start to its end and hands rows and events to a recorder as they come.
-///
-/// # Errors
-/// What is wrong with the scenario: inertia that is missing, speeds that contradict each other.
-pub fn simulate(
-    train: &Train,
-    scenario: &str,
-    options: &Options,
-    recorder: &mut dyn Recorder,
-) -> Result<RunReport, Diagnostics> {
-    match options.method {
-        Method::Fixed(h) if options.lagged_forces => lagged(train, scenario, options, h, recorder),
-        Method::Fixed(h) => fixed(train, scenario, options, h, recorder),
-        Method::Adaptive => {
-            let mut run = Simulation::new(train, scenario, options)?;
-            if recorder.columns(&run.columns).is_continue() {
-                run.advance(f64::INFINITY, recorder);
-            }
-            Ok(run.report())
-        }
-    }
-}
-
-/// The state at the start, without energies; the engine looks at it.
-pub(super) fn initial_state(engine: &mut Engine) -> Result<Vec<f64>, Diagnostics> {
-    let start = engine.system.scenario.start;
-    engine.inside = start;
-    let mut x = vec![0.0; engine.states() + engine.quadratures()];
-    initial_speeds(engine, &mut x)?;
-    engine.look(start, &x);
-    engine.rescale(&x);
-    Ok(x)
-}
-
-/// Sets the speeds of the start: those given, others at rest as far as the gears leave them free.
-fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostics> {
-    let start = engine.system.scenario.start;
-    engine.look(start, x);
-    let s = &engine.system;
-    let free = s.free;
-    // Rows of conditions over the free coordinates, in order of preference.
-    let mut rows: Vec<(MemberId, Vec<f64>, f64, bool)> = Vec::new();
-    let prescribed = |row: &[f64]| -> f64 { row[free..].iter().zip(&engine.speed[free..]).map(|(a, b)| a * b).sum() };
-    for &(m, w) in &s.scenario.initial_speeds {
-        let row = &s.speeds[m.index()];
-        rows.push((m, row[..free].to_vec(), w - prescribed(row), true));
-    }
-    for &m in &s.coordinates[..free] {
-        rows.push((m, s.speeds[m.index()][..free].to_vec(), -prescribed(&s.speeds[m.index()]), false));
-    }
-    let mut taken: Vec<&(MemberId, Vec<f64>, f64, bool)> = Vec::new();
-    for row in &rows {
-        let mut matrix: Vec<&[f64]> = taken.iter().map(|r| r.1.as_slice()).collect();
-        matrix.push(&row.1);
-        let m = DMatrix::from_fn(matrix.len(), free, |i, k| matrix[i][k]);
-        let norms: Vec<f64> = (0..m.nrows()).map(|i| m.row(i).norm()).collect();
-        let independent = norms.iter().all(|n| *n > 0.0)
-            && taken.len() < free
-            && DMatrix::from_fn(m.nrows(), free, |i, k| m[(i, k)] / norms[i]).rank(1e-10) == m.nrows();
-        if independent {
-            taken.push(row);
-        }
-    }
-    let a = DMatrix::from_fn(taken.len(), free, |i, k| taken[i].1[k]);
-    let b = DVector::from_fn(taken.len(), |i, _| taken[i].2);
-    if free > 0 {
-        let v = a.lu().solve(&b).unwrap_or_else(|| DVector::zeros(free));
-        x[..free].copy_from_slice(v.as_slice());
-    }
-    for (m, row, w, given) in &rows {
-        let is: f64 = row.iter().zip(&x[..free]).map(|(a, b)| a * b).sum();
-        let size: f64 = row.iter().zip(&x[..free]).map(|(a, b)| (a * b).abs()).sum::<f64>() + w.abs();
-        if *given && (is - w).abs() > 1e-9 * size {
-            let row = &s.speeds[m.index()];
-            let name = s.train.member_name(*m);
-            let message = format!(
-                "`{name}` cannot start at {} rad/s: the gears and the other speeds given make it {} rad/s",
-                short(w + prescribed(row)),
-                short(is + prescribed(row))
-            );
-            let place = format!("{}.initial_speeds.{name}", s.scenario.place);
-            let error = Diagnostic::new(Code::ContradictorySpeeds, place, message);
-            return Err(error.hint("leave out one of the speeds").into());
-        }
-    }
-    Ok(())
 }

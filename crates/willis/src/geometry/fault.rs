@@ -1,5 +1,7 @@
 use std::fmt;
 
+use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
+
 /// Why there is no such pair of gears. The numbers are SI; the text shows mm and degrees.
 ///
 /// Wheels are counted from zero here and from one in the text.
@@ -328,69 +330,85 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
-impl fmt::Display for Remark {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl From<Fault> for Diagnostic {
+    fn from(fault: Fault) -> Self {
+        Self::new(Code::ImpossibleGeometry, "", fault.to_string())
+    }
+}
+
+through_diagnostic!(Fault);
+
+impl Remark {
+    /// The wheel that it is about; none where it is about the pair.
+    pub fn wheel(&self) -> Option<usize> {
         match self {
-            Self::Undercut { wheel, shift, least } => write!(
-                f,
-                "wheel {}: profile shift {} is below {}: a rack with a tip radius of 0.38 modules undercuts the flank; raise the shift or the tooth count",
-                wheel + 1,
+            Self::Undercut { wheel, .. }
+            | Self::RingTipInsideBase { wheel, .. }
+            | Self::PathShortened { wheel, .. }
+            | Self::BelowForm { wheel, .. }
+            | Self::ThinTip { wheel, .. }
+            | Self::NoClearance { wheel, .. } => Some(*wheel),
+            Self::LowContactRatio { .. } | Self::TipInterference { .. } | Self::NegativeBacklash { .. } => None,
+        }
+    }
+
+    /// What is unusual, without the wheel's number: for readers who know it by a name.
+    pub fn matter(&self) -> String {
+        match self {
+            Self::Undercut { shift, least, .. } => format!(
+                "profile shift {} is below {}: a rack with a tip radius of 0.38 modules undercuts the flank; raise the shift or the tooth count",
                 short(*shift),
                 short(*least)
             ),
-            Self::RingTipInsideBase { wheel, tip, base } => write!(
-                f,
-                "wheel {}: the tip circle of the ring, radius {}, lies inside its base circle, radius {}: there is no involute at the tip; enlarge the tip circle",
-                wheel + 1,
+            Self::RingTipInsideBase { tip, base, .. } => format!(
+                "the tip circle of the ring, radius {}, lies inside its base circle, radius {}: there is no involute at the tip; enlarge the tip circle",
                 mm(*tip),
                 mm(*base)
             ),
-            Self::PathShortened { wheel, tip, used } => {
-                write!(f, "wheel {}: its tip passes the end of the mating involute; ", wheel + 1)?;
-                if tip.is_finite() {
-                    write!(f, "of its addendum contact ratio {} only {} is counted", short(*tip), short(*used))?;
-                } else {
-                    write!(f, "its addendum contact ratio is limited to {}", short(*used))?;
-                }
-                write!(f, ": shorten the tip")
+            Self::PathShortened { tip, used, .. } => {
+                let limit = match tip.is_finite() {
+                    true => format!("of its addendum contact ratio {} only {} is counted", short(*tip), short(*used)),
+                    false => format!("its addendum contact ratio is limited to {}", short(*used)),
+                };
+                format!("its tip passes the end of the mating involute; {limit}: shorten the tip")
             }
-            Self::BelowForm { wheel, contact, form } => write!(
-                f,
-                "wheel {}: its tip touches the mating flank at a radius of curvature of {}, below the form circle ({}) of a rack with a tip radius of 0.38 modules: shorten the tip, or check the tool",
-                wheel + 1,
+            Self::BelowForm { contact, form, .. } => format!(
+                "its tip touches the mating flank at a radius of curvature of {}, below the form circle ({}) of a rack with a tip radius of 0.38 modules: shorten the tip, or check the tool",
                 // Nothing is curved less than not at all.
                 mm(contact.max(0.0)),
                 mm(*form)
             ),
-            Self::ThinTip { wheel, thickness, module } => write!(
-                f,
-                "wheel {}: the tooth tip is {} thick, less than 0.2 modules ({}): shorten the tip or lower the shift",
-                wheel + 1,
+            Self::ThinTip { thickness, module, .. } => format!(
+                "the tooth tip is {} thick, less than 0.2 modules ({}): shorten the tip or lower the shift",
                 mm(*thickness),
                 mm(0.2 * module)
             ),
-            Self::LowContactRatio { contact_ratio, overlap_ratio } => write!(
-                f,
+            Self::LowContactRatio { contact_ratio, overlap_ratio } => format!(
                 "transverse contact ratio {} is below 1.2 and overlap ratio {} below 1: enlarge the addenda",
                 short(*contact_ratio),
                 short(*overlap_ratio)
             ),
-            Self::TipInterference { overlap } => write!(
-                f,
+            Self::TipInterference { overlap } => format!(
                 "the tips of pinion and ring overlap by {}° of the ring outside the path of contact: enlarge the difference of teeth or shorten the tips",
                 short(overlap.to_degrees())
             ),
-            Self::NoClearance { wheel, clearance } => write!(
-                f,
-                "wheel {}: its tip circle has a clearance of {} to the root of the mating wheel: shorten the tip or enlarge the mating dedendum",
-                wheel + 1,
+            Self::NoClearance { clearance, .. } => format!(
+                "its tip circle has a clearance of {} to the root of the mating wheel: shorten the tip or enlarge the mating dedendum",
                 mm(*clearance)
             ),
-            Self::NegativeBacklash { backlash } => write!(
-                f,
+            Self::NegativeBacklash { backlash } => format!(
                 "the teeth are too thick for the centre distance by {} at the operating circles: lower the profile shifts or enlarge the centre distance",
                 mm(-backlash)
             ),
         }
+    }
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(wheel) = self.wheel() {
+            write!(f, "wheel {}: ", wheel + 1)?;
+        }
+        f.write_str(&self.matter())
     }
 }

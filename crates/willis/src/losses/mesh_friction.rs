@@ -4,6 +4,7 @@
 //! (tagged [`Tag::Local`](super::Tag)) give the value at one point of the path of contact and are averaged along it,
 //! weighted with load and sliding.
 
+use super::Tag;
 use crate::catalogue::oil::Base;
 
 /// State of a tooth contact. The fields of the pitch point describe the mesh as a whole (all tooth
@@ -96,7 +97,7 @@ family! {
 impl MeshFriction {
     /// Whether it reads the oil, its film or its base: such a law has no value without an oil.
     pub fn needs_oil(&self) -> bool {
-        !matches!(self, Self::Constant(_) | Self::Agma6011(_) | Self::Agma6011PerPlanet(_))
+        !self.meta().tags.contains(&Tag::WithoutOil)
     }
 }
 

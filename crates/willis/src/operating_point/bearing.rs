@@ -1,7 +1,7 @@
 //! Loads and friction of rolling bearings in an operating point.
 
 use num_dual::{Dual, DualNum};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::losses::bearing::{BearingDuty, BearingTorque, Palmgren, Supply};
 use crate::power_flow::MeshFlow;
@@ -11,7 +11,9 @@ use crate::train::{BearingMount, FRAME, MemberId, OilSupply};
 use super::{Extrapolation, Physics};
 
 /// A place with rolling bearings in an operating point.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct BearingReport {
     /// Designation.
     pub designation: String,
@@ -28,7 +30,7 @@ pub struct BearingReport {
     /// Frictional torque of one bearing, mean of all, N m.
     pub torque_n_m: f64,
     /// Name of the law.
-    pub law: &'static str,
+    pub law: String,
     /// Loss of all of them, W.
     pub loss_w: f64,
 }
@@ -161,14 +163,14 @@ impl<R: Real> Physics<'_, R> {
             radial_load_n: radial,
             axial_load_n: axial.re.re(),
             torque_n_m: all.re() / f64::from(number),
-            law: law.meta().id,
+            law: law.meta().id.to_owned(),
             loss_w: 0.0,
         };
         Friction { report, speed, torque: all, proportional, loading }
     }
 
     /// The law for a bearing: the SKF model has no constants for some kinds; Palmgren has.
-    fn bearing_law(&self, mount: &BearingMount) -> BearingTorque {
+    pub(super) fn bearing_law(&self, mount: &BearingMount) -> BearingTorque {
         let chosen = self.train.laws.bearing;
         let skf = matches!(chosen, BearingTorque::Skf(_) | BearingTorque::Skf6000(_));
         if skf && mount.bearing.skf.is_none() { BearingTorque::Palmgren(Palmgren::DEFAULT) } else { chosen }

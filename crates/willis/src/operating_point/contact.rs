@@ -1,6 +1,6 @@
 //! A tooth contact under load: speeds, pressure, film, friction.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::losses::film::FilmContact;
 use crate::losses::film_reduction::Inlet;
@@ -16,8 +16,10 @@ use crate::train::{Mesh, Teeth};
 use super::{Extrapolation, OilState, Physics};
 
 /// Lubrication of a contact by its film thickness ratio λ.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Regime {
     /// λ < 1: the load is carried by asperities.
     Boundary,
@@ -28,6 +30,15 @@ pub enum Regime {
 }
 
 impl Regime {
+    /// For people: `mixed`.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Boundary => "boundary",
+            Self::Mixed => "mixed",
+            Self::Full => "full",
+        }
+    }
+
     /// Film thickness ratios at which mixed and full lubrication begin.
     pub const LIMITS: [f64; 2] = [1.0, 3.0];
 
@@ -43,7 +54,9 @@ impl Regime {
 }
 
 /// A tooth contact in an operating point. Loads are those of one of the pairs in parallel.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ContactReport {
     /// Mean coefficient of friction; absent when the efficiency is given, or nothing is loaded.
     pub friction: Option<f64>,
@@ -112,21 +125,24 @@ struct Point<R> {
 
 /// One place of the path of contact of one pair in parallel, as the laws see it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Station {
+pub struct Station {
     /// Distance from C, m.
     pub s: f64,
     /// Load per length of contact line, N/m.
     pub line_load: f64,
-    /// Sliding speed, and sum of the surface speeds, m/s.
+    /// Sliding speed, m/s.
     pub sliding: f64,
+    /// Sum of the surface speeds, m/s.
     pub sum: f64,
     /// Hertzian pressure, Pa.
     pub pressure: f64,
-    /// Film thickness, m, and over the composite roughness; none without load, oil or roughness.
+    /// Film thickness, m; none without load or oil.
     pub film: Option<f64>,
+    /// Film thickness over the composite roughness; none without roughness either.
     pub film_ratio: Option<f64>,
-    /// Coefficient of friction, and the power that the tooth pair here turns into heat, W.
+    /// Coefficient of friction.
     pub friction: Option<f64>,
+    /// The power that the tooth pair here turns into heat, W.
     pub loss: Option<f64>,
 }
 

@@ -8,18 +8,15 @@ use crate::kinematics::Configuration;
 use crate::symbolic::{Function, Notation, Symbol};
 use crate::train::{FRAME, MemberId};
 
-use super::arrangement::{self, Cell, dot};
+use super::arrangement::{self, dot};
+use super::cells::{Cells, efficiency_at, efficiency_towards, enumerate, power_signs, without_friction};
 use super::formula::{Efficiencies, Formula, Ratios, Shape, SymbolKind, element_label};
-use super::setup::{MOST_TRIED, Pattern, Setup, TorqueCell};
+use super::setup::{Pattern, Setup, TorqueCell};
 use super::{
     AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, Neighbour,
-    PlaneReport, Prescribed, RatioRange, RegimeReport, RegionReport, SymbolReport, Threshold,
+    PlaneReport, Prescribed, RatioRange, Reach, RegimeReport, RegionReport, SymbolReport, Threshold,
 };
 
-/// Most patterns of drivers times cones of torques, over all regions, that are tried.
-const MOST_CELLS: u128 = 1 << 13;
-/// Most regions of speed.
-const MOST_REGIONS: u128 = 1 << 14;
 /// Most closed formulas that are worked out for one state.
 const MOST_FORMULAS: usize = 128;
 /// Most terminals for which every assignment is listed.
@@ -49,6 +46,7 @@ pub(crate) fn atlas(
         formulas: vec![],
         boundaries: vec![],
         assignments: vec![],
+        lossless: vec![],
         notes: vec![],
     };
     // Input and output clutched together: no gear carries the load.
@@ -72,90 +70,11 @@ pub(crate) fn atlas(
     atlas
 }
 
-/// Speed and torque cells of a setup, before they are told.
-pub(crate) struct Cells {
-    pub planes: Vec<Vec<Rational>>,
-    pub regions: Vec<Cell>,
-    /// By region.
-    pub torques: Vec<Vec<TorqueCell>>,
-    pub singular: bool,
-}
-
-/// All cells, or how many there would be.
-pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
-    let planes = setup.planes();
-    let d = setup.base.len();
-    let bound = arrangement::most_cells(planes.len(), d);
-    let too_large = |what: String| {
-        format!("{what}. Use `willis locate` for the regime of an operating point, or name fewer terminals")
-    };
-    if bound > MOST_REGIONS {
-        return Err(too_large(format!(
-            "{} planes cut the {d}-dimensional speed space into up to {bound} regions, more than the {MOST_REGIONS} that \
-             are listed",
-            planes.len()
-        )));
-    }
-    // With several independent torques nothing is certified, and each pattern has its cones; one of
-    // them and its mirror image count as one.
-    let lossy = (0..setup.active.len()).filter(|&j| setup.lossy(j)).count();
-    let cones = arrangement::most_cells(lossy + setup.terminals.len(), setup.independent_torques()) / 2;
-    let patterns = 1u128.checked_shl(lossy as u32).unwrap_or(u128::MAX);
-    if setup.torques > 1 && bound.saturating_mul(patterns).saturating_mul(cones) / 2 > MOST_CELLS {
-        return Err(too_large(format!(
-            "up to {bound} regions of speed, each with 2^{lossy} patterns of drivers and up to {cones} signs of the \
-             torques: more than are listed"
-        )));
-    }
-    let regions = setup.speed_cells(&planes);
-    let index: BTreeMap<Vec<i8>, usize> = regions.iter().enumerate().map(|(k, c)| (c.signs.clone(), k)).collect();
-    let mut torques: Vec<Option<Vec<TorqueCell>>> = vec![None; regions.len()];
-    let mut singular = false;
-    for k in 0..regions.len() {
-        if torques[k].is_some() {
-            continue;
-        }
-        let (mut cells, odd) = setup.torque_cells(&regions[k].point).map_err(|n| {
-            too_large(format!(
-                "up to {} regions of speed, and in some of them 2^{n} patterns of drivers would have to be tried (at most \
-                 2^{MOST_TRIED})",
-                regions.len()
-            ))
-        })?;
-        singular |= odd;
-        cells.sort_by(|a, b| b.signs.cmp(&a.signs));
-        // All speeds and torques reversed: the same drivers, the same powers.
-        let opposite = index[&regions[k].signs.iter().map(|s| -s).collect::<Vec<_>>()];
-        if opposite != k {
-            let reversed = |v: &Vec<Rational>| v.iter().map(|x| -x.clone()).collect::<Vec<_>>();
-            torques[opposite] = Some(
-                cells
-                    .iter()
-                    .map(|t| TorqueCell {
-                        pattern: t.pattern.clone(),
-                        signs: t.signs.iter().map(|s| -s).collect(),
-                        torques: reversed(&t.torques),
-                    })
-                    .collect(),
-            );
-        }
-        torques[k] = Some(cells);
-    }
-    Ok(Cells { planes, regions, torques: torques.into_iter().flatten().collect(), singular })
-}
-
-/// Signs of the terminals' powers.
-pub(crate) fn power_signs(setup: &Setup<'_>, base: &[Rational], torques: &[i8]) -> Vec<i8> {
-    (0..setup.terminals.len()).map(|t| dot(setup.terminal_speed(t), base).sign() * torques[t]).collect()
-}
-
+/// Lists everything that the cells of a configuration show.
 fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
-    let train = setup.c.train;
-    let terminal = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
-    let m = setup.terminals.len();
-    atlas.terminals = (0..m).map(terminal).collect();
+    atlas.terminals = names(setup, 0..setup.terminals.len());
     atlas.independent_torques = setup.independent_torques();
-    atlas.base_speeds = setup.base.iter().map(|&b| terminal(b)).collect();
+    atlas.base_speeds = names(setup, setup.base.iter().copied());
     let cells = match enumerate(setup) {
         Ok(cells) => cells,
         Err(why) => {
@@ -169,6 +88,28 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
         );
         return;
     }
+    note_peculiarities(atlas, setup, &cells);
+    atlas.planes = cells.planes.iter().map(|f| plane(setup, f)).collect();
+    atlas.regions = (0..cells.regions.len()).map(|k| region(setup, &atlas.base_speeds, &cells, k)).collect();
+    let mut formulas = Formulas::new(setup, &cells);
+    atlas.regimes = regimes(setup, &cells, &atlas.regions, &mut formulas);
+    label_unloading(atlas, setup);
+    // Now every plane has its name.
+    bounding_planes(atlas, &cells);
+    neighbours(atlas, setup);
+    prescribed(atlas, setup);
+    formulas.list(atlas);
+    boundaries(atlas, setup);
+    assignments(atlas, setup);
+}
+
+/// Names of some terminals.
+fn names(setup: &Setup<'_>, of: impl IntoIterator<Item = usize>) -> Vec<String> {
+    of.into_iter().map(|t| setup.terminal_name(t).to_owned()).collect()
+}
+
+/// Notes what is unusual: a threshold of self-locking, elements with a ratio of one, elements without loss.
+fn note_peculiarities(atlas: &mut Atlas, setup: &Setup<'_>, cells: &Cells) {
     if cells.singular {
         atlas.notes.push(
             "for some drivers the train lies exactly on a self-locking threshold: there a whole range of torques balances; \
@@ -178,7 +119,7 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     }
     for j in (0..setup.active.len()).filter(|&j| setup.ratio(j) == Rational::ONE) {
         let e = setup.element(j);
-        let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
+        let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.c.train.member_name(m));
         atlas.notes.push(format!(
             "the basic ratio of {} is 1: {p} and {q} turn alike whatever {c} does, and the torque of the teeth on {c} \
              is friction alone, (rho - 1) times that on {p}",
@@ -188,157 +129,200 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     let lossless: Vec<String> =
         (0..setup.active.len()).filter(|&j| !setup.lossy(j)).map(|j| element_label(setup, j)).collect();
     if !lossless.is_empty() {
-        atlas.notes.push(format!("without loss, so it does not matter who drives: {}", lossless.join(", ")));
+        atlas.notes.push(without_loss(&lossless));
     }
-    atlas.planes = cells.planes.iter().map(|f| plane(setup, f)).collect();
-    let signs: BTreeMap<&[i8], usize> =
-        cells.regions.iter().enumerate().map(|(k, c)| (c.signs.as_slice(), k)).collect();
-    let opposite = |signs_of: &[i8]| signs[signs_of.iter().map(|s| -s).collect::<Vec<_>>().as_slice()];
-
-    for (k, cell) in cells.regions.iter().enumerate() {
-        atlas.regions.push(region(setup, &atlas.base_speeds, &cells, k, opposite(&cell.signs)));
-    }
-
-    // What can happen without friction, to tell what friction makes.
-    let frictionless = without_friction(setup);
-
-    // Regimes, with one formula for each pattern of roles and drivers.
-    let mut distinct: BTreeSet<(&Pattern, Vec<i8>)> = BTreeSet::new();
-    for (region, list) in cells.regions.iter().zip(&cells.torques) {
-        distinct.extend(list.iter().map(|t| (&t.pattern, power_signs(setup, &region.point, &t.signs))));
-    }
-    let shape = match distinct.len() {
-        n if n > MOST_FORMULAS => Err(format!(
-            "there are {n} of them (at most {MOST_FORMULAS} are listed); ask for certain inputs and outputs, or name \
-             fewer terminals"
-        )),
-        _ => Shape::new(setup, &[]),
-    };
-    let mut formulas: Vec<(Pattern, Vec<i8>, Option<Formula>)> = Vec::new();
-    let mut ids: Vec<Vec<String>> = Vec::new();
-    for (k, list) in cells.torques.iter().enumerate() {
-        let own: Vec<String> = (0..list.len()).map(|n| regime_name(setup, k, list, n)).collect();
-        ids.push(own);
-    }
-    for (k, list) in cells.torques.iter().enumerate() {
-        let base = &cells.regions[k].point;
-        let other = opposite(&cells.regions[k].signs);
-        for (n, cell) in list.iter().enumerate() {
-            let powers = power_signs(setup, base, &cell.signs);
-            let at = formulas.iter().position(|(p, r, _)| *p == cell.pattern && *r == powers).unwrap_or_else(|| {
-                let own =
-                    shape.as_ref().ok().map(|s| s.formula(&cell.pattern, &powers, Ratios::Basic, Efficiencies::Basic));
-                formulas.push((cell.pattern.clone(), powers.clone(), own));
-                formulas.len() - 1
-            });
-            let mirror = cells.torques[other]
-                .iter()
-                .position(|t| {
-                    t.pattern == cell.pattern
-                        && t.signs.iter().zip(&cell.signs).all(|(a, b)| *a == -b)
-                        && mirrored(t, cell)
-                })
-                .expect("every regime has its mirror image");
-            // At the example's speeds, which are rounder than those of the cell.
-            let inside = &atlas.regions[k].point;
-            let torques = setup.torques_at(&cell.pattern, base, &cell.torques, inside);
-            let exact = efficiency_at(setup, inside, &torques);
-            let named_signs = Named((0..m).map(|t| (terminal(t), cell.signs[t])).collect());
-            let role = |t: usize| match powers[t] {
-                1 => Role::Input,
-                -1 => Role::Output,
-                _ => Role::Idle,
-            };
-            let limits = limits(setup, &atlas.regions[k], &cell.pattern, &torques);
-            atlas.regimes.push(RegimeReport {
-                id: ids[k][n].clone(),
-                region: k + 1,
-                torque_signs: named_signs,
-                roles: Named((0..m).map(|t| (terminal(t), role(t))).collect()),
-                inputs: (0..m).filter(|&t| powers[t] > 0).map(terminal).collect(),
-                outputs: (0..m).filter(|&t| powers[t] < 0).map(terminal).collect(),
-                drivers: Named(drivers(setup, &cell.pattern)),
-                formula: format!("F{}", at + 1),
-                efficiency_range: limits,
-                example: ExamplePoint {
-                    speeds: atlas.regions[k].example.clone(),
-                    torques: Named((0..m).map(|t| (terminal(t), torques[t].to_f64())).collect()),
-                    efficiency: exact.to_f64(),
-                    efficiency_exact: exact.to_fraction(),
-                },
-                mirror: ids[other][mirror].clone(),
-                by_friction_only: !frictionless.contains(&(k, cell.signs.clone())),
-                all_dissipated: powers.contains(&1) && !powers.contains(&-1),
-                neighbours: vec![],
-                pattern: cell.pattern.clone(),
-                torques,
-                power_signs: powers,
-            });
-        }
-    }
-    label_unloading(atlas, setup);
-    let facets: Vec<Vec<String>> = atlas
-        .regions
-        .iter()
-        .map(|r| {
-            (0..atlas.planes.len())
-                .filter(|&p| {
-                    let mut across = r.signs.clone();
-                    across[p] = -across[p];
-                    signs.contains_key(across.as_slice())
-                })
-                .map(|p| atlas.planes[p].label.clone())
-                .collect()
-        })
-        .collect();
-    atlas.regions.iter_mut().zip(facets).for_each(|(r, f)| r.bounded_by = f);
-    neighbours(atlas, setup);
-    if setup.independent_torques() == 1 {
-        for region in &mut atlas.regions {
-            let own: Vec<&RegimeReport> = atlas.regimes.iter().filter(|r| r.region == region.number).collect();
-            region.prescribed = (0..m)
-                .map(|t| {
-                    let of =
-                        |sign: i8| own.iter().filter(|r| r.torque_signs.0[t].1 == sign).map(|r| r.id.clone()).collect();
-                    Prescribed { terminal: terminal(t), positive: of(1), negative: of(-1) }
-                })
-                .collect();
-        }
-    }
-    match &shape {
-        Ok(shape) => {
-            for (n, (pattern, powers, own)) in formulas.iter().enumerate() {
-                let own = own.as_ref().expect("made with the shape");
-                let id = format!("F{}", n + 1);
-                let regimes: Vec<String> =
-                    atlas.regimes.iter().filter(|r| r.formula == id).map(|r| r.id.clone()).collect();
-                atlas.formulas.push(formula_report(shape, id, pattern, powers, own, regimes));
-            }
-            let mut symbols = Named::default();
-            for info in &shape.names.infos {
-                let hidden = info.meaning.is_empty() || info.kind == SymbolKind::Teeth;
-                if !hidden {
-                    symbols.0.push((
-                        info.name.clone(),
-                        SymbolReport {
-                            value: info.value.as_ref().map(Rational::to_f64),
-                            exact: info.value.as_ref().map(Rational::to_fraction),
-                            meaning: info.meaning.clone(),
-                            latex: info.latex.clone(),
-                        },
-                    ));
-                }
-            }
-            atlas.symbols = symbols;
-        }
-        Err(why) => atlas.notes.push(format!("no closed formulas: {why}")),
-    }
-    boundaries(atlas, setup);
-    assignments(atlas, setup);
+    atlas.lossless = lossless;
 }
 
-fn mirrored(a: &TorqueCell, b: &TorqueCell) -> bool {
-    a.torques.iter().zip(&b.torques).all(|(a, b)| *a == -b.clone())
+/// The regimes of all regions. Each pattern of roles and drivers gets its formula.
+fn regimes(
+    setup: &Setup<'_>,
+    cells: &Cells,
+    regions: &[RegionReport],
+    formulas: &mut Formulas<'_, '_>,
+) -> Vec<RegimeReport> {
+    // What can happen without friction, to tell what friction makes.
+    let frictionless = without_friction(setup);
+    let ids: Vec<Vec<String>> = (cells.torques.iter().enumerate())
+        .map(|(k, list)| (0..list.len()).map(|n| regime_name(setup, k, list, n)).collect())
+        .collect();
+    let mut all = Vec::new();
+    for (k, list) in cells.torques.iter().enumerate() {
+        for (n, cell) in list.iter().enumerate() {
+            let own = regime(setup, &regions[k], &cells.regions[k].point, cell);
+            all.push(RegimeReport {
+                id: ids[k][n].clone(),
+                formula: formulas.id_of(&own.pattern, &own.power_signs),
+                mirror: ids[cells.opposite(k)][cells.mirror(k, cell)].clone(),
+                by_friction_only: !frictionless.contains(&(k, cell.signs.clone())),
+                ..own
+            });
+        }
+    }
+    all
+}
+
+/// What a regime is by itself, before it stands in a list. Its torques balance at the speeds `base`.
+fn regime(setup: &Setup<'_>, region: &RegionReport, base: &[Rational], cell: &TorqueCell) -> RegimeReport {
+    let powers = power_signs(setup, base, &cell.signs);
+    // At the example's speeds, which are rounder than those of the cell.
+    let inside = &region.point;
+    let torques = setup.torques_at(&cell.pattern, base, &cell.torques, inside);
+    let exact = efficiency_at(setup, inside, &torques);
+    let with = |sign: i8| names(setup, (0..powers.len()).filter(|&t| powers[t] == sign));
+    RegimeReport {
+        id: String::new(),
+        region: region.number,
+        torque_signs: setup.by_terminal(|t| cell.signs[t]),
+        roles: setup.by_terminal(|t| role(powers[t])),
+        inputs: with(1),
+        outputs: with(-1),
+        drivers: Named(drivers(setup, &cell.pattern)),
+        formula: String::new(),
+        efficiency_range: limits(setup, region, &cell.pattern, &torques),
+        example: ExamplePoint {
+            speeds: region.example.clone(),
+            torques: setup.by_terminal(|t| torques[t].to_f64()),
+            efficiency: exact.to_f64(),
+            efficiency_exact: exact,
+        },
+        mirror: String::new(),
+        by_friction_only: false,
+        all_dissipated: powers.contains(&1) && !powers.contains(&-1),
+        neighbours: vec![],
+        pattern: cell.pattern.clone(),
+        torques,
+        power_signs: powers,
+    }
+}
+
+/// What a terminal does, by the sign of its power.
+pub(crate) fn role(power: i8) -> Role {
+    match power {
+        1 => Role::Input,
+        -1 => Role::Output,
+        _ => Role::Idle,
+    }
+}
+
+/// Which planes bound each region: those across which there is another.
+fn bounding_planes(atlas: &mut Atlas, cells: &Cells) {
+    for r in &mut atlas.regions {
+        let bounds = |p: &usize| {
+            let mut across = r.signs.clone();
+            across[*p] = -across[*p];
+            cells.region(&across).is_some()
+        };
+        r.bounded_by = (0..atlas.planes.len()).filter(bounds).map(|p| atlas.planes[p].label.clone()).collect();
+    }
+}
+
+/// Which regimes answer a torque prescribed on each terminal; with one independent torque it settles the others.
+fn prescribed(atlas: &mut Atlas, setup: &Setup<'_>) {
+    if setup.independent_torques() != 1 {
+        return;
+    }
+    for region in &mut atlas.regions {
+        let own: Vec<&RegimeReport> = atlas.regimes.iter().filter(|r| r.region == region.number).collect();
+        region.prescribed = (0..setup.terminals.len())
+            .map(|t| {
+                let of =
+                    |sign: i8| own.iter().filter(|r| r.torque_signs.0[t].1 == sign).map(|r| r.id.clone()).collect();
+                Prescribed { terminal: setup.terminal_name(t).to_owned(), positive: of(1), negative: of(-1) }
+            })
+            .collect();
+    }
+}
+
+/// The closed formulas of an atlas: one for each pattern of drivers and roles.
+struct Formulas<'s, 't> {
+    /// The solution they are all made from, or why there are none.
+    shape: Result<Shape<'s, 't>, String>,
+    all: Vec<Driven>,
+}
+
+/// Drivers and signs of the terminals' powers, and the formula that holds for them.
+struct Driven {
+    pattern: Pattern,
+    powers: Vec<i8>,
+    /// None where none can be given.
+    own: Option<Formula>,
+}
+
+impl<'s, 't> Formulas<'s, 't> {
+    fn new(setup: &'s Setup<'t>, cells: &Cells) -> Self {
+        let mut distinct: BTreeSet<(&Pattern, Vec<i8>)> = BTreeSet::new();
+        for (region, list) in cells.regions.iter().zip(&cells.torques) {
+            distinct.extend(list.iter().map(|t| (&t.pattern, power_signs(setup, &region.point, &t.signs))));
+        }
+        let shape = match distinct.len() {
+            n if n > MOST_FORMULAS => Err(format!(
+                "there are {n} of them (at most {MOST_FORMULAS} are listed); ask for certain inputs and outputs, or name \
+                 fewer terminals"
+            )),
+            _ => Shape::new(setup, &[]),
+        };
+        Self { shape, all: vec![] }
+    }
+
+    /// The name of the formula for these drivers and powers, which is worked out when first asked for.
+    fn id_of(&mut self, pattern: &Pattern, powers: &[i8]) -> String {
+        let known = self.all.iter().position(|d| d.pattern == *pattern && d.powers == powers);
+        let at = known.unwrap_or_else(|| {
+            let shape = self.shape.as_ref().ok();
+            let own = shape.map(|s| s.formula(pattern, powers, Ratios::Basic, Efficiencies::Basic));
+            self.all.push(Driven { pattern: pattern.clone(), powers: powers.to_vec(), own });
+            self.all.len() - 1
+        });
+        formula_id(at)
+    }
+
+    /// Lists them and their symbols, or why there are none.
+    fn list(&self, atlas: &mut Atlas) {
+        let shape = match &self.shape {
+            Ok(shape) => shape,
+            Err(why) => {
+                atlas.notes.push(format!("no closed formulas: {why}"));
+                return;
+            }
+        };
+        for (n, driven) in self.all.iter().enumerate() {
+            let id = formula_id(n);
+            let regimes: Vec<String> = atlas.regimes.iter().filter(|r| r.formula == id).map(|r| r.id.clone()).collect();
+            atlas.formulas.push(formula_report(shape, id, driven, regimes));
+        }
+        // Placeholders have no meaning, and teeth are in no basic formula.
+        let shown = shape.names.infos.iter().filter(|i| !i.meaning.is_empty() && i.kind != SymbolKind::Teeth);
+        atlas.symbols = shown
+            .map(|info| {
+                let report = SymbolReport {
+                    value: info.value.as_ref().map(Rational::to_f64),
+                    exact: info.value.clone(),
+                    meaning: info.meaning.clone(),
+                    latex: info.latex.clone(),
+                };
+                (info.name.clone(), report)
+            })
+            .collect();
+    }
+}
+
+/// The name of a formula, by its place in the list.
+fn formula_id(n: usize) -> String {
+    format!("F{}", n + 1)
+}
+
+/// The note on elements without loss.
+fn without_loss(elements: &[String]) -> String {
+    format!("without loss, so it does not matter who drives: {}", elements.join(", "))
+}
+
+impl Atlas {
+    /// The notes without that on elements without loss, for readers to whom [`Atlas::lossless`] says it.
+    pub fn notes_beside_losses(&self) -> impl Iterator<Item = &str> {
+        let told = (!self.lossless.is_empty()).then(|| without_loss(&self.lossless));
+        self.notes.iter().map(String::as_str).filter(move |note| told.as_deref() != Some(note))
+    }
 }
 
 /// Label and matter of a plane.
@@ -406,8 +390,7 @@ fn bounding_rays(cells: &Cells, k: usize) -> Option<[Vec<Rational>; 2]> {
     Some([ray((k + n - 1) % n, k)?, ray(k, (k + 1) % n)?])
 }
 
-fn region(setup: &Setup<'_>, base_speeds: &[String], cells: &Cells, k: usize, opposite: usize) -> RegionReport {
-    let train = setup.c.train;
+fn region(setup: &Setup<'_>, base_speeds: &[String], cells: &Cells, k: usize) -> RegionReport {
     let cell = &cells.regions[k];
     let rays = bounding_rays(cells, k);
     // A point with small numbers: the sum of the bounding directions, of equal size.
@@ -434,19 +417,16 @@ fn region(setup: &Setup<'_>, base_speeds: &[String], cells: &Cells, k: usize, op
         })
     });
     let direction = |v: &[Rational]| [v[0].to_f64(), v[1].to_f64()];
-    let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
     RegionReport {
         number: k + 1,
         order: order(setup, &point),
         signs: cell.signs.clone(),
-        example: Named(
-            (0..setup.terminals.len()).map(|t| (name(t), dot(setup.terminal_speed(t), &point).to_f64())).collect(),
-        ),
+        example: setup.by_terminal(|t| dot(setup.terminal_speed(t), &point).to_f64()),
         from: rays.as_ref().map(|r| direction(&r[0])),
         to: rays.as_ref().map(|r| direction(&r[1])),
         ratio,
         bounded_by: vec![],
-        opposite: opposite + 1,
+        opposite: cells.opposite(k) + 1,
         prescribed: vec![],
         point,
         rays,
@@ -521,33 +501,6 @@ pub(crate) fn drivers(setup: &Setup<'_>, pattern: &Pattern) -> Vec<(String, Opti
         .collect()
 }
 
-/// Output over input power; zero when all is dissipated, one when nothing flows.
-pub(crate) fn efficiency_at(setup: &Setup<'_>, base: &[Rational], torques: &[Rational]) -> Rational {
-    let (mut input, mut output) = (Rational::ZERO, Rational::ZERO);
-    for t in 0..setup.terminals.len() {
-        let p = &dot(setup.terminal_speed(t), base) * &torques[t];
-        match p.sign() {
-            1 => input += p,
-            _ => output -= p,
-        }
-    }
-    if input.is_zero() { Rational::ONE } else { output / input }
-}
-
-/// Its limit on a direction that bounds a region, coming from a point inside.
-pub(crate) fn efficiency_towards(
-    setup: &Setup<'_>,
-    ray: &[Rational],
-    inside: &[Rational],
-    pattern: &Pattern,
-    torques: &[Rational],
-) -> Rational {
-    let there = setup.torques_at(pattern, inside, torques, ray);
-    // With everything at rest that is loaded, all powers vanish alike.
-    let still = (0..there.len()).all(|t| there[t].is_zero() || dot(setup.terminal_speed(t), ray).is_zero());
-    if still { efficiency_at(setup, inside, torques) } else { efficiency_at(setup, ray, &there) }
-}
-
 /// Efficiency on the two directions that bound a region.
 fn limits(setup: &Setup<'_>, region: &RegionReport, pattern: &Pattern, torques: &[Rational]) -> Option<[f64; 2]> {
     if setup.independent_torques() > 1 {
@@ -561,22 +514,6 @@ fn limits(setup: &Setup<'_>, region: &RegionReport, pattern: &Pattern, torques: 
         None if setup.base.len() == 1 => Some([efficiency_at(setup, &region.point, torques).to_f64(); 2]),
         None => None,
     }
-}
-
-/// Region and torque signs of every regime of the same train without losses.
-fn without_friction(setup: &Setup<'_>) -> BTreeSet<(usize, Vec<i8>)> {
-    let planes = setup.planes();
-    let regions = setup.speed_cells(&planes);
-    let mut ideal = setup.clone();
-    for e in &mut ideal.c.elements {
-        (e.forward, e.backward) = (Rational::ONE, Rational::ONE);
-    }
-    (0..regions.len())
-        .flat_map(|k| {
-            let cells = ideal.torque_cells(&regions[k].point).map_or(vec![], |(cells, _)| cells);
-            cells.into_iter().map(move |c| (k, c.signs))
-        })
-        .collect()
 }
 
 fn neighbours(atlas: &mut Atlas, setup: &Setup<'_>) {
@@ -678,7 +615,6 @@ fn boundaries(atlas: &mut Atlas, setup: &Setup<'_>) {
         return;
     }
     let n = atlas.regions.len();
-    let train = setup.c.train;
     let mut all = Vec::new();
     for k in 0..n {
         let next = (k + 1) % n;
@@ -704,13 +640,10 @@ fn boundaries(atlas: &mut Atlas, setup: &Setup<'_>) {
                 }
             }
         }
-        let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
         all.push(BoundaryReport {
             label: atlas.planes[p].label.clone(),
             direction: [ray[0].to_f64(), ray[1].to_f64()],
-            speeds: Named(
-                (0..setup.terminals.len()).map(|t| (name(t), dot(setup.terminal_speed(t), ray).to_f64())).collect(),
-            ),
+            speeds: setup.by_terminal(|t| dot(setup.terminal_speed(t), ray).to_f64()),
             between: [k + 1, next + 1],
             crossings,
         });
@@ -754,18 +687,11 @@ pub(crate) fn arrow(inputs: &[String], outputs: &[String]) -> String {
     }
 }
 
-fn formula_report(
-    shape: &Shape<'_, '_>,
-    id: String,
-    pattern: &Pattern,
-    powers: &[i8],
-    own: &Formula,
-    regimes: Vec<String>,
-) -> FormulaReport {
+fn formula_report(shape: &Shape<'_, '_>, id: String, driven: &Driven, regimes: Vec<String>) -> FormulaReport {
     let setup = shape.setup;
-    let train = setup.c.train;
-    let name = |t: usize| train.member_name(setup.terminals[t].member).to_owned();
-    let of = |sign: i8| (0..powers.len()).filter(|&t| powers[t] == sign).map(name).collect::<Vec<_>>();
+    let Driven { pattern, powers, own } = driven;
+    let own = own.as_ref().expect("made with the shape");
+    let of = |sign: i8| names(setup, (0..powers.len()).filter(|&t| powers[t] == sign));
     let show = |f: &Function| own.names.show(Notation::Text, f);
     let driving: Vec<String> = drivers(setup, pattern)
         .into_iter()
@@ -780,7 +706,7 @@ fn formula_report(
         efficiency_by_loss: own.by_loss(Notation::Text),
         efficiency_latex: own.names.show(Notation::Latex, &own.efficiency),
         loss: if loss.is_empty() { "0".into() } else { loss.join(" + ") },
-        torques: Named((0..powers.len()).map(|t| (name(t), show(&own.torques[t]))).collect()),
+        torques: setup.by_terminal(|t| show(&own.torques[t])),
         conditions: own
             .conditions
             .iter()
@@ -878,17 +804,15 @@ fn assignments(atlas: &mut Atlas, setup: &Setup<'_>) {
         let reach = match (own.is_empty(), outputs.is_empty()) {
             (false, false) if own.iter().all(|r| r.by_friction_only) => {
                 match possible_without_friction(atlas, setup, &powers) {
-                    true => "reached where friction turns a torque round, and nowhere else".to_owned(),
-                    false => "only because friction turns a torque round".to_owned(),
+                    true => Reach::WhereFrictionTurns,
+                    false => Reach::ByFrictionOnly,
                 }
             }
-            (false, false) => "reached".to_owned(),
-            (false, true) => "reached: friction takes everything".to_owned(),
-            (true, true) => "cannot be reached: friction never takes everything".to_owned(),
-            (true, false) if possible_without_friction(atlas, setup, &powers) => {
-                "cannot be reached: friction prevents it (without losses it exists)".to_owned()
-            }
-            (true, false) => "cannot be reached: speeds and torques never have these signs together".to_owned(),
+            (false, false) => Reach::Reached,
+            (false, true) => Reach::Dissipated,
+            (true, true) => Reach::NeverDissipated,
+            (true, false) if possible_without_friction(atlas, setup, &powers) => Reach::PreventedByFriction,
+            (true, false) => Reach::Never,
         };
         all.push(AssignmentReport { inputs, outputs, regimes: own.iter().map(|r| r.id.clone()).collect(), reach });
     }

@@ -1,16 +1,15 @@
 //! Closed formulas to take away: in words, typeset, or as code that refuses to answer outside its
 //! regime.
 
-use serde::Serialize;
-
 use crate::analysis::{AS_DRAWN, Named};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::symbolic::{Function, Notation, Symbol};
 use crate::train::{MemberId, Train};
 
-use super::atlas::{arrow, atlas, drivers, enumerate, power_signs};
+use super::atlas::{arrow, atlas, drivers};
+use super::cells::{enumerate, power_signs};
 use super::formula::{Efficiencies, Formula, Names, Ratios, Shape, SymbolKind, identifier};
 use super::setup::Setup;
 use super::{RegimeReport, RegimeSelection, selected};
@@ -48,7 +47,8 @@ pub struct FormulaSheet {
 }
 
 /// A quantity that a formula takes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Argument {
     /// Its identifier.
     pub name: String,
@@ -56,22 +56,20 @@ pub struct Argument {
     pub latex: String,
     /// In words.
     pub meaning: String,
+    /// What it is.
+    pub kind: SymbolKind,
+    /// Of a speed or torque: the terminal.
+    pub terminal: Option<String>,
     /// Its value in this train; a speed or torque inside the regime otherwise.
     pub value: f64,
-    /// The same as a fraction.
-    pub exact: String,
+    /// The same, exactly.
+    pub exact: Rational,
     /// Whether it is an efficiency, to be above 0 and at most 1.
     pub efficiency: bool,
     /// Whether the train fixes it (a ratio, a tooth number, an efficiency).
     pub fixed: bool,
-    #[serde(skip)]
     pub(crate) meaning_latex: Option<String>,
-    #[serde(skip)]
-    pub(crate) kind: SymbolKind,
-    #[serde(skip)]
     pub(crate) symbol: Symbol,
-    #[serde(skip)]
-    pub(crate) number: Rational,
 }
 
 impl Argument {
@@ -169,8 +167,17 @@ impl std::fmt::Display for Outside {
 
 impl std::error::Error for Outside {}
 
+impl From<Outside> for Diagnostic {
+    fn from(outside: Outside) -> Self {
+        Self::new(Code::Unfit, "", outside.to_string())
+    }
+}
+
+through_diagnostic!(Outside);
+
 /// A derivative of the efficiency.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Derivative {
     /// The efficiency symbol.
     pub of: String,
@@ -281,7 +288,7 @@ impl ClosedFormula {
 
     /// The arguments' own values and what follows from them.
     fn values(&self) -> Vec<(Symbol, Rational)> {
-        let mut values: Vec<(Symbol, Rational)> = self.arguments.iter().map(|a| (a.symbol, a.number.clone())).collect();
+        let mut values: Vec<(Symbol, Rational)> = self.arguments.iter().map(|a| (a.symbol, a.exact.clone())).collect();
         for (symbol, function) in self.dependent() {
             let known = function.evaluate(&lookup(&values));
             values.extend(known.map(|v| (symbol, v)));
@@ -542,12 +549,12 @@ fn closed(
                 meaning: info.meaning.clone(),
                 meaning_latex: info.meaning_latex.clone(),
                 value: number.to_f64(),
-                exact: number.to_fraction(),
+                exact: number,
                 efficiency: info.kind == SymbolKind::Efficiency,
                 fixed: info.value.is_some(),
                 kind: info.kind,
+                terminal: terminal.map(|t| train.member_name(setup.terminals[t].member).to_owned()),
                 symbol: s,
-                number,
             }
         })
         .collect();

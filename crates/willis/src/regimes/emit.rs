@@ -200,8 +200,7 @@ fn text(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
     let conditions = f.conditions(Notation::Text).into_iter().map(|(c, text)| vec![format!("{c} > 0"), text]).collect();
     rows(out, "holds where", columns(conditions));
     let arguments = f.arguments.iter().map(|a| {
-        let value =
-            if a.exact.ends_with("/1") { number(a.value) } else { format!("{} = {}", a.exact, number(a.value)) };
+        let value = if a.exact.is_integer() { number(a.value) } else { format!("{} = {}", a.exact, number(a.value)) };
         let value = if a.fixed { format!("= {value}") } else { "given".to_owned() };
         vec![a.name.clone(), value, a.meaning.clone()]
     });
@@ -305,7 +304,7 @@ impl<'f> Code<'f> {
 
     /// The value that the train gives an argument, where it does, within a pattern such as `=@`.
     fn value(&self, a: &Argument, pattern: &str) -> String {
-        let value = || self.notation.function(&Function::from(a.number.clone()), &|_| String::new());
+        let value = || self.notation.function(&Function::from(a.exact.clone()), &|_| String::new());
         if a.fixed { pattern.replace('@', &value()) } else { String::new() }
     }
 
@@ -342,8 +341,8 @@ fn range(notation: Notation, a: &Argument) -> Option<(String, String)> {
     Some((condition, outside.to_string()))
 }
 
-fn fraction(a: &Argument) -> &str {
-    a.exact.strip_suffix("/1").unwrap_or(&a.exact)
+fn fraction(a: &Argument) -> String {
+    a.exact.to_string()
 }
 
 fn each<'n>(names: impl IntoIterator<Item = &'n str>, pattern: &str, separator: &str) -> String {

@@ -6,9 +6,10 @@
 //! speeds change their order at R = 0 and R = 1. So five ranges of R have regimes of their own. The
 //! paper's table has the two outermost of the positive ones.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::Named;
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::train::Train;
@@ -18,10 +19,12 @@ use super::setup::Setup;
 use super::{Choice, RegimeSelection, selected};
 
 /// Every regime of a set with three terminals, over all basic ratios.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Family {
     /// `willis-family-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// The ends of the set, p and q, and its carrier.
@@ -32,8 +35,8 @@ pub struct Family {
     pub ratio: String,
     /// R of this train.
     pub value: f64,
-    /// The same as a fraction.
-    pub exact: String,
+    /// The same, exactly.
+    pub exact: Rational,
     /// Efficiency seen from the carrier, p driving and q driving.
     pub efficiencies: [f64; 2],
     /// The ranges of R.
@@ -44,8 +47,14 @@ pub struct Family {
     pub regimes: usize,
 }
 
+impl Contract for Family {
+    const FORMAT: &'static str = "willis-family-1";
+}
+
 /// A range of basic ratios.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Case {
     /// `R > 1/eta`.
     pub label: String,
@@ -64,7 +73,9 @@ pub struct Case {
 }
 
 /// An assignment of inputs and outputs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Row {
     /// Terminals where power enters.
     pub inputs: Vec<String>,
@@ -75,7 +86,9 @@ pub struct Row {
 }
 
 /// Regimes with one driver and so one formula.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Group {
     /// The end that drives, seen from the carrier.
     pub driver: String,
@@ -88,7 +101,9 @@ pub struct Group {
 }
 
 /// Signs of torques and order of speeds.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct FamilyRange {
     /// Sign of each terminal's torque.
     pub torque_signs: Named<i8>,
@@ -244,13 +259,13 @@ pub fn family(train: &Train, selection: &RegimeSelection) -> Result<Family, Diag
             .collect();
         let [p, q, carrier] = [e.p, e.q, e.carrier].map(name);
         return Ok(Family {
-            format: "willis-family-1",
+            format: Format::new(),
             train: train.name.clone(),
             ratio: format!("R = (w_{q} - w_{carrier})/(w_{p} - w_{carrier})"),
             ends: [p, q],
             carrier,
             value: here.to_f64(),
-            exact: here.to_fraction(),
+            exact: here,
             efficiencies: [e.forward.to_f64(), e.backward.to_f64()],
             cases,
             rows,

@@ -31,12 +31,19 @@ pub(crate) struct SymbolInfo {
     pub meaning_latex: Option<String>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SymbolKind {
+/// What a quantity of a formula is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
+pub enum SymbolKind {
+    /// A basic ratio: any number but 0.
     Ratio,
+    /// An efficiency: above 0 and at most 1.
     Efficiency,
+    /// The torque on a terminal.
     Torque,
+    /// The speed of a terminal.
     Speed,
+    /// A number of teeth: above 0.
     Teeth,
 }
 

@@ -3,6 +3,7 @@
 
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Element};
+use crate::named::Named;
 use crate::statics::{self, Equilibrium, Unsolvable};
 use crate::train::MemberId;
 
@@ -172,6 +173,15 @@ impl<'t> Setup<'t> {
             None if self.c.inner[member.0] => None,
             None => Some(vec![Rational::ZERO; self.base.len()]),
         }
+    }
+
+    pub fn terminal_name(&self, t: usize) -> &'t str {
+        self.c.train.member_name(self.terminals[t].member)
+    }
+
+    /// A value for each terminal, by its name.
+    pub fn by_terminal<T>(&self, value: impl Fn(usize) -> T) -> Named<T> {
+        (0..self.terminals.len()).map(|t| (self.terminal_name(t).to_owned(), value(t))).collect()
     }
 
     /// Speed of a terminal over the base speeds.

@@ -4,11 +4,9 @@ use std::collections::HashSet;
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
+use crate::model::{Model, Target, Who, quantity};
 use crate::train::Measure;
 use crate::units::{Dimension, Quantity};
-
-use super::Subject;
-use super::target::{Target, Who, quantity};
 
 /// Most values of an axis.
 const MOST: u64 = 1_000_000_000_000_000;
@@ -63,19 +61,19 @@ impl Axis {
     ///
     /// # Errors
     /// No quantity of that name (with the nearest), and what is wrong with the values.
-    pub fn parse(text: &str, subject: &Subject) -> Result<Self, Box<Diagnostic>> {
+    pub fn parse(text: &str, model: &Model) -> Result<Self, Box<Diagnostic>> {
         let Some((name, values)) = text.split_once('=') else {
             return Err(Box::new(fault(text, "there is no `=` between a quantity and its values").hint(GRAMMAR)));
         };
         let (name, values) = (name.trim(), values.trim());
-        let target = Target::parse(name, subject)?;
+        let target = Target::parse(name, model)?;
         if values.is_empty() {
             return Err(Box::new(fault(text, "there are no values").hint(GRAMMAR)));
         }
-        let axis = match target.measure(subject) {
+        let axis = match target.measure(model) {
             Measure::Text | Measure::Flag => {
                 let all: Vec<String> = values.split(',').map(|v| v.trim().to_owned()).collect();
-                let all = target.choices(subject, &all).unwrap_or(all);
+                let all = target.choices(model, &all).unwrap_or(all);
                 Self { name: name.to_owned(), target, unit: String::new(), values: Values::Texts(all), numbers: vec![] }
             }
             measure => {
@@ -87,9 +85,12 @@ impl Axis {
                 axis
             }
         };
-        axis.target.check(subject, &axis.first_and_last()).map_err(|what| {
+        axis.target.check(model, &axis.first_and_last()).map_err(|what| {
             let mut d = *what;
             d.message = format!("`{name}`: {}", d.message);
+            if let (Target::State, Some(states)) = (&axis.target, d.hints.last_mut()) {
+                states.push_str("; `all` takes them all");
+            }
             Box::new(d)
         })?;
         if let Values::Texts(_) | Values::Numbers(_) = &axis.values {
@@ -162,15 +163,7 @@ impl Axis {
                 | Target::Power(Who::Input | Who::Output)
         );
         let name = if by_role { self.name.replace('.', "_") } else { self.name.clone() };
-        // `Nm` is the same unit as `N m`; of letters only M keeps its size, mega is not milli.
-        let unit = self.unit.replace("Nm", "N m");
-        let mega = unit.starts_with('M');
-        let unit: String = unit.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
-        let unit = if mega { unit } else { unit.to_lowercase() };
-        match unit.trim_matches('_') {
-            "" => name,
-            unit => format!("{name}_{}", unit.replace("__", "_")),
-        }
+        with_unit(&name, &self.unit)
     }
 
     fn first_and_last(&self) -> Vec<String> {
@@ -179,6 +172,19 @@ impl Axis {
             Values::Numbers(all) if all.len() <= 1000 => (0..all.len()).map(|k| self.setting(k)).collect(),
             _ => vec![self.setting(0), self.setting(self.len() - 1)],
         }
+    }
+}
+
+/// A name with the unit at its end, as columns are called: `sun.speed_rpm`.
+pub(super) fn with_unit(name: &str, unit: &str) -> String {
+    // `Nm` is the same unit as `N m`; of letters only M keeps its size, mega is not milli.
+    let unit = unit.replace("Nm", "N m");
+    let mega = unit.starts_with('M');
+    let unit: String = unit.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
+    let unit = if mega { unit } else { unit.to_lowercase() };
+    match unit.trim_matches('_') {
+        "" => name.to_owned(),
+        unit => format!("{name}_{}", unit.replace("__", "_")),
     }
 }
 

@@ -10,12 +10,15 @@ use std::sync::Arc;
 use crate::compiled::{CompiledTrain, Duty, Extremes, Output, Points, Workspace};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
+use crate::model::{Target, Who};
 use crate::train::{Load, MemberId};
 use crate::units;
 
+use super::answer::{PointAnswer, PointVerdict};
+use super::column::{Column, ColumnValues, Rows};
 use super::question::{Hold, Trains};
-use super::sweep::{Cells, Column, Extent, Rows, Summary, Sweep, What, yes_or_no};
-use super::target::{Target, Who};
+use super::summary::{AxisValue, MinMaxSum, Summary};
+use super::sweep::{Sweep, What};
 
 /// Most trains and states that are compiled.
 const MOST_CASES: usize = 4096;
@@ -83,8 +86,8 @@ struct Case {
 
 /// A sweep whose points are answered by compiled trains.
 #[derive(Clone, Debug)]
-pub struct CompiledSweep<'a, 's> {
-    sweep: &'a Sweep<'s>,
+pub struct CompiledSweep<'s> {
+    sweep: Arc<Sweep<'s>>,
     cases: Vec<Case>,
     /// Axes that choose the case, and how many cases one step of each is.
     choosing: Vec<(usize, usize)>,
@@ -96,8 +99,8 @@ pub struct CompiledSweep<'a, 's> {
 
 /// Work arrays; one for each thread.
 #[derive(Debug, Default)]
-pub struct Room {
-    trains: Trains,
+pub struct SweepWorkspace {
+    pub(super) trains: Trains,
     work: Vec<Option<Workspace>>,
     inputs: Vec<Vec<f64>>,
     outputs: Vec<Vec<f64>>,
@@ -116,7 +119,8 @@ impl<'s> Sweep<'s> {
     ///
     /// # Example
     /// ```
-    /// use willis::study::{Axis, Hold, Question, Subject, Sweep};
+    /// use willis::model::Model;
+    /// use willis::study::{Axis, Hold, PointVerdict, Question, Sweep};
     ///
     /// let text = r#"
     ///     format = 1
@@ -130,54 +134,17 @@ impl<'s> Sweep<'s> {
     ///     carrier = "c"
     ///     mesh_efficiency = 0.99
     /// "#;
-    /// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+    /// let model = Model::from_toml(text).unwrap();
     /// let axes = ["input.speed=1 rpm..2000 rpm:2000", "input.torque=1 N m..100 N m:500"];
-    /// let axes = axes.iter().map(|a| Axis::parse(a, &subject)).collect::<Result<_, _>>()?;
-    /// let sweep = Sweep::new(Question::new(&subject, None, None, Hold::AsGiven).unwrap(), axes, &[]).unwrap();
+    /// let axes = axes.iter().map(|a| Axis::parse(a, &model)).collect::<Result<_, _>>()?;
+    /// let sweep = Sweep::new(Question::new(&model, None, None, Hold::AsGiven).unwrap(), axes, &[]).unwrap();
     /// let map = sweep.compile().unwrap().summary(0, sweep.len(), &mut Default::default());
-    /// assert_eq!(map.verdicts["unique"], 1_000_000);
-    /// assert!((map.efficiency.least.0 - 0.98607).abs() < 1e-9);
+    /// assert_eq!(map.verdicts[&PointVerdict::Unique], 1_000_000);
+    /// assert!((map.efficiency.least.unwrap().value - 0.98607).abs() < 1e-9);
     /// # Ok::<(), Box<willis::diagnostic::Diagnostic>>(())
     /// ```
-    pub fn compile(&self) -> Result<CompiledSweep<'_, 's>, Diagnostics> {
-        let axes = &self.axes;
-        let with_hold = "sweep without --fast";
-        if self.question.subject().train().is_physical() {
-            return Err(refuse(
-                "losses of this train are computed from load and speed; they cannot be compiled",
-                with_hold,
-            ));
-        }
-        if let Some(a) =
-            axes.iter().find(|a| matches!(a.target, Target::Power(_) | Target::Temperature | Target::Law(_)))
-        {
-            let message = format!("`{}` cannot vary in a compiled sweep", a.name);
-            return Err(refuse(
-                &message,
-                "vary speeds, torques, states or values of the train file; or leave out --fast",
-            ));
-        }
-        if self.question.hold() == Hold::Power {
-            return Err(refuse("a held power is no torque that could be compiled", with_hold));
-        }
-        // The states first in memory order: the last case axis runs fastest.
-        let mut choosing = vec![];
-        let mut count = 1usize;
-        for (k, axis) in axes.iter().enumerate().rev() {
-            if !matches!(axis.target, Target::Speed(_) | Target::Torque(_)) {
-                choosing.push((k, count));
-                count = count.saturating_mul(axis.len());
-            }
-        }
-        if count > MOST_CASES {
-            let message = format!("{count} different trains are too many to compile; {MOST_CASES} are not");
-            return Err(refuse(&message, with_hold));
-        }
-        let (columns, outputs, output) = self.compiled_columns()?;
-        let mut trains = Trains::default();
-        let cases = (0..count).map(|case| self.case(case, &choosing, &outputs, &mut trains));
-        let cases = cases.collect::<Result<Vec<_>, _>>()?;
-        Ok(CompiledSweep { sweep: self, cases, choosing, columns, output, arch: pulp::Arch::new() })
+    pub fn compile(&self) -> Result<CompiledSweep<'s>, Diagnostics> {
+        CompiledSweep::new(Arc::new(self.clone()))
     }
 
     /// Columns of a compiled sweep, the outputs they need, and which column takes which.
@@ -287,7 +254,49 @@ impl<'s> Sweep<'s> {
     }
 }
 
-impl CompiledSweep<'_, '_> {
+impl<'s> CompiledSweep<'s> {
+    /// See [`Sweep::compile`].
+    pub(super) fn new(sweep: Arc<Sweep<'s>>) -> Result<Self, Diagnostics> {
+        let axes = &sweep.axes;
+        let with_hold = "sweep without --fast";
+        if sweep.question.model().train().is_physical() {
+            return Err(refuse(
+                "losses of this train are computed from load and speed; they cannot be compiled",
+                with_hold,
+            ));
+        }
+        if let Some(a) =
+            axes.iter().find(|a| matches!(a.target, Target::Power(_) | Target::Temperature | Target::Law(_)))
+        {
+            let message = format!("`{}` cannot vary in a compiled sweep", a.name);
+            return Err(refuse(
+                &message,
+                "vary speeds, torques, states or values of the train file; or leave out --fast",
+            ));
+        }
+        if sweep.question.hold() == Hold::Power {
+            return Err(refuse("a held power is no torque that could be compiled", with_hold));
+        }
+        // The states first in memory order: the last case axis runs fastest.
+        let mut choosing = vec![];
+        let mut count = 1usize;
+        for (k, axis) in axes.iter().enumerate().rev() {
+            if !matches!(axis.target, Target::Speed(_) | Target::Torque(_)) {
+                choosing.push((k, count));
+                count = count.saturating_mul(axis.len());
+            }
+        }
+        if count > MOST_CASES {
+            let message = format!("{count} different trains are too many to compile; {MOST_CASES} are not");
+            return Err(refuse(&message, with_hold));
+        }
+        let (columns, outputs, output) = sweep.compiled_columns()?;
+        let mut trains = Trains::default();
+        let cases = (0..count).map(|case| sweep.case(case, &choosing, &outputs, &mut trains));
+        let cases = cases.collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { sweep: Arc::clone(&sweep), cases, choosing, columns, output, arch: pulp::Arch::new() })
+    }
+
     /// The columns of the rows.
     pub fn columns(&self) -> impl ExactSizeIterator<Item = &Column> {
         self.columns.iter().map(|c| &c.0)
@@ -299,7 +308,7 @@ impl CompiledSweep<'_, '_> {
     }
 
     /// Fills the outputs of a case at some points. Returns the points that are not plainly unique.
-    fn evaluate(&self, case: usize, points: &Span<'_>, room: &mut Room) -> usize {
+    fn evaluate(&self, case: usize, points: &Span<'_>, room: &mut SweepWorkspace) -> usize {
         let own = &self.cases[case];
         let n = points.len();
         room.work.resize_with(self.cases.len(), || None);
@@ -309,9 +318,9 @@ impl CompiledSweep<'_, '_> {
         room.inputs.iter_mut().chain(&mut room.outputs).for_each(|v| v.resize(n, 0.0));
         let set = |input: &Input, speeds: &[Vec<f64>], out: &mut [f64]| match input {
             Input::Constant(x) => out.fill(*x),
-            Input::Axis(values) => points.axis(self.sweep, values, out),
+            Input::Axis(values) => points.axis(&self.sweep, values, out),
             Input::Role(values, follows) => {
-                points.axis(self.sweep, values, out);
+                points.axis(&self.sweep, values, out);
                 for (i, o) in out.iter_mut().enumerate() {
                     let speed: f64 = follows.iter().zip(speeds).map(|(f, s)| f * s[i]).sum();
                     if speed < 0.0 {
@@ -334,7 +343,7 @@ impl CompiledSweep<'_, '_> {
     }
 
     /// What the points from `from` up to `to` say together; no row is made.
-    pub fn summary(&self, from: u64, to: u64, room: &mut Room) -> Summary {
+    pub fn summary(&self, from: u64, to: u64, room: &mut SweepWorkspace) -> Summary {
         let mut summary = Summary::default();
         let mut point = from;
         while point < to {
@@ -346,13 +355,8 @@ impl CompiledSweep<'_, '_> {
     }
 
     /// The rows of the points from `from` up to `to`, whole [groups](Sweep::group).
-    pub fn rows(&self, from: u64, to: u64, room: &mut Room) -> Rows {
-        let n = (to - from) as usize;
-        let blank = self.columns.iter().map(|(c, _)| match c.is_text {
-            true => Cells::Texts(Vec::with_capacity(n)),
-            false => Cells::Numbers(Vec::with_capacity(n)),
-        });
-        let mut rows = Rows { columns: blank.collect(), summary: Summary::default() };
+    pub fn rows(&self, from: u64, to: u64, room: &mut SweepWorkspace) -> Rows {
+        let mut rows = Rows::with_capacity(self.columns(), (to - from) as usize);
         let step = (BLOCK as u64 / self.sweep.group()).max(1) * self.sweep.group();
         let mut point = from;
         while point < to {
@@ -365,7 +369,14 @@ impl CompiledSweep<'_, '_> {
         rows
     }
 
-    fn block(&self, from: u64, n: usize, room: &mut Room, summary: &mut Summary, cells: Option<&mut Vec<Cells>>) {
+    fn block(
+        &self,
+        from: u64,
+        n: usize,
+        room: &mut SweepWorkspace,
+        summary: &mut Summary,
+        cells: Option<&mut Vec<ColumnValues>>,
+    ) {
         let to = from + n as u64;
         let single = self.cases.len() == 1;
         if single && self.evaluate(0, &Span::Run(from, n), room) == 0 {
@@ -375,10 +386,7 @@ impl CompiledSweep<'_, '_> {
             if found.least > 0.0 && !found.sum.is_nan() {
                 // All unique and driving: nothing to look at one by one.
                 summary.points += n as u64;
-                match summary.verdicts.get_mut("unique") {
-                    Some(count) => *count += n as u64,
-                    None => drop(summary.verdicts.insert("unique".into(), n as u64)),
-                }
+                *summary.verdicts.entry(PointVerdict::Unique).or_default() += n as u64;
                 extend(&mut summary.efficiency, found, efficiency, from);
                 extend(&mut summary.loss_w, Extremes::of(loss, self.arch), loss, from);
                 if let Some(cells) = cells {
@@ -412,7 +420,7 @@ impl CompiledSweep<'_, '_> {
             }
         }
         // Boxed: hardly any point has one.
-        let mut answers: Vec<Option<Box<super::Answer>>> = vec![None; n];
+        let mut answers: Vec<Option<Box<PointAnswer>>> = vec![None; n];
         for i in (0..n).filter(|i| doubtful[*i]) {
             let answer = self.sweep.answer(from + i as u64, &mut room.trains);
             values[0][i] = answer.efficiency();
@@ -436,13 +444,15 @@ impl CompiledSweep<'_, '_> {
     }
 
     /// Rows of points that are all unique.
-    fn plain_rows(&self, from: u64, n: usize, outputs: &[Vec<f64>], cells: &mut [Cells]) {
+    fn plain_rows(&self, from: u64, n: usize, outputs: &[Vec<f64>], cells: &mut [ColumnValues]) {
         for ((cells, (_, what)), output) in cells.iter_mut().zip(&self.columns).zip(&self.output) {
             match (cells, what, output) {
-                (Cells::Numbers(all), What::Axis(k), _) => self.axis_column(*k, from, n, all),
-                (Cells::Numbers(all), _, Some(o)) => all.extend_from_slice(&outputs[*o]),
-                (Cells::Texts(all), What::Verdict, _) => all.resize(all.len() + n, "unique".into()),
-                (Cells::Texts(all), What::Reason, _) => all.resize(all.len() + n, "".into()),
+                (ColumnValues::Numbers(all), What::Axis(k), _) => self.axis_column(*k, from, n, all),
+                (ColumnValues::Numbers(all), _, Some(o)) => all.extend_from_slice(&outputs[*o]),
+                (ColumnValues::Texts(all), What::Verdict, _) => {
+                    all.resize(all.len() + n, PointVerdict::Unique.name().into())
+                }
+                (ColumnValues::Texts(all), What::Reason, _) => all.resize(all.len() + n, "".into()),
                 _ => unreachable!("a single train has no axis of texts"),
             }
         }
@@ -453,14 +463,14 @@ impl CompiledSweep<'_, '_> {
         from: u64,
         n: usize,
         values: &[Vec<f64>],
-        answers: &[Option<Box<super::Answer>>],
+        answers: &[Option<Box<PointAnswer>>],
         summary: &mut Summary,
-        cells: Option<&mut Vec<Cells>>,
+        cells: Option<&mut Vec<ColumnValues>>,
     ) {
-        let sweep = self.sweep;
+        let sweep = &self.sweep;
         let group = sweep.group() as usize;
-        let verdict = |i: usize| answers[i].as_ref().map_or("unique", |a| a.verdict);
-        let efficiency = |i: usize| if verdict(i) == "unique" { values[0][i] } else { f64::NAN };
+        let verdict = |i: usize| answers[i].as_ref().map_or(PointVerdict::Unique, |a| a.verdict);
+        let efficiency = |i: usize| if verdict(i) == PointVerdict::Unique { values[0][i] } else { f64::NAN };
         let mut best = vec![false; if group > 1 { n } else { 0 }];
         if group > 1 {
             for first in (0..n).step_by(group) {
@@ -473,8 +483,8 @@ impl CompiledSweep<'_, '_> {
         }
         summary.points += n as u64;
         let texts: Vec<usize> = (0..sweep.axes.len()).filter(|k| sweep.axes[*k].is_text()).collect();
-        let mut by_verdict: Vec<(&'static str, u64)> = vec![];
-        let (mut all_efficiency, mut all_loss) = (Extent::default(), Extent::default());
+        let mut by_verdict: Vec<(PointVerdict, u64)> = vec![];
+        let (mut all_efficiency, mut all_loss) = (MinMaxSum::default(), MinMaxSum::default());
         for i in 0..n {
             let point = from + i as u64;
             match by_verdict.iter_mut().find(|v| v.0 == verdict(i)) {
@@ -490,28 +500,23 @@ impl CompiledSweep<'_, '_> {
                     if best.get(i) == Some(&true) && sweep.axes[k].is_state() {
                         *summary.best.entry(value.clone()).or_default() += 1;
                     }
-                    let text = format!("{} = {value}", sweep.axes[k].name);
+                    let text = AxisValue { axis: sweep.axes[k].name.clone(), value };
                     summary.by_text.entry(text).or_default().add(efficiency(i), point);
                 }
             }
             if let Some(a) = &answers[i] {
-                if !a.reason.is_empty() && a.verdict != "unique" {
-                    summary.see(&format!("reason: {}", a.verdict), &a.reason, point);
-                }
-                for (code, message) in &a.warnings {
-                    summary.see(code.as_str(), message, point);
-                }
+                summary.hear(a, point);
             }
         }
         for (verdict, count) in by_verdict {
-            *summary.verdicts.entry(verdict.into()).or_default() += count;
+            *summary.verdicts.entry(verdict).or_default() += count;
         }
         summary.efficiency.join(&all_efficiency);
         summary.loss_w.join(&all_loss);
         let Some(cells) = cells else { return };
         for ((cells, (_, what)), output) in cells.iter_mut().zip(&self.columns).zip(&self.output) {
             match cells {
-                Cells::Numbers(all) => match (what, output) {
+                ColumnValues::Numbers(all) => match (what, output) {
                     (What::Axis(k), _) => self.axis_column(*k, from, n, all),
                     (_, Some(o)) => {
                         // A point without an answer has no numbers.
@@ -520,11 +525,12 @@ impl CompiledSweep<'_, '_> {
                     }
                     _ => unreachable!("numbers are axes or outputs"),
                 },
-                Cells::Texts(all) => all.extend((0..n).map(|i| -> Cow<'static, str> {
+                ColumnValues::Integers(_) => unreachable!("no column of a sweep counts"),
+                ColumnValues::Texts(all) => all.extend((0..n).map(|i| -> Cow<'static, str> {
                     match what {
                         What::Axis(k) => sweep.axes[*k].setting(sweep.place(from + i as u64)[*k]).into(),
-                        What::Verdict => verdict(i).into(),
-                        What::Best => yes_or_no(best[i]).into(),
+                        What::Verdict => verdict(i).name().into(),
+                        What::Best => if best[i] { "yes" } else { "no" }.into(),
                         _ => answers[i].as_ref().map_or("".into(), |a| a.reason.clone().into()),
                     }
                 })),
@@ -569,15 +575,7 @@ impl Span<'_> {
 }
 
 /// Adds values none of which is NaN, those of the points from `first` on.
-fn extend(extent: &mut Extent, found: Extremes, values: &[f64], first: u64) {
-    // Where an extreme is, is looked up only when it is one.
+fn extend(extent: &mut MinMaxSum, found: Extremes, values: &[f64], first: u64) {
     let at = |x: f64| first + values.iter().position(|v| *v == x).unwrap_or(0) as u64;
-    extent.count += values.len() as u64;
-    extent.sum += found.sum;
-    if found.least < extent.least.0 {
-        extent.least = (found.least, at(found.least));
-    }
-    if found.most > extent.most.0 {
-        extent.most = (found.most, at(found.most));
-    }
+    extent.add_run(values.len() as u64, found.sum, [found.least, found.most], at);
 }

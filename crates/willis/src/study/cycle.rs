@@ -1,18 +1,24 @@
 //! What a duty cycle or a load spectrum costs: energies by source, state and direction, and the worst rows.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::SolutionReport;
+use crate::contract::{Contract, Format};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::{Model, Target, Who};
 use crate::named::Named;
 use crate::operating_point::LossKind;
 use crate::train::{Load, Operation, Train};
+use crate::work::{self, Work};
 
-use super::profile::{Basis, Held, Profile};
-use super::question::{Question, Trains};
-use super::sweep::{Answer, VERDICTS};
-use super::target::{Target, Who};
+use super::answer::{PointAnswer, PointVerdict};
+use super::column::{Column, ColumnTable, ColumnValues};
+use super::profile::{Basis, Held, Profile, ProfileRow};
+use super::question::{Hold, Question, Trains};
 
 /// How many of the worst are told.
 const MOST_WORST: usize = 5;
@@ -20,9 +26,11 @@ const MOST_WORST: usize = 5;
 const MOST_REASONS: usize = 5;
 
 /// Which way power goes through the train.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
-pub enum Way {
+#[non_exhaustive]
+pub enum PowerDirection {
     /// Power enters at the input and leaves at the output.
     Driving,
     /// Power enters at the output and leaves at the input: the engine brakes, or power is recuperated.
@@ -35,30 +43,31 @@ pub enum Way {
     Other,
 }
 
-const WAYS: [(Way, &str); 5] = [
-    (Way::Driving, "driving"),
-    (Way::Coasting, "coasting"),
-    (Way::Dissipating, "dissipating"),
-    (Way::Idle, "idle"),
-    (Way::Other, "other"),
-];
+impl PowerDirection {
+    /// All, in the order of tables.
+    pub const ALL: [Self; 5] = [Self::Driving, Self::Coasting, Self::Dissipating, Self::Idle, Self::Other];
 
-impl Way {
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
-        WAYS.iter().find(|w| w.0 == self).map_or("", |w| w.1)
+    /// Its name in contracts and tables: `driving`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Driving => "driving",
+            Self::Coasting => "coasting",
+            Self::Dissipating => "dissipating",
+            Self::Idle => "idle",
+            Self::Other => "other",
+        }
     }
 }
 
 /// The answer for one condition of a profile.
 #[derive(Clone, Debug, PartialEq)]
-pub struct CyclePoint {
-    /// One of [`VERDICTS`].
-    pub verdict: &'static str,
+struct CyclePoint {
+    /// What can be said of it.
+    pub verdict: PointVerdict,
     /// Why there is no answer; empty where there is one.
     pub reason: Box<str>,
     /// Which way power goes, where there is an answer.
-    pub way: Option<Way>,
+    pub way: Option<PowerDirection>,
     /// The state of the shift table, by its position.
     pub state: Option<usize>,
     /// Output over input power; NaN where there is none.
@@ -75,15 +84,15 @@ pub struct CyclePoint {
 
 /// The answers for some conditions, and what they say together.
 #[derive(Clone, Debug, Default)]
-pub struct CyclePart {
+struct CyclePart {
     /// One for each condition.
-    pub points: Vec<CyclePoint>,
+    points: Vec<CyclePoint>,
     /// By name and kind: law, energy.
-    sources: BTreeMap<(String, &'static str), (&'static str, f64)>,
+    sources: BTreeMap<(String, EnergyKind), (String, f64)>,
     kinds: [f64; 5],
     /// By member: energy in, energy out.
     terminals: BTreeMap<String, [f64; 2]>,
-    warnings: BTreeMap<&'static str, Vec<Told>>,
+    warnings: BTreeMap<Code, Vec<Told>>,
 }
 
 #[derive(Clone, Debug)]
@@ -95,7 +104,9 @@ struct Told {
 }
 
 /// Energies of some rows.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Energies {
     /// Rows with an answer.
     pub rows: u64,
@@ -125,15 +136,69 @@ impl Energies {
     }
 }
 
+/// What kind of loss takes energy.
+///
+/// Ordered by name: of equal energies the first by name stands first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum EnergyKind {
+    /// Friction of rolling bearings.
+    Bearing,
+    /// Gears that move oil.
+    Churning,
+    /// All losses of a mesh, where they are given as an efficiency.
+    Mesh,
+    /// Rolling of teeth through the oil film.
+    Rolling,
+    /// Friction of seals.
+    Seal,
+    /// Sliding of teeth.
+    Sliding,
+    /// Gears that move air.
+    Windage,
+}
+
+impl EnergyKind {
+    /// Its name in contracts and tables: `sliding`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bearing => "bearing",
+            Self::Churning => "churning",
+            Self::Mesh => "mesh",
+            Self::Rolling => "rolling",
+            Self::Seal => "seal",
+            Self::Sliding => "sliding",
+            Self::Windage => "windage",
+        }
+    }
+}
+
+impl From<LossKind> for EnergyKind {
+    fn from(kind: LossKind) -> Self {
+        match kind {
+            LossKind::Sliding => Self::Sliding,
+            LossKind::Rolling => Self::Rolling,
+            LossKind::Bearing => Self::Bearing,
+            LossKind::Windage => Self::Windage,
+            LossKind::Churning => Self::Churning,
+            LossKind::Seal => Self::Seal,
+        }
+    }
+}
+
 /// Energy lost by a source.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SourceEnergy {
     /// What loses it; a mesh where losses are given by efficiencies.
     pub name: String,
     /// What kind of loss it is.
-    pub kind: &'static str,
+    pub kind: EnergyKind,
     /// The law that it was last computed by; `given` for a given efficiency.
-    pub law: &'static str,
+    pub law: String,
     /// The energy, J.
     pub energy_j: f64,
     /// The part of all losses.
@@ -141,7 +206,9 @@ pub struct SourceEnergy {
 }
 
 /// Energy that crosses a member.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct TerminalEnergy {
     /// Energy that enters the train here, J.
     pub energy_in_j: f64,
@@ -150,8 +217,10 @@ pub struct TerminalEnergy {
 }
 
 /// Rows that say the same.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Said {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct RepeatedMessage {
     /// What they say, at the first of them.
     pub message: String,
     /// How many rows.
@@ -163,7 +232,9 @@ pub struct Said {
 }
 
 /// Rows of a verdict.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct VerdictTime {
     /// How many rows.
     pub rows: u64,
@@ -172,11 +243,13 @@ pub struct VerdictTime {
     /// The part of the whole time.
     pub share_of_time: f64,
     /// Why, longest first; the first few of them.
-    pub reasons: Vec<Said>,
+    pub reasons: Vec<RepeatedMessage>,
 }
 
 /// A condition that is among the worst.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct WorstRow {
     /// Line of its first row.
     pub line: u32,
@@ -187,7 +260,7 @@ pub struct WorstRow {
     /// What they prescribe.
     pub condition: String,
     /// Which way power goes.
-    pub way: Option<Way>,
+    pub way: Option<PowerDirection>,
     /// Output over input power.
     pub efficiency: Option<f64>,
     /// Loss, W.
@@ -197,7 +270,9 @@ pub struct WorstRow {
 }
 
 /// The worst rows.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Worst {
     /// By loss power.
     pub loss: Vec<WorstRow>,
@@ -208,10 +283,12 @@ pub struct Worst {
 }
 
 /// What a profile costs. Serialised it is the contract `willis-cycle-1`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct CycleReport {
     /// `willis-cycle-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// The operation from which the question starts, where the file has one.
@@ -221,7 +298,7 @@ pub struct CycleReport {
     /// How rows weigh.
     pub basis: Basis,
     /// The same in a sentence.
-    pub rule: &'static str,
+    pub rule: String,
     /// Rows of the profile.
     pub rows: u64,
     /// Different conditions among them.
@@ -264,9 +341,13 @@ pub struct CycleReport {
     /// The worst rows.
     pub worst: Worst,
     /// Warnings by their code.
-    pub warnings: Named<Vec<Said>>,
+    pub warnings: Named<Vec<RepeatedMessage>>,
     /// What is remarkable about the profile.
     pub notes: Vec<String>,
+}
+
+impl Contract for CycleReport {
+    const FORMAT: &'static str = "willis-cycle-1";
 }
 
 /// A profile put to a train.
@@ -276,13 +357,47 @@ pub struct Cycle<'a> {
     profile: &'a Profile,
 }
 
-/// What a profile costs.
+/// What a cycle is asked.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
+pub struct CycleRequest {
+    /// The duty cycle or load spectrum, the text of a CSV table: a header, then one operating condition a row. A column
+    /// is a quantity with its unit, `input.speed [rpm]`, `output.torque [N m]`, or `state`. One column weighs the rows:
+    /// `time [s]` (a trace: each row holds until the time of the next), `duration [min]` or `hours` (each row holds so
+    /// long), or `share [%]` (each row holds for this part of one hour).
+    pub profile: String,
+    /// The operation of the train file that says what no column does. Default: the first one that suits the state.
+    pub operation: Option<String>,
+    /// The state of the shift table, where no column says it. Default: that of the operation.
+    pub state: Option<String>,
+}
+
+/// A cycle in memory.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CycleAnswer {
+    /// The energies, and the worst rows.
+    pub report: CycleReport,
+    /// Every row of the profile with its answer.
+    pub rows: ColumnTable,
+}
+
+/// What a duty cycle or a load spectrum costs.
+///
+/// The answer does not depend on how `work` shares the rows out.
+///
+/// # Errors
+/// What is wrong with the profile, each with its place in the text of the profile; an operation or a state that there is
+/// not; a profile of which no row makes a question; and [`Code::Cancelled`].
 ///
 /// # Example
 /// ```
-/// use willis::study::{Hold, Profile, Question, Subject, cycle};
+/// use willis::model::Model;
+/// use willis::study::{CycleRequest, cycle};
+/// use willis::work::Serial;
 ///
-/// let text = r#"
+/// let model = Model::from_toml(r#"
 ///     format = 1
 ///     name = "reducer"
 ///     members = ["s", "c"]
@@ -293,20 +408,18 @@ pub struct Cycle<'a> {
 ///     ring = { member = "frame", teeth = 70 }
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
-/// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
-/// let spectrum = "hours,input.speed [rad/s],input.torque [N m]\n1,100,50\n3,100,10\n";
-/// let profile = Profile::parse(spectrum, &subject)?;
-/// let report = cycle(Question::new(&subject, None, None, Hold::AsGiven)?, &profile);
-/// assert!((report.energy_in_j - (5000.0 + 3.0 * 1000.0) * 3600.0).abs() < 1e-6);
-/// assert!((report.efficiency.unwrap() - 0.98607).abs() < 1e-9);
+/// "#)?;
+/// let profile = "hours,input.speed [rad/s],input.torque [N m]\n1,100,50\n3,100,10\n".to_owned();
+/// let answer = cycle(&model, &CycleRequest { profile, ..Default::default() }, &Serial)?;
+/// assert!((answer.report.energy_in_j - (5000.0 + 3.0 * 1000.0) * 3600.0).abs() < 1e-6);
+/// assert!((answer.report.efficiency.unwrap() - 0.98607).abs() < 1e-9);
+/// assert_eq!(answer.rows.len(), 2);
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn cycle(question: Question<'_>, profile: &Profile) -> CycleReport {
-    let cycle = Cycle::new(question, profile);
-    let mut trains = Trains::default();
-    let parts: Vec<CyclePart> = cycle.ranges().map(|(from, to)| cycle.part(from, to, &mut trains)).collect();
-    cycle.report(&parts)
+pub fn cycle(model: &Model, request: &CycleRequest, work: &dyn Work) -> Result<CycleAnswer, Diagnostics> {
+    let profile = Profile::parse(&request.profile, model)?;
+    let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+    Cycle::new(question, &profile).run(work)
 }
 
 impl<'a> Cycle<'a> {
@@ -323,16 +436,66 @@ impl<'a> Cycle<'a> {
         self.profile
     }
 
-    /// Ranges of conditions, each a [part](Self::part); the report is the same whoever computes them.
-    pub fn ranges(&self) -> impl ExactSizeIterator<Item = (usize, usize)> + use<> {
+    /// Computes every condition.
+    ///
+    /// # Errors
+    /// No condition makes a question; the work was cancelled.
+    pub fn run(&self, work: &dyn Work) -> Result<CycleAnswer, Diagnostics> {
         let n = self.profile.conditions();
-        (0..n.div_ceil(Self::AT_ONCE)).map(move |k| (k * Self::AT_ONCE, ((k + 1) * Self::AT_ONCE).min(n)))
+        work.begin("conditions", n as u64);
+        let parts = work::map(work, n.div_ceil(Self::AT_ONCE), |k| {
+            let conditions = k * Self::AT_ONCE..((k + 1) * Self::AT_ONCE).min(n);
+            let count = conditions.len() as u64;
+            let part = self.part(conditions, &mut Trains::default());
+            work.advance(count);
+            part
+        })?;
+        let points: Vec<&CyclePoint> = parts.iter().flat_map(|p| &p.points).collect();
+        if let Some(first) = points.first().filter(|_| points.iter().all(|p| p.verdict == PointVerdict::Refused)) {
+            let message = format!("no row of the profile makes a question: {}", first.reason);
+            return Err(Diagnostic::new(Code::Unfit, "", message).into());
+        }
+        Ok(CycleAnswer { report: self.report(&parts), rows: self.table(&points) })
     }
 
-    /// The answers for the conditions from `from` up to `to`.
-    pub fn part(&self, from: usize, to: usize, trains: &mut Trains) -> CyclePart {
+    /// Every row of the profile with its answer.
+    fn table(&self, points: &[&CyclePoint]) -> ColumnTable {
+        let (rows, states) = (self.profile.rows(), self.question.model().train().states());
+        let of = |row: &ProfileRow| points[row.condition as usize];
+        let mut table = ColumnTable::default();
+        let lines = rows.iter().map(|r| i64::from(r.line)).collect();
+        table.add(Column::integer("line"), ColumnValues::Integers(lines));
+        let number = |table: &mut ColumnTable, name: &str, unit: &str, value: &dyn Fn(&ProfileRow) -> f64| {
+            table.add(Column::number(name, unit), ColumnValues::Numbers(rows.iter().map(value).collect()));
+        };
+        if self.profile.basis() == Basis::Trace {
+            number(&mut table, "time_s", "s", &|r| r.time_s);
+        }
+        number(&mut table, "duration_s", "s", &|r| r.duration_s);
+        for (column, values) in self.profile.table_columns() {
+            table.add(column, values);
+        }
+        let text = |table: &mut ColumnTable, name: &str, value: &dyn Fn(&CyclePoint) -> Cow<'static, str>| {
+            let values = rows.iter().map(|r| value(of(r))).collect();
+            table.add(Column::text(name), ColumnValues::Texts(values));
+        };
+        let state = |p: &CyclePoint| p.state.and_then(|k| states.get(k)).map_or(String::new(), |s| s.name.clone());
+        text(&mut table, "in_state", &|p| state(p).into());
+        text(&mut table, "verdict", &|p| p.verdict.name().into());
+        text(&mut table, "direction", &|p| p.way.map_or("", PowerDirection::name).into());
+        number(&mut table, "efficiency", "", &|r| of(r).efficiency);
+        number(&mut table, "input_power_w", "W", &|r| of(r).input_power_w);
+        number(&mut table, "output_power_w", "W", &|r| of(r).output_power_w);
+        number(&mut table, "loss_w", "W", &|r| of(r).loss_w);
+        number(&mut table, "energy_lost_j", "J", &|r| of(r).loss_w * r.duration_s);
+        text(&mut table, "reason", &|p| p.reason.to_string().into());
+        table
+    }
+
+    /// The answers for some conditions.
+    fn part(&self, conditions: Range<usize>, trains: &mut Trains) -> CyclePart {
         let mut part = CyclePart::default();
-        for condition in from..to {
+        for condition in conditions {
             let point = self.point(condition, trains, &mut part);
             part.points.push(point);
         }
@@ -342,7 +505,7 @@ impl<'a> Cycle<'a> {
     fn point(&self, condition: usize, trains: &mut Trains, part: &mut CyclePart) -> CyclePoint {
         let held = self.profile.held(condition);
         let settings = self.profile.settings(condition);
-        let states = self.question.subject().train().states();
+        let states = self.question.model().train().states();
         let named = settings.iter().find(|s| *s.0 == Target::State);
         let state = match named {
             Some((_, name)) => states.iter().position(|s| s.name == *name),
@@ -351,19 +514,19 @@ impl<'a> Cycle<'a> {
         let asked = self.question.at(&settings, trains);
         let (answer, way) = match &asked {
             Ok((train, operation)) => {
-                let answer = Answer::of(train, operation);
+                let answer = PointAnswer::of(train, operation);
                 let way = answer.solution.as_ref().map(|s| self.way(train, operation, s));
                 (answer, way)
             }
-            Err(wrong) => (Answer::refused(wrong.clone()), None),
+            Err(wrong) => (PointAnswer::refused(wrong.clone()), None),
         };
-        for (code, message) in &answer.warnings {
-            let told = part.warnings.entry(code.as_str()).or_default();
-            tell(told, message, held);
+        for warning in &answer.warnings {
+            let told = part.warnings.entry(warning.code).or_default();
+            tell(told, &warning.message, held);
         }
         let mut point = CyclePoint {
             verdict: answer.verdict,
-            reason: answer.reason.replace(&format!("operation `{}`: ", self.question.base().name), "").into(),
+            reason: answer.reason.as_str().into(),
             way,
             state,
             efficiency: answer.efficiency(),
@@ -381,13 +544,13 @@ impl<'a> Cycle<'a> {
         for (sum, power) in part.kinds.iter_mut().zip([l.mesh, l.bearing, l.windage, l.churning, l.seal]) {
             *sum += power * held.time_s;
         }
-        let mut lose = |name: &str, kind, law, power: f64| {
-            let own = part.sources.entry((name.to_owned(), kind)).or_insert((law, 0.0));
+        let mut lose = |name: &str, kind, law: &str, power: f64| {
+            let own = part.sources.entry((name.to_owned(), kind)).or_insert_with(|| (law.to_owned(), 0.0));
             own.1 += power * held.time_s;
         };
         match s.sources.is_empty() {
-            true => s.meshes.iter().for_each(|(name, m)| lose(name, "mesh", "given", m.loss_w)),
-            false => s.sources.iter().for_each(|x| lose(&x.name, kind(x.kind), x.law, x.loss_w)),
+            true => s.meshes.iter().for_each(|(name, m)| lose(name, EnergyKind::Mesh, "given", m.loss_w)),
+            false => s.sources.iter().for_each(|x| lose(&x.name, x.kind.into(), &x.law, x.loss_w)),
         }
         for (name, m) in s.members.iter() {
             let energy = m.power_w.unwrap_or(0.0) * held.time_s;
@@ -399,20 +562,20 @@ impl<'a> Cycle<'a> {
         point
     }
 
-    fn way(&self, train: &Train, operation: &Operation, s: &SolutionReport) -> Way {
+    fn way(&self, train: &Train, operation: &Operation, s: &SolutionReport) -> PowerDirection {
         // What is round-off beside the power that enters is nothing.
         let least = 1e-12 * s.input_power_w.abs();
         if s.output_power_w <= least {
-            return if s.input_power_w > 0.0 { Way::Dissipating } else { Way::Idle };
+            return if s.input_power_w > 0.0 { PowerDirection::Dissipating } else { PowerDirection::Idle };
         }
         let power = |who| {
             let member = self.question.role(train, operation, who).ok()?;
             s.members.get(train.member_name(member))?.power_w
         };
         match (power(Who::Input), power(Who::Output)) {
-            (Some(i), Some(o)) if i > least && o < -least => Way::Driving,
-            (Some(i), Some(o)) if i < -least && o > least => Way::Coasting,
-            _ => Way::Other,
+            (Some(i), Some(o)) if i > least && o < -least => PowerDirection::Driving,
+            (Some(i), Some(o)) if i < -least && o > least => PowerDirection::Coasting,
+            _ => PowerDirection::Other,
         }
     }
 
@@ -448,19 +611,15 @@ impl<'a> Cycle<'a> {
         all
     }
 
-    /// What all [parts](Self::part) say together, in the order of their [ranges](Self::ranges).
-    ///
-    /// # Panics
-    /// When parts are missing.
-    pub fn report(&self, parts: &[CyclePart]) -> CycleReport {
+    /// What all [parts](Self::part) say together.
+    fn report(&self, parts: &[CyclePart]) -> CycleReport {
         let profile = self.profile;
         let points: Vec<&CyclePoint> = parts.iter().flat_map(|p| &p.points).collect();
-        assert_eq!(points.len(), profile.conditions(), "a report needs every part of the cycle");
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         let mut whole = Energies::default();
-        let mut ways: BTreeMap<Way, Energies> = BTreeMap::new();
+        let mut ways: BTreeMap<PowerDirection, Energies> = BTreeMap::new();
         let mut states: Vec<Energies> = vec![Energies::default(); train.states().len() + 1];
-        let mut verdicts: BTreeMap<&str, (VerdictTime, Vec<Told>)> = BTreeMap::new();
+        let mut verdicts: BTreeMap<PointVerdict, (VerdictTime, Vec<Told>)> = BTreeMap::new();
         let (mut mean, mut mean_time, mut residual) = (0.0, 0.0, 0.0f64);
         // The condition in which a trace ends may have no row.
         let held = |k: usize| Some(profile.held(k)).filter(|h| h.rows > 0);
@@ -486,10 +645,10 @@ impl<'a> Cycle<'a> {
             }
         }
         whole.close();
-        let mut sources: BTreeMap<&(String, &'static str), (&'static str, f64)> = BTreeMap::new();
+        let mut sources: BTreeMap<&(String, EnergyKind), (&String, f64)> = BTreeMap::new();
         let mut terminals: BTreeMap<&str, TerminalEnergy> = BTreeMap::new();
         let mut kinds = [0.0; 5];
-        let mut warnings: BTreeMap<&str, Vec<Told>> = BTreeMap::new();
+        let mut warnings: BTreeMap<Code, Vec<Told>> = BTreeMap::new();
         for part in parts {
             for (key, (law, energy)) in &part.sources {
                 sources.entry(key).or_insert((law, 0.0)).1 += energy;
@@ -501,14 +660,14 @@ impl<'a> Cycle<'a> {
             }
             kinds.iter_mut().zip(part.kinds).for_each(|(sum, own)| *sum += own);
             for (code, all) in &part.warnings {
-                join(warnings.entry(code).or_default(), all);
+                join(warnings.entry(*code).or_default(), all);
             }
         }
         let mut sources: Vec<SourceEnergy> = sources
             .into_iter()
             .map(|((name, kind), (law, energy_j))| {
                 let share = if whole.energy_lost_j > 0.0 { energy_j / whole.energy_lost_j } else { 0.0 };
-                SourceEnergy { name: name.clone(), kind, law, energy_j, share }
+                SourceEnergy { name: name.clone(), kind: *kind, law: law.clone(), energy_j, share }
             })
             .collect();
         sources.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));
@@ -520,21 +679,21 @@ impl<'a> Cycle<'a> {
         let named: Vec<(String, Energies)> =
             states.into_iter().enumerate().map(|(k, e)| (of_state(k), energies(e))).filter(|s| s.1.rows > 0).collect();
         let time_s = profile.total_s();
-        let verdicts = VERDICTS.iter().filter_map(|name| {
-            let (mut own, told) = verdicts.remove(name)?;
+        let verdicts = PointVerdict::ALL.iter().filter_map(|verdict| {
+            let (mut own, told) = verdicts.remove(verdict)?;
             own.share_of_time = own.time_s / time_s;
             own.reasons = said(told);
-            Some(((*name).to_owned(), own))
+            Some((verdict.name().to_owned(), own))
         });
         let base = self.question.base();
         let is_own = train.operations().iter().any(|o| o.name == base.name);
         CycleReport {
-            format: "willis-cycle-1",
+            format: Format::new(),
             train: train.name().to_owned(),
             operation: is_own.then(|| base.name.clone()),
             held: self.base(),
             basis: profile.basis(),
-            rule: profile.basis().rule(),
+            rule: profile.basis().rule().to_owned(),
             rows: profile.rows().len() as u64,
             conditions: (0..points.len()).filter(|k| held(*k).is_some()).count() as u64,
             time_s,
@@ -558,14 +717,17 @@ impl<'a> Cycle<'a> {
                 .zip(kinds)
                 .collect(),
             sources,
-            ways: WAYS.iter().filter_map(|(w, n)| Some(((*n).to_owned(), energies(ways.remove(w)?)))).collect(),
+            ways: PowerDirection::ALL
+                .iter()
+                .filter_map(|w| Some((w.name().to_owned(), energies(ways.remove(w)?))))
+                .collect(),
             states: named.into_iter().collect(),
             terminals: (train.members().iter())
                 .filter_map(|m| Some((m.name.clone(), terminals.remove(m.name.as_str())?)))
                 .collect(),
             verdicts: verdicts.collect(),
             worst: self.worst(&points),
-            warnings: warnings.into_iter().map(|(code, told)| (code.to_owned(), said(told))).collect(),
+            warnings: warnings.into_iter().map(|(code, told)| (code.as_str().to_owned(), said(told))).collect(),
             notes: profile.notes().to_vec(),
         }
     }
@@ -605,17 +767,6 @@ fn short(x: f64) -> String {
     rounded.to_string()
 }
 
-fn kind(kind: LossKind) -> &'static str {
-    match kind {
-        LossKind::Sliding => "sliding",
-        LossKind::Rolling => "rolling",
-        LossKind::Bearing => "bearing",
-        LossKind::Windage => "windage",
-        LossKind::Churning => "churning",
-        LossKind::Seal => "seal",
-    }
-}
-
 /// A sentence without its numbers: what differs from row to row only in them is the same.
 fn gist(message: &str) -> String {
     message.chars().filter(|c| !c.is_ascii_digit() && !matches!(c, '.' | '-')).collect()
@@ -651,8 +802,8 @@ fn join(all: &mut Vec<Told>, more: &[Told]) {
     }
 }
 
-fn said(mut all: Vec<Told>) -> Vec<Said> {
+fn said(mut all: Vec<Told>) -> Vec<RepeatedMessage> {
     all.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));
     let all = all.into_iter().filter(|t| !t.message.is_empty()).take(MOST_REASONS);
-    all.map(|t| Said { message: t.message, rows: t.rows, time_s: t.time_s, line: t.line }).collect()
+    all.map(|t| RepeatedMessage { message: t.message, rows: t.rows, time_s: t.time_s, line: t.line }).collect()
 }

@@ -1,7 +1,9 @@
 //! Where to sample: scrambled Sobol points, and what follows from the values there.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use sobol_burley::parts::{hash, owen_scramble_rev, sobol_rev};
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 
 /// Independent scramblings of the same points; their disagreement is the sampling error.
 pub const REPLICATES: usize = 8;
@@ -36,7 +38,7 @@ const FEWEST_VALUES: usize = 4;
 /// assert!((found.p05 - 0.1f64.sqrt()).abs() < 0.01);
 /// let indices = design.indices(&values).unwrap();
 /// assert!((indices[0].first - 0.5).abs() < 0.02 && (indices[0].total - 0.5).abs() < 0.02);
-/// # Ok::<(), String>(())
+/// # Ok::<(), willis::Diagnostics>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Design {
@@ -49,7 +51,9 @@ pub struct Design {
 }
 
 /// What can be said of the values of one quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Statistics {
     /// Samples that have a value.
     pub answered: usize,
@@ -77,7 +81,9 @@ pub struct Statistics {
 
 /// How far a statistic may be off because the samples are finitely many: half the width of its 95 % confidence interval,
 /// `t s/√R` with the standard deviation s of the statistic over the R replicates (L'Ecuyer et al., 2023).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct SamplingError {
     /// Of the mean.
     pub mean: f64,
@@ -93,9 +99,11 @@ pub struct SamplingError {
     pub p975: f64,
 }
 
-/// The share of the variance for which one coordinate answers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Index {
+/// The share of the variance for which one coordinate answers: its Sobol indices.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SobolIndices {
     /// First-order Sobol index `V[E(y|x_i)]/V(y)`: by itself.
     pub first: f64,
     /// Half the width of its 95 % confidence interval.
@@ -104,6 +112,10 @@ pub struct Index {
     pub total: f64,
     /// Half the width of its 95 % confidence interval.
     pub total_error: f64,
+}
+
+fn wrong(message: String) -> Diagnostics {
+    Diagnostic::new(Code::BadAxis, "", message).into()
 }
 
 /// One step of SplitMix64 (Steele, Lea and Flood, 2014): well mixed bits of any number.
@@ -119,15 +131,15 @@ impl Design {
     ///
     /// # Errors
     /// No coordinate or more than 128; `samples` that are no power of two from 128 to 1 048 576.
-    pub fn new(coordinates: usize, samples: usize, seed: u64) -> Result<Self, String> {
+    pub fn new(coordinates: usize, samples: usize, seed: u64) -> Result<Self, Diagnostics> {
         if !(1..=MOST_COORDINATES / 2).contains(&coordinates) {
             let most = MOST_COORDINATES / 2;
-            return Err(format!("{coordinates} uncertain quantities are not possible; from 1 to {most} are"));
+            return Err(wrong(format!("{coordinates} uncertain quantities are not possible; from 1 to {most} are")));
         }
         let points = samples / (2 * REPLICATES);
         if !samples.is_power_of_two() || !(8..=MOST_POINTS).contains(&points) {
             let most = 2 * REPLICATES * MOST_POINTS;
-            return Err(format!("{samples} samples are not possible; powers of two from 128 to {most} are"));
+            return Err(wrong(format!("{samples} samples are not possible; powers of two from 128 to {most} are")));
         }
         let scrambles = (0..REPLICATES as u64)
             .flat_map(|r| (0..2 * coordinates as u64).map(move |c| (r, c)))
@@ -250,7 +262,7 @@ impl Design {
     /// square of f(A) − f(B) (compare Azzini, Mara and Rosati, 2021): what A and B have in common by chance is in both
     /// sums, so that a quantity that does nothing has exactly 0, and one that does everything exactly 1. Errors are those
     /// of a jackknife that leaves out one replicate after the other.
-    pub fn indices(&self, values: &[f64]) -> Option<Vec<Index>> {
+    pub fn indices(&self, values: &[f64]) -> Option<Vec<SobolIndices>> {
         let d = self.coordinates;
         if d < 2 {
             return None;
@@ -290,7 +302,7 @@ impl Design {
         let scatter = |i: usize, of: fn(&(f64, f64)) -> f64| {
             half_width(without.iter().map(|w| of(&w[i]))) * (REPLICATES - 1) as f64
         };
-        let index = |i: usize| Index {
+        let index = |i: usize| SobolIndices {
             first: all[i].0,
             first_error: scatter(i, |e| e.0),
             total: all[i].1,

@@ -1,6 +1,6 @@
 //! How an uncertain number is distributed.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::train::Measure;
@@ -20,7 +20,8 @@ use crate::units::{self, Dimension};
 ///
 /// A unit at one number holds for those without. A share is one of the value of the file, of a temperature there is
 /// none.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "lowercase")]
 #[non_exhaustive]
 pub enum Distribution {
@@ -112,11 +113,16 @@ impl Distribution {
     }
 }
 
-/// The shortest text of a number, rounded to so many digits.
-pub(super) fn plain(x: f64, digits: usize) -> String {
+/// A number rounded to so many digits.
+pub(super) fn rounded(x: f64, digits: usize) -> f64 {
     let rounded: f64 = format!("{x:.*e}", digits - 1).parse().expect("a number was written");
     // Adding zero turns -0 into 0.
-    (rounded + 0.0).to_string()
+    rounded + 0.0
+}
+
+/// The shortest text of a number, rounded to so many digits.
+pub(super) fn plain(x: f64, digits: usize) -> String {
+    rounded(x, digits).to_string()
 }
 
 /// The number below which a standard normal variable lies with probability `p`, for p from 1e-10 to 1 − 1e-10.
@@ -247,7 +253,13 @@ impl Reader<'_> {
         let at = |n: &str| {
             units::parse(&format!("{n} {unit}"), dimension).map(|q| q.si()).map_err(|e| {
                 let (kind, example) = dimension.describe();
-                self.fault(format!("`{unit}` is no unit of {kind}: {e}; an example is `{example}`"))
+                match e.instead.as_slice() {
+                    [one] => self.fault(format!(
+                        "`{unit}` is no unit of {kind}: {e}; did you mean `{}`?",
+                        one.trim_start_matches("0 ")
+                    )),
+                    _ => self.fault(format!("`{unit}` is no unit of {kind}: {e}; an example is `{example}`")),
+                }
             })
         };
         let zero = at("0")?;

@@ -19,31 +19,83 @@ mod simscape;
 mod single;
 mod vecto;
 
+use serde::{Deserialize, Serialize};
+
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::Train;
-use crate::units::Quantity;
+use crate::units::{Dimension, Quantity};
+
+use super::axis::values;
 
 pub use map::{Answer, Gear, Map, Point};
 
-/// What to export. Empty lists are filled from the operations of the file, and a note tells with what.
-#[derive(Clone, Debug, Default)]
+/// What an export is asked.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
 pub struct ExportRequest {
-    /// This state of the shift table.
+    /// The state of the shift table to export. Default: that of the operation, or the only one.
     pub state: Option<String>,
-    /// Every state of the shift table that can be exported.
+    /// Export every state of the shift table that can be exported.
     pub all_states: bool,
-    /// The operation from which state and ranges are taken.
+    /// The operation of the train file from which state and ranges are taken.
     pub operation: Option<String>,
+    /// Speeds of the input, rising: `500 rpm..12000 rpm:24` for 24 evenly spaced ones, both ends included, or
+    /// `500 rpm, 1000 rpm`. Default: chosen from the operations of the file; a note says which.
+    pub speeds: Option<String>,
+    /// External torques on the input, rising, positive driving and negative coasting: `-100 N m..350 N m:10`, or
+    /// `100 N m, 200 N m`. Default: chosen from the operations of the file; a note says which.
+    pub torques: Option<String>,
+    /// Temperatures of the oil, rising: `20 degC, 60 degC`. Default: that of the file.
+    pub temperatures: Option<String>,
+}
+
+/// The same, read. Empty lists are filled from the operations of the file, and a note tells with what.
+#[derive(Clone, Debug, Default)]
+struct Asked {
+    state: Option<String>,
+    all_states: bool,
+    operation: Option<String>,
     /// Speeds of the input, rising.
-    pub speeds: Vec<Quantity>,
+    speeds: Vec<Quantity>,
     /// External torques on the input, rising: positive drives, negative coasts.
-    pub torques: Vec<Quantity>,
+    torques: Vec<Quantity>,
     /// Oil temperatures, K, rising.
-    pub temperatures: Vec<f64>,
+    temperatures: Vec<f64>,
+}
+
+impl Asked {
+    fn read(request: &ExportRequest) -> Result<Self, Diagnostics> {
+        let mut wrong = Diagnostics::default();
+        let mut read = |what: &str, text: &Option<String>, dimension: Dimension| {
+            let found = text.as_deref().map_or(Ok(vec![]), |text| values(text, dimension));
+            found.unwrap_or_else(|mut d| {
+                d.message = format!("{what}: {}", d.message);
+                wrong.push(*d);
+                vec![]
+            })
+        };
+        let speeds = read("speeds", &request.speeds, Dimension::ANGULAR_SPEED);
+        let torques = read("torques", &request.torques, Dimension::TORQUE);
+        let temperatures = read("temperatures", &request.temperatures, Dimension::TEMPERATURE);
+        if wrong.has_errors() {
+            return Err(wrong);
+        }
+        Ok(Self {
+            state: request.state.clone(),
+            all_states: request.all_states,
+            operation: request.operation.clone(),
+            speeds,
+            torques,
+            temperatures: temperatures.iter().map(Quantity::si).collect(),
+        })
+    }
 }
 
 /// A file to be.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct ExportedFile {
     /// A name for it, without a folder.
     pub name: String,
@@ -54,7 +106,9 @@ pub struct ExportedFile {
 }
 
 /// What came out.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Export {
     /// One file, or one a state.
     pub files: Vec<ExportedFile>,
@@ -69,7 +123,7 @@ pub struct Kind {
     pub id: &'static str,
     /// What it is, in one line.
     pub about: &'static str,
-    write: fn(&Train, &ExportRequest) -> Result<Export, Diagnostics>,
+    write: fn(&Train, &Asked) -> Result<Export, Diagnostics>,
 }
 
 /// Every format there is.
@@ -120,7 +174,7 @@ pub fn export(train: &Train, kind: &str, request: &ExportRequest) -> Result<Expo
         let all: Vec<_> = known.clone().collect();
         return Err(d.suggest(kind, known).hint(format!("the exports are: {}", all.join(", "))).into());
     };
-    let mut done = (found.write)(train, request)?;
+    let mut done = (found.write)(train, &Asked::read(request)?)?;
     let mut told: Vec<String> = Vec::new();
     for note in std::mem::take(&mut done.notes) {
         if !told.contains(&note) {
@@ -140,7 +194,7 @@ fn origin(train: &Train) -> String {
 /// named; the only one, or all of them, is an error.
 fn each(
     train: &Train,
-    request: &ExportRequest,
+    request: &Asked,
     one: impl Fn(&Gear, &mut Vec<String>) -> Result<ExportedFile, Diagnostics>,
 ) -> Result<Export, Diagnostics> {
     let (gears, mut notes) = map::gears(train, request)?;

@@ -3,21 +3,24 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::{Model, Target};
 use crate::train::Measure;
+use crate::train::csv::{self, Cell, Row};
 use crate::units::{self, Dimension};
 
-use super::Subject;
-use super::target::Target;
+use super::column::{Column, ColumnValues};
 
 /// More errors than these are counted, not kept.
 const MOST_ERRORS: usize = 1000;
 
 /// How rows of a profile weigh in time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Basis {
     /// A recorded trace: each row holds from its time until that of the next; the last row only ends it.
     Trace,
@@ -58,6 +61,8 @@ struct Setting {
     header: String,
     target: Target,
     unit: String,
+    /// Whether its values are texts, not numbers.
+    is_text: bool,
     /// Values, each once.
     values: Vec<String>,
 }
@@ -85,7 +90,8 @@ pub(super) struct Held {
 ///
 /// # Example
 /// ```
-/// use willis::study::{Basis, Profile, Subject};
+/// use willis::model::Model;
+/// use willis::study::{Basis, Profile};
 ///
 /// let text = r#"
 ///     format = 1
@@ -98,11 +104,11 @@ pub(super) struct Held {
 ///     ring = { member = "frame", teeth = 70 }
 ///     carrier = "c"
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
-/// let profile = Profile::parse("time [s],input.speed [rpm]\n0,900\n2,1000\n3,0\n", &subject)?;
+/// let model = Model::from_toml(text).unwrap();
+/// let profile = Profile::parse("time [s],input.speed [rpm]\n0,900\n2,1000\n3,0\n", &model)?;
 /// assert_eq!((profile.basis(), profile.rows().len(), profile.total_s()), (Basis::Trace, 2, 3.0));
 /// assert_eq!(profile.describe(1), "input.speed = 1000 rpm");
-/// let wrong = Profile::parse("time [s],input.sped [rpm]\n0,900\n2,1000\n", &subject).unwrap_err();
+/// let wrong = Profile::parse("time [s],input.sped [rpm]\n0,900\n2,1000\n", &model).unwrap_err();
 /// assert!(wrong.to_string().contains("did you mean `input.speed`"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
@@ -142,37 +148,9 @@ impl Wrong {
         }
         // What is underlined is replaced by hints only where that is the whole cell.
         d.replacement = None;
-        d.span = Some(span);
+        d.span = Some(span.into());
         self.all.push(if hint.is_empty() { d } else { d.hint(hint) });
     }
-}
-
-/// Cells of a line that begins at `at`, without blanks and quotes around them.
-fn cells(line: &str, at: usize) -> Vec<(&str, Range<usize>)> {
-    let mut all = vec![];
-    let (mut from, mut quoted) = (0, false);
-    let mut push = |from: usize, to: usize| {
-        let raw = &line[from..to];
-        let inner = raw.trim();
-        let start = from + (raw.len() - raw.trim_start().len());
-        let (inner, start) = match inner.strip_prefix('"').and_then(|c| c.strip_suffix('"')) {
-            Some(bare) => (bare.trim(), start + 1),
-            None => (inner, start),
-        };
-        all.push((inner, at + start..at + start + inner.len()));
-    };
-    for (k, b) in line.bytes().enumerate() {
-        match b {
-            b'"' => quoted = !quoted,
-            b',' if !quoted => {
-                push(from, k);
-                from = k + 1;
-            }
-            _ => {}
-        }
-    }
-    push(from, line.len());
-    all
 }
 
 /// Name and unit of a header: `input.speed [rpm]`, `input.speed (rpm)`.
@@ -220,7 +198,7 @@ fn weight_unit(name: &str, basis: Basis, unit: Option<&str>) -> Result<f64, Stri
     }
 }
 
-fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Box<Diagnostic>> {
+fn purpose(header: &str, model: &Model) -> Result<Purpose, Box<Diagnostic>> {
     let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
     let hinted = |message: String, hint: String| Box::new(fault(message).hint(hint));
     let (name, unit) = bracketed(header).map_or((header, None), |(n, u)| (n, Some(u)));
@@ -234,15 +212,17 @@ fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Box<Diagnostic>> 
         return weight_unit(&name, basis, unit.as_deref()).map(|f| Purpose::Weight(basis, f)).map_err(fault);
     }
     let setting = |target: Target, unit: String| {
-        Purpose::Setting(Setting { header: header.to_owned(), target, unit, values: vec![] })
+        let is_text = matches!(target.measure(model), Measure::Text | Measure::Flag);
+        Purpose::Setting(Setting { header: header.to_owned(), target, unit, is_text, values: vec![] })
     };
-    match Target::parse(name, subject) {
-        Ok(target) => match (target.measure(subject), unit) {
+    match Target::parse(name, model) {
+        Ok(target) => match (target.measure(model), unit) {
             (Measure::Quantity(dimension), Some(unit)) => match units::parse(&format!("1 {unit}"), dimension) {
                 Ok(_) => Ok(setting(target, unit.to_owned())),
                 Err(why) => {
                     let (kind, example) = dimension.describe();
-                    let good = example.split_once(' ').map_or("", |e| e.1);
+                    // The unit that may be meant, or the usual one.
+                    let good = why.instead.first().map_or(example, String::as_str).split_once(' ').map_or("", |e| e.1);
                     Err(hinted(
                         format!("the unit `{unit}` is not that of {kind}: {why}"),
                         format!("write `{name} [{good}]`"),
@@ -260,8 +240,8 @@ fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Box<Diagnostic>> 
         Err(unknown) => {
             // The unit may be a part of the name.
             for (at, _) in name.match_indices('_').filter(|_| unit.is_none()) {
-                let Ok(target) = Target::parse(&name[..at], subject) else { continue };
-                let Measure::Quantity(dimension) = target.measure(subject) else { continue };
+                let Ok(target) = Target::parse(&name[..at], model) else { continue };
+                let Measure::Quantity(dimension) = target.measure(model) else { continue };
                 let suffix = &name[at + 1..];
                 return match spelt(suffix, dimension) {
                     Some(unit) => Ok(setting(target, unit)),
@@ -276,22 +256,34 @@ fn purpose(header: &str, subject: &Subject) -> Result<Purpose, Box<Diagnostic>> 
                 };
             }
             let mut d = unknown;
-            d.message = d.message.replace("` to vary", "` to set");
+            // What the train lacks for these is told already.
+            if !matches!(name, "state" | "oil.temperature" | "temperature") && !name.starts_with("law.") {
+                d.message = format!("there is no quantity `{name}` to set");
+            }
             Err(d)
         }
     }
 }
 
-/// A finite number as the train file would write it.
-fn number(cell: &str) -> Result<f64, String> {
-    if cell.is_empty() {
-        return Err("the cell is empty".into());
-    }
-    let plain = cell.bytes().all(|b| b.is_ascii_digit() || matches!(b, b'.' | b'+' | b'-' | b'e' | b'E'));
-    match cell.parse::<f64>() {
-        Ok(x) if plain && x.is_finite() => Ok(x),
-        _ => Err(format!("`{}` is no finite number", cell.chars().take(64).collect::<String>())),
-    }
+/// What the columns are for.
+struct Header<'t> {
+    cells: Vec<Cell<'t>>,
+    /// The column that weighs the rows, and the factor to seconds or to the whole.
+    weighing: Option<(usize, f64)>,
+    /// For each column the position of its setting.
+    settings: Vec<Option<usize>>,
+}
+
+/// What was read so far.
+#[derive(Default)]
+struct Progress<'t> {
+    /// For each setting what its cells say, each once.
+    known: Vec<HashMap<&'t str, Result<u32, Box<Diagnostic>>>>,
+    conditions: HashMap<Box<[u32]>, u32>,
+    /// Time and line of the last row of a trace.
+    last: Option<(f64, usize)>,
+    /// The weights together.
+    sum: f64,
 }
 
 impl Profile {
@@ -301,22 +293,39 @@ impl Profile {
     /// All that is wrong with it, each with its line and column: no column that weighs the rows or several, unknown
     /// quantities (with the nearest) and states, units of another kind, empty cells and such that are no finite number,
     /// times that do not rise, a profile without rows or that lasts no time.
-    pub fn parse(text: &str, subject: &Subject) -> Result<Self, Diagnostics> {
+    pub fn parse(text: &str, model: &Model) -> Result<Self, Diagnostics> {
         let mut wrong = Wrong { all: Diagnostics::default(), more: 0 };
-        let mut at = 0;
-        let mut lines = text.split_inclusive('\n').enumerate().filter_map(|(k, line)| {
-            let start = at;
-            at += line.len();
-            let skip = if start == 0 && line.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
-            let line = line[skip..].trim_end_matches(['\n', '\r']);
-            let is_row = !line.trim().is_empty() && !line.trim_start().starts_with('#');
-            is_row.then_some((k + 1, start + skip, line))
-        });
-        let Some((header_line, header_at, header)) = lines.next() else {
+        let mut rows = csv::rows(text);
+        let Some(header) = rows.next() else {
             let d = Diagnostic::new(Code::BadTable, "", "the profile is empty");
             return Err(d.hint("a header row comes first: `time [s],input.speed [rpm],output.torque [N m]`").into());
         };
-        let header_cells = cells(header, header_at);
+        let whole = header.span.clone();
+        let (mut profile, header) = Self::headed(header, model, &mut wrong);
+        let mut progress = Progress { known: vec![HashMap::new(); profile.settings.len()], ..Progress::default() };
+        for row in rows {
+            profile.take(&row, &header, &mut progress, model, &mut wrong);
+        }
+        if wrong.all.is_empty() {
+            profile.weigh(progress.sum, &mut wrong, whole);
+        }
+        if wrong.more > 0 {
+            let message = format!("{} more errors of these kinds", wrong.more);
+            wrong.all.push(Diagnostic::new(Code::BadTable, "", message));
+        }
+        if wrong.all.has_errors() {
+            wrong.all.stand_in(None, text);
+            return Err(wrong.all);
+        }
+        let mut numbered: Vec<(Box<[u32]>, u32)> = progress.conditions.into_iter().collect();
+        numbered.sort_by_key(|c| c.1);
+        profile.conditions = numbered.into_iter().map(|c| c.0).collect();
+        profile.gather();
+        Ok(profile)
+    }
+
+    /// A profile without rows, from its header.
+    fn headed<'t>(row: Row<'t>, model: &Model, wrong: &mut Wrong) -> (Self, Header<'t>) {
         let mut profile = Self {
             basis: Basis::Trace,
             settings: vec![],
@@ -326,19 +335,16 @@ impl Profile {
             total_s: 0.0,
             notes: vec![],
         };
+        let Row { line, span: whole, cells } = row;
         let mut weighing: Option<(usize, f64)> = None;
-        // For each column the position of its setting.
-        let mut of_column: Vec<Option<usize>> = vec![];
-        for (k, (name, span)) in header_cells.iter().enumerate() {
-            let place = format!("line {header_line}, column {}", k + 1);
-            of_column.push(None);
-            match purpose(name, subject) {
-                _ if name.is_empty() => {
-                    wrong.at(place, header_at..header_at + header.len(), "the column has no name".into(), "");
-                }
+        let mut settings = vec![None; cells.len()];
+        for (k, Cell { text: name, span }) in cells.iter().enumerate() {
+            let place = format!("line {line}, column {}", k + 1);
+            match purpose(name, model) {
+                _ if name.is_empty() => wrong.at(place, whole.clone(), "the column has no name".into(), ""),
                 Ok(Purpose::Weight(basis, factor)) => match weighing {
                     Some((other, _)) => {
-                        let message = format!("`{}` and `{name}` both weigh the rows", header_cells[other].0);
+                        let message = format!("`{}` and `{name}` both weigh the rows", cells[other].text);
                         wrong.at(place, span.clone(), message, "keep one of the two columns");
                     }
                     None => {
@@ -352,13 +358,13 @@ impl Profile {
                         wrong.at(place, span.clone(), message, "");
                     }
                     None => {
-                        of_column[k] = Some(profile.settings.len());
+                        settings[k] = Some(profile.settings.len());
                         profile.settings.push(setting);
                     }
                 },
                 Err(mut d) => {
                     d.place = place;
-                    let hint = match header_cells.len() == 1 && (name.contains(';') || name.contains('\t')) {
+                    let hint = match cells.len() == 1 && (name.contains(';') || name.contains('\t')) {
                         true => "commas separate columns",
                         false => "",
                     };
@@ -366,121 +372,82 @@ impl Profile {
                 }
             }
         }
-        let whole = header_at..header_at + header.len();
         if weighing.is_none() {
             let message = "no column weighs the rows in time".to_owned();
             let hint = "add `time [s]` (a trace), or `duration [s]`, `hours` or `share` (a load spectrum)";
-            wrong.at(format!("line {header_line}"), whole.clone(), message, hint);
+            wrong.at(format!("line {line}"), whole.clone(), message, hint);
         }
         if profile.settings.is_empty() && wrong.all.is_empty() {
             let message = "no column sets a quantity".to_owned();
-            wrong.at(format!("line {header_line}"), whole.clone(), message, "add one: `input.speed [rpm]`");
+            wrong.at(format!("line {line}"), whole, message, "add one: `input.speed [rpm]`");
         }
+        (profile, Header { cells, weighing, settings })
+    }
 
-        let mut known: Vec<HashMap<&str, Result<u32, Box<Diagnostic>>>> = vec![HashMap::new(); profile.settings.len()];
-        let mut conditions: HashMap<Box<[u32]>, u32> = HashMap::new();
-        let mut last: Option<(f64, usize)> = None;
-        let mut shares = 0.0;
-        for (line, line_at, row) in lines {
-            let all = cells(row, line_at);
-            if all.len() != header_cells.len() {
-                let message = format!("line {line} has {} cells, the header has {}", all.len(), header_cells.len());
-                wrong.at(format!("line {line}"), line_at..line_at + row.len(), message, "");
-                continue;
-            }
-            let mut weight = None;
-            let mut condition = vec![0u32; profile.settings.len()].into_boxed_slice();
-            let mut is_good = true;
-            for (k, (cell, span)) in all.iter().enumerate() {
-                let is_weight = weighing.is_some_and(|w| w.0 == k);
-                let setting = of_column[k];
-                if !is_weight && setting.is_none() {
-                    continue;
+    /// Takes a row, or says what is wrong with it.
+    fn take<'t>(
+        &mut self,
+        row: &Row<'t>,
+        header: &Header<'_>,
+        progress: &mut Progress<'t>,
+        model: &Model,
+        wrong: &mut Wrong,
+    ) {
+        let line = row.line;
+        if row.cells.len() != header.cells.len() {
+            let message = format!("line {line} has {} cells, the header has {}", row.cells.len(), header.cells.len());
+            return wrong.at(format!("line {line}"), row.span.clone(), message, "");
+        }
+        let mut weight = None;
+        let mut condition = vec![0u32; self.settings.len()].into_boxed_slice();
+        let mut is_good = true;
+        for (k, Cell { text: cell, span }) in row.cells.iter().enumerate() {
+            // An empty cell is underlined where it would stand.
+            let span = if span.is_empty() { row.span.clone() } else { span.clone() };
+            let place = || format!("line {line}, column `{}`", header.cells[k].text);
+            let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
+            let read = match (header.weighing, header.settings[k]) {
+                (Some((column, factor)), _) if column == k => {
+                    self.weight(cell, factor, line, progress).map(|w| weight = Some(w)).map_err(fault)
                 }
-                // An empty cell is underlined where it would stand.
-                let span = if span.is_empty() { line_at..line_at + row.len() } else { span.clone() };
-                let place = || format!("line {line}, column `{}`", header_cells[k].0);
-                let mut fail = |message: String| {
-                    wrong.at(place(), span.clone(), message, "");
-                    is_good = false;
-                };
-                if is_weight {
-                    let factor = weighing.map_or(1.0, |w| w.1);
-                    match number(cell) {
-                        Err(why) => fail(why),
-                        Ok(x) if profile.basis == Basis::Trace => {
-                            if let Some((before, other)) = last.filter(|l| x * factor <= l.0) {
-                                let word = if x * factor < before { "falls" } else { "does not rise" };
-                                fail(format!("the time {word}: {} s here, {} s in line {other}", x * factor, before));
-                            } else {
-                                last = Some((x * factor, line));
-                                weight = Some(x * factor);
-                            }
-                        }
-                        Ok(x) if x < 0.0 => fail(format!("`{cell}` is below zero, and this weighs a row")),
-                        Ok(x) => weight = Some(x * factor),
-                    }
-                    continue;
+                (_, Some(_)) if cell.is_empty() => Err(fault("the cell is empty".into())),
+                (_, Some(at)) => {
+                    let setting = &mut self.settings[at];
+                    let value = progress.known[at].entry(cell).or_insert_with(|| setting.read(cell, model));
+                    value.clone().map(|value| condition[at] = value)
                 }
-                let position = setting.expect("checked above");
-                let setting = &mut profile.settings[position];
-                if cell.is_empty() {
-                    fail("the cell is empty".into());
-                    continue;
-                }
-                match known[position].get(cell) {
-                    Some(Ok(value)) => condition[position] = *value,
-                    Some(Err(d)) => {
-                        let mut d = d.as_ref().clone();
-                        d.place = place();
-                        wrong.push(d, span, "");
-                        is_good = false;
-                    }
-                    None => {
-                        let value = setting.read(cell, subject);
-                        known[position].insert(cell, value.clone());
-                        match value {
-                            Ok(value) => condition[position] = value,
-                            Err(mut d) => {
-                                d.place = place();
-                                wrong.push(*d, span, "");
-                                is_good = false;
-                            }
-                        }
-                    }
-                }
-            }
-            let (Some(weight), true) = (weight, is_good) else { continue };
-            let next = conditions.len() as u32;
-            let condition = match conditions.get(&condition) {
-                Some(known) => *known,
-                None => {
-                    conditions.insert(condition, next);
-                    next
-                }
+                _ => continue,
             };
-            shares += weight;
-            let (time_s, duration_s) = match profile.basis {
-                Basis::Trace => (weight, 0.0),
-                _ => (f64::NAN, weight),
-            };
-            profile.rows.push(ProfileRow { line: line as u32, time_s, duration_s, condition });
+            if let Err(mut d) = read {
+                d.place = place();
+                wrong.push(*d, span, "");
+                is_good = false;
+            }
         }
-        if wrong.all.is_empty() {
-            profile.weigh(shares, &mut wrong, whole);
+        let (Some(weight), true) = (weight, is_good) else { return };
+        let next = progress.conditions.len() as u32;
+        let condition = *progress.conditions.entry(condition).or_insert(next);
+        progress.sum += weight;
+        let (time_s, duration_s) = match self.basis {
+            Basis::Trace => (weight, 0.0),
+            _ => (f64::NAN, weight),
+        };
+        self.rows.push(ProfileRow { line: line as u32, time_s, duration_s, condition });
+    }
+
+    /// What a cell of the weighing column says, in seconds or parts of the whole.
+    fn weight(&self, cell: &str, factor: f64, line: usize, progress: &mut Progress<'_>) -> Result<f64, String> {
+        let x = csv::number(cell)?;
+        if self.basis == Basis::Trace {
+            if let Some((before, other)) = progress.last.filter(|l| x * factor <= l.0) {
+                let word = if x * factor < before { "falls" } else { "does not rise" };
+                return Err(format!("the time {word}: {} s here, {} s in line {other}", x * factor, before));
+            }
+            progress.last = Some((x * factor, line));
+        } else if x < 0.0 {
+            return Err(format!("`{cell}` is below zero, and this weighs a row"));
         }
-        if wrong.more > 0 {
-            let message = format!("{} more errors of these kinds", wrong.more);
-            wrong.all.push(Diagnostic::new(Code::BadTable, "", message));
-        }
-        if wrong.all.has_errors() {
-            return Err(wrong.all);
-        }
-        let mut numbered: Vec<(Box<[u32]>, u32)> = conditions.into_iter().collect();
-        numbered.sort_by_key(|c| c.1);
-        profile.conditions = numbered.into_iter().map(|c| c.0).collect();
-        profile.gather();
-        Ok(profile)
+        Ok(x * factor)
     }
 
     /// Durations of the rows, and what is remarkable about them.
@@ -575,6 +542,26 @@ impl Profile {
         self.settings.iter().map(|s| s.header.as_str())
     }
 
+    /// Its columns without that of the weight, with the values of every row.
+    pub(super) fn table_columns(&self) -> impl Iterator<Item = (Column, ColumnValues)> + '_ {
+        self.settings.iter().enumerate().map(move |(k, s)| {
+            let cells = self.rows.iter().map(move |row| {
+                let value = self.conditions[row.condition as usize][k];
+                s.values[value as usize].as_str()
+            });
+            match s.is_text {
+                true => {
+                    (Column::text(s.header.clone()), ColumnValues::Texts(cells.map(|c| c.to_owned().into()).collect()))
+                }
+                // Every cell was read as a number before.
+                false => (
+                    Column::number(s.header.clone(), s.unit.clone()),
+                    ColumnValues::Numbers(cells.map(|c| c.parse().unwrap_or(f64::NAN)).collect()),
+                ),
+            }
+        })
+    }
+
     /// The cells of a condition as they stand in the text.
     pub fn cells(&self, condition: usize) -> impl ExactSizeIterator<Item = &str> {
         let values = &self.conditions[condition];
@@ -609,13 +596,13 @@ impl Profile {
 
 impl Setting {
     /// The position of a cell's value among those known, checked where it is new.
-    fn read(&mut self, cell: &str, subject: &Subject) -> Result<u32, Box<Diagnostic>> {
+    fn read(&mut self, cell: &str, model: &Model) -> Result<u32, Box<Diagnostic>> {
         let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
-        let value = match self.target.measure(subject) {
+        let value = match self.target.measure(model) {
             Measure::Text | Measure::Flag => cell.to_owned(),
             measure => {
                 let plain = cell.replace('\u{2212}', "-");
-                let x = number(&plain).map_err(fault)?;
+                let x = csv::number(&plain).map_err(fault)?;
                 if measure == Measure::Integer && x.fract() != 0.0 {
                     return Err(fault(format!("`{cell}` is not a whole number, and this quantity is one")));
                 }
@@ -623,11 +610,7 @@ impl Setting {
             }
         };
         let text = if self.unit.is_empty() { value.clone() } else { format!("{value} {}", self.unit) };
-        self.target.check(subject, std::slice::from_ref(&text)).map_err(|mut d| {
-            // A cell is one value.
-            d.hints.iter_mut().for_each(|h| *h = h.replace("; `all` takes them all", ""));
-            d
-        })?;
+        self.target.check(model, std::slice::from_ref(&text))?;
         self.values.push(value);
         Ok(self.values.len() as u32 - 1)
     }

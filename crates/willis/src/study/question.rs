@@ -3,21 +3,21 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
+use crate::model::{Model, Target, Who, oil_temperature, quantity};
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::{Dimension, Quantity};
 
-use super::Subject;
-use super::target::{Target, Who, oil_temperature, quantity};
-
 /// What stays the same while other quantities vary.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Hold {
     /// The loads as the operation gives them, torques as torques and powers as powers.
     #[default]
@@ -31,15 +31,22 @@ pub enum Hold {
 }
 
 impl Hold {
+    /// All there are.
+    pub const ALL: [Self; 4] = [Self::AsGiven, Self::Torque, Self::Power, Self::Output];
+
+    /// Its name in the train file: `as-given`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::AsGiven => "as-given",
+            Self::Torque => "torque",
+            Self::Power => "power",
+            Self::Output => "output",
+        }
+    }
+
     /// By its name in the train file.
     pub fn named(name: &str) -> Option<Self> {
-        match name {
-            "as-given" => Some(Self::AsGiven),
-            "torque" => Some(Self::Torque),
-            "power" => Some(Self::Power),
-            "output" => Some(Self::Output),
-            _ => None,
-        }
+        Self::ALL.into_iter().find(|h| h.name() == name)
     }
 }
 
@@ -49,7 +56,7 @@ const MOST_TRAINS: usize = 64;
 /// The operating point from which a study starts, and what is held.
 #[derive(Clone, Debug)]
 pub struct Question<'s> {
-    subject: &'s Subject,
+    model: &'s Model,
     base: Operation,
     hold: Hold,
     /// The torque that the output keeps, positive where it drives.
@@ -75,12 +82,12 @@ impl<'s> Question<'s> {
     /// # Errors
     /// No such operation or state; an operation whose loads cannot be held as asked.
     pub fn new(
-        subject: &'s Subject,
+        model: &'s Model,
         operation: Option<&str>,
         state: Option<&str>,
         hold: Hold,
     ) -> Result<Self, Diagnostics> {
-        let train = subject.train();
+        let train = model.train();
         let unknown = |what: &str, name: &str, known: Vec<&str>| {
             let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no {what} `{name}`"));
             let d = d.suggest(name, known.iter().copied());
@@ -117,14 +124,14 @@ impl<'s> Question<'s> {
             place: String::new(),
         });
         base.state = state.or(base.state);
-        let mut question = Self { subject, base, hold, output: None };
+        let mut question = Self { model, base, hold, output: None };
         question.settle()?;
         Ok(question)
     }
 
     /// The train of the study.
-    pub fn subject(&self) -> &'s Subject {
-        self.subject
+    pub fn model(&self) -> &'s Model {
+        self.model
     }
 
     /// The operating point from which the study starts.
@@ -139,7 +146,7 @@ impl<'s> Question<'s> {
 
     /// Puts the loads of the base into the form that is held.
     fn settle(&mut self) -> Result<(), Diagnostics> {
-        let train = self.subject.train();
+        let train = self.model.train();
         if matches!(self.hold, Hold::AsGiven) || self.base.loads.is_empty() {
             return match self.hold {
                 Hold::Output => Err(refuse(
@@ -261,7 +268,7 @@ impl<'s> Question<'s> {
         if trains.0.len() >= MOST_TRAINS {
             trains.0.clear();
         }
-        let train = self.subject.with(&of_train).map(Arc::new);
+        let train = self.model.train_with(&of_train).map(Arc::new);
         trains.0.insert(key, train.clone());
         train
     }

@@ -12,9 +12,10 @@
 mod balance;
 mod seeded;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::{self, Margin, Point, Selection, Verdict};
+use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::losses::mesh_friction::MeshFriction;
 use crate::operating_point::LossKind;
@@ -28,11 +29,12 @@ const WORTH_TELLING: f64 = 1e-3;
 const NO_EFFECT: f64 = 1e-13;
 
 /// What every input does to efficiency and losses: the results contract `willis-sensitivity-1`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Sensitivity {
     /// `willis-sensitivity-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// Every operation asked for.
@@ -41,8 +43,13 @@ pub struct Sensitivity {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+impl Contract for Sensitivity {
+    const FORMAT: &'static str = "willis-sensitivity-1";
+}
+
 /// What every input does at one operating point.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct OperationSensitivity {
     /// Name of the operation.
@@ -74,7 +81,9 @@ pub struct OperationSensitivity {
 }
 
 /// How far derivatives are settled.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Checks {
     /// Largest derivative of input less output less losses, over the largest of the three: round-off.
     pub balance_residual: f64,
@@ -85,7 +94,8 @@ pub struct Checks {
 }
 
 /// The step of a quantity for which changes are told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum StepKind {
@@ -118,10 +128,24 @@ impl StepKind {
             Self::Unit => "+1",
         }
     }
+
+    /// How large it is, in words.
+    pub fn size(self) -> &'static str {
+        match self {
+            Self::Percent => "1 %",
+            Self::Kelvin => "1 K",
+            Self::Degree => "1°",
+            Self::Hundredth => "0.01",
+            Self::Rpm => "1 rpm",
+            Self::TenthMillimetre => "0.1 mm",
+            Self::Unit => "1",
+        }
+    }
 }
 
 /// What one quantity does. Changes for a step are the derivative times the step: exact for small ones.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct QuantitySensitivity {
     /// Its path, as the file has it: `P1.geometry.module`, `B1.radial_load`; of the operation what an
@@ -130,7 +154,7 @@ pub struct QuantitySensitivity {
     /// Its value, SI.
     pub value: f64,
     /// SI unit of the value.
-    pub unit: &'static str,
+    pub unit: String,
     /// Whether it is not given but taken.
     pub assumed: bool,
     /// The step for which changes are told.
@@ -153,7 +177,8 @@ pub struct QuantitySensitivity {
 }
 
 /// What a quantity does to one loss.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SourceChange {
     /// What loses it.
@@ -161,7 +186,7 @@ pub struct SourceChange {
     /// What kind of loss it is.
     pub kind: LossKind,
     /// Its law.
-    pub law: &'static str,
+    pub law: String,
     /// Change for the step, W.
     pub change_w: f64,
 }
@@ -258,7 +283,7 @@ pub fn sensitivity(train: &Train, selection: &Selection) -> Result<Sensitivity, 
         return Err(wrong);
     }
     Ok(Sensitivity {
-        format: "willis-sensitivity-1",
+        format: Format::new(),
         train: train.name.clone(),
         operations,
         diagnostics: notes.into_iter().collect(),
@@ -365,7 +390,7 @@ fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, Strin
         .map(|(name, kind, law, loss)| SourceChange {
             name: name.clone(),
             kind: *kind,
-            law,
+            law: (*law).to_owned(),
             change_w: loss.eps * step_size,
         })
         .collect();
@@ -374,7 +399,7 @@ fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, Strin
     Ok(QuantitySensitivity {
         name: quantity.name,
         value: quantity.value,
-        unit: quantity.unit,
+        unit: quantity.unit.to_owned(),
         assumed: quantity.assumed,
         step,
         step_size,

@@ -3,43 +3,54 @@
 mod assumed;
 mod report;
 
-use std::collections::BTreeMap;
-
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::analysis::Losses;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::{Model, Target, Who};
 use crate::train::{Load, Measure, Train};
 use crate::units::{self, Quantity};
+use crate::work::{self, Cancelled, Work};
 
+use super::answer::{PointAnswer, PointVerdict};
+use super::axis::with_unit;
+use super::column::{Column, ColumnTable};
 use super::design::Design;
-use super::distribution::{Distribution, Reader, fault, plain};
+use super::distribution::{Distribution, Reader, fault, plain, rounded};
 use super::question::{Hold, Question, Trains};
-use super::sweep::{Answer, Seen, VERDICTS};
-use super::target::{Target, Who};
-use super::{Axis, Statistics, Subject};
+use super::summary::{self, LawChoice, Seen, WarningKind};
+use super::{Axis, Statistics};
 
-pub use report::{Choice, Influence, Output, Reported, Uncertainty};
+pub use report::{ChoiceResult, Influence, UncertainQuantity, UncertainResult, Uncertainty};
 
 /// Most samples of a plan.
 const MOST_SAMPLES: usize = 1 << 16;
 /// A sampled number is a decimal of so many digits, which the train file can say too.
 const DIGITS: usize = 9;
 
-/// What is asked.
-#[derive(Clone, Debug)]
+/// What an uncertainty is asked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default, deny_unknown_fields)]
 pub struct UncertaintyRequest {
-    /// This operation of the file; else the first.
+    /// The operation of the train file whose efficiency and losses are asked. Default: the first one that suits the
+    /// state.
     pub operation: Option<String>,
-    /// In this state of the shift table.
+    /// The state of the shift table. Default: that of the operation.
     pub state: Option<String>,
-    /// `QUANTITY=DISTRIBUTION`; see [`Distribution`].
+    /// What is uncertain, each a quantity and its distribution. `P1.mesh_efficiency=0.985..0.995`: everything between is
+    /// equally likely; `oil.temperature=normal(70 degC, 5 K)`: mean and standard deviation;
+    /// `P1.sun.roughness=triangular(0.2, 0.4, 0.8 um)`: least, most likely, greatest;
+    /// `P1.sun.roughness=lognormal(0.4 um, 1.3)`: median and factor; `P1.face_width=+-5%`: about the value of the file;
+    /// `state=3,4`: these values, each as likely as the others. Default, where no laws are named either: the given
+    /// losses and roughnesses by ±20 %, the oil's temperature by ±5 K, and the friction laws.
     pub vary: Vec<String>,
-    /// Families whose laws are each as likely as the others, or `all`.
+    /// Families of loss laws whose laws are each as likely as the others, `mesh_friction`; `all` takes every family that
+    /// matters for this train.
     pub laws: Vec<String>,
-    /// How many samples; made a power of two.
+    /// How many samples are drawn, from 128 to 65536; made a power of two. Default: 1024.
     pub samples: usize,
-    /// Other seeds give other points.
+    /// The seed: the same seed gives the same samples everywhere, another one gives others. Default: 1.
     pub seed: u64,
 }
 
@@ -50,9 +61,10 @@ impl Default for UncertaintyRequest {
 }
 
 /// How an uncertain quantity is distributed.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(untagged)]
-pub enum Likely {
+pub enum UncertainValue {
     /// A number between others.
     Between(Distribution),
     /// Each of these is as likely as the others.
@@ -67,7 +79,7 @@ pub struct Uncertain {
     /// Its unit; empty for plain numbers and texts.
     pub unit: String,
     /// How it is distributed.
-    pub likely: Likely,
+    pub likely: UncertainValue,
     /// What the file has, as written.
     pub nominal: Option<String>,
     target: Target,
@@ -77,20 +89,29 @@ impl Uncertain {
     /// Its value at a coordinate from 0 to 1, as the train file writes it.
     pub fn setting(&self, p: f64) -> String {
         match &self.likely {
-            Likely::Between(d) => self.text(d.quantile(p)),
-            Likely::Each(all) => all[self.choice(p)].clone(),
+            UncertainValue::Between(d) => self.text(d.quantile(p)),
+            UncertainValue::Each(all) => all[self.choice(p)].clone(),
+        }
+    }
+
+    /// Its column in a table of samples.
+    fn column(&self) -> Column {
+        match self.likely {
+            UncertainValue::Between(_) => Column::number(with_unit(&self.name, &self.unit), self.unit.clone()),
+            UncertainValue::Each(_) => Column::text(self.name.clone()),
         }
     }
 
     /// The number of the choice at a coordinate; 0 for a number between others.
     fn choice(&self, p: f64) -> usize {
         match &self.likely {
-            Likely::Between(_) => 0,
-            Likely::Each(all) => ((p * all.len() as f64) as usize).min(all.len() - 1),
+            UncertainValue::Between(_) => 0,
+            UncertainValue::Each(all) => ((p * all.len() as f64) as usize).min(all.len() - 1),
         }
     }
 
     fn text(&self, x: f64) -> String {
+        // Rounded as it is evaluated.
         let number = plain(x, DIGITS);
         if self.unit.is_empty() { number } else { format!("{number} {}", self.unit) }
     }
@@ -98,20 +119,75 @@ impl Uncertain {
     /// Its distribution in words.
     pub fn describe(&self) -> String {
         match &self.likely {
-            Likely::Between(d) => d.describe(&self.unit),
-            Likely::Each(all) => all.join(", "),
+            UncertainValue::Between(d) => d.describe(&self.unit),
+            UncertainValue::Each(all) => all.join(", "),
         }
     }
+}
+
+/// An uncertainty in memory.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct UncertaintyAnswer {
+    /// The distributions, and what dominates them.
+    pub report: Uncertainty,
+    /// Every sample: the values of the uncertain quantities, the verdict and the results.
+    pub samples: ColumnTable,
+}
+
+/// How sure the results of an operating point are.
+///
+/// The answer does not depend on how `work` shares the points out.
+///
+/// # Errors
+/// What [`UncertaintyPlan::new`] refuses, and [`Code::Cancelled`].
+///
+/// # Example
+/// ```
+/// use willis::model::Model;
+/// use willis::study::{UncertaintyRequest, uncertainty};
+/// use willis::work::Serial;
+///
+/// let model = Model::from_toml(r#"
+///     format = 1
+///     name = "reducer"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+///     mesh_efficiency = 0.99
+///     [[operation]]
+///     name = "full load"
+///     speeds = { s = "1000 rpm" }
+///     torques = { s = "10 N m" }
+/// "#)?;
+/// let vary = vec!["P1.mesh_efficiency=0.98..1".into()];
+/// let answer = uncertainty(&model, &UncertaintyRequest { vary, samples: 256, ..Default::default() }, &Serial)?;
+/// assert_eq!(answer.samples.len(), 256);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn uncertainty(
+    model: &Model,
+    request: &UncertaintyRequest,
+    work: &dyn Work,
+) -> Result<UncertaintyAnswer, Diagnostics> {
+    let plan = UncertaintyPlan::new(model, request)?;
+    let evaluated = plan.evaluate_all(work)?;
+    Ok(UncertaintyAnswer { report: plan.finish(&evaluated), samples: plan.table(&evaluated) })
 }
 
 /// Uncertain quantities, an operating point, and the points at which it is evaluated.
 ///
 /// Work comes in pieces, so that a caller can spread it over processors: every piece is a range of points, and pieces
-/// [joined](Evaluated::join) in their order give the same result however they were cut.
+/// [joined](SampleResult::join) in their order give the same result however they were cut.
 ///
 /// # Example
 /// ```
-/// use willis::study::{Subject, UncertaintyPlan, UncertaintyRequest};
+/// use willis::model::Model;
+/// use willis::study::{UncertaintyPlan, UncertaintyRequest};
 ///
 /// let text = r#"
 ///     format = 1
@@ -129,10 +205,10 @@ impl Uncertain {
 ///     speeds = { s = "1000 rpm" }
 ///     torques = { s = "10 N m" }
 /// "#;
-/// let subject = Subject::new(text, &[], &mut |_| Err("no files".into())).unwrap();
+/// let model = Model::from_toml(text).unwrap();
 /// let vary = vec!["P1.mesh_efficiency=0.98..1".into()];
 /// let request = UncertaintyRequest { vary, samples: 256, ..Default::default() };
-/// let plan = UncertaintyPlan::new(&subject, &request)?;
+/// let plan = UncertaintyPlan::new(&model, &request)?;
 /// let evaluated = plan.evaluate(0..plan.len(), &mut Default::default());
 /// let found = plan.finish(&evaluated);
 /// // (1 − i0 η²)/(1 − i0) with i0 = −7/3 is monotonous in η: its median is that of η.
@@ -147,40 +223,28 @@ pub struct UncertaintyPlan<'s> {
     design: Design,
     assumptions: Vec<String>,
     warnings: Vec<String>,
-    /// Of the values of a point: name, unit.
-    outputs: Vec<(String, &'static str)>,
+    /// Of the values of a point.
+    outputs: Vec<Column>,
     nominal: Vec<f64>,
-    nominal_verdict: &'static str,
+    nominal_verdict: PointVerdict,
 }
 
 /// Values at some points.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Evaluated {
-    /// Of every point: its place in [`VERDICTS`].
-    verdicts: Vec<u8>,
+pub struct SampleResult {
+    /// Of every point.
+    verdicts: Vec<PointVerdict>,
     /// Of every point: one for each output; NaN where there is none.
     values: Vec<f64>,
-    seen: BTreeMap<String, Seen>,
+    seen: Seen,
 }
 
-impl Evaluated {
+impl SampleResult {
     /// Adds what was found at the points that follow.
     pub fn join(&mut self, later: Self) {
         self.verdicts.extend(later.verdicts);
         self.values.extend(later.values);
-        for (kind, seen) in later.seen {
-            match self.seen.get_mut(&kind) {
-                Some(own) => own.count += seen.count,
-                None => drop(self.seen.insert(kind, seen)),
-            }
-        }
-    }
-
-    fn see(&mut self, kind: String, message: &str, point: usize) {
-        match self.seen.get_mut(&kind) {
-            Some(own) => own.count += 1,
-            None => drop(self.seen.insert(kind, Seen { count: 1, message: message.into(), point: point as u64 })),
-        }
+        summary::join(&mut self.seen, &later.seen);
     }
 }
 
@@ -193,7 +257,7 @@ fn listed(all: &[String]) -> String {
 }
 
 fn errors(wrong: Diagnostics) -> String {
-    Answer::refused(wrong).reason
+    PointAnswer::refused(wrong).reason
 }
 
 impl<'s> UncertaintyPlan<'s> {
@@ -202,9 +266,9 @@ impl<'s> UncertaintyPlan<'s> {
     /// # Errors
     /// No operating point, unknown quantities, distributions that mean nothing, quantities named twice; a train that is
     /// refused with every quantity at the middle of its distribution.
-    pub fn new(subject: &'s Subject, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
+    pub fn new(model: &'s Model, request: &UncertaintyRequest) -> Result<Self, Diagnostics> {
         let mut wrong = Diagnostics::default();
-        let question = Question::new(subject, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+        let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
         if question.base().loads.is_empty() {
             let message = match &request.state {
                 Some(state) => {
@@ -274,13 +338,12 @@ impl<'s> UncertaintyPlan<'s> {
             assumptions.push("the uncertain quantities are independent of each other".into());
         }
         let cut = |q: &Uncertain| {
-            matches!(&q.likely, Likely::Between(Distribution::Normal { .. } | Distribution::Lognormal { .. }))
+            matches!(&q.likely, UncertainValue::Between(Distribution::Normal { .. } | Distribution::Lognormal { .. }))
         };
         if quantities.iter().any(cut) {
             assumptions.push("normal and lognormal distributions are cut off at three standard deviations".into());
         }
-        let one = |message: String| Diagnostics::from_iter([Diagnostic::new(Code::BadAxis, "", message)]);
-        let design = Design::new(quantities.len(), samples, request.seed).map_err(one)?;
+        let design = Design::new(quantities.len(), samples, request.seed)?;
         let mut plan = Self {
             question,
             quantities,
@@ -289,7 +352,7 @@ impl<'s> UncertaintyPlan<'s> {
             warnings: vec![],
             outputs: vec![],
             nominal: vec![],
-            nominal_verdict: "",
+            nominal_verdict: PointVerdict::Refused,
         };
         plan.name_outputs();
         plan.check()?;
@@ -297,11 +360,11 @@ impl<'s> UncertaintyPlan<'s> {
     }
 
     fn name_outputs(&mut self) {
-        let train = self.question.subject().train();
-        self.outputs = vec![("efficiency".into(), ""), ("loss_w".into(), "W")];
-        self.outputs.extend(KINDS.iter().map(|kind| (format!("{kind}_loss_w"), "W")));
-        self.outputs.extend(sources(train).map(|name| (format!("loss.{name}_w"), "W")));
-        let answer = Answer::of(train, self.question.base());
+        let train = self.question.model().train();
+        self.outputs = vec![Column::number("efficiency", ""), Column::number("loss_w", "W")];
+        self.outputs.extend(KINDS.iter().map(|kind| Column::number(format!("{kind}_loss_w"), "W")));
+        self.outputs.extend(sources(train).map(|name| Column::number(format!("loss.{name}_w"), "W")));
+        let answer = PointAnswer::of(train, self.question.base());
         self.nominal = self.values(&answer);
         self.nominal_verdict = answer.verdict;
     }
@@ -318,8 +381,8 @@ impl<'s> UncertaintyPlan<'s> {
         let mut warnings = vec![];
         for (k, q) in self.quantities.iter().enumerate() {
             let at: Vec<f64> = match &q.likely {
-                Likely::Between(_) => vec![1e-9, 1.0 - 1e-9],
-                Likely::Each(all) => (0..all.len()).map(|c| (c as f64 + 0.5) / all.len() as f64).collect(),
+                UncertainValue::Between(_) => vec![1e-9, 1.0 - 1e-9],
+                UncertainValue::Each(all) => (0..all.len()).map(|c| (c as f64 + 0.5) / all.len() as f64).collect(),
             };
             for p in at {
                 let mut place = middle.clone();
@@ -327,8 +390,8 @@ impl<'s> UncertaintyPlan<'s> {
                 if let Err(why) = ask(&place) {
                     // The end itself, not a number beside it.
                     let shown = match &q.likely {
-                        Likely::Between(d) => q.text(d.ends()[usize::from(p > 0.5)]),
-                        Likely::Each(_) => q.setting(p),
+                        UncertainValue::Between(d) => q.text(d.ends()[usize::from(p > 0.5)]),
+                        UncertainValue::Each(_) => q.setting(p),
                     };
                     let message = format!(
                         "{} = {shown} is refused: {}; samples like it are counted, and have no result",
@@ -383,48 +446,64 @@ impl<'s> UncertaintyPlan<'s> {
     }
 
     /// The answer at a point.
-    pub fn answer(&self, point: usize, trains: &mut Trains) -> Answer {
+    pub fn answer(&self, point: usize, trains: &mut Trains) -> PointAnswer {
         match self.question.at(&self.settings_at(&self.design.at(point)), trains) {
-            Ok((train, operation)) => Answer::of(&train, &operation),
-            Err(wrong) => Answer::refused(wrong),
+            Ok((train, operation)) => PointAnswer::of(&train, &operation),
+            Err(wrong) => PointAnswer::refused(wrong),
         }
     }
 
     /// The answer at a value of an axis: at a point, or with the file as written. A quantity that is itself the axis
     /// takes the axis' value.
-    pub(crate) fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> Answer {
+    pub fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> PointAnswer {
         let mut settings = point.map_or_else(Vec::new, |p| self.settings_at(&self.design.at(p)));
         settings.retain(|s| *s.0 != axis.target);
         settings.push((&axis.target, axis.setting(k)));
         match self.question.at(&settings, trains) {
-            Ok((train, operation)) => Answer::of(&train, &operation),
-            Err(wrong) => Answer::refused(wrong),
+            Ok((train, operation)) => PointAnswer::of(&train, &operation),
+            Err(wrong) => PointAnswer::refused(wrong),
         }
     }
 
+    /// The values at every point.
+    ///
+    /// # Errors
+    /// The work was cancelled.
+    pub fn evaluate_all(&self, work: &dyn Work) -> Result<SampleResult, Cancelled> {
+        /// Points of a piece: whole groups, about so many points.
+        const PIECE: usize = 64;
+        let piece = self.group() * (PIECE / self.group()).max(1);
+        work.begin("points", self.len() as u64);
+        let parts = work::map(work, self.len().div_ceil(piece), |k| {
+            let points = k * piece..((k + 1) * piece).min(self.len());
+            let part = self.evaluate(points.clone(), &mut Trains::default());
+            work.advance(points.len() as u64);
+            part
+        })?;
+        let mut all = SampleResult::default();
+        parts.into_iter().for_each(|part| all.join(part));
+        Ok(all)
+    }
+
     /// The values at a range of points.
-    pub fn evaluate(&self, points: std::ops::Range<usize>, trains: &mut Trains) -> Evaluated {
-        let mut all = Evaluated::default();
+    pub fn evaluate(&self, points: std::ops::Range<usize>, trains: &mut Trains) -> SampleResult {
+        let mut all = SampleResult::default();
         for point in points {
             let answer = self.answer(point, trains);
-            let verdict = VERDICTS.iter().position(|v| *v == answer.verdict).expect("a verdict is one of them");
-            all.verdicts.push(verdict as u8);
+            all.verdicts.push(answer.verdict);
             all.values.extend(self.values(&answer));
             if !self.design.is_sample(point) {
                 continue;
             }
             if !answer.reason.is_empty() {
-                all.see(format!("reason: {}", answer.verdict), &answer.reason, point);
+                summary::see(&mut all.seen, WarningKind::Reason(answer.verdict), &answer.reason, point as u64);
             }
-            let mut told: Vec<String> = vec![];
-            for (code, message) in &answer.warnings {
-                // Laws are told apart, places and numbers are not.
-                let kind = match message.split_once(" of ") {
-                    Some((law, _)) if law.contains(" = ") => format!("{} {law}", code.as_str()),
-                    _ => code.as_str().to_owned(),
-                };
+            let mut told: Vec<WarningKind> = vec![];
+            for warning in &answer.warnings {
+                // Laws are counted one by one, places and numbers are not.
+                let kind = WarningKind::Warning { code: warning.code, law: warning.law.clone() };
                 if !told.contains(&kind) {
-                    all.see(kind.clone(), message, point);
+                    summary::see(&mut all.seen, kind.clone(), &warning.message, point as u64);
                     told.push(kind);
                 }
             }
@@ -432,13 +511,13 @@ impl<'s> UncertaintyPlan<'s> {
         all
     }
 
-    fn values(&self, answer: &Answer) -> Vec<f64> {
-        let Some(s) = answer.solution.as_ref().filter(|_| answer.verdict == "unique") else {
+    fn values(&self, answer: &PointAnswer) -> Vec<f64> {
+        let Some(s) = answer.solution.as_ref().filter(|_| answer.is_unique()) else {
             return vec![f64::NAN; self.outputs.len()];
         };
         let l: &Losses = &s.losses_w;
         let mut values = vec![answer.efficiency(), s.loss_w, l.mesh, l.bearing, l.windage, l.churning, l.seal];
-        values.extend(sources(self.question.subject().train()).map(|name| {
+        values.extend(sources(self.question.model().train()).map(|name| {
             let mut own = s.sources.iter().filter(|x| x.name == name).map(|x| x.loss_w).peekable();
             match own.peek() {
                 Some(_) => own.sum(),
@@ -462,18 +541,18 @@ fn sources(train: &Train) -> impl Iterator<Item = &str> {
 
 /// Reads `QUANTITY=DISTRIBUTION`.
 fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> Result<Uncertain, Box<Diagnostic>> {
-    let subject = question.subject();
+    let model = question.model();
     let Some((name, values)) = text.split_once('=') else {
         return Err(Box::new(fault(text, "there is no `=` between a quantity and its distribution")));
     };
     let (name, values) = (name.trim(), values.trim());
-    let target = Target::parse(name, subject)?;
+    let target = Target::parse(name, model)?;
     if values.is_empty() {
         return Err(Box::new(fault(text, "there is no distribution")));
     }
-    let measure = target.measure(subject);
+    let measure = target.measure(model);
     let nominal = nominal(&target, question);
-    let found = |unit: String, likely: Likely| Uncertain {
+    let found = |unit: String, likely: UncertainValue| Uncertain {
         name: name.to_owned(),
         unit,
         likely,
@@ -489,12 +568,12 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
             return Err(Box::new(fault(text, "this train can use no two laws of the family")));
         }
         assumptions.push(told);
-        return Ok(found(String::new(), Likely::Each(laws)));
+        return Ok(found(String::new(), UncertainValue::Each(laws)));
     }
     let base = nominal.as_deref().and_then(|b| Reader::base_of(b, measure));
     let reader = Reader { whole: text, measure, base };
     let all = match measure {
-        Measure::Text | Measure::Flag => target.choices(subject, &list()).unwrap_or_else(list),
+        Measure::Text | Measure::Flag => target.choices(model, &list()).unwrap_or_else(list),
         Measure::Integer if values.contains("..") => {
             let ends = values
                 .split_once("..")
@@ -514,7 +593,7 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
             }
             Some(read) => {
                 // What the file says of a number of this kind, before anything is computed.
-                return Ok(found(read.unit, Likely::Between(read.distribution)));
+                return Ok(found(read.unit, UncertainValue::Between(read.distribution)));
             }
             None => {
                 let mut all = list();
@@ -527,7 +606,7 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
             }
         },
     };
-    target.check(subject, &all).map_err(|what| {
+    target.check(model, &all).map_err(|what| {
         let mut d = *what;
         d.message = format!("`{name}`: {}", d.message);
         Box::new(d)
@@ -540,13 +619,13 @@ fn read(text: &str, question: &Question<'_>, assumptions: &mut Vec<String>) -> R
     }
     let what = if matches!(target, Target::Law(_)) { "laws are" } else { "values are" };
     assumptions.push(format!("{name}: the {what} equally likely"));
-    Ok(found(String::new(), Likely::Each(all)))
+    Ok(found(String::new(), UncertainValue::Each(all)))
 }
 
 /// What the file has, as it writes it.
 fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
-    let (subject, base) = (question.subject(), question.base());
-    let train = subject.train();
+    let (model, base) = (question.model(), question.base());
+    let train = model.train();
     // The unit in which people say it.
     let said = |q: &Quantity, unit: &str, turn: bool| {
         let one = units::parse(&format!("1 {unit}"), q.dimension).expect("a unit of it").si();
@@ -554,7 +633,7 @@ fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
         format!("{} {unit}", plain(if turn { -value } else { value }, 12))
     };
     match target {
-        Target::File(key) => subject.document().value(key),
+        Target::File(key) => model.document().value(key),
         Target::Law(family) => assumed::in_force(train, family).map(str::to_owned),
         Target::State => base.state.map(|k| train.states()[k].name.clone()),
         Target::Temperature => {

@@ -3,167 +3,32 @@
 mod dynamic;
 mod physical;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::exact::Rational;
 use crate::losses::Laws;
 
-use super::describe::{EfficiencySpec, GearSpec, MeshSpec, OperationSpec, ShiftElementSpec, StateSpec, TrainBuilder};
-use super::input::{Assembled, Has, inputs};
+use super::assembler::{Assembler, Load, NO_CONTROLS, bad_name, check_name, unique};
+use super::described::{GivenFriction, GivenMesh, GivenSet, sign};
+use super::input::{Assembled, inputs};
+use super::physical::{BearingMount, Housing, Lubrication, Rotor, SealMount};
+use super::specification::field::{Field, Tabular};
+use super::specification::{OperationSpec, ShiftElementSpec, Specification, StateSpec};
+use super::words::clip;
 use super::{
-    Efficiency, FRAME, Gear, LossTable, Member, MemberId, MemberKind, Mesh, MeshId, Operation, ShiftElement,
-    ShiftElementId, ShiftElementKind, State, Train, expand,
+    Efficiency, FRAME, Gear, Load as Prescribed, LossTable, Member, MemberId, MemberKind, Mesh, MeshId, Operation,
+    ShiftElement, ShiftElementId, ShiftElementKind, State, Train, expand,
 };
 
 /// Largest train that is analysed; beyond it exact elimination is no longer bounded in time.
-pub(super) const MOST_MESHES: usize = 128;
+const MOST_MESHES: usize = 128;
 const MOST_MEMBERS: usize = 1024;
 const MOST_STATES: usize = 256;
 const MOST_OPERATIONS: usize = 4096;
 const MOST_SCENARIOS: usize = 256;
-const MOST_TEETH: i64 = 100_000;
-const MOST_COUNT: i64 = 1000;
-
-/// Where expansion of the sets and resolution of names put what they find.
-pub(super) struct Assembler<'a> {
-    pub diagnostics: &'a mut Diagnostics,
-    pub members: Vec<Member>,
-    pub meshes: Vec<Mesh>,
-    /// What it is about, and what was assumed of it.
-    pub assumptions: Vec<(String, String)>,
-    pub laws: Laws,
-    /// The coefficient of friction where nothing better is known.
-    pub friction_coefficient: f64,
-    loss_tables: Vec<LossTable>,
-    by_name: HashMap<String, MemberId>,
-    mesh_names: HashSet<String>,
-}
 
 impl Assembler<'_> {
-    pub fn report(&mut self, diagnostic: Diagnostic) {
-        self.diagnostics.push(diagnostic);
-    }
-
-    /// Whether it is still worth looking for what a wrong name may have meant: the search compares
-    /// it with every known name, and nobody reads hundreds of hints.
-    fn hints_are_read(&self) -> bool {
-        self.diagnostics.len() < 100
-    }
-
-    /// The member of that name, or an error at `place`.
-    pub fn resolve(&mut self, name: &str, place: &str) -> Option<MemberId> {
-        let found = self.by_name.get(name).copied();
-        if found.is_none() && !self.hints_are_read() {
-            self.report(Diagnostic::new(Code::UnknownName, place, format!("there is no member `{}`", clip(name))));
-        } else if found.is_none() {
-            let known: Vec<&str> = self.members.iter().map(|m| m.name.as_str()).collect();
-            let mut d = Diagnostic::new(Code::UnknownName, place, format!("there is no member `{}`", clip(name)));
-            d = d.suggest(name, known.iter().copied());
-            if d.hints.is_empty() {
-                d = d.hint(format!("name it in `members`, or use one of: {}", list(known)));
-            }
-            self.report(d);
-        }
-        found
-    }
-
-    /// The position of a name among those known of its kind (`key` in the file), or an error.
-    fn position(&mut self, what: &str, key: &str, name: &str, place: String, known: &[&str]) -> Option<usize> {
-        let found = known.iter().position(|k| *k == name);
-        if found.is_none() {
-            let mut d = Diagnostic::new(Code::UnknownName, place, format!("there is no {what} `{}`", clip(name)));
-            if self.hints_are_read() {
-                d = d.suggest(name, known.iter().copied());
-            }
-            if self.hints_are_read() && d.hints.is_empty() {
-                d = d.hint(match known.len() {
-                    0 => format!("add it as a [[{key}]]"),
-                    _ => format!("the {what}s are: {}", list(known.to_vec())),
-                });
-            }
-            self.report(d);
-        }
-        found
-    }
-
-    pub fn assume(&mut self, about: &str, what: impl Into<String>) {
-        self.assumptions.push((about.to_owned(), what.into()));
-    }
-
-    /// The assumptions as sentences, one for all parts of which the same is assumed.
-    fn assumptions(&self) -> Vec<String> {
-        let mut all: Vec<(Vec<&str>, &str)> = Vec::new();
-        for (about, what) in &self.assumptions {
-            match all.iter_mut().find(|(_, w)| w == what) {
-                Some((list, _)) => list.push(about),
-                None => all.push((vec![about], what)),
-            }
-        }
-        all.into_iter().map(|(about, what)| format!("{}: {what}", about.join(", "))).collect()
-    }
-
-    pub fn add_planet(&mut self, name: String) -> MemberId {
-        let id = MemberId(self.members.len());
-        self.by_name.insert(name.clone(), id);
-        self.members.push(Member { name, kind: MemberKind::Planet });
-        id
-    }
-
-    /// The name of a mesh that was given none: names given by the user stay theirs, and further
-    /// meshes between the same members get a number.
-    pub fn default_mesh_name(&mut self, base: String) -> String {
-        let numbered = (2..).map(|k| format!("{base}-{k}"));
-        let mut names = std::iter::once(base.clone()).chain(numbered);
-        let name = names.find(|n| !self.mesh_names.contains(n)).expect("numbers do not end");
-        self.mesh_names.insert(name.clone());
-        name
-    }
-
-    /// A tooth count as a number to calculate with; out of range is reported once, here.
-    pub fn teeth(&mut self, teeth: i64, place: &str) -> Rational {
-        if !(1..=MOST_TEETH).contains(&teeth) {
-            let message = format!("{teeth} teeth: a tooth count is an integer from 1 to {MOST_TEETH}");
-            let mut d = Diagnostic::new(Code::OutOfRange, place, message);
-            if teeth < 0 {
-                d = d.hint("a ring gear has `internal = true` (or is the `ring` of a set), not a negative tooth count");
-            }
-            self.report(d);
-        }
-        Rational::from(teeth.clamp(1, MOST_TEETH))
-    }
-
-    pub fn count(&mut self, count: i64, place: &str) -> u32 {
-        if !(1..=MOST_COUNT).contains(&count) {
-            let message = format!("a count of {count}: it is an integer from 1 to {MOST_COUNT}");
-            self.report(Diagnostic::new(Code::OutOfRange, place, message));
-        }
-        count.clamp(1, MOST_COUNT) as u32
-    }
-
-    pub fn efficiency(&mut self, spec: &EfficiencySpec, place: &str) -> Efficiency {
-        for value in [&spec.0.forward, &spec.0.backward] {
-            if value.sign() <= 0 || *value > Rational::ONE {
-                let shown = value.to_f64();
-                let mut d = Diagnostic::new(
-                    Code::OutOfRange,
-                    place,
-                    format!("an efficiency of {shown}: it is above 0 and at most 1"),
-                );
-                if (1.0..=100.0).contains(&shown) {
-                    d = d.hint(format!("if {shown} % is meant, write {}", shown / 100.0));
-                }
-                // The meshes of a set share one value, and its fault is told once.
-                if !self.diagnostics.iter().rev().take(4).any(|e| *e == d) {
-                    self.report(d);
-                }
-                return Efficiency::lossless();
-            }
-        }
-        spec.0.clone()
-    }
-
-    fn mesh(&mut self, spec: &MeshSpec, place: &str) {
+    fn mesh(&mut self, spec: &GivenMesh, place: &str) {
         let carrier = self.resolve(&spec.carrier, &format!("{place}.carrier"));
         let mut gears = Vec::with_capacity(2);
         for (k, g) in spec.gears.iter().enumerate() {
@@ -192,7 +57,7 @@ impl Assembler<'_> {
             .unwrap_or_else(|| self.default_mesh_name(format!("{}-{}", spec.gears[0].member, spec.gears[1].member)));
         let gears_of_pair = [0, 1].map(|k| {
             let g = &spec.gears[k];
-            (g.z() as f64, g.internal, g.tooth)
+            (g.z() as f64, g.internal, &g.tooth)
         });
         let alike = spec.same_sense == Some(true) && !any_internal;
         if spec.geometry.is_some() && (spec.bevel || alike) {
@@ -264,7 +129,7 @@ impl Assembler<'_> {
                     .hint("leave out `blocks`, or make it a one-way clutch: kind = \"one-way\""),
             );
         }
-        let friction = self.friction(&spec.friction, place);
+        let friction = self.friction(&GivenFriction::from(spec), place);
         let place = format!("{place}.members");
         let ids: Vec<_> =
             spec.members.iter().enumerate().map(|(k, m)| self.resolve(m, &format!("{place}[{k}]"))).collect();
@@ -296,7 +161,7 @@ impl Assembler<'_> {
             name: spec.name.clone(),
             kind: spec.kind,
             members,
-            blocks: spec.blocks.unwrap_or(-1),
+            blocks: spec.blocks.map_or(-1, sign),
             friction,
         })
     }
@@ -322,10 +187,10 @@ impl Assembler<'_> {
     }
 
     /// Names in studies; their axes are read where they are used.
-    fn studies(&mut self, spec: &TrainBuilder) {
-        let states: Vec<&str> = spec.states.iter().map(|s| s.name.as_str()).collect();
-        let operations: Vec<&str> = spec.operations.iter().map(|o| o.name.as_str()).collect();
-        for (k, study) in spec.studies.iter().enumerate() {
+    fn studies(&mut self, spec: &Specification) {
+        let states: Vec<&str> = spec.state.iter().map(|s| s.name.as_str()).collect();
+        let operations: Vec<&str> = spec.operation.iter().map(|o| o.name.as_str()).collect();
+        for (k, study) in spec.study.iter().enumerate() {
             if let Some(name) = &study.state {
                 self.position("state", "state", name, format!("study[{k}].state"), &states);
             }
@@ -346,7 +211,7 @@ impl Assembler<'_> {
             speeds: vec![],
             fixed: vec![],
             loads: vec![],
-            temperature: spec.temperature,
+            temperature: spec.temperature.plain(),
             place: place.clone(),
         };
         for (k, name) in spec.fixed.iter().enumerate() {
@@ -372,11 +237,12 @@ impl Assembler<'_> {
                 let message = format!("the speed of `{name}` is given twice");
                 self.report(Diagnostic::new(Code::HeldAndDriven, place, message).hint("keep one of the two"));
             } else {
-                operation.speeds.push((id, speed.clone()));
+                operation.speeds.push((id, speed.clone().into()));
             }
         }
-        for (name, load) in &spec.loads {
-            let table = if matches!(load, super::Load::Torque(_)) { "torques" } else { "powers" };
+        let torques = spec.torques.iter().map(|(m, t)| (m, "torques", Prescribed::Torque(t.clone().into())));
+        let powers = spec.powers.iter().map(|(m, p)| (m, "powers", Prescribed::Power(p.clone().into())));
+        for (name, table, load) in torques.chain(powers) {
             let place = format!("{place}.{table}.{name}");
             let Some(id) = self.resolve(name, &place) else { continue };
             if operation.loads.iter().any(|(m, _)| *m == id) {
@@ -386,36 +252,44 @@ impl Assembler<'_> {
                 let message = format!("`{name}` is held, so its torque is a result");
                 self.report(Diagnostic::new(Code::HeldAndDriven, place, message).hint("leave out one of the two"));
             } else {
-                operation.loads.push((id, load.clone()));
+                operation.loads.push((id, load));
             }
         }
         operation
     }
 }
 
-/// Checks the whole description. `None` when an error was reported.
-pub(super) fn assemble(spec: TrainBuilder, has: Has<'_>, diagnostics: &mut Diagnostics) -> Option<Train> {
-    let before = diagnostics.len();
+/// Reports what is too large to be analysed in bounded time.
+fn too_large(spec: &Specification, diagnostics: &mut Diagnostics) {
     for (what, is, most) in [
-        ("meshes", spec.meshes.len() + 2 * spec.sets.len(), MOST_MESHES),
-        ("members", spec.members.len() + spec.sets.len(), MOST_MEMBERS),
-        ("shift elements", spec.shift_elements.len(), MOST_MEMBERS),
-        ("states", spec.states.len(), MOST_STATES),
-        ("operations", spec.operations.len(), MOST_OPERATIONS),
-        ("bearings, seals and rotors", spec.bearings.len() + spec.seals.len() + spec.rotors.len(), MOST_MEMBERS),
-        ("drags and shafts", spec.drags.len() + spec.shafts.len(), MOST_MEMBERS),
-        ("scenarios", spec.scenarios.len(), MOST_SCENARIOS),
-        ("sources of a scenario", spec.scenarios.iter().map(|s| s.sources.len()).max().unwrap_or(0), MOST_MEMBERS),
+        ("meshes", spec.mesh.len() + 2 * spec.set.len(), MOST_MESHES),
+        ("members", spec.members.len() + spec.set.len(), MOST_MEMBERS),
+        ("shift elements", spec.shift_element.len(), MOST_MEMBERS),
+        ("states", spec.state.len(), MOST_STATES),
+        ("operations", spec.operation.len(), MOST_OPERATIONS),
+        ("bearings, seals and rotors", spec.bearing.len() + spec.seal.len() + spec.rotor.len(), MOST_MEMBERS),
+        ("drags and shafts", spec.drag.len() + spec.shaft.len(), MOST_MEMBERS),
+        ("scenarios", spec.scenario.len(), MOST_SCENARIOS),
+        ("sources of a scenario", spec.scenario.iter().map(|s| s.source.len()).max().unwrap_or(0), MOST_MEMBERS),
     ] {
         if is > most {
             let message = format!("{is} {what}: at most {most} are analysed");
             diagnostics.push(Diagnostic::new(Code::TooLarge, "", message).hint("split the train at a shaft"));
         }
     }
+}
+
+/// Checks the whole description. `None` when an error was reported.
+pub(super) fn assemble<'a>(
+    spec: &Specification,
+    load: &'a mut Load<'a>,
+    diagnostics: &'a mut Diagnostics,
+) -> Option<Train> {
+    let before = diagnostics.len();
+    too_large(spec, diagnostics);
     if diagnostics.len() > before {
         return None;
     }
-
     let frame = Member { name: "frame".into(), kind: MemberKind::Frame };
     let mut a = Assembler {
         diagnostics,
@@ -426,171 +300,56 @@ pub(super) fn assemble(spec: TrainBuilder, has: Has<'_>, diagnostics: &mut Diagn
         friction_coefficient: crate::losses::mesh_friction::Constant::DEFAULT.mu,
         loss_tables: vec![],
         by_name: HashMap::from([("frame".into(), FRAME)]),
-        mesh_names: spec.meshes.iter().filter_map(|m| m.name.clone()).collect(),
+        mesh_names: spec.mesh.iter().filter_map(|m| m.name.clone()).collect(),
+        load,
+        files: BTreeMap::new(),
     };
-    if spec.name.chars().any(char::is_control) {
-        bad_name(&mut a, &spec.name, "name", NO_CONTROLS);
-    }
-    for (k, name) in spec.members.iter().enumerate() {
-        let place = format!("members[{k}]");
-        if name == "frame" {
-            a.report(
-                Diagnostic::new(Code::BadName, place, "`frame` always exists and needs no entry").hint("leave it out"),
-            );
-            continue;
-        }
-        check_name(&mut a, name, &place, true);
-        if a.by_name.contains_key(name) {
-            let message = format!("the member `{}` is named twice", clip(name));
-            a.report(Diagnostic::new(Code::DuplicateName, place, message).hint("members have different names"));
-            continue;
-        }
-        a.by_name.insert(name.clone(), MemberId(a.members.len()));
-        a.members.push(Member { name: name.clone(), kind: MemberKind::Shaft });
-    }
+    a.name_members(spec);
+    a.choose_laws(spec.laws.as_ref());
+    let lubrication = spec.oil.as_ref().and_then(|o| a.oil(&o.twin()));
 
-    a.choose_laws(&spec.laws, spec.friction_coefficient);
-    let lubrication = spec.oil.as_ref().and_then(|o| a.oil(o));
-    unique(&mut a, "set", "set", spec.sets.iter().map(|s| s.name.as_str()));
     // Planets exist before anything can refer to them.
-    let sets: Vec<_> = spec.sets.iter().map(|s| (s, expand::planets(&mut a, s))).collect();
-    for (k, mesh) in spec.meshes.iter().enumerate() {
+    let given: Vec<GivenSet> = spec.set.iter().map(GivenSet::from).collect();
+    a.check_sets(spec);
+    let sets: Vec<_> = given.iter().map(|s| (s, expand::planets(&mut a, s))).collect();
+    let meshes: Vec<GivenMesh> = spec.mesh.iter().map(GivenMesh::from).collect();
+    for (k, mesh) in meshes.iter().enumerate() {
         a.mesh(mesh, &format!("mesh[{k}]"));
     }
-    let mut resolved_sets = Vec::new();
-    for (k, (set, planets)) in sets.iter().enumerate() {
-        resolved_sets.push(expand::expand(&mut a, set, planets, k));
-    }
-    let given = spec.meshes.iter().filter_map(|m| m.name.as_deref());
-    unique(&mut a, "mesh", "mesh", given);
+    let resolved_sets: Vec<_> =
+        (sets.iter().enumerate()).map(|(k, (set, planets))| expand::expand(&mut a, set, planets, k)).collect();
+    unique(&mut a, "mesh", "mesh", spec.mesh.iter().filter_map(|m| m.name.as_deref()));
 
-    unique(&mut a, "shift element", "shift_element", spec.shift_elements.iter().map(|e| e.name.as_str()));
-    unique(&mut a, "state", "state", spec.states.iter().map(|s| s.name.as_str()));
-    unique(&mut a, "operation", "operation", spec.operations.iter().map(|o| o.name.as_str()));
-    let shift_elements: Vec<_> = spec
-        .shift_elements
-        .iter()
-        .enumerate()
-        .filter_map(|(k, e)| a.shift_element(e, &format!("shift_element[{k}]")))
-        .collect();
-    let states: Vec<_> =
-        spec.states.iter().enumerate().map(|(k, s)| a.state(s, &spec.shift_elements, &format!("state[{k}]"))).collect();
-    let operations: Vec<_> = spec
-        .operations
-        .iter()
-        .enumerate()
-        .map(|(k, o)| a.operation(o, &spec.states, format!("operation[{k}]")))
-        .collect();
-
-    unique(&mut a, "bearing", "bearing", spec.bearings.iter().map(|b| b.name.as_str()));
-    unique(&mut a, "seal", "seal", spec.seals.iter().map(|s| s.name.as_str()));
-    unique(&mut a, "rotor", "rotor", spec.rotors.iter().map(|r| r.name.as_str()));
-    let mut bearings: Vec<_> =
-        (spec.bearings.iter().enumerate()).filter_map(|(k, b)| a.bearing(b, &format!("bearing[{k}]"))).collect();
-    let seals: Vec<_> = spec.seals.iter().enumerate().filter_map(|(k, s)| a.seal(s, &format!("seal[{k}]"))).collect();
-    let rotors: Vec<_> =
-        spec.rotors.iter().enumerate().filter_map(|(k, r)| a.rotor(r, &format!("rotor[{k}]"))).collect();
-    a.oil_of_seals(&lubrication, &seals);
-    let masses: Vec<(MemberId, f64)> = (sets.iter())
-        .flat_map(|(set, planets)| planets.iter().copied().zip(set.planets().into_iter().map(|(_, p)| p.body.mass)))
-        .filter_map(|(planet, mass)| Some((planet, mass?)))
-        .collect();
-    a.housing(&spec.housing);
-    for (k, o) in spec.operations.iter().enumerate() {
-        let place = format!("operation[{k}].temperature");
-        match (o.temperature, &lubrication) {
-            (Some(t), Some(l)) => a.temperature(l, t, &place),
-            (Some(_), None) if spec.oil.is_none() => a.report(
-                Diagnostic::new(Code::MissingKey, place, "a temperature is given, but the train has no oil")
-                    .hint("add [oil] with a name of the catalogue, or its viscosities"),
-            ),
-            _ => {}
-        }
-    }
+    let (shift_elements, states, operations) = a.shifting(spec);
+    let (mut bearings, seals, rotors) = a.machinery(spec, &lubrication);
+    a.surroundings(spec, &lubrication);
     // An oil that is wrong was reported; it is not missing as well.
     if lubrication.is_some() || spec.oil.is_none() {
         a.missing_for_losses(&lubrication, &bearings, &rotors);
     }
-
-    let mut terminals: Vec<MemberId> = Vec::new();
-    for (k, name) in spec.terminals.iter().enumerate() {
-        let place = format!("terminals[{k}]");
-        let Some(id) = a.resolve(name, &place) else { continue };
-        if id == FRAME {
-            a.report(Diagnostic::new(Code::BadName, place, "the frame is no terminal").hint("leave it out"));
-        } else if terminals.contains(&id) {
-            let message = format!("the terminal `{name}` is named twice");
-            a.report(Diagnostic::new(Code::DuplicateName, place, message).hint("name it once"));
-        } else {
-            terminals.push(id);
-        }
-    }
-    let input = spec.input.as_ref().and_then(|n| a.resolve(n, "input")).or(terminals.first().copied());
-    let output = spec.output.as_ref().and_then(|n| a.resolve(n, "output")).or(terminals.last().copied());
-    // Inputs and outputs are terminals without being listed a second time.
-    let named = [(input, "input".to_owned()), (output, "output".to_owned())].into_iter();
-    let in_states = states
-        .iter()
-        .enumerate()
-        .flat_map(|(k, s)| [(s.input, format!("state[{k}].input")), (s.output, format!("state[{k}].output"))]);
-    for (end, place) in named.chain(in_states).filter_map(|(end, place)| Some((end?, place))) {
-        if end == FRAME {
-            let d = Diagnostic::new(Code::BadName, place, "the frame is at rest: it is neither input nor output");
-            a.report(d.hint("name a member that turns"));
-        } else if !terminals.contains(&end) {
-            terminals.push(end);
-        }
-    }
+    let (terminals, input, output) = a.terminals(spec, &states);
+    let masses: Vec<(MemberId, f64)> = (sets.iter())
+        .flat_map(|(set, planets)| planets.iter().copied().zip(set.planets().into_iter().map(|(_, p)| p.body.mass)))
+        .filter_map(|(planet, mass)| Some((planet, mass?)))
+        .collect();
     let shifting = shift_elements.iter().flat_map(|e| e.members);
     let central: Vec<MemberId> = terminals.iter().copied().chain(shifting).collect();
     let planets = a.planet_bodies(&masses, &mut bearings, &central);
-    let mut inertias = a.inertias(&spec.inertias);
-    let moving = !spec.scenarios.is_empty();
-    let of_planets = a.planet_inertias(&sets, &resolved_sets, &planets, &inertias, moving);
+
+    let mut inertias = a.inertias(&spec.inertias.plain());
+    let of_planets = a.planet_inertias(&sets, &resolved_sets, &planets, &inertias, !spec.scenario.is_empty());
     inertias.extend(of_planets);
-    unique(&mut a, "drag", "drag", spec.drags.iter().map(|d| d.name.as_str()));
-    unique(&mut a, "shaft", "shaft", spec.shafts.iter().map(|s| s.name.as_str()));
-    unique(&mut a, "scenario", "scenario", spec.scenarios.iter().map(|s| s.name.as_str()));
-    unique(&mut a, "study", "study", spec.studies.iter().map(|s| s.name.as_str()));
-    a.studies(&spec);
-    let drags: Vec<_> = spec.drags.iter().enumerate().filter_map(|(k, d)| a.drag(d, &format!("drag[{k}]"))).collect();
-    let shafts: Vec<_> =
-        spec.shafts.iter().enumerate().filter_map(|(k, s)| a.shaft(s, &format!("shaft[{k}]"))).collect();
+    a.names_of_motion(spec);
+    let drags = a.each(&spec.drag, "drag", |a, d, place| a.drag(&d.twin(), place));
+    let shafts = a.each(&spec.shaft, "shaft", |a, s, place| a.shaft(&s.twin(), place));
     let scene = dynamic::Scene {
         states: &states,
-        elements: spec.shift_elements.iter().map(|e| (e.name.as_str(), e.kind)).collect(),
-        shafts: spec.shafts.iter().map(|s| s.name.as_str()).collect(),
+        elements: spec.shift_element.iter().map(|e| (e.name.as_str(), e.kind)).collect(),
+        shafts: spec.shaft.iter().map(|s| s.name.as_str()).collect(),
     };
-    let scenarios: Vec<_> = (spec.scenarios.iter().enumerate())
-        .filter_map(|(k, s)| a.scenario(s, &scene, format!("scenario[{k}]")))
-        .collect();
-    for operation in &operations {
-        for (member, load) in &operation.loads {
-            if !terminals.contains(member) {
-                let name = a.members[member.0].name.clone();
-                let table = if matches!(load, super::Load::Torque(_)) { "torques" } else { "powers" };
-                let message = format!("`{name}` carries an external load here and is not a terminal");
-                a.report(
-                    Diagnostic::new(Code::NotATerminal, format!("{}.{table}.{name}", operation.place), message)
-                        .hint(format!("add \"{name}\" to `terminals`")),
-                );
-            }
-        }
-    }
-    if a.meshes.len() > MOST_MESHES || a.members.len() > MOST_MEMBERS {
-        let message = format!(
-            "{} meshes and {} members: at most {MOST_MESHES} and {MOST_MEMBERS} are analysed",
-            a.meshes.len(),
-            a.members.len()
-        );
-        a.report(Diagnostic::new(Code::TooLarge, "", message).hint("split the train at a shaft"));
-    }
-    if spec.members.is_empty() && a.diagnostics.len() == before {
-        a.report(
-            Diagnostic::new(Code::MissingKey, "members", "the train has no members")
-                .hint("name every rotor: members = [\"sun\", \"ring\", \"carrier\"]"),
-        );
-    }
+    let scenarios = a.each(&spec.scenario, "scenario", |a, s, place| a.scenario(&s.twin(), &scene, place.to_owned()));
+    a.loads_on_terminals(&operations, &terminals);
+    a.is_a_train(spec, before);
     if a.diagnostics.len() == before || !a.diagnostics.has_errors() {
         let touched = (shift_elements.iter().flat_map(|e| e.members))
             .chain(inertias.iter().map(|i| i.member))
@@ -601,23 +360,24 @@ pub(super) fn assemble(spec: TrainBuilder, has: Has<'_>, diagnostics: &mut Diagn
         loose_members(&mut a, touched);
     }
 
-    let failed = a.diagnostics.iter().skip(before).any(|d| d.severity == crate::diagnostic::Severity::Error);
+    if a.diagnostics.iter().skip(before).any(|d| d.severity == crate::diagnostic::Severity::Error) {
+        return None;
+    }
     let assumptions = a.assumptions();
     let set_planets: Vec<Vec<MemberId>> = sets.iter().map(|(_, planets)| planets.clone()).collect();
-    let Assembler { diagnostics, members, meshes, laws, loss_tables, .. } = a;
-    let inputs = match failed {
-        true => vec![],
-        false => {
-            let lubrication = lubrication.as_ref();
-            let (bearings, planets, set_planets) = (&bearings[..], &planets[..], &set_planets[..]);
-            inputs(&spec, &Assembled { meshes: &meshes, lubrication, bearings, planets, set_planets }, has)
-        }
+    let Assembler { diagnostics, members, meshes: assembled, laws, loss_tables, .. } = a;
+    let inputs = {
+        let lubrication = lubrication.as_ref();
+        let (bearings, planets, set_planets) = (&bearings[..], &planets[..], &set_planets[..]);
+        inputs(spec, &meshes, &given, &Assembled { meshes: &assembled, lubrication, bearings, planets, set_planets })
     };
-    (!failed).then(|| Train {
-        name: spec.name,
-        source: spec.source,
+    let around = spec.housing.clone().unwrap_or_default().twin();
+    let housing = Housing { enclosure: around.enclosure, axial_gap: around.axial_gap };
+    Some(Train {
+        name: spec.name.clone(),
+        source: spec.source.clone(),
         members,
-        meshes,
+        meshes: assembled,
         sets: resolved_sets.into_iter().flatten().collect(),
         shift_elements,
         states,
@@ -629,7 +389,7 @@ pub(super) fn assemble(spec: TrainBuilder, has: Has<'_>, diagnostics: &mut Diagn
         assumptions,
         lubrication,
         laws,
-        housing: spec.housing,
+        housing,
         bearings,
         seals,
         rotors,
@@ -639,9 +399,206 @@ pub(super) fn assemble(spec: TrainBuilder, has: Has<'_>, diagnostics: &mut Diagn
         shafts,
         loss_tables,
         scenarios,
-        studies: spec.studies,
+        studies: spec.study.clone(),
         inputs,
     })
+}
+
+/// An operating point of a train that is there, by names; what is wrong with it where it is.
+pub(super) fn operating_point(train: &Train, spec: &OperationSpec) -> Result<Operation, Diagnostics> {
+    let mut diagnostics = Diagnostics::default();
+    let mut no_files = |file: &str| Err(format!("`{file}`: an operating point names no tables"));
+    let mut a = Assembler {
+        diagnostics: &mut diagnostics,
+        members: train.members.clone(),
+        meshes: vec![],
+        assumptions: vec![],
+        laws: train.laws,
+        friction_coefficient: 0.0,
+        loss_tables: vec![],
+        by_name: (train.members.iter().enumerate()).map(|(k, m)| (m.name.clone(), MemberId(k))).collect(),
+        mesh_names: HashSet::new(),
+        load: &mut no_files,
+        files: BTreeMap::new(),
+    };
+    let states: Vec<StateSpec> = train.states.iter().map(|s| StateSpec::new(s.name.as_str(), [])).collect();
+    let operation = a.operation(spec, &states, "operation".to_owned());
+    a.loads_on_terminals(std::slice::from_ref(&operation), &train.terminals);
+    match (operation.temperature, &train.lubrication) {
+        (Some(t), Some(l)) => a.temperature(l, t, "operation.temperature"),
+        (Some(_), None) => a.report(no_oil("operation.temperature".to_owned())),
+        (None, _) => {}
+    }
+    if diagnostics.has_errors() { Err(diagnostics) } else { Ok(operation) }
+}
+
+fn no_oil(place: String) -> Diagnostic {
+    Diagnostic::new(Code::MissingKey, place, "a temperature is given, but the train has no oil")
+        .hint("add [oil] with a name of the catalogue, or its viscosities")
+}
+
+impl Assembler<'_> {
+    fn name_members(&mut self, spec: &Specification) {
+        if spec.name.chars().any(char::is_control) {
+            bad_name(self, &spec.name, "name", NO_CONTROLS);
+        }
+        for (k, name) in spec.members.iter().enumerate() {
+            let place = format!("members[{k}]");
+            if name == "frame" {
+                let d = Diagnostic::new(Code::BadName, place, "`frame` always exists and needs no entry");
+                self.report(d.hint("leave it out"));
+                continue;
+            }
+            check_name(self, name, &place, true);
+            if self.by_name.contains_key(name) {
+                let message = format!("the member `{}` is named twice", clip(name));
+                let d = Diagnostic::new(Code::DuplicateName, place, message);
+                self.report(d.hint("members have different names"));
+                continue;
+            }
+            self.by_name.insert(name.clone(), MemberId(self.members.len()));
+            self.members.push(Member { name: name.clone(), kind: MemberKind::Shaft });
+        }
+    }
+
+    /// What can be wrong with sets before their gears are looked at.
+    fn check_sets(&mut self, spec: &Specification) {
+        unique(self, "set", "set", spec.set.iter().map(|s| s.name.as_str()));
+        for (k, set) in spec.set.iter().enumerate() {
+            for misuse in &set.misuse {
+                let message = format!("set `{}`: {misuse}", clip(&set.name));
+                let d = Diagnostic::new(Code::Conflict, format!("set[{k}]"), message);
+                self.report(d.hint(format!("its type is {}", set.kind())));
+            }
+            if set.mesh_efficiency.is_some() && set.basic_efficiency.is_some() {
+                let message = "`mesh_efficiency` and `basic_efficiency` both say what the set loses";
+                let d = Diagnostic::new(Code::Conflict, format!("set[{k}].basic_efficiency"), message);
+                self.report(d.hint("keep the one that is known"));
+            }
+        }
+    }
+
+    /// Each entry of a list at its place; those that are wrong were reported.
+    fn each<S, T>(&mut self, all: &[S], key: &str, mut check: impl FnMut(&mut Self, &S, &str) -> Option<T>) -> Vec<T> {
+        (all.iter().enumerate()).filter_map(|(k, one)| check(self, one, &format!("{key}[{k}]"))).collect()
+    }
+
+    fn shifting(&mut self, spec: &Specification) -> (Vec<ShiftElement>, Vec<State>, Vec<Operation>) {
+        unique(self, "shift element", "shift_element", spec.shift_element.iter().map(|e| e.name.as_str()));
+        unique(self, "state", "state", spec.state.iter().map(|s| s.name.as_str()));
+        unique(self, "operation", "operation", spec.operation.iter().map(|o| o.name.as_str()));
+        let shift_elements = self.each(&spec.shift_element, "shift_element", |a, e, place| a.shift_element(e, place));
+        let states = self.each(&spec.state, "state", |a, s, place| Some(a.state(s, &spec.shift_element, place)));
+        let operations =
+            self.each(&spec.operation, "operation", |a, o, place| Some(a.operation(o, &spec.state, place.to_owned())));
+        (shift_elements, states, operations)
+    }
+
+    fn machinery(
+        &mut self,
+        spec: &Specification,
+        lubrication: &Option<Lubrication>,
+    ) -> (Vec<BearingMount>, Vec<SealMount>, Vec<Rotor>) {
+        unique(self, "bearing", "bearing", spec.bearing.iter().map(|b| b.name.as_str()));
+        unique(self, "seal", "seal", spec.seal.iter().map(|s| s.name.as_str()));
+        unique(self, "rotor", "rotor", spec.rotor.iter().map(|r| r.name.as_str()));
+        let bearings = self.each(&spec.bearing, "bearing", |a, b, place| a.bearing(&b.twin(), place));
+        let seals = self.each(&spec.seal, "seal", |a, s, place| a.seal(&s.twin(), place));
+        let rotors = self.each(&spec.rotor, "rotor", |a, r, place| a.rotor(&r.twin(), place));
+        self.oil_of_seals(lubrication, &seals);
+        (bearings, seals, rotors)
+    }
+
+    /// The housing, and oil temperatures of operations.
+    fn surroundings(&mut self, spec: &Specification, lubrication: &Option<Lubrication>) {
+        self.housing(&spec.housing.clone().unwrap_or_default().twin());
+        for (k, o) in spec.operation.iter().enumerate() {
+            let place = format!("operation[{k}].temperature");
+            match (&o.temperature, lubrication) {
+                (Some(t), Some(l)) => self.temperature(l, t.si(), &place),
+                (Some(_), None) if spec.oil.is_none() => self.report(no_oil(place)),
+                _ => {}
+            }
+        }
+    }
+
+    /// Where external torques act, and where power enters and leaves when driving.
+    fn terminals(
+        &mut self,
+        spec: &Specification,
+        states: &[State],
+    ) -> (Vec<MemberId>, Option<MemberId>, Option<MemberId>) {
+        let mut terminals: Vec<MemberId> = Vec::new();
+        for (k, name) in spec.terminals.iter().enumerate() {
+            let place = format!("terminals[{k}]");
+            let Some(id) = self.resolve(name, &place) else { continue };
+            if id == FRAME {
+                self.report(Diagnostic::new(Code::BadName, place, "the frame is no terminal").hint("leave it out"));
+            } else if terminals.contains(&id) {
+                let message = format!("the terminal `{name}` is named twice");
+                self.report(Diagnostic::new(Code::DuplicateName, place, message).hint("name it once"));
+            } else {
+                terminals.push(id);
+            }
+        }
+        let input = spec.input.as_ref().and_then(|n| self.resolve(n, "input")).or(terminals.first().copied());
+        let output = spec.output.as_ref().and_then(|n| self.resolve(n, "output")).or(terminals.last().copied());
+        // Inputs and outputs are terminals without being listed a second time.
+        let named = [(input, "input".to_owned()), (output, "output".to_owned())].into_iter();
+        let in_states = states
+            .iter()
+            .enumerate()
+            .flat_map(|(k, s)| [(s.input, format!("state[{k}].input")), (s.output, format!("state[{k}].output"))]);
+        for (end, place) in named.chain(in_states).filter_map(|(end, place)| Some((end?, place))) {
+            if end == FRAME {
+                let d = Diagnostic::new(Code::BadName, place, "the frame is at rest: it is neither input nor output");
+                self.report(d.hint("name a member that turns"));
+            } else if !terminals.contains(&end) {
+                terminals.push(end);
+            }
+        }
+        (terminals, input, output)
+    }
+
+    fn names_of_motion(&mut self, spec: &Specification) {
+        unique(self, "drag", "drag", spec.drag.iter().map(|d| d.name.as_str()));
+        unique(self, "shaft", "shaft", spec.shaft.iter().map(|s| s.name.as_str()));
+        unique(self, "scenario", "scenario", spec.scenario.iter().map(|s| s.name.as_str()));
+        unique(self, "study", "study", spec.study.iter().map(|s| s.name.as_str()));
+        self.studies(spec);
+    }
+
+    fn loads_on_terminals(&mut self, operations: &[Operation], terminals: &[MemberId]) {
+        for operation in operations {
+            for (member, load) in operation.loads.iter().filter(|l| !terminals.contains(&l.0)) {
+                let name = self.members[member.0].name.clone();
+                let table = if matches!(load, Prescribed::Torque(_)) { "torques" } else { "powers" };
+                let message = format!("`{name}` carries an external load here and is not a terminal");
+                self.report(
+                    Diagnostic::new(Code::NotATerminal, format!("{}.{table}.{name}", operation.place), message)
+                        .hint(format!("add \"{name}\" to `terminals`")),
+                );
+            }
+        }
+    }
+
+    /// Whether there is a train at all, and none too large.
+    fn is_a_train(&mut self, spec: &Specification, before: usize) {
+        if self.meshes.len() > MOST_MESHES || self.members.len() > MOST_MEMBERS {
+            let message = format!(
+                "{} meshes and {} members: at most {MOST_MESHES} and {MOST_MEMBERS} are analysed",
+                self.meshes.len(),
+                self.members.len()
+            );
+            self.report(Diagnostic::new(Code::TooLarge, "", message).hint("split the train at a shaft"));
+        }
+        if spec.members.is_empty() && self.diagnostics.len() == before {
+            self.report(
+                Diagnostic::new(Code::MissingKey, "members", "the train has no members")
+                    .hint("name every rotor: members = [\"sun\", \"ring\", \"carrier\"]"),
+            );
+        }
+    }
 }
 
 /// Warns of members that mesh with nothing and are not `touched` by anything else.
@@ -656,69 +613,5 @@ fn loose_members(a: &mut Assembler<'_>, touched: HashSet<MemberId>) {
         let message = format!("`{name}` meshes with nothing and no shift element touches it");
         let place = format!("members[{}]", k - 1);
         a.report(Diagnostic::new(Code::Unconnected, place, message).hint("remove it, or check the names of the gears"));
-    }
-}
-
-fn check_name(a: &mut Assembler<'_>, name: &str, place: &str, reserve: bool) {
-    let why = if name.trim().is_empty() {
-        "a name cannot be empty"
-    } else if name.chars().count() > 64 {
-        "a name has at most 64 characters"
-    } else if name.contains('.') && reserve {
-        "a name has no dot (it separates a set from its planet)"
-    } else if name.chars().any(char::is_control) {
-        NO_CONTROLS
-    } else {
-        return;
-    };
-    bad_name(a, name, place, why);
-}
-
-const NO_CONTROLS: &str = "a name has no control characters";
-
-fn bad_name(a: &mut Assembler<'_>, name: &str, place: &str, why: &str) {
-    a.report(Diagnostic::new(Code::BadName, place, format!("`{}`: {why}", clip(&name.escape_debug().to_string()))));
-}
-
-fn unique<'n>(a: &mut Assembler<'_>, what: &str, path: &str, names: impl Iterator<Item = &'n str>) {
-    let mut seen = HashSet::new();
-    for (k, name) in names.enumerate() {
-        let place = format!("{path}[{k}].name");
-        check_name(a, name, &place, what == "set");
-        if !seen.insert(name) {
-            let message = format!("a second {what} is called `{}`", clip(name));
-            a.report(Diagnostic::new(Code::DuplicateName, place, message).hint("give it another name"));
-        }
-    }
-}
-
-/// Text from the user, short enough for a message.
-pub(super) fn clip(text: &str) -> String {
-    // What a terminal would obey is shown instead.
-    let text: String =
-        text.chars().flat_map(|c| if c.is_control() { c.escape_debug().collect() } else { vec![c] }).collect();
-    let text = text.as_str();
-    if text.chars().count() > 64 { text.chars().take(64).chain(['…']).collect() } else { text.into() }
-}
-
-/// Names for a hint, not more than fit a line.
-fn list(names: Vec<&str>) -> String {
-    const MOST: usize = 12;
-    let mut text = names.iter().take(MOST).copied().collect::<Vec<_>>().join(", ");
-    if names.len() > MOST {
-        text += ", …";
-    }
-    text
-}
-
-impl GearSpec {
-    /// Teeth within the bounds that [`Assembler::teeth`] enforces: safe to calculate with.
-    pub(super) fn z(&self) -> i64 {
-        self.teeth.clamp(1, MOST_TEETH)
-    }
-
-    /// What people call this gear's role in a set.
-    pub(super) fn role(&self) -> &'static str {
-        if self.internal { "ring" } else { "sun" }
     }
 }

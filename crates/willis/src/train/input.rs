@@ -3,8 +3,9 @@
 
 use crate::exact::Rational;
 
-use super::describe::physical::{GeometrySpec, ToothSpec};
-use super::describe::{EfficiencySpec, GearSpec, Parts, SetEfficiencySpec, SetSpec, TrainBuilder};
+use super::described::{GivenEfficiency, GivenGear, GivenMesh, GivenSet, Parts};
+use super::specification::field::Tabular;
+use super::specification::{EfficiencySpec, PlainGeometry, PlainTooth, SetEfficiencySpec, Specification, ToothSpec};
 use super::{BearingMount, Lubrication, Mesh, PlanetBody};
 
 /// A continuous number of the train file, or one that stands in for it.
@@ -88,9 +89,6 @@ pub(crate) enum RotorNumber {
     AxialGap,
 }
 
-/// Whether the file has something at a place; `None` for a train that does not come from a file.
-pub(super) type Has<'a> = Option<&'a dyn Fn(&str) -> bool>;
-
 /// What was assembled, as far as inputs went into it.
 pub(super) struct Assembled<'a> {
     pub meshes: &'a [Mesh],
@@ -102,25 +100,29 @@ pub(super) struct Assembled<'a> {
 }
 
 /// Every continuous number of a description and where it went.
-pub(super) fn inputs(spec: &TrainBuilder, train: &Assembled<'_>, has: Has<'_>) -> Vec<Input> {
-    let mut list = List { all: vec![], train, has };
+pub(super) fn inputs(
+    spec: &Specification,
+    meshes: &[GivenMesh],
+    sets: &[GivenSet],
+    train: &Assembled<'_>,
+) -> Vec<Input> {
+    let mut list = List { all: vec![], train };
     // Meshes stand in the order of the description, those of the sets behind.
-    for (j, mesh) in spec.meshes.iter().enumerate() {
+    for (j, mesh) in meshes.iter().enumerate() {
         if train.meshes.get(j).is_none_or(|m| m.set.is_some()) {
             return vec![];
         }
         // A path leads through names that the file has; a mesh without one has its number.
         let name = mesh.name.clone().unwrap_or_else(|| format!("mesh.{j}"));
-        let place = format!("mesh[{j}]");
         if let (Some(given), None) = (&mesh.efficiency, &mesh.loss_table) {
-            list.efficiency(&format!("{name}.efficiency"), &format!("{place}.efficiency"), given, &[(j, false)]);
+            list.efficiency(&format!("{name}.efficiency"), given, &[(j, false)]);
         }
-        let gears = [0, 1].map(|k| (format!("{name}.gears.{k}"), mesh.gears[k].tooth));
+        let gears = [0, 1].map(|k| (format!("{name}.gears.{k}"), &mesh.gears[k].tooth));
         if let Some(g) = &mesh.geometry {
-            list.teeth(j, &gears, g, &format!("{name}.geometry"), &format!("{place}.geometry"));
+            list.teeth(j, &gears, g, &format!("{name}.geometry"));
         }
     }
-    for (index, set) in spec.sets.iter().enumerate() {
+    for (index, set) in sets.iter().enumerate() {
         list.set(index, set);
     }
     list.oil(spec);
@@ -130,23 +132,23 @@ pub(super) fn inputs(spec: &TrainBuilder, train: &Assembled<'_>, has: Has<'_>) -
 
 /// The gears of one mesh of a set, each with its path and teeth, and the central one of them.
 struct Pair<'a> {
-    gears: [(&'static str, usize, ToothSpec); 2],
-    central: Option<(usize, &'a GearSpec)>,
+    gears: [(&'static str, usize, PlainTooth); 2],
+    central: Option<(usize, &'a GivenGear)>,
 }
 
 /// The meshes of a set, in the order in which they are assembled. Paths may hold the number of a list's entry.
-fn pairs(set: &SetSpec) -> Vec<Pair<'_>> {
-    let plain = |key: &'static str, tooth: ToothSpec| (key, 0, tooth);
+fn pairs(set: &GivenSet) -> Vec<Pair<'_>> {
+    let plain = |key: &'static str, tooth: &PlainTooth| (key, 0, tooth.clone());
     let with = |gears, central: Option<(usize, _)>| Pair { gears, central };
     match &set.parts {
         Parts::Simple { sun, ring, planet } => vec![
-            with([plain("sun", sun.tooth), plain("planet", planet.tooth)], Some((0, sun))),
-            with([plain("planet", planet.tooth), plain("ring", ring.tooth)], Some((1, ring))),
+            with([plain("sun", &sun.tooth), plain("planet", &planet.tooth)], Some((0, sun))),
+            with([plain("planet", &planet.tooth), plain("ring", &ring.tooth)], Some((1, ring))),
         ],
         Parts::DoublePlanet { sun, ring, inner, outer } => vec![
-            with([plain("sun", sun.tooth), plain("inner_planet", inner.tooth)], Some((0, sun))),
-            with([plain("inner_planet", inner.tooth), plain("outer_planet", outer.tooth)], None),
-            with([plain("outer_planet", outer.tooth), plain("ring", ring.tooth)], Some((1, ring))),
+            with([plain("sun", &sun.tooth), plain("inner_planet", &inner.tooth)], Some((0, sun))),
+            with([plain("inner_planet", &inner.tooth), plain("outer_planet", &outer.tooth)], None),
+            with([plain("outer_planet", &outer.tooth), plain("ring", &ring.tooth)], Some((1, ring))),
         ],
         Parts::Stepped { central, .. } => {
             let (mut suns, mut rings) = (0, 0);
@@ -154,13 +156,13 @@ fn pairs(set: &SetSpec) -> Vec<Pair<'_>> {
             for g in central {
                 if g.internal {
                     all.push(with(
-                        [("rings[#].planet", rings, g.planet_tooth), ("rings[#]", rings, g.tooth)],
+                        [("rings[#].planet", rings, g.planet_tooth.clone()), ("rings[#]", rings, g.tooth.clone())],
                         Some((1, g)),
                     ));
                     rings += 1;
                 } else {
                     all.push(with(
-                        [("suns[#]", suns, g.tooth), ("suns[#].planet", suns, g.planet_tooth)],
+                        [("suns[#]", suns, g.tooth.clone()), ("suns[#].planet", suns, g.planet_tooth.clone())],
                         Some((0, g)),
                     ));
                     suns += 1;
@@ -169,23 +171,23 @@ fn pairs(set: &SetSpec) -> Vec<Pair<'_>> {
             all
         }
         Parts::Ravigneaux { small_sun, large_sun, ring, short, long } => {
-            let (short, long) = (plain("short_planet", short.tooth), plain("long_planet", long.tooth));
+            let (short, long) = (plain("short_planet", &short.tooth), plain("long_planet", &long.tooth));
             let mut all = Vec::new();
             if let Some(g) = small_sun {
-                all.push(with([plain("small_sun", g.tooth), short], Some((0, g))));
+                all.push(with([plain("small_sun", &g.tooth), short.clone()], Some((0, g))));
             }
-            all.push(with([short, long], None));
+            all.push(with([short.clone(), long.clone()], None));
             if let Some(g) = large_sun {
-                all.push(with([plain("large_sun", g.tooth), long], Some((0, g))));
+                all.push(with([plain("large_sun", &g.tooth), long.clone()], Some((0, g))));
             }
             if let Some(g) = ring {
-                all.push(with([long, plain("ring", g.tooth)], Some((1, g))));
+                all.push(with([long, plain("ring", &g.tooth)], Some((1, g))));
             }
             all
         }
         Parts::Bevel { sides, .. } => {
-            let blank = ToothSpec::default();
-            sides.iter().map(|g| with([plain("side", blank), plain("planet", blank)], Some((0, g)))).collect()
+            let blank = ToothSpec::default().twin();
+            sides.iter().map(|g| with([plain("side", &blank), plain("planet", &blank)], Some((0, g)))).collect()
         }
     }
 }
@@ -193,7 +195,6 @@ fn pairs(set: &SetSpec) -> Vec<Pair<'_>> {
 struct List<'a> {
     all: Vec<Input>,
     train: &'a Assembled<'a>,
-    has: Has<'a>,
 }
 
 impl List<'_> {
@@ -205,51 +206,46 @@ impl List<'_> {
         }
     }
 
-    /// Whether a table or one number stands at a place; without a file, whether the numbers differ.
-    fn split(&self, place: &str, differ: bool) -> bool {
-        self.has.map_or(differ, |has| has(place))
-    }
-
     /// An efficiency of meshes; `swapped` where forward is the second gear driving.
-    fn efficiency(&mut self, path: &str, place: &str, given: &EfficiencySpec, meshes: &[(usize, bool)]) {
-        let EfficiencySpec(e) = given;
-        let split = self.split(&format!("{place}.forward"), e.forward != e.backward);
-        let mut add = |path: String, value: &Rational, forward: bool| {
+    fn efficiency(&mut self, path: &str, given: &EfficiencySpec, meshes: &[(usize, bool)]) {
+        let split = given.is_directed();
+        let mut add = |path: String, value: Option<&Rational>, forward: bool| {
             for &(mesh, swapped) in meshes {
-                self.add(path.clone(), value.to_f64(), "-", false, Slot::Efficiency(mesh, forward != swapped));
+                let value = value.map_or(1.0, Rational::to_f64);
+                self.add(path.clone(), value, "-", false, Slot::Efficiency(mesh, forward != swapped));
             }
         };
         let name = |direction: &str| if split { format!("{path}.{direction}") } else { path.to_owned() };
-        add(name("forward"), &e.forward, true);
-        add(name("backward"), &e.backward, false);
+        add(name("forward"), given.forward(), true);
+        add(name("backward"), given.backward(), false);
     }
 
-    fn set(&mut self, index: usize, set: &SetSpec) {
+    fn set(&mut self, index: usize, set: &GivenSet) {
         let meshes: Vec<usize> =
             (0..self.train.meshes.len()).filter(|&j| self.train.meshes[j].set == Some(index)).collect();
         let pairs = pairs(set);
         if meshes.len() != pairs.len() {
             return;
         }
-        let (name, place) = (&set.name, format!("set[{index}]"));
+        let name = &set.name;
         match &set.efficiency {
             None => {}
-            Some(SetEfficiencySpec::Meshes { external, internal }) => {
-                let (path, place) = (format!("{name}.mesh_efficiency"), format!("{place}.mesh_efficiency"));
-                let (outer, inner) = (&external.0, &internal.0);
+            Some(GivenEfficiency::Meshes(given)) => {
+                let path = format!("{name}.mesh_efficiency");
                 let ring = |j: &usize| self.train.meshes[*j].gears.iter().any(|g| g.internal);
                 let all = |wanted: &dyn Fn(&usize) -> bool| -> Vec<(usize, bool)> {
                     meshes.iter().filter(|j| wanted(j)).map(|j| (*j, false)).collect()
                 };
-                let (with_ring, without) = (all(&ring), all(&|j| !ring(j)));
-                if self.split(&format!("{place}.external"), outer != inner) {
-                    self.efficiency(&format!("{path}.external"), &format!("{place}.external"), external, &without);
-                    self.efficiency(&format!("{path}.internal"), &format!("{place}.internal"), internal, &with_ring);
-                } else {
-                    self.efficiency(&path, &place, external, &all(&|_| true));
+                match given {
+                    SetEfficiencySpec::All(e) => self.efficiency(&path, e, &all(&|_| true)),
+                    SetEfficiencySpec::ByKind { external, internal } => {
+                        let (with_ring, without) = (all(&ring), all(&|j| !ring(j)));
+                        self.efficiency(&format!("{path}.external"), external, &without);
+                        self.efficiency(&format!("{path}.internal"), internal, &with_ring);
+                    }
                 }
             }
-            Some(SetEfficiencySpec::Basic(given)) => {
+            Some(GivenEfficiency::Basic(given)) => {
                 let booked: Vec<(usize, bool)> = match &set.parts {
                     Parts::Ravigneaux { ring, .. } => {
                         let suns = if ring.is_some() { 2 } else { 1 };
@@ -264,8 +260,7 @@ impl List<'_> {
                         vec![(first_mesh, swapped)]
                     }
                 };
-                let (path, place) = (format!("{name}.basic_efficiency"), format!("{place}.basic_efficiency"));
-                self.efficiency(&path, &place, given, &booked);
+                self.efficiency(&format!("{name}.basic_efficiency"), given, &booked);
             }
         }
         for (j, pair) in meshes.into_iter().zip(&pairs) {
@@ -273,14 +268,14 @@ impl List<'_> {
                 let (key, number, _) = pair.gears[k];
                 key.replace('#', &number.to_string())
             };
-            let gears = [0, 1].map(|k| (format!("{name}.{}", path(k)), pair.gears[k].2));
+            let gears = [0, 1].map(|k| (format!("{name}.{}", path(k)), &pair.gears[k].2));
             let own = pair.central.and_then(|(k, g)| Some((path(k), g.geometry.as_ref()?)));
             match (own, &set.geometry) {
                 (Some((key, g)), _) => {
-                    self.teeth(j, &gears, g, &format!("{name}.{key}.geometry"), &format!("{place}.{key}.geometry"));
+                    self.teeth(j, &gears, g, &format!("{name}.{key}.geometry"));
                 }
                 (None, Some(g)) => {
-                    self.teeth(j, &gears, g, &format!("{name}.geometry"), &format!("{place}.geometry"));
+                    self.teeth(j, &gears, g, &format!("{name}.geometry"));
                 }
                 (None, None) => {}
             }
@@ -294,22 +289,20 @@ impl List<'_> {
         }
     }
 
-    fn teeth(&mut self, j: usize, gears: &[(String, ToothSpec); 2], g: &GeometrySpec, path: &str, place: &str) {
+    fn teeth(&mut self, j: usize, gears: &[(String, &PlainTooth); 2], g: &PlainGeometry, path: &str) {
         let Some(teeth) = &self.train.meshes[j].teeth else { return };
-        let has = self.has;
-        let assumed = |key: &str| has.is_some_and(|has| !has(&format!("{place}.{key}")));
-        for (key, value, unit, slot) in [
-            ("module", Some(g.module), "m", Slot::Module(j)),
-            ("width", Some(g.width), "m", Slot::Width(j)),
-            ("pressure_angle", Some(g.pressure_angle), "rad", Slot::PressureAngle(j)),
+        for (key, value, unit, slot, given) in [
+            ("module", Some(g.module), "m", Slot::Module(j), true),
+            ("width", Some(g.width), "m", Slot::Width(j), true),
+            ("pressure_angle", Some(g.pressure_angle()), "rad", Slot::PressureAngle(j), g.pressure_angle.is_some()),
             // Spur gears become helical in one direction only.
-            ("helix", Some(g.helix).filter(|b| *b != 0.0), "rad", Slot::Helix(j)),
-            ("centre_distance", g.centre_distance, "m", Slot::CentreDistance(j)),
-            ("youngs_modulus", Some(g.youngs_modulus), "Pa", Slot::YoungsModulus(j)),
-            ("poisson_ratio", Some(g.poisson_ratio), "-", Slot::PoissonRatio(j)),
+            ("helix", Some(g.helix()).filter(|b| *b != 0.0), "rad", Slot::Helix(j), true),
+            ("centre_distance", g.centre_distance, "m", Slot::CentreDistance(j), true),
+            ("youngs_modulus", Some(g.youngs_modulus()), "Pa", Slot::YoungsModulus(j), g.youngs_modulus.is_some()),
+            ("poisson_ratio", Some(g.poisson_ratio()), "-", Slot::PoissonRatio(j), g.poisson_ratio.is_some()),
         ] {
             if let Some(value) = value {
-                self.add(format!("{path}.{key}"), value, unit, assumed(key), slot);
+                self.add(format!("{path}.{key}"), value, unit, !given, slot);
             }
         }
         for (k, (gear, t)) in gears.iter().enumerate() {
@@ -321,7 +314,7 @@ impl List<'_> {
                     Some(h) => self.add(format!("{gear}.addendum"), h, "-", false, Slot::Addendum(j, k)),
                     None => {
                         let slot = Slot::Addendum(j, k);
-                        self.add(format!("{path}.addendum"), g.addendum, "-", assumed("addendum"), slot);
+                        self.add(format!("{path}.addendum"), g.addendum(), "-", g.addendum.is_none(), slot);
                     }
                 }
                 if let Some(alteration) = t.tip_alteration {
@@ -332,7 +325,7 @@ impl List<'_> {
                 Some(h) => self.add(format!("{gear}.dedendum"), h, "-", false, Slot::Dedendum(j, k)),
                 None => {
                     let slot = Slot::Dedendum(j, k);
-                    self.add(format!("{path}.dedendum"), g.dedendum, "-", assumed("dedendum"), slot);
+                    self.add(format!("{path}.dedendum"), g.dedendum(), "-", g.dedendum.is_none(), slot);
                 }
             }
             let (rough, slot) = (teeth.roughness[k], Slot::Roughness(j, k));
@@ -346,8 +339,8 @@ impl List<'_> {
         }
     }
 
-    fn oil(&mut self, spec: &TrainBuilder) {
-        if let (Some(oil), Some(l)) = (&spec.oil, self.train.lubrication) {
+    fn oil(&mut self, spec: &Specification) {
+        if let (Some(oil), Some(l)) = (spec.oil.as_ref().map(Tabular::twin), self.train.lubrication) {
             // A catalogue's oil keeps its own density.
             let own = oil.viscosity.is_some() || oil.viscosity_40.is_some();
             let density = own.then_some(l.oil.density_15);
@@ -368,23 +361,25 @@ impl List<'_> {
             }
         }
         if self.train.meshes.iter().any(|m| m.computed) {
-            let mu = spec.friction_coefficient.unwrap_or(crate::losses::mesh_friction::Constant::DEFAULT.mu);
+            let given = spec.laws.as_ref().and_then(|l| l.friction_coefficient);
+            let mu = given.unwrap_or(crate::losses::mesh_friction::Constant::DEFAULT.mu);
             let path = "laws.friction_coefficient".to_owned();
-            self.add(path, mu, "-", spec.friction_coefficient.is_none(), Slot::FrictionCoefficient);
+            self.add(path, mu, "-", given.is_none(), Slot::FrictionCoefficient);
         }
-        if let Some(x) = spec.housing.enclosure {
+        let housing = spec.housing.clone().unwrap_or_default().twin();
+        if let Some(x) = housing.enclosure {
             self.add("housing.enclosure".into(), x, "-", false, Slot::Enclosure);
         }
-        if let Some(x) = spec.housing.axial_gap {
+        if let Some(x) = housing.axial_gap {
             self.add("housing.axial_gap".into(), x, "m", false, Slot::AxialGap);
         }
     }
 
-    fn machinery(&mut self, spec: &TrainBuilder) {
+    fn machinery(&mut self, spec: &Specification) {
         use BearingNumber as B;
         use RotorNumber as R;
-        if self.train.bearings.len() == spec.bearings.len() {
-            for (k, b) in spec.bearings.iter().enumerate() {
+        if self.train.bearings.len() == spec.bearing.len() {
+            for (k, b) in spec.bearing.iter().map(Tabular::twin).enumerate() {
                 for (key, value, unit, number) in [
                     ("bore", b.bore, "m", B::Bore),
                     ("outside_diameter", b.outside_diameter, "m", B::OutsideDiameter),
@@ -403,10 +398,10 @@ impl List<'_> {
                 }
             }
         }
-        for (k, s) in spec.seals.iter().enumerate() {
+        for (k, s) in spec.seal.iter().map(Tabular::twin).enumerate() {
             self.add(format!("{}.diameter", s.name), s.diameter, "m", false, Slot::Seal(k));
         }
-        for (k, r) in spec.rotors.iter().enumerate() {
+        for (k, r) in spec.rotor.iter().map(Tabular::twin).enumerate() {
             // Without a gap of its own a face has that of the rim.
             let face = if r.axial_gap.is_some() { "axial_gap" } else { "radial_gap" };
             for (key, value, number) in [

@@ -6,7 +6,7 @@ use crate::geometry::Pair;
 use crate::losses::seal::Material;
 use crate::real::{self, Real};
 
-use super::describe::physical::{Fluid, OilSupply};
+use super::specification::{Fluid, OilSupply};
 use super::{MemberId, Mesh, MeshId};
 
 /// Teeth of a mesh.
@@ -49,27 +49,56 @@ pub struct Lubrication {
 impl Lubrication {
     /// What is wrong with the oil's data at a temperature, K: it lies outside them, or they hold for one
     /// temperature only.
-    pub(crate) fn beyond(&self, temperature: f64) -> Option<String> {
+    pub(crate) fn beyond(&self, temperature: f64) -> Option<Beyond> {
+        let known = match self.oil.viscosity {
+            Viscosity::Fixed { .. } => Known::At(self.temperature),
+            _ => Known::Between(self.oil.temperature_range()),
+        };
+        let inside = match known {
+            Known::At(given) => (temperature - given).abs() <= 0.5,
+            Known::Between(_) => self.oil.covers(temperature),
+        };
+        (!inside).then(|| Beyond { oil: self.oil.name.clone(), temperature, known })
+    }
+}
+
+/// What surrounds the gears.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Housing {
+    /// Factor of the enclosure on windage.
+    pub enclosure: Option<f64>,
+    /// Axial distance from the gear faces to the wall, m.
+    pub axial_gap: Option<f64>,
+}
+
+/// A temperature that lies outside what is known of an oil.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Beyond {
+    oil: String,
+    /// K.
+    temperature: f64,
+    pub known: Known,
+}
+
+/// Where the viscosity of an oil is known; temperatures in K.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Known {
+    At(f64),
+    Between([f64; 2]),
+}
+
+impl std::fmt::Display for Beyond {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let celsius = |t: f64| t - 273.15;
-        let name = &self.oil.name;
-        if matches!(self.oil.viscosity, Viscosity::Fixed { .. }) {
-            return ((temperature - self.temperature).abs() > 0.5).then(|| {
-                format!(
-                    "{name} at {:.0} °C: its viscosity is given for {:.0} °C alone and taken as the same here",
-                    celsius(temperature),
-                    celsius(self.temperature)
-                )
-            });
+        write!(f, "{} at {:.0} °C: ", self.oil, celsius(self.temperature))?;
+        match self.known {
+            Known::At(t) => {
+                write!(f, "its viscosity is given for {:.0} °C alone and taken as the same here", celsius(t))
+            }
+            Known::Between([low, high]) => {
+                write!(f, "its data reach from {:.0} to {:.0} °C", celsius(low), celsius(high))
+            }
         }
-        let [low, high] = self.oil.temperature_range();
-        (!self.oil.covers(temperature)).then(|| {
-            format!(
-                "{name} at {:.0} °C: its data reach from {:.0} to {:.0} °C",
-                celsius(temperature),
-                celsius(low),
-                celsius(high)
-            )
-        })
     }
 }
 

@@ -7,12 +7,6 @@ use crate::train::SourceKind;
 use super::FixedStep;
 
 impl FixedStep {
-    /// Begins to count energies.
-    pub(super) fn with_energies(&mut self) {
-        self.energies = vec![0.0; self.engine.energies()];
-        self.came_in = vec![0.0; self.engine.system.drivers.len()];
-    }
-
     /// Work of the step's torques at the mean of the speeds before and after it.
     pub(super) fn count_energies(&mut self) {
         let s = &self.engine.system;

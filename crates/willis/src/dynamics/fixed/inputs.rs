@@ -1,10 +1,11 @@
 //! What enters a step: torques and end speeds of sources, what friction elements can hold, torques of shafts.
 
 use crate::dynamics::mode::dot;
-use crate::dynamics::system::{signals_of, source_torque};
+use crate::dynamics::source::{signals_of, source_torque};
 use crate::train::{MemberId, Signal, SourceKind};
 
-use super::{FixedStep, LEAST_UNBOUNDED, UNBOUNDED, jumps};
+use super::groups::{LEAST_UNBOUNDED, UNBOUNDED};
+use super::{FixedStep, jumps};
 
 impl FixedStep {
     /// Sets what the signals that are level for a while are worth, and which inputs are not.
@@ -37,7 +38,7 @@ impl FixedStep {
     /// What enters a step: torque or end speed of each source, torque with which each friction element can
     /// oppose slip, torque of each shaft, one.
     #[inline]
-    pub(in crate::dynamics) fn input(&self, k: usize, middle: f64) -> f64 {
+    pub(in crate::dynamics) fn enters(&self, k: usize, middle: f64) -> f64 {
         let w = dot(self.row_of_input(k), &self.v);
         let sum = self.integral_of(k).map_or(0.0, |i| self.rest[i]);
         self.factors[k] * self.input_at(k, middle, w, sum)
@@ -122,7 +123,7 @@ impl FixedStep {
             self.look_at_shafts();
         }
         for k in 0..self.inputs.len() {
-            self.inputs[k] = self.input(k, middle);
+            self.inputs[k] = self.enters(k, middle);
         }
         let s = &self.engine.system;
         let p = s.ports;

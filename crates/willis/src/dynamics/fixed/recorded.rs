@@ -3,7 +3,6 @@
 use crate::diagnostic::Diagnostics;
 use crate::dynamics::engine::Touch;
 use crate::dynamics::event::event;
-use crate::dynamics::mode::Mode;
 use crate::dynamics::report::{Options, Outcome, Recorder, RunReport, Sample};
 use crate::dynamics::run::Simulation;
 use crate::train::Train;
@@ -45,7 +44,7 @@ pub(in crate::dynamics) fn fixed(
                 }
             } else {
                 run.row();
-                if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
+                if recorder.sample(Sample { time_s: t, values: &run.row }).is_break() {
                     run.outcome = Some(Outcome::Interrupted);
                 }
             }
@@ -64,7 +63,7 @@ pub(in crate::dynamics) fn fixed(
         }
         if sampled && step > 0 {
             stepper.engine.row(t, &x, &mut run.row);
-            if recorder.sample(Sample { time: t, values: &run.row }).is_break() {
+            if recorder.sample(Sample { time_s: t, values: &run.row }).is_break() {
                 run.outcome = Some(Outcome::Interrupted);
             }
         }
@@ -119,29 +118,5 @@ impl FixedStep {
         };
         let touch = self.engine.touch.iter().fold(0u64, |sum, t| sum.wrapping_mul(9).wrapping_add(code(t) as u64));
         (held, forward, touch, self.until)
-    }
-
-    /// Brings the engine to the state and mode reached.
-    fn copy_to_engine(&mut self, x: &mut Vec<f64>) {
-        let free = self.engine.system.free;
-        x.clear();
-        x.extend_from_slice(&self.v[..free]);
-        x.extend_from_slice(&self.rest);
-        x.extend_from_slice(&self.energies);
-        let t = self.time();
-        self.engine.inside = t;
-        self.engine.look(t, x);
-        let mode = Mode {
-            slip: (self.sign.iter().enumerate())
-                .map(|(g, s)| if self.groups[g].driven && self.slip[g] == 0.0 { 0 } else { *s })
-                .collect(),
-            side: self.side.clone(),
-        };
-        for k in 0..self.engine.engaged.len() {
-            let engaged = self.engine.engagement(k, t);
-            let is_rigid = self.engine.system.frictions[k].rigid;
-            self.engine.engaged[k] = if is_rigid { engaged >= 0.5 } else { engaged > 0.0 };
-        }
-        self.engine.enter(&mode);
     }
 }

@@ -1,6 +1,6 @@
 //! Events within a step.
 
-use crate::dynamics::engine::{Margin, Watch};
+use crate::dynamics::margins::{Margin, Watch};
 
 use super::Simulation;
 

@@ -49,6 +49,7 @@ use crate::real::{Real, acos, min};
 /// ```
 /// # use willis::losses::churning::{Changenet2011, Dip, Law};
 /// assert_eq!(format!("{:.2}", Changenet2011::DEFAULT.eval(&Dip::typical())), "22.13");
+/// assert!(Changenet2011::DEFAULT.outside(&Dip::typical()).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Changenet2011;

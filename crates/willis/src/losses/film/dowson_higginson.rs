@@ -46,6 +46,7 @@ use crate::losses::{Meta, Range, Trust};
 ///     reduced_modulus: 200e9,
 /// };
 /// assert_eq!(format!("{:.4e}", DowsonHigginson::DEFAULT.eval(&contact)), "1.7406e-7");
+/// assert!(DowsonHigginson::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DowsonHigginson;

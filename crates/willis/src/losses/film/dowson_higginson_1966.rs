@@ -31,7 +31,7 @@ use crate::losses::{Meta, Range, Trust};
 /// and −0.13 are forced by the dimensions.
 ///
 /// # Source
-/// `[dowson1966]`, as cited in `[wang2020]`.
+/// `[dowson1966]`, as printed in `[wang2020]`, section 3.2.1.
 ///
 /// # Example
 /// By hand with U = 1e−11, G = 5000, W = 1e−4: 1.6 · 0.01 · 1.9953e−8 · 165.72 · 3.3113
@@ -47,6 +47,7 @@ use crate::losses::{Meta, Range, Trust};
 ///     reduced_modulus: 200e9,
 /// };
 /// assert_eq!(format!("{:.4e}", DowsonHigginson1966::DEFAULT.eval(&contact)), "1.7519e-7");
+/// assert!(DowsonHigginson1966::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DowsonHigginson1966;
@@ -60,7 +61,7 @@ impl Law for DowsonHigginson1966 {
     const META: Meta<FilmContact<f64>> = Meta {
         id: "dowson-higginson-1966",
         title: "Dowson–Higginson, smallest thickness, early form",
-        source: ("dowson1966", "line contact, smallest film thickness, as cited in Wang 2020"),
+        source: ("dowson1966", "line contact, smallest film thickness, as printed in Wang 2020, section 3.2.1"),
         trust: Trust::Derived,
         tags: &[],
         valid: &[

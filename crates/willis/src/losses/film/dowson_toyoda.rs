@@ -45,6 +45,7 @@ use crate::losses::{Meta, Range, Trust};
 ///     reduced_modulus: 200e9,
 /// };
 /// assert_eq!(format!("{:.4e}", DowsonToyoda::DEFAULT.eval(&contact)), "2.3289e-7");
+/// assert!(DowsonToyoda::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DowsonToyoda;

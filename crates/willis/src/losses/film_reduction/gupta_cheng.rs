@@ -29,7 +29,7 @@ use crate::real::max;
 /// range in [`Law::META`] flags it. The ratio is not taken below 1e−9, for the sake of derivatives.
 ///
 /// # Source
-/// `[gupta1992]`, as given in `[arana2019]`.
+/// `[gupta1992]`, as printed in `[arana2019]`, Eq. (24).
 ///
 /// # Example
 /// By hand: L = 0.05 · 0.028 · 10²/0.14 = 1; 0.3^0.83 = 0.36814;
@@ -46,6 +46,7 @@ use crate::real::max;
 ///     reduced_modulus: 226.3736e9,
 /// };
 /// assert_eq!(format!("{:.5}", GuptaCheng::DEFAULT.eval(&inlet)), "0.67852");
+/// assert!(GuptaCheng::DEFAULT.outside(&inlet).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuptaCheng;
@@ -64,7 +65,7 @@ impl Law for GuptaCheng {
     const META: Meta<Inlet<f64>> = Meta {
         id: "gupta-cheng",
         title: "Gupta–Cheng, shear heating of the inlet",
-        source: ("gupta1992", "thermal reduction, as cited in Arana 2019"),
+        source: ("gupta1992", "thermal reduction, as printed in Arana 2019, Eq. (24)"),
         trust: Trust::Seen,
         tags: &[],
         valid: &[Range { symbol: "13.2 p_H/E' L^0.42", unit: "-", min: 0.0, max: 0.9, get: pressed }],

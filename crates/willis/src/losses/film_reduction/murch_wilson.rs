@@ -2,7 +2,7 @@ use super::{Inlet, Law, slide, thermal_load};
 use crate::Real;
 use crate::losses::{Meta, Trust};
 
-/// Thinning of the film by shear heating of the inlet, of the type of Murch and Wilson.
+/// Thinning of the film by shear heating of the inlet: Murch and Wilson's, with sliding after Wilson and Sheu.
 ///
 /// # Formula
 /// ```text
@@ -22,11 +22,15 @@ use crate::losses::{Meta, Trust};
 /// Line contacts; its users state no numeric range. The factor stays between 0 and 1 everywhere.
 ///
 /// # Departs from the source
-/// Nothing. A public program puts the sliding speed in m/s where the slide-roll ratio belongs.
+/// Written as its users write it. Wilson and Sheu print 0.241 in place of 0.1 with the mean speed in L, and the
+/// sliding over the SUM of the speeds, half of SRR, in the power 0.83; for pure rolling theirs is close to
+/// `1/(1 + 0.254 L^0.62)` of Murch and Wilson (their Eq. 9). 0.1 would go with the sum of the speeds in L
+/// (4^0.64 · 0.1 = 0.243). So this law thins the film less than theirs.
+/// A public program puts the sliding speed in m/s where the slide-roll ratio belongs.
 /// The ratio is not taken below 1e−9, for the sake of derivatives.
 ///
 /// # Source
-/// `[murch1975]`, with sliding as given in `[arana2019]` and coded in `[gearpie]`.
+/// `[wilsonsheu1983]`, Eq. (7), which extends `[murch1975]` to sliding; with the factor 0.1 as coded in `[gearpie]`.
 ///
 /// # Example
 /// By hand: L = 0.05 · 0.028 · 10²/0.14 = 1; 0.3^0.83 = 0.36814; 1/(1 + 0.1 · (1 + 14.8 · 0.36814))
@@ -55,8 +59,8 @@ impl Law for MurchWilson {
     const META: Meta<Inlet<f64>> = Meta {
         id: "murch-wilson",
         title: "Murch–Wilson, shear heating of the inlet",
-        source: ("murch1975", "thermal reduction, as cited in Arana 2019"),
-        trust: Trust::Seen,
+        source: ("wilsonsheu1983", "Eq. (7), with 0.1 for its 0.241"),
+        trust: Trust::Confirm("the factor 0.1 with the mean speed, and SRR over the mean speed"),
         tags: &[],
         valid: &[],
     };

@@ -41,6 +41,7 @@ use crate::real::max;
 /// # use willis::losses::load_sharing::{Equal, Law, ToothLoad};
 /// let spur = ToothLoad { position: 0.25, contact_ratio: 1.5, overlap_ratio: 0.0 };
 /// assert_eq!(Equal::DEFAULT.eval(&spur), 0.5);
+/// assert!(Equal::DEFAULT.outside(&spur).is_empty());
 /// let helical = ToothLoad { overlap_ratio: 1.0, ..spur };
 /// assert_eq!(format!("{:.6}", Equal::DEFAULT.eval(&helical)), "0.666667");
 /// ```

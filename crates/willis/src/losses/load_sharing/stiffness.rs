@@ -35,6 +35,7 @@ use crate::real::min;
 /// # use willis::losses::load_sharing::{Law, Stiffness, ToothLoad};
 /// let at = |position| ToothLoad { position, contact_ratio: 1.5, overlap_ratio: 0.0 };
 /// assert_eq!(format!("{:.4}", Stiffness::DEFAULT.eval(&at(0.25))), "0.5000");
+/// assert!(Stiffness::DEFAULT.outside(&at(0.25)).is_empty());
 /// assert_eq!(format!("{:.4}", Stiffness::DEFAULT.eval(&at(0.0))), "0.3333");
 /// assert_eq!(Stiffness::DEFAULT.eval(&at(0.75)), 1.0);
 /// ```

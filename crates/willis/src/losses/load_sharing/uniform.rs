@@ -30,6 +30,7 @@ use crate::losses::{Meta, Range, Trust};
 /// # use willis::losses::load_sharing::{Law, ToothLoad, Uniform};
 /// let place = ToothLoad { position: 0.3, contact_ratio: 1.6, overlap_ratio: 1.0 };
 /// assert_eq!(Uniform::DEFAULT.eval(&place), 0.625);
+/// assert!(Uniform::DEFAULT.outside(&place).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uniform;

@@ -38,6 +38,7 @@ use crate::losses::{Meta, Range, Trust};
 /// ```
 /// # use willis::losses::loss_factor::{BuckinghamMerritt, Law, Path};
 /// assert_eq!(format!("{:.5}", BuckinghamMerritt::DEFAULT.eval(&Path::typical())), "0.25364");
+/// assert!(BuckinghamMerritt::DEFAULT.outside(&Path::typical()).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuckinghamMerritt;

@@ -45,6 +45,7 @@ use crate::real::abs;
 /// ```
 /// # use willis::losses::loss_factor::{Integrated, Law, Path};
 /// assert_eq!(format!("{:.5}", Integrated::DEFAULT.eval(&Path::typical())), "0.21312");
+/// assert!(Integrated::DEFAULT.outside(&Path::typical()).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integrated {

@@ -35,6 +35,7 @@ use crate::losses::{Meta, Range, Trust};
 /// # use willis::losses::loss_factor::{Law, Ohlendorf, Path};
 /// let path = Path { teeth: [16.0, 24.0], e: [0.7341, 0.728331], ..Path::typical() };
 /// assert_eq!(format!("{:.4}", Ohlendorf::DEFAULT.eval(&path)), "0.1986");
+/// assert!(Ohlendorf::DEFAULT.outside(&path).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ohlendorf;

@@ -36,6 +36,7 @@ use crate::real::abs;
 /// # use willis::losses::loss_factor::{Law, Path, TwoPair};
 /// let path = Path { teeth: [22.0, 61.0], internal: true, e: [0.79035, 1.16681], ..Path::typical() };
 /// assert_eq!(format!("{:.5}", TwoPair::DEFAULT.eval(&path)), "0.09140");
+/// assert!(TwoPair::DEFAULT.outside(&path).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoPair;

@@ -41,6 +41,7 @@ use crate::real::abs;
 ///     overlap_ratio: 1.3628,
 /// };
 /// assert_eq!(format!("{:.5}", Uniform::DEFAULT.eval(&path)), "0.15393");
+/// assert!(Uniform::DEFAULT.outside(&path).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Uniform;

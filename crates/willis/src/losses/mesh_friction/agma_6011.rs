@@ -29,7 +29,7 @@ use crate::real::min;
 /// angle is taken as 25°, because the estimate falls to zero at 27.5°.
 ///
 /// # Source
-/// `[agma6011]`, mesh loss; the form is confirmed by the tables of `[wang2020]`.
+/// `[agma6011]`, mesh loss, as printed in `[wang2020]`, section 3.2.2, whose tables confirm it.
 ///
 /// # Example
 /// By hand: φ = 0.01 · (22 − 0.8 · 20) · (1/31 + 1/35) = 0.00364977; φ/0.1539 = 0.023715.
@@ -37,6 +37,7 @@ use crate::real::min;
 /// # use willis::losses::mesh_friction::{Agma6011, Law, MeshContact};
 /// let contact = MeshContact { teeth: [31.0, 35.0], loss_factor: 0.1539, ..MeshContact::typical() };
 /// assert_eq!(format!("{:.6}", Agma6011::DEFAULT.eval(&contact)), "0.023715");
+/// assert!(Agma6011::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Agma6011;
@@ -66,9 +67,9 @@ impl Law for Agma6011 {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "agma-6011",
         title: "Estimate of ANSI/AGMA 6011",
-        source: ("agma6011", "mesh loss"),
-        trust: Trust::Confirm("0.01 (22 − 0.8 α_n), and the range of the angle"),
-        tags: &[Tag::Estimate],
+        source: ("agma6011", "mesh loss, as printed in Wang 2020, section 3.2.2"),
+        trust: Trust::Confirm("the range of the angle"),
+        tags: &[Tag::Estimate, Tag::WithoutOil],
         valid: &[ANGLE],
     };
 

@@ -30,7 +30,7 @@ use crate::losses::{Meta, Tag, Trust};
 /// [`Agma6011`](super::Agma6011).
 ///
 /// # Source
-/// `[wang2020]`, Table 4.
+/// `[wang2020]`: the formula in section 3.2.2, the numbers in Table 4.
 ///
 /// # Example
 /// By hand: φ = 3 · 0.06 · (1/31 + 1/97) = 0.00766212; φ/0.0626 = 0.122398.
@@ -44,6 +44,7 @@ use crate::losses::{Meta, Tag, Trust};
 ///     ..MeshContact::typical()
 /// };
 /// assert_eq!(format!("{:.6}", Agma6011PerPlanet::DEFAULT.eval(&contact)), "0.122398");
+/// assert!(Agma6011PerPlanet::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Agma6011PerPlanet;
@@ -57,9 +58,9 @@ impl Law for Agma6011PerPlanet {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "agma-6011-per-planet",
         title: "AGMA 6011 with the whole power at every planet (Wang 2020)",
-        source: ("wang2020", "Table 4"),
+        source: ("wang2020", "section 3.2.2 and Table 4"),
         trust: Trust::Derived,
-        tags: &[Tag::Estimate, Tag::Compatibility],
+        tags: &[Tag::Estimate, Tag::Compatibility, Tag::WithoutOil],
         valid: &[ANGLE],
     };
 

@@ -42,6 +42,7 @@ use crate::losses::{Meta, Range, Tag, Trust};
 ///     ..MeshContact::typical()
 /// };
 /// assert_eq!(format!("{:.6}", AndersonLoewenthal::DEFAULT.eval(&contact)), "0.040273");
+/// assert!(AndersonLoewenthal::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AndersonLoewenthal;

@@ -48,6 +48,7 @@ use crate::real::{max, min};
 ///     ..MeshContact::typical()
 /// };
 /// assert_eq!(format!("{:.6}", BenedictKelley::DEFAULT.eval(&contact)), "0.058790");
+/// assert!(BenedictKelley::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenedictKelley;

@@ -1,6 +1,6 @@
 use super::{Law, MeshContact};
 use crate::Real;
-use crate::losses::{Meta, Trust};
+use crate::losses::{Meta, Tag, Trust};
 
 /// One coefficient of friction for every state of the mesh.
 ///
@@ -48,7 +48,7 @@ impl Law for Constant {
         title: "Constant coefficient",
         source: ("practice", "hand value for ground steel teeth in mineral oil"),
         trust: Trust::Confirm("the default 0.05"),
-        tags: &[],
+        tags: &[Tag::WithoutOil],
         valid: &[],
     };
 

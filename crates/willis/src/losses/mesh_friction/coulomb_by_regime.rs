@@ -29,7 +29,7 @@ use crate::real::{max, min};
 /// to the other, which is a straight line here so that the coefficient has no jump.
 ///
 /// # Source
-/// `[wang2020]`, limits of the regimes.
+/// `[wang2020]`, section 3.2.1: boundary below 1.4, full film above 3.
 ///
 /// # Example
 /// By hand: λ = 2.2 is half way, (0.1 + 0.02)/2 = 0.06.
@@ -55,7 +55,7 @@ impl Law for CoulombByRegime {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "coulomb-by-regime",
         title: "Boundary, mixed or full film by film ratio",
-        source: ("wang2020", "limits of the regimes of lubrication"),
+        source: ("wang2020", "section 3.2.1, limits of the regimes of lubrication"),
         trust: Trust::Confirm("both coefficients"),
         tags: &[Tag::Local, Tag::SlidingOnly],
         valid: &[],

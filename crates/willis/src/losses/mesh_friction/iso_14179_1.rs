@@ -38,6 +38,7 @@ use crate::losses::{Meta, Range, Trust};
 ///     ..MeshContact::typical()
 /// };
 /// assert_eq!(format!("{:.6}", Iso14179Part1::DEFAULT.eval(&contact)), "0.011588");
+/// assert!(Iso14179Part1::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Iso14179Part1;

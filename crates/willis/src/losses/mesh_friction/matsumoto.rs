@@ -28,7 +28,7 @@ use crate::real::{max, min};
 /// out the limit gives less than `mu_EHL` in full film.
 ///
 /// # Source
-/// `[matsumoto2014]`, mixed share as tabulated in `[arana2019]`; coefficients of `[gearpie]`.
+/// `[matsumoto2014]`, share of the asperities as tabulated in `[arana2019]`, Table 1; coefficients of `[gearpie]`.
 ///
 /// # Example
 /// By hand: D = 5/0.5 = 10, ξ = 0.5; 0.5 · 0.1 + 0.5 · 0.02 = 0.06.
@@ -36,6 +36,7 @@ use crate::real::{max, min};
 /// # use willis::losses::mesh_friction::{Law, Matsumoto, MeshContact};
 /// let contact = MeshContact { peak_roughness: 5e-6, film: 0.5e-6, ..MeshContact::typical() };
 /// assert_eq!(format!("{:.6}", Matsumoto::DEFAULT.eval(&contact)), "0.060000");
+/// assert!(Matsumoto::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matsumoto {
@@ -54,7 +55,7 @@ impl Law for Matsumoto {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "matsumoto",
         title: "Matsumoto, mixed lubrication",
-        source: ("matsumoto2014", "share of the asperities"),
+        source: ("matsumoto2014", "share of the asperities, as printed in Arana 2019, Table 1 and Eq. (5)"),
         trust: Trust::Seen,
         tags: &[Tag::Local, Tag::SlidingOnly],
         valid: &[Range { symbol: "D", unit: "-", min: 1.0, max: 100.0, get: |s| s.peak_roughness / s.film }],

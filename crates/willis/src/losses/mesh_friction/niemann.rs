@@ -46,6 +46,7 @@ use crate::losses::{Meta, Range, Trust};
 ///     ..MeshContact::typical()
 /// };
 /// assert_eq!(format!("{:.6}", Niemann::DEFAULT.eval(&contact)), "0.060246");
+/// assert!(Niemann::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Niemann;

@@ -47,6 +47,7 @@ use crate::losses::{Meta, Range, Trust};
 ///     ..MeshContact::typical()
 /// };
 /// assert_eq!(format!("{:.6}", NiemannWinter::DEFAULT.eval(&contact)), "0.060079");
+/// assert!(NiemannWinter::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NiemannWinter;

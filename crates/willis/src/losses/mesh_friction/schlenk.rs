@@ -33,18 +33,20 @@ use crate::losses::{Meta, Range, Trust};
 /// `[isotr14179_2]`, mean coefficient of friction of the mesh.
 ///
 /// # Example
-/// By hand: 0.048 · (30/(45.4 · 24.2))^0.2 · 80^(−0.05) · 0.1^0.25 = 0.010552.
+/// By hand: (200/(4 · 8))^0.2 = 1.44270, 30^(−0.05) = 0.84361, 0.5^0.25 = 0.84090;
+/// 0.048 · 1.44270 · 0.84361 · 0.84090 = 0.049125.
 /// ```
 /// # use willis::losses::mesh_friction::{Law, MeshContact, Schlenk};
 /// let contact = MeshContact {
-///     line_load: 30e3,
-///     pitch_sum_speed: 45.4,
-///     pitch_radius_transverse: 24.2e-3,
-///     dynamic_viscosity: 80e-3,
-///     roughness: 0.1e-6,
+///     line_load: 200e3,
+///     pitch_sum_speed: 4.0,
+///     pitch_radius_transverse: 8e-3,
+///     dynamic_viscosity: 30e-3,
+///     roughness: 0.5e-6,
 ///     ..MeshContact::typical()
 /// };
-/// assert_eq!(format!("{:.6}", Schlenk::DEFAULT.eval(&contact)), "0.010552");
+/// assert_eq!(format!("{:.6}", Schlenk::DEFAULT.eval(&contact)), "0.049125");
+/// assert!(Schlenk::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schlenk;

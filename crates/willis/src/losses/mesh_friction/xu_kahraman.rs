@@ -52,6 +52,7 @@ use crate::real::max;
 ///     ..MeshContact::typical()
 /// };
 /// assert_eq!(format!("{:.6}", XuKahraman::DEFAULT.eval(&contact)), "0.013668");
+/// assert!(XuKahraman::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct XuKahraman;

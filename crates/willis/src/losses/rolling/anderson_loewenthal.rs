@@ -46,6 +46,7 @@ use crate::losses::{Meta, Range, Trust};
 ///     ..RollingContact::typical()
 /// };
 /// assert_eq!(format!("{:.3}", AndersonLoewenthal::DEFAULT.eval(&contact)), "11.248");
+/// assert!(AndersonLoewenthal::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AndersonLoewenthal;

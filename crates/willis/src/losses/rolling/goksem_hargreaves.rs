@@ -50,6 +50,7 @@ use crate::losses::{Meta, Range, Trust};
 ///     film_reduction: 1.0,
 /// };
 /// assert_eq!(format!("{:.5}", GoksemHargreaves::DEFAULT.eval(&contact)), "0.96588");
+/// assert!(GoksemHargreaves::DEFAULT.outside(&contact).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GoksemHargreaves;

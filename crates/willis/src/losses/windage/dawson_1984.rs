@@ -31,12 +31,13 @@ use crate::real::Real;
 /// `[dawson1984]`.
 ///
 /// # Example
-/// By hand, root diameter 200 mm, 50 mm wide, module 5 mm, 10 000 r/min: D^3.9 = 9.419e8, D^2.9 =
-/// 4.709e6, F^0.75 = 18.80, m^1.15 = 6.365; 10^11.6 (1.507e8 + 5.636e8) 1e-20 = 2.844 kW.
+/// By hand, root diameter 400 mm, 50 mm wide, module 5 mm, 10 000 r/min: D^3.9 = 1.4062e10, D^2.9 =
+/// 3.5154e7, F^0.75 = 18.803, m^1.15 = 6.3653; 10^11.6 (2.2499e9 + 4.2074e9) 1e-20 = 25.707 kW.
 /// ```
 /// # use willis::losses::windage::{Dawson1984, Disc, Law};
-/// let disc = Disc { root_radius: 0.1, ..Disc::typical() };
-/// assert_eq!(format!("{:.0}", Dawson1984::DEFAULT.eval(&disc)), "2844");
+/// let disc = Disc { root_radius: 0.2, ..Disc::typical() };
+/// assert_eq!(format!("{:.0}", Dawson1984::DEFAULT.eval(&disc)), "25707");
+/// assert!(Dawson1984::DEFAULT.outside(&disc).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dawson1984 {

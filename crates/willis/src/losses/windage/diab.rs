@@ -38,6 +38,7 @@ use crate::real::{Real, power};
 /// ```
 /// # use willis::losses::windage::{Diab, Disc, Law};
 /// assert_eq!(format!("{:.0}", Diab::DEFAULT.eval(&Disc::typical())), "3315");
+/// assert!(Diab::DEFAULT.outside(&Disc::typical()).is_empty());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Diab;

@@ -9,9 +9,9 @@ use crate::train::Train;
 
 use super::map::gears;
 use super::names::{file, number, short, verdict};
-use super::{Export, ExportRequest, ExportedFile, told};
+use super::{Asked, Export, ExportedFile, told};
 
-pub(super) fn write(train: &Train, request: &ExportRequest) -> Result<Export, Diagnostics> {
+pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
     let (gears, mut notes) = gears(train, request)?;
     let several = request.temperatures.len() > 1;
     let mut text = String::from("state,input_speed_rpm,torque_on_input_n_m,torque_on_output_n_m,loss_w,efficiency,");

@@ -24,7 +24,7 @@ use crate::units::{Dimension, Quantity};
 
 use super::map::{Gear, Map, gears};
 use super::names::{file, identifier, identifiers, line, number, percent, short};
-use super::{Export, ExportRequest, ExportedFile, told};
+use super::{Asked, Export, ExportedFile, told};
 
 /// A row of the table.
 #[derive(Clone, Copy, Debug)]
@@ -134,7 +134,7 @@ pub(super) fn class(text: &str) -> String {
     identifier(&out, RESERVED)
 }
 
-pub(super) fn write(train: &Train, request: &ExportRequest) -> Result<Export, Diagnostics> {
+pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
     let (gears, mut notes) = gears(train, request)?;
     let mut wrong = Diagnostics::default();
     let mut done: Vec<(&Gear, Vec<Row>, Vec<String>)> = Vec::new();

@@ -2,6 +2,7 @@
 
 use crate::analysis::{
     AS_DRAWN, Direction, OperationReport, Selection, SolutionReport, StateReport, Verdict, analyze, operate,
+    operate_unnamed,
 };
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::exact::Rational;
@@ -9,7 +10,7 @@ use crate::kinematics::Configuration;
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::{Dimension, Quantity};
 
-use super::ExportRequest;
+use super::Asked;
 use super::names::{short, verdict};
 
 /// The most points of one map.
@@ -161,13 +162,14 @@ impl Gear {
             temperature,
             place: String::new(),
         };
-        let (report, notes) = operate(&self.train, &operation)?;
-        self.read(report, &notes, &operation.name, &mut point);
+        let (report, notes) =
+            operate_unnamed(&self.train, &operation).map_err(|wrong| crate::analysis::named(&operation, wrong))?;
+        self.read(report, &notes, &mut point);
         Ok(point)
     }
 
     /// Takes the answer from a report: the only equilibrium, or the only one in which a load is driven.
-    fn read(&self, report: OperationReport, notes: &Diagnostics, name: &str, point: &mut Point) {
+    fn read(&self, report: OperationReport, notes: &Diagnostics, point: &mut Point) {
         point.verdict = report.verdict;
         point.reason = report.reason;
         let several = report.solutions.len();
@@ -186,10 +188,9 @@ impl Gear {
             ));
         }
         // A one-way clutch that would have to hold against its free direction carries nothing.
-        let title = format!("operation `{name}`: ");
         if let Some(d) = notes.iter().find(|d| d.code == Code::OneWay && d.severity == Severity::Warning) {
             point.verdict = Verdict::Undetermined;
-            point.reason = Some(d.message.strip_prefix(&title).unwrap_or(&d.message).to_owned());
+            point.reason = Some(d.message.clone());
             return;
         }
         let Some(solution) = chosen else { return };
@@ -261,7 +262,7 @@ fn wrong(code: Code, message: impl Into<String>, hint: impl Into<String>) -> Dia
 }
 
 /// The gears that are asked for, with their axes, and what must be told of the choice.
-pub(super) fn gears(train: &Train, request: &ExportRequest) -> Result<(Vec<Gear>, Vec<String>), Diagnostics> {
+pub(super) fn gears(train: &Train, request: &Asked) -> Result<(Vec<Gear>, Vec<String>), Diagnostics> {
     let operation = match &request.operation {
         None => None,
         Some(name) => {
@@ -341,7 +342,7 @@ pub(super) fn gears(train: &Train, request: &ExportRequest) -> Result<(Vec<Gear>
 }
 
 /// What can be wrong with a request before anything is computed.
-fn check(train: &Train, request: &ExportRequest) -> Result<(), Diagnostics> {
+fn check(train: &Train, request: &Asked) -> Result<(), Diagnostics> {
     let rising = |q: &[Quantity]| q.windows(2).all(|w| w[0].si() < w[1].si());
     for (what, axis) in [("speeds", &request.speeds), ("torques", &request.torques)] {
         if !rising(axis) {
@@ -371,7 +372,7 @@ fn gear(
     train: &Train,
     state: Option<usize>,
     row: &StateReport,
-    request: &ExportRequest,
+    request: &Asked,
     operation: Option<&Operation>,
 ) -> Result<Gear, Diagnostics> {
     let member = |name: &str| train.member(name).expect("a member of the train");
@@ -399,7 +400,7 @@ fn gear(
         input: row.input.clone(),
         output: row.output.clone(),
         ends,
-        exact: row.exact.clone().expect("a ratio"),
+        exact: row.exact.as_ref().expect("a ratio").to_fraction(),
         ratio: row.value.expect("a ratio"),
         drive: row.drive.clone(),
         coast: row.coast.clone(),

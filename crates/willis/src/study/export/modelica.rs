@@ -16,7 +16,7 @@ use crate::train::{Contact, Curve, FRAME, MemberId, ShiftElementKind, Train};
 
 use super::loss_table::{RESERVED, class, string};
 use super::names::{file, identifiers, line, number};
-use super::{Export, ExportRequest, ExportedFile};
+use super::{Asked, Export, ExportedFile};
 
 const ROTATIONAL: &str = "Modelica.Mechanics.Rotational";
 
@@ -34,7 +34,7 @@ fn level(curve: &Curve) -> String {
     format!("[{}]", rows.join("; "))
 }
 
-pub(super) fn write(train: &Train, request: &ExportRequest) -> Result<Export, Diagnostics> {
+pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
     if request.state.is_some() || request.operation.is_some() {
         // Only what they name is checked: the model has all states.
         super::map::gears(train, request)?;

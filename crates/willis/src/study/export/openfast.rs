@@ -15,9 +15,9 @@ use crate::train::Train;
 use super::map::Gear;
 use super::names::{file, number, percent};
 use super::single::single;
-use super::{Export, ExportRequest, ExportedFile, each, origin, told};
+use super::{Asked, Export, ExportedFile, each, origin, told};
 
-pub(super) fn write(train: &Train, request: &ExportRequest) -> Result<Export, Diagnostics> {
+pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
     each(train, request, |gear, notes| one(train, gear, notes))
 }
 

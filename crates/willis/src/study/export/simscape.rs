@@ -15,7 +15,7 @@ use crate::train::{Mesh, Train};
 use super::map::{Gear, Map, Point};
 use super::names::{file, identifier, identifiers, line, number, percent, short, slug};
 use super::single::single;
-use super::{Export, ExportRequest, ExportedFile, map, origin, told};
+use super::{Asked, Export, ExportedFile, map, origin, told};
 
 const RESERVED: &[&str] = &[
     "break",
@@ -40,7 +40,7 @@ const RESERVED: &[&str] = &[
     "while",
 ];
 
-pub(super) fn write(train: &Train, request: &ExportRequest) -> Result<Export, Diagnostics> {
+pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
     let (gears, mut notes) = map::gears(train, request)?;
     let root = identifier(&slug(train.name()), RESERVED);
     let ids = identifiers(gears.iter().map(|g| g.name.as_deref().unwrap_or("gear")), RESERVED);

@@ -16,13 +16,13 @@ use crate::train::Train;
 
 use super::map::{Gear, Point};
 use super::names::{file, number, percent, short};
-use super::{Export, ExportRequest, ExportedFile, each, origin, told};
+use super::{Asked, Export, ExportedFile, each, origin, told};
 
 const HEADER: &str = "Input Speed [rpm],Input Torque [Nm],Torque Loss [Nm]";
 const MOST_RPM: f64 = 10_000.0;
 const MOST_TORQUE: f64 = 100_000.0;
 
-pub(super) fn write(train: &Train, request: &ExportRequest) -> Result<Export, Diagnostics> {
+pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
     each(train, request, |gear, notes| one(train, gear, notes))
 }
 

@@ -3,13 +3,13 @@
 use crate::catalogue::oil::Viscosity;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::losses::{self, FAMILIES, Tag};
+use crate::model::Target;
+use crate::study::answer::PointAnswer;
 use crate::study::distribution::{Distribution, Reader};
 use crate::study::question::Question;
-use crate::study::sweep::Answer;
-use crate::study::target::Target;
 use crate::train::{Measure, Train};
 
-use super::{Likely, Uncertain, listed, nominal};
+use super::{LawChoice, Uncertain, UncertainValue, listed, nominal};
 
 /// Share of a given loss `1 − η` that is doubtful, each way.
 const LOSS: f64 = 0.2;
@@ -38,7 +38,7 @@ pub(super) fn in_force(train: &Train, family: &str) -> Option<&'static str> {
 /// The laws of a family that a train can use, in their order; only those inside their range at the operating point if so
 /// asked and two are. And what is to be said of them.
 pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: bool) -> (Vec<String>, String) {
-    let train = question.subject().train();
+    let train = question.model().train();
     let own = losses::entries().into_iter().filter(|e| e.family == family);
     let (wrong, good): (Vec<_>, Vec<_>) = own.partition(|e| e.tags.contains(&Tag::Compatibility));
     let (mut within, mut outside, mut unfit) = (vec![], vec![], vec![]);
@@ -47,9 +47,9 @@ pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: boo
             unfit.push(e.id.to_owned());
             continue;
         };
-        let title = format!("{family} = {} of ", e.id);
-        let answer = Answer::of(&with, question.base());
-        match answer.warnings.iter().any(|w| w.1.starts_with(&title)) {
+        let answer = PointAnswer::of(&with, question.base());
+        let own = LawChoice { family: family.to_owned(), law: e.id.to_owned() };
+        match answer.warnings.iter().any(|w| w.law.as_ref() == Some(&own)) {
             true => outside.push(e.id.to_owned()),
             false => within.push(e.id.to_owned()),
         }
@@ -78,19 +78,19 @@ pub(super) fn laws_of(family: &'static str, question: &Question<'_>, inside: boo
 
 /// `--laws`: a family, or all whose choice matters here.
 pub(super) fn laws(family: &str, question: &Question<'_>) -> Result<Vec<(Uncertain, String)>, Box<Diagnostic>> {
-    let train = question.subject().train();
+    let train = question.model().train();
     let one = |family: &'static str| {
         let (laws, told) = laws_of(family, question, true);
         let target = Target::Law(family);
         let loss = |law: &String| {
             let with = train.clone().with_law(family, law).ok()?;
-            Some(Answer::of(&with, question.base()).loss())
+            Some(PointAnswer::of(&with, question.base()).loss())
         };
         let all: Vec<f64> = laws.iter().filter_map(loss).filter(|l| !l.is_nan()).collect();
         let matters = all.iter().any(|l| *l != all[0]);
         let nominal = nominal(&target, question);
         let name = format!("law.{family}");
-        let found = Uncertain { name, unit: String::new(), likely: Likely::Each(laws), nominal, target };
+        let found = Uncertain { name, unit: String::new(), likely: UncertainValue::Each(laws), nominal, target };
         matters.then_some((found, told))
     };
     if family == "all" {
@@ -117,8 +117,8 @@ pub(super) fn laws(family: &str, question: &Question<'_>) -> Result<Vec<(Uncerta
 
 /// What is taken as uncertain when nothing is said, with the assumptions.
 pub(super) fn quantities(question: &Question<'_>) -> (Vec<Uncertain>, Vec<String>) {
-    let subject = question.subject();
-    let (train, document) = (subject.train(), subject.document());
+    let model = question.model();
+    let (train, document) = (model.train(), model.document());
     let (mut all, mut told) = (vec![], vec![]);
     let mut losses: Vec<String> = vec![];
     let mut roughness: Vec<String> = vec![];
@@ -141,7 +141,7 @@ pub(super) fn quantities(question: &Question<'_>) -> (Vec<Uncertain>, Vec<String
             continue;
         };
         let target = Target::File(key);
-        let likely = Likely::Between(distribution);
+        let likely = UncertainValue::Between(distribution);
         all.push(Uncertain { name: path, unit, likely, nominal: Some(text), target });
     }
     if !losses.is_empty() {
@@ -155,7 +155,8 @@ pub(super) fn quantities(question: &Question<'_>) -> (Vec<Uncertain>, Vec<String
         let target = Target::Temperature;
         let text = nominal(&target, question).expect("there is an oil");
         let (value, unit) = Reader::base_of(&text, Measure::Number).expect("it was written as a number");
-        let likely = Likely::Between(Distribution::Uniform { least: value - TEMPERATURE, most: value + TEMPERATURE });
+        let likely =
+            UncertainValue::Between(Distribution::Uniform { least: value - TEMPERATURE, most: value + TEMPERATURE });
         all.push(Uncertain { name: "oil.temperature".into(), unit, likely, nominal: Some(text), target });
         told.push("the oil's temperature is doubtful by ±5 K".into());
     }

@@ -2,15 +2,21 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::contract::{Contract, Format};
+use crate::study::answer::PointVerdict;
+use crate::study::column::{Column, ColumnTable, ColumnValues};
 use crate::study::design::{REPLICATES, quantile};
+use crate::study::summary::{WarningCount, WarningKind};
 
-use super::{DIGITS, Evaluated, Likely, Seen, Statistics, UncertaintyPlan, VERDICTS, plain};
+use super::{DIGITS, SampleResult, Statistics, UncertainValue, UncertaintyPlan, plain, rounded};
 
 /// A quantity as the results show it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Reported {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct UncertainQuantity {
     /// Its name.
     pub name: String,
     /// Its unit; empty for plain numbers and texts.
@@ -18,28 +24,32 @@ pub struct Reported {
     /// Its distribution as it can be written on the command line.
     pub distribution: String,
     /// The same as data.
-    pub likely: Likely,
+    pub likely: UncertainValue,
     /// What the file has, as written.
     pub nominal: Option<String>,
 }
 
 /// The share of the variance of an output for which a quantity answers.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Influence {
     /// The quantity.
     pub quantity: String,
     /// Its Sobol indices.
     #[serde(flatten)]
-    pub index: crate::study::Index,
+    pub index: crate::study::SobolIndices,
 }
 
 /// One result and its distribution.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Output {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct UncertainResult {
     /// `efficiency`, `loss_w`, `mesh_loss_w`, …, `loss.NAME_w`.
     pub name: String,
     /// Its unit; empty for the efficiency.
-    pub unit: &'static str,
+    pub unit: String,
     /// With the file as written; absent where that has no unique answer.
     pub nominal: Option<f64>,
     /// The share of samples that lie below that.
@@ -51,8 +61,10 @@ pub struct Output {
 }
 
 /// The samples that share one choice: one law of a family, one number of planets.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Choice {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct ChoiceResult {
     /// The quantity.
     pub quantity: String,
     /// Its value.
@@ -74,10 +86,12 @@ pub struct Choice {
 }
 
 /// How sure a result is.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
 pub struct Uncertainty {
     /// `willis-uncertainty-1`.
-    pub format: &'static str,
+    pub format: Format<Self>,
     /// Name of the train.
     pub train: String,
     /// The operating point.
@@ -93,59 +107,89 @@ pub struct Uncertainty {
     /// Independent scramblings, from which sampling errors are told.
     pub replicates: usize,
     /// What is uncertain.
-    pub quantities: Vec<Reported>,
+    pub quantities: Vec<UncertainQuantity>,
     /// What was assumed.
     pub assumptions: Vec<String>,
     /// What can be said of the file as written.
-    pub nominal_verdict: &'static str,
+    pub nominal_verdict: PointVerdict,
     /// Samples by verdict.
-    pub verdicts: BTreeMap<&'static str, usize>,
+    pub verdicts: BTreeMap<PointVerdict, usize>,
     /// The results, efficiency and loss first.
-    pub outputs: Vec<Output>,
+    pub outputs: Vec<UncertainResult>,
     /// Samples by choice, for every quantity that has choices.
-    pub choices: Vec<Choice>,
+    pub choices: Vec<ChoiceResult>,
     /// What is to be known of the distributions.
     pub warnings: Vec<String>,
     /// Warnings of samples by their code, and by `reason` why samples have no answer.
-    pub seen: BTreeMap<String, Seen>,
+    pub seen: BTreeMap<WarningKind, WarningCount>,
+}
+
+impl Contract for Uncertainty {
+    const FORMAT: &'static str = "willis-uncertainty-1";
 }
 
 impl Uncertainty {
     /// The result of that name.
-    pub fn output(&self, name: &str) -> Option<&Output> {
+    pub fn output(&self, name: &str) -> Option<&UncertainResult> {
         self.outputs.iter().find(|o| o.name == name)
     }
 }
 
 impl UncertaintyPlan<'_> {
-    /// Names of the values of a sample: `efficiency`, `loss_w`, …
-    pub fn outputs(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.outputs.iter().map(|o| o.0.as_str())
+    /// The values of a sample: `efficiency`, `loss_w`, …
+    pub fn outputs(&self) -> &[Column] {
+        &self.outputs
     }
 
     /// Every sample: its point, verdict and values, in the order of [`outputs`](Self::outputs).
     pub fn samples<'a>(
         &'a self,
-        evaluated: &'a Evaluated,
-    ) -> impl Iterator<Item = (usize, &'static str, &'a [f64])> + 'a {
+        evaluated: &'a SampleResult,
+    ) -> impl Iterator<Item = (usize, PointVerdict, &'a [f64])> + 'a {
         let width = self.outputs.len();
         let points = (0..evaluated.verdicts.len()).filter(|k| self.design.is_sample(*k));
-        points.map(move |k| (k, VERDICTS[usize::from(evaluated.verdicts[k])], &evaluated.values[k * width..][..width]))
+        points.map(move |k| (k, evaluated.verdicts[k], &evaluated.values[k * width..][..width]))
+    }
+
+    /// Every sample as a row: its number, its replicate, the uncertain quantities, the verdict and the results.
+    pub fn table(&self, evaluated: &SampleResult) -> ColumnTable {
+        let points: Vec<(usize, PointVerdict, &[f64])> = self.samples(evaluated).collect();
+        let mut table = ColumnTable::default();
+        table.add(Column::integer("sample"), ColumnValues::Integers((0..points.len() as i64).collect()));
+        let replicate = |p: &(usize, PointVerdict, &[f64])| self.design.replicate(p.0) as i64;
+        table.add(Column::integer("replicate"), ColumnValues::Integers(points.iter().map(replicate).collect()));
+        let places: Vec<Vec<f64>> = points.iter().map(|p| self.design.at(p.0)).collect();
+        for (k, q) in self.quantities.iter().enumerate() {
+            let at = places.iter().map(|place| place[k]);
+            let values = match &q.likely {
+                UncertainValue::Between(d) => {
+                    ColumnValues::Numbers(at.map(|p| rounded(d.quantile(p), DIGITS)).collect())
+                }
+                UncertainValue::Each(_) => ColumnValues::Texts(at.map(|p| q.setting(p).into()).collect()),
+            };
+            table.add(q.column(), values);
+        }
+        let verdicts = points.iter().map(|p| p.1.name().into()).collect();
+        table.add(Column::text("verdict"), ColumnValues::Texts(verdicts));
+        for (k, column) in self.outputs.iter().enumerate() {
+            table.add(column.clone(), ColumnValues::Numbers(points.iter().map(|p| p.2[k]).collect()));
+        }
+        table
     }
 
     /// The distributions of the results, once all points are evaluated.
     ///
     /// # Panics
     /// If points are missing.
-    pub fn finish(&self, evaluated: &Evaluated) -> Uncertainty {
+    pub fn finish(&self, evaluated: &SampleResult) -> Uncertainty {
         assert_eq!(evaluated.verdicts.len(), self.len(), "every point is evaluated once");
         let width = self.outputs.len();
-        let mut verdicts: BTreeMap<&'static str, usize> = BTreeMap::new();
+        let mut verdicts: BTreeMap<PointVerdict, usize> = BTreeMap::new();
         for (_, verdict, _) in self.samples(evaluated) {
             *verdicts.entry(verdict).or_default() += 1;
         }
         let mut outputs = vec![];
-        for (c, (name, unit)) in self.outputs.iter().enumerate() {
+        for (c, Column { name, unit, .. }) in self.outputs.iter().enumerate() {
             // Rows of `width` values lie one after the other.
             let column: Vec<f64> = evaluated.values.iter().skip(c).step_by(width).copied().collect();
             // What this train does not have is not worth a line.
@@ -168,12 +212,19 @@ impl UncertaintyPlan<'_> {
                 .map(|(q, index)| Influence { quantity: q.name.clone(), index })
                 .collect();
             influences.sort_by(|a, b| b.index.total.total_cmp(&a.index.total));
-            outputs.push(Output { name: name.clone(), unit, nominal, below_nominal, statistics, influences });
+            outputs.push(UncertainResult {
+                name: name.clone(),
+                unit: unit.clone(),
+                nominal,
+                below_nominal,
+                statistics,
+                influences,
+            });
         }
         let base = self.question.base();
-        let train = self.question.subject().train();
+        let train = self.question.model().train();
         Uncertainty {
-            format: "willis-uncertainty-1",
+            format: Format::new(),
             train: train.name().to_owned(),
             operation: base.name.clone(),
             state: base.state.map(|k| train.states()[k].name.clone()),
@@ -192,8 +243,8 @@ impl UncertaintyPlan<'_> {
         }
     }
 
-    fn reported(&self) -> Vec<Reported> {
-        let all = self.quantities.iter().map(|q| Reported {
+    fn reported(&self) -> Vec<UncertainQuantity> {
+        let all = self.quantities.iter().map(|q| UncertainQuantity {
             name: q.name.clone(),
             unit: q.unit.clone(),
             distribution: q.describe(),
@@ -203,10 +254,10 @@ impl UncertaintyPlan<'_> {
         all.collect()
     }
 
-    fn choices(&self, evaluated: &Evaluated) -> Vec<Choice> {
+    fn choices(&self, evaluated: &SampleResult) -> Vec<ChoiceResult> {
         let mut all = vec![];
         for (i, q) in self.quantities.iter().enumerate() {
-            let Likely::Each(values) = &q.likely else { continue };
+            let UncertainValue::Each(values) = &q.likely else { continue };
             let mut of: Vec<(usize, Vec<f64>, Vec<f64>)> = vec![Default::default(); values.len()];
             for (point, _, row) in self.samples(evaluated) {
                 let own = &mut of[q.choice(self.design.at(point)[i])];
@@ -225,7 +276,7 @@ impl UncertaintyPlan<'_> {
                     let number = |t: &str| t.parse::<f64>().ok().map(|x| plain(x, DIGITS));
                     nominal == value || number(nominal).is_some_and(|n| Some(n) == number(value))
                 };
-                all.push(Choice {
+                all.push(ChoiceResult {
                     quantity: q.name.clone(),
                     value: value.clone(),
                     is_nominal: q.nominal.as_ref().is_some_and(same),

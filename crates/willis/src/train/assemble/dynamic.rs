@@ -4,18 +4,22 @@
 use std::collections::HashSet;
 
 use crate::diagnostic::{Code, Diagnostic};
-use crate::train::describe::dynamic::{
-    DragSpec, FrictionSpec, ScenarioSpec, ShaftSpec, SignalSpec, SourceKindSpec, SourceSpec,
-};
-use crate::train::describe::{EfficiencySpec, MeshSpec, Parts, SetSpec};
+use crate::exact::Rational;
+use crate::train::assembler::{Assembler, check_name};
+use crate::train::csv;
+use crate::train::described::{GivenFriction, GivenMesh, GivenSet, Parts};
 use crate::train::dynamic::{
     Curve, DragMount, Engagement, Friction, Inertia, LossRow, Scenario, Shaft, Signal, Source, SourceKind,
 };
 use crate::train::formula::Formula;
 use crate::train::physical::PlanetBody;
+use crate::train::specification::field::Field;
+use crate::train::specification::{
+    EfficiencySpec, PlainController, PlainDrag, PlainScenario, PlainShaft, PlainSource, ScenarioSpec, SignalSpec,
+};
+use crate::train::words::clip;
 use crate::train::{Efficiency, FRAME, MemberId, MemberKind, Set, ShiftElementId, ShiftElementKind, State};
-
-use super::{Assembler, clip};
+use crate::units::Time;
 
 const MOST_SAMPLES: i64 = 10_000_000;
 /// A longer formula is no formula; parsing it takes time that grows with its square.
@@ -141,7 +145,7 @@ impl Assembler<'_> {
     /// Inertias of the planets of sets, about their own axes and with the carrier.
     pub fn planet_inertias(
         &mut self,
-        sets: &[(&SetSpec, Vec<MemberId>)],
+        sets: &[(&GivenSet, Vec<MemberId>)],
         resolved: &[Option<Set>],
         orbits: &[PlanetBody],
         given: &[Inertia],
@@ -153,7 +157,7 @@ impl Assembler<'_> {
             for ((role, planet), member) in set.planets().into_iter().zip(members) {
                 let place = format!("set[{k}].{role}");
                 let name = format!("{}.{role}", set.name);
-                let body = planet.body;
+                let body = &planet.body;
                 let mut good = true;
                 for (value, zero, what, unit, key) in [
                     (body.mass, true, "a mass", "kg", "mass"),
@@ -211,7 +215,7 @@ impl Assembler<'_> {
         all
     }
 
-    pub fn drag(&mut self, spec: &DragSpec, place: &str) -> Option<DragMount> {
+    pub fn drag(&mut self, spec: &PlainDrag, place: &str) -> Option<DragMount> {
         let members = self.two_members(&spec.members, "drag", place);
         let mut good = true;
         for (value, what, unit, key) in [
@@ -248,7 +252,7 @@ impl Assembler<'_> {
         planet.and_then(of).map_or(1, |mesh| mesh.count)
     }
 
-    pub fn shaft(&mut self, spec: &ShaftSpec, place: &str) -> Option<Shaft> {
+    pub fn shaft(&mut self, spec: &PlainShaft, place: &str) -> Option<Shaft> {
         let members = self.two_members(&spec.members, "shaft", place);
         let mut good = true;
         for (value, what, unit, key) in [
@@ -270,11 +274,18 @@ impl Assembler<'_> {
             good = false;
         }
         let members = members.filter(|_| good)?;
-        Some(Shaft { name: spec.name.clone(), members, stiffness, damping, backlash, contact: spec.contact })
+        Some(Shaft {
+            name: spec.name.clone(),
+            members,
+            stiffness,
+            damping,
+            backlash,
+            contact: spec.contact.unwrap_or_default(),
+        })
     }
 
-    pub fn friction(&mut self, spec: &FrictionSpec, place: &str) -> Option<Friction> {
-        if *spec == FrictionSpec::default() {
+    pub fn friction(&mut self, spec: &GivenFriction, place: &str) -> Option<Friction> {
+        if spec.is_open() {
             return None;
         }
         let at = |key: &str| format!("{place}.{key}");
@@ -320,8 +331,16 @@ impl Assembler<'_> {
     }
 
     /// Checks a loss table; its first row is the efficiency of operating points.
-    pub fn loss_table(&mut self, spec: &MeshSpec, name: &str, place: &str) -> Option<(Efficiency, Vec<LossRow>)> {
-        let rows = spec.loss_table.as_ref()?;
+    pub fn loss_table(&mut self, spec: &GivenMesh, name: &str, place: &str) -> Option<(Efficiency, Vec<LossRow>)> {
+        let rows: Vec<LossRow> = (spec.loss_table.as_ref()?.iter())
+            .map(|r| LossRow {
+                speed: r.speed,
+                forward: r.forward,
+                backward: r.backward,
+                forward_torque: r.forward_torque.unwrap_or(0.0),
+                backward_torque: r.backward_torque.unwrap_or(0.0),
+            })
+            .collect();
         let at = format!("{place}.loss_table");
         let others = [("efficiency", spec.efficiency.is_some()), ("geometry", spec.geometry.is_some())];
         for (key, _) in others.iter().filter(|o| o.1) {
@@ -340,19 +359,21 @@ impl Assembler<'_> {
                 for (value, key) in [(row.forward, "forward"), (row.backward, "backward")] {
                     self.efficiency(&EfficiencySpec::from(value), &format!("{at}.{key}"));
                 }
-                efficiencies.push(EfficiencySpec::directed(row.forward, row.backward).0);
+                let exact = |x: f64| Rational::from_f64(x).unwrap_or(Rational::ONE);
+                efficiencies.push(Efficiency { forward: exact(row.forward), backward: exact(row.backward) });
             }
         }
         self.assume(name, "loss table given; operating points use the efficiencies of its first row");
-        Some((efficiencies.into_iter().next().filter(|_| good)?, rows.clone()))
+        Some((efficiencies.into_iter().next().filter(|_| good)?, rows))
     }
 
     // ---- What happens ---------------------------------------------------------------------
 
-    pub(super) fn scenario(&mut self, spec: &ScenarioSpec, scene: &Scene<'_>, place: String) -> Option<Scenario> {
+    pub(super) fn scenario(&mut self, spec: &PlainScenario, scene: &Scene<'_>, place: String) -> Option<Scenario> {
         let end = self.end(spec, &place);
-        if !(2..=MOST_SAMPLES).contains(&spec.samples) {
-            let message = format!("{} samples: a motion has 2 to {MOST_SAMPLES} rows of output", spec.samples);
+        let samples = spec.samples.unwrap_or(ScenarioSpec::SAMPLES);
+        if !(2..=MOST_SAMPLES).contains(&samples) {
+            let message = format!("{samples} samples: a motion has 2 to {MOST_SAMPLES} rows of output");
             self.refuse(Code::OutOfRange, &format!("{place}.samples"), message, "");
         }
         let fixed = self.held(&spec.fixed, &place);
@@ -368,27 +389,27 @@ impl Assembler<'_> {
             }
             initial_twists.extend(found.map(|k| (k, *twist)));
         }
-        let sources = self.sources(&spec.sources, &fixed, &place);
+        let sources = self.sources(&spec.source, &fixed, &place);
         let mut engagements = self.given_engagements(spec, scene, &place);
         let scheduled = self.scheduled(spec, scene, &place);
         let own: HashSet<_> = engagements.iter().map(|e| e.element).collect();
         engagements.extend(scheduled.into_iter().filter(|e| !own.contains(&e.element)));
         Some(Scenario {
             name: spec.name.clone(),
-            start: spec.start,
+            start: spec.start.unwrap_or(0.0),
             end: end?,
             initial_speeds,
             initial_twists,
             fixed,
             sources,
             engagements,
-            samples: usize::try_from(spec.samples).ok()?,
+            samples: usize::try_from(samples).ok()?,
             place,
         })
     }
 
-    fn end(&mut self, spec: &ScenarioSpec, place: &str) -> Option<f64> {
-        let start = spec.start;
+    fn end(&mut self, spec: &PlainScenario, place: &str) -> Option<f64> {
+        let start = spec.start.unwrap_or(0.0);
         let given = [("start", Some(start)), ("duration", spec.duration), ("end", spec.end)];
         let given: Vec<_> = given.iter().filter_map(|(key, v)| Some((*key, (*v)?))).collect();
         if !self.finite(&given, place) {
@@ -433,7 +454,7 @@ impl Assembler<'_> {
         fixed
     }
 
-    fn initial_speeds(&mut self, spec: &ScenarioSpec, fixed: &[MemberId], place: &str) -> Vec<(MemberId, f64)> {
+    fn initial_speeds(&mut self, spec: &PlainScenario, fixed: &[MemberId], place: &str) -> Vec<(MemberId, f64)> {
         let mut all: Vec<(MemberId, f64)> = Vec::new();
         for (name, speed) in &spec.initial_speeds {
             let place = format!("{place}.initial_speeds.{name}");
@@ -453,7 +474,7 @@ impl Assembler<'_> {
         all
     }
 
-    fn sources(&mut self, specs: &[SourceSpec], fixed: &[MemberId], place: &str) -> Vec<Source> {
+    fn sources(&mut self, specs: &[PlainSource], fixed: &[MemberId], place: &str) -> Vec<Source> {
         let mut names: HashSet<String> = specs.iter().filter_map(|s| s.name.clone()).collect();
         let mut given = HashSet::new();
         let mut prescribed: HashSet<MemberId> = HashSet::new();
@@ -461,7 +482,7 @@ impl Assembler<'_> {
         for (k, spec) in specs.iter().enumerate() {
             let place = format!("{place}.source[{k}]");
             if let Some(name) = &spec.name {
-                super::check_name(self, name, &format!("{place}.name"), false);
+                check_name(self, name, &format!("{place}.name"), false);
                 if !given.insert(name) {
                     let message = format!("a second source of this scenario is called `{}`", clip(name));
                     self.refuse(Code::DuplicateName, &format!("{place}.name"), message, "give it another name");
@@ -473,7 +494,7 @@ impl Assembler<'_> {
                 let message = "the frame is at rest; nothing drives it";
                 self.refuse(Code::HeldAndDriven, &at, message, "name a member that turns");
             }
-            if let (SourceKind::Speed(_), Some(id)) = (&spec.kind, member.filter(|m| *m != FRAME)) {
+            if let (Some(_), Some(id)) = (&spec.speed, member.filter(|m| *m != FRAME)) {
                 let name = clip(&spec.member);
                 let message = match fixed.contains(&id) {
                     true => Some(format!("`{name}` is held and has a prescribed speed")),
@@ -484,9 +505,9 @@ impl Assembler<'_> {
                     self.refuse(Code::HeldAndDriven, &format!("{place}.speed"), message, "keep one of the two");
                 }
             }
-            let kind = self.source_kind(&spec.kind, &place);
+            let kind = self.source_kind(spec, &place);
             let name = spec.name.clone().unwrap_or_else(|| {
-                let base = format!("{} {}", title(&spec.kind), spec.member);
+                let base = format!("{} {}", title(spec), spec.member);
                 let numbered = (2..).map(|k| format!("{base} {k}"));
                 let mut free = std::iter::once(base.clone()).chain(numbered).filter(|n| !names.contains(n));
                 free.next().expect("numbers do not end")
@@ -499,75 +520,103 @@ impl Assembler<'_> {
         all
     }
 
-    fn source_kind(&mut self, kind: &SourceKindSpec, place: &str) -> Option<SourceKind> {
-        Some(match kind {
-            SourceKind::Torque(s) => SourceKind::Torque(self.signal(s, &format!("{place}.torque"))?),
-            SourceKind::Speed(s) => SourceKind::Speed(self.signal(s, &format!("{place}.speed"))?),
-            SourceKind::Controller { setpoint, feed_forward, proportional, integral, derivative } => {
-                let place = format!("{place}.controller");
-                for (value, unit, key) in [
-                    (*proportional, "N m s/rad", "proportional"),
-                    (*integral, "N m/rad", "integral"),
-                    (*derivative, "N m s²/rad", "derivative"),
-                ] {
-                    self.positive(value, true, "a gain", unit, &format!("{place}.{key}"));
-                }
-                let setpoint = self.signal(setpoint, &format!("{place}.setpoint"));
-                let feed_forward = self.signal(feed_forward, &format!("{place}.feed_forward"));
-                SourceKind::Controller {
-                    setpoint: setpoint?,
-                    feed_forward: feed_forward?,
-                    proportional: *proportional,
-                    integral: *integral,
-                    derivative: *derivative,
-                }
+    /// The one thing that a source is.
+    fn source_kind(&mut self, spec: &PlainSource, place: &str) -> Option<SourceKind> {
+        let given = given(spec);
+        let hint = |verb: &str| format!("{verb} one of torque, speed, controller, linear, quadratic, vehicle, motor");
+        match given.as_slice() {
+            [_] => {}
+            [] => {
+                let message = "this source does not say what acts on its member";
+                self.refuse(Code::MissingKey, place, message, &hint("give"));
+                return None;
             }
-            SourceKind::Linear { torque, about, slope } => {
-                let values = [("torque", *torque), ("about", *about), ("slope", *slope)];
-                self.finite(&values, &format!("{place}.linear"));
-                SourceKind::Linear { torque: *torque, about: *about, slope: *slope }
+            [first, second, ..] => {
+                let message = format!("`{first}` and `{second}` in one source: a source is one thing");
+                let hint = "keep one; a second [[scenario.source]] may act on the same member";
+                self.refuse(Code::Conflict, &format!("{place}.{second}"), message, hint);
+                return None;
             }
-            SourceKind::Quadratic { torque, about, factor, even } => {
-                let values = [("torque", *torque), ("about", *about), ("factor", *factor)];
-                self.finite(&values, &format!("{place}.quadratic"));
-                SourceKind::Quadratic { torque: *torque, about: *about, factor: *factor, even: *even }
+        }
+        let at = format!("{place}.{}", given[0]);
+        let or = |x: Option<f64>, usual: f64| x.unwrap_or(usual);
+        if let Some(s) = &spec.torque {
+            return Some(SourceKind::Torque(self.signal(s, &at)?));
+        }
+        if let Some(s) = &spec.speed {
+            return Some(SourceKind::Speed(self.signal(s, &at)?));
+        }
+        if let Some(c) = &spec.controller {
+            return self.controller(c, &at);
+        }
+        if let Some(l) = &spec.linear {
+            let (torque, about, slope) = (or(l.torque, 0.0), or(l.about, 0.0), or(l.slope, 0.0));
+            self.finite(&[("torque", torque), ("about", about), ("slope", slope)], &at);
+            return Some(SourceKind::Linear { torque, about, slope });
+        }
+        if let Some(q) = &spec.quadratic {
+            let (torque, about, factor) = (or(q.torque, 0.0), or(q.about, 0.0), or(q.factor, 0.0));
+            self.finite(&[("torque", torque), ("about", about), ("factor", factor)], &at);
+            return Some(SourceKind::Quadratic { torque, about, factor, even: q.even });
+        }
+        if let Some(v) = &spec.vehicle {
+            let (final_drive, rolling) = (or(v.final_drive, 1.0), or(v.rolling, 0.0));
+            let (drag_area, air_density) = (or(v.drag_area, 0.0), or(v.air_density, AIR));
+            for (value, zero, what, unit, key) in [
+                (v.mass, false, "a mass", "kg", "mass"),
+                (v.wheel_radius * 1e3, false, "a wheel radius", "mm", "wheel_radius"),
+                (rolling, true, "a rolling resistance", "", "rolling"),
+                (drag_area, true, "a drag area", "m²", "drag_area"),
+                (air_density, true, "a density", "kg/m³", "air_density"),
+            ] {
+                self.positive(value, zero, what, unit, &format!("{at}.{key}"));
             }
-            SourceKind::Vehicle { mass, wheel_radius, final_drive, rolling, drag_area, air_density, grade } => {
-                let place = format!("{place}.vehicle");
-                for (value, zero, what, unit, key) in [
-                    (*mass, false, "a mass", "kg", "mass"),
-                    (*wheel_radius * 1e3, false, "a wheel radius", "mm", "wheel_radius"),
-                    (*rolling, true, "a rolling resistance", "", "rolling"),
-                    (*drag_area, true, "a drag area", "m²", "drag_area"),
-                    (*air_density, true, "a density", "kg/m³", "air_density"),
-                ] {
-                    self.positive(value, zero, what, unit, &format!("{place}.{key}"));
-                }
-                if *final_drive == 0.0 || !final_drive.is_finite() {
-                    let message = format!("a final drive of {final_drive}: it is a finite number, not zero");
-                    self.refuse(Code::OutOfRange, &format!("{place}.final_drive"), message, "");
-                }
-                SourceKind::Vehicle {
-                    mass: *mass,
-                    wheel_radius: *wheel_radius,
-                    final_drive: *final_drive,
-                    rolling: *rolling,
-                    drag_area: *drag_area,
-                    air_density: *air_density,
-                    grade: self.signal(grade, &format!("{place}.grade"))?,
-                }
+            if final_drive == 0.0 || !final_drive.is_finite() {
+                let message = format!("a final drive of {final_drive}: it is a finite number, not zero");
+                self.refuse(Code::OutOfRange, &format!("{at}.final_drive"), message, "");
             }
-            SourceKind::Motor { full_load, closed, throttle } => {
-                let place = format!("{place}.motor");
-                let full_load = self.curve(full_load, "rad/s", &format!("{place}.full_load"));
-                let closed = self.curve(closed, "rad/s", &format!("{place}.closed"));
-                let at = format!("{place}.throttle");
-                let throttle = self.signal(throttle, &at);
-                if let Some(signal) = &throttle {
-                    self.within(signal, [0.0, 1.0], "a throttle", &at);
-                }
-                SourceKind::Motor { full_load: full_load?, closed: closed?, throttle: throttle? }
-            }
+            let grade = self.signal_or(v.grade.as_ref(), 0.0, &format!("{at}.grade"))?;
+            let (mass, wheel_radius) = (v.mass, v.wheel_radius);
+            return Some(SourceKind::Vehicle {
+                mass,
+                wheel_radius,
+                final_drive,
+                rolling,
+                drag_area,
+                air_density,
+                grade,
+            });
+        }
+        let m = spec.motor.as_ref()?;
+        let idle = vec![[0.0, 0.0]];
+        let full_load = self.curve(&m.full_load, "rad/s", &format!("{at}.full_load"));
+        let closed = self.curve(m.closed.as_ref().unwrap_or(&idle), "rad/s", &format!("{at}.closed"));
+        let at = format!("{at}.throttle");
+        let throttle = self.signal_or(m.throttle.as_ref(), 1.0, &at);
+        if let Some(signal) = &throttle {
+            self.within(signal, [0.0, 1.0], "a throttle", &at);
+        }
+        Some(SourceKind::Motor { full_load: full_load?, closed: closed?, throttle: throttle? })
+    }
+
+    fn controller(&mut self, c: &PlainController, place: &str) -> Option<SourceKind> {
+        let [proportional, integral, derivative] =
+            [c.proportional, c.integral, c.derivative].map(Option::unwrap_or_default);
+        for (value, unit, key) in [
+            (proportional, "N m s/rad", "proportional"),
+            (integral, "N m/rad", "integral"),
+            (derivative, "N m s²/rad", "derivative"),
+        ] {
+            self.positive(value, true, "a gain", unit, &format!("{place}.{key}"));
+        }
+        let setpoint = self.signal(&c.setpoint, &format!("{place}.setpoint"));
+        let feed_forward = self.signal_or(c.feed_forward.as_ref(), 0.0, &format!("{place}.feed_forward"));
+        Some(SourceKind::Controller {
+            setpoint: setpoint?,
+            feed_forward: feed_forward?,
+            proportional,
+            integral,
+            derivative,
         })
     }
 
@@ -586,10 +635,10 @@ impl Assembler<'_> {
 
     // ---- Shift elements over time ---------------------------------------------------------
 
-    fn given_engagements(&mut self, spec: &ScenarioSpec, scene: &Scene<'_>, place: &str) -> Vec<Engagement> {
+    fn given_engagements(&mut self, spec: &PlainScenario, scene: &Scene<'_>, place: &str) -> Vec<Engagement> {
         let known: Vec<&str> = scene.elements.iter().map(|e| e.0).collect();
         let mut all: Vec<Engagement> = Vec::new();
-        for (k, e) in spec.engagements.iter().enumerate() {
+        for (k, e) in spec.engagement.iter().enumerate() {
             let place = format!("{place}.engagement[{k}]");
             let at = format!("{place}.element");
             let signal = self.signal(&e.value, &format!("{place}.value"));
@@ -615,7 +664,7 @@ impl Assembler<'_> {
     }
 
     /// Engagements that follow from `state` or `gears`; one-way clutches act by themselves.
-    fn scheduled(&mut self, spec: &ScenarioSpec, scene: &Scene<'_>, place: &str) -> Vec<Engagement> {
+    fn scheduled(&mut self, spec: &PlainScenario, scene: &Scene<'_>, place: &str) -> Vec<Engagement> {
         let at = format!("{place}.gears");
         if spec.state.is_some() && spec.gears.is_some() {
             let message = "`state` and `gears` both say which elements are engaged";
@@ -664,61 +713,100 @@ impl Assembler<'_> {
 
     // ---- Values over time -----------------------------------------------------------------
 
-    fn signal(&mut self, spec: &SignalSpec, place: &str) -> Option<Signal> {
+    /// A signal, or a constant where none is given.
+    fn signal_or(&mut self, spec: Option<&SignalSpec<f64>>, usual: f64, place: &str) -> Option<Signal> {
         match spec {
-            SignalSpec::Given(signal) => self.given_signal(signal, place),
-            SignalSpec::Formula(text) => self.formula(text, place),
+            Some(spec) => self.signal(spec, place),
+            None => Some(Signal::Constant(usual)),
+        }
+    }
+
+    fn signal(&mut self, spec: &SignalSpec<f64>, place: &str) -> Option<Signal> {
+        let key = |key: &str| format!("{place}.{key}");
+        let time = |at: &Option<Time>| at.plain().unwrap_or(0.0);
+        match spec {
+            SignalSpec::Constant(value) => self.finite(&[("", *value)], place).then_some(Signal::Constant(*value)),
+            SignalSpec::Step { offset, height, at } => {
+                let (offset, height, at) = (offset.unwrap_or(0.0), *height, time(at));
+                let good = self.finite(&[("offset", offset), ("height", height), ("at", at)], place);
+                good.then_some(Signal::Step { offset, height, at })
+            }
+            SignalSpec::Ramp { offset, height, at, duration } => {
+                let (offset, height, at, duration) = (offset.unwrap_or(0.0), *height, time(at), duration.si());
+                let good = self.finite(&[("offset", offset), ("height", height), ("at", at)], place)
+                    & self.positive(duration, false, "the duration of a ramp", "s", &key("duration"));
+                good.then_some(Signal::Ramp { offset, height, at, duration })
+            }
+            SignalSpec::Sine { offset, amplitude, frequency, phase, at, decay } => {
+                let (offset, amplitude, at) = (offset.unwrap_or(0.0), *amplitude, time(at));
+                let (frequency, phase) = (frequency.si(), phase.plain().unwrap_or(0.0));
+                let decay = decay.plain().unwrap_or(0.0);
+                let values = [("offset", offset), ("amplitude", amplitude), ("phase", phase), ("at", at)];
+                let good = self.finite(&values, place)
+                    & self.positive(frequency, true, "a frequency", "Hz", &key("frequency"))
+                    & self.positive(decay, true, "a decay", "1/s", &key("decay"));
+                good.then_some(Signal::Sine { offset, amplitude, frequency, phase, at, decay })
+            }
+            SignalSpec::Pulse { offset, amplitude, period, width, at } => {
+                let (offset, amplitude, at) = (offset.unwrap_or(0.0), *amplitude, time(at));
+                let (period, width) = (period.si(), width.unwrap_or(0.5));
+                let inside = (0.0..=1.0).contains(&width);
+                if !inside {
+                    let message = format!("a width of {width}: it is the part of the period, from 0 to 1");
+                    self.refuse(Code::OutOfRange, &key("width"), message, "");
+                }
+                let good = self.finite(&[("offset", offset), ("amplitude", amplitude), ("at", at)], place)
+                    & self.positive(period, false, "a period", "s", &key("period"))
+                    & inside;
+                good.then_some(Signal::Pulse { offset, amplitude, period, width, at })
+            }
+            SignalSpec::Table { points, hold } => self.table(points.plain(), *hold, &key("points")),
+            SignalSpec::Csv { file, time, value, hold } => {
+                let points = self.columns(file, [time, value], &key("file"))?;
+                self.table(points, *hold, &key("points"))
+            }
+            SignalSpec::Expression { formula } => self.formula(formula, place),
             SignalSpec::Product(of) => {
-                let [first, second] = [0, 1].map(|k| self.signal(&of[k], &format!("{place}.of[{k}]")));
+                let first = self.signal(&of.0, &format!("{place}.of[0]"));
+                let second = self.signal(&of.1, &format!("{place}.of[1]"));
                 Some(Signal::Product(Box::new([first?, second?])))
             }
         }
     }
 
-    fn given_signal(&mut self, signal: &Signal, place: &str) -> Option<Signal> {
-        let at = |key: &str| format!("{place}.{key}");
-        let good = match signal {
-            Signal::Constant(value) => self.finite(&[("", *value)], place),
-            Signal::Step { offset, height, at } => {
-                self.finite(&[("offset", *offset), ("height", *height), ("at", *at)], place)
+    /// A table over time: of the same time are the two points of a jump.
+    fn table(&mut self, points: Vec<[f64; 2]>, hold: bool, place: &str) -> Option<Signal> {
+        let finite = points.iter().flatten().all(|x| x.is_finite());
+        let rising = points.windows(2).all(|w| w[0][0] <= w[1][0]);
+        if points.is_empty() || !finite || !rising {
+            self.bad_points(&points, |a, b| a <= b, "s", place);
+            return None;
+        }
+        Some(Signal::Table { points, hold })
+    }
+
+    /// The points of two columns of a table that the train names.
+    fn columns(&mut self, file: &str, columns: [&str; 2], place: &str) -> Option<Vec<[f64; 2]>> {
+        if !self.files.contains_key(file) {
+            let text = (self.load)(file);
+            self.files.insert(file.to_owned(), text);
+        }
+        let wrong = match &self.files[file] {
+            Ok(text) => match csv::points(text, columns) {
+                Ok(points) => return Some(points),
+                Err(wrong) => wrong,
+            },
+            Err(why) => {
+                let why = why.clone();
+                self.refuse(Code::Unreadable, place, why, "");
+                return None;
             }
-            Signal::Ramp { offset, height, at: begin, duration } => {
-                let finite = self.finite(&[("offset", *offset), ("height", *height), ("at", *begin)], place);
-                finite & self.positive(*duration, false, "the duration of a ramp", "s", &at("duration"))
-            }
-            Signal::Sine { offset, amplitude, frequency, phase, at: begin, decay } => {
-                let values = [("offset", *offset), ("amplitude", *amplitude), ("phase", *phase), ("at", *begin)];
-                self.finite(&values, place)
-                    & self.positive(*frequency, true, "a frequency", "Hz", &at("frequency"))
-                    & self.positive(*decay, true, "a decay", "1/s", &at("decay"))
-            }
-            Signal::Pulse { offset, amplitude, period, width, at: begin } => {
-                let inside = (0.0..=1.0).contains(width);
-                if !inside {
-                    let message = format!("a width of {width}: it is the part of the period, from 0 to 1");
-                    self.refuse(Code::OutOfRange, &at("width"), message, "");
-                }
-                self.finite(&[("offset", *offset), ("amplitude", *amplitude), ("at", *begin)], place)
-                    & self.positive(*period, false, "a period", "s", &at("period"))
-                    & inside
-            }
-            Signal::Table { points, .. } => {
-                let finite = points.iter().flatten().all(|x| x.is_finite());
-                let rising = points.windows(2).all(|w| w[0][0] <= w[1][0]);
-                if points.is_empty() || !finite || !rising {
-                    self.bad_points(points, |a, b| a <= b, "s", &at("points"));
-                    return None;
-                }
-                true
-            }
-            Signal::Product(of) => {
-                let [first, second] = [0, 1].map(|k| self.given_signal(&of[k], &format!("{place}.of[{k}]")));
-                return Some(Signal::Product(Box::new([first?, second?])));
-            }
-            // Members are looked up again: the numbers may be those of another train.
-            Signal::Expression { formula, .. } => return self.formula(formula.text(), place),
         };
-        good.then(|| signal.clone())
+        for message in wrong {
+            let hint = "a header row, commas, decimal points, times in s that rise";
+            self.refuse(Code::BadTable, place, format!("{}: {message}", clip(file)), hint);
+        }
+        None
     }
 
     fn formula(&mut self, text: &str, place: &str) -> Option<Signal> {
@@ -756,15 +844,32 @@ impl Assembler<'_> {
     }
 }
 
+/// Density of air unless given, kg/m³.
+const AIR: f64 = 1.2;
+
+/// What a source says of which it has exactly one, by the keys.
+fn given(spec: &PlainSource) -> Vec<&'static str> {
+    let all = [
+        (spec.torque.is_some(), "torque"),
+        (spec.speed.is_some(), "speed"),
+        (spec.controller.is_some(), "controller"),
+        (spec.linear.is_some(), "linear"),
+        (spec.quadratic.is_some(), "quadratic"),
+        (spec.vehicle.is_some(), "vehicle"),
+        (spec.motor.is_some(), "motor"),
+    ];
+    all.into_iter().filter(|k| k.0).map(|k| k.1).collect()
+}
+
 /// What a source is called that was given no name, before its member.
-fn title(kind: &SourceKindSpec) -> &'static str {
-    match kind {
-        SourceKind::Torque(_) => "torque on",
-        SourceKind::Speed(_) => "speed of",
-        SourceKind::Controller { .. } => "controller on",
-        SourceKind::Linear { .. } | SourceKind::Quadratic { .. } => "load on",
-        SourceKind::Vehicle { .. } => "vehicle on",
-        SourceKind::Motor { .. } => "motor on",
+fn title(spec: &PlainSource) -> &'static str {
+    match given(spec).first() {
+        Some(&"speed") => "speed of",
+        Some(&"controller") => "controller on",
+        Some(&"linear" | &"quadratic") => "load on",
+        Some(&"vehicle") => "vehicle on",
+        Some(&"motor") => "motor on",
+        _ => "torque on",
     }
 }
 

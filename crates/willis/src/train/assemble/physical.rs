@@ -6,13 +6,14 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
 use crate::geometry::{Pair, PairData, Tip, Wheel};
 use crate::losses::loss_factor::Path;
-use crate::train::describe::physical::{
-    BearingSpec, Fluid, GeometrySpec, HousingSpec, OilSpec, RotorSpec, SealSpec, ToothSpec,
+use crate::losses::seal::Material;
+use crate::train::assembler::Assembler;
+use crate::train::physical::{BearingMount, Known, Lubrication, PlanetBody, Rotor, SealMount, Teeth, steel_mass};
+use crate::train::specification::{
+    Fluid, LawsSpec, PlainBearing, PlainGeometry, PlainHousing, PlainOil, PlainRotor, PlainSeal, PlainTooth,
 };
-use crate::train::physical::{BearingMount, Lubrication, PlanetBody, Rotor, SealMount, Teeth, steel_mass};
+use crate::train::words::{clip, list};
 use crate::train::{Efficiency, FRAME, MemberId, MemberKind, MeshId};
-
-use super::{Assembler, clip, list};
 
 /// Assumed roughness `Ra` of ground flanks, m.
 const ROUGHNESS: f64 = 0.4e-6;
@@ -45,8 +46,8 @@ impl Assembler<'_> {
     /// The involute pair of two gears, each with tooth count, whether internal, and teeth.
     pub fn tooth_pair(
         &mut self,
-        g: &GeometrySpec,
-        gears: [(f64, bool, ToothSpec); 2],
+        g: &PlainGeometry,
+        gears: [(f64, bool, &PlainTooth); 2],
         title: &str,
         place: &str,
     ) -> Option<Teeth> {
@@ -55,13 +56,13 @@ impl Assembler<'_> {
         for (value, zero, what, unit, key) in [
             (g.module * 1e3, false, "a module", "mm", "module"),
             (g.width * 1e3, false, "a face width", "mm", "width"),
-            (g.youngs_modulus / 1e9, false, "a modulus", "GPa", "youngs_modulus"),
+            (g.youngs_modulus() / 1e9, false, "a modulus", "GPa", "youngs_modulus"),
             (g.roughness.unwrap_or(0.0) * 1e6, true, "a roughness", "µm", "roughness"),
         ] {
             good &= self.positive(value, zero, what, unit, &format!("{at}.{key}"));
         }
-        if !(0.0..0.5).contains(&g.poisson_ratio) {
-            let message = format!("a Poisson's ratio of {}: it lies from 0 to below 0.5", g.poisson_ratio);
+        if !(0.0..0.5).contains(&g.poisson_ratio()) {
+            let message = format!("a Poisson's ratio of {}: it lies from 0 to below 0.5", g.poisson_ratio());
             self.report_once(Diagnostic::new(Code::OutOfRange, format!("{at}.poisson_ratio"), message));
             good = false;
         }
@@ -72,23 +73,23 @@ impl Assembler<'_> {
         if !good {
             return None;
         }
-        let wheel = |(teeth, internal, t): &(f64, bool, ToothSpec)| Wheel {
+        let wheel = |(teeth, internal, t): &(f64, bool, &PlainTooth)| Wheel {
             teeth: *teeth,
             internal: *internal,
             shift: t.shift.unwrap_or(0.0),
             tip: match t.tip_diameter {
                 Some(d) => Tip::Radius(d / 2.0),
                 None => Tip::Addendum {
-                    coefficient: t.addendum.unwrap_or(g.addendum),
+                    coefficient: t.addendum.unwrap_or(g.addendum()),
                     alteration: t.tip_alteration.unwrap_or(0.0),
                 },
             },
-            dedendum: t.dedendum.unwrap_or(g.dedendum),
+            dedendum: t.dedendum.unwrap_or(g.dedendum()),
         };
         let data = PairData {
             module: g.module,
-            pressure_angle: g.pressure_angle,
-            helix: g.helix,
+            pressure_angle: g.pressure_angle(),
+            helix: g.helix(),
             double_helical: g.double_helical,
             width: g.width,
             centre_distance: g.centre_distance,
@@ -116,8 +117,8 @@ impl Assembler<'_> {
             pair,
             roughness: roughness.map(|r| r.unwrap_or(ROUGHNESS)),
             immersion: gears.map(|(_, _, t)| t.immersion),
-            youngs_modulus: g.youngs_modulus,
-            poisson_ratio: g.poisson_ratio,
+            youngs_modulus: g.youngs_modulus(),
+            poisson_ratio: g.poisson_ratio(),
         })
     }
 
@@ -136,15 +137,16 @@ impl Assembler<'_> {
         self.report(d.hint("leave out the efficiency to have the loss computed from the teeth"));
     }
 
-    pub fn choose_laws(&mut self, choices: &[(String, String)], friction_coefficient: Option<f64>) {
-        for (family, law) in choices {
-            if let Err(mut d) = self.laws.choose(family, law) {
+    pub fn choose_laws(&mut self, spec: Option<&LawsSpec>) {
+        let Some(spec) = spec else { return };
+        for (family, law) in spec.choices() {
+            if let Err(mut d) = self.laws.choose(family, &law) {
                 d.place = format!("laws.{family}");
                 self.report(*d);
             }
         }
         const PLACE: &str = "laws.friction_coefficient";
-        let Some(mu) = friction_coefficient else { return };
+        let Some(mu) = spec.friction_coefficient else { return };
         if self.positive(mu, true, "a coefficient of friction", "", PLACE) {
             self.friction_coefficient = mu;
             self.laws.friction_coefficient = Some(mu);
@@ -155,7 +157,7 @@ impl Assembler<'_> {
         }
     }
 
-    pub fn oil(&mut self, spec: &OilSpec) -> Option<Lubrication> {
+    pub fn oil(&mut self, spec: &PlainOil) -> Option<Lubrication> {
         let mut good = true;
         for (value, what, unit, key) in [
             (spec.viscosity_40.map(|v| v * 1e6), "a viscosity", "mm²/s", "viscosity_40"),
@@ -264,12 +266,12 @@ impl Assembler<'_> {
         if !(200.0..=600.0).contains(&temperature) {
             let message = format!("an oil temperature of {:.1} °C is none that a gearbox has", temperature - 273.15);
             self.report(Diagnostic::new(Code::OutOfRange, place, message).hint("from -73 to 327 °C is computed"));
-        } else if let Some(message) = lubrication.beyond(temperature) {
-            let hint = match message.contains("alone") {
-                true => "give viscosity_40 and viscosity_100, and it follows the temperature",
-                false => "the viscosity is extrapolated",
+        } else if let Some(beyond) = lubrication.beyond(temperature) {
+            let hint = match beyond.known {
+                Known::At(_) => "give viscosity_40 and viscosity_100, and it follows the temperature",
+                Known::Between(_) => "the viscosity is extrapolated",
             };
-            self.report(Diagnostic::new(Code::OutsideLaw, place, message).hint(hint));
+            self.report(Diagnostic::new(Code::OutsideLaw, place, beyond.to_string()).hint(hint));
         }
     }
 
@@ -291,7 +293,7 @@ impl Assembler<'_> {
         Some(members)
     }
 
-    pub fn bearing(&mut self, spec: &BearingSpec, place: &str) -> Option<BearingMount> {
+    pub fn bearing(&mut self, spec: &PlainBearing, place: &str) -> Option<BearingMount> {
         let members = self.two_members(&spec.members, "bearing", place);
         let mut good = true;
         for (value, zero, what, unit, key) in [
@@ -393,12 +395,13 @@ impl Assembler<'_> {
         })
     }
 
-    pub fn seal(&mut self, spec: &SealSpec, place: &str) -> Option<SealMount> {
+    pub fn seal(&mut self, spec: &PlainSeal, place: &str) -> Option<SealMount> {
         let members = self.two_members(&spec.members, "seal", place);
         let good = self.positive(spec.diameter * 1e3, false, "a diameter", "mm", &format!("{place}.diameter"));
-        let count = self.count(spec.count, &format!("{place}.count"));
+        let count = self.count(spec.count.unwrap_or(1), &format!("{place}.count"));
         let members = members.filter(|_| good)?;
-        Some(SealMount { name: spec.name.clone(), members, diameter: spec.diameter, material: spec.material, count })
+        let material = spec.material.unwrap_or(Material::Fkm);
+        Some(SealMount { name: spec.name.clone(), members, diameter: spec.diameter, material, count })
     }
 
     /// Says what oil seals are taken to run in, where it is not known.
@@ -414,7 +417,7 @@ impl Assembler<'_> {
         }
     }
 
-    pub fn rotor(&mut self, spec: &RotorSpec, place: &str) -> Option<Rotor> {
+    pub fn rotor(&mut self, spec: &PlainRotor, place: &str) -> Option<Rotor> {
         let member = self.resolve(&spec.member, &format!("{place}.member"));
         let axial_gap = spec.axial_gap.unwrap_or(spec.radial_gap);
         let mut good = true;
@@ -432,8 +435,8 @@ impl Assembler<'_> {
             good = false;
         }
         let member = member.filter(|_| good)?;
-        let RotorSpec { name, radius, length, radial_gap, fluid, .. } = spec.clone();
-        Some(Rotor { name, member, radius, length, radial_gap, axial_gap, fluid })
+        let PlainRotor { name, radius, length, radial_gap, fluid, .. } = spec.clone();
+        Some(Rotor { name, member, radius, length, radial_gap, axial_gap, fluid: fluid.unwrap_or_default() })
     }
 
     /// Planets that revolve, with their orbit and mass, where the geometry tells them; and the
@@ -508,7 +511,7 @@ impl Assembler<'_> {
         all
     }
 
-    pub fn housing(&mut self, spec: &HousingSpec) {
+    pub fn housing(&mut self, spec: &PlainHousing) {
         if let Some(x) = spec.enclosure
             && self.positive(x, false, "an enclosure factor", "", "housing.enclosure")
             && x > 1.0

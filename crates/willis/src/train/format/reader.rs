@@ -8,27 +8,17 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
-use crate::train::Efficiency;
-use crate::train::assemble::clip;
-use crate::train::describe::EfficiencySpec;
-use crate::units::{self, Dimension, Quantity, QuantityError};
+use crate::train::words::clip;
+use crate::units::{self, Dimension, Quantity, QuantityFault};
 
-use super::csv;
-use super::keys::{Kind, Measure, NUMBER_SIGNAL, SignalKind, Table};
-
-/// Gives the text of a file that the train file names, or says why it cannot.
-pub(super) type Load<'l> = dyn FnMut(&str) -> Result<String, String> + 'l;
+use super::keys::{Kind, Measure, SignalKind, Table, about};
+use super::node::{Amount, Datum, Directed, Fields, Node};
 
 /// Where each place of the document stands in the text.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Spans(HashMap<String, Range<usize>>);
+pub(crate) struct Spans(HashMap<String, Range<usize>>);
 
 impl Spans {
-    /// Whether the text has something at a place.
-    pub fn has(&self, place: &str) -> bool {
-        self.0.contains_key(place)
-    }
-
     /// The span of a place, or of the smallest thing around it that has one.
     pub fn nearest(&self, place: &str) -> Option<Range<usize>> {
         let mut place = place;
@@ -41,93 +31,7 @@ impl Spans {
     }
 }
 
-/// A checked value.
-enum Node {
-    Text(String),
-    Integer(i64),
-    Flag(bool),
-    Names(Vec<String>),
-    Efficiency(EfficiencySpec),
-    SetEfficiency(EfficiencySpec, EfficiencySpec),
-    Quantities(Vec<(String, Quantity)>),
-    Quantity(Quantity),
-    Number(f64),
-    Points(Vec<[f64; 2]>),
-    Schedule(Vec<(f64, String)>),
-    Table(Fields),
-    Tables(Vec<Fields>),
-}
-
-/// The checked keys of a table. What was absent or wrong is not there; it was reported.
-#[derive(Default)]
-pub(super) struct Fields(BTreeMap<&'static str, Node>);
-
-macro_rules! getter {
-    ($name:ident, $variant:pat => $value:expr, $type:ty) => {
-        pub fn $name(&self, key: &str) -> $type {
-            match self.0.get(key) {
-                Some($variant) => $value.into(),
-                _ => Default::default(),
-            }
-        }
-    };
-}
-
-impl Fields {
-    getter!(text, Node::Text(t) => t.clone(), String);
-    getter!(optional_text, Node::Text(t) => t.clone(), Option<String>);
-    getter!(integer, Node::Integer(i) => *i, Option<i64>);
-    getter!(flag, Node::Flag(b) => *b, bool);
-    getter!(names, Node::Names(n) => n.clone(), Vec<String>);
-    getter!(efficiency, Node::Efficiency(e) => e.clone(), Option<EfficiencySpec>);
-    getter!(set_efficiency, Node::SetEfficiency(e, i) => (e.clone(), i.clone()), Option<(EfficiencySpec, EfficiencySpec)>);
-    getter!(quantities, Node::Quantities(q) => q.clone(), Vec<(String, Quantity)>);
-
-    /// A quantity in SI.
-    pub fn si(&self, key: &str) -> Option<f64> {
-        match self.0.get(key) {
-            Some(Node::Quantity(q)) => Some(q.si()),
-            _ => None,
-        }
-    }
-
-    /// Whether the key was given, and was sound.
-    pub fn has(&self, key: &str) -> bool {
-        self.0.contains_key(key)
-    }
-
-    /// A quantity in SI, or a plain number.
-    pub fn scalar(&self, key: &str) -> Option<f64> {
-        self.si(key).or(self.real(key))
-    }
-
-    getter!(points, Node::Points(p) => p.clone(), Option<Vec<[f64; 2]>>);
-    getter!(schedule, Node::Schedule(s) => s.clone(), Option<Vec<(f64, String)>>);
-
-    /// A plain number.
-    pub fn real(&self, key: &str) -> Option<f64> {
-        match self.0.get(key) {
-            Some(Node::Number(x)) => Some(*x),
-            _ => None,
-        }
-    }
-
-    pub fn table(&self, key: &str) -> Option<&Fields> {
-        match self.0.get(key) {
-            Some(Node::Table(t)) => Some(t),
-            _ => None,
-        }
-    }
-
-    pub fn tables(&self, key: &str) -> &[Fields] {
-        match self.0.get(key) {
-            Some(Node::Tables(t)) => t,
-            _ => &[],
-        }
-    }
-}
-
-pub(super) fn read(text: &str, table: &Table, load: &mut Load<'_>, diagnostics: &mut Diagnostics) -> (Fields, Spans) {
+pub(crate) fn read(text: &str, table: &Table, diagnostics: &mut Diagnostics) -> (Fields, Spans) {
     // Recovering from error after error takes time that grows with the square of the garbage.
     const MOST_RECOVERED: usize = 1 << 16;
     const MOST_ERRORS: usize = 20;
@@ -141,28 +45,60 @@ pub(super) fn read(text: &str, table: &Table, load: &mut Load<'_>, diagnostics: 
     };
     for error in errors.iter().take(MOST_ERRORS) {
         let mut d = Diagnostic::new(Code::Syntax, "", error.message().trim().replace('\n', ", "));
-        d.span = error.span().map(|s| s.start.min(text.len())..s.end.min(text.len()));
-        diagnostics.push(d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"));
+        d.span = error.span().map(|s| (s.start.min(text.len())..s.end.min(text.len())).into());
+        let comma = d.span.and_then(|span| decimal_comma(text, span.start));
+        diagnostics.push(match comma {
+            Some(number) => d.hint(format!("the decimal sign is a decimal point: write {number}")),
+            None => d.hint("strings need quotes; tables are `[[set]]`, inline tables `{ key = value }`"),
+        });
     }
-    let mut reader = Reader { diagnostics, spans: Spans::default(), load, files: BTreeMap::new() };
+    let mut reader = Reader { diagnostics, spans: Spans::default() };
     if !errors.is_empty() {
         return (Fields::default(), reader.spans);
     }
-    let fields = reader.table(root.get_ref(), table, "", 0..text.len().min(1));
+    let fields = reader.table(root.get_ref(), table, "", 0..text.len().min(1), None);
     (fields, reader.spans)
 }
 
-struct Reader<'d, 'l> {
+/// The number that is meant in the line of a syntax error, if a decimal comma is the cause: `backlash = 20,5`.
+fn decimal_comma(text: &str, at: usize) -> Option<String> {
+    let start = text.get(..at)?.rfind('\n').map_or(0, |k| k + 1);
+    let numeric = |c: char| c.is_ascii_digit() || matches!(c, ',' | '.' | '+' | '-');
+    text[start..].lines().next()?.split('=').skip(1).find_map(|value| {
+        let value = value.trim_start();
+        let end = value.find(|c| !numeric(c)).unwrap_or(value.len());
+        units::decimal_point(value[..end].trim_end_matches(','))
+    })
+}
+
+/// The checked keys of a table that comes by other ways than a text.
+pub(crate) fn fields(datum: &Datum, table: &Table) -> Result<Fields, Diagnostics> {
+    let text = format!("table = {}", datum.inline());
+    let mut diagnostics = Diagnostics::default();
+    let mut reader = Reader { diagnostics: &mut diagnostics, spans: Spans::default() };
+    let root = DeTable::parse(&text).map_err(|e| {
+        let d = Diagnostic::new(Code::Syntax, "", e.message().trim().replace('\n', ", "));
+        [d].into_iter().collect::<Diagnostics>()
+    })?;
+    let value = root.get_ref().get("table").expect("it was written so");
+    let fields = match value.get_ref().as_table() {
+        Some(map) => reader.table(map, table, "", value.span(), None),
+        None => {
+            reader.wrong_type("", value, "a table");
+            Fields::default()
+        }
+    };
+    if diagnostics.has_errors() { Err(diagnostics) } else { Ok(fields) }
+}
+
+struct Reader<'d> {
     diagnostics: &'d mut Diagnostics,
     spans: Spans,
-    load: &'d mut Load<'l>,
-    /// The files loaded so far.
-    files: BTreeMap<String, Result<String, String>>,
 }
 
 type Value<'i> = Spanned<DeValue<'i>>;
 
-impl Reader<'_, '_> {
+impl Reader<'_> {
     fn report(&mut self, code: Code, place: &str, message: String, hint: impl Into<String>) {
         let hint = hint.into();
         let d = Diagnostic::new(code, place, message);
@@ -175,13 +111,21 @@ impl Reader<'_, '_> {
         self.report(Code::WrongType, place, format!("`{}` takes {wanted}, here is {found}", clip(key)), "");
     }
 
-    fn table(&mut self, map: &DeTable<'_>, table: &Table, path: &str, own: Range<usize>) -> Fields {
+    /// The keys of a table; `takes` says all of them where that helps more than the nearest.
+    fn table(
+        &mut self,
+        map: &DeTable<'_>,
+        table: &Table,
+        path: &str,
+        own: Range<usize>,
+        takes: Option<&str>,
+    ) -> Fields {
         let mut fields = Fields::default();
         for (key, value) in map {
             let name = key.get_ref();
             let place = join(path, name);
             self.spans.0.insert(place.clone(), value.span());
-            match table.keys.iter().find(|k| k.name == name.as_ref()) {
+            match table.key(name) {
                 Some(known) => {
                     if let Some(node) = self.value(value, &known.kind, &place) {
                         fields.0.insert(known.name, node);
@@ -189,18 +133,22 @@ impl Reader<'_, '_> {
                 }
                 None => {
                     let message = format!("there is no key `{}` here", clip(name));
-                    let mut d = Diagnostic::new(Code::UnknownKey, place, message)
-                        .suggest(name, table.keys.iter().map(|k| k.name));
-                    if d.hints.is_empty() {
-                        let known: Vec<_> = table.keys.iter().map(|k| k.name).collect();
-                        d = d.hint(format!("the keys here are: {}", known.join(", ")));
+                    let mut d =
+                        Diagnostic::new(Code::UnknownKey, place, message).suggest(name, table.keys().map(|k| k.name));
+                    match takes {
+                        Some(takes) => d = d.hint(takes),
+                        None if d.hints.is_empty() => {
+                            let known: Vec<_> = table.keys().map(|k| k.name).collect();
+                            d = d.hint(format!("the keys here are: {}", known.join(", ")));
+                        }
+                        None => {}
                     }
-                    d.span = Some(key.span());
+                    d.span = Some(key.span().into());
                     self.diagnostics.push(d);
                 }
             }
         }
-        for key in table.keys.iter().filter(|k| k.required) {
+        for key in table.keys().filter(|k| k.required) {
             if !map.iter().any(|(k, _)| k.get_ref() == key.name) {
                 let place = join(path, key.name);
                 let message = match path {
@@ -209,10 +157,11 @@ impl Reader<'_, '_> {
                 };
                 let hint = match key.kind {
                     Kind::Format => "write `format = 1` at the top".to_owned(),
-                    _ => format!("{}: {}", key.name, key.doc),
+                    _ => format!("{}: {}", key.name, about(key.doc)),
                 };
                 let mut d = Diagnostic::new(Code::MissingKey, place, message).hint(hint);
-                d.span = Some(own.clone());
+                d.hints.extend(takes.map(str::to_owned));
+                d.span = Some(own.clone().into());
                 self.diagnostics.push(d);
             }
         }
@@ -230,7 +179,7 @@ impl Reader<'_, '_> {
                     };
                     self.report(Code::Format, place, message, "write `format = 1`");
                 }
-                None
+                (found == Some(1)).then_some(Node::Format)
             }
             Kind::Text | Kind::Name => match value.get_ref().as_str() {
                 Some(text) => Some(Node::Text(text.to_owned())),
@@ -311,11 +260,11 @@ impl Reader<'_, '_> {
                     .as_table()
                     .filter(|t| t.keys().any(|k| matches!(k.get_ref().as_ref(), "external" | "internal")));
                 let Some(table) = by_kind else {
-                    return self.efficiency(value, place).map(|e| Node::SetEfficiency(e.clone(), e));
+                    return self.efficiency(value, place).map(|e| Node::SetEfficiency(e, None));
                 };
                 let [external, internal] =
                     self.two(table, place, ["external", "internal"], value.span(), Self::efficiency)?;
-                Some(Node::SetEfficiency(external, internal))
+                Some(Node::SetEfficiency(external, Some(internal)))
             }
             Kind::Quantities(dimension) => {
                 let Some(table) = value.get_ref().as_table() else {
@@ -334,16 +283,16 @@ impl Reader<'_, '_> {
                 }
                 Some(Node::Quantities(all))
             }
-            Kind::Quantity(dimension) => self.quantity(value, *dimension, place).map(Node::Quantity),
-            Kind::Number => self.number(value, place, "").map(|x| Node::Number(x.to_f64())),
+            Kind::Quantity(dimension) => self.measure(value, Some(*dimension), place).map(Node::Amount),
+            Kind::Number => self.measure(value, None, place).map(Node::Amount),
             Kind::Points(of) => self.points(value, *of, place).map(Node::Points),
             Kind::NumberOrPoints(over) => match value.get_ref() {
                 DeValue::Array(_) => self.points(value, [Some(*over), None], place).map(Node::Points),
-                _ => self.measure(value, None, place).map(|x| Node::Points(vec![[0.0, x]])),
+                _ => self.measure(value, None, place).map(Node::Amount),
             },
             Kind::Schedule => {
                 let read = |reader: &mut Self, [time, state]: [&Value<'_>; 2], places: [&str; 2]| {
-                    let time = reader.measure(time, Some(Dimension::TIME), places[0]);
+                    let time = reader.quantity(time, Dimension::TIME, places[0]);
                     let name = state.get_ref().as_str().map(str::to_owned);
                     if name.is_none() {
                         reader.wrong_type(places[1], state, "the name of a state in quotes");
@@ -352,8 +301,8 @@ impl Reader<'_, '_> {
                 };
                 self.pairs(value, place, "[\"0 s\", \"1\"]", read).map(Node::Schedule)
             }
-            Kind::Signal(kind) => self.signal(value, kind, place),
-            Kind::Product(kind) => {
+            Kind::Signal(kind) => self.signal(value, kind(), place),
+            Kind::Product(kinds) => {
                 let Some([first, second]) = value.get_ref().as_array().and_then(pair) else {
                     self.wrong_type(place, value, "a list of two signals, the second of plain numbers");
                     return None;
@@ -362,16 +311,17 @@ impl Reader<'_, '_> {
                 for (place, value) in places.iter().zip([first, second]) {
                     self.spans.0.insert(place.clone(), value.span());
                 }
-                let first = self.signal(first, kind, &places[0]);
-                let second = self.signal(second, &NUMBER_SIGNAL, &places[1]);
-                Some(Node::Table(Fields(BTreeMap::from([("first", first?), ("second", second?)]))))
+                let first = self.signal(first, kinds[0](), &places[0]);
+                let second = self.signal(second, kinds[1](), &places[1]);
+                let one = |node| Fields(BTreeMap::from([("value", node)]));
+                Some(Node::Tables(vec![one(first?), one(second?)]))
             }
             Kind::Table(table) => match value.get_ref().as_table() {
-                Some(map) => Some(Node::Table(self.table(map, table, place, value.span()))),
+                Some(map) => Some(Node::Table(self.table(map, table, place, value.span(), None))),
                 None => {
                     // What it must have; where it may have anything, all of it.
-                    let must = table.keys.iter().any(|k| k.required);
-                    let keys = table.keys.iter().filter(|k| k.required || !must);
+                    let must = table.keys().any(|k| k.required);
+                    let keys = table.keys().filter(|k| k.required || !must);
                     let keys: Vec<_> = keys.map(|k| format!("{} = …", k.name)).collect();
                     self.wrong_type(place, value, &format!("a table, {{ {} }}", keys.join(", ")));
                     None
@@ -416,7 +366,7 @@ impl Reader<'_, '_> {
             match item.get_ref().as_table() {
                 Some(map) => {
                     if let Some(table) = table_of(map) {
-                        all.push(self.table(map, table, &place, item.span()));
+                        all.push(self.table(map, table, &place, item.span(), None));
                     }
                 }
                 None => self.wrong_type(&place, item, "a table, { … }"),
@@ -425,11 +375,11 @@ impl Reader<'_, '_> {
         Some(all)
     }
 
-    /// A quantity in SI, or a plain number.
-    fn measure(&mut self, value: &Value<'_>, measure: Measure, place: &str) -> Option<f64> {
+    /// A quantity, or a plain number.
+    fn measure(&mut self, value: &Value<'_>, measure: Measure, place: &str) -> Option<Amount> {
         match measure {
-            Some(dimension) => self.quantity(value, dimension, place).map(|q| q.si()),
-            None => self.number(value, place, "").map(|x| x.to_f64()),
+            Some(dimension) => self.quantity(value, dimension, place).map(Amount::Quantity),
+            None => self.number(value, place, "").map(Amount::Number),
         }
     }
 
@@ -462,7 +412,7 @@ impl Reader<'_, '_> {
         (all.len() == array.len()).then_some(all)
     }
 
-    fn points(&mut self, value: &Value<'_>, of: [Measure; 2], place: &str) -> Option<Vec<[f64; 2]>> {
+    fn points(&mut self, value: &Value<'_>, of: [Measure; 2], place: &str) -> Option<Vec<[Amount; 2]>> {
         let [x, y] = of.map(|m| m.map_or("0.5".to_owned(), |d| format!("\"{}\"", d.describe().1)));
         self.pairs(value, place, &format!("[{x}, {y}]"), |reader, [x, y], places| {
             let (x, y) = (reader.measure(x, of[0], places[0]), reader.measure(y, of[1], places[1]));
@@ -473,17 +423,14 @@ impl Reader<'_, '_> {
     /// A value over time: a constant, or a table by its `type`.
     fn signal(&mut self, value: &Value<'_>, kind: &SignalKind, place: &str) -> Option<Node> {
         let Some(map) = value.get_ref().as_table() else {
-            return match kind.of {
-                Some(dimension) => self.quantity(value, dimension, place).map(Node::Quantity),
-                None => self.number(value, place, "").map(|x| Node::Number(x.to_f64())),
-            };
+            return self.measure(value, kind.of, place).map(Node::Amount);
         };
         let types = || kind.types.iter().map(|t| t.0);
         let listed = || format!("one of: {}", types().collect::<Vec<_>>().join(", "));
         let at = join(place, "type");
         let Some(given) = map.get("type") else {
             let mut d = Diagnostic::new(Code::MissingKey, at, format!("`type` is missing in {place}"));
-            d.span = Some(value.span());
+            d.span = Some(value.span().into());
             self.diagnostics.push(d.hint(listed()));
             return None;
         };
@@ -498,48 +445,9 @@ impl Reader<'_, '_> {
             self.diagnostics.push(d.hint(listed()));
             return None;
         };
-        let before = self.diagnostics.len();
-        let mut fields = self.table(map, table, place, value.span());
-        let keys: Vec<&str> = table.keys.iter().map(|k| k.name).collect();
-        let hint = format!("`{name}` takes: {}", keys.join(", "));
-        for d in self.diagnostics.iter_mut().skip(before) {
-            let own = d.place.strip_prefix(place).is_some_and(|rest| !rest[1..].contains(['.', '[']));
-            if own && matches!(d.code, Code::UnknownKey | Code::MissingKey) {
-                d.hints.retain(|h| !h.starts_with("the keys here are"));
-                d.hints.push(hint.clone());
-            }
-        }
-        if *name == "csv" {
-            let points = self.csv(&fields, place)?;
-            fields.0.insert("points", Node::Points(points));
-        }
-        Some(Node::Table(fields))
-    }
-
-    /// The points of the columns of a file.
-    fn csv(&mut self, fields: &Fields, place: &str) -> Option<Vec<[f64; 2]>> {
-        let [file, time, value] = ["file", "time", "value"].map(|k| fields.optional_text(k));
-        let (file, time, value) = (file?, time?, value?);
-        let at = join(place, "file");
-        let load = &mut self.load;
-        let text = self.files.entry(file.clone()).or_insert_with(|| load(&file));
-        let columns = match text {
-            Ok(text) => csv::points(text, [&time, &value]),
-            Err(why) => {
-                let why = why.clone();
-                self.report(Code::Unreadable, &at, why, "");
-                return None;
-            }
-        };
-        let wrong = match columns {
-            Ok(points) => return Some(points),
-            Err(wrong) => wrong,
-        };
-        for message in wrong {
-            let hint = "a header row, commas, decimal points, times in s that rise";
-            self.report(Code::BadTable, &at, format!("{}: {message}", clip(&file)), hint);
-        }
-        None
+        let keys: Vec<&str> = table.keys().map(|k| k.name).collect();
+        let takes = format!("`{name}` takes: {}", keys.join(", "));
+        Some(Node::Table(self.table(map, table, place, value.span(), Some(&takes))))
     }
 
     /// Reads a table of exactly two keys.
@@ -560,7 +468,7 @@ impl Reader<'_, '_> {
                 None => {
                     let message = format!("there is no key `{}` here", clip(key.get_ref()));
                     let mut d = Diagnostic::new(Code::UnknownKey, place, message).suggest(key.get_ref(), names);
-                    d.span = Some(key.span());
+                    d.span = Some(key.span().into());
                     self.diagnostics.push(d.hint(format!("the keys here are: {}", names.join(", "))));
                 }
             }
@@ -569,7 +477,7 @@ impl Reader<'_, '_> {
             if found[k].is_none() {
                 let message = format!("`{name}` is missing: give both {} and {}", names[0], names[1]);
                 let mut d = Diagnostic::new(Code::MissingKey, join(place, name), message);
-                d.span = Some(span.clone());
+                d.span = Some(span.clone().into());
                 self.diagnostics.push(d);
             }
         }
@@ -577,15 +485,15 @@ impl Reader<'_, '_> {
         Some([a?, b?])
     }
 
-    fn efficiency(&mut self, value: &Value<'_>, place: &str) -> Option<EfficiencySpec> {
+    fn efficiency(&mut self, value: &Value<'_>, place: &str) -> Option<Directed> {
         match value.get_ref() {
             DeValue::Table(table) => {
                 let [forward, backward] =
                     self.two(table, place, ["forward", "backward"], value.span(), Self::fraction)?;
-                Some(EfficiencySpec(Efficiency { forward, backward }))
+                Some(Directed { forward, backward: Some(backward) })
             }
             DeValue::Integer(_) | DeValue::Float(_) | DeValue::String(_) => {
-                self.fraction(value, place).map(EfficiencySpec::from)
+                self.fraction(value, place).map(|forward| Directed { forward, backward: None })
             }
             _ => {
                 self.wrong_type(place, value, "a number such as 0.98, or { forward = 0.98, backward = 0.97 }");
@@ -594,9 +502,13 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// One efficiency.
+    /// One efficiency. A text may hold a fraction that no decimal number is, "96/97".
     fn fraction(&mut self, value: &Value<'_>, place: &str) -> Option<Rational> {
-        self.number(value, place, "write 0.98 for 98 %")
+        let text = value.get_ref().as_str().filter(|t| t.contains('/'));
+        match text.and_then(|t| t.parse().ok()) {
+            Some(fraction) => Some(fraction),
+            None => self.number(value, place, "write 0.98 for 98 %"),
+        }
     }
 
     fn number(&mut self, value: &Value<'_>, place: &str, hint: &str) -> Option<Rational> {
@@ -605,7 +517,8 @@ impl Reader<'_, '_> {
             DeValue::Float(x) => x.as_str(),
             DeValue::String(s) => {
                 let message = format!("`{}` is a number without quotes, here is \"{}\"", last(place), clip(s));
-                self.report(Code::WrongType, place, message, hint);
+                let comma = units::decimal_point(s).map(|n| format!("the decimal sign is a decimal point: write {n}"));
+                self.report(Code::WrongType, place, message, comma.unwrap_or_else(|| hint.to_owned()));
                 return None;
             }
             _ => {
@@ -627,22 +540,22 @@ impl Reader<'_, '_> {
         let (kind, example) = dimension.describe();
         let unit = example.split_once(' ').map_or("", |e| e.1);
         let at = value.span();
-        let mut report = |message: String, hint: String| {
+        let mut report = |message: String, hint: String, replacement: Option<String>| {
             let mut d = Diagnostic::new(Code::Quantity, place, message).hint(hint);
-            d.span = Some(at.clone());
+            d.span = Some(at.clone().into());
+            d.replacement = replacement;
             self.diagnostics.push(d);
         };
         match value.get_ref() {
             DeValue::String(text) => match units::parse(text, dimension) {
                 Ok(q) => return Some(q),
                 Err(error) => {
-                    let shown = clip(text);
-                    let hint = match &error {
-                        QuantityError::NoUnit => format!("write \"{} {unit}\" if that is the unit meant", shown.trim()),
-                        QuantityError::UnknownUnit(_, Some(near)) => format!("did you mean `{near}`?"),
-                        _ => format!("{kind} looks like \"{example}\""),
+                    let replacement = match error.instead.as_slice() {
+                        // Without a unit nobody knows which is meant.
+                        [one] if error.fault != QuantityFault::NoUnit => Some(format!("\"{one}\"")),
+                        _ => None,
                     };
-                    report(format!("\"{shown}\" is not {kind}: {error}"), hint);
+                    report(format!("\"{}\" is not {kind}: {error}", clip(text)), error.hint(), replacement);
                 }
             },
             DeValue::Integer(_) | DeValue::Float(_) => {
@@ -652,11 +565,15 @@ impl Reader<'_, '_> {
                     _ => unreachable!(),
                 };
                 let hint = format!("write \"{shown} {unit}\" if that is the unit meant");
-                report(format!("{shown} has no unit; {kind} is a text with one"), hint);
+                report(format!("{shown} has no unit; {kind} is a text with one"), hint, None);
             }
             other => {
                 let found = describe(other);
-                report(format!("{kind} is a text with a unit, here is {found}"), format!("an example: \"{example}\""));
+                report(
+                    format!("{kind} is a text with a unit, here is {found}"),
+                    format!("an example: \"{example}\""),
+                    None,
+                );
             }
         }
         None

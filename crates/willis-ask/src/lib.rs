@@ -1,0 +1,60 @@
+//! Every question that Willis answers, in one list: what a front end is built on.
+//!
+//! A question has a name, a request with documented fields and defaults, an answer that is a versioned contract, tables
+//! and words. [`QUESTIONS`] lists all of them; command line, browser and Python ask the same list and differ only in how
+//! they get at files, threads and screens. This crate has none of these: it touches no file, no clock and starts no
+//! thread.
+//!
+//! ```
+//! use willis::work::Serial;
+//! use willis_ask::{Given, question};
+//!
+//! let given = Given::read("reducer", r#"
+//!     format = 1
+//!     name = "reducer"
+//!     members = ["sun", "carrier"]
+//!     terminals = ["sun", "carrier"]
+//!     [[set]]
+//!     name = "P1"
+//!     sun = { member = "sun", teeth = 30 }
+//!     ring = { member = "frame", teeth = 70 }
+//!     carrier = "carrier"
+//!     mesh_efficiency = 0.99
+//! "#)?;
+//! let request = question("analyze").unwrap().request(serde_json::json!({}))?;
+//! let given = [given];
+//! let answer = request.ask(&given, &Serial)?;
+//! assert!(answer.text().contains("10/3"));
+//! assert!(answer.json().contains("willis-analysis-1"));
+//! assert_eq!(answer.tables()[0].name, "states");
+//! # Ok::<(), willis_ask::Refusal>(())
+//! ```
+//!
+//! A question can be asked without the list, with its types:
+//!
+//! ```
+//! # use willis::work::Serial;
+//! # use willis_ask::{Given, Question, Refusal, questions::Analyze};
+//! # fn state(given: &[Given]) -> Result<(), Refusal> {
+//! let request = Analyze { state: Some("3".into()), ..Default::default() };
+//! let analysis = request.ask(given, &Serial)?;
+//! println!("{:?}", analysis.ratios.get("3").and_then(|s| s.drive.efficiency));
+//! # Ok(())
+//! # }
+//! ```
+
+mod question;
+pub mod questions;
+mod refusal;
+pub mod style;
+pub mod table;
+
+pub use question::{Answer, Attachment, Entry, Extra, File, Form, Given, Of, Options, Question, Request};
+pub use questions::{QUESTIONS, question};
+pub use refusal::{Refusal, RefusalReport};
+pub use style::quoted;
+
+/// The code of the page of this crate runs as a doctest.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

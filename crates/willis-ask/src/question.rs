@@ -1,0 +1,474 @@
+//! What a question is, and the one list of them.
+
+use std::any::Any;
+use std::fmt;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use willis::contract::Contract;
+use willis::diagnostic::{Code, Diagnostic};
+use willis::model::Model;
+use willis::work::Work;
+
+use crate::Refusal;
+use crate::table::Table;
+
+/// A train with the name under which its user knows it.
+#[derive(Clone, Debug)]
+pub struct Given {
+    /// The name of its file, or whatever tells it from others; it stands in answers.
+    pub name: String,
+    /// The train.
+    pub model: Model,
+    /// What was changed in it on the way here, as the user wrote it: `--law mesh_friction=niemann`.
+    pub changes: Vec<String>,
+}
+
+impl Given {
+    /// A train under a name.
+    pub fn new(name: impl Into<String>, model: Model) -> Self {
+        Self { name: name.into(), model, changes: vec![] }
+    }
+
+    /// Reads the text of a train file that names no tables.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text.
+    pub fn read(name: &str, text: &str) -> Result<Self, Refusal> {
+        match Model::from_toml(text) {
+            Ok(model) => Ok(Self::new(name, model)),
+            Err(wrong) => Err(Refusal::File(wrong, Attachment { name: name.into(), text: text.into() })),
+        }
+    }
+}
+
+/// How many trains a question is asked of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Of {
+    /// None: it is about Willis itself.
+    Nothing,
+    /// None or one.
+    #[serde(rename = "at-most-one")]
+    AtMostOne,
+    /// One.
+    Train,
+    /// Two or more.
+    Trains,
+}
+
+/// A form in which an answer can be had, beside text, JSON and tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Form {
+    /// What it is called: `svg`.
+    pub name: &'static str,
+    /// Endings of file names that mean it.
+    pub endings: &'static [&'static str],
+    /// One line about it.
+    pub about: &'static str,
+}
+
+/// A file of an answer: what it is called where nobody says otherwise, and what is in it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// Its name, without a folder.
+    pub name: String,
+    /// What is in it.
+    pub bytes: Vec<u8>,
+    /// One line about it; empty where there is nothing to say.
+    pub about: String,
+}
+
+impl File {
+    /// A file of text.
+    pub fn text(name: impl Into<String>, text: impl Into<String>) -> Self {
+        Self { name: name.into(), bytes: text.into().into_bytes(), about: String::new() }
+    }
+}
+
+/// Something beside the answer that can be written too, under an option of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Extra {
+    /// The option's name: `plot`.
+    pub name: &'static str,
+    /// What the option takes: `FILE.svg`, a name that ends so; or `FOLDER`.
+    pub value: &'static str,
+    /// One line about it.
+    pub about: &'static str,
+}
+
+/// A file that a request names: a front end puts in the text.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, serde::Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Attachment {
+    /// Its name, for messages.
+    pub name: String,
+    /// What is in it.
+    #[serde(default)]
+    pub text: String,
+}
+
+impl From<&str> for Attachment {
+    fn from(name: &str) -> Self {
+        Self { name: name.to_owned(), text: String::new() }
+    }
+}
+
+impl std::str::FromStr for Attachment {
+    type Err = std::convert::Infallible;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        Ok(name.into())
+    }
+}
+
+/// With the feature `clap`, what derives `clap::Args`; else anything.
+#[cfg(feature = "clap")]
+pub trait Options: clap::Args {}
+#[cfg(feature = "clap")]
+impl<T: clap::Args> Options for T {}
+/// With the feature `clap`, what derives `clap::Args`; else anything.
+#[cfg(not(feature = "clap"))]
+pub trait Options {}
+#[cfg(not(feature = "clap"))]
+impl<T> Options for T {}
+
+/// A question: the type is the request, its documentation the help.
+///
+/// Implement it in a file of its own in `questions/` and add a line to the list there; command line, completions,
+/// schemas and the README's table follow.
+pub trait Question: Options + Clone + fmt::Debug + Serialize + DeserializeOwned + JsonSchema + Sized + 'static {
+    /// What it is called: `analyze`.
+    const NAME: &'static str;
+    /// How many trains it is asked of.
+    const OF: Of = Of::Train;
+    /// The tables that its answer has, by name; none where it has none. With some of them an answer can be had as CSV,
+    /// JSON lines or Parquet.
+    const TABLES: &'static [&'static str] = &[];
+    /// Forms beside text, JSON and tables.
+    const FORMS: &'static [Form] = &[];
+    /// Whether warnings and notes are read before the answer, which counts them.
+    const NOTES_FIRST: bool = false;
+    /// What can be written beside the answer.
+    const EXTRAS: &'static [Extra] = &[];
+    /// The answer; its JSON is a contract.
+    type Answer: Contract + Serialize + DeserializeOwned + JsonSchema + 'static;
+
+    /// Answers it.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the trains or the request, or that the work was cancelled.
+    fn ask(&self, of: &[Given], work: &dyn Work) -> Result<Self::Answer, Refusal>;
+
+    /// The answer for eyes, with ANSI styles; every line ends with a line feed.
+    fn text(&self, answer: &Self::Answer, of: &[Given]) -> String;
+
+    /// The tables of the answer: those in [`Question::TABLES`] that have something to say.
+    fn tables(&self, answer: &Self::Answer) -> Vec<Table> {
+        let _ = answer;
+        vec![]
+    }
+
+    /// Warnings and notes that belong to the answer; their places are in the first train.
+    fn notes(answer: &Self::Answer) -> &[Diagnostic] {
+        let _ = answer;
+        &[]
+    }
+
+    /// The answer in one of [`Question::FORMS`].
+    ///
+    /// # Errors
+    /// Why it cannot be had in that form.
+    fn write(&self, answer: &Self::Answer, form: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
+        let _ = (answer, of);
+        unreachable!("`{}` has no form `{form}`", Self::NAME)
+    }
+
+    /// One of [`Question::EXTRAS`].
+    ///
+    /// # Errors
+    /// Why it cannot be had.
+    fn extra(&self, answer: &Self::Answer, name: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
+        let _ = (answer, of);
+        unreachable!("`{}` has no `{name}` beside its answer", Self::NAME)
+    }
+
+    /// The form in which the answer comes where nobody asks for another; else text.
+    fn natural_form(&self) -> &'static str {
+        "text"
+    }
+
+    /// Files that the request names and whose text is still to be read.
+    fn attachments(&mut self) -> Vec<&mut Attachment> {
+        vec![]
+    }
+
+    /// What other questions a user may want, or what is odd about the request, to be told beside the answer.
+    fn told(&self, answer: &Self::Answer) -> Vec<String> {
+        let _ = answer;
+        vec![]
+    }
+}
+
+/// A request of any question.
+pub trait Request: fmt::Debug + Any {
+    /// What it asks.
+    fn question(&self) -> &'static Entry;
+
+    /// The request itself.
+    fn as_any(&self) -> &dyn Any;
+
+    /// As JSON.
+    fn to_json(&self) -> Value;
+
+    /// See [`Question::attachments`].
+    fn attachments(&mut self) -> Vec<&mut Attachment>;
+
+    /// See [`Question::natural_form`].
+    fn natural_form(&self) -> &'static str;
+
+    /// Answers it.
+    ///
+    /// # Errors
+    /// What [`Question::ask`] says; or the number of trains is not what the question takes.
+    fn ask<'a>(&'a self, of: &'a [Given], work: &dyn Work) -> Result<Box<dyn Answer + 'a>, Refusal>;
+}
+
+/// An answer to any question.
+pub trait Answer {
+    /// See [`Question::text`].
+    fn text(&self) -> String;
+
+    /// Its contract as JSON, indented.
+    fn json(&self) -> String;
+
+    /// See [`Question::tables`].
+    fn tables(&self) -> Vec<Table>;
+
+    /// See [`Question::notes`].
+    fn notes(&self) -> &[Diagnostic];
+
+    /// See [`Question::write`].
+    ///
+    /// # Errors
+    /// Why it cannot be had in that form.
+    fn write(&self, form: &str) -> Result<Vec<File>, Refusal>;
+
+    /// See [`Question::extra`].
+    ///
+    /// # Errors
+    /// Why it cannot be had.
+    fn extra(&self, name: &str) -> Result<Vec<File>, Refusal>;
+
+    /// See [`Question::told`].
+    fn told(&self) -> Vec<String>;
+}
+
+struct Answered<'a, Q: Question> {
+    question: &'a Q,
+    answer: Q::Answer,
+    of: &'a [Given],
+}
+
+impl<Q: Question> Answer for Answered<'_, Q> {
+    fn text(&self) -> String {
+        self.question.text(&self.answer, self.of)
+    }
+
+    fn json(&self) -> String {
+        serde_json::to_string_pretty(&self.answer).expect("plain data") + "\n"
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        self.question.tables(&self.answer)
+    }
+
+    fn notes(&self) -> &[Diagnostic] {
+        Q::notes(&self.answer)
+    }
+
+    fn write(&self, form: &str) -> Result<Vec<File>, Refusal> {
+        self.question.write(&self.answer, form, self.of)
+    }
+
+    fn extra(&self, name: &str) -> Result<Vec<File>, Refusal> {
+        self.question.extra(&self.answer, name, self.of)
+    }
+
+    fn told(&self) -> Vec<String> {
+        self.question.told(&self.answer)
+    }
+}
+
+impl<Q: Question> Request for Q {
+    fn question(&self) -> &'static Entry {
+        crate::question(Q::NAME).expect("every question is in the list")
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn to_json(&self) -> Value {
+        serde_json::to_value(self).expect("plain data")
+    }
+
+    fn attachments(&mut self) -> Vec<&mut Attachment> {
+        Question::attachments(self)
+    }
+
+    fn natural_form(&self) -> &'static str {
+        Question::natural_form(self)
+    }
+
+    fn ask<'a>(&'a self, of: &'a [Given], work: &dyn Work) -> Result<Box<dyn Answer + 'a>, Refusal> {
+        let (fits, wanted) = match Q::OF {
+            Of::Nothing => (of.is_empty(), "no train"),
+            Of::AtMostOne => (of.len() <= 1, "one train at most"),
+            Of::Train => (of.len() == 1, "one train"),
+            Of::Trains => (of.len() >= 2, "two trains or more"),
+        };
+        if !fits {
+            let message = format!("`{}` is asked of {wanted}, here are {}", Q::NAME, of.len());
+            return Err(Diagnostic::new(Code::UnknownSelection, "", message).into());
+        }
+        let answer = Question::ask(self, of, work)?;
+        Ok(Box::new(Answered { question: self, answer, of }))
+    }
+}
+
+/// A line of the list of questions.
+#[derive(Clone, Copy)]
+pub struct Entry {
+    /// What the question is called: `analyze`.
+    pub name: &'static str,
+    /// How many trains it is asked of.
+    pub of: Of,
+    /// Name and version of its answer: `willis-analysis-1`.
+    pub contract: &'static str,
+    /// See [`Question::TABLES`].
+    pub tables: &'static [&'static str],
+    /// See [`Question::FORMS`].
+    pub forms: &'static [Form],
+    /// See [`Question::EXTRAS`].
+    pub extras: &'static [Extra],
+    /// See [`Question::NOTES_FIRST`].
+    pub notes_first: bool,
+    request: fn(Value) -> Result<Box<dyn Request>, serde_json::Error>,
+    request_schema: fn(&mut SchemaGenerator) -> Schema,
+    answer_schema: fn(&mut SchemaGenerator) -> Schema,
+    reread: fn(&str) -> Result<String, serde_json::Error>,
+    #[cfg(feature = "clap")]
+    options: fn(clap::Command) -> clap::Command,
+    #[cfg(feature = "clap")]
+    of_matches: fn(&clap::ArgMatches) -> Result<Box<dyn Request>, clap::Error>,
+}
+
+impl Entry {
+    /// The line of a question.
+    pub(crate) const fn of<Q: Question>() -> Self {
+        Self {
+            name: Q::NAME,
+            of: Q::OF,
+            contract: <Q::Answer as Contract>::FORMAT,
+            tables: Q::TABLES,
+            forms: Q::FORMS,
+            extras: Q::EXTRAS,
+            notes_first: Q::NOTES_FIRST,
+            request: |value| Ok(Box::new(serde_json::from_value::<Q>(value)?)),
+            request_schema: |generator| generator.root_schema_for::<Q>(),
+            answer_schema: |generator| generator.root_schema_for::<Q::Answer>(),
+            reread: |text| serde_json::to_string_pretty(&serde_json::from_str::<Q::Answer>(text)?),
+            #[cfg(feature = "clap")]
+            options: |command| Q::augment_args(command),
+            #[cfg(feature = "clap")]
+            of_matches: |matches| Ok(Box::new(Q::from_arg_matches(matches)?)),
+        }
+    }
+
+    /// A request from JSON; what is left out has its default.
+    ///
+    /// # Errors
+    /// A field that the request does not have, or a value of another kind.
+    ///
+    /// # Example
+    /// ```
+    /// let analyze = willis_ask::question("analyze").unwrap();
+    /// let request = analyze.request(serde_json::json!({ "state": "3" }))?;
+    /// assert_eq!(request.to_json()["state"], "3");
+    /// assert!(analyze.request(serde_json::json!({ "gear": "3" })).is_err());
+    /// # Ok::<(), willis_ask::Refusal>(())
+    /// ```
+    pub fn request(&self, value: Value) -> Result<Box<dyn Request>, Refusal> {
+        (self.request)(value).map_err(|e| {
+            let hint = format!("`willis schema {} --request` describes it", self.name);
+            Diagnostic::new(Code::WrongType, "", format!("the request of `{}`: {e}", self.name)).hint(hint).into()
+        })
+    }
+
+    /// One paragraph about it: the documentation of its request.
+    pub fn about(&self) -> String {
+        let schema = self.request_schema();
+        schema.get("description").and_then(Value::as_str).unwrap_or_default().to_owned()
+    }
+
+    /// What a list of questions tells of it: name, what it is asked of, what it is about, contract, tables, forms.
+    pub fn told(&self) -> Value {
+        let forms: Vec<&str> = self.forms.iter().map(|f| f.name).collect();
+        serde_json::json!({
+            "name": self.name,
+            "of": self.of,
+            "about": self.about(),
+            "answer": self.contract,
+            "tables": self.tables,
+            "forms": forms,
+        })
+    }
+
+    /// JSON Schema of its request.
+    pub fn request_schema(&self) -> Schema {
+        (self.request_schema)(&mut generator())
+    }
+
+    /// JSON Schema of its answer.
+    pub fn answer_schema(&self) -> Schema {
+        let mut schema = (self.answer_schema)(&mut generator());
+        schema.insert("title".into(), self.contract.into());
+        schema
+    }
+
+    /// Reads an answer's JSON and writes it again: the same text, for an answer of this version.
+    ///
+    /// # Errors
+    /// Why it is no answer to this question.
+    pub fn reread(&self, json: &str) -> Result<String, serde_json::Error> {
+        (self.reread)(json)
+    }
+
+    /// Adds the options of its request to a command.
+    #[cfg(feature = "clap")]
+    pub fn options(&self, command: clap::Command) -> clap::Command {
+        (self.options)(command)
+    }
+
+    /// A request from options.
+    ///
+    /// # Errors
+    /// What clap says.
+    #[cfg(feature = "clap")]
+    pub fn of_matches(&self, matches: &clap::ArgMatches) -> Result<Box<dyn Request>, clap::Error> {
+        (self.of_matches)(matches)
+    }
+}
+
+impl fmt::Debug for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Entry").field("name", &self.name).field("contract", &self.contract).finish_non_exhaustive()
+    }
+}
+
+pub(crate) fn generator() -> SchemaGenerator {
+    schemars::generate::SchemaSettings::draft2020_12().into_generator()
+}

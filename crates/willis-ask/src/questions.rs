@@ -1,0 +1,84 @@
+//! The list of questions: one file and one line each.
+
+mod amount;
+mod analyze;
+mod check;
+mod compare;
+mod cycle;
+#[cfg(feature = "pictures")]
+mod draw;
+mod explain;
+mod export;
+mod flow;
+mod formula;
+mod laws;
+mod locate;
+mod losses;
+mod modes;
+mod new;
+mod regimes;
+#[cfg(feature = "pictures")]
+mod report;
+mod sensitivity;
+mod simulate;
+mod sweep;
+mod uncertainty;
+mod validate;
+
+pub use analyze::Analyze;
+pub use check::Check;
+pub use compare::Compare;
+pub use cycle::{Cycle, CycleAnswer};
+#[cfg(feature = "pictures")]
+pub use draw::{Draw, DrawAnswer, Look};
+pub use explain::Explain;
+pub use export::Export;
+pub use flow::Flow;
+pub use formula::{Formula, FormulaAnswer};
+pub use laws::Laws;
+pub use locate::Locate;
+pub use losses::Losses;
+pub use modes::Modes;
+pub use new::New;
+pub use regimes::{Regimes, RegimesAnswer};
+#[cfg(feature = "pictures")]
+pub use report::Report;
+pub use sensitivity::Sensitivity;
+pub use simulate::{MOST_EVENTS, Simulate, run_text as simulation_text};
+pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
+pub use uncertainty::{Uncertainty, UncertaintyAnswer};
+pub use validate::Validate;
+
+use crate::Entry;
+
+/// All questions, in the order in which help lists them.
+pub static QUESTIONS: &[Entry] = &[
+    Entry::of::<Analyze>(),
+    Entry::of::<New>(),
+    Entry::of::<Check>(),
+    Entry::of::<Flow>(),
+    Entry::of::<Losses>(),
+    Entry::of::<Sensitivity>(),
+    Entry::of::<Uncertainty>(),
+    Entry::of::<Sweep>(),
+    Entry::of::<Cycle>(),
+    Entry::of::<Compare>(),
+    Entry::of::<Regimes>(),
+    Entry::of::<Formula>(),
+    Entry::of::<Locate>(),
+    Entry::of::<Simulate>(),
+    Entry::of::<Modes>(),
+    #[cfg(feature = "pictures")]
+    Entry::of::<Draw>(),
+    #[cfg(feature = "pictures")]
+    Entry::of::<Report>(),
+    Entry::of::<Export>(),
+    Entry::of::<Laws>(),
+    Entry::of::<Validate>(),
+    Entry::of::<Explain>(),
+];
+
+/// The question of that name.
+pub fn question(name: &str) -> Option<&'static Entry> {
+    QUESTIONS.iter().find(|q| q.name == name)
+}

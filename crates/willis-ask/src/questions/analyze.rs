@@ -1,0 +1,66 @@
+//! `analyze`: the shift table and the operating points.
+
+mod tables;
+mod text;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use willis::analysis::{self, Analysis, Selection};
+use willis::diagnostic::Diagnostic;
+use willis::work::Work;
+
+use crate::table::Table;
+use crate::{Given, Question, Refusal};
+
+pub(super) use tables::{verdict, word};
+pub(super) use text::margins;
+
+/// Analyse a train: its shift table and its operating points.
+///
+/// Gives for every state the exact ratio and the efficiency driving and coasting; for every operation speeds, torques,
+/// powers, losses, the verdict and its certificate. A train that locks is an answer: exit status 0. Status 1 means the
+/// input is wrong.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields)]
+pub struct Analyze {
+    /// Only this state of the shift table.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "STATE"))]
+    pub state: Option<String>,
+    /// Only this operation.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
+    pub operation: Option<String>,
+}
+
+impl Question for Analyze {
+    const NAME: &'static str = "analyze";
+    const TABLES: &'static [&'static str] = &[
+        "states",
+        "operations",
+        "members",
+        "meshes",
+        "shift-elements",
+        "losses",
+        "contacts",
+        "bearings",
+        "diagnostics",
+    ];
+    type Answer = Analysis;
+
+    fn ask(&self, of: &[Given], _: &dyn Work) -> Result<Analysis, Refusal> {
+        let selection = Selection { state: self.state.clone(), operation: self.operation.clone() };
+        Ok(analysis::analyze(of[0].model.train(), &selection)?)
+    }
+
+    fn text(&self, answer: &Analysis, of: &[Given]) -> String {
+        text::analysis(of[0].model.train(), answer)
+    }
+
+    fn tables(&self, answer: &Analysis) -> Vec<Table> {
+        tables::tables(answer)
+    }
+
+    fn notes(answer: &Analysis) -> &[Diagnostic] {
+        &answer.diagnostics
+    }
+}

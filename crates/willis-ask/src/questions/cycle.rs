@@ -1,0 +1,93 @@
+//! `cycle`: what a duty cycle costs.
+
+mod tables;
+mod text;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use willis::contract::Contract;
+use willis::study::{self, ColumnTable, CycleReport, CycleRequest};
+use willis::work::Work;
+
+use crate::table::Table;
+use crate::{Attachment, Extra, File, Given, Question, Refusal};
+
+/// Tell what a duty cycle or a load spectrum costs: energies by source, state and direction, the worst rows.
+///
+/// Each row of the profile, a CSV file, is one operating condition. A column weighs the rows in time: `time [s]` of a
+/// trace (each row holds until the next), or `duration [s]`, `hours` or `share` of a spectrum. The other columns set
+/// quantities, with the unit in the header: `input.speed [rpm]`, `output.torque [N m]`, `oil.temperature [degC]`, state, or any
+/// quantity of the train file. Rows without an answer are told with their reason, and the energies say which part of the
+/// time they cover.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields)]
+pub struct Cycle {
+    /// The profile (CSV), or - for standard input.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.csv", required = true))]
+    pub profile: Attachment,
+    /// The operation that gives what no column sets; else the file's first.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
+    pub operation: Option<String>,
+    /// State of the shift table, where no column gives it.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "STATE"))]
+    pub state: Option<String>,
+}
+
+/// A duty cycle: its energies, and its rows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct CycleAnswer {
+    /// `willis-cycle-1`.
+    pub report: CycleReport,
+    /// Every row of the profile with its answer; they are had as a table and not in the contract.
+    #[serde(skip)]
+    pub rows: ColumnTable,
+}
+
+impl Contract for CycleAnswer {
+    const FORMAT: &'static str = CycleReport::FORMAT;
+}
+
+impl Question for Cycle {
+    const NAME: &'static str = "cycle";
+    const TABLES: &'static [&'static str] =
+        &["cycle", "directions", "states", "sources", "terminals", "verdicts", "worst", "rows"];
+    const EXTRAS: &'static [Extra] =
+        &[Extra { name: "rows", value: "FILE.csv", about: "Write every row with its answer into this CSV file" }];
+    type Answer = CycleAnswer;
+
+    fn ask(&self, of: &[Given], work: &dyn Work) -> Result<CycleAnswer, Refusal> {
+        let request = CycleRequest {
+            profile: self.profile.text.clone(),
+            operation: self.operation.clone(),
+            state: self.state.clone(),
+        };
+        // What is wrong with the profile stands in the profile.
+        let answer = study::cycle(&of[0].model, &request, work).map_err(|wrong| {
+            match wrong.iter().any(|d| d.span.is_some()) {
+                true => Refusal::File(wrong, self.profile.clone()),
+                false => wrong.into(),
+            }
+        })?;
+        Ok(CycleAnswer { report: answer.report, rows: answer.rows })
+    }
+
+    fn text(&self, answer: &CycleAnswer, _: &[Given]) -> String {
+        text::text(&answer.report, &self.profile.name)
+    }
+
+    fn tables(&self, answer: &CycleAnswer) -> Vec<Table> {
+        let mut all = tables::tables(&answer.report);
+        all.push(Table::of_columns("rows", &answer.rows).aside());
+        all
+    }
+
+    fn extra(&self, answer: &CycleAnswer, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
+        Ok(vec![File::text("rows.csv", Table::of_columns("rows", &answer.rows).csv())])
+    }
+
+    fn attachments(&mut self) -> Vec<&mut Attachment> {
+        vec![&mut self.profile]
+    }
+}

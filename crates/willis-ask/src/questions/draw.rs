@@ -1,0 +1,265 @@
+//! `draw`: figures.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use willis::contract::{Contract, Format};
+use willis::diagnostic::{Code, Diagnostic, Severity};
+use willis::work::Work;
+use willis_figure::{Ask, Drawing, Figure, FigureKind, FigureRequest, Theme, draw, themed};
+
+use super::amount::pair;
+use crate::{File, Form, Given, Question, Refusal};
+
+/// Draw a train: its scheme, levers, power flow, teeth, regimes, maps, losses.
+///
+/// A kind that does not apply to a train says why, and which do. `all` draws whatever applies. `--format json` gives the
+/// figure as data.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields)]
+pub struct Draw {
+    /// What to draw; `all` draws whatever applies into a folder.
+    #[cfg_attr(feature = "clap", arg(help = kinds_help()))]
+    pub kind: String,
+    /// A state of the shift table.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "STATE"))]
+    pub state: Option<String>,
+    /// An operation; else the file's first, or all where a figure shows several.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
+    pub operation: Option<String>,
+    /// The set, mesh or scenario to draw.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
+    pub part: Option<String>,
+    /// A quantity along an axis, as `sweep` takes it: "sun.speed=500..3000 rpm:40".
+    #[cfg_attr(feature = "clap", arg(long, value_name = "AXIS"))]
+    pub over: Vec<String>,
+    /// Members on which torque may act, with commas between (regimes); else the train's terminals.
+    #[cfg_attr(feature = "clap", arg(long, value_delimiter = ','))]
+    pub terminals: Option<Vec<String>>,
+    /// Two terminals whose powers add to zero (regimes).
+    #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "A,B"))]
+    pub balance: Option<Vec<String>>,
+    /// Draw teeth without geometry as nominal ones of module 1.
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub nominal: bool,
+    /// Wheels turn (front, in SVG).
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub animated: bool,
+    /// Light or dark, or as the reader's screen is set.
+    #[cfg_attr(feature = "clap", arg(long, value_enum, default_value_t = Look::Light))]
+    pub theme: Look,
+    /// Pixels of a PNG to a unit of the figure, from 0.1 to 10.
+    #[cfg_attr(feature = "clap", arg(long, default_value_t = 2.0, value_parser = scale))]
+    pub scale: f32,
+}
+
+impl Default for Draw {
+    fn default() -> Self {
+        Self {
+            kind: "stick".into(),
+            state: None,
+            operation: None,
+            part: None,
+            over: vec![],
+            terminals: None,
+            balance: None,
+            nominal: false,
+            animated: false,
+            theme: Look::Light,
+            scale: 2.0,
+        }
+    }
+}
+
+/// Light or dark.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+pub enum Look {
+    /// For paper.
+    #[default]
+    Light,
+    /// For dark screens.
+    Dark,
+    /// As the screen is set, where the viewer tells.
+    Auto,
+}
+
+/// Help of the kind: the list of them.
+#[cfg(feature = "clap")]
+fn kinds_help() -> String {
+    let kinds = FigureKind::ALL.iter().map(|k| format!("\n  {:<10}{}", k.name(), k.about()));
+    format!("What to draw; `all` draws whatever applies into a folder{}", kinds.collect::<String>())
+}
+
+/// A scale of pictures.
+#[cfg(feature = "clap")]
+fn scale(text: &str) -> Result<f32, String> {
+    match text.parse::<f32>() {
+        Ok(x) if (0.1..=10.0).contains(&x) => Ok(x),
+        _ => Err("a number from 0.1 to 10".into()),
+    }
+}
+
+/// A figure, or all that apply.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum DrawAnswer {
+    /// `willis-figures-1`.
+    All(Figures),
+    /// One figure as data, by its kind.
+    One(Box<Figure>),
+}
+
+/// All figures that apply to a train.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct Figures {
+    /// `willis-figures-1`.
+    pub format: Format<Self>,
+    /// The figures, as data.
+    pub figures: Vec<Figure>,
+    /// Kinds that do not apply, and why.
+    pub missing: Vec<Missing>,
+}
+
+/// A kind of figure that does not apply to a train.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct Missing {
+    /// The kind.
+    pub kind: FigureKind,
+    /// Why.
+    pub why: String,
+}
+
+impl Contract for Figures {
+    const FORMAT: &'static str = "willis-figures-1";
+}
+
+impl Contract for DrawAnswer {
+    const FORMAT: &'static str = "willis-figure-1";
+}
+
+impl Draw {
+    fn request(&self) -> Result<FigureRequest, Refusal> {
+        Ok(FigureRequest {
+            state: self.state.clone(),
+            operation: self.operation.clone(),
+            part: self.part.clone(),
+            over: self.over.clone(),
+            terminals: self.terminals.clone(),
+            balance: pair(self.balance.as_deref())?,
+            nominal: self.nominal,
+            samples: 0,
+        })
+    }
+
+    fn drawing(&self) -> Drawing {
+        Drawing { animated: self.animated }
+    }
+
+    /// Refuses what would make no difference to this kind.
+    fn heard(&self, kind: FigureKind, request: &FigureRequest) -> Result<(), Refusal> {
+        let Some(deaf) = kind.deaf_to(request, self.drawing()) else { return Ok(()) };
+        let list: Vec<String> = kind.takes().iter().map(|t| format!("--{}", t.name())).collect();
+        let instead =
+            if list.is_empty() { "it takes no question".to_owned() } else { format!("it takes {}", list.join(", ")) };
+        let message = format!("`draw {}` has no use for --{}", kind.name(), deaf.name());
+        Err(Diagnostic::new(Code::UnknownSelection, "", message).hint(instead).into())
+    }
+
+    fn svg(&self, figure: &Figure) -> String {
+        let theme = match self.theme {
+            Look::Light => Theme::Light,
+            Look::Dark => Theme::Dark,
+            Look::Auto => Theme::Auto,
+        };
+        themed(&draw(figure, self.drawing()), theme)
+    }
+}
+
+impl Question for Draw {
+    const NAME: &'static str = "draw";
+    #[cfg(feature = "png")]
+    const FORMS: &'static [Form] = &[
+        Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" },
+        Form { name: "png", endings: &["png"], about: "a picture of pixels" },
+    ];
+    #[cfg(not(feature = "png"))]
+    const FORMS: &'static [Form] = &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }];
+    type Answer = DrawAnswer;
+
+    fn ask(&self, of: &[Given], work: &dyn Work) -> Result<DrawAnswer, Refusal> {
+        let (model, request) = (&of[0].model, self.request()?);
+        if self.kind == "all" {
+            let made = willis::work::map(work, FigureKind::ALL.len(), |k| FigureKind::ALL[k].make(model, &request))?;
+            let (mut figures, mut missing) = (vec![], vec![]);
+            for (kind, made) in FigureKind::ALL.iter().zip(made) {
+                match made {
+                    Ok(figure) => figures.push(figure),
+                    Err(why) => {
+                        let first = why.iter().find(|d| d.severity == Severity::Error);
+                        missing.push(Missing { kind: *kind, why: first.map_or("", |d| &d.message).to_owned() });
+                    }
+                }
+            }
+            return Ok(DrawAnswer::All(Figures { format: Format::new(), figures, missing }));
+        }
+        let kind = FigureKind::named(&self.kind)?;
+        self.heard(kind, &request)?;
+        let narrows = |a: &Ask| matches!(a, Ask::State | Ask::Operation | Ask::Part | Ask::Over);
+        let asked = request.asks().iter().any(narrows);
+        match kind.make(model, &request) {
+            Ok(figure) => Ok(DrawAnswer::One(Box::new(figure))),
+            // Where a kind does not apply to a train at all, those that do are told.
+            Err(wrong) if !asked => {
+                let mut all: Vec<Diagnostic> = wrong.into_iter().collect();
+                if let Some(first) = all.iter_mut().find(|d| d.severity == Severity::Error) {
+                    let others: Vec<&str> = FigureKind::applicable(model).into_iter().map(FigureKind::name).collect();
+                    first.hints.push(format!("of this train can be drawn: {}", others.join(", ")));
+                }
+                Err(Refusal::from(all.into_iter().collect::<willis::Diagnostics>()))
+            }
+            Err(wrong) => Err(wrong.into()),
+        }
+    }
+
+    fn text(&self, answer: &DrawAnswer, _: &[Given]) -> String {
+        match answer {
+            DrawAnswer::One(figure) => format!("{}\n", figure.title()),
+            DrawAnswer::All(all) => all.figures.iter().map(|f| format!("{}\n", f.title())).collect(),
+        }
+    }
+
+    fn natural_form(&self) -> &'static str {
+        "svg"
+    }
+
+    fn write(&self, answer: &DrawAnswer, form: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
+        let figures: Vec<&Figure> = match answer {
+            DrawAnswer::One(figure) => vec![figure],
+            DrawAnswer::All(all) => all.figures.iter().collect(),
+        };
+        let picture = |figure: &Figure| -> Result<File, Refusal> {
+            let (name, svg) = (format!("{}.{form}", figure.kind().name()), self.svg(figure));
+            let bytes = match form {
+                #[cfg(feature = "png")]
+                "png" => willis_figure::png(&svg, self.scale)
+                    .map_err(|why| Refusal::from(Diagnostic::new(Code::Unfit, "", why)))?,
+                _ => (svg + "\n").into_bytes(),
+            };
+            Ok(File { name, bytes, about: figure.title().to_owned() })
+        };
+        figures.into_iter().map(picture).collect()
+    }
+
+    fn told(&self, answer: &DrawAnswer) -> Vec<String> {
+        match answer {
+            DrawAnswer::One(_) => vec![],
+            DrawAnswer::All(all) => {
+                all.missing.iter().map(|m| format!("{}: not drawn, {}", m.kind.name(), m.why)).collect()
+            }
+        }
+    }
+}

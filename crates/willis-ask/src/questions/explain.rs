@@ -1,0 +1,83 @@
+//! `explain`: what a diagnostic code means.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use willis::contract::{Contract, Format};
+use willis::diagnostic::{Code, Diagnostic, Severity};
+use willis::work::Work;
+
+use crate::{Given, Of, Question, Refusal};
+
+/// Explain a diagnostic code, or list all of them.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields)]
+pub struct Explain {
+    /// The code, such as E106.
+    pub code: Option<String>,
+}
+
+/// Diagnostic codes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct ExplainAnswer {
+    /// `willis-codes-1`.
+    pub format: Format<Self>,
+    /// The code that was asked for, or all.
+    pub codes: Vec<Explained>,
+}
+
+impl Contract for ExplainAnswer {
+    const FORMAT: &'static str = "willis-codes-1";
+}
+
+/// A diagnostic code.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct Explained {
+    /// The code, `E106`.
+    pub code: Code,
+    /// How much it matters.
+    pub severity: Severity,
+    /// One line that names the matter.
+    pub title: String,
+    /// What it means, why it matters and what to do.
+    pub explanation: String,
+}
+
+impl Question for Explain {
+    const NAME: &'static str = "explain";
+    const OF: Of = Of::Nothing;
+    type Answer = ExplainAnswer;
+
+    fn ask(&self, _: &[Given], _: &dyn Work) -> Result<ExplainAnswer, Refusal> {
+        let codes = match &self.code {
+            None => Code::ALL.to_vec(),
+            Some(text) => match Code::parse(text) {
+                Some(code) => vec![code],
+                None => {
+                    let known = Code::ALL.iter().map(|c| c.as_str());
+                    let message = format!("there is no diagnostic `{text}`");
+                    return Err(Diagnostic::new(Code::UnknownSelection, "", message)
+                        .suggest(text, known)
+                        .hint("`willis explain` lists all of them")
+                        .into());
+                }
+            },
+        };
+        let explained = |code: Code| Explained {
+            code,
+            severity: code.severity(),
+            title: code.title().to_owned(),
+            explanation: code.explanation().lines().map(str::trim_start).collect::<Vec<_>>().join("\n").trim().into(),
+        };
+        Ok(ExplainAnswer { format: Format::new(), codes: codes.into_iter().map(explained).collect() })
+    }
+
+    fn text(&self, answer: &ExplainAnswer, _: &[Given]) -> String {
+        match (&self.code, answer.codes.as_slice()) {
+            (Some(_), [one]) => format!("{}: {}\n\n{}\n", one.code, one.title, one.explanation),
+            (_, all) => all.iter().map(|c| format!("{}  {}\n", c.code, c.title)).collect(),
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! `export`: files for other programs.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use willis::contract::{Contract, Format};
+use willis::study::export::{ExportRequest, KINDS, export};
+use willis::work::Work;
+
+use crate::style::wrap;
+use crate::{File, Form, Given, Of, Question, Refusal};
+
+/// Write loss maps, efficiency tables, models and actuator blocks for other programs.
+///
+/// Without a kind it lists the kinds. Numbers are those of `analyze`, at every point of the ranges; without ranges they
+/// are taken from the operations of the file, and told. What a format cannot say (a lock, several solutions, a dependence
+/// on load) stands in the comments of the file and among the notes; a point without an answer gets no number.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields)]
+pub struct Export {
+    /// The format: vecto, modelica-loss-table, ...; or list.
+    pub kind: Option<String>,
+    /// This state of the shift table.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "STATE", conflicts_with = "all_states"))]
+    pub state: Option<String>,
+    /// Every state that can be exported.
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub all_states: bool,
+    /// Take state and ranges from this operation of the file.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION", conflicts_with = "all_states"))]
+    pub operation: Option<String>,
+    /// Speeds of the input: 200rpm..2200rpm:11 are 11 values; or 500rpm,1000rpm.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RANGE", allow_hyphen_values = true))]
+    pub speeds: Option<String>,
+    /// Torques on the input, positive driving, negative coasting: '-500 N m..500 N m:21'.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "RANGE", allow_hyphen_values = true))]
+    pub torques: Option<String>,
+    /// Oil temperatures: 40degC,90degC. Most formats take one.
+    #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "TEMPERATURE"))]
+    pub temperature: Vec<String>,
+}
+
+/// Files for another program, or the kinds there are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct ExportAnswer {
+    /// `willis-export-1`.
+    pub format: Format<Self>,
+    /// The format of the files; none where the kinds are listed.
+    pub kind: Option<String>,
+    /// The files.
+    pub files: Vec<OneFile>,
+    /// What the format cannot say, and what was taken for ranges that nobody gave.
+    pub notes: Vec<String>,
+    /// The kinds there are, where no kind was named.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub kinds: Vec<OneKind>,
+}
+
+impl Contract for ExportAnswer {
+    const FORMAT: &'static str = "willis-export-1";
+}
+
+/// An exported file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct OneFile {
+    /// Its name, without a folder.
+    pub name: String,
+    /// What it is, in one line.
+    pub about: String,
+    /// Its text.
+    pub text: String,
+}
+
+/// A format to export to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct OneKind {
+    /// How it is asked for.
+    pub name: String,
+    /// What it is, in one line.
+    pub about: String,
+}
+
+impl Question for Export {
+    const NAME: &'static str = "export";
+    const OF: Of = Of::AtMostOne;
+    const FORMS: &'static [Form] = &[Form { name: "files", endings: &["*"], about: "the files themselves" }];
+    type Answer = ExportAnswer;
+
+    fn ask(&self, of: &[Given], _: &dyn Work) -> Result<ExportAnswer, Refusal> {
+        let answer = |kind: Option<&str>| ExportAnswer {
+            format: Format::new(),
+            kind: kind.map(str::to_owned),
+            files: vec![],
+            notes: vec![],
+            kinds: vec![],
+        };
+        let kind = match (self.kind.as_deref().filter(|k| *k != "list"), of) {
+            (Some(kind), [_]) => kind,
+            (Some(kind), _) => {
+                let message = format!("no train is named to export as `{kind}`");
+                let d = willis::diagnostic::Diagnostic::new(willis::diagnostic::Code::UnknownSelection, "", message);
+                return Err(d.hint("name a train file after the kind of export").into());
+            }
+            (None, _) => {
+                let kinds = KINDS.iter().map(|k| OneKind { name: k.id.to_owned(), about: k.about.to_owned() });
+                return Ok(ExportAnswer { kinds: kinds.collect(), ..answer(None) });
+            }
+        };
+        let request = ExportRequest {
+            state: self.state.clone(),
+            all_states: self.all_states,
+            operation: self.operation.clone(),
+            speeds: self.speeds.clone(),
+            torques: self.torques.clone(),
+            temperatures: (!self.temperature.is_empty()).then(|| self.temperature.join(",")),
+        };
+        let done = export(of[0].model.train(), kind, &request)?;
+        let file = |f: willis::study::export::ExportedFile| OneFile { name: f.name, about: f.about, text: f.text };
+        Ok(ExportAnswer {
+            files: done.files.into_iter().map(file).collect(),
+            notes: done.notes.into_iter().map(|n| n.to_string()).collect(),
+            ..answer(Some(kind))
+        })
+    }
+
+    fn text(&self, answer: &ExportAnswer, _: &[Given]) -> String {
+        let kinds = answer.kinds.iter().map(|k| format!("{:<21}{}\n", k.name, k.about));
+        let files = answer.files.iter().map(|f| format!("{}: {}\n", f.name, f.about));
+        kinds.chain(files).collect()
+    }
+
+    fn natural_form(&self) -> &'static str {
+        if self.kind.as_deref().is_none_or(|k| k == "list") { "text" } else { "files" }
+    }
+
+    fn write(&self, answer: &ExportAnswer, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
+        let file = |f: &OneFile| File { about: f.about.clone(), ..File::text(&f.name, &*f.text) };
+        Ok(answer.files.iter().map(file).collect())
+    }
+
+    fn told(&self, answer: &ExportAnswer) -> Vec<String> {
+        answer.notes.iter().map(|n| wrap(n, "note: ")).collect()
+    }
+}

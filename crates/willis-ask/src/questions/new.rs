@@ -1,0 +1,110 @@
+//! `new`: a train file to start from.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use willis::contract::{Contract, Format};
+use willis::diagnostic::{Code, Diagnostic};
+use willis::work::Work;
+
+use crate::{Given, Of, Question, Refusal};
+
+/// Write a commented train file to start from.
+///
+/// Without a kind it lists the kinds: `willis new automatic -o mine.toml`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default, deny_unknown_fields)]
+pub struct New {
+    /// The kind, as listed.
+    pub kind: Option<String>,
+}
+
+/// A start: its name, one line about it, its text.
+const STARTS: &[(&str, &str, &str)] = &[
+    ("set", "one planetary set, ring held: ratio, efficiency, torques", include_str!("new/set.toml")),
+    ("automatic", "two sets, clutches and brakes: a shift table", include_str!("new/automatic.toml")),
+    ("split", "two degrees of freedom: an engine and a machine on one set", include_str!("new/split.toml")),
+    ("losses", "teeth, oil, bearings and seals: losses from geometry", include_str!("new/losses.toml")),
+    ("motion", "inertias, a brake and a vehicle: a motion to simulate", include_str!("new/motion.toml")),
+];
+
+/// A train file to start from, or the kinds there are.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct NewAnswer {
+    /// `willis-new-1`.
+    pub format: Format<Self>,
+    /// The kind that was asked for, or all.
+    pub starts: Vec<Start>,
+}
+
+impl Contract for NewAnswer {
+    const FORMAT: &'static str = "willis-new-1";
+}
+
+/// A train file to start from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[non_exhaustive]
+pub struct Start {
+    /// How it is asked for.
+    pub kind: String,
+    /// One line about it.
+    pub about: String,
+    /// The train file.
+    pub toml: String,
+}
+
+impl Question for New {
+    const NAME: &'static str = "new";
+    const OF: Of = Of::Nothing;
+    type Answer = NewAnswer;
+
+    fn ask(&self, _: &[Given], _: &dyn Work) -> Result<NewAnswer, Refusal> {
+        let wanted = |name: &str| self.kind.as_deref().is_none_or(|k| k == name);
+        let starts: Vec<Start> = (STARTS.iter())
+            .filter(|s| wanted(s.0))
+            .map(|(kind, about, toml)| Start { kind: (*kind).into(), about: (*about).into(), toml: (*toml).into() })
+            .collect();
+        match &self.kind {
+            Some(kind) if starts.is_empty() => {
+                let known = || STARTS.iter().map(|s| s.0);
+                let list = known().collect::<Vec<_>>().join(", ");
+                Err(Diagnostic::new(Code::UnknownSelection, "", format!("there is no start `{kind}`"))
+                    .suggest(kind, known())
+                    .hint(format!("the kinds are: {list}"))
+                    .into())
+            }
+            _ => Ok(NewAnswer { format: Format::new(), starts }),
+        }
+    }
+
+    fn text(&self, answer: &NewAnswer, _: &[Given]) -> String {
+        match (&self.kind, answer.starts.as_slice()) {
+            (Some(_), [one]) => one.toml.clone(),
+            (_, all) => all.iter().map(|s| format!("{:<12}{}\n", s.kind, s.about)).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use willis::work::Serial;
+
+    use super::*;
+    use crate::questions::{Analyze, Simulate};
+
+    #[test]
+    fn every_start_is_a_train_without_a_warning() {
+        for (kind, _, toml) in STARTS {
+            let given = [Given::read(kind, toml).unwrap_or_else(|e| panic!("{kind}: {e}"))];
+            assert!(given[0].model.warnings().is_empty(), "{kind}: {:?}", given[0].model.warnings());
+            let analysis = Question::ask(&Analyze::default(), &given, &Serial).unwrap();
+            let unique = |v: willis::analysis::Verdict| v == willis::analysis::Verdict::Unique;
+            assert!(analysis.operations.iter().all(|o| unique(o.verdict)), "{kind}");
+            assert!(!analysis.operations.is_empty() || !given[0].model.train().scenarios().is_empty(), "{kind}");
+            if !given[0].model.train().scenarios().is_empty() {
+                Question::ask(&Simulate::default(), &given, &Serial).unwrap();
+            }
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! The command line: a command a question, with the options of its request and those that all share.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use willis_ask::{Entry, Of, QUESTIONS};
+
+use crate::tools;
+
+/// Forms of every answer, and of one with tables.
+pub const TEXT: &str = "text";
+pub const JSON: &str = "json";
+pub const CSV: &str = "csv";
+pub const JSON_LINES: &str = "jsonl";
+pub const PARQUET: &str = "parquet";
+
+/// The whole command line.
+pub fn command() -> Command {
+    let color = Arg::new("color")
+        .long("color")
+        .global(true)
+        .value_name("WHEN")
+        .value_parser(["auto", "always", "never"])
+        .default_value("auto")
+        .help("When to use colours");
+    let mut all = Command::new("willis")
+        .version(env!("CARGO_PKG_VERSION"))
+        .about(
+            "Planetary gear trains: ratios, speeds, torques, power flow and efficiency, with the proof that the \
+             answer is the only one",
+        )
+        .after_help("`willis FILE` is short for `willis analyze FILE`.")
+        .max_term_width(100)
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .arg(color);
+    for entry in QUESTIONS {
+        all = all.subcommand(of(entry));
+        // Shards are put together where sweeps are made.
+        if entry.name == "sweep" {
+            all = all.subcommands(tools::TOOLS.iter().filter(|t| t.name == "merge").map(|t| (t.command)()));
+        }
+    }
+    all.subcommands(tools::TOOLS.iter().filter(|t| t.name != "merge").map(|t| (t.command)()))
+}
+
+/// What was said on the command line; a file name alone is analysed.
+pub fn matches(words: impl IntoIterator<Item = OsString>) -> ArgMatches {
+    let command = command();
+    let mut words: Vec<OsString> = words.into_iter().collect();
+    let is_value = |k: usize| k > 1 && words[k - 1] == "--color";
+    let first = (1..words.len()).find(|&k| !words[k].to_string_lossy().starts_with("--") && !is_value(k));
+    if let Some(k) = first {
+        let word = words[k].to_string_lossy();
+        let known = command.get_subcommands().any(|c| c.get_name() == word) || word == "help" || word.starts_with('-');
+        let file = word == "-" || word.ends_with(".toml") || std::path::Path::new(&words[k]).is_file();
+        if file && (!known || word == "-") {
+            words.insert(k, "analyze".into());
+        }
+    }
+    command.get_matches_from(words)
+}
+
+/// The forms in which the answer to a question can be had.
+pub fn forms(entry: &Entry) -> Vec<&'static str> {
+    let mut all = vec![TEXT, JSON];
+    if !entry.tables.is_empty() {
+        all.extend([CSV, JSON_LINES]);
+        if cfg!(feature = "parquet") {
+            all.push(PARQUET);
+        }
+    }
+    all.extend(entry.forms.iter().map(|f| f.name));
+    if entry.name == "report" {
+        all.push("pdf");
+    }
+    all
+}
+
+/// The command of a question.
+fn of(entry: &Entry) -> Command {
+    let mut c = entry.options(Command::new(entry.name));
+    let file =
+        |name: &'static str| Arg::new("file").value_name(name).help("Train file (TOML), or - for standard input");
+    c = match entry.of {
+        Of::Nothing => c,
+        Of::AtMostOne => c.arg(file("FILE")),
+        Of::Train => c.arg(file("FILE").required(true)),
+        Of::Trains => c.arg(file("FILES").required(true).num_args(2..).help("Train files (TOML), two or more")),
+    };
+    if entry.of != Of::Nothing {
+        let many = |name: &'static str| Arg::new(name).long(name).action(ArgAction::Append);
+        c = c
+            .arg(
+                many("law")
+                    .value_name("FAMILY=LAW")
+                    .help("Put a law into force: mesh_friction=niemann. Several times for several families"),
+            )
+            .arg(many("set").value_name("QUANTITY=VALUE").help(
+                "Give a quantity of the file another value: P1.sun.teeth=23. Several times for several quantities",
+            ));
+    }
+    for extra in entry.extras {
+        c = c.arg(
+            Arg::new(extra.name)
+                .long(extra.name)
+                .value_name(extra.value)
+                .value_parser(value_parser!(PathBuf))
+                .help(extra.about),
+        );
+    }
+    let forms = forms(entry);
+    let told: Vec<String> = entry.forms.iter().map(|f| format!("{}: {}", f.name, f.about)).collect();
+    let told = if told.is_empty() { String::new() } else { format!(" ({})", told.join("; ")) };
+    c = c.arg(
+        Arg::new("format")
+            .long("format")
+            .value_name("FORM")
+            .value_parser(PossibleValuesParser::new(forms))
+            .help(format!("What to print or write; else what the name of the output file says{told}")),
+    );
+    if entry.tables.len() > 1 {
+        c = c.arg(
+            Arg::new("table")
+                .long("table")
+                .value_name("TABLE")
+                .value_parser(PossibleValuesParser::new(entry.tables))
+                .help("With --format csv, jsonl or parquet: only this table, without a heading"),
+        );
+    }
+    c = c
+        .arg(
+            Arg::new("output")
+                .short('o')
+                .long("output")
+                .visible_alias("out")
+                .value_name("FILE")
+                .value_parser(value_parser!(PathBuf))
+                .help("Write into this file; its ending says in which form. A folder where there are several files"),
+        )
+        .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Replace files that are there already"));
+    match entry.name {
+        "sweep" => crate::sweep::options(c),
+        "report" => crate::pdf::options(c),
+        _ => c,
+    }
+}

@@ -1,0 +1,107 @@
+//! What only a command line has: schemas, completions, manual pages, shards put together.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use willis_ask::{QUESTIONS, RefusalReport};
+
+use crate::{Ended, command, sweep};
+
+/// A command that asks no question.
+pub struct Tool {
+    pub name: &'static str,
+    pub command: fn() -> Command,
+    pub run: fn(&ArgMatches) -> Result<Ended, Ended>,
+}
+
+/// All of them.
+pub const TOOLS: &[Tool] = &[
+    Tool { name: "merge", command: sweep::merge_command, run: sweep::run_merge },
+    Tool { name: "schema", command: schema_command, run: schema },
+    Tool { name: "completions", command: completions_command, run: completions },
+    Tool { name: "man", command: man_command, run: man },
+];
+
+fn schema_command() -> Command {
+    let question = Arg::new("question").value_name("QUESTION").value_parser(value_parser!(String));
+    Command::new("schema")
+        .about("Print the JSON Schema of the train file, of an answer, or of a request")
+        .long_about(
+            "Print the JSON Schema of the train file, for editors; with a QUESTION that of its answer, with --request \
+             that of its request. `willis schema list` lists all questions with their contracts, tables and forms, as JSON.",
+        )
+        .arg(question.help("The question: analyze, sweep, ...; refusal; or list"))
+        .arg(
+            Arg::new("request")
+                .long("request")
+                .action(ArgAction::SetTrue)
+                .requires("question")
+                .help("That of the request"),
+        )
+}
+
+fn schema(matches: &ArgMatches) -> Result<Ended, Ended> {
+    let pretty = |schema: &serde_json::Value| serde_json::to_string_pretty(schema).expect("plain data") + "\n";
+    let Some(name) = matches.get_one::<String>("question") else {
+        return Ok(Ended::Answered(pretty(&willis::train::schema())));
+    };
+    match name.as_str() {
+        "list" => return Ok(Ended::Answered(pretty(&list()))),
+        "refusal" => return Ok(Ended::Answered(pretty(RefusalReport::schema().as_value()))),
+        _ => {}
+    }
+    let Some(entry) = willis_ask::question(name) else {
+        let list = QUESTIONS.iter().map(|q| q.name).collect::<Vec<_>>().join(", ");
+        return Err(format!("there is no question `{name}`; the questions are: {list}\n").into());
+    };
+    let schema = if matches.get_flag("request") { entry.request_schema() } else { entry.answer_schema() };
+    Ok(Ended::Answered(pretty(schema.as_value())))
+}
+
+/// All questions as data, each with what its command line begins with: `willis draw KIND FILE`.
+fn list() -> serde_json::Value {
+    let command = command::command();
+    let all = QUESTIONS.iter().map(|entry| {
+        let mut told = entry.told();
+        let own = command.find_subcommand(entry.name).expect("every question is a command");
+        let places = own.get_positionals().map(|arg| {
+            let names = arg.get_value_names().unwrap_or_default().join(" ");
+            if arg.is_required_set() { format!(" {names}") } else { format!(" [{names}]") }
+        });
+        told["usage"] = format!("willis {}{}", entry.name, places.collect::<String>()).into();
+        told
+    });
+    all.collect()
+}
+
+fn completions_command() -> Command {
+    let shell = Arg::new("shell").value_name("SHELL").required(true);
+    Command::new("completions")
+        .about("Print a completion script for a shell")
+        .arg(shell.value_parser(value_parser!(clap_complete::Shell)).help("The shell"))
+}
+
+fn completions(matches: &ArgMatches) -> Result<Ended, Ended> {
+    let shell = *matches.get_one::<clap_complete::Shell>("shell").expect("it is required");
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut command::command(), "willis", &mut script);
+    Ok(Ended::Answered(String::from_utf8(script).expect("scripts are text")))
+}
+
+fn man_command() -> Command {
+    let folder = Arg::new("folder").value_name("FOLDER").value_parser(value_parser!(PathBuf));
+    Command::new("man")
+        .about("Print the manual page, or write one for every command into a folder")
+        .arg(folder.help("The folder"))
+}
+
+fn man(matches: &ArgMatches) -> Result<Ended, Ended> {
+    let Some(folder) = matches.get_one::<PathBuf>("folder") else {
+        let mut page = Vec::new();
+        clap_mangen::Man::new(command::command()).render(&mut page).expect("writing to memory");
+        return Ok(Ended::Answered(String::from_utf8(page).expect("pages are text")));
+    };
+    let written = clap_mangen::generate_to(command::command(), folder);
+    written.map_err(|e| format!("{}: {e}\n", folder.display()))?;
+    Ok(Ended::Answered(String::new()))
+}

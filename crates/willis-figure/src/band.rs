@@ -1,0 +1,136 @@
+//! How sure efficiency and loss are, over a quantity.
+
+pub mod draw;
+
+use serde::{Deserialize, Serialize};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::model::Model;
+use willis::study::{Axis, UncertaintyPlan, UncertaintyRequest};
+
+use crate::kind::{Ask, Kind};
+use crate::parts::axes::{self, ChartAxis};
+
+pub(crate) const KIND: Kind<Bands> = Kind {
+    title: "How sure it is",
+    takes: &[Ask::State, Ask::Operation, Ask::Over],
+    make: |s, r| {
+        let samples = if r.samples == 0 { SAMPLES } else { r.samples };
+        let (operation, state) = (r.operation.clone(), r.state.clone());
+        bands(s, &UncertaintyRequest { operation, state, samples, ..Default::default() }, &r.over)
+    },
+    draw: |data, _| draw::draw(data),
+};
+
+/// Samples where the caller does not say.
+const SAMPLES: usize = 256;
+
+/// Points along the axis where the caller does not say.
+const STEPS: usize = 9;
+/// Evaluations of one picture at most.
+const MOST_POINTS: usize = 200_000;
+
+/// The quantiles of [`BandPoint`]: the middle half, and nine tenths.
+pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+
+/// Bands in which efficiency and loss lie.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Bands {
+    /// The train.
+    pub title: String,
+    /// The operating point, and what was chosen for it.
+    pub basis: String,
+    /// The quantity that varies.
+    pub x: ChartAxis,
+    /// What is uncertain, each with its distribution.
+    pub quantities: Vec<String>,
+    /// Samples at each value.
+    pub samples: usize,
+    /// The bands, one for each value of the axis.
+    pub points: Vec<BandPoint>,
+}
+
+/// The bands at one value.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct BandPoint {
+    /// [`QUANTILES`] of the efficiency; absent where fewer than half of the samples have an answer.
+    pub efficiency: Option<[f64; 5]>,
+    /// [`QUANTILES`] of the loss, W.
+    pub loss_w: Option<[f64; 5]>,
+    /// The efficiency of the file as written.
+    pub nominal_efficiency: Option<f64>,
+    /// The loss of the file as written, W.
+    pub nominal_loss_w: Option<f64>,
+    /// Samples that have a single answer.
+    pub answered: usize,
+}
+
+/// Computes bands of efficiency and loss over a quantity (the operation's first speed, where none is named), from the
+/// same samples at every value: what is uncertain is the train, not the point.
+///
+/// # Errors
+/// What [`UncertaintyPlan::new`] says; an axis that is none, or that is itself among the uncertain quantities.
+pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Result<Bands, Diagnostics> {
+    let plan = UncertaintyPlan::new(model, request)?;
+    let question = plan.question();
+    let over = match over {
+        [] => vec![axes::usual_speed(question, STEPS)],
+        [_] => over.to_vec(),
+        _ => {
+            let message = format!("bands are drawn over one quantity, not {}", over.len());
+            return Err(Diagnostic::new(Code::BadAxis, "", message).into());
+        }
+    };
+    let [x] = <[Axis; 1]>::try_from(axes::parse(&over, model)?).expect("one is parsed");
+    let design = plan.design();
+    let samples: Vec<usize> = (0..plan.len()).filter(|k| design.is_sample(*k)).collect();
+    if samples.len() * x.len() > MOST_POINTS {
+        let message = format!("{} values with {} samples each are too many for a picture", x.len(), samples.len());
+        return Err(Diagnostic::new(Code::BadAxis, "", message).hint("take fewer of either").into());
+    }
+    let mut trains = Default::default();
+    // One train after the other, so that each is built once.
+    let values: Vec<Vec<[f64; 2]>> = (samples.iter())
+        .map(|k| {
+            let one = |j| {
+                let answer = plan.answer_along(Some(*k), &x, j, &mut trains);
+                if answer.is_unique() { [answer.efficiency(), answer.loss()] } else { [f64::NAN; 2] }
+            };
+            (0..x.len()).map(one).collect()
+        })
+        .collect();
+    let points = (0..x.len())
+        .map(|j| {
+            let sorted = |which: usize| {
+                let mut own: Vec<f64> = values.iter().map(|v| v[j][which]).filter(|v| v.is_finite()).collect();
+                own.sort_by(f64::total_cmp);
+                own
+            };
+            let (efficiency, loss) = (sorted(0), sorted(1));
+            let told = |own: &[f64]| {
+                (2 * own.len() >= samples.len() && !own.is_empty())
+                    .then(|| QUANTILES.map(|p| willis::unstable::quantile(own, p)))
+            };
+            let nominal = plan.answer_along(None, &x, j, &mut trains);
+            let nominal = (nominal.is_unique()).then(|| [nominal.efficiency(), nominal.loss()]);
+            BandPoint {
+                efficiency: told(&efficiency),
+                loss_w: told(&loss),
+                nominal_efficiency: nominal.map(|n| n[0]).filter(|e| e.is_finite()),
+                nominal_loss_w: nominal.map(|n| n[1]).filter(|e| e.is_finite()),
+                answered: loss.len(),
+            }
+        })
+        .collect();
+    Ok(Bands {
+        title: model.train().name().to_owned(),
+        basis: axes::basis(question, &[&x]),
+        x: ChartAxis::of(&x),
+        quantities: plan.quantities().iter().map(|q| format!("{} {}", q.name, q.describe())).collect(),
+        samples: samples.len(),
+        points,
+    })
+}

@@ -1,0 +1,28 @@
+//! Powers through components and contacts. The data are [`willis::hypergraph::FlowReport`].
+
+pub mod dot;
+pub mod draw;
+
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::hypergraph::{FlowReport, flows};
+use willis::model::Model;
+
+use crate::kind::{Ask, FigureRequest, Kind};
+
+pub(crate) const KIND: Kind<FlowReport> =
+    Kind { title: "Power flow", takes: &[Ask::State, Ask::Operation], make: powers, draw: |data, _| draw::draw(data) };
+
+/// The powers of the operations asked for, one at least.
+///
+/// # Errors
+/// What [`flows`] says; there is no operation.
+pub(crate) fn powers(model: &Model, r: &FigureRequest) -> Result<FlowReport, Diagnostics> {
+    let report = flows(model.train(), &r.selection())?;
+    if report.operations.is_empty() {
+        let d = Diagnostic::new(Code::Unfit, "", "power flows in operations, and there is none");
+        return Err(d
+            .hint("add an [[operation]] with speeds and torques or powers; `stick` and `lever` need none")
+            .into());
+    }
+    Ok(report)
+}

@@ -1,0 +1,111 @@
+//! What a kind of figure is: the questions it takes, how its data are made, how they are drawn.
+
+use serde::{Deserialize, Serialize};
+use willis::analysis::Selection;
+use willis::diagnostic::Diagnostics;
+use willis::model::Model;
+
+/// What a kind of figure says of itself. Each folder has one, as `KIND`.
+pub(crate) struct Kind<T> {
+    /// The heading of its pictures.
+    pub title: &'static str,
+    /// The questions that make a difference to it.
+    pub takes: &'static [Ask],
+    /// Makes the data.
+    pub make: fn(&Model, &FigureRequest) -> Result<T, Diagnostics>,
+    /// Draws them as SVG in its light form.
+    pub draw: fn(&T, Drawing) -> String,
+}
+
+/// A question of a [`FigureRequest`] or [`Drawing`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Ask {
+    /// [`FigureRequest::state`].
+    State,
+    /// [`FigureRequest::operation`].
+    Operation,
+    /// [`FigureRequest::part`].
+    Part,
+    /// [`FigureRequest::over`].
+    Over,
+    /// [`FigureRequest::terminals`].
+    Terminals,
+    /// [`FigureRequest::balance`].
+    Balance,
+    /// [`FigureRequest::nominal`].
+    Nominal,
+    /// [`Drawing::animated`].
+    Animated,
+}
+
+impl Ask {
+    /// The word for it: `state`, `operation`, …
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::State => "state",
+            Self::Operation => "operation",
+            Self::Part => "part",
+            Self::Over => "over",
+            Self::Terminals => "terminals",
+            Self::Balance => "balance",
+            Self::Nominal => "nominal",
+            Self::Animated => "animated",
+        }
+    }
+}
+
+/// What to draw of a train. A kind makes no difference between answers to questions that it does not take.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct FigureRequest {
+    /// A state of the shift table.
+    pub state: Option<String>,
+    /// An operation; else the file's first, or all where a kind shows several.
+    pub operation: Option<String>,
+    /// A set, mesh or scenario, where a kind shows one of them.
+    pub part: Option<String>,
+    /// Quantities along the axes, as `sweep --over` takes them.
+    pub over: Vec<String>,
+    /// Members on which torque may act, for regimes; absent for the train's terminals.
+    pub terminals: Option<Vec<String>>,
+    /// Two terminals whose powers add to zero, for regimes.
+    pub balance: Option<[String; 2]>,
+    /// Teeth without geometry are drawn as nominal ones of module 1.
+    pub nominal: bool,
+    /// Samples of bands at every value; 0 for as many as usual.
+    pub samples: usize,
+}
+
+impl FigureRequest {
+    /// State and operation as the analysis takes them.
+    pub(crate) fn selection(&self) -> Selection {
+        Selection { state: self.state.clone(), operation: self.operation.clone() }
+    }
+
+    /// The questions that it answers.
+    pub fn asks(&self) -> Vec<Ask> {
+        let given = [
+            (Ask::State, self.state.is_some()),
+            (Ask::Operation, self.operation.is_some()),
+            (Ask::Part, self.part.is_some()),
+            (Ask::Over, !self.over.is_empty()),
+            (Ask::Terminals, self.terminals.is_some()),
+            (Ask::Balance, self.balance.is_some()),
+            (Ask::Nominal, self.nominal),
+        ];
+        given.into_iter().filter(|g| g.1).map(|g| g.0).collect()
+    }
+}
+
+/// How a figure is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Drawing {
+    /// Wheels turn, where the kind has wheels.
+    pub animated: bool,
+}

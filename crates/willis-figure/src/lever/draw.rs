@@ -1,0 +1,594 @@
+//! The nomograph of a train: levers side by side.
+
+use svg::node::element::{Circle, Group, Path};
+
+use crate::parts::style::{
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
+};
+use crate::{Lever, LeverBar, LeverCase, LeverNode, LeverPull, LeverRole, LeverSet};
+
+const MARGIN: f64 = 28.0;
+const WIDEST: f64 = 1400.0;
+/// Column of names and speeds.
+const NAMES: f64 = 100.0;
+/// Column of forces, one for each set.
+const FORCES: f64 = 106.0;
+const GAP: f64 = 10.0;
+/// Room beside the speeds: signs of held members, dots.
+const PAD: f64 = 19.0;
+const LONGEST_ARROW: f64 = 44.0;
+/// Height of a name with its speed.
+const BLOCK: f64 = 30.0;
+/// Room above and below the levers: planets, letters, scales.
+const ABOVE: f64 = 62.0;
+const BELOW: f64 = 88.0;
+/// Planets are drawn this far beyond the ends of their lever, in parts of the picture.
+const BEYOND: f64 = 0.06;
+const MOST_CASES: usize = 14;
+const RPM: f64 = 30.0 / std::f64::consts::PI;
+const GUIDE: &str = "#ececec";
+const DASHES: [&str; 7] = ["none", "8 3", "3 3", "10 3 3 3", "14 4", "6 2 2 2 2 2", "2 5"];
+
+/// What all levers of a picture share.
+struct View<'a> {
+    lever: &'a Lever,
+    /// Number of cases drawn.
+    cases: usize,
+    /// Units of the picture in one of the data.
+    factor: f64,
+    low: f64,
+    high: f64,
+    speeds: f64,
+    height: f64,
+    largest: f64,
+}
+
+/// The levers of a train: height by tooth numbers, speeds as displacements, torques as arrows at the
+/// points to which friction moves them.
+///
+/// # Example
+/// ```
+/// use willis_figure::{LeverRequest, lever};
+/// use willis::train::{SetSpec, Train};
+///
+/// let train = Train::builder("reducer")
+///     .members(["sun", "carrier"])
+///     .terminals(["sun", "carrier"])
+///     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4).mesh_efficiency(0.99))
+///     .build()?;
+/// let picture = willis_figure::draw_lever(&lever(&train, &LeverRequest::First)?);
+/// assert!(picture.starts_with("<svg"));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn draw(lever: &Lever) -> String {
+    let v = View::new(lever);
+    let mut rows: Vec<Vec<usize>> = vec![vec![]];
+    let mut used = 0.0;
+    for (k, bar) in lever.bars.iter().enumerate() {
+        let width = v.width(bar) + GAP;
+        if used > 0.0 && used + width > WIDEST - 2.0 * MARGIN {
+            rows.push(vec![]);
+            used = 0.0;
+        }
+        used += width;
+        rows.last_mut().expect("never empty").push(k);
+    }
+    let content =
+        rows.iter().map(|r| r.iter().map(|k| v.width(&lever.bars[*k]) + GAP).sum::<f64>()).fold(0.0, f64::max);
+    // A long title may widen the page somewhat.
+    let title = wide(&lever.title, 20.0) * BOLD;
+    let width = (content.max(title.min(1000.0)) + 2.0 * MARGIN).max(720.0);
+    let inner = width - 2.0 * MARGIN;
+
+    let mut g = Group::new();
+    let mut y = 60.0;
+    for (k, row) in caption(&v).iter().flat_map(|c| lines(c, inner, 13.0)).enumerate() {
+        g = g.add(text(MARGIN, y, 13.0, Anchor::Start, &row).set("fill", FAINT));
+        y = 60.0 + 18.0 * (k + 1) as f64;
+    }
+    let mut top = y + 2.0;
+    for row in &rows {
+        g = g.add(levers(&v, row, top));
+        top += ABOVE + v.height + BELOW;
+    }
+    let (key, bottom) = key(&v, top, inner);
+    let height = bottom + 16.0;
+    page(width, height, &format!("Levers of {}", lever.title), &words(&v))
+        .add(text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&lever.title, inner / BOLD, 20.0)).set("font-weight", "bold"))
+        .add(g)
+        .add(key)
+        .to_string()
+}
+
+impl<'a> View<'a> {
+    fn new(lever: &'a Lever) -> Self {
+        let cases = lever.cases.len().min(MOST_CASES);
+        let factor = if lever.unit.is_some() { 1.0 } else { RPM };
+        let nodes = lever.bars.iter().flat_map(|b| &b.nodes).filter(|n| n.roles != [LeverRole::Planet]);
+        let speeds = nodes.flat_map(|n| &n.speeds[..cases]).flatten();
+        let (low, high) = speeds.fold((0.0f64, 0.0f64), |(l, h), w| (l.min(w * factor), h.max(w * factor)));
+        let high = if low == high { low + 1.0 } else { high };
+        let most = lever.bars.iter().map(|b| shown(b).count()).max().unwrap_or(0);
+        // Few levers have wide scales, many have narrow ones.
+        let columns: usize = lever.bars.iter().map(|b| if lever.torques { b.sets.len() } else { 0 }).sum();
+        let fixed = lever.bars.len() as f64 * (NAMES + 2.0 * PAD + GAP) + columns as f64 * FORCES;
+        let least = if cases > 1 { f64::max(14.0 * cases as f64, 150.0) } else { 80.0 };
+        let room = (WIDEST - 2.0 * MARGIN - fixed) / lever.bars.len() as f64;
+        let speeds = room.clamp(least, f64::max(least, if cases > 1 { 340.0 } else { 260.0 }));
+        let pulls = lever.bars.iter().flat_map(|b| &b.sets).flat_map(|s| &s.pulls);
+        Self {
+            lever,
+            cases,
+            factor,
+            low,
+            high,
+            speeds,
+            height: (BLOCK * most as f64).max(360.0),
+            largest: pulls.fold(0.0, |a, p| a.max(p.torque.abs())),
+        }
+    }
+
+    fn width(&self, bar: &LeverBar) -> f64 {
+        NAMES + 2.0 * PAD + self.speeds + if self.lever.torques { FORCES * bar.sets.len() as f64 } else { 0.0 }
+    }
+
+    /// From the left edge of a lever's panel.
+    fn x(&self, speed: f64) -> f64 {
+        NAMES + PAD + (speed - self.low) / (self.high - self.low) * self.speeds
+    }
+
+    fn y(&self, position: f64) -> f64 {
+        ABOVE + (1.0 - position) * self.height
+    }
+
+    fn readable(&self, speed: f64) -> String {
+        match self.lever.unit {
+            Some(_) => exactly(speed),
+            None => format!("{} rpm", digits(speed)),
+        }
+    }
+
+    fn speed(&self, node: &LeverNode, case: usize) -> Option<f64> {
+        node.speeds[case].map(|w| w * self.factor)
+    }
+}
+
+/// Points that are drawn: planets only where they stand about where the others do.
+fn shown(bar: &LeverBar) -> impl Iterator<Item = &LeverNode> {
+    let (low, high) = ends(bar);
+    let range = low.position - BEYOND..=high.position + BEYOND;
+    bar.nodes.iter().filter(move |n| !planet(n) || range.contains(&n.position))
+}
+
+/// Lowest and highest point of a lever.
+fn ends(bar: &LeverBar) -> (&LeverNode, &LeverNode) {
+    let mut own = bar.nodes.iter().filter(|n| !planet(n));
+    let high = own.next().expect("a lever has a carrier");
+    (own.next_back().unwrap_or(high), high)
+}
+
+fn planet(node: &LeverNode) -> bool {
+    node.roles == [LeverRole::Planet]
+}
+
+/// Numbers as near as can be to the wished ones, at least so far apart, within limits.
+fn spread(wished: &[f64], gap: f64, limits: (f64, f64)) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..wished.len()).collect();
+    order.sort_by(|a, b| wished[*a].total_cmp(&wished[*b]));
+    // Groups that touch move as one: their mean stays.
+    let mut groups: Vec<(f64, usize)> = Vec::new();
+    for (rank, &k) in order.iter().enumerate() {
+        let mut new = (wished[k] - gap * rank as f64, 1);
+        while let Some(last) = groups.last().copied().filter(|l| l.0 >= new.0) {
+            groups.pop();
+            let n = last.1 + new.1;
+            new = ((last.0 * last.1 as f64 + new.0 * new.1 as f64) / n as f64, n);
+        }
+        groups.push(new);
+    }
+    let last = gap * wished.len().saturating_sub(1) as f64;
+    let flat = groups.iter().flat_map(|(z, n)| std::iter::repeat_n(*z, *n));
+    let mut found = vec![0.0; wished.len()];
+    for (rank, (k, z)) in order.into_iter().zip(flat).enumerate() {
+        found[k] = z.min(limits.1 - last).max(limits.0) + gap * rank as f64;
+    }
+    found
+}
+
+fn halo(t: svg::node::element::Text) -> svg::node::element::Text {
+    t.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3).set("stroke-linejoin", "round")
+}
+
+fn case_colour(k: usize) -> String {
+    colour(Some(k), 1.0)
+}
+
+fn dashed(l: svg::node::element::Line, k: usize) -> svg::node::element::Line {
+    if k.is_multiple_of(DASHES.len()) { l } else { l.set("stroke-dasharray", DASHES[k % DASHES.len()]) }
+}
+
+/// A row of levers and the links between them.
+fn levers(v: &View<'_>, row: &[usize], top: f64) -> Group {
+    let mut at = MARGIN;
+    let mut lefts = vec![None; v.lever.bars.len()];
+    for &k in row {
+        lefts[k] = Some(at);
+        at += v.width(&v.lever.bars[k]) + GAP;
+    }
+    let mut under = Group::new();
+    for &k in row {
+        let bar = &v.lever.bars[k];
+        let left = lefts[k].expect("just placed");
+        for n in shown(bar) {
+            let y = top + v.y(n.position);
+            under = under.add(line((left + NAMES, y), (left + v.width(bar), y), GUIDE, 1.0));
+        }
+    }
+    for link in &v.lever.links {
+        let here: Vec<(f64, f64)> = link
+            .points
+            .iter()
+            .filter_map(|[b, n]| Some((lefts[*b]? + v.x(0.0), top + v.y(v.lever.bars[*b].nodes[*n].position))))
+            .collect();
+        for pair in here.windows(2) {
+            under = under.add(line(pair[0], pair[1], FAINT, 1.2).set("stroke-dasharray", "6 4"));
+        }
+    }
+    row.iter().fold(under, |g, &k| {
+        let left = lefts[k].expect("just placed");
+        g.add(panel(v, &v.lever.bars[k]).set("transform", format!("translate({} {})", number(left), number(top))))
+    })
+}
+
+fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
+    let width = v.width(bar);
+    let name = bar.sets.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" + ");
+    let head = fit(&name, (width - 8.0) / BOLD, 14.0);
+    let mut g = Group::new()
+        .add(
+            text(NAMES + PAD - 14.0, 16.0, 14.0, Anchor::Start, &fit(&head, (width - NAMES - 12.0) / BOLD, 14.0))
+                .set("font-weight", "bold"),
+        )
+        .add(scale(v));
+    let (last, first) = ends(bar);
+    let rest = v.x(0.0);
+    g = g.add(line((rest, v.y(first.position)), (rest, v.y(last.position)), LINE, 3.5));
+    for case in 0..v.cases {
+        if let (Some(a), Some(b)) = (v.speed(first, case), v.speed(last, case)) {
+            let l = line((v.x(a), v.y(first.position)), (v.x(b), v.y(last.position)), &case_colour(case), 2.2);
+            g = g.add(dashed(l, case));
+        }
+    }
+    for n in shown(bar) {
+        for case in 0..v.cases {
+            let Some(w) = v.speed(n, case).filter(|w| (v.low..=v.high).contains(w)) else { continue };
+            if planet(n) && v.cases > 1 {
+                continue;
+            }
+            let dot = Circle::new().set("cx", number(v.x(w))).set("cy", number(v.y(n.position)));
+            let dot = match planet(n) {
+                true => dot.set("r", 2.6).set("fill", PAPER).set("stroke", case_colour(case)).set("stroke-width", 1.2),
+                false => dot.set("r", 3.4).set("fill", case_colour(case)),
+            };
+            g = g.add(dot);
+        }
+        g = g.add(mark(rest, v.y(n.position), &n.roles));
+        let held = |c: &LeverCase| c.held.contains(&n.member);
+        if v.lever.cases[..v.cases].iter().any(held) {
+            g = g.add(ground(rest - 6.0, v.y(n.position)));
+        }
+    }
+    if v.cases > 1 {
+        g = g.add(letters(v, first));
+    }
+    g = g.add(names(v, bar));
+    if v.lever.torques {
+        for (k, set) in bar.sets.iter().enumerate() {
+            let centre = NAMES + 2.0 * PAD + v.speeds + FORCES * (k as f64 + 0.5);
+            g = g.add(forces(v, bar, set, centre, bar.sets.len() > 1));
+        }
+    }
+    g
+}
+
+/// The scale of speeds below a lever.
+fn scale(v: &View<'_>) -> Group {
+    let y = v.y(-BEYOND) + 8.0;
+    let mut g = Group::new().add(line((v.x(v.low), y), (v.x(v.high), y), FAINT, 1.0));
+    // A number must not run into the next.
+    let mut free = f64::NEG_INFINITY;
+    for t in ticks(v.low, v.high, 5) {
+        let label = digits(t);
+        let half = wide(&label, 10.0) / 2.0;
+        g = g.add(line((v.x(t), y), (v.x(t), y + 4.0), FAINT, 1.0));
+        if v.x(t) - half > free {
+            g = g.add(text(v.x(t), y + 15.0, 10.0, Anchor::Middle, &label).set("fill", FAINT));
+            free = v.x(t) + half + 4.0;
+        }
+    }
+    let middle = (v.x(v.low) + v.x(v.high)) / 2.0;
+    let caption = match &v.lever.unit {
+        None => "ω, rpm".to_owned(),
+        Some(input) => format!("ω / ω {}", fit(input, v.speeds + PAD - 30.0, 11.0)),
+    };
+    g.add(text(middle, y + 30.0, 11.0, Anchor::Middle, &caption).set("fill", FAINT))
+}
+
+/// What a point is, by its shape: disc sun, circle ring, square carrier.
+fn mark(x: f64, y: f64, roles: &[LeverRole]) -> Group {
+    let circle = |r: f64, fill: &str, stroke: f64| {
+        let c = Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", number(r)).set("fill", fill);
+        c.set("stroke", INK).set("stroke-width", number(stroke))
+    };
+    let has = |role| roles.contains(&role);
+    let mut g = Group::new();
+    let carrier = has(LeverRole::Carrier);
+    if carrier {
+        let square = rectangle(x - 5.0, y - 5.0, 10.0, 10.0, PAPER);
+        g = g.add(square.set("stroke", INK).set("stroke-width", 1.4));
+    }
+    if has(LeverRole::Ring) {
+        g = g.add(circle(if carrier { 2.9 } else { 4.3 }, PAPER, if carrier { 1.2 } else { 1.8 }));
+    }
+    if has(LeverRole::Sun) || has(LeverRole::Gear) {
+        g = g.add(circle(if carrier || has(LeverRole::Ring) { 1.8 } else { 4.2 }, INK, 0.8));
+    }
+    if roles == [LeverRole::Planet] {
+        g = g.add(circle(2.4, PAPER, 1.0).set("stroke", FAINT));
+    }
+    g
+}
+
+/// The sign of a member at rest, its tip at the point.
+fn ground(x: f64, y: f64) -> Group {
+    let n = |x: f64, y: f64| format!("{} {}", number(x), number(y));
+    let triangle = format!("M{} L{} L{} Z", n(x, y), n(x - 8.0, y - 5.0), n(x - 8.0, y + 5.0));
+    Group::new()
+        .add(Path::new().set("d", triangle).set("fill", PAPER).set("stroke", INK).set("stroke-width", 1.2))
+        .add(line((x - 9.0, y - 7.0), (x - 9.0, y + 7.0), INK, 2.0))
+}
+
+/// Letters of the cases above a lever, each led to its line.
+fn letters(v: &View<'_>, first: &LeverNode) -> Group {
+    let drawn: Vec<(usize, f64)> = (0..v.cases).filter_map(|c| Some((c, v.x(v.speed(first, c)?)))).collect();
+    let wished: Vec<f64> = drawn.iter().map(|d| d.1).collect();
+    let at = spread(&wished, 14.0, (NAMES + 8.0, NAMES + 2.0 * PAD + v.speeds - 8.0));
+    let end = v.y(first.position);
+    let y = end - 17.0;
+    let mut g = Group::new();
+    for ((case, x), place) in drawn.into_iter().zip(at) {
+        let letter = text(place, y, 12.0, Anchor::Middle, &v.lever.cases[case].letter).set("font-weight", "bold");
+        g = g
+            .add(line((place, y + 3.0), (x, end - 4.0), &case_colour(case), 0.8))
+            .add(halo(letter.set("fill", case_colour(case))));
+    }
+    g
+}
+
+/// Names of the points, and their speeds where there is one case.
+fn names(v: &View<'_>, bar: &LeverBar) -> Group {
+    let nodes: Vec<&LeverNode> = shown(bar).collect();
+    let wished: Vec<f64> = nodes.iter().map(|n| v.y(n.position)).collect();
+    let at = spread(&wished, BLOCK, (v.y(1.0 + BEYOND) - 8.0, v.y(-BEYOND) + 8.0));
+    let mut g = Group::new();
+    for ((n, y), wished) in nodes.iter().zip(&at).zip(&wished) {
+        let right = NAMES - 10.0;
+        let (size, weight) = if planet(n) { (11.0, 1.0) } else { (12.0, BOLD) };
+        let name = fit(&n.member, (right - 2.0) / weight, size);
+        let mut label = text(right, y - 5.0, size, Anchor::End, &name);
+        label = if planet(n) { label.set("fill", FAINT) } else { label.set("font-weight", "bold") };
+        g = g.add(line((right + 2.0, *y), (NAMES + 4.0, *wished), LINE, 0.8)).add(halo(label));
+        let speed = match (v.cases, n.speeds[0].map(|w| w * v.factor)) {
+            (1, Some(w)) => v.readable(w),
+            (1, None) => "not settled".to_owned(),
+            _ => continue,
+        };
+        g = g.add(halo(text(right, y + 11.0, 11.0, Anchor::End, &fit(&speed, right - 2.0, 11.0)).set("fill", FAINT)));
+    }
+    g
+}
+
+/// The forces of a set: arrows at the displaced points, true points as circles.
+fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool) -> Group {
+    let mut g = Group::new();
+    let y = v.y(-BEYOND) + 8.0;
+    let caption = match &v.lever.unit {
+        None => "T, N m".to_owned(),
+        Some(input) => format!("T / T {}", fit(input, FORCES - 42.0, 11.0)),
+    };
+    g = g.add(text(centre, y + 30.0, 11.0, Anchor::Middle, &caption).set("fill", FAINT));
+    if named {
+        let name = fit(&set.name, FORCES - 12.0, 11.0);
+        g = g.add(text(centre, y + 14.0, 11.0, Anchor::Middle, &name));
+    }
+    let (low, high) = ends(bar);
+    let range = low.position - 2.0 * BEYOND..=high.position + 2.0 * BEYOND;
+    let (near, far): (Vec<&LeverPull>, Vec<&LeverPull>) = set.pulls.iter().partition(|p| range.contains(&p.point));
+    for (k, p) in far.iter().enumerate() {
+        let label = fit(&format!("{}: {}", bar.nodes[p.node].member, digits(p.torque)), FORCES - 6.0, 10.0);
+        g = g.add(text(centre, y + 44.0 + 13.0 * k as f64, 10.0, Anchor::Middle, &label).set("fill", FAINT));
+    }
+    if set.pulls.is_empty() || v.largest == 0.0 {
+        return g.add(text(centre, v.y(0.5), 11.0, Anchor::Middle, "no torque").set("fill", FAINT));
+    }
+    let own = near.iter().map(|p| bar.nodes[p.node].position);
+    let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    g = g.add(line((centre, v.y(high)), (centre, v.y(low)), LINE, 3.5));
+    let ink = colour(Some(1), 1.0);
+    let part = |p: &LeverPull| p.torque.abs() / v.largest;
+    let side = |p: &LeverPull| if p.torque < 0.0 { -1.0 } else { 1.0 };
+    let loaded: Vec<&LeverPull> = near.iter().copied().filter(|p| part(p) > 1e-9).collect();
+    for p in &loaded {
+        g = g.add(arrow(centre, v.y(p.point), side(p) * (LONGEST_ARROW * part(p)).max(7.0), &ink));
+    }
+    // Values stand on the side that their arrow leaves free, clear of the arrows of others.
+    let mut placed: Vec<(f64, f64)> = Vec::new();
+    for p in &near {
+        let (side, y) = (side(p), v.y(p.point));
+        let clear = |at: f64| {
+            loaded.iter().all(|o| opposed(o, side) || (v.y(o.point) - at).abs() > 8.0)
+                && placed.iter().all(|(s, y)| *s != side || (y - at).abs() > 12.0)
+        };
+        let tried = (0..120).flat_map(|k| [y - f64::from(k), y + f64::from(k)]);
+        let at = tried.into_iter().find(|at| clear(*at)).unwrap_or(y);
+        placed.push((side, at));
+        let x = centre - side * 7.0;
+        let anchor = if side > 0.0 { Anchor::End } else { Anchor::Start };
+        if (at - y).abs() > 3.0 {
+            g = g.add(line((centre - side * 3.0, y), (x + side, at), LINE, 0.8));
+        }
+        let value = if part(p) > 1e-9 { digits(p.torque) } else { "0".to_owned() };
+        g = g.add(halo(text(x, at + 3.5, 10.0, anchor, &fit(&value, FORCES / 2.0 - 7.0, 10.0))));
+    }
+    for p in &near {
+        let n = &bar.nodes[p.node];
+        let dot = Circle::new().set("cx", number(centre)).set("cy", number(v.y(n.position))).set("r", 2.6);
+        g = g.add(dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", 1));
+    }
+    for p in &near {
+        let dot = Circle::new().set("cx", number(centre)).set("cy", number(v.y(p.point))).set("r", 1.6);
+        g = g.add(dot.set("fill", ink.as_str()));
+    }
+    g
+}
+
+/// Whether an arrow points away from where the values of this side stand.
+fn opposed(pull: &LeverPull, side: f64) -> bool {
+    (pull.torque < 0.0) == (side < 0.0)
+}
+
+fn arrow(x: f64, y: f64, length: f64, ink: &str) -> Group {
+    let sign = length.signum();
+    let tip = x + length;
+    let back = tip - sign * 6.0;
+    let n = |x: f64, y: f64| format!("{} {}", number(x), number(y));
+    let head = format!("M{} L{} L{} Z", n(tip, y), n(back, y - 3.5), n(back, y + 3.5));
+    Group::new().add(line((x, y), (back, y), ink, 2.2)).add(Path::new().set("d", head).set("fill", ink))
+}
+
+/// What is seen, and what is special.
+fn caption(v: &View<'_>) -> Vec<String> {
+    let l = v.lever;
+    let mut first = "Heights come from tooth numbers, displacements from the rest line are speeds.".to_owned();
+    if l.torques {
+        first.push_str(" Arrows: torques on a set, at points that friction displaces.");
+    }
+    let mut all = vec![first];
+    let mut second = Vec::new();
+    if let [only] = &l.cases[..] {
+        if !only.engaged.is_empty() {
+            second.push(format!("Closed: {}.", only.engaged.join(", ")));
+        }
+        if let Some(ratio) = only.ratio {
+            second.push(format!("Ratio {}.", exactly(ratio)));
+        }
+        if let Some(note) = &only.note {
+            second.push(format!("Note: {note}."));
+        }
+    } else if l.cases.len() > v.cases {
+        second.push(format!("The first {} of {} states.", v.cases, l.cases.len()));
+    }
+    if !l.level {
+        second.push("Every lever has its own scale of places.".to_owned());
+    }
+    if !second.is_empty() {
+        all.push(second.join(" "));
+    }
+    all
+}
+
+/// Shapes, and the letters of the cases.
+fn key(v: &View<'_>, top: f64, width: f64) -> (Group, f64) {
+    let mut g = Group::new();
+    let mut y = top + 8.0;
+    let nodes = || v.lever.bars.iter().flat_map(shown);
+    let mut x = MARGIN;
+    let entries = [
+        (LeverRole::Sun, "sun"),
+        (LeverRole::Ring, "ring"),
+        (LeverRole::Carrier, "carrier"),
+        (LeverRole::Gear, "gear"),
+        (LeverRole::Planet, "planet"),
+    ];
+    for (role, name) in entries {
+        if nodes().any(|n| n.roles.contains(&role)) {
+            g = g.add(mark(x + 6.0, y - 4.0, &[role])).add(text(x + 18.0, y, 12.0, Anchor::Start, name));
+            x += 18.0 + wide(name, 12.0) + 20.0;
+        }
+    }
+    if v.lever.cases[..v.cases].iter().any(|c| nodes().any(|n| c.held.contains(&n.member))) {
+        let name = if v.cases > 1 { "held, at least in some states" } else { "held" };
+        g = g.add(ground(x + 10.0, y - 4.0)).add(text(x + 18.0, y, 12.0, Anchor::Start, name));
+        x += 18.0 + wide(name, 12.0) + 20.0;
+    }
+    if !v.lever.links.is_empty() {
+        let l = line((x, y - 4.0), (x + 30.0, y - 4.0), FAINT, 1.2).set("stroke-dasharray", "6 4");
+        g = g.add(l).add(text(x + 36.0, y, 12.0, Anchor::Start, "one member"));
+    }
+    if v.cases > 1 {
+        let entry = |case: &LeverCase| {
+            let what = match (&case.note, case.ratio) {
+                (Some(note), _) => note.clone(),
+                (None, Some(ratio)) => format!("ratio {}", exactly(ratio)),
+                (None, None) => "output at rest".to_owned(),
+            };
+            match case.engaged.is_empty() {
+                true => format!("{}: {what}", case.name),
+                false => format!("{}: {what}; closed {}", case.name, case.engaged.join(", ")),
+            }
+        };
+        let drawn = &v.lever.cases[..v.cases];
+        let broadest = drawn.iter().map(|c| wide(&entry(c), 12.0) + 86.0).fold(220.0, f64::max);
+        let columns = ((width / broadest).floor() as usize).clamp(1, 4);
+        let column = width / columns as f64;
+        let rows = v.cases.div_ceil(columns);
+        for (k, case) in drawn.iter().enumerate() {
+            let x = MARGIN + column * (k / rows) as f64;
+            let y = y + 26.0 + 20.0 * (k % rows) as f64;
+            let sample = line((x, y - 4.0), (x + 40.0, y - 4.0), &case_colour(k), 2.2);
+            if case.note.is_none() {
+                g = g.add(dashed(sample, k));
+            }
+            g = g.add(text(x + 50.0, y, 12.0, Anchor::Middle, &case.letter).set("font-weight", "bold")).add(text(
+                x + 62.0,
+                y,
+                12.0,
+                Anchor::Start,
+                &fit(&entry(case), column - 74.0, 12.0),
+            ));
+        }
+        y += 26.0 + 20.0 * (rows - 1) as f64;
+    }
+    (g, y + 6.0)
+}
+
+/// For those who do not see it.
+fn words(v: &View<'_>) -> String {
+    let l = v.lever;
+    let mut all = vec![format!("{} of {}.", count(l.bars.len(), "lever"), l.title)];
+    for bar in l.bars.iter().take(6) {
+        let name = bar.sets.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" and ");
+        let points = bar.nodes.iter().filter(|n| !planet(n)).map(|n| match (v.cases, v.speed(n, 0)) {
+            (1, Some(w)) => format!("{} {}", n.member, v.readable(w)),
+            _ => n.member.clone(),
+        });
+        all.push(format!("{name}, from above: {}.", points.collect::<Vec<_>>().join(", ")));
+    }
+    if v.cases > 1 {
+        let ratios = l.cases.iter().filter_map(|c| c.ratio.map(|r| format!("{} {}", c.name, digits(r))));
+        all.push(format!("Ratios: {}.", ratios.collect::<Vec<_>>().join(", ")));
+    }
+    all.join(" ")
+}
+
+fn count(n: usize, what: &str) -> String {
+    if n == 1 { format!("One {what}") } else { format!("{n} {what}s") }
+}
+
+/// A ratio with three decimals.
+fn exactly(ratio: f64) -> String {
+    if !(0.1..1e4).contains(&ratio.abs()) {
+        return digits(ratio);
+    }
+    format!("{ratio:.3}").replace('-', "−")
+}

@@ -1,0 +1,71 @@
+//! Figures of Willis: charts and diagrams as data, and drawn as SVG and PNG. Reports as documents and as web pages.
+//!
+//! A figure is data first: what stands where, in which role, with which words; no pixels, no fonts. [`draw`]
+//! makes SVG of it: text stays text, colours are safe for the colour-blind, and every colour also
+//! carries a letter. A kind of figure is one folder here, which holds its data and its drawing.
+
+mod band;
+mod contact_path;
+mod flow;
+mod front;
+mod kind;
+mod lever;
+mod losses;
+mod map;
+mod modes;
+mod parts;
+mod regimes;
+mod registry;
+pub mod report;
+mod sankey;
+mod shift;
+mod stick;
+mod time;
+mod tornado;
+
+pub use band::draw::draw as draw_band;
+pub use band::{BandPoint, Bands, QUANTILES, bands};
+pub use contact_path::film::draw as draw_film;
+pub use contact_path::path::draw as draw_path;
+pub use contact_path::{ContactPath, MeshPath, PathPoint, contact_path};
+pub use flow::dot::flow_dot;
+pub use flow::draw::draw as draw_flow;
+pub use front::draw::draw as draw_front;
+pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWheel, front};
+pub use kind::{Ask, Drawing, FigureRequest};
+pub use lever::draw::draw as draw_lever;
+pub use lever::{
+    Lever, LeverBar, LeverCase, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
+};
+pub use losses::draw::draw as draw_losses;
+pub use losses::{LossChart, LossSeries, loss_chart};
+pub use map::draw::draw as draw_map;
+pub use map::{EfficiencyMap, MapMark, MapPoint, MapVerdict, efficiency_map};
+pub use modes::draw as draw_modes;
+pub use parts::axes::ChartAxis;
+#[cfg(feature = "png")]
+pub use parts::png::png;
+pub use parts::theme::{Theme, themed};
+pub use regimes::draw::draw as draw_regimes;
+pub use regimes::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap, regime_map};
+pub use registry::{Figure, FigureKind, draw};
+pub use report::html::html;
+pub use report::{ReportRequest, report};
+pub use sankey::draw::draw as draw_sankey;
+pub use sankey::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode, SankeyPanel, sankey};
+pub use shift::draw::draw as draw_shift;
+pub use shift::{ShiftChange, ShiftColumn, ShiftEfficiency, ShiftRow, ShiftSpread, ShiftTable, shift};
+pub use stick::draw::draw as draw_stick;
+pub use stick::{
+    GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickMember, StickMesh,
+    StickPiece, StickTerminal, Way, stick,
+};
+pub use time::draw::draw as draw_time;
+pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder};
+pub use tornado::draw::draw as draw_tornado;
+pub use tornado::{Tornado, TornadoBar, tornado};
+
+/// The code of the page of this crate runs as a doctest.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

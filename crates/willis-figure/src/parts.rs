@@ -1,0 +1,9 @@
+//! What figures share: colours and type, frames of charts, dark paper, pixels.
+
+pub mod axes;
+pub mod chart;
+pub mod markup;
+#[cfg(feature = "png")]
+pub mod png;
+pub mod style;
+pub mod theme;

@@ -1,0 +1,193 @@
+//! All kinds of figures. A kind is a folder and a line here; everything else follows from the line.
+
+use serde::{Deserialize, Serialize};
+
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::hypergraph::FlowReport;
+use willis::model::Model;
+
+use crate::*;
+
+macro_rules! kinds {
+    ($(#[doc = $about:literal] $name:literal: $kind:ident($data:ty) = $entry:expr;)*) => {
+        /// What can be drawn.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+        #[non_exhaustive]
+        pub enum FigureKind {
+            $(#[doc = $about] #[serde(rename = $name)] $kind,)*
+        }
+
+        /// A figure of any kind, as data.
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+        #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+        #[serde(tag = "figure")]
+        #[non_exhaustive]
+        pub enum Figure {
+            $(#[doc = $about] #[serde(rename = $name)] $kind($data),)*
+        }
+
+        impl FigureKind {
+            /// All kinds.
+            pub const ALL: &[Self] = &[$(Self::$kind),*];
+
+            /// The word for it on the command line.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$kind => $name,)*
+                }
+            }
+
+            /// What it shows, as a sentence of a few words.
+            ///
+            /// ```
+            /// use willis_figure::FigureKind;
+            ///
+            /// assert_eq!(FigureKind::Shift.about(), "The table of states with its steps.");
+            /// ```
+            pub fn about(self) -> &'static str {
+                match self {
+                    $(Self::$kind => $about.trim_ascii(),)*
+                }
+            }
+
+            /// The heading of its pictures.
+            pub fn title(self) -> &'static str {
+                match self {
+                    $(Self::$kind => $entry.title,)*
+                }
+            }
+
+            /// The questions that make a difference to it.
+            pub fn takes(self) -> &'static [Ask] {
+                match self {
+                    $(Self::$kind => $entry.takes,)*
+                }
+            }
+
+            /// Makes the figure of a train.
+            ///
+            /// # Errors
+            /// Why the kind does not apply to this train, and what would; no such state, operation or part.
+            ///
+            /// # Example
+            /// ```
+            /// use willis::model::Model;
+            /// use willis_figure::{Figure, FigureKind};
+            ///
+            /// let text = r#"
+            ///     format = 1
+            ///     name = "one set"
+            ///     members = ["s", "c"]
+            ///     terminals = ["s", "c"]
+            ///     [[set]]
+            ///     name = "P1"
+            ///     sun = { member = "s", teeth = 30 }
+            ///     ring = { member = "frame", teeth = 70 }
+            ///     carrier = "c"
+            /// "#;
+            /// let model = Model::from_toml(text).unwrap();
+            /// let figure = FigureKind::Stick.make(&model, &Default::default())?;
+            /// assert!(matches!(figure, Figure::Stick(_)));
+            /// // There are no gears to shift.
+            /// assert!(FigureKind::Shift.make(&model, &Default::default()).is_err());
+            /// # Ok::<(), willis::Diagnostics>(())
+            /// ```
+            pub fn make(self, model: &Model, request: &FigureRequest) -> Result<Figure, Diagnostics> {
+                match self {
+                    $(Self::$kind => ($entry.make)(model, request).map(Figure::$kind),)*
+                }
+            }
+        }
+
+        impl Figure {
+            /// What kind it is.
+            pub fn kind(&self) -> FigureKind {
+                match self {
+                    $(Self::$kind(_) => FigureKind::$kind,)*
+                }
+            }
+        }
+
+        /// A figure as SVG in its light form, text as text.
+        pub fn draw(figure: &Figure, how: Drawing) -> String {
+            match figure {
+                $(Figure::$kind(data) => ($entry.draw)(data, how),)*
+            }
+        }
+    };
+}
+
+// Name on the command line: kind(its data) = what its folder says of it. The comment is also the help.
+kinds! {
+    /// Kinematic schematic, engaged elements and power path of a state.
+    "stick": Stick(Stick) = stick::KIND;
+    /// Nomograph: speeds and torques; the state `all` lays all states over each other.
+    "lever": Lever(Lever) = lever::KIND;
+    /// Power from input to output, each loss branching off, to scale.
+    "sankey": Sankey(Sankey) = sankey::KIND;
+    /// Power through components and contacts.
+    "flow": Flow(FlowReport) = flow::KIND;
+    /// A set seen along its axis, true teeth in mesh.
+    "front": Front(Front) = front::KIND;
+    /// The wheel of regimes of two freedoms.
+    "regimes": Regimes(RegimeMap) = regimes::KIND;
+    /// Efficiency over two quantities; of an automatic the best gear.
+    "map": Map(EfficiencyMap) = map::KIND;
+    /// Losses by source, stacked over a quantity and as bars.
+    "losses": Losses(LossChart) = losses::KIND;
+    /// Oil film over roughness along the path of contact of a mesh.
+    "film": Film(ContactPath) = contact_path::film::KIND;
+    /// Friction, sliding and load along the path of contact of a mesh.
+    "path": Path(ContactPath) = contact_path::path::KIND;
+    /// A scenario over time.
+    "time": Time(TimePlot) = time::KIND;
+    /// The table of states with its steps.
+    "shift": Shift(ShiftTable) = shift::KIND;
+    /// What a step of each quantity does to efficiency and losses.
+    "tornado": Tornado(Tornado) = tornado::KIND;
+    /// How sure efficiency and loss are, over a quantity.
+    "band": Band(Bands) = band::KIND;
+}
+
+impl FigureKind {
+    /// The kind of that name.
+    ///
+    /// # Errors
+    /// There is none, with the nearest.
+    pub fn named(name: &str) -> Result<Self, Diagnostics> {
+        Self::ALL.iter().copied().find(|k| k.name() == name).ok_or_else(|| {
+            let known = Self::ALL.iter().map(|k| k.name());
+            let d = Diagnostic::new(Code::UnknownSelection, "", format!("there is no figure `{name}`"));
+            let list = known.clone().collect::<Vec<_>>().join(", ");
+            d.suggest(name, known).hint(format!("the figures are: {list}")).into()
+        })
+    }
+
+    /// The kinds that can be made of a train as it is.
+    pub fn applicable(model: &Model) -> Vec<Self> {
+        let request = FigureRequest { samples: 128, ..Default::default() };
+        Self::ALL.iter().copied().filter(|k| k.make(model, &request).is_ok()).collect()
+    }
+
+    /// The first question that is answered in vain: it makes no difference to this kind.
+    ///
+    /// ```
+    /// use willis_figure::{Ask, Drawing, FigureKind, FigureRequest};
+    ///
+    /// let request = FigureRequest { state: Some("3".into()), ..Default::default() };
+    /// assert_eq!(FigureKind::Stick.deaf_to(&request, Drawing::default()), None);
+    /// assert_eq!(FigureKind::Shift.deaf_to(&request, Drawing::default()), Some(Ask::State));
+    /// ```
+    pub fn deaf_to(self, request: &FigureRequest, how: Drawing) -> Option<Ask> {
+        let asked = request.asks().into_iter().chain(how.animated.then_some(Ask::Animated));
+        asked.into_iter().find(|ask| !self.takes().contains(ask))
+    }
+}
+
+impl Figure {
+    /// The heading of its picture.
+    pub fn title(&self) -> &'static str {
+        self.kind().title()
+    }
+}

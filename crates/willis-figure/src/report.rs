@@ -1,0 +1,392 @@
+//! The engineering report of a train: what was asked, what was assumed, what came out, and how to do it again.
+
+pub mod document;
+mod formula;
+pub mod html;
+mod laws;
+mod results;
+mod scheme;
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use willis::Diagnostics;
+use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
+use willis::contract;
+use willis::diagnostic::{Code, Severity};
+use willis::hypergraph::watts;
+use willis::model::Model;
+use willis::study::{Sensitivity, sensitivity};
+use willis::work::{self, Cancelled, Work};
+
+use crate::report::document::{Block, Column, Document, Level, Section};
+use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
+
+/// Operations that get pictures of their own; all are told in tables.
+const PICTURED: usize = 4;
+
+/// What a report is about.
+#[derive(Clone, Debug, Default)]
+pub struct ReportRequest {
+    /// Only this operation.
+    pub operation: Option<String>,
+    /// Name of the train file, as the reader of the report would give it.
+    pub file: String,
+    /// SHA-256 of the train file, in hexadecimal digits.
+    pub hash: String,
+    /// The program and its version.
+    pub version: String,
+    /// The commands that make the results again.
+    pub commands: Vec<String>,
+}
+
+/// Everything that a report tells.
+struct Findings<'a> {
+    model: &'a Model,
+    request: &'a ReportRequest,
+    analysis: Analysis,
+    sensitivity: Option<Sensitivity>,
+    figures: Figures,
+}
+
+/// A picture that was asked for: its kind, and what it is of where there are several.
+struct Made {
+    kind: FigureKind,
+    of: Option<String>,
+    picture: Picture,
+}
+
+/// What became of a picture.
+enum Picture {
+    /// It is there, as SVG.
+    Drawn(String),
+    /// The train has nothing of its kind, or it would say no more than a sentence.
+    Nothing,
+    /// It could not be made, for this reason.
+    Failed(String),
+}
+
+/// The pictures of a report.
+#[derive(Default)]
+struct Figures(Vec<Made>);
+
+impl Figures {
+    /// Makes what is wanted. One that fails, or even panics, takes nothing else with it.
+    fn make(
+        work: &dyn Work,
+        wanted: &[(FigureKind, FigureRequest)],
+        make: impl Fn(FigureKind, &FigureRequest) -> Result<Figure, Diagnostics> + Sync,
+    ) -> Result<Self, Cancelled> {
+        work.begin("pictures", wanted.len() as u64);
+        let one = |k: usize| {
+            let (kind, request) = &wanted[k];
+            let drawn = || {
+                let figure = make(*kind, request)?;
+                Ok(worth_showing(&figure).then(|| draw(&figure, Drawing::default())))
+            };
+            // Nothing outlives a panic that it could have left half done.
+            let picture = match catch_unwind(AssertUnwindSafe(drawn)) {
+                Ok(Ok(Some(svg))) => Picture::Drawn(svg),
+                Ok(Ok(None)) => Picture::Nothing,
+                Ok(Err(wrong)) => Picture::of(&wrong),
+                Err(panic) => Picture::Failed(format!("a fault of the program: {}", last_words(&*panic))),
+            };
+            work.advance(1);
+            // Of some kinds there is one for every set or operation.
+            let of = match kind {
+                FigureKind::Front => request.part.clone(),
+                FigureKind::Sankey | FigureKind::Lever => request.operation.clone(),
+                _ => None,
+            };
+            Made { kind: *kind, of, picture }
+        };
+        Ok(Self(work::map(work, wanted.len(), one)?))
+    }
+
+    /// The picture of a kind, as a block, or that it failed; what it is of, where there are several.
+    fn block(&self, kind: FigureKind, of: Option<&str>, caption: &str) -> Option<Block> {
+        let made = self.0.iter().find(|f| f.kind == kind && f.of.as_deref() == of)?;
+        match &made.picture {
+            Picture::Drawn(svg) => Some(Block::Figure { caption: caption.to_owned(), svg: svg.clone() }),
+            Picture::Nothing => None,
+            Picture::Failed(why) => {
+                let text = format!("{caption}: this picture could not be made. {why}");
+                Some(Block::Notice { level: Level::Warning, text })
+            }
+        }
+    }
+}
+
+impl Picture {
+    /// What a refusal means: a kind that does not fit the train is nothing to tell in a report.
+    fn of(wrong: &Diagnostics) -> Self {
+        let errors = wrong.iter().filter(|d| d.severity == Severity::Error);
+        let why: Vec<&str> = errors.filter(|d| d.code != Code::Unfit).map(|d| d.message.as_str()).collect();
+        if why.is_empty() { Self::Nothing } else { Self::Failed(why.join("; ")) }
+    }
+}
+
+/// What a panic says of itself.
+fn last_words(panic: &(dyn Any + Send)) -> &str {
+    let text = panic.downcast_ref::<&str>().copied();
+    text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason is known")
+}
+
+/// Whether a figure says more than a sentence would.
+fn worth_showing(figure: &Figure) -> bool {
+    match figure {
+        Figure::Map(m) => m.points.iter().any(|p| p.efficiency.is_some()),
+        Figure::Losses(l) => !l.series.is_empty(),
+        Figure::Band(b) => b.points.iter().any(|p| p.efficiency.is_some()),
+        _ => true,
+    }
+}
+
+/// Writes the report of a train. A picture that fails is named in its place, with the reason.
+///
+/// # Errors
+/// What [`analyze`] says; the work was cancelled.
+///
+/// # Example
+/// ```
+/// use willis::model::Model;
+/// use willis::work::Serial;
+/// use willis_figure::{ReportRequest, html, report};
+///
+/// let text = r#"
+///     format = 1
+///     name = "one set"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+///     mesh_efficiency = 0.99
+///     [[operation]]
+///     name = "full load"
+///     speeds = { s = "1000 rpm" }
+///     torques = { s = "10 N m" }
+/// "#;
+/// let model = Model::from_toml(text).unwrap();
+/// let document = report(&model, &ReportRequest::default(), &Serial)?;
+/// assert!(html(&document).contains("98.607 %"));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result<Document, Diagnostics> {
+    let train = model.train();
+    let selection = Selection { state: None, operation: request.operation.clone() };
+    let analysis = analyze(train, &selection)?;
+    let sensitivity = sensitivity(train, &selection).ok();
+    let wanted = wanted(model, request, &analysis);
+    let figures = Figures::make(work, &wanted, |kind, request| kind.make(model, request))?;
+    let all = Findings { model, request, analysis, sensitivity, figures };
+    let sections = [
+        Some(summary(&all)),
+        Some(scheme::section(&all)),
+        results::shift_table(&all),
+        results::operations(&all),
+        results::losses(&all),
+        results::maps(&all),
+        results::motion(&all),
+        results::formulas(&all),
+        Some(laws::assumptions(&all)),
+        laws::in_force(&all),
+        Some(laws::again(&all)),
+    ];
+    Ok(Document {
+        format: Default::default(),
+        title: train.name().to_owned(),
+        subtitle: "Gear train report".to_owned(),
+        facts: facts(&all),
+        sections: sections.into_iter().flatten().filter(|s| !s.blocks.is_empty()).collect(),
+    })
+}
+
+/// The pictures that a report asks for.
+fn wanted(model: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(FigureKind, FigureRequest)> {
+    use FigureKind::*;
+    let train = model.train();
+    let only = FigureRequest { operation: request.operation.clone(), ..Default::default() };
+    let plain = |kind| (kind, FigureRequest::default());
+    // The longest first, so that the cores end together.
+    let mut all = vec![
+        (Map, only.clone()),
+        (Band, FigureRequest { samples: 128, ..only.clone() }),
+        plain(Time),
+        (Losses, only.clone()),
+        (Tornado, only.clone()),
+        (
+            Stick,
+            FigureRequest { state: analysis.operations.first().and_then(|o| o.state.clone()), ..Default::default() },
+        ),
+        plain(Shift),
+        plain(Regimes),
+        (Film, only.clone()),
+        (Path, only.clone()),
+    ];
+    for set in train.sets() {
+        all.push((Front, FigureRequest { part: Some(set.name.clone()), ..Default::default() }));
+    }
+    for o in analysis.operations.iter().take(PICTURED) {
+        let own = FigureRequest { operation: Some(o.name.clone()), ..Default::default() };
+        all.extend([(Sankey, own.clone()), (Lever, own)]);
+    }
+    if analysis.operations.is_empty() {
+        all.push(plain(Lever));
+    }
+    all
+}
+
+fn facts(all: &Findings<'_>) -> Vec<[String; 2]> {
+    let mut facts = vec![];
+    let mut fact = |name: &str, value: String| facts.push([name.to_owned(), value]);
+    fact("Degrees of freedom", all.analysis.degrees_of_freedom.to_string());
+    let sound = |v: Verdict| matches!(v, Verdict::Unique | Verdict::Unloaded);
+    let without = all.analysis.operations.iter().filter(|o| !sound(o.verdict)).count();
+    let count = all.analysis.operations.len();
+    match (count, without) {
+        (0, _) => fact("Operating points", "none in the file".to_owned()),
+        (_, 0) => fact("Operating points", format!("{count}, each with a single answer")),
+        _ => fact("Operating points", format!("{count}, {without} of them without a single answer")),
+    }
+    let warnings = all.analysis.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
+    fact("Warnings", warnings.to_string());
+    if !all.request.version.is_empty() {
+        fact("Made with", all.request.version.clone());
+    }
+    if !all.request.hash.is_empty() {
+        let short: String = all.request.hash.chars().take(12).collect();
+        fact("Train file", format!("{}, SHA-256 {short}…", all.request.file));
+    }
+    facts
+}
+
+/// What was asked and what came out, in a few lines.
+fn summary(all: &Findings<'_>) -> Section {
+    let mut blocks = vec![];
+    let train = all.model.train();
+    let question = match all.analysis.operations.len() {
+        0 => format!(
+            "What does {} do: its ratios, the direction in which it can be driven, and its efficiency, with the proof \
+             that each answer is the only one?",
+            train.name()
+        ),
+        1 => format!(
+            "How does {} run at {}: speeds, torques, where the power goes, and is the answer the only one?",
+            train.name(),
+            all.analysis.operations[0].name
+        ),
+        n => format!(
+            "How does {} run at {n} operating points: speeds, torques, where the power goes, and is each answer the \
+             only one?",
+            train.name()
+        ),
+    };
+    blocks.push(Block::Text { text: question });
+    let columns = ["Operating point", "Verdict"].map(Column::words).into_iter();
+    let columns = columns.chain(["Efficiency", "Power in", "Lost"].map(Column::numbers)).collect();
+    let rows: Vec<Vec<String>> = (all.analysis.operations.iter())
+        .map(|o| {
+            let one = results::single(o);
+            let state = o.state.as_ref().map(|s| format!(", state {s}")).unwrap_or_default();
+            vec![
+                format!("{}{state}", o.name),
+                o.verdict.words().to_owned(),
+                one.map_or("–".into(), results::efficiency),
+                one.map_or("–".into(), |s| watts(s.input_power_w)),
+                one.map_or("–".into(), |s| watts(s.loss_w)),
+            ]
+        })
+        .collect();
+    if !rows.is_empty() {
+        blocks.push(Block::Table { caption: "Operating points".into(), columns, rows });
+    }
+    for o in all.analysis.operations.iter().filter(|o| o.verdict != Verdict::Unique) {
+        blocks.push(notice(o));
+    }
+    let all_proved =
+        |o: &OperationReport| o.verdict == Verdict::Unique && o.certificate.is_some_and(|c| c.unique_for_every_load);
+    if !all.analysis.operations.is_empty() && all.analysis.operations.iter().all(all_proved) {
+        let text = "Every answer is the only one, for every load in the same direction of motion: this is proved, not \
+                    found by trying."
+            .to_owned();
+        blocks.push(Block::Notice { level: Level::Good, text });
+    }
+    if let Some(first) = all.sensitivity.as_ref().and_then(|s| s.operations.first())
+        && let Some(q) = first.quantities.first()
+    {
+        let text = format!(
+            "At {} the quantity that matters most is {}: a step of {} changes the losses by {} W.",
+            first.name,
+            q.name,
+            q.step.size(),
+            results::signed(q.loss_change_w)
+        );
+        blocks.push(Block::Text { text });
+    }
+    Section { title: "Question and answer".into(), blocks }
+}
+
+/// The verdict of an operating point in words.
+fn notice(o: &OperationReport) -> Block {
+    let level = match o.verdict {
+        Verdict::Unique => Level::Good,
+        Verdict::Unloaded => Level::Note,
+        _ => Level::Stop,
+    };
+    let mut text = format!("{}: {}", o.name, o.verdict.words());
+    if let Some(c) = &o.certificate {
+        text += &format!("; {}", results::certificate(o.verdict, c));
+    }
+    if let Some(reason) = &o.reason {
+        text += &format!(". {reason}");
+    }
+    Block::Notice { level, text }
+}
+
+#[cfg(test)]
+mod tests {
+    use willis::diagnostic::Diagnostic;
+    use willis::work::Serial;
+
+    use super::*;
+
+    #[test]
+    fn a_picture_that_fails_is_named_with_its_reason_and_the_others_stand() {
+        let wanted = [FigureKind::Map, FigureKind::Band, FigureKind::Time, FigureKind::Shift, FigureKind::Regimes]
+            .map(|kind| (kind, FigureRequest::default()));
+        let train = Model::from_toml(
+            r#"
+            format = 1
+            name = "one set"
+            members = ["s", "c"]
+            terminals = ["s", "c"]
+            [[set]]
+            name = "P1"
+            sun = { member = "s", teeth = 30 }
+            ring = { member = "frame", teeth = 70 }
+            carrier = "c"
+            "#,
+        )
+        .expect("a good train");
+        let figures = Figures::make(&Serial, &wanted, |kind, _| match kind {
+            FigureKind::Map => panic!("index {} out of bounds", 7),
+            FigureKind::Band => Err(Diagnostic::new(Code::BadAxis, "", "too many points").into()),
+            FigureKind::Time => Err(Diagnostic::new(Code::Unfit, "", "there is no scenario").into()),
+            _ => FigureKind::Stick.make(&train, &FigureRequest::default()),
+        })
+        .expect("nobody cancels");
+        let said = |kind| figures.block(kind, None, "The caption");
+        let failed = |why: &str| {
+            let text = format!("The caption: this picture could not be made. {why}");
+            Some(Block::Notice { level: Level::Warning, text })
+        };
+        assert_eq!(said(FigureKind::Map), failed("a fault of the program: index 7 out of bounds"));
+        assert_eq!(said(FigureKind::Band), failed("too many points"));
+        assert_eq!(said(FigureKind::Time), None);
+        assert!(matches!(said(FigureKind::Shift), Some(Block::Figure { .. })));
+        assert!(matches!(said(FigureKind::Regimes), Some(Block::Figure { .. })));
+    }
+}

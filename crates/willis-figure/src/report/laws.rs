@@ -1,0 +1,101 @@
+//! What was assumed, which laws were in force with their sources and ranges, and how to do it all again.
+
+use willis::diagnostic::Severity;
+use willis::losses::{Entry, Tag, Trust, entries};
+
+use super::Findings;
+use super::results::{significant, single};
+use crate::report::document::{Block, Column, Level, Section};
+
+pub fn assumptions(all: &Findings<'_>) -> Section {
+    let mut blocks = vec![];
+    match all.analysis.assumptions.is_empty() {
+        true => blocks.push(Block::Text { text: "Nothing stands in for data that were not given.".into() }),
+        false => blocks.push(Block::List { items: all.analysis.assumptions.clone() }),
+    }
+    for d in &all.analysis.diagnostics {
+        let level = match d.severity {
+            Severity::Warning | Severity::Error => Level::Warning,
+            _ => Level::Note,
+        };
+        let place = if d.place.is_empty() { String::new() } else { format!(" ({})", d.place) };
+        blocks.push(Block::Notice { level, text: format!("{}: {}{place}", d.code.as_str(), d.message) });
+    }
+    if all.analysis.diagnostics.is_empty() {
+        blocks.push(Block::Text { text: "There are no warnings.".into() });
+    }
+    Section { title: "Assumptions and warnings".into(), blocks }
+}
+
+/// Laws that computed a loss in an operating point.
+pub fn in_force(all: &Findings<'_>) -> Option<Section> {
+    let solutions = || all.analysis.operations.iter().filter_map(single);
+    let mut used: Vec<&str> = solutions().flat_map(|s| s.sources.iter().map(|x| x.law.as_str())).collect();
+    used.sort_unstable();
+    used.dedup();
+    let catalogue = entries();
+    let laws: Vec<&Entry> = catalogue.iter().filter(|e| used.contains(&e.id)).collect();
+    let columns = ["Family", "Law", "Source", "Holds for", "Checked"].map(Column::words).into();
+    let rows: Vec<Vec<String>> = laws.iter().map(|e| row(e)).collect();
+    let mut blocks = vec![];
+    if !rows.is_empty() {
+        blocks.push(Block::Table { caption: "Laws of loss in force".into(), columns, rows });
+    }
+    let text = "Ratios are exact: speeds follow from whole numbers of teeth by elimination. Torques with friction are \
+                solved with the driving end of every mesh as unknown, and the answer carries its certificate. Published \
+                ratios, efficiencies and power flows, measured losses and trajectories of other programs are compared \
+                with this program's in every run of its tests; the pages under `validation/` list each with its source, \
+                disagreements included.";
+    blocks.push(Block::Text { text: text.into() });
+    Some(Section { title: "Laws and validation".into(), blocks })
+}
+
+fn row(e: &Entry) -> Vec<String> {
+    let number = |x: f64| if x.is_finite() { significant(x, 4) } else { String::new() };
+    let range = |r: &(&str, &str, f64, f64)| {
+        let (symbol, unit, low, high) = *r;
+        let text = match (low.is_finite(), high.is_finite()) {
+            (true, true) => format!("{} ≤ {symbol} ≤ {}", number(low), number(high)),
+            (true, false) => format!("{symbol} ≥ {}", number(low)),
+            (false, true) => format!("{symbol} ≤ {}", number(high)),
+            (false, false) => return String::new(),
+        };
+        format!("{text} {unit}").trim().to_owned()
+    };
+    let valid: Vec<String> = e.valid.iter().map(range).filter(|t| !t.is_empty()).collect();
+    let mut checked = match e.trust {
+        Trust::Seen => "seen in its source".to_owned(),
+        Trust::Derived => "derived, and checked numerically".to_owned(),
+        Trust::Confirm(what) => format!("to be confirmed: {what}"),
+    };
+    for tag in e.tags {
+        match tag {
+            Tag::Estimate => checked += "; an estimate, good to about half its value",
+            Tag::Compatibility => checked += "; reproduces a published number that follows from an error",
+            _ => {}
+        }
+    }
+    let source = format!("{}, {}", e.source.0, e.source.1);
+    let valid = if valid.is_empty() { "not told by the source".to_owned() } else { valid.join("; ") };
+    vec![e.family.replace('_', " "), format!("{} ({})", e.title, e.id), source, valid, checked]
+}
+
+pub fn again(all: &Findings<'_>) -> Section {
+    let mut blocks = vec![];
+    if !all.request.commands.is_empty() {
+        blocks.push(Block::Text { text: "These commands give the same numbers and the same bytes:".into() });
+        blocks.push(Block::Code { text: all.request.commands.join("\n") });
+    }
+    let file = if all.request.file.is_empty() { "The train file" } else { &all.request.file };
+    let hash = match all.request.hash.is_empty() {
+        true => String::new(),
+        false => format!(", SHA-256 {}", all.request.hash),
+    };
+    blocks.push(Block::Text { text: format!("{file}{hash}:") });
+    blocks.push(Block::Code { text: all.model.document().text() });
+    for (name, text) in all.model.files() {
+        let lines = text.lines().count();
+        blocks.push(Block::Text { text: format!("It names {name}, a table of {lines} lines.") });
+    }
+    Section { title: "How to do it again".into(), blocks }
+}

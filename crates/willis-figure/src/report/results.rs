@@ -1,0 +1,400 @@
+//! What came out: the shift table, the operating points, losses, maps, motion, formulas.
+
+use willis::analysis::{CertificateReport, OperationReport, Role, SolutionReport, StateReport, Verdict};
+use willis::exact::Rational;
+use willis::hypergraph::watts;
+use willis::operating_point::Regime;
+use willis::regimes::{FormulaRequest, formulas as closed};
+use willis::statics::Certificate;
+use willis::symbolic::Notation;
+
+use super::{Findings, notice};
+use crate::FigureKind;
+use crate::report::document::{Block, Column, Level, Section};
+
+/// Formulas that are printed.
+const FORMULAS: usize = 12;
+/// Longest formula that is printed, in characters of LaTeX.
+const LONGEST: usize = 1200;
+/// Quantities in the table of what matters most.
+const RANKED: usize = 12;
+
+const RPM: f64 = 30.0 / std::f64::consts::PI;
+
+/// So many digits, with a true minus sign.
+pub fn significant(x: f64, digits: i32) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    if !x.is_finite() {
+        return "–".to_owned();
+    }
+    let size = x.abs().log10().floor() as i32;
+    if !(-5..9).contains(&size) {
+        return format!("{x:.*e}", digits as usize - 1).replace('-', "−");
+    }
+    let decimals = (digits - 1 - size).clamp(0, 12) as usize;
+    let text = format!("{x:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    text.replace('-', "−")
+}
+
+pub fn signed(x: f64) -> String {
+    if x > 0.0 { format!("+{}", significant(x, 3)) } else { significant(x, 3) }
+}
+
+/// Per cent with three decimals at most.
+pub fn exact_percent(x: f64) -> String {
+    let text = format!("{:.3}", 100.0 * x);
+    format!("{} %", text.trim_end_matches('0').trim_end_matches('.').replace('-', "−"))
+}
+
+pub fn efficiency(s: &SolutionReport) -> String {
+    match s.efficiency {
+        Some(_) if s.all_dissipated => "none: all power is lost".to_owned(),
+        Some(e) => exact_percent(e),
+        None => "–".to_owned(),
+    }
+}
+
+pub fn certificate(v: Verdict, c: &CertificateReport) -> &'static str {
+    match (v, c.unique_for_every_load, c.method) {
+        (Verdict::Locked, _, Certificate::Undecided) => "not proved",
+        (Verdict::Locked, ..) => "proved: no equilibrium drives a load",
+        (_, true, Certificate::SpectralRadius) => {
+            "proved: exactly one equilibrium for every load (spectral radius below one)"
+        }
+        (_, true, _) => "proved: exactly one equilibrium for every load (all determinants of sign patterns agree)",
+        (_, false, Certificate::Enumeration) => "not unique for every load; for this one every sign pattern was tried",
+        _ => "uniqueness undecided",
+    }
+}
+
+/// The one equilibrium, where there is one.
+pub fn single(o: &OperationReport) -> Option<&SolutionReport> {
+    match (&o.solutions[..], o.verdict) {
+        ([one], Verdict::Unique | Verdict::Unloaded) => Some(one),
+        _ => None,
+    }
+}
+
+pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
+    let mut blocks = vec![];
+    blocks.extend(all.figures.block(FigureKind::Shift, None, "States, ratios, steps and efficiencies"));
+    let columns = ["State", "From – to", "Ratio exactly"].map(Column::words).into_iter();
+    let columns = columns
+        .chain(["Ratio", "Step"].map(Column::numbers))
+        .chain(["η driving", "η coasting"].map(Column::numbers))
+        .chain([Column::words("Certain")]);
+    let rows: Vec<Vec<String>> = all.analysis.ratios.iter().map(|(name, s)| state(name, s)).collect();
+    if !rows.is_empty() {
+        let caption =
+            "Ratio is the input's over the output's speed; efficiencies where the meshes' are given".to_owned();
+        blocks.push(Block::Table { caption, columns: columns.collect(), rows });
+    }
+    for (name, s) in all.analysis.ratios.iter() {
+        for (way, d) in [("driving", &s.drive), ("coasting", &s.coast)] {
+            if let (Some(reason), true) = (&d.reason, matches!(d.verdict, Verdict::Locked | Verdict::Multiple)) {
+                let text = format!("State {name}, {way}: {}. {reason}", d.verdict.words());
+                blocks.push(Block::Notice { level: Level::Stop, text });
+            }
+        }
+    }
+    let title = if all.model.train().states().is_empty() { "Ratio" } else { "Shift table" };
+    (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
+}
+
+fn state(name: &str, s: &StateReport) -> Vec<String> {
+    let way = |d: &willis::analysis::Direction| match d.efficiency {
+        Some(e) => exact_percent(e),
+        None => d.verdict.words().to_owned(),
+    };
+    let proved = |d: &willis::analysis::Direction| d.certificate.is_some_and(|c| c.unique_for_every_load);
+    let certain = match (proved(&s.drive), proved(&s.coast)) {
+        (true, true) => "both ways",
+        (true, false) => "driving",
+        (false, true) => "coasting",
+        _ => "no",
+    };
+    vec![
+        name.to_owned(),
+        format!("{} – {}", s.input, s.output),
+        s.exact.as_ref().map(Rational::to_fraction).or(s.no_ratio.clone()).unwrap_or_else(|| "–".into()),
+        s.value.map_or("–".into(), |v| significant(v, 6)),
+        s.step.map_or(String::new(), |v| significant(v, 4)),
+        way(&s.drive),
+        way(&s.coast),
+        certain.to_owned(),
+    ]
+}
+
+pub fn operations(all: &Findings<'_>) -> Option<Section> {
+    let mut blocks = vec![];
+    for o in &all.analysis.operations {
+        let state = o.state.as_ref().map(|s| format!(", state {s}")).unwrap_or_default();
+        blocks.push(Block::Heading { text: format!("{}{state}", o.name) });
+        blocks.push(notice(o));
+        let count = o.solutions.len();
+        for (k, s) in o.solutions.iter().enumerate() {
+            let which = if count > 1 { format!(", solution {} of {count}", k + 1) } else { String::new() };
+            blocks.push(members(&format!("Members{which}"), s));
+            blocks.push(Block::Text { text: balance(s) });
+            blocks.extend(elements(s));
+            blocks.extend(stiction(s));
+        }
+        for s in &o.dissipative_solutions {
+            blocks.push(members("Members, if every loaded member pushes", s));
+            blocks.push(Block::Text { text: balance(s) });
+        }
+        let of = Some(o.name.as_str());
+        let sankey = format!("Where the power goes at {}; widths to scale", o.name);
+        blocks.extend(all.figures.block(FigureKind::Sankey, of, &sankey));
+        let lever = format!("Speeds and torques on levers at {}", o.name);
+        blocks.extend(all.figures.block(FigureKind::Lever, of, &lever));
+    }
+    if all.analysis.operations.is_empty() {
+        blocks.extend(all.figures.block(FigureKind::Lever, None, "Speeds on levers"));
+    }
+    let title = if all.analysis.operations.is_empty() { "Levers" } else { "Operating points" };
+    (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
+}
+
+fn members(caption: &str, s: &SolutionReport) -> Block {
+    let columns = ["Member", "Role"].map(Column::words).into_iter();
+    let columns = columns.chain(["Speed rpm", "Torque N m", "Power"].map(Column::numbers)).collect();
+    let number = |x: Option<f64>, scale: f64| x.map_or("–".into(), |x| significant(x * scale, 6));
+    let rows = (s.members.iter())
+        .map(|(name, m)| {
+            let role = match m.role {
+                Role::Input => "input",
+                Role::Output => "output",
+                Role::Fixed => "held",
+                _ => "",
+            };
+            let power = m.power_w.filter(|p| *p != 0.0).map_or("–".into(), |p| watts(p).replace('-', "−"));
+            vec![name.clone(), role.to_owned(), number(m.speed_rad_s, RPM), number(m.torque_n_m, 1.0), power]
+        })
+        .collect();
+    let caption =
+        format!("{caption}; torque is the external torque on the member, power flows in where it is positive");
+    Block::Table { caption, columns, rows }
+}
+
+fn balance(s: &SolutionReport) -> String {
+    let mut text = format!(
+        "{} in, {} out, {} lost: efficiency {}. The balance of power closes to {:.1e} W.",
+        watts(s.input_power_w),
+        watts(s.output_power_w),
+        watts(s.loss_w),
+        efficiency(s),
+        s.power_residual_w.abs()
+    );
+    for c in &s.recirculation {
+        text += &format!(
+            " {} ({} % of the input) run in a circle: {}.",
+            watts(c.power_w),
+            significant(100.0 * c.share_of_input, 3),
+            c.path.join(" → ")
+        );
+    }
+    if let Some(c) = &s.convergence {
+        text += &match c.converged {
+            true => format!(" Losses and torques agree after {} rounds.", c.rounds),
+            false => format!(" NOT CONVERGED after {} rounds: {:.1e} of the loss is left.", c.rounds, c.error),
+        };
+    }
+    if let Some(l) = &s.margin.lock {
+        text += &format!(
+            " It would lock if the efficiency of {} fell from {} to {}.",
+            l.meshes.join(", "),
+            exact_percent(l.efficiency),
+            exact_percent(l.threshold)
+        );
+    }
+    text
+}
+
+/// What friction in meshes at rest leaves open.
+fn stiction(s: &SolutionReport) -> Option<Block> {
+    let range = |r: &willis::analysis::StictionRange| match (r.low, r.high) {
+        (Some(low), Some(high)) => {
+            format!("{} anywhere from {} to {}", r.what, significant(low, 6), significant(high, 6))
+        }
+        _ => format!("{}, within limits that were not found", r.what),
+    };
+    let all: Vec<String> = s.stiction.iter().map(range).collect();
+    let text = || {
+        format!(
+            "Friction in meshes at rest leaves open: {}. The tables and pictures show the case in which those meshes lose \
+             nothing.",
+            all.join("; ")
+        )
+    };
+    (!all.is_empty()).then(|| Block::Notice { level: Level::Note, text: text() })
+}
+
+fn elements(s: &SolutionReport) -> Option<Block> {
+    let columns = ["Engaged", "Kind", "Joins"].map(Column::words).into_iter();
+    let columns = columns.chain([Column::numbers("Torque N m")]).collect();
+    let rows: Vec<Vec<String>> = (s.shift_elements.iter())
+        .map(|(name, e)| {
+            let torque = e.torque_n_m.map_or("not divided by statics".into(), |t| significant(t, 6));
+            vec![name.clone(), e.kind.to_string(), e.members.join(" – "), torque]
+        })
+        .collect();
+    (!rows.is_empty()).then(|| Block::Table { caption: "Torques of engaged elements".into(), columns, rows })
+}
+
+pub fn losses(all: &Findings<'_>) -> Option<Section> {
+    let mut blocks = vec![];
+    blocks.extend(all.figures.block(FigureKind::Losses, None, "Losses by source"));
+    for o in &all.analysis.operations {
+        let Some(s) = single(o).filter(|s| !s.sources.is_empty()) else { continue };
+        let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
+        let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
+        let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
+            .map(|x| {
+                vec![x.name.clone(), x.kind.words().into(), x.law.clone(), watts(x.loss_w), exact_percent(x.share)]
+            })
+            .collect();
+        blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
+        blocks.extend(contacts(&o.name, s));
+    }
+    blocks.extend(all.figures.block(FigureKind::Film, None, "Oil film over roughness along the path of contact"));
+    blocks.extend(all.figures.block(FigureKind::Path, None, "Friction, sliding and load along the path of contact"));
+    blocks.extend(what_first(all));
+    blocks.extend(all.figures.block(FigureKind::Tornado, None, "What a step of each quantity changes"));
+    (!blocks.is_empty()).then(|| Section { title: "Losses, and what to change first".into(), blocks })
+}
+
+fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
+    let heads = ["µ", "HV", "Fₜ N", "vₜ m/s", "slide m/s", "Hertz MPa", "h µm", "λ"];
+    let columns = [Column::words("Tooth contact")].into_iter().chain(heads.map(Column::numbers));
+    let columns = columns.chain([Column::words("Film")]).collect();
+    let rows: Vec<Vec<String>> = (s.contacts.iter())
+        .map(|(name, c)| {
+            let n = |x: f64| significant(x, 4);
+            let or = |x: Option<f64>| x.map_or("–".into(), |x| significant(x, 3));
+            let film = c.regime.map_or("–", Regime::words);
+            vec![
+                name.clone(),
+                or(c.friction),
+                n(c.loss_factor),
+                n(c.tangential_force_n),
+                n(c.pitch_line_speed_m_s),
+                significant(c.sliding_speed_m_s, 3),
+                n(c.pressure_pa / 1e6),
+                or(c.film_m.map(|h| h * 1e6)),
+                or(c.film_ratio),
+                film.to_owned(),
+            ]
+        })
+        .collect();
+    let caption = format!(
+        "Tooth contacts at {operation}: mean friction, loss factor, tangential force, pitch line speed, largest sliding \
+         speed and pressure, smallest film, film over roughness"
+    );
+    (!rows.is_empty()).then_some(Block::Table { caption, columns, rows })
+}
+
+fn what_first(all: &Findings<'_>) -> Option<Block> {
+    let o = all.sensitivity.as_ref()?.operations.first()?;
+    let columns = [Column::words("Quantity")].into_iter();
+    let columns = columns
+        .chain([Column::numbers("Step"), Column::numbers("η points"), Column::numbers("Losses W")])
+        .chain([Column::words("Moves most")])
+        .collect();
+    let rows: Vec<Vec<String>> = (o.quantities.iter().take(RANKED))
+        .map(|q| {
+            let most = q.sources.first().map_or(String::new(), |x| format!("{} {} W", x.name, signed(x.change_w)));
+            let name = if q.assumed { format!("{} (not given)", q.name) } else { q.name.clone() };
+            vec![
+                name,
+                q.step.label().to_owned(),
+                q.efficiency_change.map_or("–".into(), |e| signed(if e.abs() < 1e-10 { 0.0 } else { 100.0 * e })),
+                signed(q.loss_change_w),
+                most,
+            ]
+        })
+        .collect();
+    let caption = format!(
+        "What to change first at {}: exact derivatives times a small step, the largest effect first ({} of {})",
+        o.name,
+        rows.len(),
+        o.quantities.len()
+    );
+    (!rows.is_empty()).then_some(Block::Table { caption, columns, rows })
+}
+
+pub fn maps(all: &Findings<'_>) -> Option<Section> {
+    let mut blocks = vec![];
+    blocks.extend(all.figures.block(FigureKind::Map, None, "Efficiency map"));
+    blocks.extend(all.figures.block(
+        FigureKind::Band,
+        None,
+        "How sure efficiency and losses are; what counts as uncertain stands below the picture",
+    ));
+    (!blocks.is_empty()).then(|| Section { title: "Maps".into(), blocks })
+}
+
+pub fn motion(all: &Findings<'_>) -> Option<Section> {
+    let scenario = all.model.train().scenarios().first()?;
+    let figure = all.figures.block(FigureKind::Time, None, &format!("Scenario {}", scenario.name))?;
+    Some(Section { title: "Motion".into(), blocks: vec![figure] })
+}
+
+pub fn formulas(all: &Findings<'_>) -> Option<Section> {
+    let train = all.model.train();
+    let mut blocks = vec![];
+    blocks.extend(all.figures.block(
+        FigureKind::Regimes,
+        None,
+        "Every regime of the two freedoms: directions of speed, inputs and outputs, efficiency",
+    ));
+    let title = if blocks.is_empty() { "Closed formulas" } else { "Regimes and closed formulas" };
+    if let Ok(sheet) = closed(train, &FormulaRequest::default()) {
+        let count = sheet.formulas.len();
+        let short = |latex: &String| latex.len() <= LONGEST;
+        let mut printed = 0;
+        for f in &sheet.formulas {
+            let latex = f.efficiency(Notation::Latex);
+            if printed == FORMULAS || !short(&latex) {
+                continue;
+            }
+            printed += 1;
+            let heading = match f.state == willis::analysis::AS_DRAWN {
+                true => f.title.clone(),
+                false => format!("State {}: {}", f.state, f.title),
+            };
+            blocks.push(Block::Heading { text: heading });
+            blocks.push(Block::Formula { latex: format!("\\eta = {latex}"), note: String::new() });
+            if let ([from], [to], Some([speed, torque])) =
+                (&f.inputs[..], &f.outputs[..], f.ratios(Notation::Latex).filter(|r| r.iter().all(short)))
+            {
+                blocks.push(Block::Formula { latex: speed, note: format!("speed of {from} over speed of {to}") });
+                blocks.push(Block::Formula { latex: torque, note: format!("torque on {to} over torque on {from}") });
+            }
+            let mut items = vec![];
+            for a in &f.arguments {
+                // Speeds and torques are the reader's to give.
+                items.push(match a.fixed {
+                    true => format!("{} = {}: {}", a.name, significant(a.value, 7), a.meaning),
+                    false => format!("{}: {}", a.name, a.meaning),
+                });
+            }
+            for (condition, meaning) in f.conditions(Notation::Text) {
+                items.push(format!("holds where {condition} > 0 ({meaning})"));
+            }
+            blocks.push(Block::List { items });
+        }
+        if printed < count {
+            let text = format!(
+                "{} of {count} formulas are not printed here, for their number or their length; `willis formula` gives \
+                 them all, also as code.",
+                count - printed
+            );
+            blocks.push(Block::Text { text });
+        }
+    }
+    (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
+}

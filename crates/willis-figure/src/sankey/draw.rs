@@ -1,0 +1,531 @@
+//! Power flows as Sankey diagrams.
+
+mod layout;
+mod ribbon;
+
+use svg::Node as _;
+use svg::node::element::{Element, Group, Path, Polygon};
+use willis::hypergraph::{NodeKind, watts};
+
+use crate::parts::style::{
+    Anchor, BOLD, FAINT, INK, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
+};
+use crate::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode};
+use layout::{BAR, LINE_HEIGHT, Layout, SMALL};
+use ribbon::Ribbon;
+
+const MARGIN: f64 = 28.0;
+/// Narrowest page.
+const NARROWEST: f64 = 760.0;
+
+/// What a ribbon carries.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Carries {
+    Input,
+    Power,
+    Circle,
+    Loss,
+}
+
+impl Carries {
+    fn colour(self) -> String {
+        match self {
+            Self::Input => colour(Some(2), 0.75),
+            Self::Power => colour(Some(0), 0.42),
+            Self::Circle => colour(Some(4), 0.55),
+            Self::Loss => colour(Some(6), 0.8),
+        }
+    }
+}
+
+/// The power flows of a train as Sankey diagrams: one for each equilibrium, below each other.
+///
+/// Ribbons run from the inputs at the left to the outputs at the right and are as wide as their
+/// power. Losses turn down and end in an arrow head. Power that runs in a circle is hatched and led
+/// back above. Solid bars are components, hollow bars tooth contacts, double bars clutches and brakes.
+///
+/// # Example
+/// ```
+/// use willis::train::{OperationSpec, SetSpec, Train};
+/// use willis::units::{AngularSpeed, Torque};
+///
+/// let train = Train::builder("one set")
+///     .members(["s", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).mesh_efficiency(0.99))
+///     .operation(
+///         OperationSpec::new("full load")
+///             .speed("s", AngularSpeed::rpm(1000.0))
+///             .torque("s", Torque::n_m(10.0)),
+///     )
+///     .build()?;
+/// let flows = willis::hypergraph::flows(&train, &Default::default())?;
+/// assert!(willis_figure::draw_sankey(&willis_figure::sankey(&flows)).starts_with("<svg"));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn draw(data: &Sankey) -> String {
+    let drawings: Vec<Option<Layout<'_>>> = data.panels.iter().map(|p| p.flow.as_ref().map(Layout::new)).collect();
+    let widest = drawings.iter().flatten().fold(0.0f64, |a, d| a.max(d.width));
+    let width = (widest + 2.0 * MARGIN).max(NARROWEST).ceil();
+    let room = width - 2.0 * MARGIN;
+    let mut body = Group::new()
+        .add(text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&data.train, room / BOLD, 20.0)).set("font-weight", "bold"))
+        .add(
+            text(MARGIN, 60.0, 13.0, Anchor::Start, "Power from inputs to outputs, widths to scale in each picture")
+                .set("fill", FAINT),
+        );
+    let mut y = 68.0;
+    let mut told = Vec::new();
+    let mut legend = Legend::default();
+    for (panel, drawing) in data.panels.iter().zip(&drawings) {
+        y += 26.0;
+        body = body.add(
+            text(MARGIN, y, 14.0, Anchor::Start, &fit(&panel.title, room / BOLD, 14.0)).set("font-weight", "bold"),
+        );
+        let sentences: Vec<String> = panel.remark.iter().cloned().chain(panel.flow.iter().flat_map(caption)).collect();
+        for l in sentences.iter().flat_map(|s| lines(s, room, 12.0)) {
+            y += 17.0;
+            body = body.add(text(MARGIN, y, 12.0, Anchor::Start, &l).set("fill", FAINT));
+        }
+        told.push(format!("{}. {}", panel.title, sentences.join(" ")));
+        if let Some(d) = drawing {
+            y += 20.0;
+            body = body.add(scale_mark(y, d.scale));
+            y += 10.0;
+            let at = format!("translate({} {})", number((width - d.width) / 2.0), number(y));
+            body = body.add(picture(d).set("transform", at));
+            y += d.height;
+            legend.see(d.flow);
+        }
+        y += 12.0;
+    }
+    let (key, height) = legend.draw(y, width);
+    page(width, height, &format!("Sankey diagram of {}", data.train), &told.join(" ")).add(body).add(key).to_string()
+}
+
+fn percent(part: f64, whole: f64) -> String {
+    match 100.0 * part / whole {
+        _ if whole <= 0.0 => String::new(),
+        p if p < 1e-3 => "< 0.001 %".to_owned(),
+        p => format!("{} %", digits(p)),
+    }
+}
+
+/// The plural of what loses power.
+fn losers(kind: NodeKind) -> &'static str {
+    match kind {
+        NodeKind::Teeth => "teeth",
+        NodeKind::Bearing => "bearings",
+        NodeKind::Seal => "seals",
+        NodeKind::Gear => "gears in fluid",
+        NodeKind::Rotor => "rotors in fluid",
+        NodeKind::ShiftElement => "clutches and brakes",
+        _ => "others",
+    }
+}
+
+fn caption(f: &SankeyFlow) -> Vec<String> {
+    let efficiency = match f.efficiency {
+        Some(e) if f.output_w > 0.0 => format!("η {}", efficiency(e)),
+        Some(_) => "No power leaves, all of it is lost".to_owned(),
+        None => "No power enters".to_owned(),
+    };
+    let mut kinds: Vec<(NodeKind, f64)> = Vec::new();
+    for l in f.nodes.iter().flat_map(|n| &n.losses) {
+        match kinds.iter_mut().find(|k| k.0 == l.kind) {
+            Some(k) => k.1 += l.power_w,
+            None => kinds.push((l.kind, l.power_w)),
+        }
+    }
+    kinds.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let list: Vec<String> =
+        kinds.iter().map(|(k, p)| format!("{} {} ({})", losers(*k), watts(*p), percent(*p, f.input_w))).collect();
+    let lost = if list.is_empty() { String::new() } else { format!(" by {}", list.join(", ")) };
+    let power =
+        format!("{efficiency}: in {}, out {}, lost {}{lost}.", watts(f.input_w), watts(f.output_w), watts(f.loss_w));
+    let sentence = |t: &String| {
+        let mut letters = t.chars();
+        letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect::<String>()) + "."
+    };
+    std::iter::once(power).chain(f.circles.iter().map(sentence)).collect()
+}
+
+/// Two digits behind the point, more where a loss is tiny.
+fn efficiency(x: f64) -> String {
+    let p = 100.0 * x;
+    if (99.995..100.0).contains(&p) || (0.0 < p && p < 0.1) { format!("{p:.4} %") } else { format!("{p:.2} %") }
+}
+
+/// How long a power of a round number is.
+fn scale_mark(y: f64, scale: f64) -> Group {
+    let raw = 30.0 / scale;
+    let size = 10f64.powf(raw.log10().floor());
+    let power = [1.0, 2.0, 5.0].into_iter().rev().map(|s| s * size).find(|p| *p <= raw).unwrap_or(size);
+    let long = power * scale;
+    let x = MARGIN + 36.0;
+    Group::new()
+        .add(text(MARGIN, y, SMALL, Anchor::Start, "scale").set("fill", FAINT))
+        .add(rectangle(x, y - 8.0, long, 8.0, &Carries::Power.colour()))
+        .add(line((x, y - 9.5), (x, y + 1.5), INK, 1.2))
+        .add(line((x + long, y - 9.5), (x + long, y + 1.5), INK, 1.2))
+        .add(text(x + long + 7.0, y, SMALL, Anchor::Start, &watts(power)).set("fill", FAINT))
+}
+
+/// The words of a picture, and how wide they may be.
+#[derive(Clone, Copy)]
+struct Words {
+    /// The input power, W.
+    input: f64,
+    /// Narrow columns, for a picture of many layers.
+    narrow: bool,
+}
+
+impl Words {
+    fn of(f: &SankeyFlow) -> Self {
+        Self { input: f.input_w, narrow: f.layers >= 8 }
+    }
+
+    fn most(self) -> f64 {
+        if self.narrow { 96.0 } else { 128.0 }
+    }
+
+    /// A power and its share, in one row or two.
+    fn amount(self, power: String, share: String) -> Vec<String> {
+        match (share.is_empty(), self.narrow) {
+            (true, _) => vec![power],
+            (_, true) => vec![power, share],
+            (_, false) => vec![format!("{power} · {share}")],
+        }
+    }
+
+    /// Above a node, the first in bold.
+    fn head(self, n: &SankeyNode) -> Vec<String> {
+        let times = if n.count > 1 { format!(" ×{}", n.count) } else { String::new() };
+        let bold = |text: &str| fit(text, self.most(), SMALL * BOLD);
+        let whole = n.name.clone() + &times;
+        let mut all = match (n.kind, whole.split_once('.')) {
+            (NodeKind::Input, _) => vec![bold(&format!("into {}", n.name))],
+            (NodeKind::Output, _) => vec![bold(&format!("out of {}", n.name))],
+            // The set, and below it which of its contacts.
+            (NodeKind::Teeth, Some((set, contact))) if self.narrow || bold(&whole) != whole => {
+                vec![bold(set), fit(contact, self.most(), SMALL)]
+            }
+            _ => vec![fit(&n.name, self.most() - wide(&times, SMALL * BOLD), SMALL * BOLD) + &times],
+        };
+        if let (NodeKind::Member, Some(w)) = (n.kind, n.speed_rad_s) {
+            all.push(format!("{} rpm", digits(w * 30.0 / std::f64::consts::PI)));
+        }
+        if n.input_w > 0.0 {
+            let whole = n.input_w >= self.input * (1.0 - 1e-9);
+            let share = if whole { String::new() } else { percent(n.input_w, self.input) };
+            all.extend(self.amount(format!("in {}", watts(n.input_w)), share));
+        }
+        if n.output_w > 0.0 {
+            all.extend(self.amount(format!("out {}", watts(n.output_w)), percent(n.output_w, self.input)));
+        }
+        all
+    }
+
+    /// Below a node: its losses.
+    fn foot(self, n: &SankeyNode) -> Vec<String> {
+        let one = |l: &SankeyLoss| {
+            let amount = self.amount(format!("−{}", watts(l.power_w)), percent(l.power_w, self.input));
+            let what = match l.names.as_slice() {
+                [own] if *own == n.name && l.kind == n.kind => None,
+                [other] if matches!(l.kind, NodeKind::Gear | NodeKind::Rotor) => Some(format!("{other} in fluid")),
+                [other] => Some(other.clone()),
+                all => Some(format!("{} {}", all.len(), losers(l.kind))),
+            };
+            what.map(|w| fit(&w, self.most(), SMALL)).into_iter().chain(amount).collect::<Vec<_>>()
+        };
+        n.losses.iter().flat_map(one).collect()
+    }
+
+    /// At a link.
+    fn link(self, l: &SankeyLink) -> Vec<String> {
+        let mut all = vec![watts(l.power_w), percent(l.power_w, self.input)];
+        all.retain(|t| !t.is_empty());
+        if !l.via.is_empty() {
+            all.push(fit(&format!("via {}", l.via.join(", ")), if self.narrow { 76.0 } else { 120.0 }, SMALL));
+        }
+        all
+    }
+}
+
+fn halo(t: svg::node::element::Text) -> svg::node::element::Text {
+    t.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3).set("stroke-linejoin", "round")
+}
+
+fn picture(d: &Layout<'_>) -> Group {
+    let mut g = Group::new();
+    // What is led back lies above what it crosses; its paper rim shows that nothing mixes there.
+    for back in [false, true] {
+        for (k, l) in d.flow.links.iter().enumerate().filter(|(_, l)| l.back == back) {
+            g = g.add(link(d, k, l));
+        }
+    }
+    for (k, n) in d.flow.nodes.iter().enumerate() {
+        g = g.add(losses(d, k, n)).add(node(d, k, n));
+    }
+    for label in &d.labels {
+        let power = &d.flow.links[label.link];
+        for (row, words) in Words::of(d.flow).link(power).iter().enumerate() {
+            let y = label.y[0] + LINE_HEIGHT * row as f64 + 0.82 * SMALL;
+            let t = text(label.middle(), y, SMALL, Anchor::Middle, words);
+            g = g.add(if label.clear { t } else { halo(t) });
+        }
+    }
+    g
+}
+
+fn filled(path: String, fill: &str) -> Path {
+    Path::new().set("d", path).set("fill", fill)
+}
+
+/// A ribbon, its circulating part hatched.
+fn link(d: &Layout<'_>, k: usize, l: &SankeyLink) -> Group {
+    let of = |k: usize| &d.flow.nodes[k].name;
+    let mut about = Element::new("title");
+    let mut told = format!("{} to {}: {}", of(l.from), of(l.to), watts(l.power_w));
+    if l.circulating_w > 0.0 {
+        told += &format!(", {} of it in a circle", watts(l.circulating_w));
+    }
+    about.append(svg::node::Text::new(told));
+    let mut g = Group::new().add(about);
+    let whole = d.ribbon(k, [0.0, l.power_w]);
+    if l.back {
+        g = g.add(
+            Path::new()
+                .set("d", whole.outline())
+                .set("fill", PAPER)
+                .set("stroke", PAPER)
+                .set("stroke-width", 3)
+                .set("stroke-linejoin", "round"),
+        );
+    }
+    let round = l.circulating_w.min(l.power_w);
+    if l.power_w - round > 1e-9 * l.power_w {
+        g = g.add(band(&d.ribbon(k, [round, l.power_w]), Carries::Power));
+    }
+    if round > 1e-9 * l.power_w {
+        g = g.add(band(&d.ribbon(k, [0.0, round]), Carries::Circle));
+    }
+    if l.back {
+        for (x, y) in whole.on_the_way_back() {
+            let s = (0.45 * whole.width()).clamp(3.5, 8.0);
+            g = g.add(triangle([(x - s, y), (x + s, y - s), (x + s, y + s)], INK));
+        }
+    }
+    g
+}
+
+fn band(ribbon: &Ribbon, carries: Carries) -> Group {
+    let fill = carries.colour();
+    // One too narrow to be seen is a hairline.
+    if ribbon.width() < 1.0 {
+        let path = Path::new().set("d", ribbon.spine()).set("fill", "none").set("stroke-width", 1);
+        return Group::new().add(match carries {
+            Carries::Circle => path.set("stroke", colour(Some(1), 1.0)).set("stroke-dasharray", "6 4"),
+            _ => path.set("stroke", colour(Some(0), 0.8)),
+        });
+    }
+    let mut g = Group::new().add(filled(ribbon.outline(), &fill));
+    if carries == Carries::Circle && ribbon.width() < 5.0 {
+        // Too narrow for hatching.
+        let path = Path::new().set("d", ribbon.spine()).set("fill", "none").set("stroke", colour(Some(1), 1.0));
+        g = g.add(path.set("stroke-width", 1.2).set("stroke-dasharray", "6 4"));
+    } else if carries == Carries::Circle {
+        g = g.add(
+            Path::new()
+                .set("d", ribbon.hatching())
+                .set("fill", "none")
+                .set("stroke", colour(Some(1), 1.0))
+                .set("stroke-width", 1),
+        );
+    }
+    g
+}
+
+fn triangle(corners: [(f64, f64); 3], fill: &str) -> Polygon {
+    let points: Vec<String> = corners.iter().map(|p| format!("{},{}", number(p.0), number(p.1))).collect();
+    Polygon::new().set("points", points.join(" ")).set("fill", fill)
+}
+
+/// Losses turn down and end in one arrow head; below it stands what they are.
+fn losses(d: &Layout<'_>, k: usize, n: &SankeyNode) -> Group {
+    let mut g = Group::new();
+    let Some(first) = n.losses.first() else { return g };
+    let fill = Carries::Loss.colour();
+    let x = d.middle(n.layer) + BAR / 2.0;
+    let [top, bottom] = [d.top[k] + first.offset_w * d.scale, d.top[k] + n.power_w * d.scale];
+    let (width, r) = (bottom - top, layout::TURN);
+    let (inner, low) = (x + r, bottom + r);
+    let p = |x: f64, y: f64| format!("{} {}", number(x), number(y));
+    if width < 1.0 {
+        let middle = (top + bottom) / 2.0;
+        let path =
+            format!("M{} A{1} {1} 0 0 1 {2} V{3}", p(x, middle), number(r), p(inner, middle + r), number(low + 5.0));
+        g = g.add(Path::new().set("d", path).set("fill", "none").set("stroke", fill.clone()).set("stroke-width", 1));
+    } else {
+        let path = format!(
+            "M{} A{6} {6} 0 0 1 {} V{} H{} V{} A{7} {7} 0 0 0 {} Z",
+            p(x, top),
+            p(inner + width, low),
+            number(low + 5.0),
+            number(inner),
+            number(low),
+            p(x, bottom),
+            number(r + width),
+            number(r)
+        );
+        g = g.add(filled(path, &fill));
+        // Kinds of loss side by side.
+        for l in &n.losses[1..] {
+            let to = (n.power_w - l.offset_w) * d.scale;
+            if to > 1.0 && width - to > 1.0 {
+                let path = format!(
+                    "M{} A{2} {2} 0 0 1 {1} V{3}",
+                    p(x, bottom - to),
+                    p(inner + to, low),
+                    number(r + to),
+                    number(low + 5.0)
+                );
+                g = g.add(Path::new().set("d", path).set("fill", "none").set("stroke", PAPER).set("stroke-width", 0.8));
+            }
+        }
+    }
+    let (middle, half) = (inner + width.max(0.0) / 2.0, layout::head_of(width));
+    let tip = low + 4.0 + half;
+    g = g.add(triangle([(middle - half, low + 4.0), (middle + half, low + 4.0), (middle, tip)], &fill));
+    for (row, words) in Words::of(d.flow).foot(n).iter().enumerate() {
+        let y = tip + LINE_HEIGHT * (row as f64 + 0.95);
+        g = g.add(text(d.middle(n.layer), y, SMALL, Anchor::Middle, words));
+    }
+    g
+}
+
+/// The mark of a kind of node.
+fn bar(kind: NodeKind, x: f64, top: f64, height: f64) -> Group {
+    let whole =
+        |fill: &str| rectangle(x - BAR / 2.0, top, BAR, height, fill).set("stroke", INK).set("stroke-width", 1.4);
+    let g = Group::new();
+    match kind {
+        NodeKind::Member | NodeKind::Input | NodeKind::Output => g.add(whole(INK)),
+        NodeKind::ShiftElement => g
+            .add(rectangle(x - BAR / 2.0, top, BAR, height, PAPER))
+            .add(line((x - 3.0, top), (x - 3.0, top + height), INK, 3.0))
+            .add(line((x + 3.0, top), (x + 3.0, top + height), INK, 3.0)),
+        _ => g.add(whole(PAPER)),
+    }
+}
+
+/// External power: a tail that enters a node, or a head that leaves it.
+fn end(x: f64, [top, bottom]: [f64; 2], long: f64, entering: bool) -> Polygon {
+    let middle = (top + bottom) / 2.0;
+    let (fill, mut corners) = if entering {
+        let notch = (0.3 * (bottom - top)).clamp(1.0, 9.0);
+        let left = x - long;
+        (Carries::Input.colour(), vec![(left, top), (x, top), (x, bottom), (left, bottom), (left + notch, middle)])
+    } else {
+        let half = (bottom - top) / 2.0 + 5.0;
+        let neck = x + long - (0.5 * half).clamp(6.0, 16.0);
+        let tip = x + long;
+        let head = [(neck, middle - half), (tip, middle), (neck, middle + half)];
+        let mut all = vec![(x, top), (neck, top)];
+        all.extend(head);
+        all.extend([(neck, bottom), (x, bottom)]);
+        (colour(Some(0), 0.75), all)
+    };
+    // One too narrow to be seen is a hairline.
+    if bottom - top < 1.0 {
+        corners.iter_mut().filter(|c| (c.1 - middle).abs() < 0.5).for_each(|c| {
+            c.1 = middle + if c.1 < middle { -0.5 } else { 0.5 };
+        });
+    }
+    let points: Vec<String> = corners.iter().map(|p| format!("{},{}", number(p.0), number(p.1))).collect();
+    Polygon::new().set("points", points.join(" ")).set("fill", fill)
+}
+
+fn node(d: &Layout<'_>, k: usize, n: &SankeyNode) -> Group {
+    let x = d.middle(n.layer);
+    let (top, height) = (d.top[k], n.power_w * d.scale);
+    let mut g = Group::new();
+    if n.input_w > 0.0 {
+        g = g.add(end(x - BAR / 2.0, [top, top + height], layout::END, true));
+    }
+    if n.output_w > 0.0 {
+        g = g.add(end(x + BAR / 2.0, [top, top + n.output_w * d.scale], layout::END, false));
+    }
+    let pad = layout::pad(height);
+    g = g.add(bar(n.kind, x, top - pad, height + 2.0 * pad));
+    let head = Words::of(d.flow).head(n);
+    for (row, words) in head.iter().enumerate() {
+        let y = top - pad - 5.0 - LINE_HEIGHT * (head.len() - 1 - row) as f64;
+        let t = text(x, y, SMALL, Anchor::Middle, words);
+        g = g.add(if row == 0 { t.set("font-weight", "bold") } else { t.set("fill", FAINT) });
+    }
+    g
+}
+
+/// What occurs in the pictures.
+#[derive(Default)]
+struct Legend {
+    kinds: Vec<NodeKind>,
+    circle: bool,
+    loss: bool,
+}
+
+impl Legend {
+    fn see(&mut self, f: &SankeyFlow) {
+        self.kinds.extend(f.nodes.iter().map(|n| n.kind));
+        self.circle |= f.links.iter().any(|l| l.circulating_w > 0.0);
+        self.loss |= f.nodes.iter().any(|n| !n.losses.is_empty());
+    }
+
+    /// In rows; and the height of the page.
+    fn draw(mut self, top: f64, width: f64) -> (Group, f64) {
+        self.kinds.sort_unstable();
+        self.kinds.dedup();
+        if self.kinds.is_empty() {
+            return (Group::new(), top + 12.0);
+        }
+        let sample = |carries: Carries| band(&Ribbon::straight(0.0, 24.0, [-5.0, 5.0]), carries);
+        let mut entries: Vec<(Option<Group>, &str)> = vec![
+            (Some(Group::new().add(end(24.0, [-5.0, 5.0], 24.0, true))), "external power enters"),
+            (Some(sample(Carries::Power)), "power, the wider the more"),
+            (Some(Group::new().add(end(0.0, [-4.0, 4.0], 24.0, false))), "external power leaves"),
+        ];
+        if self.circle {
+            entries.push((Some(sample(Carries::Circle)), "runs in a circle"));
+        }
+        if self.loss {
+            let arrow = triangle([(5.0, -4.0), (19.0, -4.0), (12.0, 6.0)], &Carries::Loss.colour());
+            entries.push((Some(Group::new().add(arrow)), "loss"));
+        }
+        for k in self.kinds {
+            let words = match k {
+                NodeKind::Member => "component",
+                NodeKind::Teeth => "tooth contact",
+                NodeKind::ShiftElement => "clutch or brake",
+                _ => continue,
+            };
+            entries.push((Some(bar(k, 12.0, -8.0, 16.0)), words));
+        }
+        entries.push((None, "%: of the external power that enters"));
+        let mut g = Group::new();
+        let (mut x, mut y) = (MARGIN, top + 14.0);
+        for (mark, words) in entries {
+            let indent = if mark.is_some() { 32.0 } else { 0.0 };
+            let room = indent + wide(words, SMALL) + 20.0;
+            if x + room > width - MARGIN && x > MARGIN {
+                x = MARGIN;
+                y += 24.0;
+            }
+            let at = format!("translate({} {})", number(x), number(y));
+            let t = text(indent, 4.0, SMALL, Anchor::Start, words).set("fill", FAINT);
+            g = g.add(Group::new().set("transform", at).add(mark.unwrap_or_default()).add(t));
+            x += room;
+        }
+        (g, (y + 24.0).ceil())
+    }
+}

@@ -1,0 +1,562 @@
+//! The kinematic schematic (stick diagram).
+
+mod labels;
+
+use svg::node::element::{Circle, Group, Path, Polyline};
+
+use self::labels::Labels;
+use crate::parts::style::{
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
+};
+use crate::{GearRole, JointKind, Place, Stick, StickGear, StickJoint, Way};
+
+/// Left and right of the grid: names and arrows of the terminals.
+const MARGIN: f64 = 168.0;
+const TOP: f64 = 124.0;
+/// Length of a terminal's arrow.
+const ARROW: f64 = 40.0;
+/// Half the length of a friction plate, of the line of the frame.
+const PLATE: f64 = 9.0;
+const THIN: f64 = 2.0;
+const THICK: f64 = 6.0;
+/// Width of one column of the list of members, and height of its rows.
+const LIST: f64 = 430.0;
+const ROW: f64 = 19.0;
+
+/// The schematic of a train as transmission textbooks draw it: half section above each centre line, gears
+/// as lines with their tooth counts, members as coloured lines with their names, clutches, brakes and the
+/// frame; in a state the closed elements and, drawn thick, the way of the power.
+///
+/// # Example
+/// ```
+/// use willis_figure::stick;
+/// use willis::train::{SetSpec, Train};
+///
+/// let train = Train::builder("one set")
+///     .members(["s", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4))
+///     .build()?;
+/// let picture = willis_figure::draw_stick(&stick(&train, None)?);
+/// assert!(picture.starts_with("<svg"));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn draw(data: &Stick) -> String {
+    let sheet = Sheet::new(data);
+    let mut page = page(sheet.width, sheet.height, &format!("Stick diagram of {}", data.title), &words(data)).add(
+        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&data.title, (sheet.width - 56.0) / BOLD, 20.0))
+            .set("font-weight", "bold"),
+    );
+    for (k, l) in lines(&subtitle(data), sheet.width - 56.0, 13.0).iter().take(2).enumerate() {
+        page = page.add(text(28.0, 60.0 + 18.0 * k as f64, 13.0, Anchor::Start, l).set("fill", FAINT));
+    }
+    let mut labels = Labels::default();
+    page = page
+        .add(sheet.axes())
+        .add(sheet.highlights())
+        .add(sheet.member_lines(&mut labels))
+        .add(sheet.gears(&mut labels))
+        .add(sheet.joints(&mut labels))
+        .add(sheet.grounds(&mut labels))
+        .add(sheet.terminals(&mut labels))
+        .add(sheet.block_names())
+        .add(sheet.joint_names(&mut labels))
+        .add(sheet.teeth(&mut labels))
+        .add(sheet.member_names(&mut labels))
+        .add(sheet.list())
+        .add(sheet.key());
+    page.to_string()
+}
+
+fn subtitle(data: &Stick) -> String {
+    let shown = data.members.iter().any(|m| m.loaded == Some(true));
+    let path = if shown { " Thick: the way of the power, driving, without losses." } else { "" };
+    let closed: Vec<&str> =
+        data.joints.iter().filter(|j| j.engaged && j.kind != JointKind::Shaft).map(|j| j.name.as_str()).collect();
+    match &data.state {
+        Some(s) if closed.is_empty() => format!("State {s}: nothing closed.{path}"),
+        Some(s) => format!("State {s}: closed {}.{path}", closed.join(", ")),
+        None if data.states.is_empty() => format!("Half section above the axis.{path}"),
+        None => "Half section above the axis; no shift element closed.".to_owned(),
+    }
+}
+
+/// The picture in words.
+fn words(data: &Stick) -> String {
+    let joints = data.joints.iter().map(|j| {
+        let name = |m: Option<usize>| m.map_or("frame", |k| data.members[k].name.as_str());
+        format!("{} joins {} and {}", j.name, name(j.members[0]), name(j.members[1]))
+    });
+    let blocks = data.blocks.iter().enumerate().map(|(b, block)| {
+        let gears = data.gears.iter().filter(|g| g.block == b);
+        let all: Vec<String> = gears.map(|g| format!("{} {}", role(g), g.teeth)).collect();
+        format!("{}: {}", block.name, all.join(", "))
+    });
+    let mut all: Vec<String> = blocks.chain(joints).collect();
+    all.push(subtitle(data));
+    all.join(". ")
+}
+
+fn role(g: &StickGear) -> &'static str {
+    match g.role {
+        GearRole::Sun => "sun",
+        GearRole::Planet => "planet",
+        GearRole::Ring => "ring",
+        GearRole::Side => "side gear",
+        _ => "gear",
+    }
+}
+
+struct Sheet<'a> {
+    data: &'a Stick,
+    width: f64,
+    height: f64,
+    left: f64,
+    unit: f64,
+    rise: f64,
+    /// Colour number of each member that has lines.
+    category: Vec<Option<usize>>,
+}
+
+impl<'a> Sheet<'a> {
+    fn new(data: &'a Stick) -> Self {
+        let unit = (1064.0 / data.width.max(1.0)).clamp(44.0, 80.0).floor();
+        let rise = (420.0 / data.height.max(1.0)).clamp(46.0, 66.0).floor();
+        let drawn = unit * data.width;
+        let width = (drawn + 2.0 * MARGIN).clamp(640.0, 4000.0).max(0.0);
+        let left = (width - drawn) / 2.0;
+        let mut next = 0;
+        let led_out = |k: usize| {
+            let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
+            joined || data.terminals.iter().any(|t| t.member == k) || !data.members[k].carries.is_empty()
+        };
+        let category = data
+            .members
+            .iter()
+            .enumerate()
+            .map(|(k, m)| {
+                (!m.planet || led_out(k)).then(|| {
+                    next += 1;
+                    next - 1
+                })
+            })
+            .collect();
+        let mut s = Self { data, width, height: 0.0, left, unit, rise, category };
+        s.height = s.list_top() + s.list_rows() as f64 * ROW + 52.0;
+        s
+    }
+
+    fn at(&self, p: Place) -> (f64, f64) {
+        // Whole pixels: lines of one width meet without a seam.
+        let x = self.left + p[0] * self.unit;
+        let y = TOP + (self.data.height - p[1]) * self.rise;
+        (x.round(), y.round())
+    }
+
+    fn bottom(&self) -> f64 {
+        self.at([0.0, 0.0]).1
+    }
+
+    fn list_top(&self) -> f64 {
+        self.bottom() + 86.0
+    }
+
+    fn listed(&self) -> Vec<usize> {
+        (0..self.data.members.len()).filter(|&k| self.category[k].is_some()).collect()
+    }
+
+    fn list_columns(&self) -> usize {
+        (((self.width - 56.0) / LIST) as usize).max(1)
+    }
+
+    fn list_rows(&self) -> usize {
+        self.listed().len().div_ceil(self.list_columns()) + 1
+    }
+
+    fn ink(&self, member: Option<usize>) -> String {
+        match member.map(|m| self.category[m]) {
+            Some(Some(c)) => colour(Some(c), 1.0),
+            _ => INK.to_owned(),
+        }
+    }
+
+    fn axes(&self) -> Group {
+        let mut g = Group::new();
+        for y in &self.data.axes {
+            let (from, to) = (self.at([0.0, *y]), self.at([self.data.width, *y]));
+            g = g
+                .add(line((from.0 - 26.0, from.1), (to.0 + 26.0, to.1), LINE, 1.0).set("stroke-dasharray", "14 4 3 4"));
+        }
+        g
+    }
+
+    /// A light ground under what is closed.
+    fn highlights(&self) -> Group {
+        let mut g = Group::new();
+        for j in self.data.joints.iter().filter(|j| j.engaged && j.kind != JointKind::Shaft) {
+            let [a, b] = j.ends.map(|p| self.at(p));
+            let (x, y) = ((a.0 + b.0) / 2.0, (a.1 + b.1) / 2.0);
+            let r = PLATE + 5.0;
+            g = g.add(rectangle(x - r, y - r, 2.0 * r, 2.0 * r, &colour(Some(4), 0.45)).set("rx", 4));
+        }
+        g
+    }
+
+    fn member_lines(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for l in &self.data.frame {
+            g = g.add(self.polyline(l, INK, THIN + 0.6, labels));
+        }
+        for loaded in [false, true] {
+            for (k, m) in self.data.members.iter().enumerate().filter(|(k, _)| self.category[*k].is_some()) {
+                let ink = self.ink(Some(k));
+                for p in m.pieces.iter().filter(|p| p.loaded == loaded) {
+                    g = g.add(self.polyline(&p.points, &ink, if loaded { THICK } else { THIN }, labels));
+                }
+                for d in m.dots.iter().filter(|_| loaded) {
+                    let (x, y) = self.at(*d);
+                    g = g.add(
+                        Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", 3).set("fill", ink.as_str()),
+                    );
+                }
+            }
+        }
+        g
+    }
+
+    fn polyline(&self, points: &[Place], ink: &str, width: f64, labels: &mut Labels) -> Polyline {
+        let all: Vec<(f64, f64)> = points.iter().map(|p| self.at(*p)).collect();
+        all.windows(2).for_each(|w| labels.mark(w[0], w[1], width / 2.0 + 1.0));
+        let text: Vec<String> = all.iter().map(|p| format!("{},{}", number(p.0), number(p.1))).collect();
+        Polyline::new()
+            .set("points", text.join(" "))
+            .set("fill", "none")
+            .set("stroke", ink)
+            .set("stroke-width", number(width))
+            .set("stroke-linejoin", "round")
+            .set("stroke-linecap", "square")
+    }
+
+    fn gears(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for gear in &self.data.gears {
+            let planet = gear.role == GearRole::Planet;
+            let ink = if planet { INK.to_owned() } else { self.ink(gear.member) };
+            let body = if gear.loaded { THICK } else { THIN };
+            for [hub, tip] in &gear.stems {
+                let (a, b) = (self.at(*hub), self.near(*tip, *hub));
+                labels.mark(a, b, body / 2.0 + 1.0);
+                g = g.add(line(a, b, &ink, body));
+            }
+            for face in &gear.faces {
+                let stem = gear.stems.iter().find(|s| on(face, s[1])).or(gear.stems.first());
+                let Some(&[hub, tip]) = stem else { continue };
+                let middle = [(face[0][0] + face[1][0]) / 2.0, (face[0][1] + face[1][1]) / 2.0];
+                let (shifted, from) = (self.near(middle, hub), self.at(middle));
+                // Towards the hub, so that two rows of teeth lie side by side.
+                let upright = hub[1] == tip[1];
+                let (dx, dy) = if upright { (shifted.0 - from.0, 0.0) } else { (0.0, shifted.1 - from.1) };
+                let [a, b] = face.map(|p| self.at(p)).map(|p| (p.0 + dx, p.1 + dy));
+                labels.mark(a, b, 3.0);
+                g = g.add(line(a, b, &ink, 3.0));
+            }
+        }
+        // Stepped planets are one body; each turns on its pin.
+        for (k, m) in self.data.members.iter().enumerate() {
+            let mut hubs: Vec<Place> = self
+                .data
+                .gears
+                .iter()
+                .filter(|g| g.role == GearRole::Planet && g.member == Some(k))
+                .flat_map(|g| g.stems.iter().map(|s| s[0]))
+                .collect();
+            hubs.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+            hubs.dedup();
+            let (Some(first), Some(last)) = (hubs.first(), hubs.last()) else { continue };
+            if first != last {
+                let width = if m.loaded == Some(true) { 8.0 } else { 5.0 };
+                g = g.add(line(self.at(*first), self.at(*last), INK, width));
+                labels.mark(self.at(*first), self.at(*last), width / 2.0);
+            }
+            for h in hubs {
+                let (x, y) = self.at(h);
+                labels.mark((x, y), (x, y), 6.0);
+                g = g.add(
+                    Circle::new()
+                        .set("cx", number(x))
+                        .set("cy", number(y))
+                        .set("r", 5)
+                        .set("fill", PAPER)
+                        .set("stroke", INK)
+                        .set("stroke-width", 1.6),
+                );
+            }
+        }
+        g
+    }
+
+    /// A point a little towards another one.
+    fn near(&self, p: Place, to: Place) -> (f64, f64) {
+        let (a, b) = (self.at(p), self.at(to));
+        let length = (b.0 - a.0).hypot(b.1 - a.1).max(1e-9);
+        (a.0 + (b.0 - a.0) / length * 2.4, a.1 + (b.1 - a.1) / length * 2.4)
+    }
+
+    fn joints(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for j in &self.data.joints {
+            g = g.add(self.joint(j, labels));
+        }
+        g
+    }
+
+    fn joint(&self, j: &StickJoint, labels: &mut Labels) -> Group {
+        self.symbol(j, j.ends.map(|p| self.at(p)), labels)
+    }
+
+    /// A joint between two points of the page.
+    fn symbol(&self, j: &StickJoint, [a, b]: [(f64, f64); 2], labels: &mut Labels) -> Group {
+        let length = (b.0 - a.0).hypot(b.1 - a.1).max(1e-9);
+        let (ux, uy) = ((b.0 - a.0) / length, (b.1 - a.1) / length);
+        let middle = length / 2.0;
+        let along = |t: f64, s: f64| (a.0 + ux * t - uy * s, a.1 + uy * t + ux * s);
+        let inks = j.members.map(|m| self.ink(m));
+        let lead = if j.loaded { THICK } else { THIN };
+        labels.mark(a, b, 2.0);
+        labels.mark(along(middle - 5.0, -PLATE), along(middle + 5.0, PLATE), 1.5);
+        let mut g = Group::new();
+        let path = |d: String, ink: &str, width: f64| {
+            Path::new().set("d", d).set("fill", "none").set("stroke", ink).set("stroke-width", number(width))
+        };
+        let point = |p: (f64, f64)| format!("{} {}", number(p.0), number(p.1));
+        match j.kind {
+            JointKind::OneWay => {
+                let r = 8.0;
+                g = g.add(line(a, along(middle - r, 0.0), &inks[0], lead));
+                g = g.add(line(along(middle + r, 0.0), b, &inks[1], lead));
+                // It locks in one direction only: a triangle against a bar.
+                let [p, q, tip] = [along(middle - r, -r), along(middle - r, r), along(middle + r - 1.0, 0.0)];
+                let body = format!("M{} L{} L{} Z", point(p), point(q), point(tip));
+                g = g.add(path(body, INK, 1.6).set("fill", if j.engaged { INK } else { PAPER }));
+                g = g.add(line(along(middle + r, -r), along(middle + r, r), INK, if j.engaged { 3.4 } else { 2.0 }));
+            }
+            JointKind::Shaft => {
+                // A spring.
+                let mut d = format!("M{}", point(a));
+                for (k, s) in [0.0, -6.0, 6.0, -6.0, 6.0, 0.0].into_iter().enumerate() {
+                    d.push_str(&format!(" L{}", point(along(middle - 10.0 + 4.0 * k as f64, s))));
+                }
+                d.push_str(&format!(" L{}", point(b)));
+                g = g.add(path(d, INK, lead));
+            }
+            _ => {
+                let gap = if j.engaged { 2.2 } else { 3.6 };
+                let plate = if j.engaged { 3.6 } else { 2.0 };
+                for (ink, end, side) in [(&inks[0], a, -1.0), (&inks[1], b, 1.0)] {
+                    g = g.add(line(end, along(middle + side * gap, 0.0), ink, lead));
+                    let [p, q] = [-PLATE, PLATE].map(|s| along(middle + side * gap, s));
+                    g = g.add(line(p, q, ink, plate));
+                }
+            }
+        }
+        g
+    }
+
+    fn grounds(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for mark in &self.data.grounds {
+            let (x, y) = self.at(mark.at);
+            let (ix, iy) = (f64::from(mark.into[0]), -f64::from(mark.into[1]));
+            let along = |s: f64, t: f64| (x - iy * s + ix * t, y + ix * s + iy * t);
+            labels.mark(along(-PLATE - 1.0, 0.0), along(PLATE + 1.0, 7.0), 1.0);
+            g = g.add(hatch((x, y), (ix, iy)));
+        }
+        g
+    }
+
+    fn terminals(&self, labels: &mut Labels) -> Group {
+        let mut g = Group::new();
+        for t in &self.data.terminals {
+            let m = &self.data.members[t.member];
+            let ink = self.ink(Some(t.member));
+            let (x, y) = self.at(t.at);
+            let side = if t.left { -1.0 } else { 1.0 };
+            let tip = x + side * ARROW;
+            let loaded = m.pieces.iter().any(|p| p.loaded && p.points.contains(&t.at));
+            let width = if loaded { THICK } else { THIN };
+            labels.mark((x, y), (tip, y), 8.0);
+            if t.open {
+                let out = t.way == Some(Way::Out);
+                let (end, back) = match t.way {
+                    Some(Way::Out) => (tip, x),
+                    Some(Way::In) => (x + side * 4.0, tip),
+                    None => (x, tip),
+                };
+                let head = if t.way.is_some() { 14.0 * (end - back).signum() } else { 0.0 };
+                g = g.add(line((if out { x } else { tip }, y), (end - head, y), &ink, width));
+                if t.way.is_some() {
+                    let d = format!(
+                        "M{} {} L{} {} L{} {} Z",
+                        number(end),
+                        number(y),
+                        number(end - head),
+                        number(y - 8.0),
+                        number(end - head),
+                        number(y + 8.0)
+                    );
+                    g = g.add(Path::new().set("d", d).set("fill", ink.as_str()));
+                    if !out {
+                        g = g.add(line((end, y), (x, y), &ink, width));
+                    }
+                } else {
+                    // Which way the power runs is open.
+                    g = g.add(
+                        Circle::new()
+                            .set("cx", number(tip))
+                            .set("cy", number(y))
+                            .set("r", 4)
+                            .set("fill", PAPER)
+                            .set("stroke", ink.as_str())
+                            .set("stroke-width", 2),
+                    );
+                }
+            }
+            if !t.open {
+                g = g.add(line((x, y), (tip, y), &ink, width));
+            }
+            let name = fit(&m.name, (MARGIN - ARROW - 18.0) / BOLD, 12.0);
+            let (tx, anchor) = (tip + side * 10.0, if t.left { Anchor::End } else { Anchor::Start });
+            labels.texts.push(Labels::bounds(tx, y + 4.0, 12.0, anchor, wide(&name, 12.0) * BOLD));
+            g = g.add(text(tx, y + 4.0, 12.0, anchor, &name).set("font-weight", "bold"));
+        }
+        g
+    }
+
+    /// Under the lowest axis: no line runs there.
+    fn block_names(&self) -> Group {
+        let mut g = Group::new();
+        let mut order: Vec<usize> = (0..self.data.blocks.len()).collect();
+        let middle = |b: usize| (self.data.blocks[b].span[0] + self.data.blocks[b].span[1]) / 2.0;
+        order.sort_by(|a, b| middle(*a).total_cmp(&middle(*b)));
+        for (k, &b) in order.iter().enumerate() {
+            let block = &self.data.blocks[b];
+            let gap = |other: Option<&usize>| other.map_or(3.0, |o| (middle(*o) - middle(b)).abs());
+            let room = gap(k.checked_sub(1).and_then(|j| order.get(j))).min(gap(order.get(k + 1))) * self.unit - 8.0;
+            let (x, y) = (self.at([middle(b), 0.0]).0, self.bottom() + 40.0);
+            let [from, to] = block.span.map(|x| self.at([x, 0.0]).0);
+            let tick = y - 15.0;
+            g = g
+                .add(line((from, tick), (to, tick), LINE, 1.0))
+                .add(line((from, tick - 4.0), (from, tick), LINE, 1.0))
+                .add(line((to, tick - 4.0), (to, tick), LINE, 1.0))
+                .add(text(x, y, 12.0, Anchor::Middle, &fit(&block.name, room / BOLD, 12.0)).set("font-weight", "bold"));
+        }
+        g
+    }
+
+    /// Every member with its colour, its parts, and in a state its speed.
+    fn list(&self) -> Group {
+        let mut g = Group::new();
+        let top = self.list_top();
+        let rows = self.list_rows() - 1;
+        let speeds = self.speeds();
+        for column in 0..self.list_columns().min(self.listed().len().div_ceil(rows.max(1))) {
+            let x = 28.0 + LIST * column as f64;
+            g = g.add(text(x + 54.0, top, 11.0, Anchor::Start, "member").set("fill", FAINT));
+            g = g.add(text(x + 182.0, top, 11.0, Anchor::Start, "its parts").set("fill", FAINT));
+            if speeds {
+                g = g.add(text(x + LIST - 24.0, top, 11.0, Anchor::End, "speed / input").set("fill", FAINT));
+            }
+        }
+        for (row, k) in self.listed().into_iter().enumerate() {
+            let m = &self.data.members[k];
+            let x = 28.0 + LIST * (row / rows) as f64;
+            let y = top + ROW * (row % rows + 1) as f64;
+            let width = if m.loaded == Some(true) { THICK } else { THIN };
+            let number = self.category[k].map_or(0, |c| c + 1);
+            g = g
+                .add(text(x + 14.0, y, 11.0, Anchor::End, &number.to_string()).set("fill", FAINT))
+                .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
+                .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, 120.0, 12.0)))
+                .add(text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), 150.0, 11.0)).set("fill", FAINT));
+            if let Some(speed) = m.speed_ratio.filter(|_| speeds) {
+                let shown = if speed == 0.0 { "stands still".to_owned() } else { digits(speed) };
+                g = g.add(text(x + LIST - 24.0, y, 11.0, Anchor::End, &shown));
+            }
+        }
+        g
+    }
+
+    /// The symbols that occur.
+    fn key(&self) -> Group {
+        let y = self.height - 24.0;
+        let mut x = 36.0;
+        let mut g = Group::new();
+        let kinds = [
+            (JointKind::Clutch, "clutch"),
+            (JointKind::Brake, "brake"),
+            (JointKind::OneWay, "one-way clutch"),
+            (JointKind::Shaft, "elastic shaft"),
+        ];
+        for (kind, name) in kinds {
+            if self.data.joints.iter().all(|j| j.kind != kind) {
+                continue;
+            }
+            let plain = StickJoint {
+                name: name.to_owned(),
+                kind,
+                members: [None, None],
+                ends: [[0.0; 2]; 2],
+                engaged: false,
+                loaded: false,
+            };
+            let end = (x + 40.0, y - 4.0);
+            g = g.add(self.symbol(&plain, [(x, y - 4.0), end], &mut Labels::default()));
+            if kind == JointKind::Brake {
+                g = g.add(hatch(end, (1.0, 0.0)));
+            }
+            g = g.add(text(x + 54.0, y, 11.0, Anchor::Start, name).set("fill", FAINT));
+            x += 54.0 + wide(name, 11.0) + 28.0;
+        }
+        if !self.data.grounds.is_empty() {
+            g = g.add(hatch((x + 12.0, y - 6.0), (0.0, 1.0)));
+            g = g.add(text(x + 30.0, y, 11.0, Anchor::Start, "frame").set("fill", FAINT));
+        }
+        g
+    }
+
+    /// Whether speeds are known beside that of the input.
+    fn speeds(&self) -> bool {
+        self.listed().into_iter().filter(|&k| self.data.members[k].speed_ratio.is_some()).count() > 1
+    }
+
+    /// What a member is made of: its gears, and the blocks whose planets it carries.
+    fn parts(&self, k: usize) -> String {
+        let block = |b: usize| self.data.blocks[b].name.as_str();
+        let mut all: Vec<String> = Vec::new();
+        for g in self.data.gears.iter().filter(|g| g.member == Some(k)) {
+            all.push(format!("{} {}", role(g), block(g.block)));
+        }
+        for &b in &self.data.members[k].carries {
+            all.push(format!("carrier {}", block(b)));
+        }
+        all.dedup();
+        all.join(", ")
+    }
+}
+
+/// Whether a point lies on a line of teeth.
+fn on(face: &[Place; 2], p: Place) -> bool {
+    (0..2).all(|k| p[k] >= face[0][k].min(face[1][k]) - 1e-9 && p[k] <= face[0][k].max(face[1][k]) + 1e-9)
+}
+
+/// The frame begins here and lies that way.
+fn hatch((x, y): (f64, f64), (ix, iy): (f64, f64)) -> Group {
+    let along = |s: f64, t: f64| (x - iy * s + ix * t, y + ix * s + iy * t);
+    let mut g = Group::new().add(line(along(-PLATE, 0.0), along(PLATE, 0.0), INK, 2.2));
+    for k in 0..4 {
+        let s = -PLATE + 2.0 + 5.0 * f64::from(k);
+        g = g.add(line(along(s, 0.0), along(s - 4.0, 6.0), INK, 1.1));
+    }
+    g
+}

@@ -1,0 +1,75 @@
+//! Front views, films and paths as pictures.
+
+use willis::train::{SetSpec, Train};
+use willis_figure::{contact_path, front};
+
+use crate::common::train as example;
+
+/// A picture in which nothing is undefined, and no text is finer than 10 px.
+fn sound(svg: &str) {
+    assert!(!svg.contains("NaN") && !svg.contains("inf\""), "undefined numbers");
+    // What stands before the first size is none.
+    for size in svg.split("font-size=\"").skip(1) {
+        let size: f64 = size.split('"').next().and_then(|s| s.parse().ok()).expect("a size");
+        assert!(size >= 10.0, "{size}");
+    }
+}
+
+#[test]
+fn large_rings_and_many_planets_are_drawn() {
+    let long = "太阳轮 с очень длинным именем <&\" и ещё длиннее, до конца";
+    let train = Train::builder("Großes Getriebe <&\"")
+        .members([long, "ring", "carrier"])
+        .set(SetSpec::simple("P", (long, 412), ("ring", 500), "carrier").planet(44, 12))
+        .build()
+        .expect("a train");
+    let view = front(&train, None, true).expect("a view");
+    assert_eq!(view.spacing.planets, 12);
+    let svg = willis_figure::draw_front(&view, false);
+    sound(&svg);
+    assert!(svg.contains("&lt;&amp;") && svg.len() < 1_000_000, "{} bytes", svg.len());
+}
+
+#[test]
+fn the_moving_picture_turns_by_the_exact_ratios() {
+    let view = front(&example("fva-planetary-stage"), None, false).expect("a view");
+    let svg = willis_figure::draw_front(&view, true);
+    sound(&svg);
+    let periods: Vec<f64> = svg
+        .split("dur=\"")
+        // What stands before the first period is none.
+        .skip(1)
+        .map(|t| t.split('s').next().and_then(|s| s.parse().ok()).expect("a period"))
+        .collect();
+    // Ring, sun, three planets: one tooth of each passes in the same time.
+    assert_eq!(periods.len(), 5);
+    for (period, teeth) in periods.iter().zip([61.0, 17.0, 22.0, 22.0, 22.0]) {
+        assert!((period / teeth - periods[0] / 61.0).abs() < 1e-6, "{period} s for {teeth} teeth");
+    }
+    // Without the motion it is the still picture.
+    let mut still = svg;
+    while let Some(from) = still.find("<animateTransform") {
+        let to = from + still[from..].find("/>").expect("an end") + 2;
+        still.replace_range(from..to, "");
+    }
+    let plain = |s: &str| s.chars().filter(|c| !c.is_whitespace()).collect::<String>().replace("></path>", "/>");
+    assert_eq!(plain(&still), plain(&willis_figure::draw_front(&view, false)));
+}
+
+#[test]
+fn films_and_paths_are_drawn_for_every_law_and_operating_point() {
+    for name in ["fva-planetary-stage", "nrel-5mw-stage-1", "wang-herringbone-physical"] {
+        for law in ["schlenk", "xu-kahraman"] {
+            let train = example(name).with_law("mesh_friction", law).expect("a law");
+            for operation in train.operations() {
+                let path = contact_path(&train, Some(&operation.name), None).expect("a path");
+                for svg in [willis_figure::draw_film(&path), willis_figure::draw_path(&path)] {
+                    sound(&svg);
+                    for m in &path.meshes {
+                        assert!(svg.contains(&m.name));
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! Figures as data and as drawn, and reports.
+
+#[path = "../../../willis/tests/common/mod.rs"]
+mod common;
+mod trains;
+
+mod contact_path;
+mod flow_drawn;
+mod front;
+mod front_drawn;
+mod html;
+mod lever;
+mod lever_drawn;
+mod pictures;
+mod regimes;
+mod sankey;
+mod shift;
+mod stick;
+mod time_drawn;
+mod tornado;

@@ -1,0 +1,264 @@
+//! Every kind of figure of every example train is looked at by a machine: words that touch, words off the page,
+//! marks that nobody can see, empty pictures, numbers that are none.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::Arc;
+
+use resvg::usvg::{self, Options, Tree, fontdb, roxmltree};
+use willis::model::Model;
+use willis_figure::{Drawing, Figure, FigureKind, FigureRequest, draw};
+
+use crate::common::examples;
+use crate::trains::model;
+
+/// Only the face that every machine has, so that the same boxes are measured everywhere.
+fn faces() -> Arc<fontdb::Database> {
+    let mut faces = fontdb::Database::new();
+    faces.load_font_data(dejavu::sans::regular().to_vec());
+    faces.load_font_data(dejavu::sans::bold().to_vec());
+    faces.set_sans_serif_family("DejaVu Sans");
+    Arc::new(faces)
+}
+
+/// Boxes of the inked parts of all texts, with their words.
+fn texts(group: &usvg::Group, into: &mut Vec<(String, usvg::Rect)>) {
+    for node in group.children() {
+        match node {
+            usvg::Node::Text(t) => {
+                let words: String = t.chunks().iter().map(|c| c.text()).collect();
+                into.push((words, t.flattened().abs_bounding_box()));
+            }
+            usvg::Node::Group(g) => texts(g, into),
+            _ => {}
+        }
+    }
+}
+
+/// What is wrong with a picture.
+fn faults(svg: &str, faces: &Arc<fontdb::Database>) -> Vec<String> {
+    let mut wrong = vec![];
+    for none in ["NaN", "inf"] {
+        let bad = |v: &str| v.split([' ', ',', '(', ')']).any(|w| w.trim_start_matches('-') == none);
+        let document = roxmltree::Document::parse(svg).expect("well-formed");
+        if document.descendants().flat_map(|n| n.attributes()).any(|a| bad(a.value())) {
+            wrong.push(format!("a coordinate is {none}"));
+        }
+    }
+    let document = roxmltree::Document::parse(svg).expect("well-formed");
+    let root = document.root_element();
+    let child = |name: &str| root.children().find(|n| n.has_tag_name(name)).and_then(|n| n.text()).unwrap_or("");
+    if child("title").is_empty() || child("desc").trim().len() < 20 {
+        wrong.push(format!("no title, or no description: {:?}", child("desc")));
+    }
+    let painted = |n: &roxmltree::Node<'_, '_>, what: &str| {
+        let own = n.ancestors().find_map(|a| a.attribute(what));
+        own.map_or(what == "fill", |v| v != "none")
+    };
+    let mut marks = 0;
+    for n in document.descendants() {
+        let number = |name: &str| n.attribute(name).and_then(|v| v.parse::<f64>().ok());
+        let shape = ["path", "rect", "circle", "line", "polygon", "polyline", "ellipse"].contains(&n.tag_name().name());
+        let defined = n.ancestors().any(|a| ["defs", "clipPath", "pattern", "marker"].contains(&a.tag_name().name()));
+        if !shape || defined {
+            continue;
+        }
+        marks += 1;
+        let line = n.has_tag_name("line");
+        if !(painted(&n, "stroke") || painted(&n, "fill") && !line) {
+            wrong.push(format!("invisible: {}", &svg[n.range()].chars().take(120).collect::<String>()));
+        }
+        let flat = match n.tag_name().name() {
+            "rect" => number("width") <= Some(0.0) || number("height") <= Some(0.0),
+            "circle" => number("r") <= Some(0.0),
+            "path" => n.attribute("d").is_none_or(str::is_empty),
+            "line" => number("x1") == number("x2") && number("y1") == number("y2"),
+            _ => false,
+        };
+        if flat {
+            wrong.push(format!("no size: {}", &svg[n.range()].chars().take(120).collect::<String>()));
+        }
+    }
+    let options = Options { fontdb: faces.clone(), ..Options::default() };
+    let tree = Tree::from_str(svg, &options).expect("proper SVG");
+    let mut words = vec![];
+    texts(tree.root(), &mut words);
+    if marks < 3 || words.len() < 3 {
+        wrong.push(format!("empty: {marks} marks, {} texts", words.len()));
+    }
+    let page = tree.size();
+    for (k, (word, b)) in words.iter().enumerate() {
+        if b.left() < 0.0 || b.top() < 0.0 || b.right() > page.width() || b.bottom() > page.height() {
+            wrong.push(format!("off the page: `{word}` at {:.0} {:.0}", b.left(), b.top()));
+        }
+        for (other, o) in &words[..k] {
+            // Half a unit may be shared by what is antialiased.
+            let apart = b.right() < o.left() + 0.5
+                || o.right() < b.left() + 0.5
+                || b.bottom() < o.top() + 0.5
+                || o.bottom() < b.top() + 0.5;
+            if !apart {
+                wrong.push(format!("touch: `{other}` and `{word}` at {:.0} {:.0}", b.left(), b.top()));
+            }
+        }
+    }
+    wrong
+}
+
+#[test]
+fn every_kind_of_every_example_is_fit_to_print() {
+    let faces = faces();
+    let (mut wrong, mut drawn) = (String::new(), BTreeMap::new());
+    for (name, _) in examples() {
+        let model = model(&name);
+        for kind in FigureKind::ALL {
+            let request = FigureRequest { samples: 128, ..Default::default() };
+            let figure = match kind.make(&model, &request) {
+                Ok(figure) => figure,
+                Err(why) => {
+                    // A kind that does not apply says why.
+                    assert!(why.iter().all(|d| d.message.len() > 15), "{}: {}", name, kind.name());
+                    continue;
+                }
+            };
+            *drawn.entry(kind.name()).or_insert(0) += 1;
+            let text = serde_json::to_string(&figure).expect("plain data");
+            let back: Figure = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{name} {}: {e}", kind.name()));
+            assert_eq!(back, figure, "{name} {}: another figure is read back", kind.name());
+            let svg = draw(&figure, Drawing::default());
+            assert_eq!(svg, draw(&figure, Drawing::default()), "the same figure, the same bytes");
+            let found = faults(&svg, &faces);
+            for fault in found.iter().take(5) {
+                let _ = writeln!(wrong, "{} {}: {fault}", name, kind.name());
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+    // Each applies to several trains.
+    for kind in FigureKind::ALL {
+        assert!(drawn.get(kind.name()).copied().unwrap_or(0) >= 2, "{}: {drawn:?}", kind.name());
+    }
+}
+
+/// Names that nobody expects: long, foreign, and full of markup.
+#[test]
+fn any_name_finds_its_place() {
+    let long = "planet-carrier-of-the-second-intermediate-reduction-stage-2b";
+    let text = |names: [&str; 4]| {
+        let [s, r, c, train] = names;
+        format!(
+            r#"
+            format = 1
+            name = '{train}'
+            members = ['{s}', '{r}', '{c}']
+            terminals = ['{s}', '{c}']
+            [[set]]
+            name = 'P & <1>'
+            sun = {{ member = '{s}', teeth = 30 }}
+            planet = {{ teeth = 20, count = 4 }}
+            ring = {{ member = '{r}', teeth = 70 }}
+            carrier = '{c}'
+            mesh_efficiency = 0.99
+            geometry = {{ module = "2 mm", width = "20 mm" }}
+            [[shift_element]]
+            name = 'brake "B" & <b>'
+            kind = "brake"
+            members = ['{r}']
+            [[state]]
+            name = 'первая <1>'
+            engaged = ['brake "B" & <b>']
+            [[operation]]
+            name = '满载 & <full>'
+            state = 'первая <1>'
+            speeds = {{ '{s}' = "1000 rpm" }}
+            torques = {{ '{s}' = "10 N m" }}
+            "#
+        )
+    };
+    let faces = faces();
+    let names = [["太阳轮", "齿圈", "行星架", "行星齿轮系 <1>"], ["sun & \"co\"", "<ring>", long, long]];
+    for names in names {
+        let text = text(names);
+        let model = Model::from_toml(&text).unwrap_or_else(|r| panic!("{r}"));
+        let mut drawn = 0;
+        for kind in FigureKind::ALL {
+            if let Ok(figure) = kind.make(&model, &FigureRequest { samples: 128, ..Default::default() }) {
+                let found = faults(&draw(&figure, Drawing::default()), &faces);
+                // Letters that the face lacks have no box there; all others do.
+                assert!(found.is_empty(), "{} {names:?}: {found:#?}", kind.name());
+                drawn += 1;
+            }
+        }
+        assert!(drawn >= 6, "{names:?}: {drawn}");
+    }
+}
+
+/// A few pictures as they were when somebody looked at them: words the same, places within a unit.
+#[test]
+fn regress_pictures() {
+    let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/figures/pictures");
+    let update = std::env::var_os("WILLIS_UPDATE").is_some();
+    let chosen = [
+        ("zf-8hp70", "stick"),
+        ("zf-8hp70", "shift"),
+        ("zf-8hp70", "lever"),
+        ("prius-p112", "lever"),
+        ("prius-p112", "regimes"),
+        ("prius-p112", "sankey"),
+        ("wang-herringbone-physical", "stick"),
+        ("wang-herringbone-physical", "sankey"),
+        ("wang-herringbone-physical", "flow"),
+        ("wang-herringbone-physical", "losses"),
+        ("fva-planetary-stage", "film"),
+        ("fva-planetary-stage", "tornado"),
+        ("fva-planetary-stage", "band"),
+        ("galvagno", "stick"),
+    ];
+    let mut changed = vec![];
+    for (train, kind) in chosen {
+        let kind = FigureKind::named(kind).expect("a kind of that name");
+        let request = FigureRequest { samples: 128, ..Default::default() };
+        let figure = kind.make(&model(train), &request).expect("it applies");
+        let svg = draw(&figure, Drawing::default());
+        let file = stored.join(format!("{train}.{}.svg", kind.name()));
+        if update {
+            std::fs::create_dir_all(&stored).expect("a folder for pictures");
+            std::fs::write(&file, &svg).expect("a picture can be written");
+            continue;
+        }
+        let before = std::fs::read_to_string(&file).unwrap_or_default();
+        if let Some(what) = difference(&before, &svg) {
+            changed.push(format!("{train} {}: {what}", kind.name()));
+        }
+    }
+    assert!(changed.is_empty(), "look at them, then set WILLIS_UPDATE=1: {changed:#?}");
+}
+
+/// The first place where two pictures differ by more than a unit, or in words.
+fn difference(before: &str, after: &str) -> Option<String> {
+    let pieces = |text: &str| -> Vec<String> {
+        let number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
+        let mut all: Vec<String> = vec![];
+        let mut last = None;
+        for c in text.chars() {
+            match (last == Some(number(c)), all.last_mut()) {
+                (true, Some(piece)) => piece.push(c),
+                _ => all.push(c.to_string()),
+            }
+            last = Some(number(c));
+        }
+        all
+    };
+    let (a, b) = (pieces(before), pieces(after));
+    let at = a.iter().zip(&b).position(|(a, b)| match (a.parse::<f64>(), b.parse::<f64>()) {
+        (Ok(x), Ok(y)) => (x - y).abs() > 1.0 + 1e-6 * x.abs(),
+        _ => a != b,
+    });
+    let around = |all: &[String], at: usize| all[at.saturating_sub(12)..(at + 6).min(all.len())].concat();
+    match at {
+        Some(at) => Some(format!("`{}` became `{}`", around(&a, at), around(&b, at))),
+        None if a.len() != b.len() => Some(format!("{} pieces became {}", a.len(), b.len())),
+        None => None,
+    }
+}

@@ -1,0 +1,160 @@
+//! Every equilibrium of an operating point; where laws compute losses, brought into agreement with its torques.
+
+use crate::kinematics::{Configuration, Motion};
+use crate::operating_point::{Convergence, Physics, Step};
+use crate::power_flow::{Drag, Flow};
+use crate::statics::{Answer, Certificate, Equilibrium, Solution, Unsolvable};
+use crate::train::Operation;
+
+use super::loads::Loads;
+use super::words::Refusal;
+
+/// What all rounds of an operating point have in common.
+pub(super) struct Setting<'a> {
+    pub c: &'a Configuration<'a>,
+    pub motion: &'a Motion,
+    pub operation: &'a Operation,
+    pub sigma: &'a [Option<i8>],
+}
+
+/// One equilibrium with everything it was solved from.
+pub(super) struct Branch<'a> {
+    pub c: Configuration<'a>,
+    pub problem: Loads,
+    pub equilibrium: Equilibrium,
+    pub solution: Solution,
+    pub drags: Vec<Drag>,
+    pub computed: Option<(Step, Convergence)>,
+}
+
+/// Every equilibrium of an operating point.
+pub(super) struct Balance<'a> {
+    pub branches: Vec<Branch<'a>>,
+    pub certificate: Certificate,
+    pub continuum: bool,
+    /// Where drags act: whether a load is driven without them.
+    pub driven: Option<bool>,
+}
+
+/// A train with the losses of one step, solved.
+struct Solved<'a> {
+    c: Configuration<'a>,
+    problem: Loads,
+    equilibrium: Equilibrium,
+    answer: Answer,
+}
+
+impl<'a> Setting<'a> {
+    /// Solves with the losses of a step; `Err` where the loads make no question.
+    fn solve(&self, step: &Step, drags: &[Drag]) -> Result<Option<Solved<'a>>, Vec<Refusal>> {
+        let c = step.configure(self.c);
+        let problem = Loads::new(&c, self.operation, self.motion, drags)?;
+        let equilibrium = match Equilibrium::new(&c, self.sigma, &problem.open, &problem.loaded) {
+            Ok(equilibrium) => equilibrium,
+            // A drag acts on a part that no torque held or balanced before.
+            Err(Unsolvable::MissingLoads(n)) => return Err(problem.missing(&c, n)),
+            Err(Unsolvable::TooManyLoads(n)) => return Err(problem.too_many(&c, n)),
+            Err(_) => return Ok(None),
+        };
+        let answer = equilibrium.solve(&problem.torques);
+        Ok(Some(Solved { c, problem, equilibrium, answer }))
+    }
+
+    fn flow(&self, s: &Solved<'_>, solution: &Solution, drags: &[Drag]) -> Flow {
+        Flow::new(&s.c, self.motion, solution, s.problem.scale(), &s.problem.externals, drags)
+    }
+
+    /// Every equilibrium: with the efficiencies of the train, or with losses that laws compute.
+    pub fn balance(
+        &self,
+        problem: Loads,
+        equilibrium: Equilibrium,
+        physics: Option<&Physics<'_>>,
+    ) -> Result<Balance<'a>, Vec<Refusal>> {
+        if let Some(physics) = physics {
+            return self.agreed(physics);
+        }
+        let answer = equilibrium.solve(&problem.torques);
+        let branch = |solution| Branch {
+            c: self.c.clone(),
+            problem: problem.clone(),
+            equilibrium: equilibrium.clone(),
+            solution,
+            drags: vec![],
+            computed: None,
+        };
+        Ok(Balance {
+            branches: answer.solutions.into_iter().map(branch).collect(),
+            certificate: answer.certificate,
+            continuum: answer.continuum,
+            driven: None,
+        })
+    }
+
+    /// Brings torques and computed losses into agreement, for every equilibrium.
+    fn agreed(&self, physics: &Physics<'_>) -> Result<Balance<'a>, Vec<Refusal>> {
+        let nothing = |certificate| Balance { branches: vec![], certificate, continuum: false, driven: Some(false) };
+        // The forces of the train without computed losses are the start.
+        let lossless = Step::lossless(self.c.train);
+        let Some(first) = self.solve(&lossless, &[])? else { return Ok(nothing(Certificate::Undecided)) };
+        let start = match first.answer.solutions.first() {
+            Some(solution) => physics.step(&self.flow(&first, solution, &[]), self.motion),
+            None => lossless,
+        };
+        let Some(second) = self.solve(&start, &start.drags)? else { return Ok(nothing(Certificate::Undecided)) };
+        let mut certificate = second.answer.certificate;
+        let mut branches: Vec<Branch<'a>> = Vec::new();
+        let mut continuum = false;
+        let mut driven = None;
+        for k in 0..second.answer.solutions.len() {
+            let mut drivers = second.answer.solutions[k].driver.clone();
+            let mut failed = None;
+            let agreed = physics.agree(self.motion, start.clone(), |step| {
+                let solved = match self.solve(step, &step.drags) {
+                    Ok(solved) => solved?,
+                    Err(wrong) => {
+                        failed = Some(wrong);
+                        return None;
+                    }
+                };
+                let all = &solved.answer.solutions;
+                // The equilibrium in which the same ends drive, or most of them; none where it locks.
+                let alike = |s: &Solution| s.driver.iter().zip(&drivers).filter(|(a, b)| a == b).count();
+                let at = (0..all.len()).max_by_key(|&k| (alike(&all[k]), std::cmp::Reverse(k)))?;
+                drivers = all[at].driver.clone();
+                let flow = self.flow(&solved, &all[at], &step.drags);
+                Some(((solved, at), flow))
+            });
+            if let Some(wrong) = failed {
+                return Err(wrong);
+            }
+            let Some((step, (solved, at), _, convergence)) = agreed else { continue };
+            let Solved { c, problem, equilibrium, answer } = solved;
+            if answer.certificate != certificate && !answer.certificate.unique_for_every_load() {
+                certificate = answer.certificate;
+            }
+            continuum |= answer.continuum;
+            let solution = answer.solutions[at].clone();
+            if branches.iter().any(|b| b.solution.driver == solution.driver) {
+                continue;
+            }
+            // Whether a load would be driven without the drags: only then do the teeth not lock it.
+            let free = self.solve(&step, &[])?;
+            let drives = free.is_some_and(|s| {
+                s.problem.are_none()
+                    || s.answer.solutions.iter().any(|x| {
+                        let flow = self.flow(&s, x, &[]);
+                        // At rest no power runs at all.
+                        flow.output_power > 0.0 || flow.input_power <= 0.0
+                    })
+            });
+            driven = Some(driven.unwrap_or(false) || drives);
+            let drags = step.drags.clone();
+            branches.push(Branch { c, problem, equilibrium, solution, drags, computed: Some((step, convergence)) });
+        }
+        if branches.is_empty() {
+            return Ok(nothing(certificate));
+        }
+        Ok(Balance { branches, certificate, continuum, driven })
+    }
+}

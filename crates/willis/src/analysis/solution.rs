@@ -1,0 +1,178 @@
+//! One equilibrium of an operating point as the answer shows it.
+
+use crate::exact::Rational;
+use crate::kinematics::{Configuration, Motion};
+use crate::operating_point::{Convergence, Physics, Step};
+use crate::power_flow::{Drag, Flow};
+use crate::statics::{Equilibrium, Solution, torque_exact};
+use crate::train::{FRAME, MemberId, MemberKind, Operation};
+
+use super::loads::Loads;
+use super::{CirculationReport, Losses, MemberReport, MeshReport, Named, Role, ShiftElementReport, SolutionReport};
+
+/// Everything a solution is seen against.
+pub(super) struct Frame<'a> {
+    pub c: &'a Configuration<'a>,
+    pub motion: &'a Motion,
+    pub problem: &'a Loads,
+    pub equilibrium: &'a Equilibrium,
+    pub operation: &'a Operation,
+    pub drags: &'a [Drag],
+    /// Where losses are computed: the laws, and the step in force.
+    pub physics: Option<(&'a Physics<'a>, &'a (Step, Convergence))>,
+}
+
+impl Frame<'_> {
+    pub fn flow(&self, s: &Solution) -> Flow {
+        Flow::new(self.c, self.motion, s, self.problem.scale(), &self.problem.externals, self.drags)
+    }
+
+    /// The equilibrium in SI, with its margins.
+    pub fn solution(&self, s: &Solution) -> SolutionReport {
+        let flow = self.flow(s);
+        let train = self.c.train;
+        let held: Vec<MemberId> = self.held();
+        let members =
+            (1..train.members.len()).map(|m| (train.members[m].name.clone(), self.member(MemberId(m), &flow, &held)));
+        let members = Named(members.collect());
+        let meshes = flow.meshes.iter().map(|f| {
+            let mesh = &train.meshes[f.mesh.0];
+            let report = MeshReport {
+                driver: f.driver.map(|d| train.member_name(mesh.gears[d].member).to_owned()),
+                relative_speed_rad_s: f.relative_speeds[f.driver.unwrap_or(0)],
+                potential_power_w: f.potential_power,
+                efficiency: match self.physics {
+                    Some((physics, (step, _))) if f.potential_power > 0.0 => {
+                        1.0 - physics.tooth_loss(step, f.mesh.index(), &flow) / f.potential_power
+                    }
+                    _ => f.efficiency,
+                },
+                loss_w: match self.physics {
+                    Some((physics, (step, _))) => physics.tooth_loss(step, f.mesh.index(), &flow),
+                    None => f.loss,
+                },
+                first_torque_n_m: f.torques[0] + 0.0,
+                second_torque_n_m: f.torques[1] + 0.0,
+                carrier_torque_n_m: f.torques[2] + 0.0,
+                count: mesh.count,
+            };
+            (mesh.name.clone(), report)
+        });
+        let meshes = Named(meshes.collect());
+        let shift_elements = flow.ties.iter().map(|t| {
+            let e = &train.shift_elements[t.element.0];
+            let members = e.members.map(|m| train.member_name(m).to_owned());
+            (e.name.clone(), ShiftElementReport { kind: e.kind, members, torque_n_m: t.torque.map(|t| t + 0.0) })
+        });
+        let all_dissipated = flow.input_power > 0.0 && flow.output_power <= 0.0;
+        let exact = s.exact.as_ref().filter(|_| self.physics.is_none()).and_then(|f| self.exact_efficiency(s, f));
+        let sources = self.physics.map(|(p, (step, _))| p.sources(step, &flow)).unwrap_or_default();
+        let losses_w = match self.physics {
+            Some(_) => Losses::of(&sources),
+            None => Losses { mesh: flow.loss, ..Losses::default() },
+        };
+        let efficiency = if flow.input_power <= 0.0 {
+            None
+        } else if let Some(e) = &exact {
+            Some(e.to_f64())
+        } else if flow.loss == 0.0 {
+            Some(1.0)
+        } else {
+            Some((flow.output_power / flow.input_power).clamp(0.0, 1.0))
+        };
+        SolutionReport {
+            efficiency,
+            efficiency_exact: exact,
+            all_dissipated,
+            input_power_w: flow.input_power,
+            output_power_w: flow.output_power,
+            loss_w: flow.loss,
+            power_residual_w: flow.residual,
+            members,
+            meshes,
+            shift_elements: Named(shift_elements.collect()),
+            losses_w,
+            sources,
+            contacts: Named(self.physics.map(|(p, (step, _))| p.contacts(step, &flow)).unwrap_or_default()),
+            bearings: Named(self.physics.map(|(p, (step, _))| p.bearings(step, &flow)).unwrap_or_default()),
+            drags: self.physics.map(|(p, (step, _))| p.drags(step, &flow)).unwrap_or_default(),
+            convergence: self.physics.map(|(_, (_, convergence))| *convergence),
+            recirculation: flow
+                .circulations
+                .iter()
+                .map(|r| CirculationReport {
+                    power_w: r.power,
+                    share_of_input: r.power / flow.input_power,
+                    path: r.path.clone(),
+                })
+                .collect(),
+            margin: self.margin(s, &flow),
+            stiction: self.stiction(s, &flow),
+        }
+    }
+
+    /// What a member does; `held` are those at rest by a brake, the operation, or what is tied to them.
+    fn member(&self, id: MemberId, flow: &Flow, held: &[MemberId]) -> MemberReport {
+        let train = self.c.train;
+        let speed = self.motion.si(id);
+        let torque = flow.torques[id.0];
+        let power = match (torque, speed) {
+            (Some(t), Some(w)) => Some(t * w),
+            (None, Some(0.0)) | (Some(0.0), None) => Some(0.0),
+            _ => None,
+        };
+        let real = power.is_some_and(|p| p.abs() > 1e-12 * flow.input_power.max(flow.output_power));
+        let at_rest = self.motion.speeds[id.0].as_ref().is_some_and(Rational::is_zero);
+        let role = match power {
+            _ if held.contains(&id) => Role::Fixed,
+            Some(p) if real && p > 0.0 => Role::Input,
+            Some(p) if real && p < 0.0 => Role::Output,
+            _ if at_rest && torque.is_none_or(|t| t != 0.0) => Role::Fixed,
+            _ => Role::Idle,
+        };
+        let carrier = (train.members[id.0].kind == MemberKind::Planet || self.c.inner[id.0])
+            .then(|| train.meshes.iter().find(|x| x.gears.iter().any(|g| g.member == id)).map(|x| x.carrier))
+            .flatten();
+        MemberReport {
+            speed_rad_s: speed,
+            carrier: carrier.filter(|c| *c != FRAME).map(|c| train.member_name(c).to_owned()),
+            relative_speed_rad_s: carrier.and_then(|c| {
+                let (w, c) = (self.motion.speeds[id.0].as_ref()?, self.motion.speeds[c.0].as_ref()?);
+                Some((w - c).to_f64() * std::f64::consts::PI.powi(self.motion.pi_power.into()))
+            }),
+            torque_n_m: torque.map(|t| t + 0.0),
+            power_w: power.map(|p| p + 0.0),
+            role,
+        }
+    }
+
+    /// Members held by a brake, by the operation, or tied to something that is.
+    fn held(&self) -> Vec<MemberId> {
+        let train = self.c.train;
+        let brakes = self.c.engaged.iter().flat_map(|e| {
+            let m = train.shift_elements[e.0].members;
+            if m.contains(&FRAME) { m.to_vec() } else { vec![] }
+        });
+        brakes.chain(self.operation.fixed.iter().copied()).filter(|m| *m != FRAME).collect()
+    }
+
+    /// Output over input power in rationals.
+    fn exact_efficiency(&self, s: &Solution, forces: &[Rational]) -> Option<Rational> {
+        let (mut power_in, mut power_out) = (Rational::ZERO, Rational::ZERO);
+        let mut add = |power: Rational| match power.sign() {
+            1 => power_in += power,
+            -1 => power_out += -power,
+            _ => {}
+        };
+        for x in &self.problem.externals {
+            let speed = self.motion.speeds[x.member.0].as_ref()?;
+            let torque = match (self.problem.given.iter().find(|(m, _)| *m == x.member), self.c.node(x.member)) {
+                (Some((_, t)), _) => t.clone(),
+                (None, Some(n)) => &torque_exact(self.c, self.equilibrium, s, forces, n) - &self.problem.torques[n],
+                (None, None) => continue,
+            };
+            add(speed * &torque);
+        }
+        (power_in.sign() > 0).then(|| power_out / power_in)
+    }
+}

@@ -1,0 +1,219 @@
+//! What an operating point gives rise to, told to people: the only place where its warnings and refusals become text.
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::train::{MemberId, Operation, ShiftElementId, Train};
+
+use super::{Boundary, OutsideLaw, StictionRange, Why};
+
+/// Why an operation makes no question.
+#[derive(Clone, Debug)]
+pub(super) enum Refusal {
+    /// The gears tie these members together, and not as prescribed: the last one turns otherwise.
+    Contradiction { freedoms: usize, members: Vec<MemberId>, follows_rpm: Option<f64>, given_rpm: f64 },
+    /// A speed that no number holds.
+    SpeedTooLarge,
+    /// A torque or power that no number holds.
+    TorqueTooLarge,
+    /// A drag that no exact number holds.
+    DragTooLarge(MemberId),
+    /// A power, W, where nothing turns.
+    PowerAtRest(MemberId, f64),
+    /// A power where no speed is known.
+    PowerWithoutSpeed(MemberId),
+    /// Two terminals that turn as one, and neither has a torque.
+    Together([MemberId; 2]),
+    /// So many more terminals must carry a load than those that are not left open.
+    MissingLoads { freedoms: usize, open: Vec<MemberId>, more: usize },
+    /// So many loads too many; so many terminals are left open.
+    TooManyLoads { freedoms: usize, open: usize, more: usize },
+}
+
+/// What a reader of the answer must know beside it.
+#[derive(Clone, Debug)]
+pub(super) enum Finding {
+    /// What explains the verdict.
+    Why(Why),
+    /// Members that nothing drives.
+    MaySpin(Vec<MemberId>),
+    /// Ranges that friction at rest leaves open.
+    Stiction(Vec<StictionRange>),
+    /// A law was used outside its range.
+    Outside(OutsideLaw),
+    /// A one-way clutch would hold this torque, N m, against its free direction.
+    OneWay(ShiftElementId, f64),
+    /// A prescribed torque (or else speed) is near a boundary.
+    Near { torque: bool, boundary: Boundary },
+}
+
+/// The refusals of an operation as errors that do not name it.
+pub(super) fn refused(train: &Train, operation: &Operation, all: &[Refusal]) -> Diagnostics {
+    all.iter().map(|r| r.tell(train, operation)).collect()
+}
+
+/// What was found as warnings and notes that do not name the operation.
+pub(super) fn found(train: &Train, operation: &Operation, all: &[Finding]) -> Diagnostics {
+    all.iter().filter_map(|f| f.tell(train, operation)).collect()
+}
+
+/// Puts the operation's name before each message.
+pub(crate) fn named(operation: &Operation, all: Diagnostics) -> Diagnostics {
+    let name = |mut d: Diagnostic| {
+        d.message = format!("operation `{}`: {}", operation.name, d.message);
+        d
+    };
+    all.into_iter().map(name).collect()
+}
+
+impl Refusal {
+    fn tell(&self, train: &Train, operation: &Operation) -> Diagnostic {
+        let place = operation.place.as_str();
+        let name = |m: MemberId| train.member_name(m);
+        match self {
+            Self::Contradiction { freedoms, members, follows_rpm, given_rpm } => {
+                let (last, others) = members.split_last().expect("a conflict names members");
+                let message = match others {
+                    [] => format!("`{}` cannot turn, but {} rpm is prescribed", name(*last), short(*given_rpm)),
+                    _ => format!(
+                        "the gears tie {} together; with the other speeds `{}` turns at {} rpm, not at {} rpm",
+                        names(train, members.iter().copied()).join(", "),
+                        name(*last),
+                        follows_rpm.map_or("another number of".into(), short),
+                        short(*given_rpm)
+                    ),
+                };
+                let hint = match freedoms {
+                    0 => "nothing can turn here: release a shift element or a held member".to_owned(),
+                    1 => "prescribe one speed in this configuration".to_owned(),
+                    n => format!("prescribe {n} independent speeds in this configuration"),
+                };
+                Diagnostic::new(Code::ContradictorySpeeds, format!("{place}.speeds"), message).hint(hint)
+            }
+            Self::SpeedTooLarge => Diagnostic::new(Code::TooLarge, place, "a speed is beyond 1e308 rad/s"),
+            Self::TorqueTooLarge => Diagnostic::new(Code::TooLarge, place, "a torque or power is beyond 1e308"),
+            Self::DragTooLarge(m) => {
+                Diagnostic::new(Code::TooLarge, place, format!("the drag on `{}` is beyond 1e50 N m", name(*m)))
+            }
+            Self::PowerAtRest(m, power) => {
+                let (place, name) = (format!("{place}.powers.{}", name(*m)), name(*m));
+                let message = format!("{} W at `{name}`, which stands still here", short(*power));
+                Diagnostic::new(Code::PowerAtRest, place, message).hint("give its torque instead")
+            }
+            Self::PowerWithoutSpeed(m) => {
+                let place = format!("{place}.powers.{}", name(*m));
+                let message = format!("`{}` has no determined speed here", name(*m));
+                Diagnostic::new(Code::PowerAtRest, place, message)
+                    .hint("give its torque instead, or prescribe another speed")
+            }
+            Self::Together([a, b]) => {
+                let message = format!(
+                    "`{}` and `{}` turn as one here, and neither has a torque: only their sum can be found",
+                    name(*a),
+                    name(*b)
+                );
+                Diagnostic::new(Code::MissingTorque, format!("{place}.torques"), message)
+                    .hint("give the torque or power of one of them")
+            }
+            Self::MissingLoads { freedoms, open, more } => {
+                let message = format!(
+                    "with {} as many terminals can be left without a torque or power, but {} have none: {}",
+                    self::freedoms(*freedoms),
+                    open.len(),
+                    names(train, open.iter().copied()).join(", ")
+                );
+                Diagnostic::new(Code::MissingTorque, format!("{place}.torques"), message)
+                    .hint(format!("give {more} more, \"0 N m\" where nothing acts"))
+            }
+            Self::TooManyLoads { freedoms, open, more } => {
+                let message = format!(
+                    "with {} as many terminals must be left without a prescribed torque to balance the train; here {} \
+                     left",
+                    self::freedoms(*freedoms),
+                    if *open == 1 { "1 is".to_owned() } else { format!("{open} are") },
+                );
+                let hint = match train.terminals.is_empty() {
+                    true => "name the members that take part in `terminals`".to_owned(),
+                    false => format!("leave out {more} of the torques, or list another member in `terminals`"),
+                };
+                Diagnostic::new(Code::TooManyTorques, format!("{place}.torques"), message).hint(hint)
+            }
+        }
+    }
+}
+
+impl Finding {
+    fn tell(&self, train: &Train, operation: &Operation) -> Option<Diagnostic> {
+        let place = operation.place.as_str();
+        Some(match self {
+            Self::Why(why) => {
+                let (code, hint) = why.warning()?;
+                let d = Diagnostic::new(code, place, why.to_string());
+                hint.into_iter().fold(d, Diagnostic::hint)
+            }
+            Self::MaySpin(members) => {
+                let members = names(train, members.iter().copied()).join(", ");
+                let message = format!("{members} may spin at any speed; nothing is transmitted there");
+                Diagnostic::new(Code::Undetermined, place, message)
+            }
+            Self::Stiction(ranges) => {
+                let range = |r: &StictionRange| match (r.low, r.high) {
+                    (Some(low), Some(high)) => format!("{} between {} and {}", r.what, short(low), short(high)),
+                    _ => format!("{} open", r.what),
+                };
+                let ranges: Vec<_> = ranges.iter().map(range).collect();
+                let message = format!(
+                    "a loaded mesh is at rest relative to its carrier; its friction leaves {}",
+                    ranges.join(", ")
+                );
+                Diagnostic::new(Code::Stiction, place, message)
+            }
+            Self::Outside(law) => Diagnostic::new(Code::OutsideLaw, place, law.to_string()),
+            Self::OneWay(element, torque) => {
+                let element = &train.shift_elements[element.0];
+                let message = format!(
+                    "the one-way clutch {} would have to hold {} against its free direction ({} N m); it overruns \
+                     instead and the torques shown do not arise",
+                    element.name,
+                    train.member_name(element.members[0]),
+                    short(*torque)
+                );
+                Diagnostic::new(Code::OneWay, place, message)
+                    .hint("analyse the state without it, or engage a brake beside it")
+            }
+            Self::Near { torque, boundary: b } => {
+                let (what, unit, factor, effect) = match torque {
+                    true => ("torque", "N m", 1.0, "unloads"),
+                    false => ("speed", "rpm", 30.0 / std::f64::consts::PI, "stops the relative motion in"),
+                };
+                let message = format!(
+                    "a {what} of {} instead of {} {unit} at {} {effect} {}",
+                    short(b.boundary * factor),
+                    short(b.value * factor),
+                    b.member,
+                    b.mesh
+                );
+                Diagnostic::new(Code::NearBoundary, place, message)
+            }
+        })
+    }
+}
+
+/// Names of members.
+pub(super) fn names(train: &Train, members: impl IntoIterator<Item = MemberId>) -> Vec<String> {
+    members.into_iter().map(|m| train.member_name(m).to_owned()).collect()
+}
+
+/// Names of shift elements.
+pub(super) fn element_names(train: &Train, elements: &[ShiftElementId]) -> Vec<String> {
+    elements.iter().map(|e| train.shift_elements[e.0].name.clone()).collect()
+}
+
+/// `2 degrees of freedom`.
+pub(super) fn freedoms(n: usize) -> String {
+    format!("{n} degree{} of freedom", if n == 1 { "" } else { "s" })
+}
+
+/// A number for a sentence.
+fn short(x: f64) -> String {
+    let text = format!("{x:.4}");
+    if text.parse::<f64>() == Ok(0.0) && x != 0.0 { format!("{x:.3e}") } else { text }
+}

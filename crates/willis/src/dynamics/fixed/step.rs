@@ -1,0 +1,157 @@
+//! One step: on in the present mode if that still holds, else the mode is settled anew.
+
+use crate::dynamics::fused::{Exactly, Fused, add_column};
+use crate::dynamics::mode::{Side, dot};
+use crate::train::{MemberId, SourceKind};
+
+use super::FixedStep;
+use super::groups::UNBOUNDED;
+use super::settle::Settle;
+
+impl FixedStep {
+    /// The mode in every detail.
+    fn exactly(&self) -> Exactly {
+        let mut key = Exactly::default();
+        for (g, group) in self.groups.iter().enumerate() {
+            let bit = 1 << g;
+            if self.sign[g] == 0 && !group.driven {
+                key.held |= bit;
+            } else if self.capacity[g] == [0.0; 2] && group.elements.is_empty() {
+                key.idle |= bit;
+            } else if self.sign[g] > 0 {
+                key.forward |= bit;
+            }
+        }
+        key.coast = self.coasting();
+        key
+    }
+
+    /// Makes the fused step of the mode just settled the present one.
+    fn fuse(&mut self) {
+        self.present = None;
+        let Some((_, map)) = self.last else { return };
+        let map = &self.maps[map as usize];
+        let held_shares = self.groups.iter().zip(&self.sign).any(|(group, sign)| *sign == 0 && group.shares);
+        if self.swept || !self.energies.is_empty() || held_shares && !map.is_redundant() {
+            return;
+        }
+        for (j, row) in &map.still {
+            let torque = dot(row, &self.tau);
+            self.side[usize::from(*j)] = if torque >= 0.0 { Side::Drive } else { Side::Coast };
+        }
+        let key = self.exactly();
+        let k = match self.by_exact_key.get(&key) {
+            Some(&k) => k,
+            None => {
+                let s = &self.engine.system;
+                self.fused.push(Fused::new(s, &self.groups, &self.teeth, map, &key, self.h));
+                let k = self.fused.len() as u32 - 1;
+                self.by_exact_key.insert(key, k);
+                k
+            }
+        };
+        let fused = &self.fused[k as usize];
+        fused.settle(&self.v, &self.inputs, &self.varying, &mut self.base, &mut self.least);
+        self.ends.resize(fused.rows, 0.0);
+        self.present = Some(k);
+    }
+
+    /// Takes the step in the mode of the last one; false, and nothing done, if that does not go on.
+    #[inline]
+    fn glide(&mut self, middle: f64) -> bool {
+        let Some(k) = self.present else { return false };
+        if !self.engine.system.elastic.is_empty() {
+            self.look_at_shafts();
+        }
+        let fused = &self.fused[k as usize];
+        let all = self.v.len();
+        self.ends.copy_from_slice(&self.base);
+        for (k, v) in self.v.iter().enumerate() {
+            add_column(&mut self.ends, fused.column(k), *v);
+        }
+        let s = &self.engine.system;
+        let (drivers, frictions) = (s.drivers.len(), s.frictions.len());
+        for &k in &self.varying {
+            let u = self.enters(k, middle);
+            // What opens, closes or locks is more than a change of torque.
+            if k >= drivers && k < drivers + frictions {
+                let was = self.inputs[k];
+                if (u == 0.0) != (was == 0.0) || (u == UNBOUNDED) != (was == UNBOUNDED) {
+                    return false;
+                }
+            }
+            add_column(&mut self.ends, fused.column(all + k), u);
+            self.inputs[k] = u;
+        }
+        let broken = self.ends.iter().zip(&self.least).fold(false, |broken, (end, least)| broken | (end < least));
+        if broken {
+            return false;
+        }
+        self.next[..s.free].copy_from_slice(&self.ends[..s.free]);
+        if s.prescribed > 0 {
+            for (driver, u) in s.drivers.iter().zip(&self.inputs) {
+                if let Some(i) = driver.prescribed {
+                    self.next[s.free + i] = *u;
+                }
+            }
+        }
+        true
+    }
+
+    /// The middle of the next step, s.
+    pub(in crate::dynamics) fn middle(&self) -> f64 {
+        self.time() + 0.5 * self.h
+    }
+
+    /// Whether what was level is no longer.
+    pub(in crate::dynamics) fn is_over(&self, middle: f64) -> bool {
+        middle >= self.until || self.until == f64::NEG_INFINITY
+    }
+
+    /// Whether all speeds are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.v.iter().all(|v| v.is_finite())
+    }
+
+    /// Takes one step.
+    pub fn step(&mut self) {
+        let middle = self.middle();
+        if self.is_over(middle) {
+            let ended = self.until;
+            self.refresh(middle);
+            self.count_jumps(ended, middle);
+            self.present = None;
+        }
+        if !self.glide(middle) {
+            self.load(middle);
+            let free = self.engine.system.free;
+            let cols = self.tau.len();
+            self.swept = false;
+            if !self.arch.dispatch(Settle { step: self, free, cols }) && !self.sweep(free, cols) {
+                self.unsettled += 1;
+            }
+            if !self.energies.is_empty() {
+                self.count_energies();
+            }
+            self.fuse();
+        }
+        // What is held is at rest exactly, not but for round-off.
+        if self.keeps_angles {
+            let all = self.engine.system.all();
+            for i in 0..all {
+                self.rest[i] += self.h * self.next[i];
+            }
+        }
+        if self.engine.system.integrals > 0 {
+            let s = &self.engine.system;
+            for (driver, source) in s.drivers.iter().zip(&s.scenario.sources) {
+                if let (Some(i), SourceKind::Controller { setpoint, .. }) = (driver.integral, &source.kind) {
+                    let set = setpoint.value(middle, middle, &|m: MemberId| dot(&s.speeds[m.index()], &self.next));
+                    self.rest[s.all() + i] += self.h * (set - dot(&s.speeds[driver.member.index()], &self.next));
+                }
+            }
+        }
+        std::mem::swap(&mut self.v, &mut self.next);
+        self.count += 1;
+    }
+}

@@ -1,0 +1,121 @@
+//! What can be read of a run: the columns of its rows.
+
+use super::element::element_name;
+use super::report::{Column, ColumnKind, EnergyLossKind};
+use super::system::{Rubs, System};
+
+/// What a column shows; positions are those in the system.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Shows {
+    Time,
+    Speed(usize),
+    Angle(usize),
+    Acceleration(usize),
+    SourceTorque(usize),
+    SourcePower(usize),
+    FrictionTorque(usize),
+    ShaftTorque(usize),
+    Twist(usize),
+    MeshTorque(usize),
+    Loss,
+    Stored,
+    Lost,
+    Efficiency,
+    Mode(Moves),
+}
+
+/// What has a mode.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Moves {
+    Friction(usize),
+    Element(usize),
+    Shaft(usize),
+}
+
+impl Shows {
+    /// Whether its value follows from speeds and angles alone.
+    pub fn is_motion(self) -> bool {
+        matches!(self, Self::Time | Self::Speed(_) | Self::Angle(_))
+    }
+
+    /// Everything that can be read of a system, in the order of the columns.
+    pub fn all(s: &System) -> Vec<Self> {
+        let (members, sources, shafts) = (1..s.speeds.len(), 0..s.drivers.len(), 0..s.elastic.len());
+        let rubs = (0..s.frictions.len())
+            .filter(|&k| !s.frictions[k].open && !matches!(s.frictions[k].what, Rubs::Rolling(_)));
+        std::iter::once(Self::Time)
+            .chain(members.clone().map(Self::Speed))
+            .chain(members.clone().map(Self::Angle))
+            .chain(members.map(Self::Acceleration))
+            .chain(sources.clone().map(Self::SourceTorque))
+            .chain(sources.map(Self::SourcePower))
+            .chain(rubs.map(Self::FrictionTorque))
+            .chain(shafts.flat_map(|k| [Self::ShaftTorque(k), Self::Twist(k)]))
+            .chain((0..s.train.meshes().len()).map(Self::MeshTorque))
+            .chain([Self::Loss, Self::Stored, Self::Lost, Self::Efficiency])
+            .chain(Moves::all(s).into_iter().map(Self::Mode))
+            .collect()
+    }
+
+    /// Its column.
+    pub fn column(self, s: &System) -> Column {
+        let member = |m: usize| s.train.members()[m].name.clone();
+        let source = |k: usize| s.scenario.sources[k].name.clone();
+        let (kind, of) = match self {
+            Self::Time => (ColumnKind::Time, String::new()),
+            Self::Speed(m) => (ColumnKind::Speed, member(m)),
+            Self::Angle(m) => (ColumnKind::Angle, member(m)),
+            Self::Acceleration(m) => (ColumnKind::Acceleration, member(m)),
+            Self::SourceTorque(k) => (ColumnKind::Torque, source(k)),
+            Self::SourcePower(k) => (ColumnKind::Power, source(k)),
+            Self::FrictionTorque(k) => (ColumnKind::Torque, s.frictions[k].name.clone()),
+            Self::ShaftTorque(k) => (ColumnKind::Torque, s.train.shafts()[k].name.clone()),
+            Self::Twist(k) => (ColumnKind::Twist, s.train.shafts()[k].name.clone()),
+            Self::MeshTorque(k) => (ColumnKind::Torque, s.train.meshes()[k].name.clone()),
+            Self::Loss => (ColumnKind::Power, String::new()),
+            Self::Stored | Self::Lost => (ColumnKind::Energy, String::new()),
+            Self::Efficiency => (ColumnKind::Efficiency, String::new()),
+            Self::Mode(moves) => (ColumnKind::Mode, moves.name(s)),
+        };
+        let name = match self {
+            Self::Time => "time_s".to_owned(),
+            Self::Loss => "loss".to_owned(),
+            Self::Stored => "stored_energy".to_owned(),
+            Self::Lost => "lost_energy".to_owned(),
+            Self::Efficiency => "efficiency".to_owned(),
+            _ => format!("{}.{of}", kind.name()),
+        };
+        Column { name, unit: kind.unit(), kind, of }
+    }
+}
+
+impl Moves {
+    pub fn all(s: &System) -> Vec<Self> {
+        let of_friction = |&k: &usize| {
+            let f = &s.frictions[k];
+            match f.what {
+                Rubs::Law(_) => {
+                    // It can hold, and its slip is not told of by another of its group.
+                    let kind = s.loss_kind(k);
+                    let group = f.group.map(|(g, _)| &s.groups[g]);
+                    matches!(kind, Some(EnergyLossKind::Bearing | EnergyLossKind::Seal))
+                        && group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
+                }
+                Rubs::Shift(_) => true,
+                Rubs::Drag(_) | Rubs::Rolling(_) => f.group.is_some(),
+            }
+        };
+        let elements = (0..s.elements.len()).filter(|&j| s.elements[j].group.is_some());
+        let shafts = (0..s.elastic.len()).filter(|&k| s.train.shafts()[k].backlash > 0.0);
+        let frictions = (0..s.frictions.len()).filter(of_friction);
+        (frictions.map(Self::Friction)).chain(elements.map(Self::Element)).chain(shafts.map(Self::Shaft)).collect()
+    }
+
+    pub fn name(self, s: &System) -> String {
+        match self {
+            Self::Friction(k) => s.frictions[k].name.clone(),
+            Self::Element(j) => element_name(&s.train, &s.elements[j].links),
+            Self::Shaft(k) => s.train.shafts()[k].name.clone(),
+        }
+    }
+}

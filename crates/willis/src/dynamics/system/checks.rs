@@ -1,0 +1,85 @@
+//! What must hold before a scenario has equations of motion.
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::dynamics::source::{MOST_PULSES, shortest_pulse, signals_of};
+use crate::kinematics::Configuration;
+use crate::train::{Scenario, SourceKind, Train};
+
+/// The scenario of a name.
+pub(super) fn scenario_named<'t>(train: &'t Train, name: &str) -> Result<&'t Scenario, Diagnostics> {
+    train.scenario(name).ok_or_else(|| {
+        let known: Vec<&str> = train.scenarios().iter().map(|s| s.name.as_str()).collect();
+        let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("there is no scenario `{name}`"))
+            .suggest(name, known.iter().copied());
+        if d.hints.is_empty() {
+            d = d.hint(match known.len() {
+                0 => "add it as a [[scenario]]".into(),
+                _ => format!("the scenarios are: {}", known.join(", ")),
+            });
+        }
+        d.into()
+    })
+}
+
+/// An error if meshes constrain each other, or if nothing can move.
+pub(super) fn forces_and_freedom(c: &Configuration<'_>, scenario: &Scenario) -> Result<(), Diagnostics> {
+    if let Some(meshes) = c.redundant().first() {
+        let names: Vec<&str> = meshes.iter().map(|m| c.train.meshes()[m.index()].name.as_str()).collect();
+        let message = format!(
+            "the forces in {} are not determined: these meshes constrain what others already constrain",
+            names.join(", ")
+        );
+        return Err(unfit(scenario, message, "leave out one of them"));
+    }
+    if c.degrees_of_freedom() == 0 {
+        let message = "nothing can move: what is held in `fixed` holds all members".to_owned();
+        return Err(unfit(scenario, message, "leave one of them out of `fixed`"));
+    }
+    Ok(())
+}
+
+/// An error if a signal pulses too often: each pulse stops the integrator.
+pub(super) fn pulses(scenario: &Scenario) -> Result<(), Diagnostics> {
+    for signal in (scenario.sources.iter().flat_map(|s| signals_of(&s.kind)))
+        .chain(scenario.engagements.iter().map(|e| &e.signal))
+    {
+        if let Some(period) = shortest_pulse(signal)
+            && (scenario.end - scenario.start) / period > MOST_PULSES
+        {
+            let message = format!(
+                "a pulse of period {period} s comes {:.1e} times in this scenario, more than {MOST_PULSES:.0e}",
+                (scenario.end - scenario.start) / period
+            );
+            return Err(unfit(scenario, message, "take its mean, or a shorter scenario"));
+        }
+    }
+    Ok(())
+}
+
+/// An error if the equations need the rate of a signal that has none.
+pub(super) fn rates(scenario: &Scenario) -> Result<(), Diagnostics> {
+    for source in &scenario.sources {
+        // What is derived by the time.
+        let (what, signal) = match &source.kind {
+            SourceKind::Speed(signal) => ("a prescribed speed", signal),
+            SourceKind::Controller { setpoint, derivative, .. } if *derivative != 0.0 => {
+                ("the set point of a controller with a derivative part", setpoint)
+            }
+            _ => continue,
+        };
+        let (fault, hint) = if signal.depends_on_speed() {
+            ("cannot follow the speeds of members", "let it follow the time, or use a torque")
+        } else if !signal.has_rate() {
+            ("cannot follow a formula with jumps, as `floor` and `signum` have", "use ramps or a table")
+        } else {
+            continue;
+        };
+        let message = format!("`{}`: {what} {fault}", source.name);
+        return Err(unfit(scenario, message, hint));
+    }
+    Ok(())
+}
+
+fn unfit(scenario: &Scenario, message: String, hint: &str) -> Diagnostics {
+    Diagnostic::new(Code::Unfit, scenario.place.clone(), message).hint(hint).into()
+}

@@ -1,0 +1,154 @@
+//! The operating point, exactly: speeds that settle every terminal, and torques on terminals.
+
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
+use crate::kinematics::{Configuration, Motion, common};
+use crate::regimes::Choice;
+use crate::regimes::arrangement::dot;
+use crate::regimes::setup::Setup;
+use crate::train::{MemberId, Train};
+use crate::units::Quantity;
+
+use super::request::Given;
+
+/// Torques prescribed on terminals.
+pub(super) type Loads = Vec<(usize, Rational)>;
+
+/// An operating point. Speeds and torques stand without the power of π that they share.
+pub(super) struct Point<'t> {
+    /// Name of the state.
+    pub state: String,
+    pub setup: Setup<'t>,
+    /// The base speeds.
+    pub base: Vec<Rational>,
+    /// The speeds that were prescribed.
+    pub speeds: Vec<(MemberId, Rational)>,
+    /// As many torques as are independent.
+    pub loads: Loads,
+    /// One unit of speed, rad/s.
+    pub speed_unit: f64,
+    /// One unit of torque, N m.
+    pub torque_unit: f64,
+}
+
+impl<'t> Point<'t> {
+    /// The point at which a configuration is asked to stand.
+    ///
+    /// # Errors
+    /// Speeds that contradict each other; too few or too many speeds or torques.
+    pub fn new(train: &'t Train, choice: Choice<'t>, given: &Given) -> Result<Self, Diagnostics> {
+        let Choice { state, configuration, terminals, balance } = choice;
+        // Planets whose speed is given stay visible.
+        let keep: Vec<MemberId> = terminals.iter().copied().chain(given.speeds.iter().map(|(m, _)| *m)).collect();
+        let c = Configuration::new(train, &configuration.engaged, &given.held, &keep);
+        let motion = c.motion(&given.speeds).map_err(|broken| contradictory(&c, &broken))?;
+        let setup = Setup::new(c, &terminals, balance)
+            .map_err(|why| refuse(Code::Unfit, format!("{state}: {why}"), "name other terminals with --terminals"))?;
+        let base = base_speeds(&setup, &state, &motion, given.speeds.len())?;
+        let (loads, torque_pi) = loads(&setup, &state, &given.torques)?;
+        let speed = |m: MemberId| motion.speeds[m.0].clone().unwrap_or(Rational::ZERO);
+        Ok(Self {
+            state,
+            setup,
+            base,
+            speeds: given.speeds.iter().map(|(m, _)| (*m, speed(*m))).collect(),
+            loads,
+            speed_unit: std::f64::consts::PI.powi(motion.pi_power.into()),
+            torque_unit: std::f64::consts::PI.powi(torque_pi.into()),
+        })
+    }
+
+    /// Speed of a terminal.
+    pub fn speed(&self, t: usize) -> Rational {
+        dot(self.setup.terminal_speed(t), &self.base)
+    }
+}
+
+fn refuse(code: Code, text: impl Into<String>, hint: &str) -> Diagnostics {
+    let mut all = Diagnostics::default();
+    all.push(Diagnostic::new(code, "", text).hint(hint));
+    all
+}
+
+/// Speeds that the gears tie to each other and that do not agree.
+fn contradictory(c: &Configuration<'_>, groups: &[Vec<MemberId>]) -> Diagnostics {
+    let mut all = Diagnostics::default();
+    for group in groups {
+        let names: Vec<&str> = group.iter().map(|m| c.train.member_name(*m)).collect();
+        let text = format!("the speeds given for {} contradict each other: the gears tie them", names.join(", "));
+        let hint = format!("give as many independent speeds as there are freedoms ({})", c.degrees_of_freedom());
+        all.push(Diagnostic::new(Code::ContradictorySpeeds, "", text).hint(hint));
+    }
+    all
+}
+
+/// The base speeds, which settle all others; `given` speeds were prescribed.
+fn base_speeds(setup: &Setup<'_>, state: &str, motion: &Motion, given: usize) -> Result<Vec<Rational>, Diagnostics> {
+    let base: Option<Vec<Rational>> =
+        setup.base.iter().map(|&b| motion.speeds[setup.terminals[b].member.0].clone()).collect();
+    let Some(base) = base else {
+        let text = format!(
+            "{} given; {state} needs {} to settle {}",
+            match given {
+                0 => "no speed is".to_owned(),
+                1 => "one speed is".to_owned(),
+                n => format!("{n} speeds are"),
+            },
+            setup.base.len(),
+            terminals(setup)
+        );
+        return Err(refuse(Code::Unfit, text, "name them as in --speeds engine=2000rpm,ring=1000rpm"));
+    };
+    if base.iter().all(Rational::is_zero) {
+        return Err(refuse(Code::Unfit, "everything stands still: no regime", "give a speed other than zero"));
+    }
+    Ok(base)
+}
+
+/// Torques: as many as are independent, on terminals that determine the others. With them their power of π.
+fn loads(setup: &Setup<'_>, state: &str, torques: &[(MemberId, Quantity)]) -> Result<(Loads, i8), Diagnostics> {
+    let mut errors = Diagnostics::default();
+    let mut given: Vec<(usize, &Quantity)> = Vec::new();
+    for (m, q) in torques {
+        match (0..setup.terminals.len()).find(|&t| setup.c.node(*m) == Some(setup.terminals[t].node)) {
+            Some(t) if given.iter().any(|(other, _)| *other == t) => {
+                let name = setup.c.train.member_name(*m);
+                let text = format!("{name} is clutched to a member whose torque is given too");
+                errors.push(Diagnostic::new(Code::TooManyTorques, "", text));
+            }
+            Some(t) => given.push((t, q)),
+            None => {
+                let name = setup.c.train.member_name(*m);
+                let text = format!("{name} carries no torque through the gears of {state}");
+                errors.push(
+                    Diagnostic::new(Code::NotATerminal, "", text)
+                        .hint(format!("its terminals are: {}", terminals(setup))),
+                );
+            }
+        }
+    }
+    if errors.has_errors() {
+        return Err(errors);
+    }
+    let needed = setup.independent_torques();
+    if given.len() != needed {
+        let text = format!(
+            "{} given; {state} has {needed} independent (terminals {})",
+            match given.len() {
+                0 => "no torque is".to_owned(),
+                1 => "one torque is".to_owned(),
+                n => format!("{n} torques are"),
+            },
+            terminals(setup)
+        );
+        let code = if given.len() < needed { Code::MissingTorque } else { Code::TooManyTorques };
+        return Err(refuse(code, text, "name them as in --torques 'engine=100 N m'"));
+    }
+    let (values, pi_power) = common(given.iter().map(|(_, q)| *q));
+    Ok((given.iter().map(|(t, _)| *t).zip(values).collect(), pi_power))
+}
+
+/// The names of the terminals.
+fn terminals(setup: &Setup<'_>) -> String {
+    (0..setup.terminals.len()).map(|t| setup.terminal_name(t)).collect::<Vec<_>>().join(", ")
+}

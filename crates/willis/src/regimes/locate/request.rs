@@ -1,0 +1,107 @@
+//! What is asked: an operating point by names, and what they stand for in the train.
+
+use crate::analysis::AS_DRAWN;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::regimes::{Choice, RegimeSelection, selected};
+use crate::train::{Load, MemberId, Train};
+use crate::units::Quantity;
+
+/// An operating point to place.
+#[derive(Clone, Debug, Default)]
+pub struct LocateRequest {
+    /// State of the shift table, or `as drawn`; `None` for as drawn, or the operation's state.
+    pub state: Option<String>,
+    /// Members on which torque may act; `None` for the train's terminals.
+    pub terminals: Option<Vec<String>>,
+    /// Two terminals whose powers add to zero.
+    pub balance: Option<[String; 2]>,
+    /// An operation of the file that gives speeds and torques.
+    pub operation: Option<String>,
+    /// Speeds by member, as many as are independent.
+    pub speeds: Vec<(String, Quantity)>,
+    /// Torques by terminal, as many as are independent.
+    pub torques: Vec<(String, Quantity)>,
+}
+
+/// What is prescribed, by members of the train.
+#[derive(Default)]
+pub(super) struct Given {
+    pub speeds: Vec<(MemberId, Quantity)>,
+    pub torques: Vec<(MemberId, Quantity)>,
+    /// Members held from outside.
+    pub held: Vec<MemberId>,
+}
+
+/// What a request and its operation prescribe, and the configuration that they name.
+pub(super) fn read<'t>(train: &'t Train, request: &LocateRequest) -> Result<(Given, Choice<'t>), Diagnostics> {
+    let mut errors = Diagnostics::default();
+    let mut given = Given::default();
+    let mut state = request.state.clone();
+    if let Some(name) = &request.operation {
+        let own = operation(train, name, &mut given, &mut errors);
+        state = state.or(own);
+    }
+    typed(train, &request.speeds, &mut given.speeds, &mut errors);
+    typed(train, &request.torques, &mut given.torques, &mut errors);
+    let selection = RegimeSelection {
+        state: Some(state.unwrap_or_else(|| AS_DRAWN.to_owned())),
+        terminals: request.terminals.clone(),
+        balance: request.balance.clone(),
+    };
+    let choice = match selected(train, &selection) {
+        Ok(mut all) => all.pop(),
+        Err(wrong) => {
+            errors.extend(wrong);
+            None
+        }
+    };
+    match choice.filter(|_| !errors.has_errors()) {
+        Some(choice) => Ok((given, choice)),
+        None => Err(errors),
+    }
+}
+
+/// Takes over what an operation of the file prescribes, and tells its state.
+fn operation(train: &Train, name: &str, given: &mut Given, errors: &mut Diagnostics) -> Option<String> {
+    let Some(o) = train.operations.iter().find(|o| o.name == *name) else {
+        let known: Vec<&str> = train.operations.iter().map(|o| o.name.as_str()).collect();
+        let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
+        errors.push(d.suggest(name, known.iter().copied()).hint(format!("its operations are: {}", known.join(", "))));
+        return None;
+    };
+    given.speeds.extend(o.speeds.iter().cloned());
+    given.held.extend(&o.fixed);
+    for (m, load) in &o.loads {
+        match load {
+            Load::Torque(q) => given.torques.push((*m, q.clone())),
+            Load::Power(_) => {
+                let text = format!(
+                    "operation `{name}` prescribes a power on {}; a place needs torques",
+                    train.member_name(*m)
+                );
+                errors.push(Diagnostic::new(Code::Unfit, "", text).hint("give the torque with --torques"));
+            }
+        }
+    }
+    o.state.map(|k| train.states[k].name.clone())
+}
+
+/// Adds quantities that the request itself names.
+fn typed(train: &Train, given: &[(String, Quantity)], list: &mut Vec<(MemberId, Quantity)>, errors: &mut Diagnostics) {
+    for (name, quantity) in given {
+        match train.member(name) {
+            Some(id) => {
+                // What is typed wins over what the operation says.
+                list.retain(|(m, _)| *m != id);
+                list.push((id, quantity.clone()));
+            }
+            None => {
+                let known: Vec<&str> = train.members.iter().skip(1).map(|m| m.name.as_str()).collect();
+                let d = Diagnostic::new(Code::UnknownName, "", format!("the train has no member `{name}`"));
+                errors.push(
+                    d.suggest(name, known.iter().copied()).hint(format!("its members are: {}", known.join(", "))),
+                );
+            }
+        }
+    }
+}

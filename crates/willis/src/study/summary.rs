@@ -1,0 +1,292 @@
+//! What the points of a study say together.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::diagnostic::Code;
+
+use super::answer::{PointAnswer, PointVerdict};
+
+/// A value and the number of the point that has it; in contracts `[value, point]`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(from = "(f64, u64)", into = "(f64, u64)")]
+pub struct Extreme {
+    /// The value.
+    pub value: f64,
+    /// The number of the point.
+    pub point: u64,
+}
+
+impl From<(f64, u64)> for Extreme {
+    fn from((value, point): (f64, u64)) -> Self {
+        Self { value, point }
+    }
+}
+
+impl From<Extreme> for (f64, u64) {
+    fn from(e: Extreme) -> Self {
+        (e.value, e.point)
+    }
+}
+
+/// Least, greatest and sum of a quantity over the points that have one, and where the extremes are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct MinMaxSum {
+    /// Points that have a value.
+    pub count: u64,
+    /// Their sum.
+    pub sum: f64,
+    /// The smallest, and the number of its point; absent where no point has a value.
+    pub least: Option<Extreme>,
+    /// The largest, and the number of its point.
+    pub most: Option<Extreme>,
+}
+
+impl MinMaxSum {
+    pub(super) fn add(&mut self, value: f64, point: u64) {
+        if !value.is_nan() {
+            self.add_run(1, value, [value; 2], |_| point);
+        }
+    }
+
+    /// Adds values none of which is NaN: how many, their sum, the smallest and the largest; `point` finds a value.
+    pub(super) fn add_run(&mut self, count: u64, sum: f64, [least, most]: [f64; 2], point: impl Fn(f64) -> u64) {
+        self.count += count;
+        self.sum += sum;
+        // Where an extreme is, is looked up only when it is one.
+        if self.least.is_none_or(|e| least < e.value) {
+            self.least = Some(Extreme { value: least, point: point(least) });
+        }
+        if self.most.is_none_or(|e| most > e.value) {
+            self.most = Some(Extreme { value: most, point: point(most) });
+        }
+    }
+
+    pub(super) fn join(&mut self, other: &Self) {
+        let (Some(least), Some(most)) = (other.least, other.most) else { return };
+        self.count += other.count;
+        self.sum += other.sum;
+        if self.least.is_none_or(|e| least.value < e.value) {
+            self.least = Some(least);
+        }
+        if self.most.is_none_or(|e| most.value > e.value) {
+            self.most = Some(most);
+        }
+    }
+
+    /// Mean of the points that have a value.
+    pub fn mean(&self) -> Option<f64> {
+        (self.count > 0).then(|| self.sum / self.count as f64)
+    }
+}
+
+/// A law of a family of laws: `mesh_friction = niemann`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LawChoice {
+    /// The family, `mesh_friction`.
+    pub family: String,
+    /// The law, `niemann`.
+    pub law: String,
+}
+
+impl fmt::Display for LawChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}", self.family, self.law)
+    }
+}
+
+/// What points that say the same are counted by. In contracts it is a text: `W316`, `W316 mesh_friction = niemann`,
+/// `reason: locked`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(into = "String", try_from = "String")]
+#[non_exhaustive]
+pub enum WarningKind {
+    /// A warning of this code.
+    Warning {
+        /// The code of the warning.
+        code: Code,
+        /// The law that it is about, where laws are counted one by one.
+        law: Option<LawChoice>,
+    },
+    /// Why there is no unique answer.
+    Reason(PointVerdict),
+}
+
+impl From<Code> for WarningKind {
+    fn from(code: Code) -> Self {
+        Self::Warning { code, law: None }
+    }
+}
+
+impl fmt::Display for WarningKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Warning { code, law: None } => write!(f, "{code}"),
+            Self::Warning { code, law: Some(law) } => write!(f, "{code} {law}"),
+            Self::Reason(verdict) => write!(f, "reason: {verdict}"),
+        }
+    }
+}
+
+impl FromStr for WarningKind {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("`{text}` is neither a code nor `reason: VERDICT`");
+        if let Some(name) = text.strip_prefix("reason: ") {
+            return PointVerdict::ALL.into_iter().find(|v| v.name() == name).map(Self::Reason).ok_or_else(wrong);
+        }
+        let (code, law) = text.split_once(' ').map_or((text, None), |(code, law)| (code, Some(law)));
+        let code = Code::ALL.iter().copied().find(|c| c.as_str() == code).ok_or_else(wrong)?;
+        let law = match law {
+            None => None,
+            Some(law) => {
+                let (family, law) = law.split_once(" = ").ok_or_else(wrong)?;
+                Some(LawChoice { family: family.to_owned(), law: law.to_owned() })
+            }
+        };
+        Ok(Self::Warning { code, law })
+    }
+}
+
+impl From<WarningKind> for String {
+    fn from(kind: WarningKind) -> Self {
+        kind.to_string()
+    }
+}
+
+impl TryFrom<String> for WarningKind {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+/// Points that say the same.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct WarningCount {
+    /// At how many points.
+    pub count: u64,
+    /// What it says at the first of them that was looked at.
+    pub message: String,
+    /// The number of that point.
+    pub point: u64,
+}
+
+/// Counts of what points say, by kind.
+pub(super) type Seen = BTreeMap<WarningKind, WarningCount>;
+
+/// Counts one more point, or the first.
+pub(super) fn see(seen: &mut Seen, kind: WarningKind, message: &str, point: u64) {
+    match seen.get_mut(&kind) {
+        Some(own) => own.count += 1,
+        None => drop(seen.insert(kind, WarningCount { count: 1, message: message.into(), point })),
+    }
+}
+
+/// Adds what later points say.
+pub(super) fn join(seen: &mut Seen, later: &Seen) {
+    for (kind, count) in later {
+        match seen.get_mut(kind) {
+            Some(own) => own.count += count.count,
+            None => drop(seen.insert(kind.clone(), count.clone())),
+        }
+    }
+}
+
+/// A value of an axis whose values are texts; in contracts `state = 3`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(into = "String", try_from = "String")]
+pub struct AxisValue {
+    /// The quantity of the axis.
+    pub axis: String,
+    /// The value.
+    pub value: String,
+}
+
+impl fmt::Display for AxisValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}", self.axis, self.value)
+    }
+}
+
+impl From<AxisValue> for String {
+    fn from(value: AxisValue) -> Self {
+        value.to_string()
+    }
+}
+
+impl TryFrom<String> for AxisValue {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let (axis, value) = text.split_once(" = ").ok_or_else(|| format!("`{text}` is no value of an axis"))?;
+        Ok(Self { axis: axis.to_owned(), value: value.to_owned() })
+    }
+}
+
+/// What many rows say together.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct Summary {
+    /// How many points.
+    pub points: u64,
+    /// How many points have each verdict.
+    pub verdicts: BTreeMap<PointVerdict, u64>,
+    /// Efficiency of all points with a unique answer.
+    pub efficiency: MinMaxSum,
+    /// Loss of all points with one answer, W.
+    pub loss_w: MinMaxSum,
+    /// Efficiency by each value of the axes whose values are texts (states, laws).
+    pub by_text: BTreeMap<AxisValue, MinMaxSum>,
+    /// By state: at how many points it is the most efficient.
+    pub best: BTreeMap<String, u64>,
+    /// Warnings by their code, and by `reason` why points have no answer.
+    pub seen: BTreeMap<WarningKind, WarningCount>,
+}
+
+impl Summary {
+    /// Adds what later rows say.
+    pub fn join(&mut self, other: &Self) {
+        self.points += other.points;
+        for (verdict, count) in &other.verdicts {
+            *self.verdicts.entry(*verdict).or_default() += count;
+        }
+        self.efficiency.join(&other.efficiency);
+        self.loss_w.join(&other.loss_w);
+        for (text, extent) in &other.by_text {
+            self.by_text.entry(text.clone()).or_default().join(extent);
+        }
+        for (state, count) in &other.best {
+            *self.best.entry(state.clone()).or_default() += count;
+        }
+        join(&mut self.seen, &other.seen);
+    }
+
+    /// What an answer says in words: why it is none, and its warnings, each kind once.
+    pub(super) fn hear(&mut self, answer: &PointAnswer, point: u64) {
+        // What is to be said of a unique answer is a warning.
+        if !answer.reason.is_empty() && !answer.is_unique() {
+            see(&mut self.seen, WarningKind::Reason(answer.verdict), &answer.reason, point);
+        }
+        let mut last = None;
+        for warning in &answer.warnings {
+            if last != Some(warning.code) {
+                see(&mut self.seen, warning.code.into(), &warning.message, point);
+            }
+            last = Some(warning.code);
+        }
+    }
+}

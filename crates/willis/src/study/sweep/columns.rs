@@ -1,0 +1,199 @@
+//! What the columns of a sweep hold.
+
+use crate::analysis::Losses;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::Target;
+use crate::study::answer::PointAnswer;
+use crate::study::column::{Column, ColumnValues};
+use crate::train::Train;
+
+use super::Sweep;
+
+/// What a column holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(in crate::study) enum What {
+    Axis(usize),
+    Verdict,
+    Best,
+    Efficiency,
+    InputPower,
+    OutputPower,
+    Loss,
+    LossOf(usize),
+    Residual,
+    Circulating,
+    LockFactor,
+    Speed(String),
+    Torque(String),
+    Power(String),
+    MeshLoss(String),
+    MeshEfficiency(String),
+    MeshFriction(String),
+    ElementTorque(String),
+    SourceLoss(String),
+    Reason,
+    Warnings,
+}
+
+const LOSS_KINDS: [&str; 5] = ["mesh", "bearing", "windage", "churning", "seal"];
+
+fn loss_of(l: &Losses, kind: usize) -> f64 {
+    [l.mesh, l.bearing, l.windage, l.churning, l.seal][kind]
+}
+
+/// A column that may be asked for.
+struct Offer {
+    /// The name that several go by.
+    group: &'static str,
+    column: Column,
+    what: What,
+}
+
+/// The columns that may be asked for.
+fn offers(train: &Train) -> Vec<Offer> {
+    let mut all = vec![];
+    let mut offer = |group, name: String, unit: &str, what| {
+        all.push(Offer { group, column: Column::number(name, unit), what });
+    };
+    offer("all", "power_residual_w".into(), "W", What::Residual);
+    offer("all", "circulating_power_w".into(), "W", What::Circulating);
+    offer("all", "lock_loss_factor".into(), "", What::LockFactor);
+    // All but the frame, which is at rest.
+    for m in train.members().iter().skip(1).map(|m| &m.name) {
+        offer("members", format!("{m}.speed_rad_s"), "rad/s", What::Speed(m.clone()));
+        offer("members", format!("{m}.torque_n_m"), "N m", What::Torque(m.clone()));
+        offer("members", format!("{m}.power_w"), "W", What::Power(m.clone()));
+    }
+    for m in train.meshes().iter().map(|m| &m.name) {
+        offer("meshes", format!("{m}.loss_w"), "W", What::MeshLoss(m.clone()));
+        offer("meshes", format!("{m}.efficiency"), "", What::MeshEfficiency(m.clone()));
+        if train.is_physical() {
+            offer("meshes", format!("{m}.friction"), "", What::MeshFriction(m.clone()));
+        }
+    }
+    for e in train.shift_elements().iter().map(|e| &e.name) {
+        offer("elements", format!("{e}.torque_n_m"), "N m", What::ElementTorque(e.clone()));
+    }
+    let sources = (train.meshes().iter().map(|m| &m.name))
+        .chain(train.bearings.iter().map(|b| &b.name))
+        .chain(train.seals.iter().map(|b| &b.name))
+        .chain(train.rotors.iter().map(|b| &b.name));
+    for s in sources {
+        offer("sources", format!("loss.{s}_w"), "W", What::SourceLoss(s.clone()));
+    }
+    all
+}
+
+impl Sweep<'_> {
+    /// The columns that every sweep over these axes has, up to the reason and the warnings.
+    fn usual(&self) -> Vec<(Column, What)> {
+        let train = self.question.model().train();
+        let physical = train.is_physical() || self.axes.iter().any(|a| matches!(a.target, Target::File(_)));
+        let axis = |(k, a): (usize, &super::Axis)| match a.is_text() {
+            true => (Column::text(a.column()), What::Axis(k)),
+            false => (Column::number(a.column(), a.unit.clone()), What::Axis(k)),
+        };
+        let mut all: Vec<(Column, What)> = self.axes.iter().enumerate().map(axis).collect();
+        all.push((Column::text("verdict"), What::Verdict));
+        if self.group() > 1 {
+            all.push((Column::text("best"), What::Best));
+        }
+        all.push((Column::number("efficiency", ""), What::Efficiency));
+        all.push((Column::number("input_power_w", "W"), What::InputPower));
+        all.push((Column::number("output_power_w", "W"), What::OutputPower));
+        all.push((Column::number("loss_w", "W"), What::Loss));
+        if physical {
+            let kinds = LOSS_KINDS.iter().enumerate();
+            all.extend(kinds.map(|(k, n)| (Column::number(format!("{n}_loss_w"), "W"), What::LossOf(k))));
+        }
+        all
+    }
+
+    /// The usual columns and those asked for.
+    pub(super) fn choose(&self, asked: &[String]) -> Result<Vec<(Column, What)>, Diagnostics> {
+        let mut all = self.usual();
+        let offers = offers(self.question.model().train());
+        let mut wrong = Diagnostics::default();
+        for name in asked {
+            let name = name.trim();
+            let known = all.iter().any(|c| c.0.name == name);
+            let is_meant = |o: &&Offer| name == "all" || o.group == name || o.column.name == name;
+            let chosen: Vec<&Offer> = offers.iter().filter(is_meant).collect();
+            if chosen.is_empty() && !known && name != "elements" {
+                let d = Diagnostic::new(Code::UnknownName, "", format!("there is no column `{name}`"));
+                let groups = ["members", "meshes", "elements", "sources"];
+                let d = d.suggest(name, offers.iter().map(|o| o.column.name.as_str()).chain(groups));
+                wrong.push(d.hint("`members`, `meshes`, `elements`, `sources` and `all` name several"));
+            }
+            for Offer { column, what, .. } in chosen {
+                // An axis of that name has its values.
+                if !all.iter().any(|c| c.1 == *what || c.0.name == column.name) {
+                    all.push((column.clone(), what.clone()));
+                }
+            }
+        }
+        if wrong.has_errors() {
+            return Err(wrong);
+        }
+        all.push((Column::text("reason"), What::Reason));
+        all.push((Column::text("warnings"), What::Warnings));
+        Ok(all)
+    }
+
+    /// Adds the value of a column at a point.
+    pub(super) fn cell(
+        &self,
+        values: &mut ColumnValues,
+        what: &What,
+        place: &[usize],
+        answer: &PointAnswer,
+        is_best: bool,
+    ) {
+        match values {
+            ColumnValues::Numbers(all) => all.push(self.number(what, place, answer)),
+            ColumnValues::Integers(_) => unreachable!("no column of a sweep counts"),
+            ColumnValues::Texts(all) => all.push(match what {
+                What::Axis(k) => self.axes[*k].setting(place[*k]).into(),
+                What::Verdict => answer.verdict.name().into(),
+                What::Best => if is_best { "yes" } else { "no" }.into(),
+                What::Reason => answer.reason.clone().into(),
+                What::Warnings => {
+                    let all: Vec<String> =
+                        answer.warnings.iter().map(|w| format!("{} {}", w.code, w.message)).collect();
+                    all.join("; ").into()
+                }
+                _ => unreachable!("all others are numbers"),
+            }),
+        }
+    }
+
+    fn number(&self, what: &What, place: &[usize], answer: &PointAnswer) -> f64 {
+        if let What::Axis(k) = what {
+            return self.axes[*k].number(place[*k]);
+        }
+        let Some(s) = &answer.solution else { return f64::NAN };
+        let found = match what {
+            What::Efficiency => s.efficiency,
+            What::InputPower => Some(s.input_power_w),
+            What::OutputPower => Some(s.output_power_w),
+            What::Loss => Some(s.loss_w),
+            What::LossOf(kind) => Some(loss_of(&s.losses_w, *kind)),
+            What::Residual => Some(s.power_residual_w),
+            What::Circulating => Some(s.recirculation.iter().map(|r| r.power_w).fold(0.0, f64::max)),
+            What::LockFactor => s.margin.lock_loss_factor,
+            What::Speed(name) => s.members.get(name).and_then(|m| m.speed_rad_s),
+            What::Torque(name) => s.members.get(name).and_then(|m| m.torque_n_m),
+            What::Power(name) => s.members.get(name).and_then(|m| m.power_w),
+            What::MeshLoss(name) => s.meshes.get(name).map(|m| m.loss_w),
+            What::MeshEfficiency(name) => s.meshes.get(name).map(|m| m.efficiency),
+            What::MeshFriction(name) => s.contacts.get(name).and_then(|m| m.friction),
+            What::ElementTorque(name) => s.shift_elements.get(name).and_then(|m| m.torque_n_m),
+            What::SourceLoss(name) => {
+                let mut own = s.sources.iter().filter(|x| x.name == *name).map(|x| x.loss_w).peekable();
+                own.peek().is_some().then(|| own.sum())
+            }
+            What::Axis(_) | What::Verdict | What::Best | What::Reason | What::Warnings => None,
+        };
+        found.unwrap_or(f64::NAN)
+    }
+}

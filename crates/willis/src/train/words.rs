@@ -1,0 +1,20 @@
+//! Words of users in messages.
+
+/// Text from the user, short enough for a message.
+pub(super) fn clip(text: &str) -> String {
+    // What a terminal would obey is shown instead.
+    let text: String =
+        text.chars().flat_map(|c| if c.is_control() { c.escape_debug().collect() } else { vec![c] }).collect();
+    let text = text.as_str();
+    if text.chars().count() > 64 { text.chars().take(64).chain(['…']).collect() } else { text.into() }
+}
+
+/// Names for a hint, not more than fit a line.
+pub(super) fn list(names: Vec<&str>) -> String {
+    const MOST: usize = 12;
+    let mut text = names.iter().take(MOST).copied().collect::<Vec<_>>().join(", ");
+    if names.len() > MOST {
+        text += ", …";
+    }
+    text
+}

@@ -1,0 +1,8 @@
+//! Below the train: teeth, bearings, oils and every law of losses.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod components;
+mod geometry;
+mod laws;

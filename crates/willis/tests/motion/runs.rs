@@ -1,0 +1,556 @@
+//! Whole runs: verdicts where the motion is not determined, energy that closes, and symmetries that no
+//! implementation may break.
+
+use std::ops::ControlFlow;
+
+use proptest::prelude::*;
+use willis::dynamics::{ColumnKind, Event, Method, Options, Outcome, Recorder, RunReport, Sample, simulate};
+use willis::named::Named;
+use willis::train::Train;
+
+/// What a run gave.
+#[derive(Default)]
+struct Rows {
+    names: Vec<String>,
+    rows: Vec<Vec<f64>>,
+    events: Vec<Event>,
+}
+
+impl Rows {
+    /// All values of the columns that begin so.
+    fn of<'a>(&'a self, prefix: &'a str) -> impl Iterator<Item = f64> + 'a {
+        let columns: Vec<usize> = (0..self.names.len()).filter(|&k| self.names[k].starts_with(prefix)).collect();
+        self.rows.iter().flat_map(move |row| columns.iter().map(|&k| row[k]).collect::<Vec<_>>())
+    }
+
+    fn greatest(&self, prefix: &str) -> f64 {
+        self.of(prefix).fold(0.0, |most, x| most.max(x.abs()))
+    }
+}
+
+impl Recorder for Rows {
+    fn columns(&mut self, columns: &[willis::dynamics::Column]) -> ControlFlow<()> {
+        self.names = columns.iter().map(|c| c.name.clone()).collect();
+        ControlFlow::Continue(())
+    }
+
+    fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
+        self.rows.push(sample.values.to_vec());
+        ControlFlow::Continue(())
+    }
+
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.events.push(event.clone());
+        ControlFlow::Continue(())
+    }
+}
+
+fn train(text: &str) -> Train {
+    Train::from_toml(text).unwrap_or_else(|e| panic!("{e}\n{text}"))
+}
+
+fn run(text: &str, options: &Options) -> (Rows, RunReport) {
+    let mut rows = Rows::default();
+    let report = simulate(&train(text), "run", options, &mut rows).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    (rows, report)
+}
+
+/// What does not close, as a part of all that came in, also from the store.
+fn open_part(report: &RunReport) -> f64 {
+    let e = report.energy.as_ref().expect("counted");
+    let came_in = e.sources.iter().map(|s| s.in_j).sum::<f64>() + (-e.stored_j).max(0.0);
+    e.residual_j.abs() / came_in.max(1e-300)
+}
+
+/// Two suns on stepped planets with a light carrier: whether tooth forces exist, and how many sets of them, depends
+/// on the direction of motion (validation/galvagno, the gear form of Painlevé's paradox).
+fn two_suns(carrier_inertia: f64, carrier_speed: f64) -> String {
+    format!(
+        r#"format = 1
+        name = "two suns"
+        members = ["a", "b", "carrier"]
+        terminals = ["a", "b"]
+        inertias = {{ a = "1 kg m^2", carrier = "{carrier_inertia} kg m^2" }}
+        [[set]]
+        name = "P"
+        type = "stepped"
+        carrier = "carrier"
+        basic_efficiency = 0.9
+        suns = [
+          {{ member = "a", teeth = 20, planet_teeth = 20 }},
+          {{ member = "b", teeth = 21, planet_teeth = 20 }},
+        ]
+        [[scenario]]
+        name = "run"
+        duration = "0.01 s"
+        fixed = ["b"]
+        initial_speeds = {{ carrier = "{carrier_speed} rad/s" }}
+        [[scenario.source]]
+        member = "a"
+        torque = "1 N m"
+        "#
+    )
+}
+
+#[test]
+fn several_motions_none_or_one_are_told_apart() {
+    let end = |inertia, speed| run(&two_suns(inertia, speed), &Options::default()).1;
+    let several = end(0.001, 10.0);
+    assert!(matches!(several.outcome, Outcome::SeveralSolutions(_)), "{:?}", several.outcome);
+    // Formula: 1/D for D = -1.75 and 28/3, against the torque of 1 N m seen at the sun.
+    assert!(several.outcome.why().starts_with("2 sets of tooth forces"), "{}", several.outcome.why());
+    let none = end(0.001, -10.0);
+    assert!(matches!(none.outcome, Outcome::NoSolution(_)), "{:?}", none.outcome);
+    assert!(none.outcome.why().contains("friction grows with the force it causes"), "{}", none.outcome.why());
+    for report in [&several, &none] {
+        assert!(!report.unique_for_every_load && report.end_s == 0.0);
+    }
+    for speed in [10.0, -10.0] {
+        let one = end(0.1, speed);
+        assert_eq!(one.outcome, Outcome::Finished);
+    }
+}
+
+#[test]
+fn one_of_several_motions_is_gone_on_with_when_asked() {
+    let options = Options { continue_when_ambiguous: true, ..Options::default() };
+    let (_, report) = run(&two_suns(0.001, 10.0), &options);
+    assert_eq!(report.outcome, Outcome::Finished);
+    let told = report.notes.iter().find(|n| n.starts_with("at t = 0 s")).expect("a note");
+    assert!(told.contains("the first was taken"), "{told}");
+}
+
+/// Two rotors on a shaft, the first driven.
+fn two_rotors(shaft: &str, scenario: &str) -> String {
+    format!(
+        r#"format = 1
+        name = "two rotors"
+        members = ["a", "b"]
+        terminals = ["a", "b"]
+        inertias = {{ a = "0.01 kg m^2", b = "1 kg m^2" }}
+        [[shaft]]
+        name = "shaft"
+        members = ["a", "b"]
+        {shaft}
+        [[scenario]]
+        name = "run"
+        {scenario}
+        "#
+    )
+}
+
+#[test]
+fn a_stiff_shaft_is_run_implicitly_and_its_energy_closes() {
+    let text = two_rotors(
+        "stiffness = \"1e7 N m/rad\"\ndamping = \"3000 N m s/rad\"",
+        "duration = \"2 s\"\n[[scenario.source]]\nmember = \"a\"\ntorque = \"5 N m\"",
+    );
+    let (_, report) = run(&text, &Options::default());
+    assert_eq!(report.outcome, Outcome::Finished);
+    assert!(report.notes.iter().any(|n| n.contains("implicit")), "{:?}", report.notes);
+    assert!(report.steps < 5000, "{} steps", report.steps);
+    // As one body once the shaft is wound up: ω = T t / (J1 + J2), less the ripple of the start.
+    let speed = report.final_speeds_rad_s.get("b").expect("a rotor");
+    assert!((speed - 10.0 / 1.01).abs() < 1e-4 * speed, "{speed}");
+    assert!(open_part(&report) <= 1e-9, "{:.2e}", open_part(&report));
+}
+
+/// A rotor falls onto an elastic stop again and again, each time less high: ever more changes in ever less time.
+fn bounce() -> String {
+    two_rotors(
+        "stiffness = \"1e6 N m/rad\"\ndamping = \"60 N m s/rad\"\nbacklash = \"0.2 rad\"",
+        "duration = \"20 s\"\nfixed = [\"b\"]\n[[scenario.source]]\nmember = \"a\"\ntorque = \"-0.01 N m\"",
+    )
+}
+
+#[test]
+fn a_bounce_comes_to_its_end() {
+    let (rows, report) = run(&bounce(), &Options::default());
+    assert_eq!(report.outcome, Outcome::Finished);
+    assert!(rows.events.len() > 20 && rows.events.len() < 5000, "{} events", rows.events.len());
+    assert!(report.final_speeds_rad_s.get("a").expect("a rotor").abs() < 1e-9);
+    assert!(rows.events.windows(2).all(|e| e[0].time_s <= e[1].time_s));
+}
+
+#[test]
+fn too_many_changes_of_mode_are_told_and_not_waited_for() {
+    let options = Options { most_events: 3, ..Options::default() };
+    let (_, report) = run(&bounce(), &options);
+    let Outcome::TooManyEvents(why) = &report.outcome else { panic!("{:?}", report.outcome) };
+    assert!(why.starts_with("4 changes of mode within") && why.contains("shaft"), "{why}");
+    assert!(report.end_s < 20.0);
+}
+
+#[test]
+fn a_prescribed_speed_that_jumps_is_refused_with_the_state_before_it() {
+    let jump =
+        r#"speed = { type = "table", points = [["0 s", "1 rad/s"], ["0.5 s", "1 rad/s"], ["0.5 s", "9 rad/s"]] }"#;
+    let text = two_rotors(
+        "stiffness = \"1e3 N m/rad\"\ndamping = \"1 N m s/rad\"",
+        &format!("duration = \"1 s\"\n[[scenario.source]]\nmember = \"a\"\n{jump}"),
+    );
+    let (_, report) = run(&text, &Options::default());
+    let Outcome::Impact(why) = &report.outcome else { panic!("{:?}", report.outcome) };
+    assert!(why.starts_with("the speed prescribed for a jumps from 1 to 9 rad/s"), "{why}");
+    assert_eq!(report.end_s, 0.5);
+    assert_eq!(report.final_speeds_rad_s.get("a"), Some(&1.0));
+    assert!(open_part(&report) <= 1e-9, "{:.2e}", open_part(&report));
+}
+
+/// A planetary set with losses, a slipping brake on the ring, a bearing and a load: what a random run is made of.
+#[derive(Clone, Debug)]
+struct Contraption {
+    teeth: [u32; 2],
+    efficiency: [f64; 2],
+    inertias: [f64; 3],
+    brake: f64,
+    bearing: f64,
+    speeds: [f64; 2],
+    torques: [f64; 2],
+    swing: f64,
+}
+
+impl Contraption {
+    fn any() -> impl Strategy<Value = Self> {
+        let f = |from: f64, to: f64| from..to;
+        (
+            [18u32..40, 18u32..32],
+            [f(0.85, 1.0), f(0.85, 1.0)],
+            [f(0.01, 0.5), f(0.01, 0.5), f(0.01, 0.5)],
+            (f(1.0, 30.0), f(0.1, 5.0)),
+            [f(-60.0, 60.0), f(-60.0, 60.0)],
+            [f(-20.0, 20.0), f(-20.0, 20.0)],
+            f(0.5, 3.0),
+        )
+            .prop_map(|(teeth, efficiency, inertias, (brake, bearing), speeds, torques, swing)| Self {
+                teeth,
+                efficiency,
+                inertias,
+                brake,
+                bearing,
+                speeds,
+                torques,
+                swing,
+            })
+    }
+
+    /// The train file; `sense` is -1 for all speeds and torques reversed, `names` are those of sun, ring, carrier in the
+    /// order in which they are listed.
+    fn text(&self, sense: f64, names: [&str; 3]) -> String {
+        let [sun, planet] = self.teeth;
+        let ring = sun + 2 * planet;
+        let [forward, backward] = self.efficiency;
+        let [js, jr, jc] = self.inertias;
+        let [ws, wr] = self.speeds.map(|w| sense * w);
+        let [ts, tc] = self.torques.map(|t| sense * t);
+        let (brake, bearing, swing) = (self.brake, self.bearing, self.swing);
+        let members = names.map(|n| format!("\"{n}\"")).join(", ");
+        format!(
+            r#"format = 1
+            name = "contraption"
+            members = [{members}]
+            terminals = ["s", "c"]
+            inertias = {{ s = "{js} kg m^2", r = "{jr} kg m^2", c = "{jc} kg m^2" }}
+            [[set]]
+            name = "P"
+            sun = {{ member = "s", teeth = {sun} }}
+            planet = {{ teeth = {planet}, count = 1 }}
+            ring = {{ member = "r", teeth = {ring} }}
+            carrier = "c"
+            mesh_efficiency = {{ external = {{ forward = {forward}, backward = {backward} }}, internal = 0.99 }}
+            [[drag]]
+            name = "brake"
+            members = ["r"]
+            coulomb = "{brake} N m"
+            peak = 1.2
+            [[drag]]
+            name = "bearing"
+            members = ["c"]
+            coulomb = "{bearing} N m"
+            viscous = "0.05 N m s/rad"
+            [[scenario]]
+            name = "run"
+            duration = "1 s"
+            samples = 201
+            initial_speeds = {{ s = "{ws} rad/s", r = "{wr} rad/s" }}
+            [[scenario.source]]
+            name = "motor"
+            member = "s"
+            torque = {{ type = "sine", amplitude = "{ts} N m", frequency = "{swing} Hz" }}
+            [[scenario.source]]
+            name = "load"
+            member = "c"
+            torque = "{tc} N m"
+            "#
+        )
+    }
+}
+
+const LISTED: [&str; 3] = ["s", "r", "c"];
+
+fn speeds_differ(a: &Named<f64>, b: &Named<f64>, sense: f64) -> f64 {
+    a.iter().map(|(name, w)| (w - sense * b.get(name).expect("the same members")).abs()).fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn energy_closes_and_mirrored_or_relabelled_trains_move_alike(what in Contraption::any()) {
+        let options = Options { tolerance: 1e-12, ..Options::default() };
+        let (rows, report) = run(&what.text(1.0, LISTED), &options);
+        prop_assert_eq!(&report.outcome, &Outcome::Finished);
+        prop_assert!(open_part(&report) <= 1e-9, "{:.2e}", open_part(&report));
+        let size = rows.greatest("speed.").max(1.0);
+        let (mirrored, turned) = run(&what.text(-1.0, LISTED), &options);
+        prop_assert!(speeds_differ(&report.final_speeds_rad_s, &turned.final_speeds_rad_s, -1.0) <= 1e-8 * size);
+        prop_assert_eq!(rows.events.len(), mirrored.events.len());
+        let (_, listed) = run(&what.text(1.0, ["c", "s", "r"]), &options);
+        prop_assert!(speeds_differ(&report.final_speeds_rad_s, &listed.final_speeds_rad_s, 1.0) <= 1e-8 * size);
+    }
+
+    #[test]
+    fn fixed_steps_are_right_to_first_order(what in Contraption::any()) {
+        let text = what.text(1.0, LISTED);
+        let (rows, exact) = run(&text, &Options::default());
+        let fixed = |h: f64| {
+            let (_, report) = run(&text, &Options { method: Method::Fixed { step_s: h }, ..Options::default() });
+            speeds_differ(&exact.final_speeds_rad_s, &report.final_speeds_rad_s, 1.0)
+        };
+        // A change of mode that is late by a step changes the speed by an acceleration times that step.
+        let change = rows.greatest("acceleration.") * rows.events.len() as f64;
+        for h in [2e-3, 2e-4] {
+            let error = fixed(h);
+            prop_assert!(error <= 3.0 * h * change, "{error:.2e} at {h} s, {:.2e} allowed", 3.0 * h * change);
+        }
+    }
+}
+
+/// A rotor of 0.5 kg m² in a bearing of 3 N m, driven by a torque.
+fn rotor(torque: &str) -> String {
+    format!(
+        r#"format = 1
+        name = "rotor"
+        members = ["a"]
+        inertias = {{ a = "0.5 kg m^2" }}
+        [[drag]]
+        name = "bearing"
+        members = ["a"]
+        coulomb = "3 N m"
+        [[scenario]]
+        name = "run"
+        duration = "2 s"
+        [[scenario.source]]
+        name = "motor"
+        member = "a"
+        torque = {torque}
+        "#
+    )
+}
+
+/// Where all is held nothing limits a step but what the signals do.
+#[test]
+fn a_short_excess_breaks_away() {
+    for amplitude in [3.001, 3.01, 3.2, 4.4] {
+        let sine = format!(r#"{{ type = "sine", amplitude = "{amplitude} N m", frequency = "1 Hz" }}"#);
+        let (rows, _) = run(&rotor(&sine), &Options::default());
+        let expected = (3.0f64 / amplitude).asin() / std::f64::consts::TAU;
+        let first = &rows.events[1];
+        assert!((first.time_s - expected).abs() < 1e-9, "{amplitude}: {first:?}, not {expected}");
+        assert!(rows.events.len() >= 8, "{amplitude}: {:?}", rows.events);
+    }
+    let pulse = r#"{ type = "expression", formula = "4/(1+((t-1.3)/0.05)^2)" }"#;
+    let (rows, _) = run(&rotor(pulse), &Options::default());
+    let expected = 1.3 - 0.05 * (1.0f64 / 3.0).sqrt();
+    assert!((rows.events[1].time_s - expected).abs() < 1e-9, "{:?}", rows.events);
+    let product = r#"{ type = "product", of = [
+        { type = "ramp", height = "12.8 N m", at = "0 s", duration = "1 s" },
+        { type = "ramp", offset = 1, height = -1, at = "0 s", duration = "1 s" } ] }"#;
+    let (rows, _) = run(&rotor(&product.replace('\n', " ")), &Options::default());
+    let expected = 0.5 - (0.25f64 - 3.0 / 12.8).sqrt();
+    assert!((rows.events[1].time_s - expected).abs() < 1e-9, "{:?}", rows.events);
+}
+
+/// The work of a torque over time is controlled like a state: t² on 0.5 kg m² alone does 64/9 J in 2 s.
+#[test]
+fn work_is_as_exact_as_motion() {
+    let text = rotor(r#"{ type = "expression", formula = "t^2" }"#).replace("3 N m", "0 N m");
+    let (_, report) = run(&text, &Options::default());
+    let work = report.energy.as_ref().expect("counted").sources[0].energy_j;
+    assert!((work - 64.0 / 9.0).abs() < 1e-8, "{work}");
+    assert!(open_part(&report) < 1e-9);
+}
+
+/// A speed told by a formula has its derivative, also late.
+#[test]
+fn a_prescribed_formula_has_its_acceleration() {
+    let text = rotor("\"0 N m\"")
+        .replace("3 N m", "0 N m")
+        .replace("torque = \"0 N m\"", r#"speed = { type = "expression", formula = "100+sin(100*t)" }"#)
+        .replace("duration = \"2 s\"", "start = \"1000 s\"\nend = \"1000.1 s\"");
+    let (rows, report) = run(&text, &Options::default());
+    let torque = rows.of("torque.motor").next().unwrap();
+    let expected = 0.5 * 100.0 * (100.0 * 1000.0f64).cos();
+    assert!((torque - expected).abs() < 1e-6 * expected.abs(), "{torque}, not {expected}");
+    assert!(open_part(&report) < 1e-9, "{}", open_part(&report));
+}
+
+/// A pair of 60 % with a drag that holds more than it slides with: both hold it, and it breaks away at
+/// `3/(3 · 0.6) + 1.3` N m.
+#[test]
+fn teeth_and_friction_hold_together_in_fixed_steps() {
+    let text = r#"format = 1
+        name = "pair"
+        members = ["a", "b"]
+        terminals = ["a", "b"]
+        inertias = { a = "0.01 kg m^2", b = "0.05 kg m^2" }
+        [[mesh]]
+        name = "m"
+        gears = [ { member = "a", teeth = 20 }, { member = "b", teeth = 60 } ]
+        efficiency = 0.6
+        [[drag]]
+        name = "d"
+        members = ["a"]
+        coulomb = "1 N m"
+        peak = 1.3
+        [[scenario]]
+        name = "run"
+        duration = "4 s"
+        [[scenario.source]]
+        member = "a"
+        torque = { type = "ramp", height = "4 N m", at = "0 s", duration = "4 s" }
+        [[scenario.source]]
+        member = "b"
+        torque = "3 N m"
+        "#;
+    let expected = 3.0 / (3.0 * 0.6) + 1.3;
+    for (method, within) in
+        [(Method::Adaptive, 1e-9), (Method::Fixed { step_s: 1e-3 }, 2e-3), (Method::Fixed { step_s: 1e-4 }, 2e-4)]
+    {
+        let (rows, _) = run(text, &Options { method, ..Options::default() });
+        let first = &rows.events[1];
+        assert!((first.time_s - expected).abs() < within, "{method:?}: {first:?}, not {expected}");
+    }
+}
+
+/// Where prescribed speeds alone move a friction, it turns round with them.
+#[test]
+fn friction_follows_a_prescribed_speed_in_fixed_steps() {
+    let text = r#"format = 1
+        name = "driven set"
+        members = ["s", "c"]
+        terminals = ["s", "c"]
+        inertias = { c = "0.4 kg m^2" }
+        [[set]]
+        name = "P"
+        sun = { member = "s", teeth = 30 }
+        planet = { teeth = 20 }
+        ring = { member = "frame", teeth = 70 }
+        carrier = "c"
+        mesh_efficiency = 0.9
+        [[drag]]
+        name = "seal"
+        members = ["c"]
+        coulomb = "2 N m"
+        [[scenario]]
+        name = "run"
+        duration = "2 s"
+        [[scenario.source]]
+        member = "s"
+        speed = { type = "table", points = [["0 s", "10 rad/s"], ["1 s", "-10 rad/s"], ["2 s", "-10 rad/s"]] }
+        [[scenario.source]]
+        member = "c"
+        torque = "30 N m"
+        "#;
+    let (_, exact) = run(text, &Options::default());
+    let (_, steps) = run(text, &Options { method: Method::Fixed { step_s: 1e-4 }, ..Options::default() });
+    for (a, b) in
+        exact.energy.as_ref().expect("counted").losses.iter().zip(&steps.energy.as_ref().expect("counted").losses)
+    {
+        assert_eq!(a.name, b.name);
+        assert!((a.energy_j - b.energy_j).abs() < 2e-3 * a.energy_j, "{}: {} and {} J", a.name, a.energy_j, b.energy_j);
+    }
+}
+
+#[test]
+fn what_cannot_move_is_refused() {
+    let text = rotor("\"4 N m\"").replace("duration = \"2 s\"", "duration = \"2 s\"\nfixed = [\"a\"]");
+    let error = simulate(&train(&text), "run", &Options::default(), &mut ()).unwrap_err();
+    assert!(error.to_string().contains("nothing can move"), "{error}");
+}
+
+/// What lies beyond a formula's domain, and what signals may not follow.
+#[test]
+fn formulas_beyond_their_domain_end_the_run() {
+    let root = r#"{ type = "expression", formula = "sqrt(0.5 - t)" }"#;
+    let motor = format!(
+        "{}\n[[scenario.source]]\nmember = \"a\"\nlinear = {{ torque = \"0 N m\", slope = \"1 N m s/rad\" }}",
+        rotor(root)
+    );
+    for method in [Method::Adaptive, Method::Fixed { step_s: 1e-3 }] {
+        let (_, report) = run(&motor, &Options { method, ..Options::default() });
+        assert!(matches!(report.outcome, Outcome::NotConverged(_)), "{method:?}: {:?}", report.outcome);
+    }
+    let follows =
+        rotor("\"0 N m\"").replace("torque = \"0 N m\"", r#"speed = { type = "expression", formula = "10 + w_a" }"#);
+    let error = simulate(&train(&follows), "run", &Options::default(), &mut ()).unwrap_err();
+    assert!(error.to_string().contains("cannot follow the speeds"), "{error}");
+}
+
+/// The lost energy of the rows is that of the report.
+#[test]
+fn the_rows_end_with_the_losses_of_the_report() {
+    let (rows, report) =
+        run(&rotor(r#"{ type = "sine", amplitude = "9 N m", frequency = "1 Hz" }"#), &Options::default());
+    let lost: f64 = report.energy.as_ref().expect("counted").losses.iter().map(|l| l.energy_j).sum();
+    let last = rows.of("lost_energy").last().unwrap();
+    assert!(lost > 1.0 && (last - lost).abs() < 1e-9 * lost, "{last} and {lost}");
+    let quiet = Options { energies: false, method: Method::Fixed { step_s: 1e-3 }, ..Options::default() };
+    let (_, report) = run(&rotor("\"4 N m\""), &quiet);
+    assert!(report.energy.is_none() && report.outcome == Outcome::Finished);
+}
+
+/// A run and its vibrations read back as they were written; another contract does not.
+#[test]
+fn answers_read_back() {
+    let text = rotor("\"4 N m\"");
+    let (rows, mut report) = run(&text, &Options::default());
+    report.event_count = rows.events.len();
+    report.events = rows.events;
+    assert!(report.events[0].is_start() && report.events.iter().skip(1).all(|e| !e.is_start()));
+    report.rows = Some(vec![vec![Some(0.0), None]]);
+    let written = serde_json::to_string(&report).expect("plain data");
+    assert_eq!(serde_json::from_str::<RunReport>(&written).expect("a run"), report);
+    let vibrations = willis::dynamics::modes(&train(&text), None, &[]).expect("an inertia");
+    let written_modes = serde_json::to_string(&vibrations).expect("plain data");
+    let read: willis::dynamics::ModesReport = serde_json::from_str(&written_modes).expect("vibrations");
+    assert_eq!(read, vibrations);
+    assert!(serde_json::from_str::<willis::dynamics::ModesReport>(&written).is_err());
+    // Names in code are those of the contract.
+    for kind in ["time", "speed", "angle", "acceleration", "torque", "power", "mode", "twist", "efficiency", "energy"] {
+        let read: ColumnKind = serde_json::from_value(kind.into()).expect("a kind");
+        assert_eq!(read.name(), kind);
+        assert_eq!(serde_json::to_value(read.unit()).expect("plain data"), read.unit().symbol());
+    }
+}
+
+/// Nothing acts on it: there is no torque in the equations at all, and the speed stays.
+#[test]
+fn a_rotor_that_nothing_acts_on_keeps_its_speed() {
+    let text = r#"
+        format = 1
+        name = "lone rotor"
+        members = ["rotor"]
+        inertias = { rotor = "2 kg m^2" }
+        [[scenario]]
+        name = "run"
+        duration = "3 s"
+        initial_speeds = { rotor = "10 rad/s" }
+    "#;
+    for method in [Method::Adaptive, Method::Fixed { step_s: 1e-2 }] {
+        let (rows, report) = run(text, &Options { method, ..Options::default() });
+        assert_eq!(report.outcome, Outcome::Finished);
+        assert!(rows.of("speed").all(|w| (w - 10.0).abs() < 1e-12));
+        assert_eq!(report.energy.expect("counted").residual_j, 0.0);
+    }
+}

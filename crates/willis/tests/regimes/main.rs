@@ -1,0 +1,8 @@
+//! Every way a train can run: regimes, their limits, their formulas and the code written of them.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod atlas;
+mod emitted;
+mod limits;

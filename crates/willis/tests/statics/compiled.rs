@@ -1,0 +1,469 @@
+//! A compiled train gives the answers of the analysis, one point or many, and allocates nothing.
+
+use allocation_counter::measure;
+use willis::analysis::{Selection, Verdict, analyze};
+use willis::compiled::{CompiledTrain, Duty, Output, PointVerdict, Points, PowerLoss, ShaftDrag};
+use willis::diagnostic::Code;
+use willis::train::{OperationSpec, SetSpec, Specification, Train};
+use willis::units::{AngularSpeed, Torque};
+
+use crate::common::{self, Uniform};
+
+fn power_split() -> Specification {
+    Train::builder("power split")
+        .members(["sun", "ring", "carrier"])
+        .terminals(["sun", "ring", "carrier"])
+        .set(SetSpec::simple("P1", ("sun", 30), ("ring", 70), "carrier").mesh_efficiency(0.985))
+}
+
+/// Two coupled sets with two freedoms and three terminals: sign patterns change with the speeds.
+fn compound_split() -> Specification {
+    Train::builder("compound split")
+        .members(["a", "b", "c", "d"])
+        .terminals(["a", "b", "d"])
+        .set(SetSpec::simple("P1", ("a", 30), ("b", 78), "c").mesh_efficiency(0.98))
+        .set(SetSpec::simple("P2", ("b", 31), ("c", 83), "d").mesh_efficiency(0.97))
+}
+
+#[test]
+fn compiled_equals_analysis_with_two_freedoms() {
+    let mut random = Uniform(1);
+    for (builder, speeds, torque, open) in [
+        (power_split(), ["sun", "carrier"], "sun", ["ring", "carrier"]),
+        (power_split(), ["carrier", "ring"], "ring", ["sun", "carrier"]),
+        (power_split(), ["sun", "ring"], "carrier", ["sun", "ring"]),
+        (compound_split(), ["a", "d"], "a", ["b", "d"]),
+    ] {
+        let duty = Duty::new(speeds, [torque])
+            .output(Output::Torque(open[0].into()))
+            .output(Output::Torque(open[1].into()))
+            .output(Output::Loss)
+            .output(Output::Efficiency)
+            .output(Output::Speed(open[0].into()));
+        let compiled = builder.clone().build().unwrap().compile(&duty).unwrap();
+        let mut work = compiled.workspace();
+        for k in 0..300 {
+            let w = match k % 10 {
+                // At rest relative to each other, one at rest, all at rest but one.
+                0 => [70.0, 70.0],
+                1 => [0.0, random.between(-50.0, 50.0).round()],
+                _ => [random.between(-400.0, 400.0).round(), random.between(-150.0, 150.0).round()],
+            };
+            let t = if k == 7 { 0.0 } else { random.between(-200.0, 200.0).round() };
+            let train = builder
+                .clone()
+                .operation(
+                    OperationSpec::new("x")
+                        .speed(speeds[0], AngularSpeed::rad_s(w[0]))
+                        .speed(speeds[1], AngularSpeed::rad_s(w[1]))
+                        .torque(torque, Torque::n_m(t)),
+                )
+                .build()
+                .unwrap();
+            let a = analyze(&train, &Selection::default()).unwrap();
+            let o = &a.operations[0];
+            let mut out = [0.0; 5];
+            let verdict = compiled.evaluate(&w, &[t], &mut work, &mut out);
+            assert_eq!(verdict, PointVerdict::Unique);
+            let s = &o.solutions[0];
+            let member = |name: &str| s.members.get(name).unwrap();
+            let close =
+                |x: f64, y: f64, size: f64| assert!((x - y).abs() <= 1e-11 * size.max(1e-9), "{w:?} {t}: {x} {y}");
+            close(out[0], member(open[0]).torque_n_m.unwrap(), 1e3);
+            close(out[1], member(open[1]).torque_n_m.unwrap(), 1e3);
+            close(out[2], s.loss_w, 1e5);
+            // Balanced to nothing by round-off: no efficiency to compare.
+            if s.input_power_w > 1e-6 {
+                close(out[3], s.efficiency.unwrap(), 1.0);
+            }
+            close(out[4], member(open[0]).speed_rad_s.unwrap(), 1e3);
+        }
+    }
+}
+
+#[test]
+fn compiled_equals_analysis_in_every_gear() {
+    let mut random = Uniform(2);
+    for name in ["zf-8hp70", "zf-6hp26", "ford-10r80", "mercedes-9g-tronic", "ford-aod", "simpson-ford-c4"] {
+        let train = common::train(name);
+        let input = train.member_name(train.input().unwrap()).to_owned();
+        let output = train.member_name(train.output().unwrap()).to_owned();
+        for state in train.states() {
+            let mut duty = Duty::new([input.as_str()], [input.as_str()])
+                .state(&state.name)
+                .output(Output::Torque(output.clone()))
+                .output(Output::Efficiency);
+            let elements: Vec<String> =
+                state.engaged.iter().map(|e| train.shift_elements()[e.index()].name.clone()).collect();
+            for e in &elements {
+                duty = duty.output(Output::ShiftElementTorque(e.clone()));
+            }
+            let compiled = train.compile(&duty).unwrap();
+            assert!(compiled.is_certified());
+            let mut work = compiled.workspace();
+            let mut out = vec![0.0; compiled.outputs()];
+            for _ in 0..4 {
+                let (w, t) = (random.between(50.0, 500.0).round(), random.between(-200.0, 400.0).round());
+                let text = common::example(name);
+                let text = format!(
+                    "{text}\n[[operation]]\nname = \"one more\"\nstate = \"{}\"\nspeeds = {{ {input} = \"{w} rad/s\" }}\ntorques = {{ {input} = \"{t} N m\" }}\n",
+                    state.name
+                );
+                let selection = Selection { operation: Some("one more".into()), ..Selection::default() };
+                let a = analyze(&Train::from_toml(&text).unwrap(), &selection).unwrap();
+                let s = &a.operations[0].solutions[0];
+                compiled.evaluate(&[w], &[t], &mut work, &mut out);
+                let close = |x: f64, y: f64| {
+                    assert!((x - y).abs() <= 1e-9 * y.abs().max(1.0), "{name} {}: {x} {y}", state.name)
+                };
+                close(out[0], s.members.get(&output).unwrap().torque_n_m.unwrap());
+                close(out[1], s.efficiency.unwrap());
+                for (k, e) in elements.iter().enumerate() {
+                    if let Some(torque) = s.shift_elements.get(e).unwrap().torque_n_m {
+                        close(out[2 + k], torque);
+                    } else {
+                        assert!(out[2 + k].is_nan());
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn with_drag(duty: Duty, members: &[&str]) -> Duty {
+    members
+        .iter()
+        .enumerate()
+        .fold(duty, |d, (k, m)| d.drag(m, ShaftDrag { coulomb: 0.2 + 0.1 * k as f64, viscous: 1e-3 * (k + 1) as f64 }))
+}
+
+#[test]
+fn a_batch_equals_its_points() {
+    let n = 5000;
+    let mut random = Uniform(3);
+    let column = |low: f64, high: f64, random: &mut Uniform| -> Vec<f64> {
+        (0..n).map(|i| if i % 97 == 0 { 0.0 } else { random.between(low, high) }).collect()
+    };
+    let (w0, w1, t) =
+        (column(-400.0, 400.0, &mut random), column(-150.0, 150.0, &mut random), column(-200.0, 200.0, &mut random));
+    let eight = common::train("zf-8hp70");
+    let shafts = ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"];
+    let mut duties: Vec<(Train, Duty, usize)> = Vec::new();
+    for gear in ["1", "5", "8", "R"] {
+        let duty = with_drag(Duty::new(["input"], ["input"]).state(gear), &shafts)
+            .output(Output::Torque("output".into()))
+            .output(Output::MeshTorque("P4.sun-planet".into()))
+            .output(Output::Speed("output".into()))
+            .output(Output::Loss)
+            .output(Output::Efficiency);
+        duties.push((eight.clone(), duty, 1));
+    }
+    for outputs in [
+        vec![Output::Torque("ring".into()), Output::Torque("carrier".into()), Output::Loss, Output::Efficiency],
+        vec![Output::Efficiency],
+        vec![Output::Loss, Output::Torque("carrier".into()), Output::Loss, Output::Torque("sun".into())],
+        vec![Output::Speed("ring".into()), Output::Efficiency],
+    ] {
+        let mut duty = with_drag(Duty::new(["sun", "carrier"], ["sun"]), &["sun", "ring", "carrier"]);
+        for o in outputs {
+            duty = duty.output(o);
+        }
+        duties.push((power_split().build().unwrap(), duty, 2));
+    }
+    let duty = with_drag(Duty::new(["a", "d"], ["a"]), &["a", "c"])
+        .output(Output::Torque("b".into()))
+        .output(Output::Efficiency);
+    duties.push((compound_split().build().unwrap(), duty, 2));
+    for (train, duty, freedoms) in duties {
+        let compiled = train.compile(&duty).unwrap();
+        let mut work = compiled.workspace();
+        let speeds: Vec<&[f64]> = [&w0[..], &w1[..]][..freedoms].to_vec();
+        let torques = [&t[..]];
+        let points = Points { speeds: &speeds, torques: &torques };
+        let mut out = vec![vec![f64::NAN; n]; compiled.outputs()];
+        let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+        assert_eq!(compiled.evaluate_batch(&points, &mut work, &mut slices), 0);
+        let mut one = vec![0.0; compiled.outputs()];
+        for i in 0..n {
+            let w: Vec<f64> = speeds.iter().map(|s| s[i]).collect();
+            compiled.evaluate(&w, &[t[i]], &mut work, &mut one);
+            for (k, o) in out.iter().enumerate() {
+                let (x, y) = (o[i], one[k]);
+                assert!((x - y).abs() <= 1e-10 * y.abs().max(1.0), "{duty:?} point {i} {w:?} {}: {x} {y}", t[i]);
+            }
+        }
+        let mut sums = vec![0.0; compiled.outputs()];
+        compiled.sum_batch(&points, &mut work, &mut sums);
+        for (s, o) in sums.iter().zip(&out) {
+            let size: f64 = o.iter().map(|x| x.abs()).sum();
+            assert!((s - o.iter().sum::<f64>()).abs() <= 1e-11 * size);
+        }
+    }
+}
+
+#[test]
+fn a_point_allocates_nothing() {
+    let train = common::train("zf-8hp70");
+    let duty = with_drag(Duty::new(["input"], ["input"]).state("5"), &["input", "output", "c3"])
+        .output(Output::Torque("output".into()))
+        .output(Output::Efficiency);
+    for duty in [duty.clone(), with_laws(duty)] {
+        let compiled = train.compile(&duty).unwrap();
+        let mut work = compiled.workspace();
+        let mut out = [0.0; 2];
+        let (w, t): (Vec<f64>, Vec<f64>) = (0..1000).map(|i| (i as f64 - 300.0, 500.0 - i as f64)).unzip();
+        let (mut a, mut b) = (vec![0.0; 1000], vec![0.0; 1000]);
+        let (speeds, torques) = ([&w[..]], [&t[..]]);
+        let mut slices = [&mut a[..], &mut b[..]];
+        let count = measure(|| {
+            for i in 0..1000 {
+                compiled.evaluate(&[w[i]], &[t[i]], &mut work, &mut out);
+            }
+            compiled.evaluate_batch(&Points { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
+        });
+        assert_eq!(count.count_total, 0);
+    }
+}
+
+/// Where the analysis finds two equilibria or none, the compiled train says so too.
+#[test]
+fn verdicts_of_points() {
+    let train = common::train("two-efficiencies");
+    let duty = Duty::new(["input"], ["output"]).output(Output::Efficiency);
+    let compiled = train.compile(&duty).unwrap();
+    assert!(!compiled.is_certified());
+    let mut work = compiled.workspace();
+    let mut out = [0.0];
+    // A resisting load has two equilibria, seen with either sign of the speed.
+    assert_eq!(compiled.evaluate(&[100.0], &[-10.0], &mut work, &mut out), PointVerdict::Multiple);
+    assert_eq!(compiled.evaluate(&[-100.0], &[10.0], &mut work, &mut out), PointVerdict::Multiple);
+    // Driven backwards it locks.
+    assert_eq!(compiled.evaluate(&[100.0], &[10.0], &mut work, &mut out), PointVerdict::Locked);
+    assert!(out[0].is_nan());
+    let (w, t) = ([100.0; 7], [-10.0, 10.0, -1.0, 5.0, -5.0, 1.0, -3.0]);
+    let mut column = [0.0; 7];
+    let odd = compiled.evaluate_batch(&Points { speeds: &[&w], torques: &[&t] }, &mut work, &mut [&mut column]);
+    assert_eq!(odd, 7);
+    assert!(column[1].is_nan() && column[0] > 0.0);
+    let a = analyze(&train, &Selection::default()).unwrap();
+    assert_eq!(a.ratios.0[0].1.drive.verdict, Verdict::Multiple);
+}
+
+const SHAFTS: [&str; 8] = ["input", "s12", "r1", "c1r4", "r2s3", "r3s4", "c3", "output"];
+/// Sun and carrier of the sets of the eight-speed train.
+const SETS: [(&str, &str); 4] = [("s12", "c1r4"), ("s12", "input"), ("r2s3", "c3"), ("r3s4", "output")];
+/// The law of `benches/baselines/automatic.py`.
+const LAW: PowerLoss = PowerLoss { coefficient: 0.02, exponent: 0.2, torque: 1.0, speed: 1.0, most: 0.1 };
+
+fn by_law(law: &PowerLoss, torque: f64, speed: f64) -> f64 {
+    law.coefficient * ((torque.abs() + law.torque) / (speed.abs() + law.speed)).powf(law.exponent)
+}
+
+/// The eight-speed train with other basic efficiencies of its sets.
+fn eight_speed(etas: [f64; 4]) -> Train {
+    let mut text = common::example("zf-8hp70");
+    for eta in etas {
+        text = text.replacen(
+            "mesh_efficiency = { external = 0.98, internal = 0.99 }",
+            &format!("basic_efficiency = {eta:?}"),
+            1,
+        );
+    }
+    Train::from_toml(&text).unwrap()
+}
+
+fn eight_speed_duty(gear: &str) -> Duty {
+    let mut duty = Duty::new(["input"], ["input"]).state(gear);
+    for m in SHAFTS {
+        duty = duty.drag(m, ShaftDrag { coulomb: 0.2, viscous: 1e-3 });
+    }
+    for s in 1..=4 {
+        duty = duty.output(Output::MeshTorque(format!("P{s}.sun-planet")));
+    }
+    for m in SHAFTS {
+        duty = duty.output(Output::Speed(m.into()));
+    }
+    duty.output(Output::Torque("output".into())).output(Output::Loss).output(Output::Efficiency)
+}
+
+fn with_laws(duty: Duty) -> Duty {
+    (1..=4).fold(duty, |d, s| d.mesh_loss(&format!("P{s}"), LAW))
+}
+
+fn relative_speeds(out: &[f64]) -> [f64; 4] {
+    let speed = |m: &str| out[4 + SHAFTS.iter().position(|s| *s == m).unwrap()];
+    SETS.map(|(sun, carrier)| speed(sun) - speed(carrier))
+}
+
+#[test]
+fn load_dependent_losses_give_the_number_of_the_baseline() {
+    let compiled = eight_speed([1.0; 4]).compile(&with_laws(eight_speed_duty("3"))).unwrap();
+    assert!(compiled.is_certified());
+    let mut out = [0.0; 15];
+    let verdict = compiled.evaluate(&[200.0], &[150.0], &mut compiled.workspace(), &mut out);
+    assert_eq!(verdict, PointVerdict::Unique);
+    assert_eq!(format!("{:.9}", out[14]), "0.974316479");
+}
+
+/// The same equilibria as constant efficiencies, read off the torques again and again.
+#[test]
+fn load_dependent_losses_are_the_fixed_point_of_constant_ones() {
+    let mut random = Uniform(11);
+    for gear in ["1", "2", "3", "4", "5", "6", "7", "8", "R"] {
+        let duty = eight_speed_duty(gear);
+        let compiled = eight_speed([1.0; 4]).compile(&with_laws(duty.clone())).unwrap();
+        assert!(compiled.is_certified(), "{gear}");
+        let mut work = compiled.workspace();
+        for k in 0..12 {
+            let (w, t) = (random.between(-500.0, 500.0), if k == 0 { 0.0 } else { random.between(-100.0, 350.0) });
+            let mut out = [0.0; 15];
+            assert_eq!(compiled.evaluate(&[w], &[t], &mut work, &mut out), PointVerdict::Unique, "{gear} {w} {t}");
+            let (mut etas, mut known) = ([1.0; 4], [0.0; 15]);
+            for _ in 0..30 {
+                let constant = eight_speed(etas).compile(&duty).unwrap();
+                assert_eq!(constant.evaluate(&[w], &[t], &mut constant.workspace(), &mut known), PointVerdict::Unique);
+                let v = relative_speeds(&known);
+                let next: [f64; 4] = std::array::from_fn(|s| 1.0 - by_law(&LAW, known[s], v[s]));
+                let settled = (0..4).all(|s| (next[s] - etas[s]).abs() < 1e-15);
+                etas = next;
+                if settled {
+                    break;
+                }
+            }
+            let drag: f64 = (0..8).map(|m| 0.2 * known[4 + m].abs() + 1e-3 * known[4 + m].powi(2)).sum();
+            let loss = known[13] - drag;
+            assert!(
+                (out[13] - known[13]).abs() <= 1e-9 * loss + 1e-12 * (t * w).abs(),
+                "{gear} {w} {t}: {} {}",
+                out[13],
+                known[13]
+            );
+            // Torques times speeds are powers.
+            for s in [0, 1, 2, 3, 12] {
+                let error = (out[s] - known[s]).abs() * w.abs();
+                assert!(error <= 1e-8 * loss + 1e-12 * (t * w).abs(), "{gear} {w} {t} {s}: {} {}", out[s], known[s]);
+            }
+            // Power closes: what enters is lost in drag and in the meshes, each by its law.
+            let v = relative_speeds(&out);
+            let meshes: f64 = (0..4)
+                .map(|s| {
+                    let (power, loss) = (out[s] * v[s], by_law(&LAW, out[s], v[s]));
+                    if power >= 0.0 { loss * power } else { -power * loss / (1.0 - loss) }
+                })
+                .sum();
+            assert!((out[13] - drag - meshes).abs() <= 1e-9 * meshes + 1e-12 * (t * w).abs(), "{gear} {w} {t}");
+        }
+    }
+}
+
+/// A law for each mesh instead of each set, mixed with constant efficiencies, two freedoms, points at
+/// rest: one point and many are the same bits.
+#[test]
+fn load_dependent_batches_are_their_points() {
+    let n = 3000;
+    let mut random = Uniform(12);
+    let mut column = |low: f64, high: f64| -> Vec<f64> {
+        (0..n).map(|i| if i % 89 == 0 { 0.0 } else { random.between(low, high) }).collect()
+    };
+    let (w0, w1, t) = (column(-400.0, 400.0), column(-150.0, 150.0), column(-200.0, 200.0));
+    let mut duties = Vec::new();
+    for gear in ["1", "3", "5", "R"] {
+        duties.push((eight_speed([1.0; 4]), with_laws(eight_speed_duty(gear)), 1));
+    }
+    let steep = PowerLoss { exponent: 0.6, torque: 0.0, speed: 0.5, ..LAW };
+    let duty = with_drag(Duty::new(["a", "d"], ["a"]), &["a", "c"])
+        .output(Output::Torque("b".into()))
+        .output(Output::Efficiency);
+    duties.push((compound_split().build().unwrap(), duty.clone().mesh_loss("P2", LAW), 2));
+    let duty = duty.mesh_loss("P1.sun-planet", LAW).mesh_loss("P1.planet-ring", steep).mesh_loss("P2", steep);
+    duties.push((compound_split().build().unwrap(), duty, 2));
+    for (train, duty, freedoms) in duties {
+        let compiled = train.compile(&duty).unwrap();
+        assert!(compiled.is_certified());
+        let mut work = compiled.workspace();
+        let speeds: Vec<&[f64]> = [&w0[..], &w1[..]][..freedoms].to_vec();
+        let torques = [&t[..]];
+        let mut out = vec![vec![f64::NAN; n]; compiled.outputs()];
+        let mut slices: Vec<&mut [f64]> = out.iter_mut().map(|o| &mut o[..]).collect();
+        let odd = compiled.evaluate_batch(&Points { speeds: &speeds, torques: &torques }, &mut work, &mut slices);
+        let mut one = vec![0.0; compiled.outputs()];
+        let mut odd_points = 0;
+        for i in 0..n {
+            let w: Vec<f64> = speeds.iter().map(|s| s[i]).collect();
+            let verdict = compiled.evaluate(&w, &[t[i]], &mut work, &mut one);
+            assert!(matches!(verdict, PointVerdict::Unique | PointVerdict::OutOfRange), "{verdict:?} {w:?} {}", t[i]);
+            odd_points += usize::from(verdict != PointVerdict::Unique);
+            for (k, o) in out.iter().enumerate() {
+                assert!(one[k] == o[i], "{duty:?} point {i} {w:?} {} output {k}: {} {}", t[i], o[i], one[k]);
+            }
+        }
+        assert_eq!(odd, odd_points);
+    }
+}
+
+/// Two equilibria, or none, also with losses that depend on load; and what cannot be decided says so.
+#[test]
+fn load_dependent_verdicts() {
+    let train = common::train("two-efficiencies");
+    let compiled = |exponent: f64, most: [f64; 2]| {
+        let law = |coefficient, most| PowerLoss { coefficient, exponent, torque: 1.0, speed: 1.0, most };
+        let duty = Duty::new(["input"], ["output"]).output(Output::Efficiency);
+        train.compile(&duty.mesh_loss("A", law(0.02, most[0])).mesh_loss("B", law(0.08, most[1]))).unwrap()
+    };
+    let verdict = |compiled: &CompiledTrain, load: f64| {
+        let mut out = [0.0];
+        (compiled.evaluate(&[100.0], &[load], &mut compiled.workspace(), &mut out), out[0])
+    };
+    // Without load in it: what the analysis says of the same constant losses.
+    let constant = compiled(0.0, [0.1; 2]);
+    assert!(!constant.is_certified());
+    let (multiple, efficiency) = verdict(&constant, -10.0);
+    assert!(multiple == PointVerdict::Multiple && (efficiency - 0.0428961393).abs() < 1e-9);
+    let (locked, efficiency) = verdict(&constant, 10.0);
+    assert!(locked == PointVerdict::Locked && efficiency.is_nan());
+    let (w, t) = ([100.0; 3], [-10.0, 10.0, -1.0]);
+    let mut column = [0.0; 3];
+    let points = Points { speeds: &[&w], torques: &[&t] };
+    assert_eq!(constant.evaluate_batch(&points, &mut constant.workspace(), &mut [&mut column]), 3);
+    assert!(column[1].is_nan() && column[0] > 0.0);
+    assert_eq!(verdict(&compiled(0.002, [0.021, 0.083]), -10.0).0, PointVerdict::Multiple);
+    assert_eq!(verdict(&compiled(0.05, [0.03, 0.1]), -10.0).0, PointVerdict::Undecided);
+
+    // A law that reaches its ceiling.
+    let duty = Duty::new(["sun", "carrier"], ["sun"]).output(Output::Torque("ring".into()));
+    let split = power_split().build().unwrap().compile(&duty.mesh_loss("P1", PowerLoss { most: 0.03, ..LAW })).unwrap();
+    let mut work = split.workspace();
+    let mut out = [0.0];
+    assert_eq!(split.evaluate(&[100.0, 0.0], &[50.0], &mut work, &mut out), PointVerdict::Unique);
+    for t in [1e4, -1e4] {
+        assert_eq!(split.evaluate(&[100.0, 0.0], &[t], &mut work, &mut out), PointVerdict::OutOfRange);
+        let rho = if t > 0.0 { 0.97 } else { 1.0 / 0.97 };
+        assert!((out[0] / (7.0 / 3.0 * rho * t) - 1.0).abs() < 1e-12);
+    }
+    assert_eq!(split.evaluate(&[f64::NAN, 0.0], &[50.0], &mut work, &mut out), PointVerdict::NotConverged);
+}
+
+#[test]
+fn laws_that_cannot_be() {
+    let code = |train: &Train, losses: &[(&str, PowerLoss)]| {
+        let duty = Duty::new(["sun", "carrier"], ["sun"]);
+        let duty = losses.iter().fold(duty, |d, (name, law)| d.mesh_loss(name, *law));
+        train.compile(&duty).unwrap_err().iter().next().unwrap().code
+    };
+    let train = power_split().build().unwrap();
+    assert_eq!(code(&train, &[("P2", LAW)]), Code::UnknownName);
+    assert_eq!(code(&train, &[("P1", LAW), ("P1", LAW)]), Code::DuplicateName);
+    // A law for one mesh takes the set apart.
+    assert_eq!(code(&train, &[("P1", LAW), ("P1.sun-planet", LAW)]), Code::Unfit);
+    for law in [
+        PowerLoss { coefficient: -0.01, ..LAW },
+        PowerLoss { coefficient: f64::NAN, ..LAW },
+        PowerLoss { exponent: 1.0, ..LAW },
+        PowerLoss { torque: -1.0, ..LAW },
+        PowerLoss { speed: f64::INFINITY, ..LAW },
+        PowerLoss { most: 0.6, ..LAW },
+        PowerLoss { most: 0.0, ..LAW },
+    ] {
+        assert_eq!(code(&train, &[("P1", law)]), Code::OutOfRange);
+    }
+}

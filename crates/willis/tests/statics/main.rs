@@ -1,0 +1,10 @@
+//! One operating point: speeds, torques, verdicts, power flow, computed losses; and many, compiled.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod compiled;
+mod flow;
+mod operating_point;
+mod properties;
+mod theory;

@@ -1,0 +1,11 @@
+//! Questions over many operating points.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod compare;
+mod cycle;
+mod export;
+mod sensitivity;
+mod sweep;
+mod uncertainty;
