@@ -1,4 +1,4 @@
-//! What a question is, and the one list of them.
+//! What a question is, and what stands in the list of them.
 
 use std::any::Any;
 use std::fmt;
@@ -124,12 +124,12 @@ impl std::str::FromStr for Attachment {
     }
 }
 
-/// With the feature `clap`, what derives `clap::Args`; else anything.
+/// What a request must be to give options of a command line: `clap::Args` with the feature `clap`, nothing without it.
 #[cfg(feature = "clap")]
 pub trait Options: clap::Args {}
 #[cfg(feature = "clap")]
 impl<T: clap::Args> Options for T {}
-/// With the feature `clap`, what derives `clap::Args`; else anything.
+/// What a request must be to give options of a command line: `clap::Args` with the feature `clap`, nothing without it.
 #[cfg(not(feature = "clap"))]
 pub trait Options {}
 #[cfg(not(feature = "clap"))]
@@ -346,7 +346,8 @@ pub struct Entry {
     pub name: &'static str,
     /// How many trains it is asked of.
     pub of: Of,
-    /// Name and version of its answer: `willis-analysis-1`.
+    /// Name and version of its usual answer: `willis-analysis-1`. `draw all`, `regimes` of a family and `validate` without
+    /// a case answer with `willis-figures-1`, `willis-family-1` and `willis-cases-1`.
     pub contract: &'static str,
     /// See [`Question::TABLES`].
     pub tables: &'static [&'static str],

@@ -47,7 +47,8 @@ pub enum Verdict {
     Locked,
     /// Nothing is loaded.
     Unloaded,
-    /// The question has no determined answer: a freedom too many, or a redundant constraint.
+    /// No determined answer: a speed is missing, constraints are redundant, uniqueness is undecided, or losses did not
+    /// converge.
     Undetermined,
 }
 

@@ -34,7 +34,7 @@ pub struct Sweep {
     /// A [[study]] of the train file, instead of axes and what belongs to them.
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", conflicts_with_all = ["over", "operation", "state", "hold", "columns"]))]
     pub study: Option<String>,
-    /// The operation from which the sweep starts. Default: the file's first.
+    /// The operation from which the sweep starts. Default: the first one in the state, else the file's first.
     #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
     pub operation: Option<String>,
     /// The state of the shift table.
