@@ -93,6 +93,18 @@ impl Diagnostic {
         }
     }
 
+    /// That the train has no such thing: with the nearest name, and a hint that lists all.
+    pub fn missing<'a>(code: Code, what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Self {
+        let all = known.clone().collect::<Vec<_>>().join(", ");
+        let several = match (what.strip_suffix('y'), what.ends_with("sh")) {
+            (Some(stem), _) => format!("{stem}ies"),
+            (None, true) => format!("{what}es"),
+            (None, false) => format!("{what}s"),
+        };
+        let hint = if all.is_empty() { format!("it has no {several}") } else { format!("its {several} are: {all}") };
+        Self::new(code, "", format!("the train has no {what} `{name}`")).suggest(name, known).hint(hint)
+    }
+
     /// Adds a hint.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {

@@ -122,12 +122,7 @@ impl Simulate {
                 "the train has several scenarios, and none is named",
                 format!("name one of the scenarios with --scenario: {}", known()),
             )),
-            (Some(name), _) => all.iter().find(|s| s.name == *name).ok_or_else(|| {
-                Diagnostic::new(Code::UnknownSelection, "", format!("there is no scenario `{name}`"))
-                    .suggest(name, all.iter().map(|s| s.name.as_str()))
-                    .hint(format!("the scenarios are: {}", known()))
-                    .into()
-            }),
+            (Some(name), _) => Ok(train.find_scenario(name)?),
         }
     }
 

@@ -362,7 +362,7 @@ pub fn formulas(all: &Findings<'_>) -> Option<Section> {
                 continue;
             }
             printed += 1;
-            let heading = match f.state == willis::analysis::AS_DRAWN {
+            let heading = match f.state == willis::train::AS_DRAWN {
                 true => f.title.clone(),
                 false => format!("State {}: {}", f.state, f.title),
             };

@@ -1,7 +1,7 @@
 //! Closed formulas to take away: in words, typeset, or as code that refuses to answer outside its
 //! regime.
 
-use crate::analysis::{AS_DRAWN, Named};
+use crate::analysis::Named;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;

@@ -101,13 +101,9 @@ impl<'s> Sweep<'s> {
     pub fn of_file(model: &'s Model, name: &str) -> Result<Self, Diagnostics> {
         let studies = model.train().studies();
         let Some(k) = studies.iter().position(|s| s.name == name) else {
-            let known: Vec<&str> = studies.iter().map(|s| s.name.as_str()).collect();
-            let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no study `{name}`"));
-            let d = d.suggest(name, known.iter().copied());
-            return Err(Diagnostics::from_iter([d.hint(match known.is_empty() {
-                true => "add a [[study]] with a name and `over`".to_owned(),
-                false => format!("its studies are: {}", known.join(", ")),
-            })]));
+            let known = studies.iter().map(|s| s.name.as_str());
+            let d = Diagnostic::missing(Code::UnknownSelection, "study", name, known);
+            return Err(d.hint("a [[study]] has a name and `over`").into());
         };
         let study = &studies[k];
         let mut wrong = Diagnostics::default();
