@@ -19,7 +19,7 @@ use willis::analysis::{OperationReport, SolutionReport, operate};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
 use willis::kinematics::Configuration;
-use willis::train::{Load, MemberId, Operation, ShiftElementId, Train};
+use willis::train::{AS_DRAWN, Load, MemberId, Operation, ShiftElementId, Train};
 use willis::units::{Dimension, Quantity};
 use willis::unstable;
 

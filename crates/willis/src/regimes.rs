@@ -27,7 +27,7 @@ use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::train::{FRAME, MemberId, Train};
+use crate::train::{AS_DRAWN, FRAME, MemberId, State, Train};
 
 use atlas::atlas;
 use setup::{Pattern, Setup};

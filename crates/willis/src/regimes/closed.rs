@@ -6,7 +6,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::symbolic::{Function, Notation, Symbol};
-use crate::train::{MemberId, Train};
+use crate::train::{AS_DRAWN, MemberId, Train};
 
 use super::atlas::{arrow, atlas, drivers};
 use super::cells::{enumerate, power_signs};

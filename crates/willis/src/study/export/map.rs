@@ -1,13 +1,13 @@
 //! A gear (a state with its input and output) over speed and torque of its input.
 
 use crate::analysis::{
-    AS_DRAWN, Direction, OperationReport, Selection, SolutionReport, StateReport, Verdict, analyze, operate,
+    Direction, OperationReport, Selection, SolutionReport, StateReport, Verdict, analyze, operate,
     operate_unnamed,
 };
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::train::{Load, MemberId, Operation, Train};
+use crate::train::{AS_DRAWN, Load, MemberId, Operation, Train};
 use crate::units::{Dimension, Quantity};
 
 use super::Asked;
