@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use willis::contract::Contract;
-use willis::diagnostic::{Code, Diagnostic};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::work::Work;
 
@@ -156,6 +156,14 @@ pub trait Question: Options + Clone + fmt::Debug + Serialize + DeserializeOwned 
     /// The answer; its JSON is a contract.
     type Answer: Contract + Serialize + DeserializeOwned + JsonSchema + 'static;
 
+    /// Looks at the request alone, before it is asked: fields that exclude each other.
+    ///
+    /// # Errors
+    /// All that is wrong with it.
+    fn check(&self) -> Result<(), Diagnostics> {
+        Ok(())
+    }
+
     /// Answers it.
     ///
     /// # Errors
@@ -175,6 +183,12 @@ pub trait Question: Options + Clone + fmt::Debug + Serialize + DeserializeOwned 
     fn notes(answer: &Self::Answer) -> &[Diagnostic] {
         let _ = answer;
         &[]
+    }
+
+    /// Whether the work was stopped before its end, and the answer covers what was done until then.
+    fn is_partial(answer: &Self::Answer) -> bool {
+        let _ = answer;
+        false
     }
 
     /// The answer in one of [`Question::FORMS`].
@@ -250,6 +264,9 @@ pub trait Answer {
     /// See [`Question::notes`].
     fn notes(&self) -> &[Diagnostic];
 
+    /// See [`Question::is_partial`].
+    fn is_partial(&self) -> bool;
+
     /// See [`Question::write`].
     ///
     /// # Errors
@@ -287,6 +304,10 @@ impl<Q: Question> Answer for Answered<'_, Q> {
 
     fn notes(&self) -> &[Diagnostic] {
         Q::notes(&self.answer)
+    }
+
+    fn is_partial(&self) -> bool {
+        Q::is_partial(&self.answer)
     }
 
     fn write(&self, form: &str) -> Result<Vec<File>, Refusal> {
@@ -334,6 +355,7 @@ impl<Q: Question> Request for Q {
             let message = format!("`{}` is asked of {wanted}, here are {}", Q::NAME, of.len());
             return Err(Diagnostic::new(Code::UnknownSelection, "", message).into());
         }
+        self.check()?;
         let answer = Question::ask(self, of, work)?;
         Ok(Box::new(Answered { question: self, answer, of }))
     }

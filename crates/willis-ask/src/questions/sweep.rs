@@ -4,10 +4,11 @@ mod text;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use willis::diagnostic::Diagnostic;
+use willis::diagnostic::{Diagnostic, Diagnostics};
 use willis::study::{self, ColumnTable, Hold, SweepMethod, SweepReport, SweepRequest};
 use willis::work::Work;
 
+use super::names;
 use crate::table::Table;
 use crate::{Given, Question, Refusal};
 
@@ -127,6 +128,16 @@ impl Question for Sweep {
     const NAME: &'static str = "sweep";
     const TABLES: &'static [&'static str] = &["points"];
     type Answer = SweepAnswer;
+
+    fn check(&self) -> Result<(), Diagnostics> {
+        names::apart(&[
+            [("study", self.study.is_some()), ("over", !self.over.is_empty())],
+            [("study", self.study.is_some()), ("operation", self.operation.is_some())],
+            [("study", self.study.is_some()), ("state", self.state.is_some())],
+            [("study", self.study.is_some()), ("hold", self.hold != Held::AsGiven)],
+            [("study", self.study.is_some()), ("columns", !self.columns.is_empty())],
+        ])
+    }
 
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<SweepAnswer, Refusal> {
         let model = &of[0].model;

@@ -134,7 +134,7 @@ impl<'s> Question<'s> {
                 Hold::Output => Err(refuse(
                     Code::Unfit,
                     "there is no operation whose output could be held".into(),
-                    "name one with --operation, or prescribe `output.torque` itself",
+                    "name one (`operation`), or prescribe `output.torque` itself",
                 )),
                 _ => Ok(()),
             };

@@ -71,7 +71,7 @@ impl<'s> Sweep<'s> {
         let mut wrong = Diagnostics::default();
         if axes.is_empty() {
             let d = Diagnostic::new(Code::BadAxis, "", "nothing varies");
-            wrong.push(d.hint("name an axis: --over \"input.speed=500 rpm..6000 rpm:50\""));
+            wrong.push(d.hint("name an axis in `over`, such as \"input.speed=500 rpm..6000 rpm:50\""));
         }
         for (k, axis) in axes.iter().enumerate() {
             if axes[..k].iter().any(|a| a.target == axis.target) {

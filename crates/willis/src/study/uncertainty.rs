@@ -326,7 +326,7 @@ impl<'s> UncertaintyPlan<'s> {
                 let message = "nothing that the file gives is uncertain by itself: no efficiency below 1, no roughness, \
                                no oil, no computed friction";
                 let d = Diagnostic::new(Code::BadAxis, "", message);
-                let hint = "name what is uncertain: --vary \"P1.mesh_efficiency=0.985..0.995\"";
+                let hint = "name what is uncertain in `vary`, such as \"P1.mesh_efficiency=0.985..0.995\"";
                 return Err([d.hint(hint)].into_iter().collect());
             }
         }

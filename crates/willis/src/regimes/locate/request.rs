@@ -80,7 +80,7 @@ fn operation(train: &Train, name: &str, given: &mut Given, errors: &mut Diagnost
                     "operation `{name}` prescribes a power on {}; a place needs torques",
                     train.member_name(*m)
                 );
-                errors.push(Diagnostic::new(Code::Unfit, "", text).hint("give the torque with --torques"));
+                errors.push(Diagnostic::new(Code::Unfit, "", text).hint("give the torque in `torques`"));
             }
         }
     }
