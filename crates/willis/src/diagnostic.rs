@@ -2,9 +2,9 @@
 //!
 //! The user's mistakes are [`Diagnostics`]: all of them at once, each with a stable [`Code`], the
 //! place in the train (`set[1].ring.teeth`) and, when the train came from text, the bytes, lines and
-//! columns it stands on. [`Diagnostics`] is the error of every function here that can refuse its input; the errors of
-//! single values ([`QuantityError`](crate::units::QuantityError), [`Fault`](crate::geometry::Fault), …) become
-//! diagnostics by `?`.
+//! columns it stands on. [`Diagnostics`] is the error of every function here that takes a train or a file; the errors of
+//! single values and problems ([`QuantityError`](crate::units::QuantityError), [`Fault`](crate::geometry::Fault),
+//! [`Unposed`](crate::statics::Unposed), …) become diagnostics by `?`.
 //!
 //! Diagnostics serialise and read back: a front end in another process or language shows the same list.
 //!

@@ -26,6 +26,7 @@ use std::collections::HashSet;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
+use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Node};
 
@@ -92,6 +93,19 @@ impl std::fmt::Display for Unsolvable {
 }
 
 impl std::error::Error for Unsolvable {}
+
+impl From<Unsolvable> for Diagnostic {
+    fn from(why: Unsolvable) -> Self {
+        let code = match why {
+            Unsolvable::MissingLoads(_) => Code::MissingTorque,
+            Unsolvable::TooManyLoads(_) => Code::TooManyTorques,
+            Unsolvable::Indeterminate | Unsolvable::UndeterminedSpeed => Code::Unfit,
+        };
+        Self::new(code, "", why.to_string())
+    }
+}
+
+through_diagnostic!(Unsolvable);
 
 /// One element as the statics sees it.
 #[derive(Clone, Debug)]
