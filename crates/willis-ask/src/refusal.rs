@@ -14,7 +14,7 @@ use crate::{Attachment, Given};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// Something is wrong with the request, or with the train of that number; places are those of its file.
+    /// Something is wrong with the request, or with the train at that position, from 0; places are those of its file.
     Wrong(Diagnostics, usize),
     /// Something is wrong with a file that the request names; places are those of its text.
     File(Diagnostics, Attachment),

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use willis_ask::{QUESTIONS, RefusalReport};
+use willis_ask::{File, QUESTIONS, RefusalReport};
 
+use crate::run::deliver;
 use crate::{Ended, command, sweep};
 
 /// A command that asks no question.
@@ -93,15 +94,21 @@ fn man_command() -> Command {
     Command::new("man")
         .about("Print the manual page, or write one for every command into a folder")
         .arg(folder.help("The folder"))
+        .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Replace files that are there already"))
 }
 
 fn man(matches: &ArgMatches) -> Result<Ended, Ended> {
-    let Some(folder) = matches.get_one::<PathBuf>("folder") else {
-        let mut page = Vec::new();
-        clap_mangen::Man::new(command::command()).render(&mut page).expect("writing to memory");
-        return Ok(Ended::Answered(String::from_utf8(page).expect("pages are text")));
+    let page = |command: &Command| {
+        let man = clap_mangen::Man::new(command.clone());
+        let mut bytes = Vec::new();
+        man.render(&mut bytes).expect("writing to memory");
+        File { name: man.get_filename(), bytes, about: String::new() }
     };
-    let written = clap_mangen::generate_to(command::command(), folder);
-    written.map_err(|e| format!("{}: {e}\n", folder.display()))?;
-    Ok(Ended::Answered(String::new()))
+    let mut command = command::command().disable_help_subcommand(true);
+    command.build();
+    let Some(folder) = matches.get_one::<PathBuf>("folder") else {
+        return Ok(Ended::Answered(String::from_utf8(page(&command).bytes).expect("pages are text")));
+    };
+    let pages = std::iter::once(&command).chain(command.get_subcommands()).map(page);
+    Ok(Ended::Answered(deliver(pages.collect(), Some(folder), matches.get_flag("force"))?))
 }

@@ -15,11 +15,11 @@ mod family;
 mod layout;
 
 use serde::{Deserialize, Serialize};
-use willis::analysis::{AS_DRAWN, OperationReport, SolutionReport, operate};
+use willis::analysis::{OperationReport, SolutionReport, operate};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
 use willis::kinematics::Configuration;
-use willis::train::{Load, MemberId, Operation, ShiftElementId, Train};
+use willis::train::{AS_DRAWN, Load, MemberId, Operation, ShiftElementId, Train};
 use willis::units::{Dimension, Quantity};
 use willis::unstable;
 
@@ -266,19 +266,11 @@ impl Shown {
     fn find(train: &Train, request: &LeverRequest) -> Result<Self, Diagnostics> {
         match request {
             LeverRequest::Operation(name) => {
-                let known = train.operations().iter().map(|o| o.name.as_str());
-                let Some(operation) = train.operations().iter().find(|o| o.name == *name) else {
-                    return Err(unknown("operation", name, known));
-                };
-                Self::operation(train, operation)
+                Self::operation(train, train.find_operation(name)?)
             }
             LeverRequest::State(name) if train.states().is_empty() && name == AS_DRAWN => Self::state(train, None),
             LeverRequest::State(name) => {
-                let known = train.states().iter().map(|s| s.name.as_str());
-                match train.states().iter().position(|s| s.name == *name) {
-                    Some(k) => Self::state(train, Some(k)),
-                    None => Err(unknown("state", name, known)),
-                }
+                Self::state(train, Some(train.find_state(name)?))
             }
             LeverRequest::EveryState => Self::every_state(train),
             LeverRequest::First => match train.operations().first() {
@@ -372,16 +364,6 @@ impl Shown {
             solution: None,
         })
     }
-}
-
-fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Diagnostics {
-    let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no {what} `{name}`"));
-    let all: Vec<&str> = known.clone().collect();
-    let hint = match all.is_empty() {
-        true => format!("it has no {what}s"),
-        false => format!("its {what}s are: {}", all.join(", ")),
-    };
-    [d.suggest(name, known).hint(hint)].into_iter().collect()
 }
 
 fn case(train: &Train, k: usize, name: &str, engaged: &[ShiftElementId], fixed: &[MemberId]) -> LeverCase {

@@ -331,18 +331,10 @@ impl<'t> Compiler<'t> {
         let torques = find(&duty.torques);
         let fixed = find(&duty.fixed);
         let dragged = find(&duty.drag.iter().map(|d| d.0.clone()).collect::<Vec<_>>());
-        let state = duty.state.as_ref().map(|name| {
-            train.state(name).ok_or_else(|| {
-                Box::new({
-                    let d = Diagnostic::new(Code::UnknownSelection, "duty", format!("the train has no state `{name}`"));
-                    d.suggest(name, train.states.iter().map(|s| s.name.as_str()))
-                })
-            })
-        });
-        let engaged: &[ShiftElementId] = match &state {
-            Some(Ok(s)) => &s.engaged,
+        let engaged: &[ShiftElementId] = match duty.state.as_ref().map(|name| train.find_state(name)) {
+            Some(Ok(k)) => &train.states[k].engaged,
             Some(Err(d)) => {
-                wrong.push((**d).clone());
+                wrong.push(*d);
                 &[]
             }
             None => &[],

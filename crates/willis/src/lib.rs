@@ -62,7 +62,7 @@
 //! | know every way a train can run, with closed formulas | [`regimes::regimes`], [`regimes::formulas`] |
 //! | know how far an operating point is from the next regime | [`regimes::locate`](fn@regimes::locate) |
 //! | rank what matters most | [`study::sensitivity`](fn@study::sensitivity) |
-//! | know how sure a number is | [`study::UncertaintyPlan`] |
+//! | know how sure a number is | [`study::uncertainty`](fn@study::uncertainty) |
 //! | vary quantities over a grid | [`study::sweep`](fn@study::sweep) |
 //! | compute the energy of a duty cycle | [`study::cycle`](fn@study::cycle) |
 //! | compare variants | [`study::compare`](fn@study::compare) |

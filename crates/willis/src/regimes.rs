@@ -22,12 +22,12 @@ pub(crate) mod setup;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{AS_DRAWN, Named, Role};
+use crate::analysis::{Named, Role};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::train::{FRAME, MemberId, Train};
+use crate::train::{AS_DRAWN, FRAME, MemberId, State, Train};
 
 use atlas::atlas;
 use setup::{Pattern, Setup};
@@ -466,11 +466,8 @@ pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Res
                 }
                 Some(id) => all.push(id),
                 None => {
-                    let known: Vec<&str> = train.members.iter().skip(1).map(|m| m.name.as_str()).collect();
-                    let d = Diagnostic::new(Code::UnknownName, "", format!("the train has no member `{name}`"));
-                    errors.push(
-                        d.suggest(name, known.iter().copied()).hint(format!("its members are: {}", known.join(", "))),
-                    );
+                    let known = train.members.iter().skip(1).map(|m| m.name.as_str());
+                    errors.push(Diagnostic::missing(Code::UnknownName, "member", name, known));
                 }
             }
         }
@@ -479,21 +476,15 @@ pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Res
     let named: Option<Vec<MemberId>> = selection.terminals.as_ref().map(|names| members(names));
     let balance: Option<Vec<MemberId>> = selection.balance.as_ref().map(|pair| members(pair));
     let balance = balance.and_then(|pair| <[MemberId; 2]>::try_from(pair).ok());
-    let mut chosen: Vec<Option<usize>> = vec![];
+    let mut chosen: Vec<Option<&State>> = vec![];
     match &selection.state {
         None => {
             chosen.push(None);
-            chosen.extend((0..train.states.len()).map(Some));
+            chosen.extend(train.states.iter().map(Some));
         }
-        Some(name) if name == AS_DRAWN => chosen.push(None),
-        Some(name) => match train.states.iter().position(|s| s.name == *name) {
-            Some(k) => chosen.push(Some(k)),
-            None => {
-                let known: Vec<&str> = train.states.iter().map(|s| s.name.as_str()).chain([AS_DRAWN]).collect();
-                let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
-                errors
-                    .push(d.suggest(name, known.iter().copied()).hint(format!("its states are: {}", known.join(", "))));
-            }
+        Some(name) => match train.find_configuration(Some(name)) {
+            Ok(state) => chosen.push(state),
+            Err(d) => errors.push(*d),
         },
     }
     if errors.has_errors() {
@@ -501,8 +492,7 @@ pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Res
     }
     Ok(chosen
         .into_iter()
-        .map(|k| {
-            let state = k.map(|k| &train.states[k]);
+        .map(|state| {
             let engaged = state.map_or(&[][..], |s| &s.engaged);
             let members = named.clone().unwrap_or_else(|| {
                 let own = state.map(|s| [s.input, s.output]).into_iter().flatten().flatten();

@@ -1,9 +1,8 @@
 //! Quantities and unit strings at the boundary; inside, everything is SI.
 //!
 //! A value keeps its exact rational and its power of π (`1 rpm = π/30 rad/s`), because whether two
-//! shafts turn at the same speed is decided exactly, and π would spoil that. [`AngularSpeed`],
-//! [`Torque`] and [`Power`] are what the library takes; their limit: the types do not know which
-//! shaft a torque acts on.
+//! shafts turn at the same speed is decided exactly, and π would spoil that. Types such as
+//! [`AngularSpeed`], [`Torque`] and [`Power`] are what the library takes. They do not know which shaft a torque acts on.
 //!
 //! An angle has a dimension of its own. Work is torque times angle, so `350 J` is no torque, `N m/rad` is a stiffness
 //! and no torque, and torque times angular speed is a power.

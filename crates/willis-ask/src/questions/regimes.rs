@@ -6,12 +6,14 @@ mod text;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use willis::diagnostic::Diagnostics;
 use willis::contract::Contract;
 use willis::regimes::{self, Family, RegimeSelection};
 use willis::work::Work;
 
 use super::amount::pair;
 #[cfg(feature = "pictures")]
+use super::names;
 use crate::Extra;
 use crate::table::Table;
 use crate::{File, Form, Given, Question, Refusal};
@@ -81,6 +83,12 @@ impl Question for Regimes {
         about: "Draw the wheel of regimes (two freedoms) into this SVG file",
     }];
     type Answer = RegimesAnswer;
+
+    fn check(&self) -> Result<(), Diagnostics> {
+        names::apart(&[
+            [("family", self.family), ("balance", self.balance.is_some())],
+        ])
+    }
 
     fn ask(&self, of: &[Given], _: &dyn Work) -> Result<RegimesAnswer, Refusal> {
         let (train, selection) = (of[0].model.train(), self.selection()?);

@@ -6,8 +6,10 @@ use std::ops::ControlFlow;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use willis::diagnostic::{Code, Diagnostic};
-use willis::dynamics::{Column, ColumnKind, Event, Method, Options, Recorder, RunReport, Sample, simulate};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::dynamics::{
+    Column, ColumnKind, Event, Method, Options, Outcome, Recorder, RunReport, Sample, simulate,
+};
 use willis::train::{Scenario, Train};
 use willis::units::Dimension;
 use willis::work::Work;
@@ -15,6 +17,7 @@ use willis::work::Work;
 use willis_figure::TimePlotBuilder;
 
 use super::amount::values;
+use super::names;
 use crate::table::{Cell, Kind, Table};
 #[cfg(feature = "pictures")]
 use crate::{Extra, File};
@@ -97,7 +100,7 @@ impl Simulate {
         if let Some(text) = &self.fixed_step {
             let step_s = values("fixed-step", std::slice::from_ref(text), Dimension::TIME)?[0].si();
             if step_s <= 0.0 {
-                let hint = "give a time above zero, as in --fixed-step '1 ms'";
+                let hint = "give a time above zero, as in 1 ms";
                 return Err(wrong(format!("fixed-step {text} is no time above zero"), hint));
             }
             options.method = Method::Fixed { step_s };
@@ -120,14 +123,9 @@ impl Simulate {
             (None, [one]) => Ok(one),
             (None, _) => Err(wrong(
                 "the train has several scenarios, and none is named",
-                format!("name one of the scenarios with --scenario: {}", known()),
+                format!("name one (`scenario`): {}", known()),
             )),
-            (Some(name), _) => all.iter().find(|s| s.name == *name).ok_or_else(|| {
-                Diagnostic::new(Code::UnknownSelection, "", format!("there is no scenario `{name}`"))
-                    .suggest(name, all.iter().map(|s| s.name.as_str()))
-                    .hint(format!("the scenarios are: {}", known()))
-                    .into()
-            }),
+            (Some(name), _) => Ok(train.find_scenario(name)?),
         }
     }
 
@@ -224,6 +222,13 @@ impl Question for Simulate {
         &[Extra { name: "plot", value: "FILE.svg", about: "Draw the run into this SVG file" }];
     type Answer = RunReport;
 
+    fn check(&self) -> Result<(), Diagnostics> {
+        names::apart(&[
+            [("fixed_step", self.fixed_step.is_some()), ("tolerance", self.tolerance.is_some())],
+            [("fixed_step", self.fixed_step.is_some()), ("most_events", self.most_events.is_some())],
+        ])
+    }
+
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<RunReport, Refusal> {
         let train = of[0].model.train();
         let (scenario, options) = (self.scenario(train)?, self.options()?);
@@ -279,6 +284,10 @@ impl Question for Simulate {
             events.row([e.time_s.into(), (&e.cause).into(), modes.join("; ").into()]);
         }
         vec![rows, events]
+    }
+
+    fn is_partial(answer: &RunReport) -> bool {
+        answer.outcome == Outcome::Interrupted
     }
 
     #[cfg(feature = "pictures")]

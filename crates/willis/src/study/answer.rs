@@ -24,7 +24,8 @@ pub enum PointVerdict {
     Multiple,
     /// No train or no operating point is possible with these values.
     Refused,
-    /// Speeds or torques are not determined: a degree of freedom too many, or a redundant constraint.
+    /// No determined answer: a speed is missing, constraints are redundant, uniqueness is undecided, or losses did not
+    /// converge.
     Undetermined,
     /// There is exactly one equilibrium.
     Unique,
