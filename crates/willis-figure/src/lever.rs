@@ -265,13 +265,9 @@ struct Shown {
 impl Shown {
     fn find(train: &Train, request: &LeverRequest) -> Result<Self, Diagnostics> {
         match request {
-            LeverRequest::Operation(name) => {
-                Self::operation(train, train.find_operation(name)?)
-            }
+            LeverRequest::Operation(name) => Self::operation(train, train.find_operation(name)?),
             LeverRequest::State(name) if train.states().is_empty() && name == AS_DRAWN => Self::state(train, None),
-            LeverRequest::State(name) => {
-                Self::state(train, Some(train.find_state(name)?))
-            }
+            LeverRequest::State(name) => Self::state(train, Some(train.find_state(name)?)),
             LeverRequest::EveryState => Self::every_state(train),
             LeverRequest::First => match train.operations().first() {
                 Some(operation) => Self::operation(train, operation),

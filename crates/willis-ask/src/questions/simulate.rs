@@ -125,7 +125,7 @@ impl Simulate {
                 "the train has several scenarios, and none is named",
                 format!("name one (`scenario`): {}", known()),
             )),
-            (Some(name), _) => Ok(train.find_scenario(name)?),
+            (Some(name), _) => train.find_scenario(name).map_err(|d| (*d).into()),
         }
     }
 

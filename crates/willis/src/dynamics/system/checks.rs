@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::dynamics::source::{MOST_PULSES, shortest_pulse, signals_of};
 use crate::kinematics::Configuration;
-use crate::train::{Scenario, SourceKind, Train};
+use crate::train::{Scenario, SourceKind};
 
 /// An error if meshes constrain each other, or if nothing can move.
 pub(super) fn forces_and_freedom(c: &Configuration<'_>, scenario: &Scenario) -> Result<(), Diagnostics> {

@@ -1,9 +1,8 @@
 //! What is asked: an operating point by names, and what they stand for in the train.
 
-use crate::train::AS_DRAWN;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::regimes::{Choice, RegimeSelection, selected};
-use crate::train::{Load, MemberId, Train};
+use crate::train::{AS_DRAWN, Load, MemberId, Train};
 use crate::units::Quantity;
 
 /// An operating point to place.

@@ -1,8 +1,7 @@
 //! A gear (a state with its input and output) over speed and torque of its input.
 
 use crate::analysis::{
-    Direction, OperationReport, Selection, SolutionReport, StateReport, Verdict, analyze, operate,
-    operate_unnamed,
+    Direction, OperationReport, Selection, SolutionReport, StateReport, Verdict, analyze, operate, operate_unnamed,
 };
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::exact::Rational;
