@@ -11,8 +11,9 @@ use crate::train::{AS_DRAWN, MemberId, Train};
 use super::atlas::{arrow, atlas, drivers};
 use super::cells::{enumerate, power_signs};
 use super::formula::{Efficiencies, Formula, Names, Ratios, Shape, SymbolKind, identifier};
-use super::setup::Setup;
-use super::{RegimeReport, RegimeSelection, selected};
+use super::report::RegimeReport;
+use super::setup::{Pattern, Setup};
+use super::{RegimeSelection, selected};
 
 /// Which formulas.
 #[derive(Clone, Debug, Default)]
@@ -524,7 +525,7 @@ fn closed(
     state: &str,
     own: &Formula,
     powers: &[i8],
-    pattern: &super::Pattern,
+    pattern: &Pattern,
     base: &[Rational],
     torques: &[Rational],
 ) -> ClosedFormula {
