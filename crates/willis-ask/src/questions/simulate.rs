@@ -15,7 +15,7 @@ use willis::work::Work;
 use willis_figure::TimePlotBuilder;
 
 use super::amount::values;
-use crate::table::{Cell, Kind, Table};
+use crate::table::{Cell, Kind, Table, word};
 #[cfg(feature = "pictures")]
 use crate::{Extra, File};
 use crate::{Given, Question, Refusal};
@@ -269,8 +269,7 @@ impl Question for Simulate {
         }
         let mut events = Table::new("events", [("time_s", Kind::Number), ("cause", Kind::Text), ("modes", Kind::Text)]);
         for e in &answer.events {
-            let modes: Vec<String> =
-                e.modes.iter().map(|(name, m)| format!("{name} {}", super::analyze::word(m))).collect();
+            let modes: Vec<String> = e.modes.iter().map(|(name, m)| format!("{name} {}", word(m))).collect();
             events.row([e.time_s.into(), (&e.cause).into(), modes.join("; ").into()]);
         }
         vec![rows, events]
