@@ -66,7 +66,7 @@ impl Refusal {
                 wrong.stand_in(Some(&file.name), &file.text);
                 (wrong, Some((&file.name, &file.text)))
             }
-            Self::Cancelled => (Diagnostics::default(), None),
+            Self::Cancelled => (Cancelled.into(), None),
         }
     }
 
@@ -98,7 +98,7 @@ pub fn report(wrong: &Diagnostics, name: &str, text: &str, color: bool) -> Strin
 
 impl From<Diagnostics> for Refusal {
     fn from(wrong: Diagnostics) -> Self {
-        Self::Wrong(wrong, 0)
+        if wrong.is_cancelled() { Self::Cancelled } else { Self::Wrong(wrong, 0) }
     }
 }
 

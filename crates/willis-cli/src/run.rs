@@ -9,7 +9,7 @@ use willis::diagnostic::Diagnostic;
 use willis_ask::table::{self, Table};
 use willis_ask::{Answer, Entry, Extra, File, Given, Refusal, style};
 
-use crate::command::{CSV, JSON, JSON_LINES, PARQUET, TEXT, forms};
+use crate::form::{CSV, JSON, JSON_LINES, PARQUET, TEXT, forms};
 use crate::work::{Terminal, cores};
 use crate::{Ended, input, output, pdf};
 
@@ -38,7 +38,7 @@ impl<'a> Asked<'a> {
         let table = matches.try_get_one::<String>("table").ok().flatten();
         if table.is_some() && ![CSV, JSON_LINES, PARQUET].contains(&form) {
             let told = format!("--table belongs to --format {CSV}, {JSON_LINES} or {PARQUET}");
-            crate::command::command().error(clap::error::ErrorKind::ArgumentConflict, told).exit();
+            return Err(Ended::Misused(told));
         }
         if form == PARQUET && output.is_none() {
             return Err(format!("{PARQUET} is not for the screen: name a file with -o\n").into());

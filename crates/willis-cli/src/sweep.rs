@@ -18,7 +18,7 @@ use willis::work::{self, Work};
 use willis_ask::questions::{Sweep, bytes_in_words, duration_in_words, points_in_words, sweep_text};
 use willis_ask::{Entry, Given};
 
-use crate::command::{CSV, JSON, JSON_LINES, PARQUET, TEXT};
+use crate::form::{CSV, JSON, JSON_LINES, PARQUET, TEXT};
 use crate::run::{Asked, notes};
 use crate::work::{Terminal, cores};
 use crate::{Ended, output};

@@ -1,8 +1,8 @@
 //! Work on all cores, with a bar that tells how fast and how long yet.
 
 use std::io::IsTerminal;
-use std::sync::{Mutex, Once};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, Once};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};

@@ -13,6 +13,7 @@
 pub mod draw;
 mod family;
 mod layout;
+mod role;
 
 use serde::{Deserialize, Serialize};
 use willis::analysis::{OperationReport, SolutionReport, operate};
@@ -25,6 +26,8 @@ use willis::unstable;
 
 use crate::kind::{Ask, FigureRequest, Kind};
 use family::{Family, families};
+
+pub use role::LeverRole;
 
 pub(crate) const KIND: Kind<Lever> = Kind {
     title: "Levers",
@@ -120,24 +123,6 @@ pub struct LeverSet {
     pub name: String,
     /// What acts where; empty where torques are not shown.
     pub pulls: Vec<LeverPull>,
-}
-
-/// What a point of a lever is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum LeverRole {
-    /// The carrier of the planets.
-    Carrier,
-    /// An external gear in mesh with a planet.
-    Sun,
-    /// An internal gear in mesh with a planet.
-    Ring,
-    /// A gear of a pair without planets.
-    Gear,
-    /// A planet.
-    Planet,
 }
 
 /// A point of a lever.

@@ -23,6 +23,9 @@ mod stick;
 mod time;
 mod tornado;
 
+// `report::document` looks for it here.
+use willis::contract;
+
 pub use band::draw::draw as draw_band;
 pub use band::{BandPoint, Bands, QUANTILES, bands};
 pub use contact_path::film::draw as draw_film;

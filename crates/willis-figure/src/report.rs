@@ -12,7 +12,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use willis::Diagnostics;
 use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
-use willis::contract;
 use willis::diagnostic::{Code, Severity};
 use willis::hypergraph::watts;
 use willis::model::Model;

@@ -97,7 +97,7 @@ pub struct Direction {
     pub certificate: Option<CertificateReport>,
     /// One sentence that explains a verdict other than `unique`.
     pub reason: Option<String>,
-    /// The same as data.
+    /// What `reason` says, as data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<Why>,
 }
@@ -300,7 +300,7 @@ pub struct LockMargin {
 pub struct StictionRange {
     /// What varies, in words.
     pub what: String,
-    /// The same as data.
+    /// What `what` says, as data.
     pub quantity: StictionQuantity,
     /// Smallest value; absent when too many meshes rest to bound it.
     pub low: Option<f64>,
@@ -413,7 +413,7 @@ pub struct OperationReport {
     pub certificate: Option<CertificateReport>,
     /// One sentence that explains the verdict.
     pub reason: Option<String>,
-    /// The same as data.
+    /// What `reason` says, as data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<Why>,
     /// Laws that were used outside their ranges.

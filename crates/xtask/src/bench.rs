@@ -186,7 +186,14 @@ fn motion(root: &Path, own: &[Value], peers: &[Value]) -> Result<(), String> {
 /// Sweeps through the command line: wall time of the whole program, the best of several runs.
 fn study(root: &Path, python: &Path, wrong: &mut Vec<String>) -> Result<(), String> {
     println!("sweeps …");
-    command(Command::new("cargo").current_dir(root).args(["build", "--profile", "dist", "--quiet", "-p", "willis-cli"]))?;
+    command(Command::new("cargo").current_dir(root).args([
+        "build",
+        "--profile",
+        "dist",
+        "--quiet",
+        "-p",
+        "willis-cli",
+    ]))?;
     let willis = root.join("target/dist/willis");
     let mut c = Command::new(python);
     c.current_dir(root.join("benches/baselines")).args(["study.py", "--json"]).env("PYTHONDONTWRITEBYTECODE", "1");

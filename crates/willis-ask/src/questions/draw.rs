@@ -8,9 +8,9 @@ use willis::work::Work;
 use willis_figure::{Ask, Drawing, Figure, FigureKind, FigureRequest, Theme, draw, themed};
 
 use super::amount::pair;
+use super::names;
 #[cfg(feature = "clap")]
 use super::names::Known;
-use super::names;
 use crate::{File, Form, Given, Question, Refusal};
 
 /// Draw a train: its scheme, levers, power flow, teeth, regimes, maps, losses.
@@ -171,7 +171,7 @@ impl Draw {
         let Some(deaf) = kind.deaf_to(request, self.drawing()) else { return Ok(()) };
         let list: Vec<String> = kind.takes().iter().map(|t| format!("`{}`", t.name())).collect();
         let instead =
-            if list.is_empty() { "it takes no question".to_owned() } else { format!("it takes {}", list.join(", ")) };
+            if list.is_empty() { "it takes none of these".to_owned() } else { format!("it takes {}", list.join(", ")) };
         let message = format!("`draw {}` has no use for `{}`", kind.name(), deaf.name());
         Err(Diagnostic::new(Code::UnknownSelection, "", message).hint(instead).into())
     }

@@ -6,9 +6,9 @@ use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::work::Work;
 
+use super::names;
 #[cfg(feature = "clap")]
 use super::names::Known;
-use super::names;
 use crate::{Given, Of, Question, Refusal};
 
 /// Explain a diagnostic code, or list all of them.

@@ -2,14 +2,14 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::contract::{Contract, Format};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::study::export::{ExportRequest, KINDS, export};
 use willis::work::Work;
 
+use super::names;
 #[cfg(feature = "clap")]
 use super::names::Known;
-use super::names;
 use crate::style::wrap;
 use crate::{File, Form, Given, Of, Question, Refusal};
 

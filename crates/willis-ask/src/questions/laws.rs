@@ -10,9 +10,9 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::losses::{self, LawList};
 use willis::work::Work;
 
+use super::names;
 #[cfg(feature = "clap")]
 use super::names::Known;
-use super::names;
 use crate::table::Kind::{Flag, Number, Text};
 use crate::table::Table;
 use crate::{Given, Of, Question, Refusal};

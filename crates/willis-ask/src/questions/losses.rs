@@ -4,8 +4,8 @@ mod text;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use willis::diagnostic::Diagnostics;
 use willis::analysis::{self, LossRequest, LossTable};
+use willis::diagnostic::Diagnostics;
 use willis::units::{Dimension, Quantity};
 use willis::work::Work;
 
@@ -50,9 +50,7 @@ impl Question for Losses {
     type Answer = LossTable;
 
     fn check(&self) -> Result<(), Diagnostics> {
-        names::apart(&[
-            [("powers", !self.powers.is_empty()), ("torques", !self.torques.is_empty())],
-        ])
+        names::apart(&[[("powers", !self.powers.is_empty()), ("torques", !self.torques.is_empty())]])
     }
 
     fn ask(&self, of: &[Given], _: &dyn Work) -> Result<LossTable, Refusal> {

@@ -6,9 +6,9 @@ use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic};
 use willis::work::Work;
 
+use super::names;
 #[cfg(feature = "clap")]
 use super::names::Known;
-use super::names;
 use crate::{Given, Of, Question, Refusal};
 
 /// Write a commented train file to start from.

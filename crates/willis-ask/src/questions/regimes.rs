@@ -6,8 +6,8 @@ mod text;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use willis::diagnostic::Diagnostics;
 use willis::contract::Contract;
+use willis::diagnostic::Diagnostics;
 use willis::regimes::{self, Family, RegimeSelection};
 use willis::work::Work;
 
@@ -85,9 +85,7 @@ impl Question for Regimes {
     type Answer = RegimesAnswer;
 
     fn check(&self) -> Result<(), Diagnostics> {
-        names::apart(&[
-            [("family", self.family), ("balance", self.balance.is_some())],
-        ])
+        names::apart(&[[("family", self.family), ("balance", self.balance.is_some())]])
     }
 
     fn ask(&self, of: &[Given], _: &dyn Work) -> Result<RegimesAnswer, Refusal> {

@@ -7,9 +7,7 @@ use std::ops::ControlFlow;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::dynamics::{
-    Column, ColumnKind, Event, Method, Options, Outcome, Recorder, RunReport, Sample, simulate,
-};
+use willis::dynamics::{Column, ColumnKind, Event, Method, Options, Outcome, Recorder, RunReport, Sample, simulate};
 use willis::train::{Scenario, Train};
 use willis::units::Dimension;
 use willis::work::Work;
@@ -18,7 +16,7 @@ use willis_figure::TimePlotBuilder;
 
 use super::amount::values;
 use super::names;
-use crate::table::{Cell, Kind, Table};
+use crate::table::{Cell, Kind, Table, word};
 #[cfg(feature = "pictures")]
 use crate::{Extra, File};
 use crate::{Given, Question, Refusal};
@@ -279,8 +277,7 @@ impl Question for Simulate {
         }
         let mut events = Table::new("events", [("time_s", Kind::Number), ("cause", Kind::Text), ("modes", Kind::Text)]);
         for e in &answer.events {
-            let modes: Vec<String> =
-                e.modes.iter().map(|(name, m)| format!("{name} {}", super::analyze::word(m))).collect();
+            let modes: Vec<String> = e.modes.iter().map(|(name, m)| format!("{name} {}", word(m))).collect();
             events.row([e.time_s.into(), (&e.cause).into(), modes.join("; ").into()]);
         }
         vec![rows, events]

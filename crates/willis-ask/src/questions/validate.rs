@@ -7,9 +7,9 @@ use willis::diagnostic::{Code, Diagnostic};
 use willis::work::Work;
 use willis_casebook as casebook;
 
+use super::names;
 #[cfg(feature = "clap")]
 use super::names::Known;
-use super::names;
 use crate::{Extra, File, Given, Of, Question, Refusal};
 
 /// Compare published numbers with ours: what agrees, what does not, and why.

@@ -50,7 +50,7 @@ pub struct LossPoint {
     pub verdict: Verdict,
     /// One sentence that explains the verdict.
     pub reason: Option<String>,
-    /// The same as data.
+    /// What `reason` says, as data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<Why>,
     /// Output over input power.

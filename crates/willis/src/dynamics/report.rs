@@ -51,7 +51,10 @@ impl Options {
             wrong.push(Diagnostic::new(Code::OutOfRange, "", message).hint(hint));
         };
         if !(1e-13..=1e-2).contains(&self.tolerance) {
-            refuse(format!("a relative tolerance of {} cannot be kept", self.tolerance), "from 1e-13 to 1e-2, as in 1e-9");
+            refuse(
+                format!("a relative tolerance of {} cannot be kept", self.tolerance),
+                "from 1e-13 to 1e-2, as in 1e-9",
+            );
         }
         if let Some(n @ 0..2) = self.samples {
             refuse(format!("{n} rows do not reach from the start to the end"), "two rows or more");
@@ -260,7 +263,7 @@ pub struct Event {
     /// P1.sun-planet break away`, `bearing turns round`, `C engages, B opens`, `side shafts: contact`, `drive reverses
     /// in P1.sun-planet`.
     pub cause: String,
-    /// The same as data.
+    /// What `cause` says, as data.
     #[serde(default)]
     pub happenings: Vec<Happening>,
     /// The modes after it that differ from those before, by element.
@@ -279,7 +282,7 @@ impl Event {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Happening {
-    /// What.
+    /// What happens to the elements.
     pub kind: HappeningKind,
     /// The elements.
     pub of: Vec<String>,

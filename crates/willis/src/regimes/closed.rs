@@ -11,8 +11,9 @@ use crate::train::{AS_DRAWN, MemberId, Train};
 use super::atlas::{arrow, atlas, drivers};
 use super::cells::{enumerate, power_signs};
 use super::formula::{Efficiencies, Formula, Names, Ratios, Shape, SymbolKind, identifier};
-use super::setup::Setup;
-use super::{RegimeReport, RegimeSelection, selected};
+use super::report::RegimeReport;
+use super::setup::{Pattern, Setup};
+use super::{RegimeSelection, selected};
 
 /// Which formulas.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +55,7 @@ pub struct Argument {
     pub name: String,
     /// In LaTeX.
     pub latex: String,
-    /// In words.
+    /// What it stands for, in words.
     pub meaning: String,
     /// What it is.
     pub kind: SymbolKind,
@@ -408,8 +409,7 @@ fn one_freedom(
 ) -> Result<Vec<ClosedFormula>, String> {
     let ([from], [to]) = (from, to) else {
         return Err(
-            "with one degree of freedom a formula needs one input and one output; name them (`from` and `to`)"
-                .into(),
+            "with one degree of freedom a formula needs one input and one output; name them (`from` and `to`)".into()
         );
     };
     let train = c.train;
@@ -524,7 +524,7 @@ fn closed(
     state: &str,
     own: &Formula,
     powers: &[i8],
-    pattern: &super::Pattern,
+    pattern: &Pattern,
     base: &[Rational],
     torques: &[Rational],
 ) -> ClosedFormula {

@@ -225,7 +225,10 @@ impl<'s> Sweep<'s> {
         let mut torques = vec![];
         for (member, load) in &operation.loads {
             let Load::Torque(q) = load else {
-                return Err(refuse("a load is a power; compiled sweeps take torques", "hold the torque: `hold` = torque"));
+                return Err(refuse(
+                    "a load is a power; compiled sweeps take torques",
+                    "hold the torque: `hold` = torque",
+                ));
             };
             torques.push(match axis_of(*member, false)? {
                 None => Input::Constant(q.si()),

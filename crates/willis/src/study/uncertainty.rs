@@ -12,13 +12,13 @@ use crate::train::{Load, Measure, Train};
 use crate::units::{self, Quantity};
 use crate::work::{self, Cancelled, Work};
 
-use super::answer::{PointAnswer, PointVerdict};
+use super::answer::{LawChoice, PointAnswer, PointVerdict};
 use super::axis::with_unit;
 use super::column::{Column, ColumnTable};
 use super::design::Design;
 use super::distribution::{Distribution, Reader, fault, plain, rounded};
 use super::question::{Hold, Question, Trains};
-use super::summary::{self, LawChoice, Seen, WarningKind};
+use super::summary::{self, Seen, WarningKind};
 use super::{Axis, Statistics};
 
 pub use report::{ChoiceResult, Influence, UncertainQuantity, UncertainResult, Uncertainty};
