@@ -12,8 +12,8 @@ use willis::regimes::{self, Family, RegimeSelection};
 use willis::work::Work;
 
 use super::amount::pair;
-#[cfg(feature = "pictures")]
 use super::names;
+#[cfg(feature = "pictures")]
 use crate::Extra;
 use crate::table::Table;
 use crate::{File, Form, Given, Question, Refusal};
