@@ -183,6 +183,8 @@ mod prose {
     struct HowSureAmI;
     #[doc = include_str!("../../../book/src/duty-cycle.md")]
     struct WhatDoesItCost;
+    #[doc = include_str!("../../../book/src/compare.md")]
+    struct WhichVariantIsBetter;
     #[doc = include_str!("../../../book/src/regimes.md")]
     struct EveryWayATrainCanRun;
     #[doc = include_str!("../../../book/src/power-split.md")]

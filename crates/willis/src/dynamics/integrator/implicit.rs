@@ -144,8 +144,9 @@ impl Implicit {
         counts.evaluations += which.len();
     }
 
-    /// Solves for the stages. The iterations it took, or the factor by which the step is to change.
-    fn newton<S: Smooth>(&mut self, sys: &mut S, h: f64) -> Result<usize, f64> {
+    /// Solves for the stages. The iterations it took, or why the step is rejected.
+    fn newton<S: Smooth>(&mut self, sys: &mut S, h: f64) -> Result<usize, Attempt> {
+        let fails = |factor| Err(Attempt::Rejected { factor, finite: true });
         let n = self.track.states;
         let tolerance = self.track.tolerance;
         let enough = (10.0 * f64::EPSILON / tolerance).max(tolerance.cbrt().min(0.03));
@@ -175,20 +176,20 @@ impl Implicit {
             }
             let size = (sum / (3 * n.max(1)) as f64).sqrt();
             if !size.is_finite() {
-                return Err(0.25);
+                return Err(Attempt::Rejected { factor: 0.25, finite: false });
             }
             if iteration > 1 {
                 let ratio = size / last;
                 self.theta = if iteration == 2 { ratio } else { f64::sqrt(ratio * last_ratio) };
                 last_ratio = ratio;
                 if self.theta >= 0.99 {
-                    return Err(0.5);
+                    return fails(0.5);
                 }
                 self.convergence = self.theta / (1.0 - self.theta);
                 let left = ITERATIONS - iteration;
                 let expected = self.convergence * size * self.theta.powi(left as i32) / enough;
                 if expected >= 1.0 {
-                    return Err(0.8 * expected.clamp(1e-4, 20.0).powf(-1.0 / (4 + left) as f64));
+                    return fails(0.8 * expected.clamp(1e-4, 20.0).powf(-1.0 / (4 + left) as f64));
                 }
             }
             last = size.max(f64::EPSILON);
@@ -205,7 +206,7 @@ impl Implicit {
                 return Ok(iteration);
             }
         }
-        Err(0.5)
+        fails(0.5)
     }
 
     /// Error of the step in multiples of the tolerance. `again`: filter once more where it is large.
@@ -314,12 +315,14 @@ impl Stepper for Implicit {
                 self.differentiate(sys);
             }
             let fresh = self.jacobian_at == Some(self.track.t);
-            let solved = if self.factored == h || self.factor(h) { self.newton(sys, h) } else { Err(0.5) };
+            let solved = match self.factored == h || self.factor(h) {
+                true => self.newton(sys, h),
+                false => Err(Attempt::Rejected { factor: 0.5, finite: true }),
+            };
             match solved {
                 Ok(iterations) => break iterations,
                 Err(_) if !fresh => self.jacobian_at = None,
-                // As far as can be told: what failed was the iteration.
-                Err(factor) => return Attempt::Rejected { factor, finite: factor != 0.25 },
+                Err(rejected) => return rejected,
             }
         };
         let error = self.estimate(sys, h, again || self.before.is_none());
@@ -327,7 +330,7 @@ impl Stepper for Implicit {
         let safety = SAFETY.min(SAFETY * (1.0 + most) / (iterations as f64 + most));
         let usual = safety / error.max(1e-10).powf(0.25);
         if error < 1.0 && self.finish(sys, h) {
-            return Attempt::Taken { factor: self.control(h, error, usual.clamp(SHRINK, GROW), again) };
+            return Attempt::Taken { factor: self.control(h, error, usual.clamp(SHRINK, GROW)) };
         }
         let finite = error.is_finite() && error >= 1.0;
         Attempt::Rejected { factor: if finite { usual.max(SHRINK) } else { 0.25 }, finite }
@@ -395,14 +398,11 @@ impl Implicit {
     }
 
     /// How much longer the next step may be; `factor` is what the error of this step alone asks for.
-    fn control(&mut self, h: f64, error: f64, mut factor: f64, again: bool) -> f64 {
+    fn control(&mut self, h: f64, error: f64, mut factor: f64) -> f64 {
         if let Some([span, before]) = self.before {
             // Gustafsson's predictive controller: the error goes on as it changed.
             let predicted = SAFETY * h / span * (before / error.powi(2).max(1e-20)).powf(0.25);
             factor = factor.min(predicted.clamp(SHRINK, GROW));
-        }
-        if again {
-            factor = factor.min(1.0);
         }
         self.before = Some([h, error.max(1e-2)]);
         // Another step length costs a factorization.
