@@ -426,7 +426,7 @@ impl Entry {
     /// ```
     pub fn request(&self, value: Value) -> Result<Box<dyn Request>, Refusal> {
         (self.request)(value).map_err(|e| {
-            let hint = format!("`willis schema {} --request` describes it", self.name);
+            let hint = format!("the JSON Schema of the request of `{}` describes it", self.name);
             Diagnostic::new(Code::WrongType, "", format!("the request of `{}`: {e}", self.name)).hint(hint).into()
         })
     }

@@ -12,7 +12,7 @@ use crate::{Ended, sweep};
 pub struct Tool {
     pub name: &'static str,
     pub command: fn() -> Command,
-    /// Of its own options and the whole command line.
+    /// Takes its own options and the whole command.
     pub run: fn(&ArgMatches, Command) -> Result<Ended, Ended>,
 }
 
