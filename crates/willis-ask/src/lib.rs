@@ -1,8 +1,8 @@
 //! Every question that Willis answers, in one list: what a front end is built on.
 //!
 //! A question has a name, a request with documented fields and defaults, an answer that is a versioned contract, tables
-//! and words. [`QUESTIONS`] lists all of them; command line, browser and Python ask the same list and differ only in how
-//! they get at files, threads and screens. This crate has none of these: it touches no file, no clock and starts no
+//! and words. [`QUESTIONS`] lists all of them; every front end (today the command line) asks the same list and brings what
+//! differs: files, threads and screens. This crate has none of these: it touches no file, no clock and starts no
 //! thread.
 //!
 //! ```

@@ -1,4 +1,4 @@
-//! What a question is, and the one list of them.
+//! What a question is, and what stands in the list of them.
 
 use std::any::Any;
 use std::fmt;
@@ -8,7 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 use willis::contract::Contract;
-use willis::diagnostic::{Code, Diagnostic};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::work::Work;
 
@@ -124,12 +124,12 @@ impl std::str::FromStr for Attachment {
     }
 }
 
-/// With the feature `clap`, what derives `clap::Args`; else anything.
+/// What a request must be to give options of a command line: `clap::Args` with the feature `clap`, nothing without it.
 #[cfg(feature = "clap")]
 pub trait Options: clap::Args {}
 #[cfg(feature = "clap")]
 impl<T: clap::Args> Options for T {}
-/// With the feature `clap`, what derives `clap::Args`; else anything.
+/// What a request must be to give options of a command line: `clap::Args` with the feature `clap`, nothing without it.
 #[cfg(not(feature = "clap"))]
 pub trait Options {}
 #[cfg(not(feature = "clap"))]
@@ -156,6 +156,14 @@ pub trait Question: Options + Clone + fmt::Debug + Serialize + DeserializeOwned 
     /// The answer; its JSON is a contract.
     type Answer: Contract + Serialize + DeserializeOwned + JsonSchema + 'static;
 
+    /// Looks at the request alone, before it is asked: fields that exclude each other.
+    ///
+    /// # Errors
+    /// All that is wrong with it.
+    fn check(&self) -> Result<(), Diagnostics> {
+        Ok(())
+    }
+
     /// Answers it.
     ///
     /// # Errors
@@ -175,6 +183,12 @@ pub trait Question: Options + Clone + fmt::Debug + Serialize + DeserializeOwned 
     fn notes(answer: &Self::Answer) -> &[Diagnostic] {
         let _ = answer;
         &[]
+    }
+
+    /// Whether the work was stopped before its end, and the answer covers what was done until then.
+    fn is_partial(answer: &Self::Answer) -> bool {
+        let _ = answer;
+        false
     }
 
     /// The answer in one of [`Question::FORMS`].
@@ -250,6 +264,9 @@ pub trait Answer {
     /// See [`Question::notes`].
     fn notes(&self) -> &[Diagnostic];
 
+    /// See [`Question::is_partial`].
+    fn is_partial(&self) -> bool;
+
     /// See [`Question::write`].
     ///
     /// # Errors
@@ -287,6 +304,10 @@ impl<Q: Question> Answer for Answered<'_, Q> {
 
     fn notes(&self) -> &[Diagnostic] {
         Q::notes(&self.answer)
+    }
+
+    fn is_partial(&self) -> bool {
+        Q::is_partial(&self.answer)
     }
 
     fn write(&self, form: &str) -> Result<Vec<File>, Refusal> {
@@ -334,6 +355,7 @@ impl<Q: Question> Request for Q {
             let message = format!("`{}` is asked of {wanted}, here are {}", Q::NAME, of.len());
             return Err(Diagnostic::new(Code::UnknownSelection, "", message).into());
         }
+        self.check()?;
         let answer = Question::ask(self, of, work)?;
         Ok(Box::new(Answered { question: self, answer, of }))
     }
@@ -346,7 +368,8 @@ pub struct Entry {
     pub name: &'static str,
     /// How many trains it is asked of.
     pub of: Of,
-    /// Name and version of its answer: `willis-analysis-1`.
+    /// Name and version of its usual answer: `willis-analysis-1`. `draw all`, `regimes` of a family and `validate` without
+    /// a case answer with `willis-figures-1`, `willis-family-1` and `willis-cases-1`.
     pub contract: &'static str,
     /// See [`Question::TABLES`].
     pub tables: &'static [&'static str],
@@ -403,7 +426,7 @@ impl Entry {
     /// ```
     pub fn request(&self, value: Value) -> Result<Box<dyn Request>, Refusal> {
         (self.request)(value).map_err(|e| {
-            let hint = format!("`willis schema {} --request` describes it", self.name);
+            let hint = format!("the JSON Schema of the request of `{}` describes it", self.name);
             Diagnostic::new(Code::WrongType, "", format!("the request of `{}`: {e}", self.name)).hint(hint).into()
         })
     }

@@ -15,6 +15,7 @@ mod laws;
 mod locate;
 mod losses;
 mod modes;
+mod names;
 mod new;
 mod regimes;
 #[cfg(feature = "pictures")]

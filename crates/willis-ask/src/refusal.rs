@@ -14,7 +14,7 @@ use crate::{Attachment, Given};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// Something is wrong with the request, or with the train of that number; places are those of its file.
+    /// Something is wrong with the request, or with the train at that position, from 0; places are those of its file.
     Wrong(Diagnostics, usize),
     /// Something is wrong with a file that the request names; places are those of its text.
     File(Diagnostics, Attachment),
@@ -66,7 +66,7 @@ impl Refusal {
                 wrong.stand_in(Some(&file.name), &file.text);
                 (wrong, Some((&file.name, &file.text)))
             }
-            Self::Cancelled => (Diagnostics::default(), None),
+            Self::Cancelled => (Cancelled.into(), None),
         }
     }
 
@@ -98,7 +98,7 @@ pub fn report(wrong: &Diagnostics, name: &str, text: &str, color: bool) -> Strin
 
 impl From<Diagnostics> for Refusal {
     fn from(wrong: Diagnostics) -> Self {
-        Self::Wrong(wrong, 0)
+        if wrong.is_cancelled() { Self::Cancelled } else { Self::Wrong(wrong, 0) }
     }
 }
 

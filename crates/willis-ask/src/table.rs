@@ -91,6 +91,11 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
     }
 }
 
+/// The word that the results contract uses.
+pub(crate) fn word(x: &impl serde::Serialize) -> String {
+    serde_json::to_value(x).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
+}
+
 /// Units by the end of a column's name, the longest ends first.
 const UNITS: &[(&str, &str)] = &[
     ("_rad_s2", "rad/s^2"),

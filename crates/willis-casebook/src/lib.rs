@@ -125,7 +125,7 @@ pub enum Cell {
     Empty,
 }
 
-/// A comparison with a bound that was set beforehand.
+/// A comparison with a bound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]

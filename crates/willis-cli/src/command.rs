@@ -7,14 +7,8 @@ use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use willis_ask::{Entry, Of, QUESTIONS};
 
+use crate::form::forms;
 use crate::tools;
-
-/// Forms of every answer, and of one with tables.
-pub const TEXT: &str = "text";
-pub const JSON: &str = "json";
-pub const CSV: &str = "csv";
-pub const JSON_LINES: &str = "jsonl";
-pub const PARQUET: &str = "parquet";
 
 /// The whole command line.
 pub fn command() -> Command {
@@ -61,22 +55,6 @@ pub fn matches(words: impl IntoIterator<Item = OsString>) -> ArgMatches {
         }
     }
     command.get_matches_from(words)
-}
-
-/// The forms in which the answer to a question can be had.
-pub fn forms(entry: &Entry) -> Vec<&'static str> {
-    let mut all = vec![TEXT, JSON];
-    if !entry.tables.is_empty() {
-        all.extend([CSV, JSON_LINES]);
-        if cfg!(feature = "parquet") {
-            all.push(PARQUET);
-        }
-    }
-    all.extend(entry.forms.iter().map(|f| f.name));
-    if entry.name == "report" {
-        all.push("pdf");
-    }
-    all
 }
 
 /// The command of a question.

@@ -2,6 +2,7 @@
 //! answered is in `willis-ask`.
 
 mod command;
+mod form;
 mod input;
 mod interrupt;
 mod output;
@@ -18,6 +19,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::ArgMatches;
+use clap::error::ErrorKind;
 
 /// How a command ended.
 pub enum Ended {
@@ -32,6 +34,8 @@ pub enum Ended {
         /// For eyes.
         told: String,
     },
+    /// As the command line itself does not allow, for this reason: exit status 2.
+    Misused(String),
 }
 
 impl From<String> for Ended {
@@ -56,6 +60,7 @@ fn main() -> ExitCode {
             let _ = anstream::stderr().write_all(told.as_bytes());
             (out, 1)
         }
+        Ended::Misused(told) => command::command().error(ErrorKind::ArgumentConflict, told).exit(),
     };
     // A reader that closes the pipe early (`willis … | head`) is no error.
     let mut stdout = anstream::stdout();
@@ -70,7 +75,7 @@ fn main() -> ExitCode {
 
 fn run(name: &str, own: &ArgMatches) -> Result<Ended, Ended> {
     if let Some(tool) = tools::TOOLS.iter().find(|t| t.name == name) {
-        return (tool.run)(own);
+        return (tool.run)(own, command::command());
     }
     let entry = willis_ask::question(name).expect("clap knows the commands");
     match (name, own.try_get_one::<std::path::PathBuf>("output").ok().flatten()) {

@@ -9,7 +9,7 @@ use willis::diagnostic::Diagnostic;
 use willis_ask::table::{self, Table};
 use willis_ask::{Answer, Entry, Extra, File, Given, Refusal, style};
 
-use crate::command::{CSV, JSON, JSON_LINES, PARQUET, TEXT, forms};
+use crate::form::{CSV, JSON, JSON_LINES, PARQUET, TEXT, forms};
 use crate::work::{Terminal, cores};
 use crate::{Ended, input, output, pdf};
 
@@ -38,7 +38,7 @@ impl<'a> Asked<'a> {
         let table = matches.try_get_one::<String>("table").ok().flatten();
         if table.is_some() && ![CSV, JSON_LINES, PARQUET].contains(&form) {
             let told = format!("--table belongs to --format {CSV}, {JSON_LINES} or {PARQUET}");
-            crate::command::command().error(clap::error::ErrorKind::ArgumentConflict, told).exit();
+            return Err(Ended::Misused(told));
         }
         if form == PARQUET && output.is_none() {
             return Err(format!("{PARQUET} is not for the screen: name a file with -o\n").into());
@@ -126,6 +126,11 @@ fn promised(entry: &Entry, known: &[&'static str], path: &Path, natural: &'stati
 
 /// Asks a question and hands out the answer.
 pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> {
+    run_on(cores(), entry, matches)
+}
+
+/// The same with so many threads.
+pub fn run_on(threads: usize, entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> {
     let mut request = entry.of_matches(matches).unwrap_or_else(|e| e.exit());
     let asked = Asked::new(entry, matches, request.natural_form())?;
     let names: Vec<String> = request.attachments().iter().map(|a| a.name.clone()).collect();
@@ -150,18 +155,19 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
         }
     }
     let of = asked.trains()?;
-    let terminal = Terminal::new(cores());
+    let terminal = Terminal::new(threads);
     let answer = request.ask(&of, &terminal).map_err(|refusal| asked.refused(&refusal, &of))?;
     terminal.finish();
     for (extra, path) in extras {
         let files = answer.extra(extra.name).map_err(|refusal| asked.refused(&refusal, &of))?;
         deliver(files, Some(path), asked.force)?;
     }
-    hand_out(&asked, &*answer, &of)
+    let said = hand_out(&asked, &*answer, &of)?;
+    Ok(if answer.is_partial() { Ended::Interrupted(said) } else { Ended::Answered(said) })
 }
 
 /// The answer in the form that was asked for, at the place that was named.
-fn hand_out(asked: &Asked<'_>, answer: &dyn Answer, of: &[Given]) -> Result<Ended, Ended> {
+fn hand_out(asked: &Asked<'_>, answer: &dyn Answer, of: &[Given]) -> Result<String, Ended> {
     let file = match asked.form {
         TEXT => {
             let notes = notes(answer.notes(), of);
@@ -171,7 +177,7 @@ fn hand_out(asked: &Asked<'_>, answer: &dyn Answer, of: &[Given]) -> Result<Ende
             };
             if asked.output.is_none() {
                 tell(&answer.told());
-                return Ok(Ended::Answered(text));
+                return Ok(text);
             }
             // A file takes no colours.
             vec![File::text(format!("{}.txt", asked.entry.name), style::plain(&text))]
@@ -186,7 +192,7 @@ fn hand_out(asked: &Asked<'_>, answer: &dyn Answer, of: &[Given]) -> Result<Ende
     };
     let said = deliver(file, asked.output, asked.force)?;
     tell(&answer.told());
-    Ok(Ended::Answered(said))
+    Ok(said)
 }
 
 /// Tables of an answer as a file.
@@ -230,7 +236,7 @@ pub fn tell(lines: &[String]) {
 }
 
 /// Writes files where they are to be, or gives the only one back where no place is named. Says what was written.
-fn deliver(files: Vec<File>, place: Option<&Path>, force: bool) -> Result<String, Ended> {
+pub fn deliver(files: Vec<File>, place: Option<&Path>, force: bool) -> Result<String, Ended> {
     let Some(place) = place else {
         let count = files.len();
         let Ok([one]) = <[File; 1]>::try_from(files) else {

@@ -19,7 +19,7 @@ use willis::work::Work;
 use willis_ask::questions::{MOST_EVENTS, Simulate, simulation_text};
 use willis_ask::{Entry, Refusal};
 
-use crate::command::{JSON, TEXT};
+use crate::form::{JSON, TEXT};
 use crate::interrupt::{interrupted, listen};
 use crate::run::Asked;
 use crate::work::Terminal;

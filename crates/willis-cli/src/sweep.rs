@@ -18,7 +18,7 @@ use willis::work::{self, Work};
 use willis_ask::questions::{Sweep, bytes_in_words, duration_in_words, points_in_words, sweep_text};
 use willis_ask::{Entry, Given};
 
-use crate::command::{CSV, JSON, JSON_LINES, PARQUET, TEXT};
+use crate::form::{CSV, JSON, JSON_LINES, PARQUET, TEXT};
 use crate::run::{Asked, notes};
 use crate::work::{Terminal, cores};
 use crate::{Ended, output};
@@ -66,8 +66,13 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
     let form = out.and_then(Form::of);
     // A small table for the screen, and an answer in another file, are made in memory as any.
     let is_table = named.is_some_and(|f| [CSV, JSON_LINES, PARQUET].contains(&f));
+    let threads = matches.get_one::<u16>("threads").map_or_else(cores, |n| usize::from(*n));
     if form.is_none() && (is_table || out.is_some()) {
-        return crate::run::run(entry, matches);
+        if matches.contains_id("shard") {
+            let endings = if cfg!(feature = "parquet") { ".csv, .jsonl or .parquet" } else { ".csv or .jsonl" };
+            return Err(format!("a shard is a table in a file: name it with -o, ending in {endings}\n").into());
+        }
+        return crate::run::run_on(threads, entry, matches);
     }
     if let (Some(form), true, Some(named)) = (form, is_table, named)
         && form.name() != named
@@ -87,7 +92,6 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
         .and_then(|plan| plan.check().map(|()| plan))
         .map_err(|wrong| asked.refused(&wrong.into(), &of))?;
     let shard = matches.get_one::<Shard>("shard").copied();
-    let threads = matches.get_one::<u16>("threads").map_or_else(cores, |n| usize::from(*n));
     let report = compute(&plan, out.zip(form), shard, threads, asked.force, matches.get_flag("yes"))?;
     Ok(Ended::Answered(told(&asked, &report, &of)))
 }
@@ -163,7 +167,7 @@ fn compute(
         });
         let parts: Result<Vec<Summary>, _> = parts.and_then(|all| all.into_iter().collect());
         let Ok(parts) = parts else {
-            let told = "interrupted: nothing was written (give --output to keep pieces)\n";
+            let told = "interrupted: nothing was written (-o keeps finished pieces)\n";
             return Err(Ended::Interrupted(told.into()));
         };
         let mut summary = Summary::default();
@@ -507,9 +511,10 @@ pub fn merge_command() -> Command {
     let path = |name: &'static str, value: &'static str| {
         Arg::new(name).value_name(value).required(true).value_parser(value_parser!(PathBuf))
     };
+    let output = path("output", "FILE").short('o').long("output").visible_alias("out");
     Command::new("merge")
         .about("Put the shards of a sweep together, after checking that they belong together")
-        .arg(path("out", "OUT").help("The table to write"))
+        .arg(output.help("The table to write"))
         .arg(
             path("shards", "SHARDS")
                 .num_args(1..)
@@ -520,7 +525,7 @@ pub fn merge_command() -> Command {
 
 /// Puts shards together.
 pub fn run_merge(matches: &ArgMatches) -> Result<Ended, Ended> {
-    let out = matches.get_one::<PathBuf>("out").expect("it is required");
+    let out = matches.get_one::<PathBuf>("output").expect("it is required");
     let shards: Vec<PathBuf> = matches.get_many("shards").into_iter().flatten().cloned().collect();
     let read: Vec<&Path> = shards.iter().map(PathBuf::as_path).collect();
     output::apart(out, &read)?;

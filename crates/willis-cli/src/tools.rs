@@ -3,20 +3,22 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use willis_ask::{QUESTIONS, RefusalReport};
+use willis_ask::{File, QUESTIONS, RefusalReport};
 
-use crate::{Ended, command, sweep};
+use crate::run::deliver;
+use crate::{Ended, sweep};
 
 /// A command that asks no question.
 pub struct Tool {
     pub name: &'static str,
     pub command: fn() -> Command,
-    pub run: fn(&ArgMatches) -> Result<Ended, Ended>,
+    /// Takes its own options and the whole command.
+    pub run: fn(&ArgMatches, Command) -> Result<Ended, Ended>,
 }
 
 /// All of them.
 pub const TOOLS: &[Tool] = &[
-    Tool { name: "merge", command: sweep::merge_command, run: sweep::run_merge },
+    Tool { name: "merge", command: sweep::merge_command, run: |own, _| sweep::run_merge(own) },
     Tool { name: "schema", command: schema_command, run: schema },
     Tool { name: "completions", command: completions_command, run: completions },
     Tool { name: "man", command: man_command, run: man },
@@ -40,13 +42,13 @@ fn schema_command() -> Command {
         )
 }
 
-fn schema(matches: &ArgMatches) -> Result<Ended, Ended> {
+fn schema(matches: &ArgMatches, whole: Command) -> Result<Ended, Ended> {
     let pretty = |schema: &serde_json::Value| serde_json::to_string_pretty(schema).expect("plain data") + "\n";
     let Some(name) = matches.get_one::<String>("question") else {
         return Ok(Ended::Answered(pretty(&willis::train::schema())));
     };
     match name.as_str() {
-        "list" => return Ok(Ended::Answered(pretty(&list()))),
+        "list" => return Ok(Ended::Answered(pretty(&list(&whole)))),
         "refusal" => return Ok(Ended::Answered(pretty(RefusalReport::schema().as_value()))),
         _ => {}
     }
@@ -59,11 +61,10 @@ fn schema(matches: &ArgMatches) -> Result<Ended, Ended> {
 }
 
 /// All questions as data, each with what its command line begins with: `willis draw KIND FILE`.
-fn list() -> serde_json::Value {
-    let command = command::command();
+fn list(whole: &Command) -> serde_json::Value {
     let all = QUESTIONS.iter().map(|entry| {
         let mut told = entry.told();
-        let own = command.find_subcommand(entry.name).expect("every question is a command");
+        let own = whole.find_subcommand(entry.name).expect("every question is a command");
         let places = own.get_positionals().map(|arg| {
             let names = arg.get_value_names().unwrap_or_default().join(" ");
             if arg.is_required_set() { format!(" {names}") } else { format!(" [{names}]") }
@@ -81,10 +82,10 @@ fn completions_command() -> Command {
         .arg(shell.value_parser(value_parser!(clap_complete::Shell)).help("The shell"))
 }
 
-fn completions(matches: &ArgMatches) -> Result<Ended, Ended> {
+fn completions(matches: &ArgMatches, mut whole: Command) -> Result<Ended, Ended> {
     let shell = *matches.get_one::<clap_complete::Shell>("shell").expect("it is required");
     let mut script = Vec::new();
-    clap_complete::generate(shell, &mut command::command(), "willis", &mut script);
+    clap_complete::generate(shell, &mut whole, "willis", &mut script);
     Ok(Ended::Answered(String::from_utf8(script).expect("scripts are text")))
 }
 
@@ -93,15 +94,21 @@ fn man_command() -> Command {
     Command::new("man")
         .about("Print the manual page, or write one for every command into a folder")
         .arg(folder.help("The folder"))
+        .arg(Arg::new("force").long("force").action(ArgAction::SetTrue).help("Replace files that are there already"))
 }
 
-fn man(matches: &ArgMatches) -> Result<Ended, Ended> {
-    let Some(folder) = matches.get_one::<PathBuf>("folder") else {
-        let mut page = Vec::new();
-        clap_mangen::Man::new(command::command()).render(&mut page).expect("writing to memory");
-        return Ok(Ended::Answered(String::from_utf8(page).expect("pages are text")));
+fn man(matches: &ArgMatches, whole: Command) -> Result<Ended, Ended> {
+    let page = |command: &Command| {
+        let man = clap_mangen::Man::new(command.clone());
+        let mut bytes = Vec::new();
+        man.render(&mut bytes).expect("writing to memory");
+        File { name: man.get_filename(), bytes, about: String::new() }
     };
-    let written = clap_mangen::generate_to(command::command(), folder);
-    written.map_err(|e| format!("{}: {e}\n", folder.display()))?;
-    Ok(Ended::Answered(String::new()))
+    let mut whole = whole.disable_help_subcommand(true);
+    whole.build();
+    let Some(folder) = matches.get_one::<PathBuf>("folder") else {
+        return Ok(Ended::Answered(String::from_utf8(page(&whole).bytes).expect("pages are text")));
+    };
+    let pages = std::iter::once(&whole).chain(whole.get_subcommands()).map(page);
+    Ok(Ended::Answered(deliver(pages.collect(), Some(folder), matches.get_flag("force"))?))
 }

@@ -1,8 +1,8 @@
 //! Work on all cores, with a bar that tells how fast and how long yet.
 
 use std::io::IsTerminal;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, Once};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -32,9 +32,8 @@ struct Stage {
 }
 
 impl Terminal {
-    /// With so many threads. From now on Ctrl-C ends the work and not the program.
+    /// With so many threads.
     pub fn new(threads: usize) -> Self {
-        interrupt::listen(|| {});
         Self { threads: threads.max(1), stage: Mutex::new(None) }
     }
 
@@ -78,7 +77,10 @@ impl Work for Terminal {
         }
     }
 
+    /// Once it was asked for, Ctrl-C ends the work and not the program. Work that never asks ends with the program.
     fn cancelled(&self) -> bool {
+        static LISTENING: Once = Once::new();
+        LISTENING.call_once(|| interrupt::listen(|| {}));
         interrupt::interrupted()
     }
 

@@ -798,7 +798,8 @@ fn regress_man() {
     answered(&["man", path(&folder)]);
     let pages = std::fs::read_dir(&folder).expect("the folder").count();
     assert!(pages >= 6, "{pages} pages");
-    refused(&run(&["man", path(&folder.join("missing"))]), 1);
+    assert!(refused(&run(&["man", path(&folder)]), 1).contains("--force"));
+    answered(&["man", path(&folder), "--force"]);
 }
 
 #[test]

@@ -64,7 +64,7 @@ fn what_does_not_apply_says_why_and_what_does() {
         "{said}"
     );
     let said = refused(&["draw", "front", &example("zf-8hp70.toml")]);
-    assert!(said.contains("geometry") && said.contains("--nominal"), "{said}");
+    assert!(said.contains("geometry") && said.contains("`nominal`"), "{said}");
     let said = refused(&["draw", "time", &example("zf-8hp70.toml")]);
     assert!(said.contains("no scenario"), "{said}");
     let said = refused(&["draw", "stik", &example("zf-8hp70.toml")]);
@@ -130,9 +130,9 @@ fn the_same_train_makes_the_same_report() {
 #[test]
 fn what_makes_no_difference_is_refused() {
     let said = refused(&["draw", "shift", &example("zf-8hp70.toml"), "--operation", "coasting"]);
-    assert!(said.contains("no use for --operation"), "{said}");
+    assert!(said.contains("no use for `operation`"), "{said}");
     let said = refused(&["draw", "stick", &example("zf-8hp70.toml"), "--animated"]);
-    assert!(said.contains("no use for --animated"), "{said}");
+    assert!(said.contains("no use for `animated`"), "{said}");
     let balanced = willis(&[
         "draw",
         "regimes",

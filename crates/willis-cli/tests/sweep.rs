@@ -135,7 +135,7 @@ fn shards_make_the_whole_and_nothing_else_does() {
             fine(&sweep(shard, &["--shard", &format!("{}/3", k + 1), "--threads", "2"]));
         }
         let merge = |parts: &[&String], out: &str| {
-            let mut all = vec!["merge", out];
+            let mut all = vec!["merge", "-o", out];
             all.extend(parts.iter().map(|p| p.as_str()));
             all.into_iter().map(str::to_owned).collect::<Vec<_>>()
         };
@@ -178,7 +178,7 @@ fn shards_make_the_whole_and_nothing_else_does() {
         fails(&[&shards[0], &shards[1], &shards[2]], "is not the table that was written");
         fs::copy(&shards[0], &shards[1]).unwrap();
         fails(&[&shards[0], &shards[1], &shards[2]], "is not the table that was written");
-        let over = ["merge", &shards[0], &shards[0], &shards[1], &shards[2], "--force"];
+        let over = ["merge", "-o", &shards[0], &shards[0], &shards[1], &shards[2], "--force"];
         assert!(refused(&over).contains("is read here and cannot be written over"));
     }
 }

@@ -143,9 +143,7 @@ pub fn contact_path(train: &Train, operation: Option<&str>, mesh: Option<&str>) 
         && train.mesh(name).is_none()
     {
         let known = train.meshes().iter().map(|m| m.name.as_str());
-        let d = Diagnostic::new(Code::UnknownName, "", format!("the train has no mesh `{name}`"));
-        let list = known.clone().collect::<Vec<_>>().join(", ");
-        return Err([d.suggest(name, known).hint(format!("its meshes are: {list}"))].into_iter().collect());
+        return Err(Diagnostic::missing(Code::UnknownName, "mesh", name, known).into());
     }
     let wanted: Vec<usize> =
         (0..train.meshes().len()).filter(|&k| mesh.is_none_or(|name| train.meshes()[k].name == name)).collect();
@@ -160,16 +158,7 @@ pub fn contact_path(train: &Train, operation: Option<&str>, mesh: Option<&str>) 
         return Err(unfit("no path of contact: the train has no oil", "add `[oil]` with `name = \"ISO VG 100\"`"));
     };
     let operations: Vec<&Operation> = match operation {
-        Some(name) => match train.operations().iter().find(|o| o.name == name) {
-            Some(found) => vec![found],
-            None => {
-                let known = train.operations().iter().map(|o| o.name.as_str());
-                let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
-                let list = known.clone().collect::<Vec<_>>().join(", ");
-                let d = d.suggest(name, known).hint(format!("its operations are: {list}"));
-                return Err([d].into_iter().collect());
-            }
-        },
+        Some(name) => vec![train.find_operation(name)?],
         None => train.operations().iter().collect(),
     };
     if operations.is_empty() {

@@ -297,7 +297,7 @@ pub fn front(train: &Train, set: Option<&str>, nominal: bool) -> Result<Front, D
         let text = format!("no front view of `{name}`: the teeth of {} are not given", bare.join(", "));
         let hint = match bare.len() < chosen.meshes.len() {
             true => format!("give {what} {place} for every mesh"),
-            false => format!("give {what} {place}, or draw standard teeth of module 1 mm with --nominal"),
+            false => format!("give {what} {place}, or draw standard teeth of module 1 mm (`nominal`)"),
         };
         return Err(unfit(text, hint));
     }

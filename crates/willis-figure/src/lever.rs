@@ -13,18 +13,21 @@
 pub mod draw;
 mod family;
 mod layout;
+mod role;
 
 use serde::{Deserialize, Serialize};
-use willis::analysis::{AS_DRAWN, OperationReport, SolutionReport, operate};
+use willis::analysis::{OperationReport, SolutionReport, operate};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
 use willis::kinematics::Configuration;
-use willis::train::{Load, MemberId, Operation, ShiftElementId, Train};
+use willis::train::{AS_DRAWN, Load, MemberId, Operation, ShiftElementId, Train};
 use willis::units::{Dimension, Quantity};
 use willis::unstable;
 
 use crate::kind::{Ask, FigureRequest, Kind};
 use family::{Family, families};
+
+pub use role::LeverRole;
 
 pub(crate) const KIND: Kind<Lever> = Kind {
     title: "Levers",
@@ -120,24 +123,6 @@ pub struct LeverSet {
     pub name: String,
     /// What acts where; empty where torques are not shown.
     pub pulls: Vec<LeverPull>,
-}
-
-/// What a point of a lever is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum LeverRole {
-    /// The carrier of the planets.
-    Carrier,
-    /// An external gear in mesh with a planet.
-    Sun,
-    /// An internal gear in mesh with a planet.
-    Ring,
-    /// A gear of a pair without planets.
-    Gear,
-    /// A planet.
-    Planet,
 }
 
 /// A point of a lever.
@@ -265,21 +250,9 @@ struct Shown {
 impl Shown {
     fn find(train: &Train, request: &LeverRequest) -> Result<Self, Diagnostics> {
         match request {
-            LeverRequest::Operation(name) => {
-                let known = train.operations().iter().map(|o| o.name.as_str());
-                let Some(operation) = train.operations().iter().find(|o| o.name == *name) else {
-                    return Err(unknown("operation", name, known));
-                };
-                Self::operation(train, operation)
-            }
+            LeverRequest::Operation(name) => Self::operation(train, train.find_operation(name)?),
             LeverRequest::State(name) if train.states().is_empty() && name == AS_DRAWN => Self::state(train, None),
-            LeverRequest::State(name) => {
-                let known = train.states().iter().map(|s| s.name.as_str());
-                match train.states().iter().position(|s| s.name == *name) {
-                    Some(k) => Self::state(train, Some(k)),
-                    None => Err(unknown("state", name, known)),
-                }
-            }
+            LeverRequest::State(name) => Self::state(train, Some(train.find_state(name)?)),
             LeverRequest::EveryState => Self::every_state(train),
             LeverRequest::First => match train.operations().first() {
                 Some(operation) => Self::operation(train, operation),
@@ -372,16 +345,6 @@ impl Shown {
             solution: None,
         })
     }
-}
-
-fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Diagnostics {
-    let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no {what} `{name}`"));
-    let all: Vec<&str> = known.clone().collect();
-    let hint = match all.is_empty() {
-        true => format!("it has no {what}s"),
-        false => format!("its {what}s are: {}", all.join(", ")),
-    };
-    [d.suggest(name, known).hint(hint)].into_iter().collect()
 }
 
 fn case(train: &Train, k: usize, name: &str, engaged: &[ShiftElementId], fixed: &[MemberId]) -> LeverCase {

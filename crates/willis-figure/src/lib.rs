@@ -2,7 +2,7 @@
 //!
 //! A figure is data first: what stands where, in which role, with which words; no pixels, no fonts. [`draw`]
 //! makes SVG of it: text stays text, colours are safe for the colour-blind, and every colour also
-//! carries a letter. A kind of figure is one folder here, which holds its data and its drawing.
+//! carries a letter. A kind of figure is a file with its data and a folder with its drawing.
 
 mod band;
 mod contact_path;
@@ -22,6 +22,9 @@ mod shift;
 mod stick;
 mod time;
 mod tornado;
+
+// `report::document` looks for it here.
+use willis::contract;
 
 pub use band::draw::draw as draw_band;
 pub use band::{BandPoint, Bands, QUANTILES, bands};

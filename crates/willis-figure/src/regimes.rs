@@ -171,8 +171,8 @@ pub fn regime_map(train: &Train, selection: &RegimeSelection) -> Result<RegimeMa
             let mut all = Diagnostics::default();
             let d = Diagnostic::new(Code::Unfit, "", format!("no wheel of regimes: {text}"));
             all.push(d.hint(
-                "it needs two degrees of freedom and one independent torque: name three terminals with --terminals, or \
-                 two that balance each other's power with --balance",
+                "it needs two degrees of freedom and one independent torque: name three `terminals`, or two \
+                 that `balance` each other's power",
             ));
             all
         }
@@ -258,7 +258,7 @@ pub fn regime_map(train: &Train, selection: &RegimeSelection) -> Result<RegimeMa
         .fold(1.0, f64::min);
     let boundaries = boundaries(atlas, &rays, &from, selection.balance.as_ref());
     Ok(RegimeMap {
-        title: match atlas.state == willis::analysis::AS_DRAWN {
+        title: match atlas.state == willis::train::AS_DRAWN {
             true => train.name().to_owned(),
             false => format!("{}, state {}", train.name(), atlas.state),
         },

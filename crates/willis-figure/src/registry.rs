@@ -1,4 +1,4 @@
-//! All kinds of figures. A kind is a folder and a line here; everything else follows from the line.
+//! All kinds of figures. A kind is a file, a folder and a line here; everything else follows from the line.
 
 use serde::{Deserialize, Serialize};
 

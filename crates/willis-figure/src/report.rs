@@ -12,7 +12,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use willis::Diagnostics;
 use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
-use willis::contract;
 use willis::diagnostic::{Code, Severity};
 use willis::hypergraph::watts;
 use willis::model::Model;
@@ -45,7 +44,8 @@ struct Findings<'a> {
     model: &'a Model,
     request: &'a ReportRequest,
     analysis: Analysis,
-    sensitivity: Option<Sensitivity>,
+    /// Where there is an operating point.
+    sensitivity: Option<Result<Sensitivity, Diagnostics>>,
     figures: Figures,
 }
 
@@ -178,7 +178,7 @@ pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result
     let train = model.train();
     let selection = Selection { state: None, operation: request.operation.clone() };
     let analysis = analyze(train, &selection)?;
-    let sensitivity = sensitivity(train, &selection).ok();
+    let sensitivity = (!analysis.operations.is_empty()).then(|| sensitivity(train, &selection));
     let wanted = wanted(model, request, &analysis);
     let figures = Figures::make(work, &wanted, |kind, request| kind.make(model, request))?;
     let all = Findings { model, request, analysis, sensitivity, figures };
@@ -314,7 +314,7 @@ fn summary(all: &Findings<'_>) -> Section {
             .to_owned();
         blocks.push(Block::Notice { level: Level::Good, text });
     }
-    if let Some(first) = all.sensitivity.as_ref().and_then(|s| s.operations.first())
+    if let Some(first) = all.sensitivity.as_ref().and_then(|s| s.as_ref().ok()?.operations.first())
         && let Some(q) = first.quantities.first()
     {
         let text = format!(

@@ -272,19 +272,7 @@ pub fn stick(train: &Train, state: Option<&str>) -> Result<Stick, Diagnostics> {
     let wrong = |d: Diagnostic| Err([d].into_iter().collect::<Diagnostics>());
     let shown = match state {
         None => None,
-        Some(name) => match train.states().iter().position(|s| s.name == name) {
-            Some(k) => Some(k),
-            None => {
-                let known = train.states().iter().map(|s| s.name.as_str());
-                let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
-                d = d.suggest(name, known.clone());
-                let known: Vec<_> = known.collect();
-                return wrong(match known.is_empty() {
-                    true => d.hint("it has no states: leave the state out"),
-                    false => d.hint(format!("its states are: {}", known.join(", "))),
-                });
-            }
-        },
+        Some(name) => Some(train.find_state(name)?),
     };
     let members = members::Members::new(train);
     if members.order.is_empty() {

@@ -25,23 +25,13 @@ pub(crate) const KIND: Kind<TimePlot> = Kind {
 /// # Errors
 /// No such scenario, none at all, or what [`simulate`] says.
 fn scenario(train: &Train, name: Option<&str>) -> Result<TimePlot, Diagnostics> {
-    let all = train.scenarios();
-    let scenario = match name {
-        None => all.first(),
-        Some(name) => all.iter().find(|s| s.name == name),
-    };
-    let Some(scenario) = scenario else {
-        let d = match name {
-            Some(name) => {
-                let known = all.iter().map(|s| s.name.as_str());
-                let list = known.clone().collect::<Vec<_>>().join(", ");
-                Diagnostic::new(Code::UnknownSelection, "", format!("the train has no scenario `{name}`"))
-                    .suggest(name, known)
-                    .hint(format!("its scenarios are: {}", if list.is_empty() { "none" } else { &list }))
-            }
-            None => Diagnostic::new(Code::Unfit, "", "the train has no scenario that could run over time"),
-        };
-        return Err(d.hint("a [[scenario]] says what drives and what happens when").into());
+    let scenario = match (name, train.scenarios().first()) {
+        (Some(name), _) => train.find_scenario(name)?,
+        (None, Some(first)) => first,
+        (None, None) => {
+            let d = Diagnostic::new(Code::Unfit, "", "the train has no scenario that could run over time");
+            return Err(d.hint("a [[scenario]] says what drives and what happens when").into());
+        }
     };
     let mut plot = TimePlotBuilder::new(train, [scenario.start, scenario.end]);
     let report = simulate(train, &scenario.name, &Options::default(), &mut plot)?;

@@ -31,7 +31,7 @@ use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource};
 use crate::statics::Certificate;
-use crate::train::{Efficiency, Operation, ShiftElementKind, Train};
+use crate::train::{AS_DRAWN, Efficiency, Operation, ShiftElementKind, Train};
 
 /// What can be said of a load case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,7 +47,8 @@ pub enum Verdict {
     Locked,
     /// Nothing is loaded.
     Unloaded,
-    /// The question has no determined answer: a freedom too many, or a redundant constraint.
+    /// No determined answer: a speed is missing, constraints are redundant, uniqueness is undecided, or losses did not
+    /// converge.
     Undetermined,
 }
 
@@ -96,7 +97,7 @@ pub struct Direction {
     pub certificate: Option<CertificateReport>,
     /// One sentence that explains a verdict other than `unique`.
     pub reason: Option<String>,
-    /// The same as data.
+    /// What `reason` says, as data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<Why>,
 }
@@ -299,7 +300,7 @@ pub struct LockMargin {
 pub struct StictionRange {
     /// What varies, in words.
     pub what: String,
-    /// The same as data.
+    /// What `what` says, as data.
     pub quantity: StictionQuantity,
     /// Smallest value; absent when too many meshes rest to bound it.
     pub low: Option<f64>,
@@ -412,7 +413,7 @@ pub struct OperationReport {
     pub certificate: Option<CertificateReport>,
     /// One sentence that explains the verdict.
     pub reason: Option<String>,
-    /// The same as data.
+    /// What `reason` says, as data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<Why>,
     /// Laws that were used outside their ranges.
@@ -485,9 +486,6 @@ pub struct Selection {
     /// Only this operation.
     pub operation: Option<String>,
 }
-
-/// Name of the single row of a train without states.
-pub const AS_DRAWN: &str = "as drawn";
 
 /// Analyses a train: every state of its shift table and every operation.
 ///
@@ -590,21 +588,11 @@ impl Selection {
     /// Whether the train has what is selected.
     pub(crate) fn check(&self, train: &Train) -> Result<(), Diagnostics> {
         let mut errors = Diagnostics::default();
-        if let Some(name) = &self.state
-            && train.state(name).is_none()
-        {
-            let known = train.states.iter().map(|s| s.name.as_str());
-            let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
-            d = d.suggest(name, known.clone());
-            errors.push(d.hint(format!("its states are: {}", known.collect::<Vec<_>>().join(", "))));
+        if let Some(Err(d)) = self.state.as_ref().map(|name| train.find_state(name)) {
+            errors.push(*d);
         }
-        if let Some(name) = &self.operation {
-            let known = train.operations.iter().map(|o| o.name.as_str());
-            if !known.clone().any(|n| n == name) {
-                let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
-                d = d.suggest(name, known.clone());
-                errors.push(d.hint(format!("its operations are: {}", known.collect::<Vec<_>>().join(", "))));
-            }
+        if let Some(Err(d)) = self.operation.as_ref().map(|name| train.find_operation(name)) {
+            errors.push(*d);
         }
         if let (Some(state), Some(name), false) = (&self.state, &self.operation, errors.has_errors()) {
             let operation = train.operations.iter().find(|o| o.name == *name);

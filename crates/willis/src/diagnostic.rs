@@ -2,9 +2,9 @@
 //!
 //! The user's mistakes are [`Diagnostics`]: all of them at once, each with a stable [`Code`], the
 //! place in the train (`set[1].ring.teeth`) and, when the train came from text, the bytes, lines and
-//! columns it stands on. [`Diagnostics`] is the error of every function here that can refuse its input; the errors of
-//! single values ([`QuantityError`](crate::units::QuantityError), [`Fault`](crate::geometry::Fault), …) become
-//! diagnostics by `?`.
+//! columns it stands on. [`Diagnostics`] is the error of every function here that takes a train or a file; the errors of
+//! single values and problems ([`QuantityError`](crate::units::QuantityError), [`Fault`](crate::geometry::Fault),
+//! [`Unposed`](crate::statics::Unposed), …) become diagnostics by `?`.
 //!
 //! Diagnostics serialise and read back: a front end in another process or language shows the same list.
 //!
@@ -91,6 +91,18 @@ impl Diagnostic {
             span: None,
             replacement: None,
         }
+    }
+
+    /// That the train has no such thing: with the nearest name, and a hint that lists all.
+    pub fn missing<'a>(code: Code, what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Self {
+        let all = known.clone().collect::<Vec<_>>().join(", ");
+        let several = match (what.strip_suffix('y'), what.ends_with("sh")) {
+            (Some(stem), _) => format!("{stem}ies"),
+            (None, true) => format!("{what}es"),
+            (None, false) => format!("{what}s"),
+        };
+        let hint = if all.is_empty() { format!("it has no {several}") } else { format!("its {several} are: {all}") };
+        Self::new(code, "", format!("the train has no {what} `{name}`")).suggest(name, known).hint(hint)
     }
 
     /// Adds a hint.

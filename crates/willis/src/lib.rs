@@ -62,7 +62,7 @@
 //! | know every way a train can run, with closed formulas | [`regimes::regimes`], [`regimes::formulas`] |
 //! | know how far an operating point is from the next regime | [`regimes::locate`](fn@regimes::locate) |
 //! | rank what matters most | [`study::sensitivity`](fn@study::sensitivity) |
-//! | know how sure a number is | [`study::UncertaintyPlan`] |
+//! | know how sure a number is | [`study::uncertainty`](fn@study::uncertainty) |
 //! | vary quantities over a grid | [`study::sweep`](fn@study::sweep) |
 //! | compute the energy of a duty cycle | [`study::cycle`](fn@study::cycle) |
 //! | compare variants | [`study::compare`](fn@study::compare) |
@@ -183,6 +183,8 @@ mod prose {
     struct HowSureAmI;
     #[doc = include_str!("../../../book/src/duty-cycle.md")]
     struct WhatDoesItCost;
+    #[doc = include_str!("../../../book/src/compare.md")]
+    struct WhichVariantIsBetter;
     #[doc = include_str!("../../../book/src/regimes.md")]
     struct EveryWayATrainCanRun;
     #[doc = include_str!("../../../book/src/power-split.md")]

@@ -8,8 +8,8 @@
 //!
 //! * **Certificate.** If `det B(ρ) ≠ 0` on the whole box `ρ_j ∈ [η_j, 1/η_j]`, exactly one solution
 //!   exists for every load (W-property: Samelson, Thrall, Wesler; Sznajder and Gowda for the
-//!   horizontal form). It is proved by a verified bound on the spectral radius, or by the
-//!   determinants of all sign patterns, the box being split only where the bound fails.
+//!   horizontal form). It is proved by a verified bound on the spectral radius, or by
+//!   splitting the box until each part is regular, and comparing the exact determinants at one corner of each part.
 //! * **Solution.** With a certificate: least-index pivoting from the lossless pattern, which ends
 //!   under the W-property (Murty). Without: every pattern is tried and every solution returned.
 //! * **Decisions** that lie within the error bound of the floating point solution are made again
@@ -26,6 +26,7 @@ use std::collections::HashSet;
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
+use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Node};
 
@@ -92,6 +93,19 @@ impl std::fmt::Display for Unsolvable {
 }
 
 impl std::error::Error for Unsolvable {}
+
+impl From<Unsolvable> for Diagnostic {
+    fn from(why: Unsolvable) -> Self {
+        let code = match why {
+            Unsolvable::MissingLoads(_) => Code::MissingTorque,
+            Unsolvable::TooManyLoads(_) => Code::TooManyTorques,
+            Unsolvable::Indeterminate | Unsolvable::UndeterminedSpeed => Code::Unfit,
+        };
+        Self::new(code, "", why.to_string())
+    }
+}
+
+through_diagnostic!(Unsolvable);
 
 /// One element as the statics sees it.
 #[derive(Clone, Debug)]

@@ -20,7 +20,7 @@ mod summary;
 mod sweep;
 mod uncertainty;
 
-pub use answer::{PointAnswer, PointVerdict, PointWarning};
+pub use answer::{LawChoice, PointAnswer, PointVerdict, PointWarning};
 pub use axis::{Axis, values};
 pub use column::{Column, ColumnKind, ColumnTable, ColumnValues, Rows};
 pub use compare::{
@@ -40,7 +40,7 @@ pub use question::{Hold, Question, Trains};
 pub use sensitivity::{
     Checks, OperationSensitivity, QuantitySensitivity, Sensitivity, SourceChange, StepKind, sensitivity,
 };
-pub use summary::{AxisValue, Extreme, LawChoice, MinMaxSum, Summary, WarningCount, WarningKind};
+pub use summary::{AxisValue, Extreme, MinMaxSum, Summary, WarningCount, WarningKind};
 pub use sweep::{
     Shard, Sweep, SweepAnswer, SweepAxis, SweepColumn, SweepMethod, SweepPlace, SweepPlan, SweepReport, SweepRequest,
     SweepStudy, sweep,

@@ -12,6 +12,7 @@ mod described;
 mod dynamic;
 mod edit;
 mod expand;
+mod find;
 mod format;
 mod formula;
 mod input;
@@ -35,6 +36,7 @@ pub use dynamic::{
     SourceKind,
 };
 pub use edit::{Document, Key, Measure};
+pub use find::AS_DRAWN;
 pub use formula::Formula;
 pub(crate) use input::{BearingNumber, Input, RotorNumber, Slot};
 pub(crate) use physical::steel_mass;

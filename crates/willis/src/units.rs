@@ -1,9 +1,8 @@
 //! Quantities and unit strings at the boundary; inside, everything is SI.
 //!
 //! A value keeps its exact rational and its power of π (`1 rpm = π/30 rad/s`), because whether two
-//! shafts turn at the same speed is decided exactly, and π would spoil that. [`AngularSpeed`],
-//! [`Torque`] and [`Power`] are what the library takes; their limit: the types do not know which
-//! shaft a torque acts on.
+//! shafts turn at the same speed is decided exactly, and π would spoil that. Types such as
+//! [`AngularSpeed`], [`Torque`] and [`Power`] are what the library takes. They do not know which shaft a torque acts on.
 //!
 //! An angle has a dimension of its own. Work is torque times angle, so `350 J` is no torque, `N m/rad` is a stiffness
 //! and no torque, and torque times angular speed is a power.
@@ -12,6 +11,7 @@
 //! `min⁻¹`, `U/min`), as long as it has one meaning for the quantity that is asked for. What is not read is answered
 //! with the right spelling ([`QuantityError::instead`]).
 
+mod dimension;
 mod grammar;
 mod symbols;
 
@@ -20,80 +20,9 @@ use std::fmt;
 use crate::exact::Rational;
 
 use grammar::{MassAs, Scale};
-use symbols::{KINDS, WORDS};
+use symbols::WORDS;
 
-/// Exponents of metre, kilogram, second, radian and kelvin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Dimension([i8; 5]);
-
-impl Dimension {
-    /// rad/s
-    pub const ANGULAR_SPEED: Self = Self([0, 0, -1, 1, 0]);
-    /// N m
-    pub const TORQUE: Self = Self([2, 1, -2, 0, 0]);
-    /// W
-    pub const POWER: Self = Self([2, 1, -3, 1, 0]);
-    /// J; torque times angle, so that a torque is no energy
-    pub const ENERGY: Self = Self([2, 1, -2, 1, 0]);
-    /// m
-    pub const LENGTH: Self = Self([1, 0, 0, 0, 0]);
-    /// rad
-    pub const ANGLE: Self = Self([0, 0, 0, 1, 0]);
-    /// K; on the scale of a thermometer, `"60 degC"` is 333.15 K
-    pub const TEMPERATURE: Self = Self([0, 0, 0, 0, 1]);
-    /// N
-    pub const FORCE: Self = Self([1, 1, -2, 0, 0]);
-    /// kg
-    pub const MASS: Self = Self([0, 1, 0, 0, 0]);
-    /// m³
-    pub const VOLUME: Self = Self([3, 0, 0, 0, 0]);
-    /// kg/m³
-    pub const DENSITY: Self = Self([-3, 1, 0, 0, 0]);
-    /// Pa
-    pub const PRESSURE: Self = Self([-1, 1, -2, 0, 0]);
-    /// 1/Pa
-    pub const PRESSURE_COEFFICIENT: Self = Self([1, -1, 2, 0, 0]);
-    /// m²/s
-    pub const KINEMATIC_VISCOSITY: Self = Self([2, 0, -1, 0, 0]);
-    /// Pa s
-    pub const DYNAMIC_VISCOSITY: Self = Self([-1, 1, -1, 0, 0]);
-    /// s
-    pub const TIME: Self = Self([0, 0, 1, 0, 0]);
-    /// 1/s
-    pub const FREQUENCY: Self = Self([0, 0, -1, 0, 0]);
-    /// m²
-    pub const AREA: Self = Self([2, 0, 0, 0, 0]);
-    /// kg m²
-    pub const INERTIA: Self = Self([2, 1, 0, 0, 0]);
-    /// N m/rad
-    pub const STIFFNESS: Self = Self([2, 1, -2, -1, 0]);
-    /// N m s/rad
-    pub const VISCOUS: Self = Self([2, 1, -1, -1, 0]);
-    /// N m s²/rad, torque over angular acceleration
-    pub const TORQUE_PER_ACCELERATION: Self = Self([2, 1, 0, -1, 0]);
-    /// N m s²/rad², torque over the square of angular speed
-    pub const TORQUE_PER_SPEED_SQUARED: Self = Self([2, 1, 0, -2, 0]);
-
-    /// What a person calls it, and an example that the reader accepts.
-    pub fn describe(self) -> (&'static str, &'static str) {
-        self.kind().map_or(("a quantity of another kind", ""), |k| (k.name, k.example))
-    }
-
-    /// Units in which it is written. Only these are suggested for it; the reader knows more.
-    ///
-    /// # Example
-    /// ```
-    /// use willis::units::Dimension;
-    /// assert!(Dimension::TORQUE.units().contains(&"N m"));
-    /// ```
-    pub fn units(self) -> &'static [&'static str] {
-        self.kind().map_or(&[], |k| k.units)
-    }
-
-    fn kind(self) -> Option<&'static symbols::Kind> {
-        KINDS.iter().find(|k| k.dimension == self)
-    }
-}
+pub use dimension::Dimension;
 
 /// An exact value `value · π^pi_power` in SI units.
 #[derive(Clone, Debug, PartialEq)]

@@ -186,8 +186,15 @@ fn motion(root: &Path, own: &[Value], peers: &[Value]) -> Result<(), String> {
 /// Sweeps through the command line: wall time of the whole program, the best of several runs.
 fn study(root: &Path, python: &Path, wrong: &mut Vec<String>) -> Result<(), String> {
     println!("sweeps …");
-    command(Command::new("cargo").current_dir(root).args(["build", "--release", "--quiet", "-p", "willis-cli"]))?;
-    let willis = root.join("target/release/willis");
+    command(Command::new("cargo").current_dir(root).args([
+        "build",
+        "--profile",
+        "dist",
+        "--quiet",
+        "-p",
+        "willis-cli",
+    ]))?;
+    let willis = root.join("target/dist/willis");
     let mut c = Command::new(python);
     c.current_dir(root.join("benches/baselines")).args(["study.py", "--json"]).env("PYTHONDONTWRITEBYTECODE", "1");
     let out = c.output().map_err(|e| e.to_string())?;

@@ -6,7 +6,7 @@ use std::fs;
 use serde_json::Value;
 
 use crate::context::Context;
-use crate::step::{Outcome, outcome};
+use crate::step::{Outcome, outcome, tested};
 use crate::tested::{test, test_with};
 
 /// Files that are generated, and committed; so are the [`FIGURES`].
@@ -189,16 +189,13 @@ fn write_pages(context: &Context) -> Result<(), String> {
 
 /// `cargo xtask validate`
 pub(crate) fn validate(context: &Context) -> Outcome {
-    match write_pages(context) {
-        Ok(()) => match &context.options.modelica {
-            None => test(context, "cargo test --workspace --tests --no-fail-fast -- val_"),
-            Some(folder) => {
-                let words = "cargo test --workspace --test validation -- --ignored --nocapture whole_trajectories";
-                test_with(context, words, &[("WILLIS_MODELICA", folder.as_os_str())])
-            }
-        },
-        Err(e) => Outcome::Failed(e),
-    }
+    tested(write_pages(context).and_then(|()| match &context.options.modelica {
+        None => test(context, "cargo test --workspace --tests --no-fail-fast -- val_"),
+        Some(folder) => {
+            let words = "cargo test --workspace --test validation -- --ignored --nocapture whole_trajectories";
+            test_with(context, words, &[("WILLIS_MODELICA", folder.as_os_str())])
+        }
+    }))
 }
 
 /// `cargo xtask generate`

@@ -55,7 +55,7 @@ const STEPS: &[Step] = &[
     Step::new("book", "what README and book say the program prints is what it prints", Action::Call(book::book)),
     Step::new("pages", "the book as web pages", Action::Call(book::pages)).may_skip(),
     Step::new("bench-gate", "work counts have not grown", Action::Call(bench::bench_gate)).may_skip(),
-    Step::new("wasm", "the library builds for the browser", Action::Call(wasm::wasm)).may_skip(),
+    Step::new("wasm", "the library answers as WebAssembly", Action::Call(wasm::wasm)).may_skip(),
     Step::new("pdf", "reports as PDF, by a typesetter that is built for nobody else", Action::Call(pdf::pdf)),
     Step::new("fuzz", "no panic on random train files: [--seconds N], 20 if not said", Action::Call(fuzz::fuzz))
         .may_skip(),

@@ -14,7 +14,7 @@ pub(crate) fn pdf(context: &Context) -> Outcome {
         context.run(&format!("cargo fmt --manifest-path {MANIFEST} --check"))?;
         // Built once, for tests and program alike; beside its manifest, where `report` looks for it.
         let own = context.root.join("crates/willis-pdf/target");
-        for words in ["cargo test --release --manifest-path", "cargo build --release --manifest-path"] {
+        for words in ["cargo test --manifest-path", "cargo build --manifest-path"] {
             let words = format!("{words} {MANIFEST}");
             passes(context.words(&words).env("CARGO_TARGET_DIR", &own), &words)?;
         }
@@ -22,7 +22,7 @@ pub(crate) fn pdf(context: &Context) -> Outcome {
         let report = context.target.join("report.pdf");
         let mut command = context.willis();
         let path = env::join_paths(
-            [own.join("release")].into_iter().chain(env::split_paths(&env::var_os("PATH").unwrap_or_default())),
+            [own.join("debug")].into_iter().chain(env::split_paths(&env::var_os("PATH").unwrap_or_default())),
         );
         command.env("PATH", path.map_err(|e| e.to_string())?);
         context.output(command.args(["report", "examples/wang-herringbone-physical.toml", "-o"]).arg(&report))?;

@@ -48,6 +48,10 @@ pub(crate) fn outcome(result: Result<(), String>) -> Outcome {
     result.map_or_else(Outcome::Failed, |()| Outcome::Passed)
 }
 
+pub(crate) fn tested(result: Result<Tests, String>) -> Outcome {
+    result.map_or_else(Outcome::Failed, Outcome::Tested)
+}
+
 impl Step {
     /// A step of `ci` that must pass.
     pub(crate) const fn new(name: &'static str, about: &'static str, action: Action) -> Self {
@@ -84,7 +88,7 @@ impl Step {
         let outcome = match self.action {
             Action::Run(words) => outcome(passes(context.words(words).envs(self.env.iter().copied()), words)),
             Action::RunComponent(name, words) => outcome(component(context, name).and_then(|()| context.run(words))),
-            Action::Test(words) => test(context, words),
+            Action::Test(words) => tested(test(context, words)),
             Action::Call(call) => call(context),
         };
         match outcome {

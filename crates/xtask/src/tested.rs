@@ -5,7 +5,6 @@ use std::io::{BufRead, BufReader, Write};
 use std::process::Stdio;
 
 use crate::context::Context;
-use crate::step::Outcome;
 
 /// The count of a test run.
 #[derive(Default)]
@@ -41,12 +40,12 @@ impl Tests {
 ///
 /// The random trains are the same in every run, so that a run can be repeated and tells of the
 /// change that was made; `PROPTEST_RNG_SEED` in the environment looks at others.
-pub(crate) fn test(context: &Context, words: &str) -> Outcome {
+pub(crate) fn test(context: &Context, words: &str) -> Result<Tests, String> {
     test_with(context, words, &[])
 }
 
 /// The same with more in the environment.
-pub(crate) fn test_with(context: &Context, words: &str, env: &[(&str, &OsStr)]) -> Outcome {
+pub(crate) fn test_with(context: &Context, words: &str, env: &[(&str, &OsStr)]) -> Result<Tests, String> {
     let mut command = context.words(words);
     command.envs(env.iter().copied());
     if std::env::var_os("PROPTEST_RNG_SEED").is_none() {
@@ -54,7 +53,7 @@ pub(crate) fn test_with(context: &Context, words: &str, env: &[(&str, &OsStr)]) 
     }
     let mut child = match command.stdout(Stdio::piped()).spawn() {
         Ok(child) => child,
-        Err(e) => return Outcome::Failed(format!("`{words}` cannot be started: {e}")),
+        Err(e) => return Err(format!("`{words}` cannot be started: {e}")),
     };
     let mut tests = Tests::default();
     let mut reader = BufReader::new(child.stdout.take().expect("piped"));
@@ -65,10 +64,10 @@ pub(crate) fn test_with(context: &Context, words: &str, env: &[(&str, &OsStr)]) 
         line.clear();
     }
     match child.wait() {
-        Ok(status) if !status.success() => Outcome::Failed(format!("{} tests failed: {status}", tests.failed)),
-        Err(e) => Outcome::Failed(format!("`{words}`: {e}")),
-        Ok(_) if tests.passed == 0 => Outcome::Failed("no test ran".into()),
-        Ok(_) => Outcome::Tested(tests),
+        Ok(status) if !status.success() => Err(format!("{} tests failed: {status}", tests.failed)),
+        Err(e) => Err(format!("`{words}`: {e}")),
+        Ok(_) if tests.passed == 0 => Err("no test ran".into()),
+        Ok(_) => Ok(tests),
     }
 }
 

@@ -7,7 +7,7 @@ use willis::units::{self, Dimension, Quantity};
 fn wrong(field: &str, text: &str, dimension: Dimension, why: &dyn std::fmt::Display) -> Diagnostic {
     let (kind, example) = dimension.describe();
     Diagnostic::new(Code::Quantity, "", format!("{field} {text}: {why}"))
-        .hint(format!("give {kind}, as in --{field} '{example}'"))
+        .hint(format!("give {kind}, as in '{example}'"))
 }
 
 /// Values of a field; all that is wrong with them at once.
@@ -32,13 +32,13 @@ pub fn of_members(field: &str, given: &[String], dimension: Dimension) -> Result
         match text.split_once('=') {
             None => told.push(
                 Diagnostic::new(Code::Quantity, "", format!("{field} {text}: no member is named"))
-                    .hint(format!("write member=value, as in --{field} 'sun={example}'")),
+                    .hint(format!("write member=value, as in 'sun={example}'")),
             ),
             Some((name, value)) => match units::parse(value, dimension) {
                 Ok(q) => all.push((name.trim().to_owned(), q)),
                 Err(why) => told.push(
                     Diagnostic::new(Code::Quantity, "", format!("{field} {text}: {why}"))
-                        .hint(format!("give {}, as in --{field} '{name}={example}'", dimension.describe().0)),
+                        .hint(format!("give {}, as in '{name}={example}'", dimension.describe().0)),
                 ),
             },
         }
@@ -53,7 +53,7 @@ pub fn pair(names: Option<&[String]>) -> Result<Option<[String; 2]>, Diagnostics
         Some([a, b]) => Ok(Some([a.clone(), b.clone()])),
         Some(other) => {
             let message = format!("balance names two terminals, here are {}", other.len());
-            Err(Diagnostic::new(Code::UnknownSelection, "", message).hint("as in --balance mg1,mg2").into())
+            Err(Diagnostic::new(Code::UnknownSelection, "", message).hint("as in mg1,mg2").into())
         }
     }
 }

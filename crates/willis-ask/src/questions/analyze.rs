@@ -12,7 +12,6 @@ use willis::work::Work;
 use crate::table::Table;
 use crate::{Given, Question, Refusal};
 
-pub(super) use tables::{verdict, word};
 pub(super) use text::margins;
 
 /// Analyse a train: its shift table and its operating points.

@@ -42,7 +42,10 @@ impl Question for Compare {
             CompareRequest { operation: self.operation.clone(), state: self.state.clone(), over: self.over.clone() };
         let all: Vec<_> = of.iter().map(|g| (g.name.as_str(), &g.model)).collect();
         // A message names its file, or concerns all.
-        study::compare(&all, &request, work).map_err(|wrong| Refusal::Wrong(wrong, usize::MAX))
+        study::compare(&all, &request, work).map_err(|wrong| match Refusal::from(wrong) {
+            Refusal::Wrong(wrong, _) => Refusal::Wrong(wrong, usize::MAX),
+            other => other,
+        })
     }
 
     fn text(&self, answer: &Comparison, _: &[Given]) -> String {

@@ -26,7 +26,7 @@ pub struct Cycle {
     /// The profile (CSV), or - for standard input.
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.csv", required = true))]
     pub profile: Attachment,
-    /// The operation that gives what no column sets; else the file's first.
+    /// The operation that gives what no column sets. Default: the first one in the state, else the file's first.
     #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
     pub operation: Option<String>,
     /// State of the shift table, where no column gives it.

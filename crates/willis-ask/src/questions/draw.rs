@@ -3,11 +3,14 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
-use willis::diagnostic::{Code, Diagnostic, Severity};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::work::Work;
 use willis_figure::{Ask, Drawing, Figure, FigureKind, FigureRequest, Theme, draw, themed};
 
 use super::amount::pair;
+use super::names;
+#[cfg(feature = "clap")]
+use super::names::Known;
 use crate::{File, Form, Given, Question, Refusal};
 
 /// Draw a train: its scheme, levers, power flow, teeth, regimes, maps, losses.
@@ -19,7 +22,8 @@ use crate::{File, Form, Given, Question, Refusal};
 #[serde(default, deny_unknown_fields)]
 pub struct Draw {
     /// What to draw; `all` draws whatever applies into a folder.
-    #[cfg_attr(feature = "clap", arg(help = kinds_help()))]
+    #[cfg_attr(feature = "clap", arg(help = kinds_help(), value_parser = Known(names::figures), hide_possible_values = true))]
+    #[schemars(extend("enum" = names::figures()))]
     pub kind: String,
     /// A state of the shift table.
     #[cfg_attr(feature = "clap", arg(long, value_name = "STATE"))]
@@ -92,11 +96,14 @@ fn kinds_help() -> String {
     format!("What to draw; `all` draws whatever applies into a folder{}", kinds.collect::<String>())
 }
 
+/// Scales at which pictures are drawn.
+const SCALES: std::ops::RangeInclusive<f32> = 0.1..=10.0;
+
 /// A scale of pictures.
 #[cfg(feature = "clap")]
 fn scale(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
-        Ok(x) if (0.1..=10.0).contains(&x) => Ok(x),
+        Ok(x) if SCALES.contains(&x) => Ok(x),
         _ => Err("a number from 0.1 to 10".into()),
     }
 }
@@ -162,10 +169,10 @@ impl Draw {
     /// Refuses what would make no difference to this kind.
     fn heard(&self, kind: FigureKind, request: &FigureRequest) -> Result<(), Refusal> {
         let Some(deaf) = kind.deaf_to(request, self.drawing()) else { return Ok(()) };
-        let list: Vec<String> = kind.takes().iter().map(|t| format!("--{}", t.name())).collect();
+        let list: Vec<String> = kind.takes().iter().map(|t| format!("`{}`", t.name())).collect();
         let instead =
-            if list.is_empty() { "it takes no question".to_owned() } else { format!("it takes {}", list.join(", ")) };
-        let message = format!("`draw {}` has no use for --{}", kind.name(), deaf.name());
+            if list.is_empty() { "it takes none of these".to_owned() } else { format!("it takes {}", list.join(", ")) };
+        let message = format!("`draw {}` has no use for `{}`", kind.name(), deaf.name());
         Err(Diagnostic::new(Code::UnknownSelection, "", message).hint(instead).into())
     }
 
@@ -189,6 +196,14 @@ impl Question for Draw {
     #[cfg(not(feature = "png"))]
     const FORMS: &'static [Form] = &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }];
     type Answer = DrawAnswer;
+
+    fn check(&self) -> Result<(), Diagnostics> {
+        if SCALES.contains(&self.scale) {
+            return Ok(());
+        }
+        let d = Diagnostic::new(Code::OutOfRange, "", format!("a picture is not drawn at a scale of {}", self.scale));
+        Err(d.hint(format!("from {} to {}", SCALES.start(), SCALES.end())).into())
+    }
 
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<DrawAnswer, Refusal> {
         let (model, request) = (&of[0].model, self.request()?);

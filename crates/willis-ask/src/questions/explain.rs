@@ -6,6 +6,9 @@ use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::work::Work;
 
+use super::names;
+#[cfg(feature = "clap")]
+use super::names::Known;
 use crate::{Given, Of, Question, Refusal};
 
 /// Explain a diagnostic code, or list all of them.
@@ -14,6 +17,8 @@ use crate::{Given, Of, Question, Refusal};
 #[serde(default, deny_unknown_fields)]
 pub struct Explain {
     /// The code, such as E106.
+    #[cfg_attr(feature = "clap", arg(value_parser = Known(names::codes), hide_possible_values = true))]
+    #[schemars(extend("enum" = names::or_none(names::codes())))]
     pub code: Option<String>,
 }
 

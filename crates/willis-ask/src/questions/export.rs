@@ -3,9 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::study::export::{ExportRequest, KINDS, export};
 use willis::work::Work;
 
+use super::names;
+#[cfg(feature = "clap")]
+use super::names::Known;
 use crate::style::wrap;
 use crate::{File, Form, Given, Of, Question, Refusal};
 
@@ -19,6 +23,8 @@ use crate::{File, Form, Given, Of, Question, Refusal};
 #[serde(default, deny_unknown_fields)]
 pub struct Export {
     /// The format: vecto, modelica-loss-table, ...; or list.
+    #[cfg_attr(feature = "clap", arg(value_parser = Known(names::exports), hide_possible_values = true))]
+    #[schemars(extend("enum" = names::or_none(names::exports())))]
     pub kind: Option<String>,
     /// This state of the shift table.
     #[cfg_attr(feature = "clap", arg(long, value_name = "STATE", conflicts_with = "all_states"))]
@@ -89,6 +95,13 @@ impl Question for Export {
     const FORMS: &'static [Form] = &[Form { name: "files", endings: &["*"], about: "the files themselves" }];
     type Answer = ExportAnswer;
 
+    fn check(&self) -> Result<(), Diagnostics> {
+        names::apart(&[
+            [("all_states", self.all_states), ("state", self.state.is_some())],
+            [("all_states", self.all_states), ("operation", self.operation.is_some())],
+        ])
+    }
+
     fn ask(&self, of: &[Given], _: &dyn Work) -> Result<ExportAnswer, Refusal> {
         let answer = |kind: Option<&str>| ExportAnswer {
             format: Format::new(),
@@ -101,7 +114,7 @@ impl Question for Export {
             (Some(kind), [_]) => kind,
             (Some(kind), _) => {
                 let message = format!("no train is named to export as `{kind}`");
-                let d = willis::diagnostic::Diagnostic::new(willis::diagnostic::Code::UnknownSelection, "", message);
+                let d = Diagnostic::new(Code::UnknownSelection, "", message);
                 return Err(d.hint("name a train file after the kind of export").into());
             }
             (None, _) => {

@@ -181,7 +181,7 @@ pub struct OneArgument {
     pub name: String,
     /// In LaTeX.
     pub latex: String,
-    /// In words.
+    /// What it stands for, in words.
     pub meaning: String,
     /// Its value in this train; of a speed (rad/s) or a torque (N m) one inside the regime.
     pub value: f64,

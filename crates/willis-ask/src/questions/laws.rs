@@ -6,10 +6,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::catalogue::{bearing, oil};
 use willis::contract::Contract;
-use willis::diagnostic::{Code, Diagnostic};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::losses::{self, LawList};
 use willis::work::Work;
 
+use super::names;
+#[cfg(feature = "clap")]
+use super::names::Known;
 use crate::table::Kind::{Flag, Number, Text};
 use crate::table::Table;
 use crate::{Given, Of, Question, Refusal};
@@ -20,7 +23,8 @@ use crate::{Given, Of, Question, Refusal};
 #[serde(default, deny_unknown_fields)]
 pub struct Laws {
     /// Only this family.
-    #[cfg_attr(feature = "clap", arg(long))]
+    #[cfg_attr(feature = "clap", arg(long, value_parser = Known(names::families), hide_possible_values = true))]
+    #[schemars(extend("enum" = names::or_none(names::families())))]
     pub family: Option<String>,
     /// List the catalogue of oils instead.
     #[cfg_attr(feature = "clap", arg(long, conflicts_with_all = ["family", "bearings"]))]
@@ -89,9 +93,9 @@ pub struct OneBearing {
     pub trust: String,
 }
 
-/// The first word of how far data were checked.
-fn trust(t: &impl std::fmt::Debug) -> String {
-    format!("{t:?}").chars().take_while(char::is_ascii_alphabetic).collect::<String>().to_lowercase()
+/// The word under which a datum of the catalogue is written.
+fn word(datum: &impl Serialize) -> String {
+    serde_json::to_value(datum).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
 }
 
 fn one_oil(o: &oil::Oil) -> OneOil {
@@ -99,11 +103,11 @@ fn one_oil(o: &oil::Oil) -> OneOil {
     let nu = |t: f64| (o.covers(t) && !fixed).then(|| o.kinematic_viscosity(t));
     OneOil {
         name: o.name.clone(),
-        base: format!("{:?}", o.base).to_lowercase(),
+        base: word(&o.base),
         viscosity_40_m2_s: nu(313.15),
         viscosity_100_m2_s: nu(373.15),
         density_15_kg_m3: o.density_15,
-        trust: trust(&o.trust),
+        trust: word(&o.trust),
     }
 }
 
@@ -116,7 +120,7 @@ fn one_bearing(b: &bearing::Bearing) -> OneBearing {
         width_m: b.width,
         static_rating_n: b.static_rating,
         skf: b.skf.is_some(),
-        trust: trust(&b.trust),
+        trust: word(&b.trust),
     }
 }
 
@@ -125,6 +129,14 @@ impl Question for Laws {
     const OF: Of = Of::Nothing;
     const TABLES: &'static [&'static str] = &["laws", "oils", "bearings"];
     type Answer = LawsAnswer;
+
+    fn check(&self) -> Result<(), Diagnostics> {
+        names::apart(&[
+            [("oils", self.oils), ("bearings", self.bearings)],
+            [("oils", self.oils), ("family", self.family.is_some())],
+            [("bearings", self.bearings), ("family", self.family.is_some())],
+        ])
+    }
 
     fn ask(&self, _: &[Given], _: &dyn Work) -> Result<LawsAnswer, Refusal> {
         let mut list = losses::list(self.family.as_deref());

@@ -5,10 +5,12 @@ mod text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::analysis::{self, LossRequest, LossTable};
+use willis::diagnostic::Diagnostics;
 use willis::units::{Dimension, Quantity};
 use willis::work::Work;
 
 use super::amount::values;
+use super::names;
 use crate::table::Table;
 use crate::{Given, Question, Refusal};
 
@@ -46,6 +48,10 @@ impl Question for Losses {
     const NAME: &'static str = "losses";
     const TABLES: &'static [&'static str] = &["points"];
     type Answer = LossTable;
+
+    fn check(&self) -> Result<(), Diagnostics> {
+        names::apart(&[[("powers", !self.powers.is_empty()), ("torques", !self.torques.is_empty())]])
+    }
 
     fn ask(&self, of: &[Given], _: &dyn Work) -> Result<LossTable, Refusal> {
         let request = LossRequest {

@@ -6,6 +6,9 @@ use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic};
 use willis::work::Work;
 
+use super::names;
+#[cfg(feature = "clap")]
+use super::names::Known;
 use crate::{Given, Of, Question, Refusal};
 
 /// Write a commented train file to start from.
@@ -16,6 +19,8 @@ use crate::{Given, Of, Question, Refusal};
 #[serde(default, deny_unknown_fields)]
 pub struct New {
     /// The kind, as listed.
+    #[cfg_attr(feature = "clap", arg(value_parser = Known(kinds)))]
+    #[schemars(extend("enum" = names::or_none(kinds())))]
     pub kind: Option<String>,
 }
 
@@ -27,6 +32,10 @@ const STARTS: &[(&str, &str, &str)] = &[
     ("losses", "teeth, oil, bearings and seals: losses from geometry", include_str!("new/losses.toml")),
     ("motion", "inertias, a brake and a vehicle: a motion to simulate", include_str!("new/motion.toml")),
 ];
+
+fn kinds() -> Vec<&'static str> {
+    STARTS.iter().map(|s| s.0).collect()
+}
 
 /// A train file to start from, or the kinds there are.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -7,10 +7,12 @@ mod text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::Contract;
+use willis::diagnostic::Diagnostics;
 use willis::regimes::{self, Family, RegimeSelection};
 use willis::work::Work;
 
 use super::amount::pair;
+use super::names;
 #[cfg(feature = "pictures")]
 use crate::Extra;
 use crate::table::Table;
@@ -81,6 +83,10 @@ impl Question for Regimes {
         about: "Draw the wheel of regimes (two freedoms) into this SVG file",
     }];
     type Answer = RegimesAnswer;
+
+    fn check(&self) -> Result<(), Diagnostics> {
+        names::apart(&[[("family", self.family), ("balance", self.balance.is_some())]])
+    }
 
     fn ask(&self, of: &[Given], _: &dyn Work) -> Result<RegimesAnswer, Refusal> {
         let (train, selection) = (of[0].model.train(), self.selection()?);

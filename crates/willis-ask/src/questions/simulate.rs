@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use willis::diagnostic::{Code, Diagnostic};
-use willis::dynamics::{Column, ColumnKind, Event, Method, Options, Recorder, RunReport, Sample, simulate};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::dynamics::{Column, ColumnKind, Event, Method, Options, Outcome, Recorder, RunReport, Sample, simulate};
 use willis::train::{Scenario, Train};
 use willis::units::Dimension;
 use willis::work::Work;
@@ -15,7 +15,8 @@ use willis::work::Work;
 use willis_figure::TimePlotBuilder;
 
 use super::amount::values;
-use crate::table::{Cell, Kind, Table};
+use super::names;
+use crate::table::{Cell, Kind, Table, word};
 #[cfg(feature = "pictures")]
 use crate::{Extra, File};
 use crate::{Given, Question, Refusal};
@@ -97,7 +98,7 @@ impl Simulate {
         if let Some(text) = &self.fixed_step {
             let step_s = values("fixed-step", std::slice::from_ref(text), Dimension::TIME)?[0].si();
             if step_s <= 0.0 {
-                let hint = "give a time above zero, as in --fixed-step '1 ms'";
+                let hint = "give a time above zero, as in 1 ms";
                 return Err(wrong(format!("fixed-step {text} is no time above zero"), hint));
             }
             options.method = Method::Fixed { step_s };
@@ -120,14 +121,9 @@ impl Simulate {
             (None, [one]) => Ok(one),
             (None, _) => Err(wrong(
                 "the train has several scenarios, and none is named",
-                format!("name one of the scenarios with --scenario: {}", known()),
+                format!("name one (`scenario`): {}", known()),
             )),
-            (Some(name), _) => all.iter().find(|s| s.name == *name).ok_or_else(|| {
-                Diagnostic::new(Code::UnknownSelection, "", format!("there is no scenario `{name}`"))
-                    .suggest(name, all.iter().map(|s| s.name.as_str()))
-                    .hint(format!("the scenarios are: {}", known()))
-                    .into()
-            }),
+            (Some(name), _) => train.find_scenario(name).map_err(|d| (*d).into()),
         }
     }
 
@@ -224,6 +220,13 @@ impl Question for Simulate {
         &[Extra { name: "plot", value: "FILE.svg", about: "Draw the run into this SVG file" }];
     type Answer = RunReport;
 
+    fn check(&self) -> Result<(), Diagnostics> {
+        names::apart(&[
+            [("fixed_step", self.fixed_step.is_some()), ("tolerance", self.tolerance.is_some())],
+            [("fixed_step", self.fixed_step.is_some()), ("most_events", self.most_events.is_some())],
+        ])
+    }
+
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<RunReport, Refusal> {
         let train = of[0].model.train();
         let (scenario, options) = (self.scenario(train)?, self.options()?);
@@ -274,11 +277,14 @@ impl Question for Simulate {
         }
         let mut events = Table::new("events", [("time_s", Kind::Number), ("cause", Kind::Text), ("modes", Kind::Text)]);
         for e in &answer.events {
-            let modes: Vec<String> =
-                e.modes.iter().map(|(name, m)| format!("{name} {}", super::analyze::word(m))).collect();
+            let modes: Vec<String> = e.modes.iter().map(|(name, m)| format!("{name} {}", word(m))).collect();
             events.row([e.time_s.into(), (&e.cause).into(), modes.join("; ").into()]);
         }
         vec![rows, events]
+    }
+
+    fn is_partial(answer: &RunReport) -> bool {
+        answer.outcome == Outcome::Interrupted
     }
 
     #[cfg(feature = "pictures")]

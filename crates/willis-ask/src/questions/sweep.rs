@@ -4,10 +4,11 @@ mod text;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use willis::diagnostic::Diagnostic;
+use willis::diagnostic::{Diagnostic, Diagnostics};
 use willis::study::{self, ColumnTable, Hold, SweepMethod, SweepReport, SweepRequest};
 use willis::work::Work;
 
+use super::names;
 use crate::table::Table;
 use crate::{Given, Question, Refusal};
 
@@ -34,7 +35,7 @@ pub struct Sweep {
     /// A [[study]] of the train file, instead of axes and what belongs to them.
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", conflicts_with_all = ["over", "operation", "state", "hold", "columns"]))]
     pub study: Option<String>,
-    /// The operation from which the sweep starts. Default: the file's first.
+    /// The operation from which the sweep starts. Default: the first one in the state, else the file's first.
     #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
     pub operation: Option<String>,
     /// The state of the shift table.
@@ -127,6 +128,16 @@ impl Question for Sweep {
     const NAME: &'static str = "sweep";
     const TABLES: &'static [&'static str] = &["points"];
     type Answer = SweepAnswer;
+
+    fn check(&self) -> Result<(), Diagnostics> {
+        names::apart(&[
+            [("study", self.study.is_some()), ("over", !self.over.is_empty())],
+            [("study", self.study.is_some()), ("operation", self.operation.is_some())],
+            [("study", self.study.is_some()), ("state", self.state.is_some())],
+            [("study", self.study.is_some()), ("hold", self.hold != Held::AsGiven)],
+            [("study", self.study.is_some()), ("columns", !self.columns.is_empty())],
+        ])
+    }
 
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<SweepAnswer, Refusal> {
         let model = &of[0].model;

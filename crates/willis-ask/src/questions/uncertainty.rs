@@ -25,7 +25,7 @@ use crate::{Extra, File, Given, Question, Refusal};
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
 pub struct Uncertainty {
-    /// This operation; else the first.
+    /// The operation. Default: the first one in the state, else the file's first.
     #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
     pub operation: Option<String>,
     /// In this state of the shift table.

@@ -7,6 +7,9 @@ use willis::diagnostic::{Code, Diagnostic};
 use willis::work::Work;
 use willis_casebook as casebook;
 
+use super::names;
+#[cfg(feature = "clap")]
+use super::names::Known;
 use crate::{Extra, File, Given, Of, Question, Refusal};
 
 /// Compare published numbers with ours: what agrees, what does not, and why.
@@ -17,6 +20,8 @@ use crate::{Extra, File, Given, Of, Question, Refusal};
 #[serde(default, deny_unknown_fields)]
 pub struct Validate {
     /// The case, as listed.
+    #[cfg_attr(feature = "clap", arg(value_parser = Known(names::cases)))]
+    #[schemars(extend("enum" = names::or_none(names::cases())))]
     pub case: Option<String>,
 }
 
@@ -94,7 +99,7 @@ impl Question for Validate {
     fn extra(&self, _: &ValidateAnswer, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
         let Some(name) = &self.case else {
             let d = Diagnostic::new(Code::UnknownSelection, "", "curves are those of a case, and none is named");
-            return Err(d.hint("name the case: `willis validate wang-2020 --data FOLDER`").into());
+            return Err(d.hint("name the case, such as wang-2020").into());
         };
         let files = casebook::data(name).ok_or_else(|| {
             Refusal::from(Diagnostic::new(Code::Unfit, "", format!("the case `{name}` has no curves")))

@@ -5,29 +5,20 @@
 
 mod layout;
 mod marks;
+mod words;
 
 use svg::node::element::Group;
 use willis::analysis::Verdict;
-use willis::hypergraph::{FlowReport, Hypergraph, Node, NodeKind, watts};
+use willis::hypergraph::{FlowReport, Hypergraph, NodeKind, watts};
 
 use crate::parts::style::{Anchor, BOLD, FAINT, LINE, fit, line, lines, number, page, text, wide};
 use layout::Drawing;
 use marks::{Round, ground, shape, stroke};
+use words::{SMALL, percent};
 
 const MARGIN: f64 = 28.0;
-/// Radius of a symbol.
-const R: f64 = 8.0;
-/// Size of labels.
-const SMALL: f64 = 11.0;
 /// Narrowest page.
 const NARROWEST: f64 = 760.0;
-/// Longest name that is not cut.
-const LONGEST: f64 = 170.0;
-/// Height of a row of words.
-const ROW: f64 = 14.0;
-/// Room below the symbols of contacts that lean on the frame.
-const GROUND: f64 = 13.0;
-
 /// The power flows of a train: one figure for each equilibrium, below each other.
 ///
 /// Solid circles are components, hollow circles bearings, hollow triangles tooth contacts, hollow
@@ -153,45 +144,6 @@ fn caption(g: &Hypergraph) -> Vec<String> {
         letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect::<String>()) + "."
     };
     std::iter::once(power).chain(g.recirculation().into_iter().map(sentence)).collect()
-}
-
-fn percent(x: f64) -> String {
-    let p = 100.0 * x;
-    if (99.995..100.0).contains(&p) || (0.0 < p && p < 0.1) { format!("{p:.4} %") } else { format!("{p:.2} %") }
-}
-
-/// What stands below a symbol, in rows.
-fn values(n: &Node) -> Vec<String> {
-    let row = match n.kind {
-        NodeKind::Input => watts(n.power_out_w),
-        NodeKind::Output => watts(n.power_in_w),
-        NodeKind::Member => match n.speed_rad_s {
-            Some(0.0) => "at rest".to_owned(),
-            Some(w) => format!("{} rpm", rpm(w * 30.0 / std::f64::consts::PI)),
-            None => "any speed".to_owned(),
-        },
-        _ if n.loss_w == 0.0 => return vec![],
-        _ if n.power_out_w == 0.0 => format!("−{}", watts(n.loss_w)),
-        _ => return vec![format!("−{}", watts(n.loss_w)), format!("η {}", percent(n.efficiency.unwrap_or(1.0)))],
-    };
-    vec![row]
-}
-
-fn rpm(x: f64) -> String {
-    let decimals = if x.abs() >= 1000.0 { 0 } else { 1 };
-    let t = format!("{x:.decimals$}");
-    if t.contains('.') { t.trim_end_matches('0').trim_end_matches('.').to_owned() } else { t }.replace('-', "−")
-}
-
-/// What stands above a symbol.
-fn name(n: &Node) -> String {
-    let own = match n.kind {
-        NodeKind::Input => "input".to_owned(),
-        NodeKind::Output => "output".to_owned(),
-        NodeKind::Gear => fit(&format!("{} in fluid", n.name), LONGEST, SMALL),
-        _ => fit(&n.name, LONGEST, SMALL),
-    };
-    if n.count > 1 { format!("{own} ×{}", n.count) } else { own }
 }
 
 /// What the symbols mean, in rows; and the height of the page.

@@ -2,17 +2,19 @@
 
 mod clip;
 mod enlarged;
+mod view;
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 use svg::Node;
-use svg::node::element::{Circle, Element, Group, Path, Polygon};
+use svg::node::element::{Element, Group, Path, Polygon};
 
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, badge, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
 use crate::{Front, FrontMesh, FrontPlane, FrontWheel};
-use enlarged::{enlarged, window};
+use enlarged::{ENLARGED, enlarged, window};
+use view::{DASH_DOT, View, circle, own};
 
 /// Edge of the page, and where the panels begin.
 const EDGE: f64 = 28.0;
@@ -21,13 +23,10 @@ const TOP: f64 = 84.0;
 const MARGIN: f64 = 30.0;
 /// Table of wheels beside the panels.
 const SIDE: f64 = 420.0;
-/// Edge of the enlarged mesh.
-const ENLARGED: f64 = 330.0;
 /// Seconds in which one tooth of the first wheel passes, in the animated picture.
 const PASSING: f64 = 0.8;
 /// How far a drawn outline may leave the true one, px.
 const ACCURACY: f64 = 0.06;
-const DASH_DOT: &str = "10 3 2 3";
 
 /// A set seen along its axis with its true teeth, one mesh enlarged, and its numbers. Where
 /// `animated`, the wheels turn as they do relative to the carrier; a reader that does not move
@@ -126,18 +125,6 @@ fn extent(view: &Front) -> ([f64; 2], f64) {
     (middle, (high[0] - low[0]).max(high[1] - low[1]) / 2.0)
 }
 
-/// Millimetres to the page.
-struct View {
-    centre: (f64, f64),
-    scale: f64,
-}
-
-impl View {
-    fn at(&self, p: [f64; 2]) -> (f64, f64) {
-        (self.centre.0 + p[0] * self.scale, self.centre.1 - p[1] * self.scale)
-    }
-}
-
 fn description(view: &Front) -> String {
     let wheels: Vec<String> = view
         .wheels
@@ -155,16 +142,6 @@ fn description(view: &Front) -> String {
     };
     let assumed = if view.assumed { " The teeth are assumed, not given." } else { "" };
     format!("Gears in mesh, seen along the axis, with the teeth of the train: {}.{spacing}{assumed}", wheels.join("; "))
-}
-
-fn circle(at: (f64, f64), radius: f64, stroke: &str, width: f64) -> Circle {
-    Circle::new()
-        .set("cx", number(at.0))
-        .set("cy", number(at.1))
-        .set("r", number(radius))
-        .set("fill", "none")
-        .set("stroke", stroke)
-        .set("stroke-width", number(width))
 }
 
 /// The wheels of one plane.
@@ -208,11 +185,6 @@ fn panel(view: &Front, plane: &FrontPlane, at: &View, first: bool, animated: boo
         g = g.add(marks(view, k, at));
     }
     g
-}
-
-/// A name without that of its set, which stands above.
-fn own<'a>(view: &Front, name: &'a str) -> &'a str {
-    name.strip_prefix(view.set.as_str()).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name)
 }
 
 /// The wheel whose turns those of the others are for one of.

@@ -3,7 +3,7 @@
 use willis::exact::Rational;
 use willis::train::{FRAME, Gear, MemberId, MemberKind, Train};
 
-use super::LeverRole;
+use super::role::LeverRole;
 
 /// Gears that mesh with each other's planets on one carrier: a lever before it is placed.
 pub(super) struct Family {

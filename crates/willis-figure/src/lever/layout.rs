@@ -10,8 +10,8 @@ use willis::exact::Rational;
 use willis::train::MemberId;
 use willis::unstable;
 
-use super::LeverRole;
 use super::family::Family;
+use super::role::LeverRole;
 
 /// Levers shorter than this part of the picture are drawn at their own scale.
 const SHORTEST: f64 = 0.12;

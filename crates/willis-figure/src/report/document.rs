@@ -5,8 +5,8 @@
 
 use serde::{Deserialize, Serialize};
 
-// Of the module around it: this file is also part of the typesetter, which takes the source and not the crate.
-use super::contract::{Contract, Format};
+// Of the root of the crate: this file is also part of the typesetter, which takes the source and not the crate.
+use crate::contract::{Contract, Format};
 
 /// A report, ready to be typeset. Written as JSON it is the contract `willis-report-1`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

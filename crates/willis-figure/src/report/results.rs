@@ -298,7 +298,14 @@ fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
 }
 
 fn what_first(all: &Findings<'_>) -> Option<Block> {
-    let o = all.sensitivity.as_ref()?.operations.first()?;
+    let o = match all.sensitivity.as_ref()? {
+        Ok(found) => found.operations.first()?,
+        Err(wrong) => {
+            let why: Vec<&str> = wrong.iter().map(|d| d.message.as_str()).collect();
+            let text = format!("What to change first could not be computed. {}", why.join("; "));
+            return Some(Block::Notice { level: Level::Warning, text });
+        }
+    };
     let columns = [Column::words("Quantity")].into_iter();
     let columns = columns
         .chain([Column::numbers("Step"), Column::numbers("η points"), Column::numbers("Losses W")])
@@ -362,7 +369,7 @@ pub fn formulas(all: &Findings<'_>) -> Option<Section> {
                 continue;
             }
             printed += 1;
-            let heading = match f.state == willis::analysis::AS_DRAWN {
+            let heading = match f.state == willis::train::AS_DRAWN {
                 true => f.title.clone(),
                 false => format!("State {}: {}", f.state, f.title),
             };

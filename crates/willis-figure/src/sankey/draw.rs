@@ -2,17 +2,19 @@
 
 mod layout;
 mod ribbon;
+mod words;
 
 use svg::Node as _;
 use svg::node::element::{Element, Group, Path, Polygon};
 use willis::hypergraph::{NodeKind, watts};
 
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
+    Anchor, BOLD, FAINT, INK, PAPER, colour, fit, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode};
-use layout::{BAR, LINE_HEIGHT, Layout, SMALL};
+use crate::{Sankey, SankeyFlow, SankeyLink, SankeyNode};
+use layout::{BAR, LINE_HEIGHT, Layout};
 use ribbon::Ribbon;
+use words::{SMALL, Words, losers, percent};
 
 const MARGIN: f64 = 28.0;
 /// Narrowest page.
@@ -103,27 +105,6 @@ pub fn draw(data: &Sankey) -> String {
     page(width, height, &format!("Sankey diagram of {}", data.train), &told.join(" ")).add(body).add(key).to_string()
 }
 
-fn percent(part: f64, whole: f64) -> String {
-    match 100.0 * part / whole {
-        _ if whole <= 0.0 => String::new(),
-        p if p < 1e-3 => "< 0.001 %".to_owned(),
-        p => format!("{} %", digits(p)),
-    }
-}
-
-/// The plural of what loses power.
-fn losers(kind: NodeKind) -> &'static str {
-    match kind {
-        NodeKind::Teeth => "teeth",
-        NodeKind::Bearing => "bearings",
-        NodeKind::Seal => "seals",
-        NodeKind::Gear => "gears in fluid",
-        NodeKind::Rotor => "rotors in fluid",
-        NodeKind::ShiftElement => "clutches and brakes",
-        _ => "others",
-    }
-}
-
 fn caption(f: &SankeyFlow) -> Vec<String> {
     let efficiency = match f.efficiency {
         Some(e) if f.output_w > 0.0 => format!("η {}", efficiency(e)),
@@ -169,87 +150,6 @@ fn scale_mark(y: f64, scale: f64) -> Group {
         .add(line((x, y - 9.5), (x, y + 1.5), INK, 1.2))
         .add(line((x + long, y - 9.5), (x + long, y + 1.5), INK, 1.2))
         .add(text(x + long + 7.0, y, SMALL, Anchor::Start, &watts(power)).set("fill", FAINT))
-}
-
-/// The words of a picture, and how wide they may be.
-#[derive(Clone, Copy)]
-struct Words {
-    /// The input power, W.
-    input: f64,
-    /// Narrow columns, for a picture of many layers.
-    narrow: bool,
-}
-
-impl Words {
-    fn of(f: &SankeyFlow) -> Self {
-        Self { input: f.input_w, narrow: f.layers >= 8 }
-    }
-
-    fn most(self) -> f64 {
-        if self.narrow { 96.0 } else { 128.0 }
-    }
-
-    /// A power and its share, in one row or two.
-    fn amount(self, power: String, share: String) -> Vec<String> {
-        match (share.is_empty(), self.narrow) {
-            (true, _) => vec![power],
-            (_, true) => vec![power, share],
-            (_, false) => vec![format!("{power} · {share}")],
-        }
-    }
-
-    /// Above a node, the first in bold.
-    fn head(self, n: &SankeyNode) -> Vec<String> {
-        let times = if n.count > 1 { format!(" ×{}", n.count) } else { String::new() };
-        let bold = |text: &str| fit(text, self.most(), SMALL * BOLD);
-        let whole = n.name.clone() + &times;
-        let mut all = match (n.kind, whole.split_once('.')) {
-            (NodeKind::Input, _) => vec![bold(&format!("into {}", n.name))],
-            (NodeKind::Output, _) => vec![bold(&format!("out of {}", n.name))],
-            // The set, and below it which of its contacts.
-            (NodeKind::Teeth, Some((set, contact))) if self.narrow || bold(&whole) != whole => {
-                vec![bold(set), fit(contact, self.most(), SMALL)]
-            }
-            _ => vec![fit(&n.name, self.most() - wide(&times, SMALL * BOLD), SMALL * BOLD) + &times],
-        };
-        if let (NodeKind::Member, Some(w)) = (n.kind, n.speed_rad_s) {
-            all.push(format!("{} rpm", digits(w * 30.0 / std::f64::consts::PI)));
-        }
-        if n.input_w > 0.0 {
-            let whole = n.input_w >= self.input * (1.0 - 1e-9);
-            let share = if whole { String::new() } else { percent(n.input_w, self.input) };
-            all.extend(self.amount(format!("in {}", watts(n.input_w)), share));
-        }
-        if n.output_w > 0.0 {
-            all.extend(self.amount(format!("out {}", watts(n.output_w)), percent(n.output_w, self.input)));
-        }
-        all
-    }
-
-    /// Below a node: its losses.
-    fn foot(self, n: &SankeyNode) -> Vec<String> {
-        let one = |l: &SankeyLoss| {
-            let amount = self.amount(format!("−{}", watts(l.power_w)), percent(l.power_w, self.input));
-            let what = match l.names.as_slice() {
-                [own] if *own == n.name && l.kind == n.kind => None,
-                [other] if matches!(l.kind, NodeKind::Gear | NodeKind::Rotor) => Some(format!("{other} in fluid")),
-                [other] => Some(other.clone()),
-                all => Some(format!("{} {}", all.len(), losers(l.kind))),
-            };
-            what.map(|w| fit(&w, self.most(), SMALL)).into_iter().chain(amount).collect::<Vec<_>>()
-        };
-        n.losses.iter().flat_map(one).collect()
-    }
-
-    /// At a link.
-    fn link(self, l: &SankeyLink) -> Vec<String> {
-        let mut all = vec![watts(l.power_w), percent(l.power_w, self.input)];
-        all.retain(|t| !t.is_empty());
-        if !l.via.is_empty() {
-            all.push(fit(&format!("via {}", l.via.join(", ")), if self.narrow { 76.0 } else { 120.0 }, SMALL));
-        }
-        all
-    }
 }
 
 fn halo(t: svg::node::element::Text) -> svg::node::element::Text {

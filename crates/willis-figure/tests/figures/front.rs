@@ -286,7 +286,7 @@ fn a_bevel_set_and_missing_teeth_are_told() {
     let why = front(&example("bevel-differential"), None, true).expect_err("bevel").to_string();
     assert!(why.contains("bevel"), "{why}");
     let why = front(&example("prius-p112"), None, false).expect_err("no teeth").to_string();
-    assert!(why.contains("geometry = { module") && why.contains("--nominal"), "{why}");
+    assert!(why.contains("geometry = { module") && why.contains("`nominal`"), "{why}");
     let why = front(&example("prius-p112"), Some("P9"), true).expect_err("no set").to_string();
     assert!(why.contains("P9"), "{why}");
 }

@@ -17,5 +17,5 @@ fn a_train_without_two_freedoms_has_no_wheel_and_is_told_why() {
     assert!(wrong.iter().all(|d| d.code == Code::Unfit));
     let text = wrong.to_string();
     assert!(text.contains("independent speeds 1, independent torques 1"), "{text}");
-    assert!(text.contains("name three terminals with --terminals"), "{text}");
+    assert!(text.contains("name three `terminals`"), "{text}");
 }

@@ -50,7 +50,7 @@ pub struct LossPoint {
     pub verdict: Verdict,
     /// One sentence that explains the verdict.
     pub reason: Option<String>,
-    /// The same as data.
+    /// What `reason` says, as data.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub why: Option<Why>,
     /// Output over input power.
@@ -154,10 +154,8 @@ pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnos
         Some(name) => train.operations.iter().filter(|o| o.name == *name).collect(),
         None => train.operations.iter().collect(),
     };
-    let known = train.operations.iter().map(|o| o.name.as_str());
-    if let (Some(name), true) = (&request.operation, chosen.is_empty()) {
-        let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
-        wrong.push(d.suggest(name, known.clone()));
+    if let Some(Err(d)) = request.operation.as_ref().map(|name| train.find_operation(name)) {
+        wrong.push(*d);
     } else if chosen.is_empty() {
         let d = Diagnostic::new(Code::UnknownSelection, "", "losses belong to an operating point, and there is none");
         wrong.push(d.hint("add an [[operation]] with speeds and torques or powers"));

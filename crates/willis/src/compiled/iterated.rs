@@ -22,8 +22,9 @@
 
 use std::ops::Range;
 
-use super::PointVerdict;
-use super::kernel::{CHUNK, Parts, Target, combine, dot};
+use super::duty::PointVerdict;
+use super::parts::{CHUNK, Law, MOST_FEATURES, MOST_MOVING, Parts, Target};
+use super::passes::{combine, dot};
 
 /// The losses in the result differ from their laws by less than this part of all mesh losses.
 const TOLERANCE: f64 = 1e-10;
@@ -44,31 +45,6 @@ const OPEN: f64 = 0.0;
 const SETTLED: f64 = 1.0;
 /// Settled, with a loss at its ceiling.
 const FULL: f64 = 2.0;
-
-/// `λ = min(c · ((|T| + torque)/(|ω| + speed))^exponent, most)`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Law {
-    /// When p drives, when q drives.
-    pub c: [f64; 2],
-    pub exponent: f64,
-    pub torque: f64,
-    pub speed: f64,
-    pub most: f64,
-}
-
-impl Law {
-    /// ρ when p drives and when q drives, as a law.
-    fn constant(rho: [f64; 2]) -> Self {
-        Self { c: [1.0 - rho[0], 1.0 - 1.0 / rho[1]], most: f64::INFINITY, ..Self::default() }
-    }
-
-    /// Bounds of `d(ρ f)/df`: if no system between them is singular, every load has one solution.
-    pub fn slopes(&self) -> [f64; 2] {
-        let p = self.exponent;
-        let most = if p == 0.0 { self.most.min(self.c[0].max(self.c[1])) } else { self.most };
-        [1.0 - (1.0 + p) * most, (1.0 + p * most / (1.0 - most)) / (1.0 - most)]
-    }
-}
 
 /// What the rounds need, for `K` moving elements.
 #[derive(Clone, Copy)]
@@ -386,7 +362,7 @@ impl Iterated {
 }
 
 /// Most quantities in an output.
-const MOST_TERMS: usize = super::MOST_FEATURES + super::MOST_MOVING;
+const MOST_TERMS: usize = MOST_FEATURES + MOST_MOVING;
 
 /// p drives where power goes into it.
 #[inline(always)]

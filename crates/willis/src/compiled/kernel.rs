@@ -6,13 +6,11 @@
 
 use std::ops::Range;
 
-use super::iterated::{Iterated, Lanes, Law};
-use super::{PointVerdict, Points, ShaftDrag};
+use super::duty::{PointVerdict, Points, ShaftDrag};
+use super::iterated::{Iterated, Lanes};
+use super::parts::{CHUNK, MOST_FEATURES, MOST_LINEAR, MOST_MOVING, Parts, Target, TorqueFrom};
+use super::passes::{combine, dot, lane};
 
-/// Points per chunk: every array of a chunk stays in the first-level cache.
-pub(super) const CHUNK: usize = 512;
-/// Most linear outputs.
-pub(super) const MOST_LINEAR: usize = 64;
 /// Most elements.
 const MOST_ELEMENTS: usize = 64;
 /// Patterns tried on whole chunks; other lanes go one by one.
@@ -22,54 +20,6 @@ const RECENT: usize = 4;
 const NONE: u64 = u64::MAX;
 /// A pattern number that means: an element is at rest at this point.
 const AT_REST: u64 = u64::MAX - 1;
-
-/// Where the torque of a terminal comes from.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum TorqueFrom {
-    Input(usize),
-    Linear(usize),
-}
-
-/// A terminal, for the power balance.
-#[derive(Clone, Debug)]
-pub(super) struct Terminal {
-    pub torque: TorqueFrom,
-    /// Over the prescribed speeds.
-    pub speed: Vec<f64>,
-}
-
-/// An element of the equilibrium.
-#[derive(Clone, Debug)]
-pub(super) struct Element {
-    pub rho: [f64; 2],
-    /// Relative speed of end p over the prescribed speeds, with the sign of its coefficient.
-    pub relative: Vec<f64>,
-    pub entries: Vec<(usize, f64, f64)>,
-    /// Torque on end p per force.
-    pub arm: f64,
-    /// A loss that depends on load and speed; `rho` are then the bounds of its slopes.
-    pub law: Option<Law>,
-}
-
-/// What the compiler hands over.
-#[derive(Clone, Debug)]
-pub(super) struct Parts {
-    pub speeds: usize,
-    pub torques: usize,
-    /// Speed rows whose signs are features.
-    pub signs: Vec<Vec<f64>>,
-    pub columns: Vec<Element>,
-    /// Right-hand side by feature.
-    pub right: Vec<Vec<f64>>,
-    /// Linear outputs by feature, with no force in any element.
-    pub direct: Vec<Vec<f64>>,
-    /// Linear outputs per force: constant part, and part times ρ.
-    pub per_force: Vec<[Vec<f64>; 2]>,
-    pub speed_rows: Vec<Vec<f64>>,
-    pub terminals: Vec<Terminal>,
-    pub linear: usize,
-    pub certified: bool,
-}
 
 /// Any train.
 #[derive(Clone, Debug)]
@@ -124,10 +74,6 @@ impl Chunk {
             recent: [0, last, last, last],
         }
     }
-}
-
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).fold(0.0, |s, (a, b)| s + a * b)
 }
 
 fn sign(x: f64) -> f64 {
@@ -231,14 +177,14 @@ impl General {
 
     /// One point: its linear outputs and how many solutions it has.
     pub fn point(&self, speeds: &[f64], torques: &[f64], hint: &mut usize, out: &mut [f64]) -> PointVerdict {
-        let mut x = [0.0; super::MOST_FEATURES];
+        let mut x = [0.0; MOST_FEATURES];
         let x = &mut x[..self.features];
         x[..torques.len()].copy_from_slice(torques);
         x[torques.len()..torques.len() + speeds.len()].copy_from_slice(speeds);
         for (slot, row) in x[torques.len() + speeds.len()..].iter_mut().zip(&self.p.signs) {
             *slot = sign(dot(row, speeds));
         }
-        let mut sigma = [0.0; super::MOST_MOVING];
+        let mut sigma = [0.0; MOST_MOVING];
         let sigma = &mut sigma[..self.moving.len()];
         for (s, &j) in sigma.iter_mut().zip(&self.moving) {
             *s = dot(&self.p.columns[j].relative, speeds);
@@ -394,7 +340,7 @@ impl General {
     ) -> usize {
         let n = range.len();
         let (l, d) = (self.p.torques, self.p.speeds);
-        let mut inputs: [&[f64]; super::MOST_FEATURES] = [&[]; super::MOST_FEATURES];
+        let mut inputs: [&[f64]; MOST_FEATURES] = [&[]; MOST_FEATURES];
         for (slot, s) in inputs.iter_mut().zip(points.torques.iter().chain(points.speeds)) {
             *slot = &s[range.clone()];
         }
@@ -449,7 +395,7 @@ impl General {
         let (l, d) = (self.p.torques, self.p.speeds);
         // Relative speeds. Those that follow one prescribed speed need no array of their own.
         w.which[..n].fill(NONE);
-        let mut rested = [false; super::MOST_FEATURES];
+        let mut rested = [false; MOST_FEATURES];
         for (bit, &j) in self.moving.iter().enumerate() {
             let sigma = match self.axis[bit] {
                 Some((axis, _)) if std::mem::replace(&mut rested[axis], true) => continue,
@@ -461,7 +407,7 @@ impl General {
             };
             arch.dispatch(Rest { sigma, which: &mut w.which[..n] });
         }
-        let sigma: [(&[f64], f64); super::MOST_MOVING] = std::array::from_fn(|bit| match self.axis.get(bit) {
+        let sigma: [(&[f64], f64); MOST_MOVING] = std::array::from_fn(|bit| match self.axis.get(bit) {
             Some(Some((axis, factor))) => (x[l + axis], *factor),
             Some(None) => (&w.sigma[bit][..n], 1.0),
             None => (&[][..], 0.0),
@@ -492,8 +438,8 @@ impl General {
         }
         // What no recent pattern fits goes one by one, and may bring a new pattern in.
         let mut odd = 0;
-        let mut one = [0.0; super::MOST_FEATURES];
-        let mut relative = [0.0; super::MOST_MOVING];
+        let mut one = [0.0; MOST_FEATURES];
+        let mut relative = [0.0; MOST_MOVING];
         let (lanes, searched) = select(&w.which[..if left == 0 { 0 } else { n }], |k| k == NONE);
         for i in lanes[..searched].iter().map(|i| usize::from(*i)) {
             one.iter_mut().zip(x).for_each(|(s, x)| *s = x[i]);
@@ -570,26 +516,6 @@ impl General {
 /// A pattern number that no pattern has.
 const UNUSED: u64 = u64::MAX - 2;
 
-/// Where the results of a chunk go.
-pub(super) struct Target<'o, 'a> {
-    /// Output column of each linear output, if it has one.
-    pub column: &'a [Option<usize>],
-    /// The columns; empty when nothing is stored.
-    pub out: &'a mut [&'o mut [f64]],
-    /// Whether loss and efficiency are wanted.
-    pub powers: bool,
-}
-
-impl Target<'_, '_> {
-    /// The slice for linear output `o`: the caller's where it asked for it, else the chunk's own.
-    pub fn slice<'s>(&'s mut self, o: usize, own: &'s mut [[f64; CHUNK]], range: Range<usize>) -> &'s mut [f64] {
-        match self.column[o] {
-            Some(k) if !self.out.is_empty() => &mut self.out[k][range],
-            _ => &mut own[o][..range.len()],
-        }
-    }
-}
-
 /// The lanes that are wanted, and how many: looked for sixteen at a time, because they are rare.
 fn select(which: &[u64], wanted: impl Fn(u64) -> bool) -> ([u16; CHUNK], usize) {
     let mut lanes = [0; CHUNK];
@@ -608,62 +534,7 @@ fn select(which: &[u64], wanted: impl Fn(u64) -> bool) -> ([u16; CHUNK], usize) 
 /// Largest system solved on the stack, at rest.
 const MOST_MOVING_SQUARE: usize = 24;
 
-/// Calls a function that is generic over the number of features with that number as a constant.
-macro_rules! by_count {
-    ($count:expr, $call:ident ( $($argument:expr),* )) => {
-        match $count {
-            1 => $call::<1>($($argument),*),
-            2 => $call::<2>($($argument),*),
-            3 => $call::<3>($($argument),*),
-            4 => $call::<4>($($argument),*),
-            5 => $call::<5>($($argument),*),
-            6 => $call::<6>($($argument),*),
-            7 => $call::<7>($($argument),*),
-            8 => $call::<8>($($argument),*),
-            _ => $call::<0>($($argument),*),
-        }
-    };
-}
-
-/// The first `F` columns and factors; all of them for `F = 0`, which is then not constant.
-#[inline(always)]
-fn lane<const F: usize>(x: &[&[f64]; F], row: &[f64; F], i: usize) -> f64 {
-    let mut s = row[0] * x[0][i];
-    for k in 1..F {
-        s += row[k] * x[k][i];
-    }
-    s
-}
-
-/// Declares loops over lanes that are compiled for each vector width and chosen at run time. (A
-/// closure would do, but nothing forces it to be inlined into the function that has the width.)
-macro_rules! lanes {
-    ($($(#[$doc:meta])* $name:ident<$lt:lifetime $(, const $g:ident)*> { $($field:ident: $type:ty),+ $(,)? } -> $out:ty $body:block)+) => {
-        $(
-            $(#[$doc])*
-            struct $name<$lt $(, const $g: usize)*> { $($field: $type),+ }
-
-            impl<$lt $(, const $g: usize)*> pulp::WithSimd for $name<$lt $(, $g)*> {
-                type Output = $out;
-                #[inline(always)]
-                fn with_simd<S: pulp::Simd>(self, _: S) -> $out {
-                    let Self { $($field),+ } = self;
-                    $body
-                }
-            }
-        )+
-    };
-}
-
 lanes! {
-    /// `out = Σ row_k x_k`.
-    Combine<'a, const F> { x: [&'a [f64]; F], row: [f64; F], out: &'a mut [f64] } -> () {
-        let n = out.len();
-        let x = x.map(|x| &x[..n]);
-        for i in 0..n {
-            out[i] = lane::<F>(&x, &row, i);
-        }
-    }
     /// One row where `which` is `pattern`, another elsewhere.
     CombineTwo<'a, const F> {
         x: [&'a [f64]; F], a: [f64; F], b: [f64; F], which: &'a [u64], pattern: u64, out: &'a mut [f64],
@@ -827,26 +698,6 @@ lanes! {
             };
         }
     }
-}
-
-/// `out = Σ row_k x_k`.
-pub(super) fn combine(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
-    fn go<const F: usize>(arch: pulp::Arch, x: &[&[f64]], row: &[f64], out: &mut [f64]) {
-        let n = out.len();
-        match (<[&[f64]; F]>::try_from(x), <[f64; F]>::try_from(row)) {
-            (Ok(x), Ok(row)) => arch.dispatch(Combine { x, row, out }),
-            _ => {
-                out.fill(0.0);
-                for (x, r) in x.iter().zip(row) {
-                    out.iter_mut().zip(&x[..n]).for_each(|(o, x)| *o += r * x);
-                }
-            }
-        }
-    }
-    if x.is_empty() {
-        return out.fill(0.0);
-    }
-    by_count!(x.len(), go(arch, x, row, out));
 }
 
 /// `out = Σ a_k x_k` where `which` is `pattern`, `Σ b_k x_k` elsewhere.

@@ -84,8 +84,8 @@ codes! {
     E106 NotCoaxial: "the gears of this set do not lie on one axis";
     /// A clutch joins two different members, a brake holds one, a one-way clutch has one or two.
     E107 ShiftElement: "a shift element joins the wrong members";
-    /// A train beyond 128 meshes, 1024 members, 256 states or 4096 operations is refused, so
-    /// that time and memory stay bounded.
+    /// A train beyond 128 meshes, 1024 members or shift elements, 256 states, 4096 operations or 256 scenarios is refused,
+    /// so that time and memory stay bounded.
     E108 TooLarge: "the train is too large";
     /// Two keys say the same thing in two ways, or exclude each other.
     E109 Conflict: "these keys exclude each other";

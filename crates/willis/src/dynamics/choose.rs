@@ -1,4 +1,4 @@
-//! Which mode a state is in: decided by accelerations, never by flipping a sign.
+//! Which mode a state is in: decided by accelerations and forces, never by the sign of a small speed.
 //!
 //! At a change of mode some groups are at zero slip. Each may be held or slide off either way, and the tooth
 //! forces may turn round; the right choice is the one whose accelerations and forces agree with it. Single

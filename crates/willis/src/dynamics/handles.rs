@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::train::{Signal, SourceKind};
 
 use super::report::{Column, ColumnUnit};
@@ -97,6 +97,14 @@ impl fmt::Display for InputRefused {
 }
 
 impl std::error::Error for InputRefused {}
+
+impl From<InputRefused> for Diagnostic {
+    fn from(refused: InputRefused) -> Self {
+        Self::new(Code::OutOfRange, "", refused.to_string())
+    }
+}
+
+through_diagnostic!(InputRefused);
 
 /// The signal of a source that an input replaces, and what it means; none for a load that follows the speed.
 fn signal(kind: &mut SourceKind) -> Option<(InputKind, &mut Signal)> {

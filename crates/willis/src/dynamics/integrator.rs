@@ -38,6 +38,15 @@ pub(crate) enum StepError {
     StepTooSmall,
 }
 
+/// What came of a step that was tried.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Attempt {
+    /// Its error is within the tolerance; the next one may be longer by `factor`.
+    Taken { factor: f64 },
+    /// It is to be tried again, shorter by `factor`; `finite` unless what failed it is no number.
+    Rejected { factor: f64, finite: bool },
+}
+
 /// A one-step method: `restart`, then `step` again and again. Time rises. Nothing is allocated
 /// after `new`.
 ///
@@ -51,11 +60,44 @@ pub(crate) trait Stepper {
     /// step tried is `first`, else the one that would have come next before, else an estimate.
     fn restart<S: Smooth>(&mut self, sys: &mut S, t: f64, x: &[f64], tolerance: f64, t_end: f64, first: Option<f64>);
 
-    /// Takes one step within the tolerance, not beyond `t_end`.
-    fn step<S: Smooth>(&mut self, sys: &mut S, t_end: f64) -> Result<(), StepError>;
+    /// Tries a step of length `h` from where it stands; `again` after another one was rejected.
+    fn attempt<S: Smooth>(&mut self, sys: &mut S, h: f64, again: bool) -> Attempt;
+
+    /// Moves on to the end of the step of length `h` that was tried last, which was taken.
+    fn accept(&mut self, h: f64, t_end: f64);
 
     /// Where it stands.
     fn track(&self) -> &Track;
+
+    /// The same, to be changed.
+    fn track_mut(&mut self) -> &mut Track;
+
+    /// Takes one step within the tolerance, not beyond `t_end`.
+    fn step<S: Smooth>(&mut self, sys: &mut S, t_end: f64) -> Result<(), StepError> {
+        let track = self.track();
+        debug_assert!(t_end > track.t);
+        if !track.rate.iter().all(|r| r.is_finite()) {
+            return Err(StepError::NotFinite);
+        }
+        let (mut wanted, mut finite, mut again) = (track.next, true, false);
+        while !self.track().is_too_short(wanted, t_end) {
+            let h = self.track().length(wanted, t_end);
+            match self.attempt(sys, h, again) {
+                Attempt::Taken { factor } => {
+                    let next = h * if again { factor.min(1.0) } else { factor };
+                    // A step that was cut short says nothing against the length that was wanted.
+                    self.track_mut().next = if h < wanted { next.max(wanted) } else { next };
+                    self.accept(h, t_end);
+                    return Ok(());
+                }
+                Attempt::Rejected { factor, finite: is_finite } => {
+                    self.track_mut().counts.rejected += 1;
+                    (wanted, finite, again) = (h * factor, is_finite, true);
+                }
+            }
+        }
+        Err(if finite { StepError::StepTooSmall } else { StepError::NotFinite })
+    }
 
     /// Value of a component within the last step.
     fn interpolate_component(&self, t: f64, k: usize) -> f64;

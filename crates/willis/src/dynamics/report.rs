@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use serde::{Deserialize, Serialize};
 
 use crate::contract::{Contract, Format};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::named::Named;
 
 /// How to run a scenario.
@@ -39,6 +40,39 @@ impl Default for Options {
             energies: true,
             samples: None,
         }
+    }
+}
+
+impl Options {
+    /// All that is wrong with them, whoever asks.
+    pub(super) fn check(&self) -> Result<(), Diagnostics> {
+        let mut wrong = Diagnostics::default();
+        let mut refuse = |message: String, hint: &str| {
+            wrong.push(Diagnostic::new(Code::OutOfRange, "", message).hint(hint));
+        };
+        if !(1e-13..=1e-2).contains(&self.tolerance) {
+            refuse(
+                format!("a relative tolerance of {} cannot be kept", self.tolerance),
+                "from 1e-13 to 1e-2, as in 1e-9",
+            );
+        }
+        if let Some(n @ 0..2) = self.samples {
+            refuse(format!("{n} rows do not reach from the start to the end"), "two rows or more");
+        }
+        if self.most_events == 0 {
+            refuse("no change of mode is allowed, not even the first".into(), "one or more");
+        }
+        match self.method {
+            Method::Fixed { step_s } if !(step_s.is_finite() && step_s > 0.0) => {
+                refuse(format!("a step of {step_s} s leads nowhere"), "a time above zero");
+            }
+            Method::Adaptive if self.lagged_forces => {
+                let hint = "give the length of the step, as in 1 ms";
+                refuse("forces lag by a step, and steps have no fixed length here".into(), hint);
+            }
+            _ => {}
+        }
+        if wrong.has_errors() { Err(wrong) } else { Ok(()) }
     }
 }
 
@@ -229,7 +263,7 @@ pub struct Event {
     /// P1.sun-planet break away`, `bearing turns round`, `C engages, B opens`, `side shafts: contact`, `drive reverses
     /// in P1.sun-planet`.
     pub cause: String,
-    /// The same as data.
+    /// What `cause` says, as data.
     #[serde(default)]
     pub happenings: Vec<Happening>,
     /// The modes after it that differ from those before, by element.
@@ -248,7 +282,7 @@ impl Event {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Happening {
-    /// What.
+    /// What happens to the elements.
     pub kind: HappeningKind,
     /// The elements.
     pub of: Vec<String>,

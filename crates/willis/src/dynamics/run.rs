@@ -115,6 +115,7 @@ impl Simulation {
     /// # Errors
     /// An unknown scenario, contradictory speeds, inertia that is missing.
     pub fn new(train: &Train, scenario: &str, options: &Options) -> Result<Self, Diagnostics> {
+        options.check()?;
         let system = System::new(train, scenario)?;
         let mut engine = Engine::new(system);
         engine.counts = options.energies;

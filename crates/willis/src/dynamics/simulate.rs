@@ -18,6 +18,7 @@ pub fn simulate(
     options: &Options,
     recorder: &mut dyn Recorder,
 ) -> Result<RunReport, Diagnostics> {
+    options.check()?;
     match options.method {
         Method::Fixed { step_s } if options.lagged_forces => lagged(train, scenario, options, step_s, recorder),
         Method::Fixed { step_s } => fixed(train, scenario, options, step_s, recorder),

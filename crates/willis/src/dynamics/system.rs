@@ -92,7 +92,7 @@ impl System {
     /// Speeds that contradict each other, coordinates without inertia, meshes whose forces are not
     /// determined.
     pub fn new(train: &Train, name: &str) -> Result<Self, Diagnostics> {
-        let scenario = checks::scenario_named(train, name)?;
+        let scenario = train.find_scenario(name)?;
         let laws = Laws::of(train);
         let c = Configuration::new(train, &[], &scenario.fixed, &visible(train, scenario, laws.as_ref()));
         checks::forces_and_freedom(&c, scenario)?;

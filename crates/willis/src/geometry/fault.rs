@@ -1,6 +1,6 @@
 use std::fmt;
 
-use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 
 /// Why there is no such pair of gears. The numbers are SI; the text shows mm and degrees.
 ///
@@ -337,6 +337,12 @@ impl From<Fault> for Diagnostic {
 }
 
 through_diagnostic!(Fault);
+
+impl From<Vec<Fault>> for Diagnostics {
+    fn from(faults: Vec<Fault>) -> Self {
+        faults.into_iter().map(Diagnostic::from).collect()
+    }
+}
 
 impl Remark {
     /// The wheel that it is about; none where it is about the pair.

@@ -142,14 +142,7 @@ impl Target {
         for value in values {
             match self {
                 Self::State => {
-                    let states = model.train().states().iter().map(|s| s.name.as_str());
-                    if !states.clone().any(|s| s == value) {
-                        let d =
-                            Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{value}`"));
-                        let known = states.clone().collect::<Vec<_>>().join(", ");
-                        let d = d.suggest(value, states);
-                        return Err(Box::new(d.hint(format!("its states are: {known}"))));
-                    }
+                    model.train().find_state(value)?;
                 }
                 Self::Law(family) => {
                     model.train().clone().with_law(family, value).map_err(|wrong| {

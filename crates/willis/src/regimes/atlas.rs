@@ -11,11 +11,11 @@ use crate::train::{FRAME, MemberId};
 use super::arrangement::{self, dot};
 use super::cells::{Cells, efficiency_at, efficiency_towards, enumerate, power_signs, without_friction};
 use super::formula::{Efficiencies, Formula, Ratios, Shape, SymbolKind, element_label};
-use super::setup::{Pattern, Setup, TorqueCell};
-use super::{
+use super::report::{
     AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, Neighbour,
     PlaneReport, Prescribed, RatioRange, Reach, RegimeReport, RegionReport, SymbolReport, Threshold,
 };
+use super::setup::{Pattern, Setup, TorqueCell};
 
 /// Most closed formulas that are worked out for one state.
 const MOST_FORMULAS: usize = 128;

@@ -1,18 +1,19 @@
 //! Closed formulas to take away: in words, typeset, or as code that refuses to answer outside its
 //! regime.
 
-use crate::analysis::{AS_DRAWN, Named};
+use crate::analysis::Named;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::symbolic::{Function, Notation, Symbol};
-use crate::train::{MemberId, Train};
+use crate::train::{AS_DRAWN, MemberId, Train};
 
 use super::atlas::{arrow, atlas, drivers};
 use super::cells::{enumerate, power_signs};
 use super::formula::{Efficiencies, Formula, Names, Ratios, Shape, SymbolKind, identifier};
-use super::setup::Setup;
-use super::{RegimeReport, RegimeSelection, selected};
+use super::report::RegimeReport;
+use super::setup::{Pattern, Setup};
+use super::{RegimeSelection, selected};
 
 /// Which formulas.
 #[derive(Clone, Debug, Default)]
@@ -54,7 +55,7 @@ pub struct Argument {
     pub name: String,
     /// In LaTeX.
     pub latex: String,
-    /// In words.
+    /// What it stands for, in words.
     pub meaning: String,
     /// What it is.
     pub kind: SymbolKind,
@@ -373,7 +374,7 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
         // As drawn is left out when a shift table says how the train is used.
         let unasked = several && state == AS_DRAWN;
         let found = if c.degrees_of_freedom() == 1 && request.regime.is_some() {
-            Err("one degree of freedom: name the direction with --from and --to, not a regime".to_owned())
+            Err("one degree of freedom: name the direction (`from` and `to`), not a regime".to_owned())
         } else if c.degrees_of_freedom() == 1 {
             let from = if from.is_empty() { input.into_iter().collect() } else { from.clone() };
             let to = if to.is_empty() { output.into_iter().collect() } else { to.clone() };
@@ -408,8 +409,7 @@ fn one_freedom(
 ) -> Result<Vec<ClosedFormula>, String> {
     let ([from], [to]) = (from, to) else {
         return Err(
-            "with one degree of freedom a formula needs one input and one output; name them with --from and --to"
-                .into(),
+            "with one degree of freedom a formula needs one input and one output; name them (`from` and `to`)".into()
         );
     };
     let train = c.train;
@@ -524,7 +524,7 @@ fn closed(
     state: &str,
     own: &Formula,
     powers: &[i8],
-    pattern: &super::Pattern,
+    pattern: &Pattern,
     base: &[Rational],
     torques: &[Rational],
 ) -> ClosedFormula {

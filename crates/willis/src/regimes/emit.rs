@@ -53,7 +53,7 @@ impl FormulaSheet {
     }
 
     fn heading(&self, state: &str) -> String {
-        match state == crate::analysis::AS_DRAWN {
+        match state == crate::train::AS_DRAWN {
             true => self.train.clone(),
             false => format!("{}, state {state}", self.train),
         }

@@ -137,7 +137,7 @@ pub fn family(train: &Train, selection: &RegimeSelection) -> Result<Family, Diag
         let mut all = Diagnostics::default();
         all.push(
             Diagnostic::new(Code::Unfit, "", format!("no table over all basic ratios: {why}"))
-                .hint("it is for one set with three terminals and two degrees of freedom; leave out --family"),
+                .hint("it is for one set with three terminals and two degrees of freedom; leave out `family`"),
         );
         all
     };

@@ -25,7 +25,7 @@ pub(crate) struct SymbolInfo {
     /// Its value in this train; speeds and torques have none.
     pub value: Option<Rational>,
     pub kind: SymbolKind,
-    /// In words.
+    /// What it stands for, in words.
     pub meaning: String,
     /// The same in LaTeX, where it has formulas in it.
     pub meaning_latex: Option<String>,

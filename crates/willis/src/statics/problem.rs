@@ -1,5 +1,6 @@
 //! The statics by itself: a train in a motion, its certificate, and its equilibria under torques.
 
+use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, common};
 use crate::train::{MemberId, MeshId};
@@ -73,6 +74,19 @@ impl std::fmt::Display for Unposed {
 }
 
 impl std::error::Error for Unposed {}
+
+impl From<Unposed> for Diagnostic {
+    fn from(why: Unposed) -> Self {
+        let code = match &why {
+            Unposed::Contradiction(_) => Code::ContradictorySpeeds,
+            Unposed::Unsolvable(why) => return why.clone().into(),
+            Unposed::NotLoaded(_) => Code::NotATerminal,
+        };
+        Self::new(code, "", why.to_string())
+    }
+}
+
+through_diagnostic!(Unposed);
 
 impl From<Unsolvable> for Unposed {
     fn from(why: Unsolvable) -> Self {

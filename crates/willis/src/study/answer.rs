@@ -8,8 +8,6 @@ use crate::analysis::{self, SolutionReport, Verdict};
 use crate::diagnostic::{Code, Diagnostics, Severity};
 use crate::train::{Operation, Train};
 
-use super::summary::LawChoice;
-
 /// What can be said of a point of a study: the [verdict](Verdict) on its operating point, or that it makes none.
 ///
 /// Ordered by name, as tables by verdict are written; [`PointVerdict::ALL`] has the order for people.
@@ -24,7 +22,8 @@ pub enum PointVerdict {
     Multiple,
     /// No train or no operating point is possible with these values.
     Refused,
-    /// Speeds or torques are not determined: a degree of freedom too many, or a redundant constraint.
+    /// No determined answer: a speed is missing, constraints are redundant, uniqueness is undecided, or losses did not
+    /// converge.
     Undetermined,
     /// There is exactly one equilibrium.
     Unique,
@@ -65,6 +64,21 @@ impl From<Verdict> for PointVerdict {
 impl fmt::Display for PointVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
+    }
+}
+
+/// A law of a family of laws: `mesh_friction = niemann`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LawChoice {
+    /// The family, `mesh_friction`.
+    pub family: String,
+    /// The law, `niemann`.
+    pub law: String,
+}
+
+impl fmt::Display for LawChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}", self.family, self.law)
     }
 }
 

@@ -164,7 +164,7 @@ impl<'s> Sweep<'s> {
                 What::InputPower | What::OutputPower | What::LossOf(_) | What::Warnings => continue,
                 _ => {
                     let message = format!("`{}` is no column of a compiled sweep", column.name);
-                    return Err(refuse(&message, "ask for speeds and torques; or leave out --fast"));
+                    return Err(refuse(&message, "ask for speeds and torques, or leave out `fast`"));
                 }
             };
             output.push(wanted.map(|w| {
@@ -225,7 +225,10 @@ impl<'s> Sweep<'s> {
         let mut torques = vec![];
         for (member, load) in &operation.loads {
             let Load::Torque(q) = load else {
-                return Err(refuse("a load is a power; compiled sweeps take torques", "add --hold torque"));
+                return Err(refuse(
+                    "a load is a power; compiled sweeps take torques",
+                    "hold the torque: `hold` = torque",
+                ));
             };
             torques.push(match axis_of(*member, false)? {
                 None => Input::Constant(q.si()),
@@ -258,7 +261,7 @@ impl<'s> CompiledSweep<'s> {
     /// See [`Sweep::compile`].
     pub(super) fn new(sweep: Arc<Sweep<'s>>) -> Result<Self, Diagnostics> {
         let axes = &sweep.axes;
-        let with_hold = "sweep without --fast";
+        let with_hold = "sweep without `fast`";
         if sweep.question.model().train().is_physical() {
             return Err(refuse(
                 "losses of this train are computed from load and speed; they cannot be compiled",
@@ -271,7 +274,7 @@ impl<'s> CompiledSweep<'s> {
             let message = format!("`{}` cannot vary in a compiled sweep", a.name);
             return Err(refuse(
                 &message,
-                "vary speeds, torques, states or values of the train file; or leave out --fast",
+                "vary speeds, torques, states or values of the train file, or leave out `fast`",
             ));
         }
         if sweep.question.hold() == Hold::Power {

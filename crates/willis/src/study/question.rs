@@ -88,27 +88,9 @@ impl<'s> Question<'s> {
         hold: Hold,
     ) -> Result<Self, Diagnostics> {
         let train = model.train();
-        let unknown = |what: &str, name: &str, known: Vec<&str>| {
-            let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no {what} `{name}`"));
-            let d = d.suggest(name, known.iter().copied());
-            Diagnostics::from_iter([match known.is_empty() {
-                true => d.hint(format!("it has no {what}s at all")),
-                false => d.hint(format!("its {what}s are: {}", known.join(", "))),
-            }])
-        };
-        let state =
-            match state {
-                None => None,
-                Some(name) => {
-                    Some(train.states.iter().position(|s| s.name == name).ok_or_else(|| {
-                        unknown("state", name, train.states.iter().map(|s| s.name.as_str()).collect())
-                    })?)
-                }
-            };
+        let state = state.map(|name| train.find_state(name)).transpose()?;
         let found = match operation {
-            Some(name) => Some(train.operations.iter().find(|o| o.name == name).ok_or_else(|| {
-                unknown("operation", name, train.operations.iter().map(|o| o.name.as_str()).collect())
-            })?),
+            Some(name) => Some(train.find_operation(name)?),
             None => match state {
                 Some(k) => train.operations.iter().find(|o| o.state == Some(k)).or(train.operations.first()),
                 None => train.operations.first(),
@@ -152,7 +134,7 @@ impl<'s> Question<'s> {
                 Hold::Output => Err(refuse(
                     Code::Unfit,
                     "there is no operation whose output could be held".into(),
-                    "name one with --operation, or prescribe `output.torque` itself",
+                    "name one (`operation`), or prescribe `output.torque` itself",
                 )),
                 _ => Ok(()),
             };
@@ -281,8 +263,7 @@ impl<'s> Question<'s> {
         for (target, value) in settings {
             match target {
                 Target::State => {
-                    let state = train.states.iter().position(|s| s.name == *value);
-                    operation.state = Some(state.ok_or_else(|| wrong(format!("the train has no state `{value}`")))?);
+                    operation.state = Some(train.find_state(value)?);
                 }
                 Target::Temperature => {
                     let t = quantity(value, Dimension::TEMPERATURE).map_err(wrong)?;

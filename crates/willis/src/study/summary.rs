@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::Code;
 
-use super::answer::{PointAnswer, PointVerdict};
+use super::answer::{LawChoice, PointAnswer, PointVerdict};
 
 /// A value and the number of the point that has it; in contracts `[value, point]`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -83,21 +83,6 @@ impl MinMaxSum {
     /// Mean of the points that have a value.
     pub fn mean(&self) -> Option<f64> {
         (self.count > 0).then(|| self.sum / self.count as f64)
-    }
-}
-
-/// A law of a family of laws: `mesh_friction = niemann`.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct LawChoice {
-    /// The family, `mesh_friction`.
-    pub family: String,
-    /// The law, `niemann`.
-    pub law: String,
-}
-
-impl fmt::Display for LawChoice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} = {}", self.family, self.law)
     }
 }
 

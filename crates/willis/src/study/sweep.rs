@@ -71,7 +71,7 @@ impl<'s> Sweep<'s> {
         let mut wrong = Diagnostics::default();
         if axes.is_empty() {
             let d = Diagnostic::new(Code::BadAxis, "", "nothing varies");
-            wrong.push(d.hint("name an axis: --over \"input.speed=500 rpm..6000 rpm:50\""));
+            wrong.push(d.hint("name an axis in `over`, such as \"input.speed=500 rpm..6000 rpm:50\""));
         }
         for (k, axis) in axes.iter().enumerate() {
             if axes[..k].iter().any(|a| a.target == axis.target) {
@@ -101,13 +101,9 @@ impl<'s> Sweep<'s> {
     pub fn of_file(model: &'s Model, name: &str) -> Result<Self, Diagnostics> {
         let studies = model.train().studies();
         let Some(k) = studies.iter().position(|s| s.name == name) else {
-            let known: Vec<&str> = studies.iter().map(|s| s.name.as_str()).collect();
-            let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no study `{name}`"));
-            let d = d.suggest(name, known.iter().copied());
-            return Err(Diagnostics::from_iter([d.hint(match known.is_empty() {
-                true => "add a [[study]] with a name and `over`".to_owned(),
-                false => format!("its studies are: {}", known.join(", ")),
-            })]));
+            let known = studies.iter().map(|s| s.name.as_str());
+            let d = Diagnostic::missing(Code::UnknownSelection, "study", name, known);
+            return Err(d.hint("a [[study]] has a name and `over`").into());
         };
         let study = &studies[k];
         let mut wrong = Diagnostics::default();

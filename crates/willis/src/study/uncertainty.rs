@@ -12,13 +12,13 @@ use crate::train::{Load, Measure, Train};
 use crate::units::{self, Quantity};
 use crate::work::{self, Cancelled, Work};
 
-use super::answer::{PointAnswer, PointVerdict};
+use super::answer::{LawChoice, PointAnswer, PointVerdict};
 use super::axis::with_unit;
 use super::column::{Column, ColumnTable};
 use super::design::Design;
 use super::distribution::{Distribution, Reader, fault, plain, rounded};
 use super::question::{Hold, Question, Trains};
-use super::summary::{self, LawChoice, Seen, WarningKind};
+use super::summary::{self, Seen, WarningKind};
 use super::{Axis, Statistics};
 
 pub use report::{ChoiceResult, Influence, UncertainQuantity, UncertainResult, Uncertainty};
@@ -41,7 +41,7 @@ pub struct UncertaintyRequest {
     /// What is uncertain, each a quantity and its distribution. `P1.mesh_efficiency=0.985..0.995`: everything between is
     /// equally likely; `oil.temperature=normal(70 degC, 5 K)`: mean and standard deviation;
     /// `P1.sun.roughness=triangular(0.2, 0.4, 0.8 um)`: least, most likely, greatest;
-    /// `P1.sun.roughness=lognormal(0.4 um, 1.3)`: median and factor; `P1.face_width=+-5%`: about the value of the file;
+    /// `P1.sun.roughness=lognormal(0.4 um, 1.3)`: median and factor; `P1.geometry.width=+-5%`: about the value of the file;
     /// `state=3,4`: these values, each as likely as the others. Default, where no laws are named either: the given
     /// losses and roughnesses by ±20 %, the oil's temperature by ±5 K, and the friction laws.
     pub vary: Vec<String>,
@@ -326,7 +326,7 @@ impl<'s> UncertaintyPlan<'s> {
                 let message = "nothing that the file gives is uncertain by itself: no efficiency below 1, no roughness, \
                                no oil, no computed friction";
                 let d = Diagnostic::new(Code::BadAxis, "", message);
-                let hint = "name what is uncertain: --vary \"P1.mesh_efficiency=0.985..0.995\"";
+                let hint = "name what is uncertain in `vary`, such as \"P1.mesh_efficiency=0.985..0.995\"";
                 return Err([d.hint(hint)].into_iter().collect());
             }
         }

@@ -1,6 +1,4 @@
-//! Which symbols stand for which unit, and which units each kind of quantity is written in.
-
-use super::Dimension;
+//! Which symbols stand for which unit.
 
 /// Spellings, factor (exact), power of π, exponents of m, kg, s, rad, K.
 type Unit = (&'static [&'static str], &'static str, i8, [i8; 5]);
@@ -158,67 +156,4 @@ pub(super) const WORDS: &[(&str, &str)] = &[
     ("watt", "W"),
     ("kilowatt", "kW"),
     ("horsepower", "hp"),
-];
-
-/// A kind of quantity as people meet it.
-pub(super) struct Kind {
-    pub dimension: Dimension,
-    /// With its article, `a torque`.
-    pub name: &'static str,
-    /// A value that the reader accepts.
-    pub example: &'static str,
-    /// The units it is written in; only these are suggested for it.
-    pub units: &'static [&'static str],
-}
-
-/// Every kind of quantity.
-#[rustfmt::skip]
-pub(super) const KINDS: &[Kind] = &[
-    Kind { dimension: Dimension::ANGULAR_SPEED, name: "an angular speed", example: "1450 rpm",
-           units: &["rpm", "rad/s", "rev/s", "rev/min", "deg/s", "r/min", "U/min", "tr/min", "1/min", "krpm"] },
-    Kind { dimension: Dimension::TORQUE, name: "a torque", example: "350 N m",
-           units: &["N m", "kN m", "MN m", "mN m", "N mm", "N cm", "daN m", "kgf m", "kgf cm", "lbf ft", "ft lbf",
-                    "lbf in", "in lbf", "ozf in"] },
-    Kind { dimension: Dimension::POWER, name: "a power", example: "75 kW",
-           units: &["kW", "W", "MW", "mW", "hp", "PS", "J/s"] },
-    Kind { dimension: Dimension::ENERGY, name: "an energy", example: "250 kJ",
-           units: &["J", "kJ", "MJ", "kW h", "W h", "W s", "MW h"] },
-    Kind { dimension: Dimension::LENGTH, name: "a length", example: "12.5 mm",
-           units: &["mm", "m", "cm", "dm", "um", "nm", "km", "in", "ft", "uin"] },
-    Kind { dimension: Dimension::ANGLE, name: "an angle", example: "20 deg",
-           units: &["deg", "°", "rad", "mrad", "arcmin", "rev"] },
-    Kind { dimension: Dimension::TEMPERATURE, name: "a temperature", example: "60 degC",
-           units: &["degC", "°C", "K", "degF", "°F"] },
-    Kind { dimension: Dimension::FORCE, name: "a force", example: "5 kN",
-           units: &["N", "kN", "MN", "mN", "daN", "kgf", "lbf", "ozf"] },
-    Kind { dimension: Dimension::MASS, name: "a mass", example: "2.5 kg", units: &["kg", "g", "t", "lb", "oz", "slug"] },
-    Kind { dimension: Dimension::VOLUME, name: "a volume", example: "5 l",
-           units: &["l", "L", "ml", "m^3", "dm^3", "cm^3", "mm^3", "in^3"] },
-    Kind { dimension: Dimension::DENSITY, name: "a density", example: "890 kg/m^3",
-           units: &["kg/m^3", "g/cm^3", "kg/l", "g/ml", "kg/dm^3", "lb/ft^3", "lb/in^3"] },
-    Kind { dimension: Dimension::PRESSURE, name: "a pressure", example: "206 GPa",
-           units: &["GPa", "MPa", "kPa", "hPa", "Pa", "bar", "mbar", "N/mm^2", "kgf/cm^2", "kgf/mm^2", "psi", "ksi",
-                    "lbf/in^2"] },
-    Kind { dimension: Dimension::PRESSURE_COEFFICIENT, name: "a pressure coefficient", example: "16.5 1/GPa",
-           units: &["1/GPa", "1/MPa", "1/Pa", "1/bar", "mm^2/N", "1/psi"] },
-    Kind { dimension: Dimension::KINEMATIC_VISCOSITY, name: "a kinematic viscosity", example: "220 mm^2/s",
-           units: &["mm^2/s", "m^2/s", "cm^2/s", "cSt", "St"] },
-    Kind { dimension: Dimension::DYNAMIC_VISCOSITY, name: "a dynamic viscosity", example: "80 mPa s",
-           units: &["mPa s", "Pa s", "cP", "P", "N s/m^2"] },
-    Kind { dimension: Dimension::TIME, name: "a time", example: "0.5 s", units: &["s", "ms", "us", "min", "h"] },
-    Kind { dimension: Dimension::FREQUENCY, name: "a frequency", example: "2 Hz", units: &["Hz", "kHz", "1/s", "1/min"] },
-    Kind { dimension: Dimension::AREA, name: "an area", example: "0.7 m^2",
-           units: &["m^2", "dm^2", "cm^2", "mm^2", "in^2", "ft^2"] },
-    Kind { dimension: Dimension::INERTIA, name: "a moment of inertia", example: "0.05 kg m^2",
-           units: &["kg m^2", "kg cm^2", "kg mm^2", "g cm^2", "g m^2", "lb ft^2", "lb in^2", "slug ft^2", "lbf in s^2",
-                    "lbf ft s^2", "N m s^2"] },
-    Kind { dimension: Dimension::STIFFNESS, name: "a stiffness", example: "1e4 N m/rad",
-           units: &["N m/rad", "kN m/rad", "MN m/rad", "N m/deg", "N m/arcmin", "lbf in/rad", "lbf ft/rad",
-                    "lbf ft/deg"] },
-    Kind { dimension: Dimension::VISCOUS, name: "a viscous coefficient", example: "2 N m s/rad",
-           units: &["N m s/rad", "kN m s/rad", "mN m s/rad", "N m/rpm", "mN m/rpm", "lbf in s/rad"] },
-    Kind { dimension: Dimension::TORQUE_PER_ACCELERATION, name: "a torque over acceleration",
-           example: "0.02 N m s^2/rad", units: &["N m s^2/rad", "kN m s^2/rad", "mN m s^2/rad"] },
-    Kind { dimension: Dimension::TORQUE_PER_SPEED_SQUARED, name: "a torque over speed squared",
-           example: "0.05 N m s^2/rad^2", units: &["N m s^2/rad^2", "mN m s^2/rad^2", "N m/rpm^2"] },
 ];

@@ -1,5 +1,6 @@
 //! What is read, what is refused, and what is said then: by table.
 
+use super::dimension::KINDS;
 use super::*;
 
 /// Number, unit or text; the kind; the exact value as a product, and its power of π.

@@ -303,3 +303,28 @@ fn a_batch_takes_the_steps_of_a_train_with_controllers() {
     };
     assert_equal("two controllers and a load", "load", &text, &FACTORS, 3000);
 }
+
+#[test]
+fn a_batch_starts_from_speeds_of_its_own() {
+    let starting = |w: f64| {
+        let speed = format!("{w} rad/s");
+        let initial = format!("duration = \"6 s\"\ninitial_speeds = {{ motor = \"{speed}\", load = \"{speed}\" }}\n");
+        Train::from_toml(&shaft(1.0).replace("duration = \"6 s\"\n", &initial)).unwrap()
+    };
+    let speeds = [0.0, 3.0, -7.5];
+    let mut all = Batch::new(&starting(0.0), "to and fro", 1e-3, speeds.len()).unwrap();
+    for (run, w) in speeds.into_iter().enumerate() {
+        all.set_speed(run, "motor", w).unwrap();
+        all.set_speed(run, "load", w).unwrap();
+    }
+    all.run(2000);
+    for (run, w) in speeds.into_iter().enumerate() {
+        let mut alone = FixedStep::new(&starting(w), "to and fro", 1e-3).unwrap();
+        alone.run(2000);
+        for name in ["motor", "load"] {
+            let (ours, theirs) = (all.speed(run, name).unwrap(), alone.speed(name).unwrap());
+            assert_eq!(ours.to_bits(), theirs.to_bits(), "run {run}, {name}: {ours}, not {theirs}");
+        }
+    }
+    assert!(all.set_speed(0, "shaft", 1.0).is_err() && all.set_speed(9, "motor", 1.0).is_err());
+}

@@ -1,9 +1,9 @@
 //! An analysis as tables: SI units in the column names, one row a thing.
 
-use willis::analysis::{Analysis, Direction, SolutionReport, Verdict};
+use willis::analysis::{Analysis, Direction, SolutionReport};
 
 use crate::table::Kind::{Flag, Integer, Number, Text};
-use crate::table::{Cell, Table};
+use crate::table::{Cell, Table, word};
 
 /// All tables. Those of computed losses are there when there are any.
 pub fn tables(a: &Analysis) -> Vec<Table> {
@@ -48,9 +48,9 @@ fn states(a: &Analysis) -> Table {
             s.value.into(),
             s.step.into(),
             s.drive.efficiency.into(),
-            verdict(s.drive.verdict).into(),
+            word(&s.drive.verdict).into(),
             s.coast.efficiency.into(),
-            verdict(s.coast.verdict).into(),
+            word(&s.coast.verdict).into(),
             certified(&s.drive).into(),
             certified(&s.coast).into(),
         ]);
@@ -81,7 +81,7 @@ fn operations(a: &Analysis) -> Table {
                 (&o.name).into(),
                 o.state.clone().into(),
                 solution.into(),
-                verdict(o.verdict).into(),
+                word(&o.verdict).into(),
                 o.certificate.map(|c| word(&c.method)).into(),
             ]
         };
@@ -290,14 +290,4 @@ fn diagnostics(a: &Analysis) -> Table {
         ]);
     }
     t
-}
-
-/// The word that the results contract uses.
-pub fn word(x: &impl serde::Serialize) -> String {
-    serde_json::to_value(x).ok().and_then(|v| v.as_str().map(str::to_owned)).unwrap_or_default()
-}
-
-/// The word that the results contract uses for a verdict.
-pub fn verdict(v: Verdict) -> String {
-    word(&v)
 }

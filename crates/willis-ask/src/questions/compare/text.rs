@@ -157,7 +157,7 @@ fn results(c: &Comparison, all: &[&Compared], head: &str) -> String {
     let mut out = if t.is_empty() { String::new() } else { show(&t) };
     if rest > 0 {
         let text =
-            format!("  and {}; --format json has all", plural(rest, "smaller difference", "smaller differences"));
+            format!("  and {}; the JSON answer has all", plural(rest, "smaller difference", "smaller differences"));
         out += &(dim(&text) + "\n");
     }
     out + &told

@@ -8,7 +8,7 @@ use crate::style::{bold, percent, rpm, set_header, show, significant, table, wra
 /// Where an operating point lies, for eyes.
 pub fn location(l: &Location) -> String {
     let mut out = bold(&l.train);
-    if l.state != willis::analysis::AS_DRAWN {
+    if l.state != willis::train::AS_DRAWN {
         out += &format!("   state {}", l.state);
     }
     out += "\n";

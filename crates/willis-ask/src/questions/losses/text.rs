@@ -3,10 +3,9 @@
 use willis::analysis::{LossPoint, LossTable, Named, SolutionReport, Verdict};
 use willis::operating_point::{BearingReport, ContactReport, Regime};
 
-use crate::questions::analyze::verdict as verdict_word;
 use crate::style::{bar, bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
 use crate::table::Kind::{Flag, Number, Text};
-use crate::table::Table;
+use crate::table::{Table, word};
 
 /// The losses of a solution: where every watt goes, tooth contacts, bearings.
 pub fn of_solution(s: &SolutionReport) -> String {
@@ -279,7 +278,7 @@ pub fn table_of(all: &LossTable) -> Table {
             p.torque_of.clone().into(),
             p.torque_n_m.into(),
             p.temperature_k.into(),
-            verdict_word(p.verdict).into(),
+            word(&p.verdict).into(),
             p.efficiency.into(),
             p.input_power_w.into(),
             p.loss_w.into(),

@@ -96,7 +96,7 @@ fn matrix(head: &str, of: &str, all: &[(String, &[Part])], show_value: impl Fn(f
     right(&mut t, 1..header.len());
     let mut out = format!("\n{}\n{}", bold(head), show(&t));
     if all.len() > MOST {
-        out += &format!("  … and {} more modes, all in --format json\n", all.len() - MOST);
+        out += &format!("  … and {} more modes, all in the JSON answer\n", all.len() - MOST);
     }
     out
 }

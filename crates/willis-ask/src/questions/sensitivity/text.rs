@@ -3,10 +3,10 @@
 use willis::operating_point::LossKind;
 use willis::study::{OperationSensitivity, QuantitySensitivity, Sensitivity};
 
-use crate::questions::analyze::{margins, verdict};
+use crate::questions::analyze::margins;
 use crate::style::{bold, dim, percent, plural, right, set_header, show, significant, table, wrap};
 use crate::table::Kind::{Flag, Number, Text};
-use crate::table::Table;
+use crate::table::{Table, word};
 
 /// For eyes.
 pub fn text(all: &Sensitivity) -> String {
@@ -145,7 +145,7 @@ pub fn table_of(all: &Sensitivity) -> Table {
                 q.sources.iter().map(|s| format!("{} ({}) {}", s.name, s.kind.words(), s.change_w)).collect();
             t.row([
                 (&o.name).into(),
-                verdict(o.verdict).into(),
+                word(&o.verdict).into(),
                 (&q.name).into(),
                 q.value.into(),
                 q.unit.to_string().into(),

@@ -65,13 +65,13 @@ fn advice(outcome: &Outcome) -> Option<&'static str> {
     Some(match outcome {
         Outcome::NoSolution(_) => "rigid parts cannot tell what follows; an elastic [[shaft]] in the jammed path can",
         Outcome::SeveralSolutions(_) => {
-            "what decides between them is not in the model; --continue-when-ambiguous goes on with the first"
+            "what decides between them is not in the model; `continue-when-ambiguous` goes on with the first"
         }
         Outcome::TooManyEvents(_) => {
-            "allow more with --most-events, or pass over them with --fixed-step, at first order in the step"
+            "allow more (`most-events`), or pass over them with steps of fixed length (`fixed-step`), at first order in the step"
         }
-        Outcome::NotConverged(_) => "try a coarser --tolerance, or --fixed-step",
-        Outcome::Impact(_) => "--fixed-step goes on as after an inelastic impact",
+        Outcome::NotConverged(_) => "try a coarser `tolerance`, or `fixed-step`",
+        Outcome::Impact(_) => "`fixed-step` goes on as after an inelastic impact",
         _ => return None,
     })
 }
@@ -96,7 +96,7 @@ fn events(run: &RunReport) -> String {
     out += &show(&t);
     let rest = run.event_count.saturating_sub(1 + told.len());
     if rest > 0 {
-        out += &dim(&format!("  … and {rest} more, all in --format json"));
+        out += &dim(&format!("  … and {rest} more, all in the JSON answer"));
         out.push('\n');
     }
     out

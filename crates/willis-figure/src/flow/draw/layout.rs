@@ -7,8 +7,8 @@ use rust_sugiyama::from_vertices_and_edges;
 use svg::node::element::Group;
 use willis::hypergraph::{Hypergraph, Loop, Node, NodeKind, watts};
 
-use super::marks::{draw, halo, symbol};
-use super::{GROUND, R, ROW, SMALL, name, values};
+use super::marks::{Line, draw, halo, symbol};
+use super::words::{GROUND, R, ROW, SMALL, name, values};
 use crate::parts::style::{Anchor, BOLD, text, wide};
 
 /// Width of the line of the largest power.
@@ -26,21 +26,6 @@ pub struct Place {
     y: f64,
     /// From its middle to its upper and lower bound.
     half: f64,
-}
-
-/// A line of the picture, from column to column.
-pub struct Line {
-    pub edge: usize,
-    /// From left to right.
-    places: Vec<usize>,
-    /// Whether the power runs from right to left.
-    pub backwards: bool,
-    pub width: f64,
-    /// Widths of what circulates between sets, and within one.
-    pub round: [f64; 2],
-    /// Distance from the middle where it leaves its left end and where it enters its right end.
-    pub ports: [f64; 2],
-    pub points: Vec<(f64, f64)>,
 }
 
 pub struct Drawing {

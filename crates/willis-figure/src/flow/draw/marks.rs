@@ -4,8 +4,7 @@ use svg::Node as _;
 use svg::node::element::{Circle, Element, Group, Path, Polygon};
 use willis::hypergraph::{Hypergraph, Node, NodeKind, watts};
 
-use super::layout::Line;
-use super::{GROUND, R, ROW, SMALL, name, values};
+use super::words::{GROUND, R, ROW, SMALL, name, values};
 use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, colour, line, number, rectangle, text};
 
 /// Whether power runs in a circle.
@@ -49,6 +48,21 @@ pub fn stroke(path: &str, round: Round, width: f64) -> Group {
 
 pub fn halo(t: svg::node::element::Text) -> svg::node::element::Text {
     t.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3).set("stroke-linejoin", "round")
+}
+
+/// A line of the picture, from column to column.
+pub struct Line {
+    pub edge: usize,
+    /// From left to right.
+    pub places: Vec<usize>,
+    /// Whether the power runs from right to left.
+    pub backwards: bool,
+    pub width: f64,
+    /// Widths of what circulates between sets, and within one.
+    pub round: [f64; 2],
+    /// Distance from the middle where it leaves its left end and where it enters its right end.
+    pub ports: [f64; 2],
+    pub points: Vec<(f64, f64)>,
 }
 
 /// A line with its arrow head, and its words for a pointer.

@@ -5,9 +5,12 @@ use std::f64::consts::TAU;
 use svg::node::element::{Group, Path};
 
 use super::clip::Frame;
-use super::{DASH_DOT, ENLARGED, View, circle, own};
+use super::view::{DASH_DOT, View, circle, own};
 use crate::parts::style::{Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, fit, line, number, rectangle, text};
 use crate::{Front, FrontMesh, FrontWheel};
+
+/// Edge of the enlarged mesh.
+pub const ENLARGED: f64 = 330.0;
 
 /// Half of the enlarged window, mm.
 pub fn window(view: &Front, mesh: &FrontMesh) -> f64 {

@@ -4,15 +4,13 @@
 //! Ribbons bend, rise and come down only in the gaps between columns, where their words stand too.
 //! So nothing crosses a node or its words.
 
-use super::Words;
 use super::ribbon::Ribbon;
+use super::words::{SMALL, Words};
 use crate::parts::style::{BOLD, wide};
 use crate::{SankeyFlow, SankeyNode};
 
 /// Width of a node.
 pub const BAR: f64 = 10.0;
-/// Size of words.
-pub const SMALL: f64 = 11.0;
 pub const LINE_HEIGHT: f64 = 14.0;
 /// Inner radius of a loss.
 pub const TURN: f64 = 5.0;

@@ -2,7 +2,7 @@
 
 use svg::node::element::Group;
 
-use super::{PLATE, Sheet};
+use super::sheet::{PLATE, Sheet};
 use crate::JointKind;
 use crate::parts::style::{Anchor, BOLD, FAINT, INK, PAPER, fit, text, wide};
 

@@ -1,6 +1,6 @@
 //! Dormand–Prince 5(4).
 
-use super::{Smooth, StepError, Stepper, Track};
+use super::{Attempt, Smooth, Stepper, Track};
 
 /// Nodes of the stages 2 to 5; stages 6 and 7 stand at the end.
 const C: [f64; 4] = [0.2, 0.3, 0.8, 8.0 / 9.0];
@@ -173,48 +173,35 @@ impl Stepper for Dopri5 {
         (self.span, self.error, self.stiff, self.mild) = (0.0, 1e-4, 0, 0);
     }
 
-    fn step<S: Smooth>(&mut self, sys: &mut S, t_end: f64) -> Result<(), StepError> {
+    fn attempt<S: Smooth>(&mut self, sys: &mut S, h: f64, _: bool) -> Attempt {
         const SAFETY: f64 = 0.9;
         const BETA: f64 = 0.04;
         const EXPONENT: f64 = 0.2 - 0.75 * BETA;
         const SHRINK: f64 = 0.2;
         const GROW: f64 = 10.0;
-        debug_assert!(t_end > self.track.t);
-        if !self.track.rate.iter().all(|r| r.is_finite()) {
-            return Err(StepError::NotFinite);
+        let error = self.try_step(sys, h);
+        if error <= 1.0 {
+            let now = error.powf(EXPONENT);
+            let factor = (SAFETY * self.error.powf(BETA) / now).clamp(SHRINK, GROW);
+            self.error = error.max(1e-4);
+            return Attempt::Taken { factor };
         }
-        let mut wanted = self.track.next;
-        if self.track.is_too_short(wanted, t_end) {
-            return Err(StepError::StepTooSmall);
-        }
-        let mut rejected = false;
-        loop {
-            let h = self.track.length(wanted, t_end);
-            let error = self.try_step(sys, h);
-            if error <= 1.0 {
-                let now = error.powf(EXPONENT);
-                let factor = (SAFETY * self.error.powf(BETA) / now).clamp(SHRINK, GROW);
-                self.error = error.max(1e-4);
-                let next = h * if rejected { factor.min(1.0) } else { factor };
-                // A step that was cut short says nothing against the length that was wanted.
-                self.track.next = if h < wanted { next.max(wanted) } else { next };
-                self.watch_stiffness(h);
-                self.track.accept(h, t_end, &mut self.new, Some(&mut self.last));
-                self.prepare_dense(h);
-                return Ok(());
-            }
-            self.track.counts.rejected += 1;
-            rejected = true;
-            let factor = if error.is_finite() { (SAFETY / error.powf(EXPONENT)).max(SHRINK) } else { SHRINK };
-            wanted = h * factor;
-            if self.track.is_too_short(wanted, t_end) {
-                return Err(if error.is_finite() { StepError::StepTooSmall } else { StepError::NotFinite });
-            }
-        }
+        let finite = error.is_finite();
+        Attempt::Rejected { factor: if finite { (SAFETY / error.powf(EXPONENT)).max(SHRINK) } else { SHRINK }, finite }
+    }
+
+    fn accept(&mut self, h: f64, t_end: f64) {
+        self.watch_stiffness(h);
+        self.track.accept(h, t_end, &mut self.new, Some(&mut self.last));
+        self.prepare_dense(h);
     }
 
     fn track(&self) -> &Track {
         &self.track
+    }
+
+    fn track_mut(&mut self) -> &mut Track {
+        &mut self.track
     }
 
     #[inline]

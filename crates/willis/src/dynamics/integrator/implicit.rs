@@ -4,7 +4,7 @@ use std::ops::{Div, Mul, Sub};
 
 use nalgebra::Complex;
 
-use super::{Smooth, StepError, Stepper, Track};
+use super::{Attempt, Smooth, Stepper, Track};
 
 /// Nodes `(4 ∓ √6)/10` of the stages 1 and 2; the third stands at the end.
 const C: [f64; 2] = [0.1550510257216822, 0.6449489742783178];
@@ -34,6 +34,10 @@ const E: [f64; 3] = [-10.048809399827416, 1.382142733160749, -1.0 / 3.0];
 
 /// Most Newton iterations in a step.
 const ITERATIONS: usize = 7;
+/// Of the step control: what is aimed at of the step that would just do, and how fast a step changes.
+const SAFETY: f64 = 0.9;
+const SHRINK: f64 = 0.2;
+const GROW: f64 = 8.0;
 
 /// Radau IIA with three stages: fifth order, stiffly accurate, L-stable (Hairer, Wanner II, section
 /// IV.5 and IV.8): simplified Newton iteration on one real and one complex system, error estimate
@@ -140,8 +144,9 @@ impl Implicit {
         counts.evaluations += which.len();
     }
 
-    /// Solves for the stages. The iterations it took, or the factor by which the step is to change.
-    fn newton<S: Smooth>(&mut self, sys: &mut S, h: f64) -> Result<usize, f64> {
+    /// Solves for the stages. The iterations it took, or why the step is rejected.
+    fn newton<S: Smooth>(&mut self, sys: &mut S, h: f64) -> Result<usize, Attempt> {
+        let fails = |factor| Err(Attempt::Rejected { factor, finite: true });
         let n = self.track.states;
         let tolerance = self.track.tolerance;
         let enough = (10.0 * f64::EPSILON / tolerance).max(tolerance.cbrt().min(0.03));
@@ -171,20 +176,20 @@ impl Implicit {
             }
             let size = (sum / (3 * n.max(1)) as f64).sqrt();
             if !size.is_finite() {
-                return Err(0.25);
+                return Err(Attempt::Rejected { factor: 0.25, finite: false });
             }
             if iteration > 1 {
                 let ratio = size / last;
                 self.theta = if iteration == 2 { ratio } else { f64::sqrt(ratio * last_ratio) };
                 last_ratio = ratio;
                 if self.theta >= 0.99 {
-                    return Err(0.5);
+                    return fails(0.5);
                 }
                 self.convergence = self.theta / (1.0 - self.theta);
                 let left = ITERATIONS - iteration;
                 let expected = self.convergence * size * self.theta.powi(left as i32) / enough;
                 if expected >= 1.0 {
-                    return Err(0.8 * expected.clamp(1e-4, 20.0).powf(-1.0 / (4 + left) as f64));
+                    return fails(0.8 * expected.clamp(1e-4, 20.0).powf(-1.0 / (4 + left) as f64));
                 }
             }
             last = size.max(f64::EPSILON);
@@ -201,7 +206,7 @@ impl Implicit {
                 return Ok(iteration);
             }
         }
-        Err(0.5)
+        fails(0.5)
     }
 
     /// Error of the step in multiples of the tolerance. `again`: filter once more where it is large.
@@ -304,61 +309,48 @@ impl Stepper for Implicit {
         (self.jacobian_at, self.follows, self.before, self.convergence) = (None, false, None, 1.0);
     }
 
-    fn step<S: Smooth>(&mut self, sys: &mut S, t_end: f64) -> Result<(), StepError> {
-        const SAFETY: f64 = 0.9;
-        const SHRINK: f64 = 0.2;
-        const GROW: f64 = 8.0;
-        debug_assert!(t_end > self.track.t);
-        if !self.track.rate.iter().all(|r| r.is_finite()) {
-            return Err(StepError::NotFinite);
-        }
-        let mut wanted = self.track.next;
-        if self.track.is_too_short(wanted, t_end) {
-            return Err(StepError::StepTooSmall);
-        }
-        let mut rejected = false;
-        let mut finite;
-        loop {
+    fn attempt<S: Smooth>(&mut self, sys: &mut S, h: f64, again: bool) -> Attempt {
+        let iterations = loop {
             if self.jacobian_at.is_none() {
                 self.differentiate(sys);
             }
             let fresh = self.jacobian_at == Some(self.track.t);
-            let h = self.track.length(wanted, t_end);
-            let solved = if self.factored == h || self.factor(h) { self.newton(sys, h) } else { Err(0.5) };
-            let factor = match solved {
-                Err(_) if !fresh => {
-                    self.jacobian_at = None;
-                    continue;
-                }
-                Err(factor) => {
-                    // As far as can be told: what failed was the iteration.
-                    finite = factor != 0.25;
-                    factor
-                }
-                Ok(iterations) => {
-                    let error = self.estimate(sys, h, rejected || self.before.is_none());
-                    let most = (2 * ITERATIONS) as f64;
-                    let safety = SAFETY.min(SAFETY * (1.0 + most) / (iterations as f64 + most));
-                    let usual = safety / error.max(1e-10).powf(0.25);
-                    if error < 1.0 && self.finish(sys, h) {
-                        self.done(h, wanted, t_end, error, usual.clamp(SHRINK, GROW), rejected);
-                        return Ok(());
-                    }
-                    finite = error.is_finite() && error >= 1.0;
-                    if finite { usual.max(SHRINK) } else { 0.25 }
-                }
+            let solved = match self.factored == h || self.factor(h) {
+                true => self.newton(sys, h),
+                false => Err(Attempt::Rejected { factor: 0.5, finite: true }),
             };
-            self.track.counts.rejected += 1;
-            rejected = true;
-            wanted = h * factor;
-            if self.track.is_too_short(wanted, t_end) {
-                return Err(if finite { StepError::StepTooSmall } else { StepError::NotFinite });
+            match solved {
+                Ok(iterations) => break iterations,
+                Err(_) if !fresh => self.jacobian_at = None,
+                Err(rejected) => return rejected,
             }
+        };
+        let error = self.estimate(sys, h, again || self.before.is_none());
+        let most = (2 * ITERATIONS) as f64;
+        let safety = SAFETY.min(SAFETY * (1.0 + most) / (iterations as f64 + most));
+        let usual = safety / error.max(1e-10).powf(0.25);
+        if error < 1.0 && self.finish(sys, h) {
+            return Attempt::Taken { factor: self.control(h, error, usual.clamp(SHRINK, GROW)) };
+        }
+        let finite = error.is_finite() && error >= 1.0;
+        Attempt::Rejected { factor: if finite { usual.max(SHRINK) } else { 0.25 }, finite }
+    }
+
+    fn accept(&mut self, h: f64, t_end: f64) {
+        self.prepare_dense(h);
+        self.track.accept(h, t_end, &mut self.new, Some(&mut self.f[2]));
+        self.follows = true;
+        if self.theta > 1e-3 {
+            self.jacobian_at = None;
         }
     }
 
     fn track(&self) -> &Track {
         &self.track
+    }
+
+    fn track_mut(&mut self) -> &mut Track {
+        &mut self.track
     }
 
     #[inline]
@@ -405,30 +397,16 @@ impl Implicit {
         }
     }
 
-    /// Moves on and chooses the next step; `factor` is what the error of this step alone asks for.
-    fn done(&mut self, h: f64, wanted: f64, t_end: f64, error: f64, factor: f64, rejected: bool) {
-        let mut factor = factor;
+    /// How much longer the next step may be; `factor` is what the error of this step alone asks for.
+    fn control(&mut self, h: f64, error: f64, mut factor: f64) -> f64 {
         if let Some([span, before]) = self.before {
             // Gustafsson's predictive controller: the error goes on as it changed.
-            let predicted = 0.9 * h / span * (before / error.powi(2).max(1e-20)).powf(0.25);
-            factor = factor.min(predicted.clamp(0.2, 8.0));
-        }
-        if rejected {
-            factor = factor.min(1.0);
-        }
-        // Another step length costs a factorization.
-        if self.theta <= 1e-3 && (1.0..=1.2).contains(&factor) {
-            factor = 1.0;
+            let predicted = SAFETY * h / span * (before / error.powi(2).max(1e-20)).powf(0.25);
+            factor = factor.min(predicted.clamp(SHRINK, GROW));
         }
         self.before = Some([h, error.max(1e-2)]);
-        let next = h * factor;
-        self.track.next = if h < wanted { next.max(wanted) } else { next };
-        self.prepare_dense(h);
-        self.track.accept(h, t_end, &mut self.new, Some(&mut self.f[2]));
-        self.follows = true;
-        if self.theta > 1e-3 {
-            self.jacobian_at = None;
-        }
+        // Another step length costs a factorization.
+        if self.theta <= 1e-3 && (1.0..=1.2).contains(&factor) { 1.0 } else { factor }
     }
 }
 

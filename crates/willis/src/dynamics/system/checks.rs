@@ -3,23 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::dynamics::source::{MOST_PULSES, shortest_pulse, signals_of};
 use crate::kinematics::Configuration;
-use crate::train::{Scenario, SourceKind, Train};
-
-/// The scenario of a name.
-pub(super) fn scenario_named<'t>(train: &'t Train, name: &str) -> Result<&'t Scenario, Diagnostics> {
-    train.scenario(name).ok_or_else(|| {
-        let known: Vec<&str> = train.scenarios().iter().map(|s| s.name.as_str()).collect();
-        let mut d = Diagnostic::new(Code::UnknownSelection, "", format!("there is no scenario `{name}`"))
-            .suggest(name, known.iter().copied());
-        if d.hints.is_empty() {
-            d = d.hint(match known.len() {
-                0 => "add it as a [[scenario]]".into(),
-                _ => format!("the scenarios are: {}", known.join(", ")),
-            });
-        }
-        d.into()
-    })
-}
+use crate::train::{Scenario, SourceKind};
 
 /// An error if meshes constrain each other, or if nothing can move.
 pub(super) fn forces_and_freedom(c: &Configuration<'_>, scenario: &Scenario) -> Result<(), Diagnostics> {

@@ -25,7 +25,7 @@ use crate::real::{self, Inner, Real};
 /// f_f is the middle of its range where not given. The tables f_0, f_1 are those of [`Palmgren`].
 ///
 /// # Source
-/// `[harris2001]`, bearing friction torque.
+/// `[harris2001]`, bearing friction torque. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, NJ 308 as in [`Palmgren`] and 1 kN axial: 181.7 + 0.0055 · 1000 · 65 = 539.2 N mm.

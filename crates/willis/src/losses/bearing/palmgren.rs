@@ -41,6 +41,7 @@ use crate::real::{self, Inner, Real};
 ///
 /// # Source
 /// `[eschmann1985]`, frictional moment; the same form in ISO/TR 14179-2 and ISO 15312.
+/// The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, NU 308 (f_0 = 2, f_1 = 0.0003), 5 kN, 1500 r/min, 40 mm²/s:

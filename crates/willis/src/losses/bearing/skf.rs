@@ -77,7 +77,9 @@ use crate::real::{self, Inner, Real};
 /// vanishing load. A bearing without constants (needle rollers) gets [`Palmgren`](super::Palmgren)'s torque.
 ///
 /// # Source
-/// `[skf2018]`, frictional moment and power loss.
+/// `[skf2018]`, frictional moment and power loss. In the note on the model K_rs stands on page 4, the
+/// constants of G_rr and G_sl in table 2, those of the seals in table 3. In the catalogue of 2013 the
+/// chapter begins on page 98, the sliding moment on page 103 and table 2a on page 104.
 ///
 /// # Example
 /// By hand, NU 308 (R1 1.09e-6; S1 0.16, S2 0.0015), 5 kN, 1500 r/min, 40 mm²/s, no oil level:
@@ -144,7 +146,7 @@ impl Law for Skf {
     const META: Meta<BearingDuty<f64>> = Meta {
         id: "skf",
         title: "SKF model of 2013 and 2018",
-        source: ("skf2018", "frictional moment"),
+        source: ("skf2018", "frictional moment; tables 2 and 3 of the note on the model"),
         trust: Trust::Seen,
         tags: &[],
         valid: &[],

@@ -32,7 +32,9 @@ use crate::real::{Inner, Real, min};
 /// that reaches the middle of the lowest rolling element.
 ///
 /// # Source
-/// `[skf2008]`, friction.
+/// `[skf2008]`, friction: the model from page 89; rolling moment, sliding moment and seals on page 90,
+/// heating of the inlet on 97, replenishment and drag on 98, mixed lubrication on 100. The pages are those
+/// of a copy whose year is not known to us.
 ///
 /// # Example
 /// By hand, a cylindrical roller bearing 110 × 170 × 38 mm with V_M = 1.2e-4, 4920 r/min:
@@ -85,7 +87,7 @@ impl Law for Skf6000 {
     const META: Meta<BearingDuty<f64>> = Meta {
         id: "skf-6000",
         title: "SKF general catalogue 6000, superseded",
-        source: ("skf2008", "friction"),
+        source: ("skf2008", "friction, pages 89 to 100; drag on page 98"),
         trust: Trust::Confirm("drag of ball bearings"),
         tags: &[Tag::Compatibility],
         valid: &[],

@@ -41,6 +41,7 @@ use crate::real::{Real, acos, min};
 ///
 /// # Source
 /// `[changenet2011]`, drag torque coefficients in the four regimes.
+/// The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, the gear of [`Dip::typical`]: ω = 104.72, Re = 5493, Fr = 89.43, γ = 196.6, θ = 60°,

@@ -33,7 +33,7 @@ use crate::real::{Real, abs, clamp, max};
 /// smooth shafts is left away. R_f is not below 0 (m_t < 0.586 mm).
 ///
 /// # Source
-/// `[isotr14179_1]`, oil churning loss.
+/// `[isotr14179_1]`, oil churning loss. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, the gear of [`Dip::typical`]: f_g = 43/166 = 0.2590, ν n³ = 36.6e9, D^5.7 = 4.515e12,

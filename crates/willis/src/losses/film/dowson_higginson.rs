@@ -31,6 +31,7 @@ use crate::losses::{Meta, Range, Trust};
 ///
 /// # Source
 /// `[dowson1977]`, line contact, smallest film thickness.
+/// The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand with U = 1e−11, G = 5000, W = 1e−4: 2.65 · 0.01 · 1.9953e−8 · 99.413 · 3.3113

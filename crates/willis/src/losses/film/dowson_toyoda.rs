@@ -29,7 +29,7 @@ use crate::losses::{Meta, Range, Trust};
 /// Nothing known; the constants stand as recalled. It is the CENTRAL thickness, larger than the smallest one.
 ///
 /// # Source
-/// `[dowson_toyoda1979]`, central film thickness.
+/// `[dowson_toyoda1979]`, central film thickness. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand with U = 1e−11, G = 5000, W = 1e−4: 3.06 · 0.01 · 2.5704e−8 · 117.88 · 2.5119

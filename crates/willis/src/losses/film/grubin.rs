@@ -29,7 +29,7 @@ use crate::losses::{Meta, Range, Trust};
 /// Nothing. It is the CENTRAL thickness, and known to be somewhat too thick.
 ///
 /// # Source
-/// `[grubin1949]`, as coded in `[gearpie]`.
+/// `[grubin1949]`, as coded in `[gearpie]`. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand with U = 1e−11, G = 5000, W = 1e−4: 1.95 · 0.01 · 4.8996e−6 · 2.3101

@@ -33,6 +33,7 @@ use crate::real::max;
 ///
 /// # Source
 /// `[wimmer2006]`, load distribution on a rigid plane of action.
+/// The number of the equation there is not known to us.
 ///
 /// # Example
 /// Spur, ε_α = 1.5: 1/2 at x = 0.25, where a second pair is in contact at 1.25.

@@ -27,7 +27,8 @@ use crate::real::min;
 /// share in the proportion of the same c(x).
 ///
 /// # Source
-/// `[isotr13989_1]`, load sharing factor, spur gears with unmodified profiles.
+/// `[isotr13989_1]`, clause 9.2, equations (57) to (60): load sharing factor, spur gears with unmodified
+/// profiles.
 ///
 /// # Example
 /// ε_α = 1.5, x = 0.25, by hand: 1/3 + 1/3 · 0.25/0.5 = 0.5; x = 0: 1/3.
@@ -51,7 +52,7 @@ impl Law for Stiffness {
     const META: Meta<ToothLoad<f64>> = Meta {
         id: "stiffness",
         title: "By stiffness, trapezoid 1/3 to 2/3",
-        source: ("isotr13989_1", "load sharing factor, unmodified profiles"),
+        source: ("isotr13989_1", "clause 9.2, equations (57) to (60)"),
         trust: Trust::Confirm("the bounds 1/3 and 2/3"),
         tags: &[],
         valid: &[

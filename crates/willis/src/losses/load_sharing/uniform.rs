@@ -23,6 +23,7 @@ use crate::losses::{Meta, Range, Trust};
 ///
 /// # Source
 /// `[niemann_winter2003]`, mean losses of helical gears; derived.
+/// The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, ε_α = 1.6: 1/1.6 = 0.625 everywhere.

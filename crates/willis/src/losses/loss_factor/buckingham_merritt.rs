@@ -31,7 +31,7 @@ use crate::losses::{Meta, Range, Trust};
 /// as there.
 ///
 /// # Source
-/// `[buckingham1949]` and `[uts_60_1165]`, mesh losses.
+/// `[buckingham1949]` and `[uts_60_1165]`, mesh losses. The number of the equation there is not known to us.
 ///
 /// # Example
 /// 17/22, e = 0.7574, 0.7903, by hand: 0.32760 · (0.57365 + 0.62465)/1.54775 = 0.25364.

@@ -37,7 +37,7 @@ use crate::real::abs;
 /// field, Gauss–Legendre quadrature with 10 points stands for the sum over a grid.
 ///
 /// # Source
-/// `[wimmer2006]`, local loss factor H_VL.
+/// `[wimmer2006]`, local loss factor H_VL. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, 17/22 spur, e = 0.7574, 0.7903, 50/50: the closed form gives 0.32760/2 · (0.7574² + 0.7903² +

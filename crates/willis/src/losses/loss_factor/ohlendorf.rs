@@ -28,6 +28,8 @@ use crate::losses::{Meta, Range, Trust};
 ///
 /// # Source
 /// `[ohlendorf1958]` and `[isotr14179_2]`, tooth loss factor.
+/// The number of the equation there is not known to us. For external pairs it is also formula (91) of
+/// `[isotr15144_1]`.
 ///
 /// # Example
 /// 16/24, e = 0.7341, 0.7283, by hand: 0.32725 · (1 − 1.4624 + 0.5389 + 0.5305) = 0.1986.
@@ -49,7 +51,7 @@ impl Law for Ohlendorf {
     const META: Meta<Path<f64>> = Meta {
         id: "ohlendorf",
         title: "Ohlendorf (ISO/TR 14179-2)",
-        source: ("ohlendorf1958", "loss factor"),
+        source: ("ohlendorf1958", "loss factor; formula (91) of ISO/TR 15144-1"),
         trust: Trust::Seen,
         tags: &[],
         valid: &[

@@ -27,7 +27,8 @@ use crate::real::abs;
 /// Ohlendorf's polynomial follows for e_1, e_2 of 0 to 1. The absolute values extend it.
 ///
 /// # Source
-/// `[ohlendorf1958]`; the extension is derived here.
+/// `[ohlendorf1958]`; the extension is derived here. The number of the equation there is not known to us.
+/// For external pairs the polynomial is also formula (91) of `[isotr15144_1]`.
 ///
 /// # Example
 /// Planet 22 in ring 61, e = 0.79035 and 1.16681, by hand: K = π (1/22 − 1/61) = 0.091298,
@@ -50,7 +51,7 @@ impl Law for TwoPair {
     const META: Meta<Path<f64>> = Meta {
         id: "two-pair",
         title: "Closed form for 50/50, any addendum contact ratios",
-        source: ("ohlendorf1958", "loss factor, extended"),
+        source: ("ohlendorf1958", "loss factor, extended; formula (91) of ISO/TR 15144-1"),
         trust: Trust::Derived,
         tags: &[],
         valid: &[

@@ -26,7 +26,7 @@ use crate::real::abs;
 /// Written with e|e|, so that it also holds when a tip does not reach the pitch point.
 ///
 /// # Source
-/// `[niemann_winter2003]`, helical gears; derived.
+/// `[niemann_winter2003]`, helical gears; derived. The number of the equation there is not known to us.
 ///
 /// # Example
 /// 35/31 with helix 22°, e = 0.75896, 0.74886, by hand: K = π (1/35 + 1/31)/cos 20.6106° = 0.20417,

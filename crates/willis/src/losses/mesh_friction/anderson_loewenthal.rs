@@ -28,7 +28,8 @@ use crate::losses::{Meta, Range, Tag, Trust};
 /// never falls below 0.0127, and v_g not below a thousandth of v_Σ, as for Benedict and Kelley.
 ///
 /// # Source
-/// `[anderson1980]`, sliding loss.
+/// `[anderson1980]`, sliding loss. The number of the equation there is not known to us. The sliding speed is
+/// in table III, on page 32; see the errata of the report.
 ///
 /// # Example
 /// By hand: 29.66 · 200e3/(20 · 2 · 10²) = 1483, log10 3.17114; 0.0127 · 3.17114 = 0.040273.

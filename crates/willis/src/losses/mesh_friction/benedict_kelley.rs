@@ -32,7 +32,7 @@ use crate::real::{max, min};
 /// 1.13/(1.13 − S), which is the same pole for an arithmetic mean roughness.
 ///
 /// # Source
-/// `[benedict1961]`, closing formula.
+/// `[benedict1961]`, closing formula. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand: 29.66 · 200/(0.02 · 2 · 10²) = 1483, log10 3.17114; 50/(50 − 39.37 · 0.4) = 1.45977;

@@ -34,6 +34,7 @@ use crate::losses::{Meta, Trust};
 ///
 /// # Source
 /// `[fernandes2015]`, and the program of the same group.
+/// The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand: S_p = 5 · 0.04 · √(16e−9/5000) = 3.57771e−7, S_g = 0.4e−6/√(0.02 · 1 · 0.008) = 3.16228e−5;

@@ -25,7 +25,7 @@ use crate::losses::{Meta, Range, Trust};
 /// factor takes `z2 − z1`.
 ///
 /// # Source
-/// `[isotr14179_1]`, mesh coefficient of friction.
+/// `[isotr14179_1]`, mesh coefficient of friction. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand: 100^(−0.223) · 5^(−0.40) / (3.239 · 10^0.70) = 0.35810 · 0.52531/16.2334 = 0.011588.

@@ -31,7 +31,8 @@ use crate::losses::{Meta, Range, Trust};
 /// bases other than mineral are to be confirmed in the source.
 ///
 /// # Source
-/// `[isots6336_22]`, mean coefficient of friction.
+/// `[isots6336_22]`, mean coefficient of friction. The number of the equation there is not known to us. In
+/// its forerunner `[isotr15144_1]` the coefficient is formula (86), the factor of roughness formula (87).
 ///
 /// # Example
 /// By hand: X_R = 2.2 · (0.5/8)^0.25 = 1.1; 0.045 · (200/(4 · 8))^0.2 · 30^(−0.05) · 1.1 = 0.060246.
@@ -69,7 +70,7 @@ impl Law for Niemann {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "niemann",
         title: "Höhn–Michaelis, roughness factor of ISO/TS 6336-22",
-        source: ("isots6336_22", "mean coefficient of friction"),
+        source: ("isots6336_22", "mean coefficient of friction; formulae (86), (87) of ISO/TR 15144-1"),
         trust: Trust::Seen,
         tags: &[],
         valid: &[

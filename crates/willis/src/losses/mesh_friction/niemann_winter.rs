@@ -30,7 +30,7 @@ use crate::losses::{Meta, Range, Trust};
 /// Nothing known. The roughness factor stands as recalled, with 3.8 and the exponent 0.25.
 ///
 /// # Source
-/// `[niemann1989]`, mean coefficient of friction.
+/// `[niemann1989]`, mean coefficient of friction. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand: X_R = 3.8 · (0.5/72)^0.25 = 1.09697;

@@ -31,6 +31,7 @@ use crate::losses::{Meta, Range, Trust};
 ///
 /// # Source
 /// `[isotr14179_2]`, mean coefficient of friction of the mesh.
+/// The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand: (200/(4 · 8))^0.2 = 1.44270, 30^(−0.05) = 0.84361, 0.5^0.25 = 0.84090;

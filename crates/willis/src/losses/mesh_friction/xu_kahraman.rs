@@ -34,6 +34,7 @@ use crate::real::max;
 ///
 /// # Source
 /// `[xu2007]`, regression formula; its coefficients in two later documents.
+/// The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand for p = 1, SR = 0.2, V = 10, η = 10, R = 0.01, S = 0.2: q = 0.2,

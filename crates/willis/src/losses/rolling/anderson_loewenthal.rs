@@ -30,6 +30,7 @@ use crate::losses::{Meta, Range, Trust};
 ///
 /// # Source
 /// `[anderson1980]`, rolling loss. The factor 9.0e7 N/m² is also Crook's, 1.3e4 lb/in².
+/// The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand: h = 2.051e−7 · 300^0.67 · 5000^(−0.067) · 0.01^0.464 = 6.2489e−7 m;

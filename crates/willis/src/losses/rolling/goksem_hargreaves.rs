@@ -28,11 +28,12 @@ use crate::losses::{Meta, Range, Trust};
 /// Fernandes).
 ///
 /// # Departs from the source
-/// Nothing known; the constants stand as recalled. The force acts on both surfaces, so that the power is
-/// taken with the sum of their speeds.
+/// Nothing known; the constants are those that Aihara prints. The force acts on both surfaces, so that the
+/// power is taken with the sum of their speeds.
 ///
 /// # Source
-/// `[goksem1978]`, rolling traction.
+/// `[goksem1978]`, rolling traction. The number of the equation there is not known to us. `[aihara1987]`
+/// prints it without φ_T as Eq. (19).
 ///
 /// # Example
 /// By hand with U = 1e−11, G = 5000, W = 1e−4, R/α = 4e5:
@@ -64,7 +65,7 @@ impl Law for GoksemHargreaves {
     const META: Meta<RollingContact<f64>> = Meta {
         id: "goksem-hargreaves",
         title: "Goksem–Hargreaves, rolling traction",
-        source: ("goksem1978", "rolling traction"),
+        source: ("goksem1978", "rolling traction; Eq. (19) of Aihara 1987"),
         trust: Trust::Confirm("4.318 and the exponents 0.658, 0.0126, and the sum of the speeds in the power"),
         tags: &[],
         valid: &[Range { symbol: "v_Σ", unit: "m/s", min: 0.0, max: 100.0, get: |s| s.sum_speed }],

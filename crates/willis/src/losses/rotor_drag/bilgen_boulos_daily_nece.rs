@@ -34,7 +34,9 @@ use crate::real::{self, Real};
 /// below Re_t = 500 stand as recalled. Gaps below 1e-4 R count as 1e-4 R. Speed 0 gives 0.
 ///
 /// # Source
-/// `[bilgenboulos1973]`, coaxial cylinders; `[dailynece1960]`, enclosed rotating disks.
+/// `[bilgenboulos1973]`, coaxial cylinders; `[dailynece1960]`, enclosed rotating disks. The numbers of the
+/// equations there are not known to us. `[harmand2013]`, section 2.4.1, prints Daily and Nece's four, for
+/// one face, as (38) to (41).
 ///
 /// # Example
 /// By hand, the drum of [`Drum::typical`]: Re_t = 1.2 · 104.72 · 0.15 · 0.015/18e-6 = 15 708,
@@ -56,7 +58,7 @@ impl Law for BilgenBoulosDailyNece {
     const META: Meta<Drum<f64>> = Meta {
         id: "bilgen-boulos-daily-nece",
         title: "Bilgen and Boulos (rim), Daily and Nece (faces)",
-        source: ("bilgenboulos1973", "torque coefficients; faces: dailynece1960"),
+        source: ("bilgenboulos1973", "torque coefficients; faces: dailynece1960, as (38) to (41) of Harmand 2013"),
         trust: Trust::Confirm("Daily and Nece's constants; rim below Re_t = 500"),
         tags: &[Tag::Estimate],
         valid: &[],

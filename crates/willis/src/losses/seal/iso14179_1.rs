@@ -24,7 +24,7 @@ use crate::real::Real;
 /// P = T ω instead of T n/9549, a difference of 3e-5.
 ///
 /// # Source
-/// `[isotr14179_1]`, oil seal losses.
+/// `[isotr14179_1]`, oil seal losses. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, FKM on d = 50 mm at 157.08 rad/s: 0.18685 · 157.08 = 29.35 W.

@@ -24,7 +24,7 @@ use crate::real::Real;
 /// Nothing.
 ///
 /// # Source
-/// `[isotr14179_2]`, radial lip seals.
+/// `[isotr14179_2]`, radial lip seals. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, d = 50 mm, n = 1500 r/min: 7.69e-6 · 2500 · 1500 = 28.84 W.

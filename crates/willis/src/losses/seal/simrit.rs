@@ -25,7 +25,7 @@ use crate::real::{Real, max};
 /// A bracket below 0 (hot and thin oil) counts as 0; oils below 2 mm²/s as 2 mm²/s.
 ///
 /// # Source
-/// `[isotr14179_2]`, radial lip seals.
+/// `[isotr14179_2]`, radial lip seals. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, 60 °C, 100 mm²/s, d = 50 mm, 1500 r/min: (145 − 96 + 350 · 0.301781) 2500 · 1500 · 1e-7 = 58.0 W.

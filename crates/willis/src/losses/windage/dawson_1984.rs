@@ -28,7 +28,7 @@ use crate::real::Real;
 /// carries the factor 1e-20 ten times too large.
 ///
 /// # Source
-/// `[dawson1984]`.
+/// `[dawson1984]`, windage formula. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, root diameter 400 mm, 50 mm wide, module 5 mm, 10 000 r/min: D^3.9 = 1.4062e10, D^2.9 =

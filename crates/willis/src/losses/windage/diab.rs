@@ -29,7 +29,7 @@ use crate::real::{Real, power};
 /// enter by their distance. Speed 0 gives 0.
 ///
 /// # Source
-/// `[diab2004]`, first of the two models.
+/// `[diab2004]`, first of the two models. The number of the equation there is not known to us.
 ///
 /// # Example
 /// By hand, the gear of [`Disc::typical`]: Re = 1.2 · 1047.2 · 0.01/18e-6 = 698 132,

@@ -43,7 +43,7 @@ impl<'t> Point<'t> {
         let c = Configuration::new(train, &configuration.engaged, &given.held, &keep);
         let motion = c.motion(&given.speeds).map_err(|broken| contradictory(&c, &broken))?;
         let setup = Setup::new(c, &terminals, balance)
-            .map_err(|why| refuse(Code::Unfit, format!("{state}: {why}"), "name other terminals with --terminals"))?;
+            .map_err(|why| refuse(Code::Unfit, format!("{state}: {why}"), "name other `terminals`"))?;
         let base = base_speeds(&setup, &state, &motion, given.speeds.len())?;
         let (loads, torque_pi) = loads(&setup, &state, &given.torques)?;
         let speed = |m: MemberId| motion.speeds[m.0].clone().unwrap_or(Rational::ZERO);
@@ -97,7 +97,7 @@ fn base_speeds(setup: &Setup<'_>, state: &str, motion: &Motion, given: usize) ->
             setup.base.len(),
             terminals(setup)
         );
-        return Err(refuse(Code::Unfit, text, "name them as in --speeds engine=2000rpm,ring=1000rpm"));
+        return Err(refuse(Code::Unfit, text, "name them in `speeds`, as in engine=2000rpm,ring=1000rpm"));
     };
     if base.iter().all(Rational::is_zero) {
         return Err(refuse(Code::Unfit, "everything stands still: no regime", "give a speed other than zero"));
@@ -142,7 +142,7 @@ fn loads(setup: &Setup<'_>, state: &str, torques: &[(MemberId, Quantity)]) -> Re
             terminals(setup)
         );
         let code = if given.len() < needed { Code::MissingTorque } else { Code::TooManyTorques };
-        return Err(refuse(code, text, "name them as in --torques 'engine=100 N m'"));
+        return Err(refuse(code, text, "name them in `torques`, as in 'engine=100 N m'"));
     }
     let (values, pi_power) = common(given.iter().map(|(_, q)| *q));
     Ok((given.iter().map(|(t, _)| *t).zip(values).collect(), pi_power))

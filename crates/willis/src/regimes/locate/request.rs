@@ -1,9 +1,8 @@
 //! What is asked: an operating point by names, and what they stand for in the train.
 
-use crate::analysis::AS_DRAWN;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::regimes::{Choice, RegimeSelection, selected};
-use crate::train::{Load, MemberId, Train};
+use crate::train::{AS_DRAWN, Load, MemberId, Train};
 use crate::units::Quantity;
 
 /// An operating point to place.
@@ -63,11 +62,12 @@ pub(super) fn read<'t>(train: &'t Train, request: &LocateRequest) -> Result<(Giv
 
 /// Takes over what an operation of the file prescribes, and tells its state.
 fn operation(train: &Train, name: &str, given: &mut Given, errors: &mut Diagnostics) -> Option<String> {
-    let Some(o) = train.operations.iter().find(|o| o.name == *name) else {
-        let known: Vec<&str> = train.operations.iter().map(|o| o.name.as_str()).collect();
-        let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
-        errors.push(d.suggest(name, known.iter().copied()).hint(format!("its operations are: {}", known.join(", "))));
-        return None;
+    let o = match train.find_operation(name) {
+        Ok(operation) => operation,
+        Err(d) => {
+            errors.push(*d);
+            return None;
+        }
     };
     given.speeds.extend(o.speeds.iter().cloned());
     given.held.extend(&o.fixed);
@@ -79,7 +79,7 @@ fn operation(train: &Train, name: &str, given: &mut Given, errors: &mut Diagnost
                     "operation `{name}` prescribes a power on {}; a place needs torques",
                     train.member_name(*m)
                 );
-                errors.push(Diagnostic::new(Code::Unfit, "", text).hint("give the torque with --torques"));
+                errors.push(Diagnostic::new(Code::Unfit, "", text).hint("give the torque in `torques`"));
             }
         }
     }

@@ -24,7 +24,7 @@ pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostic
             for p in gear.map(*t)?.rows.iter().flatten() {
                 let field = |x: Option<f64>| x.map_or(String::new(), number);
                 let mut row = vec![
-                    quoted(gear.name.as_deref().unwrap_or(crate::analysis::AS_DRAWN)),
+                    quoted(gear.name.as_deref().unwrap_or(crate::train::AS_DRAWN)),
                     number(p.speed_rpm),
                     number(p.torque_n_m),
                     field(p.answer.map(|a| a.output_torque_n_m)),

@@ -1,13 +1,12 @@
 //! A gear (a state with its input and output) over speed and torque of its input.
 
 use crate::analysis::{
-    AS_DRAWN, Direction, OperationReport, Selection, SolutionReport, StateReport, Verdict, analyze, operate,
-    operate_unnamed,
+    Direction, OperationReport, Selection, SolutionReport, StateReport, Verdict, analyze, operate, operate_unnamed,
 };
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::train::{Load, MemberId, Operation, Train};
+use crate::train::{AS_DRAWN, Load, MemberId, Operation, Train};
 use crate::units::{Dimension, Quantity};
 
 use super::Asked;
@@ -265,26 +264,13 @@ fn wrong(code: Code, message: impl Into<String>, hint: impl Into<String>) -> Dia
 pub(super) fn gears(train: &Train, request: &Asked) -> Result<(Vec<Gear>, Vec<String>), Diagnostics> {
     let operation = match &request.operation {
         None => None,
-        Some(name) => {
-            let known = train.operations.iter().map(|o| o.name.as_str());
-            let found = train.operations.iter().find(|o| o.name == *name);
-            if found.is_none() {
-                let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no operation `{name}`"));
-                let all: Vec<_> = known.clone().collect();
-                return Err(d.suggest(name, known).hint(format!("its operations are: {}", all.join(", "))).into());
-            }
-            found
-        }
+        Some(name) => Some(train.find_operation(name)?),
     };
     check(train, request)?;
     let names: Vec<&str> = train.states.iter().map(|s| s.name.as_str()).collect();
     let chosen: Vec<Option<usize>> = match (&request.state, operation.and_then(|o| o.state)) {
         (Some(name), own) => {
-            let Some(k) = names.iter().position(|n| n == name) else {
-                let d = Diagnostic::new(Code::UnknownSelection, "", format!("the train has no state `{name}`"));
-                let d = d.suggest(name, names.iter().copied());
-                return Err(d.hint(format!("its states are: {}", names.join(", "))).into());
-            };
+            let k = train.find_state(name)?;
             if let (Some(o), true) = (operation, own != Some(k)) {
                 let message = format!("the operation `{}` does not run in state `{name}`", o.name);
                 return Err(wrong(Code::UnknownSelection, message, "leave out one of the two"));

@@ -23,7 +23,7 @@ pub struct UncertainQuantity {
     pub unit: String,
     /// Its distribution as it can be written on the command line.
     pub distribution: String,
-    /// The same as data.
+    /// What `distribution` says, as data.
     pub likely: UncertainValue,
     /// What the file has, as written.
     pub nominal: Option<String>,

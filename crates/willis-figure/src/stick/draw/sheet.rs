@@ -1,0 +1,88 @@
+//! The page of a stick diagram: where it is drawn, and which members are listed in which colour.
+
+use crate::parts::style::{INK, colour};
+use crate::{Place, Stick};
+
+/// Left and right of the grid: names and arrows of the terminals.
+pub const MARGIN: f64 = 168.0;
+const TOP: f64 = 124.0;
+/// Half the length of a friction plate, of the line of the frame.
+pub const PLATE: f64 = 9.0;
+/// Width of one column of the list of members, and height of its rows.
+pub const LIST: f64 = 430.0;
+pub const ROW: f64 = 19.0;
+
+/// The page of a stick diagram.
+pub struct Sheet<'a> {
+    pub data: &'a Stick,
+    pub width: f64,
+    pub height: f64,
+    pub left: f64,
+    pub unit: f64,
+    pub rise: f64,
+    /// Colour number of each member that has lines.
+    pub category: Vec<Option<usize>>,
+}
+
+impl<'a> Sheet<'a> {
+    pub fn new(data: &'a Stick) -> Self {
+        let unit = (1064.0 / data.width.max(1.0)).clamp(44.0, 80.0).floor();
+        let rise = (420.0 / data.height.max(1.0)).clamp(46.0, 66.0).floor();
+        let drawn = unit * data.width;
+        let width = (drawn + 2.0 * MARGIN).clamp(640.0, 4000.0).max(0.0);
+        let left = (width - drawn) / 2.0;
+        let mut next = 0;
+        let led_out = |k: usize| {
+            let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
+            joined || data.terminals.iter().any(|t| t.member == k) || !data.members[k].carries.is_empty()
+        };
+        let category = data
+            .members
+            .iter()
+            .enumerate()
+            .map(|(k, m)| {
+                (!m.planet || led_out(k)).then(|| {
+                    next += 1;
+                    next - 1
+                })
+            })
+            .collect();
+        let mut s = Self { data, width, height: 0.0, left, unit, rise, category };
+        s.height = s.list_top() + s.list_rows() as f64 * ROW + 52.0;
+        s
+    }
+
+    pub fn at(&self, p: Place) -> (f64, f64) {
+        // Whole pixels: lines of one width meet without a seam.
+        let x = self.left + p[0] * self.unit;
+        let y = TOP + (self.data.height - p[1]) * self.rise;
+        (x.round(), y.round())
+    }
+
+    pub fn bottom(&self) -> f64 {
+        self.at([0.0, 0.0]).1
+    }
+
+    pub fn list_top(&self) -> f64 {
+        self.bottom() + 86.0
+    }
+
+    pub fn listed(&self) -> Vec<usize> {
+        (0..self.data.members.len()).filter(|&k| self.category[k].is_some()).collect()
+    }
+
+    pub fn list_columns(&self) -> usize {
+        (((self.width - 56.0) / LIST) as usize).max(1)
+    }
+
+    pub fn list_rows(&self) -> usize {
+        self.listed().len().div_ceil(self.list_columns()) + 1
+    }
+
+    pub fn ink(&self, member: Option<usize>) -> String {
+        match member.map(|m| self.category[m]) {
+            Some(Some(c)) => colour(Some(c), 1.0),
+            _ => INK.to_owned(),
+        }
+    }
+}
