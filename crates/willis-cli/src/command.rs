@@ -78,7 +78,13 @@ fn of(entry: &Entry) -> Command {
             )
             .arg(many("set").value_name("QUANTITY=VALUE").help(
                 "Give a quantity of the file another value: P1.sun.teeth=23. Several times for several quantities",
-            ));
+            ))
+            .arg(
+                many("allow")
+                    .value_name("FOLDER")
+                    .value_parser(value_parser!(PathBuf))
+                    .help("Tables that the train file names may lie in this folder too, not only in that of the file"),
+            );
     }
     for extra in entry.extras {
         c = c.arg(

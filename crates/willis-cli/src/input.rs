@@ -1,7 +1,11 @@
-//! Reading a train file and the tables it names, or saying why they cannot be read.
+//! Reading files, or saying why they cannot be read.
+//!
+//! Only ordinary files are read, opened without waiting, up to a size. A train file may come from a stranger: the tables
+//! that it names lie in its own folder, or in a folder that the user names.
 
+use std::fs::{File, OpenOptions};
 use std::io::Read;
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 use clap::ArgMatches;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -36,7 +40,14 @@ const TABLE: Kind = Kind {
     ending: "csv",
 };
 
+/// All tables of a train file together.
+const MOST_TABLES_MIB: u64 = 256;
+
+/// What this program wrote beside a table.
+const MOST_OWN_MIB: u64 = 64;
+
 const PERMISSIONS: &str = "check the path and its permissions";
+const STREAM: &str = "a stream is read where `-` stands for the file: `... | willis check -`";
 
 /// Why a file was not read, and what to do.
 type Unread = (String, &'static str);
@@ -46,7 +57,9 @@ pub fn train(file: &str, matches: &ArgMatches) -> Result<Given, Refusal> {
     let name = if file == "-" { "standard input" } else { file };
     let text = of_kind(file, &TRAIN).map_err(|wrong| Refusal::File(wrong, name.into()))?;
     let refused = |wrong| Refusal::File(wrong, Attachment { name: name.to_owned(), text: text.clone() });
-    let mut given = Given::new(name, Model::read(&text, &mut tables_beside(file)).map_err(refused)?);
+    let allowed = matches.try_get_many::<PathBuf>("allow").ok().flatten().into_iter().flatten();
+    let allowed: Vec<&Path> = allowed.map(PathBuf::as_path).collect();
+    let mut given = Given::new(name, Model::read(&text, &mut tables_of(file, &allowed)).map_err(refused)?);
     let all = |name: &str| matches.try_get_many::<String>(name).ok().flatten().into_iter().flatten();
     let laws = all("law").map(|law| pair("law", law, "family=law", "mesh_friction=niemann"));
     let laws: Vec<(&str, &str)> = laws.collect::<Result<_, _>>()?;
@@ -100,19 +113,99 @@ fn neighbours(file: &Path, kind: &Kind) -> Vec<String> {
     fitting.map(|n| folder.map_or(n.clone(), |f| f.join(&n)).to_string_lossy().into_owned()).collect()
 }
 
-/// Reads the tables that a train file names, seen from its folder.
-pub fn tables_beside(file: &str) -> impl FnMut(&str) -> Result<String, String> {
-    let folder = Path::new(file).parent().map(Path::to_path_buf).unwrap_or_default();
-    move |name| open(&folder.join(name), name, &TABLE).map_err(|(message, hint)| format!("{message}; {hint}"))
+/// Reads the tables that a train file names: files in its folder, or in one of these. Says nothing of what is anywhere
+/// else, not even whether it is there.
+fn tables_of(file: &str, allowed: &[&Path]) -> impl FnMut(&str) -> Result<String, String> {
+    let folder = Path::new(file).parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
+    let allowed: Vec<PathBuf> = std::iter::once(&*folder).chain(allowed.iter().copied()).map(PathBuf::from).collect();
+    let mut left = MOST_TABLES_MIB << 20;
+    move |name| {
+        let path = Path::new(name);
+        let is_relative =
+            path.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir | Component::ParentDir));
+        if !is_relative || path.file_name().is_none() {
+            return Err(format!("`{name}`: a table is named by its path from the folder of the train file"));
+        }
+        let outside = || {
+            format!("{name}: is not in the folder of the train file; put it there, or allow its folder: --allow FOLDER")
+        };
+        let allowed: Vec<PathBuf> = allowed.iter().filter_map(|folder| folder.canonicalize().ok()).collect();
+        let own = allowed.first().cloned().unwrap_or_default();
+        let within = |path: &Path| allowed.iter().any(|folder| path.starts_with(folder));
+        // First as it is written: what is elsewhere is not even looked for. Then as it is, through all links.
+        if !within(&plain(&own.join(path))) {
+            return Err(outside());
+        }
+        let io = |e: std::io::Error| format!("{name}: {e}; {PERMISSIONS}");
+        let real = own.join(path).canonicalize().map_err(io)?;
+        if !within(&real) {
+            return Err(outside());
+        }
+        let text = open(&real, name, &TABLE).map_err(|(message, hint)| format!("{message}; {hint}"))?;
+        left = left.checked_sub(text.len() as u64).ok_or_else(|| {
+            format!("{name}: with it the tables are larger than {MOST_TABLES_MIB} MiB; {}", TABLE.too_large)
+        })?;
+        Ok(text)
+    }
+}
+
+/// A path without steps up.
+fn plain(path: &Path) -> PathBuf {
+    let mut all = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => drop(all.pop()),
+            Component::CurDir => {}
+            other => all.push(other),
+        }
+    }
+    all
+}
+
+/// Opens without waiting for anybody: a pipe without a writer is opened at once, and then found to be no file.
+pub fn carefully(options: &mut OpenOptions, follow: bool) {
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt;
+        let flags = if follow { OFlags::NONBLOCK } else { OFlags::NONBLOCK | OFlags::NOFOLLOW };
+        options.custom_flags(flags.bits() as i32);
+    }
+    #[cfg(not(unix))]
+    let _ = (options, follow);
+}
+
+/// Opens an ordinary file and nothing else.
+pub fn regular(path: &Path) -> std::io::Result<File> {
+    let mut options = OpenOptions::new();
+    carefully(options.read(true), true);
+    let file = options.open(path)?;
+    match file.metadata()?.is_file() {
+        true => Ok(file),
+        false => Err(std::io::Error::other("is no ordinary file")),
+    }
+}
+
+/// A file that this program wrote.
+pub fn whole(path: &Path) -> Result<Vec<u8>, String> {
+    let mut bytes = vec![];
+    let read = regular(path).and_then(|file| file.take((MOST_OWN_MIB << 20) + 1).read_to_end(&mut bytes));
+    match read.map_err(|e| e.to_string())? as u64 > MOST_OWN_MIB << 20 {
+        true => Err(format!("is larger than {MOST_OWN_MIB} MiB")),
+        false => Ok(bytes),
+    }
 }
 
 fn open(path: &Path, name: &str, kind: &Kind) -> Result<String, Unread> {
-    let io = |e: std::io::Error| (format!("{name}: {e}"), PERMISSIONS);
-    let handle = std::fs::File::open(path).map_err(io)?;
-    if handle.metadata().map_err(io)?.is_dir() {
+    // Not every system opens a directory.
+    if path.is_dir() {
         return Err((format!("{name} is a directory"), kind.directory));
     }
-    text_of(handle, name, kind)
+    match regular(path) {
+        Ok(file) => text_of(file, name, kind),
+        Err(_) if path.exists() && !path.is_file() => Err((format!("{name} is no ordinary file"), STREAM)),
+        Err(e) => Err((format!("{name}: {e}"), PERMISSIONS)),
+    }
 }
 
 fn text_of(from: impl Read, name: &str, kind: &Kind) -> Result<String, Unread> {

@@ -25,8 +25,13 @@ use clap::error::ErrorKind;
 pub enum Ended {
     /// With this on standard output.
     Answered(String),
-    /// With this on standard output, before its end: exit status 130.
-    Interrupted(String),
+    /// Before its end: exit status 130.
+    Interrupted {
+        /// The answer until then, for standard output.
+        out: String,
+        /// For eyes.
+        told: String,
+    },
     /// With this on standard output and on standard error: exit status 1.
     Refused {
         /// For machines, where they asked.
@@ -53,15 +58,13 @@ fn main() -> ExitCode {
     }
     let (name, own) = matches.subcommand().expect("clap asks for a command");
     let ended = run(name, own).unwrap_or_else(|ended| ended);
-    let (out, status) = match ended {
-        Ended::Answered(out) => (out, 0),
-        Ended::Interrupted(out) => (out, 130),
-        Ended::Refused { out, told } => {
-            let _ = anstream::stderr().write_all(told.as_bytes());
-            (out, 1)
-        }
+    let (out, told, status) = match ended {
+        Ended::Answered(out) => (out, String::new(), 0),
+        Ended::Interrupted { out, told } => (out, told, 130),
+        Ended::Refused { out, told } => (out, told, 1),
         Ended::Misused(told) => command::command().error(ErrorKind::ArgumentConflict, told).exit(),
     };
+    let _ = anstream::stderr().write_all(told.as_bytes());
     // A reader that closes the pipe early (`willis … | head`) is no error.
     let mut stdout = anstream::stdout();
     match stdout.write_all(out.as_bytes()).and_then(|()| stdout.flush()) {

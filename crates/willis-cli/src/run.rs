@@ -62,7 +62,7 @@ impl<'a> Asked<'a> {
     /// A refusal as the form asks for it.
     pub fn refused(&self, refusal: &Refusal, of: &[Given]) -> Ended {
         if *refusal == Refusal::Cancelled {
-            return Ended::Interrupted(String::new());
+            return Ended::Interrupted { out: String::new(), told: "interrupted: there is no answer\n".into() };
         }
         let json = || serde_json::to_string_pretty(&refusal.report(of)).expect("plain data") + "\n";
         Ended::Refused { out: if self.form == JSON { json() } else { String::new() }, told: refusal.render(of, true) }
@@ -163,7 +163,10 @@ pub fn run_on(threads: usize, entry: &'static Entry, matches: &ArgMatches) -> Re
         deliver(files, Some(path), asked.force)?;
     }
     let said = hand_out(&asked, &*answer, &of)?;
-    Ok(if answer.is_partial() { Ended::Interrupted(said) } else { Ended::Answered(said) })
+    Ok(match answer.is_partial() {
+        true => Ended::Interrupted { out: said, told: String::new() },
+        false => Ended::Answered(said),
+    })
 }
 
 /// The answer in the form that was asked for, at the place that was named.
@@ -253,22 +256,16 @@ pub fn deliver(files: Vec<File>, place: Option<&Path>, force: bool) -> Result<St
         true => files.iter().map(|f| place.join(&f.name)).collect(),
         false => vec![place.to_owned()],
     };
+    if let Some(k) = (1..paths.len()).find(|&k| paths[..k].contains(&paths[k])) {
+        let told = format!("{}: two files have this name; ask for them one by one\n", paths[k].display());
+        return Err(told.into());
+    }
     if folder {
-        std::fs::create_dir_all(place).map_err(|e| format!("{}: {e}\n", place.display()))?;
+        std::fs::create_dir_all(place).map_err(output::told(place))?;
     }
-    for (k, path) in paths.iter().enumerate() {
-        if paths[..k].contains(path) {
-            let told = format!("{}: two files have this name; ask for them one by one\n", path.display());
-            return Err(told.into());
-        }
-        output::free(path, force)?;
-    }
-    let mut said = String::new();
-    for (path, file) in paths.iter().zip(&files) {
-        output::write(path, &file.bytes)?;
-        if !file.about.is_empty() {
-            said += &format!("{}: {}\n", path.display(), file.about);
-        }
-    }
-    Ok(said)
+    paths.iter().try_for_each(|path| output::free(path, force))?;
+    let whole: Vec<(&Path, &[u8])> = paths.iter().zip(&files).map(|(p, f)| (p.as_path(), &*f.bytes)).collect();
+    output::write_all(&whole, force)?;
+    let said = paths.iter().zip(&files).filter(|(_, f)| !f.about.is_empty());
+    Ok(said.map(|(path, f)| format!("{}: {}\n", path.display(), f.about)).collect())
 }

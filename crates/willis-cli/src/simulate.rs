@@ -11,7 +11,6 @@ mod plot;
 use std::fs::File;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 
 use clap::ArgMatches;
 use willis::dynamics::{Column, Event, Outcome, Recorder, RunReport, Sample};
@@ -19,22 +18,13 @@ use willis::work::Work;
 use willis_ask::questions::{MOST_EVENTS, Simulate, simulation_text};
 use willis_ask::{Entry, Refusal};
 
+use crate::Ended;
 use crate::form::{JSON, TEXT};
-use crate::interrupt::{interrupted, listen};
+use crate::interrupt::interrupted;
+use crate::output::{self, Unfinished};
 use crate::run::Asked;
 use crate::work::Terminal;
-use crate::{Ended, output};
 use plot::Plot;
-
-/// The unfinished file, for a second Ctrl-C.
-static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
-
-/// Leaves no unfinished file behind.
-fn clear() {
-    if let Ok(Some(path)) = UNFINISHED.lock().as_deref() {
-        let _ = std::fs::remove_file(path);
-    }
-}
 
 /// Whether rows go into this file as they come.
 pub fn streams(out: &Path) -> bool {
@@ -83,9 +73,10 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
         .and_then(|s| Ok((s, request.options()?)))
         .map_err(|refusal| asked.refused(&refusal, &of))?;
     let span = [scenario.start, scenario.end];
-    listen(clear);
-    let unfinished = Unfinished::create(out)?;
-    let handle = unfinished.file.try_clone().map_err(|e| format!("{}: {e}\n", out.display()))?;
+    // From here on Ctrl-C ends the run and not the program.
+    interrupted();
+    let unfinished = Unfinished::new(out, asked.force)?;
+    let handle = unfinished.file().try_clone().map_err(output::told(out))?;
     let sink = match Target::of(out).expect("it streams") {
         Target::Csv => Sink::Csv(csv::Rows::new(handle)),
         #[cfg(feature = "parquet")]
@@ -124,13 +115,17 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
     closed.map_err(|why| format!("{}: {why}\n", out.display()))?;
     unfinished.complete()?;
     if let (Some(path), Some(plot)) = (plot, listener.plot) {
-        output::write(path, plot.svg(&report).as_bytes())?;
+        output::write(path, plot.svg(&report).as_bytes(), asked.force)?;
     }
     let told = match form {
         JSON => serde_json::to_string_pretty(&report).expect("plain data") + "\n",
         _ => simulation_text(&report),
     };
-    Ok(if report.outcome == Outcome::Interrupted { Ended::Interrupted(told) } else { Ended::Answered(told) })
+    Ok(if report.outcome == Outcome::Interrupted {
+        Ended::Interrupted { out: told, told: String::new() }
+    } else {
+        Ended::Answered(told)
+    })
 }
 
 /// What a file says of a run that did not reach its end.
@@ -138,48 +133,6 @@ fn early(r: &RunReport, end: f64) -> String {
     let word = if r.outcome == Outcome::Interrupted { "interrupted" } else { "ended" };
     let why = if r.outcome.why().is_empty() { String::new() } else { format!("; {}", r.outcome.why()) };
     format!("{word} at t = {} s of {end} s: the run {}{why}", r.end_s, r.outcome.words())
-}
-
-/// A file that has its name only when it is whole.
-struct Unfinished {
-    path: PathBuf,
-    target: PathBuf,
-    file: File,
-    done: bool,
-}
-
-impl Unfinished {
-    fn create(target: &Path) -> Result<Self, String> {
-        let fail = |e: std::io::Error| format!("{}: {e}\n", target.display());
-        // Beside the file itself, which a link stays a link to.
-        let target = target.canonicalize().unwrap_or_else(|_| target.to_owned());
-        let mut name = target.file_name().unwrap_or_default().to_owned();
-        name.push(format!(".{}.part", std::process::id()));
-        let path = target.with_file_name(name);
-        let file = File::create(&path).map_err(fail)?;
-        if let Ok(mut unfinished) = UNFINISHED.lock() {
-            *unfinished = Some(path.clone());
-        }
-        Ok(Self { path, target, file, done: false })
-    }
-
-    fn complete(mut self) -> Result<(), String> {
-        let fail = |e: std::io::Error| format!("{}: {e}\n", self.target.display());
-        std::fs::rename(&self.path, &self.target).map_err(fail)?;
-        self.done = true;
-        Ok(())
-    }
-}
-
-impl Drop for Unfinished {
-    fn drop(&mut self) {
-        if !self.done {
-            let _ = std::fs::remove_file(&self.path);
-        }
-        if let Ok(mut unfinished) = UNFINISHED.lock() {
-            *unfinished = None;
-        }
-    }
 }
 
 enum Sink {

@@ -1,14 +1,14 @@
 //! Work on all cores, with a bar that tells how fast and how long yet.
 
 use std::io::IsTerminal;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, Once};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use willis::work::Work;
 
-use crate::interrupt;
+use crate::interrupt::interrupted;
 
 /// Threads to use where nothing is said.
 pub fn cores() -> usize {
@@ -77,11 +77,8 @@ impl Work for Terminal {
         }
     }
 
-    /// Once it was asked for, Ctrl-C ends the work and not the program. Work that never asks ends with the program.
     fn cancelled(&self) -> bool {
-        static LISTENING: Once = Once::new();
-        LISTENING.call_once(|| interrupt::listen(|| {}));
-        interrupt::interrupted()
+        interrupted()
     }
 
     fn run(&self, parts: usize, job: &(dyn Fn(usize) + Sync)) {

@@ -3,7 +3,7 @@ use std::fs::File;
 use serde_json::json;
 use willis::dynamics::{Column, ColumnKind, Outcome, RunReport};
 
-use super::{Unfinished, csv, early};
+use super::{csv, early};
 
 fn report(outcome: Outcome, end: f64) -> RunReport {
     let mut report: RunReport = serde_json::from_value(json!({
@@ -114,20 +114,5 @@ fn parquet_reads_back_with_nulls_and_says_whether_it_is_complete() {
             assert_eq!(all[2], ("torque.P1,a", torque));
         }
     }
-    std::fs::remove_dir_all(folder).unwrap();
-}
-
-#[test]
-fn a_file_has_its_name_only_when_it_is_whole() {
-    let folder = folder("whole");
-    let path = folder.join("run.csv");
-    std::fs::write(&path, "of yesterday").unwrap();
-    let names = || std::fs::read_dir(&folder).unwrap().count();
-    drop(Unfinished::create(&path).unwrap());
-    assert_eq!((std::fs::read_to_string(&path).unwrap().as_str(), names()), ("of yesterday", 1));
-    let unfinished = Unfinished::create(&path).unwrap();
-    assert_eq!(names(), 2);
-    unfinished.complete().unwrap();
-    assert_eq!((std::fs::read_to_string(&path).unwrap().as_str(), names()), ("", 1));
     std::fs::remove_dir_all(folder).unwrap();
 }

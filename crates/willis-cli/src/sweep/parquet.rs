@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
@@ -17,13 +16,16 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 use willis::study::{ColumnValues, Rows, SweepColumn};
 
+use super::table::Piece;
+use crate::input;
+
 /// Rows as a piece of the table.
 pub fn encode(columns: &[SweepColumn], rows: &Rows) -> Result<Vec<u8>, String> {
     encoded(columns, rows).map_err(words)
 }
 
 /// Puts pieces together into a table; `told` of the sweep goes into its metadata.
-pub fn join(columns: &[SweepColumn], told: &str, pieces: &[PathBuf], out: File) -> Result<(), String> {
+pub fn join(columns: &[SweepColumn], told: &str, pieces: &[Piece], out: File) -> Result<(), String> {
     joined(columns, told, pieces, out).map_err(words)
 }
 
@@ -94,10 +96,10 @@ fn encoded(columns: &[SweepColumn], rows: &Rows) -> Result<Vec<u8>, ParquetError
     writer.into_inner()
 }
 
-fn joined(columns: &[SweepColumn], told: &str, pieces: &[PathBuf], out: File) -> Result<(), ParquetError> {
+fn joined(columns: &[SweepColumn], told: &str, pieces: &[Piece], out: File) -> Result<(), ParquetError> {
     let mut writer = SerializedFileWriter::new(BufWriter::with_capacity(1 << 20, out), schema(columns)?, properties())?;
     for piece in pieces {
-        let file = File::open(piece)?;
+        let file = input::regular(&piece.path)?;
         let reader = SerializedFileReader::new(file.try_clone()?)?;
         for group in reader.metadata().row_groups() {
             let mut own = writer.next_row_group()?;
@@ -117,8 +119,7 @@ fn joined(columns: &[SweepColumn], told: &str, pieces: &[PathBuf], out: File) ->
     }
     writer.append_key_value_metadata(KeyValue::new("willis.sweep".to_owned(), told.to_owned()));
     let out = writer.into_inner()?;
-    let file = out.into_inner().map_err(|e| ParquetError::External(Box::new(e.into_error())))?;
-    file.sync_all()?;
+    out.into_inner().map_err(|e| ParquetError::External(Box::new(e.into_error())))?;
     Ok(())
 }
 

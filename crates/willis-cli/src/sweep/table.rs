@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs::File;
-use std::io::{BufWriter, Read, Write};
+use std::io::{BufRead, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use willis::study::{ColumnValues, Rows, SweepColumn};
@@ -10,6 +10,14 @@ use willis_ask::table::{field, number};
 
 #[cfg(feature = "parquet")]
 use super::parquet;
+use crate::input;
+
+/// A file to put into a table.
+pub struct Piece {
+    pub path: PathBuf,
+    /// Whether it is a table with a header, not only rows.
+    pub is_table: bool,
+}
 
 /// What a table is written as, by the end of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,8 +59,8 @@ impl Form {
         }
     }
 
-    /// Puts pieces together into a table.
-    pub fn join(self, columns: &[SweepColumn], told: &str, pieces: &[PathBuf], out: File) -> Result<(), String> {
+    /// Puts pieces of one table, or whole tables, together into a table.
+    pub fn join(self, columns: &[SweepColumn], told: &str, pieces: &[Piece], out: File) -> Result<(), String> {
         #[cfg(feature = "parquet")]
         if self == Self::Parquet {
             return parquet::join(columns, told, pieces, out);
@@ -70,19 +78,15 @@ impl Form {
                 header.push('\n');
                 out.write_all(header.as_bytes())?;
             }
-            let mut buffer = vec![0; 1 << 20];
             for piece in pieces {
-                let mut from = File::open(piece)?;
-                loop {
-                    let n = from.read(&mut buffer)?;
-                    if n == 0 {
-                        break;
-                    }
-                    out.write_all(&buffer[..n])?;
+                let mut from = BufReader::with_capacity(1 << 20, input::regular(&piece.path)?);
+                if self == Self::Csv && piece.is_table {
+                    // Names of columns have no line breaks.
+                    from.skip_until(b'\n')?;
                 }
+                std::io::copy(&mut from, out)?;
             }
-            out.flush()?;
-            out.get_ref().sync_all()
+            out.flush()
         };
         run(&mut out).map_err(|e| e.to_string())
     }

@@ -34,14 +34,20 @@ impl From<Extreme> for (f64, u64) {
 }
 
 /// Least, greatest and sum of a quantity over the points that have one, and where the extremes are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+///
+/// Each piece of a study adds its own points in floating point; sums of pieces are added exactly. So the sum over many
+/// pieces is the same in whatever order and through whatever shards they come together.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct MinMaxSum {
     /// Points that have a value.
     pub count: u64,
-    /// Their sum.
+    /// Their sum, rounded once.
     pub sum: f64,
+    /// What `sum` lacks of the exact sum of all pieces, largest part first; nothing where it lacks nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rest: Vec<f64>,
     /// The smallest, and the number of its point; absent where no point has a value.
     pub least: Option<Extreme>,
     /// The largest, and the number of its point.
@@ -71,7 +77,9 @@ impl MinMaxSum {
     pub(super) fn join(&mut self, other: &Self) {
         let (Some(least), Some(most)) = (other.least, other.most) else { return };
         self.count += other.count;
-        self.sum += other.sum;
+        let mut parts = exact_sum([self.sum, other.sum].iter().chain(&self.rest).chain(&other.rest)).into_iter();
+        self.sum = parts.next().unwrap_or(0.0);
+        self.rest = parts.collect();
         if self.least.is_none_or(|e| least.value < e.value) {
             self.least = Some(least);
         }
@@ -84,6 +92,66 @@ impl MinMaxSum {
     pub fn mean(&self) -> Option<f64> {
         (self.count > 0).then(|| self.sum / self.count as f64)
     }
+}
+
+/// The exact sum of numbers as parts: the first is the sum rounded, the next what that lacks, rounded, and so on. Which
+/// parts they are depends on the sum alone.
+///
+/// Numbers are added by Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric predicates,
+/// Discrete & Computational Geometry 18 (1997), Theorem 10.
+fn exact_sum<'a>(numbers: impl Iterator<Item = &'a f64> + Clone) -> Vec<f64> {
+    let plain: f64 = numbers.clone().sum();
+    if !plain.is_finite() {
+        return vec![plain];
+    }
+    // Parts that do not overlap, smallest first.
+    let mut parts: Vec<f64> = vec![];
+    let grow = |parts: &mut Vec<f64>, x: f64| {
+        let mut sum = x;
+        let mut kept = 0;
+        for k in 0..parts.len() {
+            let [a, b] = if sum.abs() < parts[k].abs() { [parts[k], sum] } else { [sum, parts[k]] };
+            sum = a + b;
+            let lost = b - (sum - a);
+            if lost != 0.0 {
+                parts[kept] = lost;
+                kept += 1;
+            }
+        }
+        parts.truncate(kept);
+        parts.push(sum);
+    };
+    numbers.for_each(|x| grow(&mut parts, *x));
+    let mut out = vec![];
+    loop {
+        let rounded = rounded(&parts);
+        if rounded == 0.0 {
+            return out;
+        }
+        out.push(rounded);
+        grow(&mut parts, -rounded);
+    }
+}
+
+/// The sum of parts that do not overlap, smallest first, rounded to the nearest number.
+fn rounded(parts: &[f64]) -> f64 {
+    let Some((last, rest)) = parts.split_last() else { return 0.0 };
+    let (mut sum, mut lost) = (*last, 0.0);
+    let mut below = rest.len();
+    while below > 0 && lost == 0.0 {
+        below -= 1;
+        let before = sum;
+        sum = before + rest[below];
+        lost = rest[below] - (sum - before);
+    }
+    // Half of the last digit is lost: what is below it decides.
+    if below > 0 && lost != 0.0 && (lost < 0.0) == (rest[below - 1] < 0.0) && rest[below - 1] != 0.0 {
+        let (twice, next) = (2.0 * lost, sum + 2.0 * lost);
+        if next - sum == twice {
+            sum = next;
+        }
+    }
+    sum
 }
 
 /// What points that say the same are counted by. In contracts it is a text: `W316`, `W316 mesh_friction = niemann`,
@@ -273,5 +341,56 @@ impl Summary {
             }
             last = Some(warning.code);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sum_is_the_same_in_any_order_and_through_any_parts() {
+        // Of very different sizes, cancelling in part, with ties of the last digit.
+        let mut seed = 1u64;
+        let mut next = || {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            seed >> 11
+        };
+        let mut numbers: Vec<f64> =
+            (0..400).map(|_| (next() as f64 / 2f64.powi(52) - 1.0) * 2f64.powi((next() % 140) as i32 - 90)).collect();
+        numbers.extend([1.0, 2f64.powi(-53), 2f64.powi(-107), -2f64.powi(-53), 1e300, -1e300, 5e-324, 0.0, -0.0]);
+        let one = |x: f64, k: usize| {
+            let mut m = MinMaxSum::default();
+            m.add(x, k as u64);
+            m
+        };
+        let all = |order: &[usize], cut: usize| {
+            let mut groups: Vec<MinMaxSum> = vec![];
+            for group in order.chunks(cut) {
+                let mut own = MinMaxSum::default();
+                group.iter().for_each(|&k| own.join(&one(numbers[k], k)));
+                groups.push(own);
+            }
+            let mut whole = MinMaxSum::default();
+            groups.iter().for_each(|g| whole.join(g));
+            (whole.sum, whole.rest)
+        };
+        let mut order: Vec<usize> = (0..numbers.len()).collect();
+        let first = all(&order, 1);
+        assert!(!first.1.is_empty());
+        for cut in [1, 2, 7, 100, 1000] {
+            for k in (1..order.len()).rev() {
+                order.swap(k, next() as usize % (k + 1));
+            }
+            assert_eq!(all(&order, cut), first, "{cut}");
+        }
+        // Exactly, in rational numbers.
+        use crate::exact::Rational;
+        let exact = |x: &f64| Rational::from_f64(*x).expect("finite");
+        let sum = numbers.iter().map(exact).fold(Rational::zero(), |a, b| a + b);
+        let told = std::iter::once(&first.0).chain(&first.1).map(exact).fold(Rational::zero(), |a, b| a + b);
+        assert_eq!(sum, told);
+        assert_eq!(sum.to_f64(), first.0);
+        assert_eq!(exact_sum([f64::MAX, f64::MAX].iter()), [f64::INFINITY]);
     }
 }
