@@ -199,7 +199,7 @@ fn writers(folder: &Folder) -> Vec<(Vec<String>, &'static str)> {
         (line(&format!("report|{FVA}")), "r.html"),
         (line(&format!("simulate|{braked}")), "run.csv"),
         (line(&format!("simulate|{braked}")), "run.json"),
-        (line("new"), "new.toml"),
+        (line("new|set"), "new.toml"),
         (line("export|csv|examples/wolfrom-236.toml"), "e.csv"),
     ]
 }

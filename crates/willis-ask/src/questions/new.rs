@@ -9,7 +9,7 @@ use willis::work::Work;
 use super::names;
 #[cfg(feature = "clap")]
 use super::names::Known;
-use crate::{Given, Of, Question, Refusal};
+use crate::{File, Form, Given, Of, Question, Refusal};
 
 /// Write a commented train file to start from.
 ///
@@ -66,6 +66,7 @@ pub struct Start {
 impl Question for New {
     const NAME: &'static str = "new";
     const OF: Of = Of::Nothing;
+    const FORMS: &'static [Form] = &[Form { name: "toml", endings: &["toml"], about: "the train file" }];
     type Answer = NewAnswer;
 
     fn ask(&self, _: &[Given], _: &dyn Work) -> Result<NewAnswer, Refusal> {
@@ -92,6 +93,14 @@ impl Question for New {
             (Some(_), [one]) => one.toml.clone(),
             (_, all) => all.iter().map(|s| format!("{:<12}{}\n", s.kind, s.about)).collect(),
         }
+    }
+
+    fn natural_form(&self) -> &'static str {
+        if self.kind.is_some() { "toml" } else { "text" }
+    }
+
+    fn write(&self, answer: &NewAnswer, _: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
+        Ok(answer.starts.iter().map(|s| File::text(format!("{}.toml", s.kind), &*s.toml)).collect())
     }
 }
 
