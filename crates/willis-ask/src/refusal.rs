@@ -5,7 +5,7 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
-use willis::diagnostic::{Diagnostic, Diagnostics};
+use willis::diagnostic::{Diagnostic, Diagnostics, printable};
 use willis::work::Cancelled;
 
 use crate::{Attachment, Given};
@@ -30,8 +30,15 @@ pub struct RefusalReport {
     pub format: Format<Self>,
     /// The file in which the places are; none where the request alone is wrong.
     pub file: Option<String>,
-    /// What is wrong.
+    /// What is wrong, the first 50 at most.
     pub diagnostics: Vec<Diagnostic>,
+    /// How much more is wrong.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub more: usize,
+}
+
+fn is_none(more: &usize) -> bool {
+    *more == 0
 }
 
 impl Contract for RefusalReport {
@@ -46,7 +53,9 @@ impl RefusalReport {
 
     /// What is wrong with a file.
     pub fn new(file: Option<&str>, wrong: &Diagnostics) -> Self {
-        Self { format: Format::new(), file: file.map(str::to_owned), diagnostics: wrong.iter().cloned().collect() }
+        let diagnostics: Vec<Diagnostic> = wrong.iter().take(Diagnostics::MOST_SHOWN).cloned().collect();
+        let more = wrong.len() - diagnostics.len();
+        Self { format: Format::new(), file: file.map(str::to_owned), diagnostics, more }
     }
 }
 
@@ -93,7 +102,7 @@ impl Refusal {
 pub fn report(wrong: &Diagnostics, name: &str, text: &str, color: bool) -> String {
     let errors = wrong.iter().filter(|d| d.severity == willis::diagnostic::Severity::Error).count();
     let s = if errors == 1 { "" } else { "s" };
-    format!("{}{name}: {errors} error{s}\n", wrong.render(name, text, color))
+    format!("{}{}: {errors} error{s}\n", wrong.render(name, text, color), printable(name))
 }
 
 impl From<Diagnostics> for Refusal {

@@ -1,6 +1,7 @@
 //! How answers are set for eyes: numbers, tables, lines. Styles are ANSI escapes; [`plain`] takes them off.
 
 use comfy_table::{CellAlignment, Table, presets};
+use willis::diagnostic::is_printable;
 
 /// A speed in rpm, from rad/s.
 pub fn rpm(rad_s: f64) -> f64 {
@@ -78,7 +79,7 @@ pub fn wrap(text: &str, head: &str) -> String {
     const WIDTH: usize = 100;
     let indent = " ".repeat(head.chars().count());
     let mut lines = vec![head.to_owned()];
-    for word in text.split(|c: char| c.is_whitespace() || c.is_control()).filter(|w| !w.is_empty()) {
+    for word in text.split(|c: char| c.is_whitespace() || !is_printable(c)).filter(|w| !w.is_empty()) {
         let line = lines.last_mut().expect("never empty");
         let used = line.chars().count();
         let blank = used == indent.len();

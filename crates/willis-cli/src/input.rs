@@ -8,7 +8,7 @@ use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 
 use clap::ArgMatches;
-use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics, printable};
 use willis::model::Model;
 use willis_ask::{Attachment, Given, Refusal, quoted};
 
@@ -54,7 +54,8 @@ type Unread = (String, &'static str);
 
 /// Reads a train file, with the laws and values that the command line puts in.
 pub fn train(file: &str, matches: &ArgMatches) -> Result<Given, Refusal> {
-    let name = if file == "-" { "standard input" } else { file };
+    // As it is shown; a file may be called anything.
+    let name = &*printable(if file == "-" { "standard input" } else { file });
     let text = of_kind(file, &TRAIN).map_err(|wrong| Refusal::File(wrong, name.into()))?;
     let refused = |wrong| Refusal::File(wrong, Attachment { name: name.to_owned(), text: text.clone() });
     let allowed = matches.try_get_many::<PathBuf>("allow").ok().flatten().into_iter().flatten();

@@ -20,6 +20,7 @@ use std::process::ExitCode;
 
 use clap::ArgMatches;
 use clap::error::ErrorKind;
+use willis::diagnostic::printable;
 
 /// How a command ended.
 pub enum Ended {
@@ -44,8 +45,10 @@ pub enum Ended {
 }
 
 impl From<String> for Ended {
+    /// In plain words; what a terminal would obey, as in the name of a file, is shown instead.
     fn from(told: String) -> Self {
-        Self::Refused { out: String::new(), told }
+        let lines: Vec<_> = told.split('\n').map(printable).collect();
+        Self::Refused { out: String::new(), told: lines.join("\n") }
     }
 }
 

@@ -26,6 +26,7 @@
 
 mod codes;
 mod conversions;
+mod printable;
 mod span;
 
 use std::fmt;
@@ -37,6 +38,7 @@ use crate::work::Cancelled;
 
 pub use codes::Code;
 pub(crate) use conversions::through_diagnostic;
+pub use printable::{is_printable, printable};
 pub use span::{Lines, Span};
 
 /// How much a diagnostic matters.
@@ -148,6 +150,9 @@ fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<
 pub struct Diagnostics(Vec<Diagnostic>);
 
 impl Diagnostics {
+    /// So many are shown to a person, or handed to a machine; of the others it is said how many they are.
+    pub const MOST_SHOWN: usize = 50;
+
     /// Adds one.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         self.0.push(diagnostic);
@@ -205,14 +210,12 @@ impl Diagnostics {
     /// The text for people, each place underlined in `source` where there is one. `file` is what
     /// the source is called; `color` adds ANSI styles. Long lists are cut after 50 with a count.
     pub fn render(&self, file: &str, source: &str, color: bool) -> String {
-        const MOST: usize = 50;
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let mut out = String::new();
-        let shown = |text: &str| -> String {
-            // A terminal must not obey what a file says.
-            text.chars().flat_map(|c| if c.is_control() { c.escape_debug().collect() } else { vec![c] }).collect()
-        };
-        for d in self.0.iter().take(MOST) {
+        // A terminal must not obey what a file says, or how it is called.
+        let shown = |text: &str| printable(text).into_owned();
+        let file = &*shown(file);
+        for d in self.0.iter().take(Self::MOST_SHOWN) {
             let (message, place) = (shown(&d.message), shown(&d.place));
             let hints: Vec<String> = d.hints.iter().map(|h| shown(h)).collect();
             let level = match d.severity {
@@ -224,8 +227,9 @@ impl Diagnostics {
             let mut group = Group::with_title(title);
             let span = d.span.map(|s| s.range()).filter(|s| source.get(s.clone()).is_some());
             if let Some(span) = &span {
-                let label = AnnotationKind::Primary.span(span.clone()).label(place.as_str());
-                group = group.element(Snippet::source(source).path(file).annotation(label));
+                let (text, span) = printable::excerpt(source, span.clone());
+                let label = AnnotationKind::Primary.span(span).label(place.as_str());
+                group = group.element(Snippet::source(text).path(file).annotation(label));
             } else if !d.place.is_empty() {
                 group = group.element(Level::NOTE.message(format!("at {place}")));
             }
@@ -234,17 +238,18 @@ impl Diagnostics {
             }
             let mut report = vec![group];
             if let (Some(span), Some(new)) = (span, &d.replacement) {
+                let (text, span) = printable::excerpt(source, span);
                 report.push(
                     Level::HELP
                         .secondary_title("with that change")
-                        .element(Snippet::source(source).path(file).patch(Patch::new(span, new.as_str()))),
+                        .element(Snippet::source(text).path(file).patch(Patch::new(span, shown(new)))),
                 );
             }
             out += &renderer.render(&report);
             out.push_str("\n\n");
         }
-        if self.0.len() > MOST {
-            out += &format!("… and {} more of the kind\n\n", self.0.len() - MOST);
+        if self.0.len() > Self::MOST_SHOWN {
+            out += &format!("… and {} more of the kind\n\n", self.0.len() - Self::MOST_SHOWN);
         }
         out
     }

@@ -300,7 +300,7 @@ macro_rules! laws {
 
 /// A name for a message.
 fn short(name: &str) -> String {
-    name.chars().filter(|c| !c.is_control()).take(64).collect()
+    name.chars().filter(|c| crate::diagnostic::is_printable(*c)).take(64).collect()
 }
 
 laws! {

@@ -35,7 +35,7 @@ pub use cycle::{
 pub(crate) use design::quantile;
 pub use design::{Design, REPLICATES, SamplingError, SobolIndices, Statistics};
 pub use distribution::{Distribution, standard_normal_quantile};
-pub use profile::{Basis, Profile, ProfileRow};
+pub use profile::{Basis, Profile, ProfileColumns, ProfileRow};
 pub use question::{Hold, Question, Trains};
 pub use sensitivity::{
     Checks, OperationSensitivity, QuantitySensitivity, Sensitivity, SourceChange, StepKind, sensitivity,

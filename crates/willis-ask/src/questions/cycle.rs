@@ -6,9 +6,11 @@ mod text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::Contract;
+use willis::diagnostic::Diagnostics;
 use willis::study::{self, ColumnTable, CycleReport, CycleRequest};
 use willis::work::Work;
 
+use super::names;
 use crate::table::Table;
 use crate::{Attachment, Extra, File, Given, Question, Refusal};
 
@@ -26,6 +28,12 @@ pub struct Cycle {
     /// The profile (CSV), or - for standard input.
     #[cfg_attr(feature = "clap", arg(long, value_name = "FILE.csv", required = true))]
     pub profile: Attachment,
+    /// Leave this column of the profile out; its name, with or without the unit. Several times for several columns.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", conflicts_with = "only_column"))]
+    pub ignore_column: Vec<String>,
+    /// Read this column of the profile and no others than are named so. Several times for several columns.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
+    pub only_column: Vec<String>,
     /// The operation that gives what no column sets. Default: the first one in the state, else the file's first.
     #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
     pub operation: Option<String>,
@@ -57,9 +65,16 @@ impl Question for Cycle {
         &[Extra { name: "rows", value: "FILE.csv", about: "Write every row with its answer into this CSV file" }];
     type Answer = CycleAnswer;
 
+    fn check(&self) -> Result<(), Diagnostics> {
+        let named = |columns: &[String]| !columns.is_empty();
+        names::apart(&[[("only_column", named(&self.only_column)), ("ignore_column", named(&self.ignore_column))]])
+    }
+
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<CycleAnswer, Refusal> {
         let request = CycleRequest {
             profile: self.profile.text.clone(),
+            ignore_column: self.ignore_column.clone(),
+            only_column: self.only_column.clone(),
             operation: self.operation.clone(),
             state: self.state.clone(),
         };

@@ -721,6 +721,18 @@ fn parse(designation: &str) -> Option<Parsed> {
     })
 }
 
+/// What a designation says of the kind and the series of a bearing, whether the catalogue has it or not.
+///
+/// ```
+/// use willis::catalogue::bearing::{Kind, kind_of};
+///
+/// assert_eq!(kind_of("6299"), Some((Kind::DeepGrooveBall, "62".into())));
+/// assert_eq!(kind_of("hub of the left wheel"), None);
+/// ```
+pub fn kind_of(designation: &str) -> Option<(Kind, String)> {
+    parse(designation).map(|parsed| (parsed.kind, parsed.series))
+}
+
 /// The bearing of that designation; capitals, blanks between its parts and suffixes that say nothing
 /// about friction do not matter. Of the suffixes, rubbing seals (RS1, RSH, RSL, LS, CS) and the design letters
 /// that have their own friction constants (`E`, `B`, `AC`, `A`) are read; shields (Z) and seals that

@@ -70,8 +70,10 @@ codes! {
     E101 UnknownName: "unknown name";
     /// Two things of one kind carry one name, so that a later reference could mean either.
     E102 DuplicateName: "name used twice";
-    /// A name is empty, longer than 64 characters, contains a dot or a control character, or is
-    /// the reserved word `frame`. (The dot separates a set from its planet in `P1.planet`.)
+    /// A name is empty, longer than 64 characters, contains a dot, or is the reserved word `frame`. (The
+    /// dot separates a set from its planet in `P1.planet`.) Or it has a character that cannot be
+    /// shown: a control character, one that turns the direction of writing, or a code point that is
+    /// no character.
     E103 BadName: "name not allowed";
     /// The parts of a mesh or set do not make a pair of gears on a carrier: a gear meshes with
     /// itself, a gear is its own carrier, or both gears are internal.

@@ -5,6 +5,7 @@
 
 use std::fmt::Write;
 
+use crate::diagnostic::is_printable;
 use crate::symbolic::{Function, Notation};
 
 use super::closed::{Argument, ClosedFormula, FormulaSheet};
@@ -93,9 +94,9 @@ fn remark(notation: Notation, text: &str) -> String {
 /// Text that ends no comment or string, begins no line and hides nothing.
 fn comment(text: &str) -> String {
     let harmless = |c: char| match c {
-        // Line ends and marks of the writing direction, which compilers refuse.
-        '\\' | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => ' ',
-        c if c.is_control() => ' ',
+        // Compilers refuse marks of the writing direction.
+        '\\' => ' ',
+        c if !is_printable(c) => ' ',
         c => c,
     };
     let mut clean: String = text.chars().map(harmless).collect();

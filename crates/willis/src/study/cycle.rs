@@ -17,7 +17,7 @@ use crate::work::{self, Work};
 
 use super::answer::{PointAnswer, PointVerdict};
 use super::column::{Column, ColumnTable, ColumnValues};
-use super::profile::{Basis, Held, Profile, ProfileRow};
+use super::profile::{Basis, Held, Profile, ProfileColumns, ProfileRow};
 use super::question::{Hold, Question, Trains};
 
 /// How many of the worst are told.
@@ -367,6 +367,10 @@ pub struct CycleRequest {
     /// `time [s]` (a trace: each row holds until the time of the next), `duration [min]` or `hours` (each row holds so
     /// long), or `share [%]` (each row holds for this part of one hour).
     pub profile: String,
+    /// Columns of the profile that are left out, with or without their units.
+    pub ignore_column: Vec<String>,
+    /// The columns of the profile that are read, where not all of them are.
+    pub only_column: Vec<String>,
     /// The operation of the train file that says what no column does. Default: the first one that suits the state.
     pub operation: Option<String>,
     /// The state of the shift table, where no column says it. Default: that of the operation.
@@ -417,7 +421,16 @@ pub struct CycleAnswer {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn cycle(model: &Model, request: &CycleRequest, work: &dyn Work) -> Result<CycleAnswer, Diagnostics> {
-    let profile = Profile::parse(&request.profile, model)?;
+    let columns = match (&*request.only_column, &*request.ignore_column) {
+        ([], []) => ProfileColumns::All,
+        ([], without) => ProfileColumns::Without(without.to_vec()),
+        (only, []) => ProfileColumns::Only(only.to_vec()),
+        _ => {
+            let message = "`only_column` and `ignore_column` both say which columns are read";
+            return Err(Diagnostic::new(Code::Conflict, "", message).hint("give one of them").into());
+        }
+    };
+    let profile = Profile::parse_columns(&request.profile, model, &columns)?;
     let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
     Cycle::new(question, &profile).run(work)
 }

@@ -443,5 +443,5 @@ impl Reader<'_> {
 }
 
 fn clip(text: &str) -> String {
-    text.chars().filter(|c| !c.is_control()).take(64).collect()
+    text.chars().filter(|c| crate::diagnostic::is_printable(*c)).take(64).collect()
 }

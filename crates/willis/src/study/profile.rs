@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, printable};
 use crate::model::{Model, Target};
 use crate::train::Measure;
 use crate::train::csv::{self, Cell, Row};
@@ -13,8 +13,43 @@ use crate::units::{self, Dimension};
 
 use super::column::{Column, ColumnValues};
 
-/// More errors than these are counted, not kept.
-const MOST_ERRORS: usize = 1000;
+/// More errors than these are counted, not kept; one more says how many.
+const MOST_ERRORS: usize = 49;
+
+/// Which columns of a profile are read; names as they stand in the header, with or without the unit.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum ProfileColumns {
+    /// All of them.
+    #[default]
+    All,
+    /// These.
+    Only(Vec<String>),
+    /// All but these.
+    Without(Vec<String>),
+}
+
+impl ProfileColumns {
+    fn names(&self) -> &[String] {
+        match self {
+            Self::All => &[],
+            Self::Only(names) | Self::Without(names) => names,
+        }
+    }
+
+    fn takes(&self, header: &str) -> bool {
+        let named = || self.names().iter().any(|n| is_called(header, n));
+        match self {
+            Self::All => true,
+            Self::Only(_) => named(),
+            Self::Without(_) => !named(),
+        }
+    }
+}
+
+/// Whether a name is that of a column.
+fn is_called(header: &str, name: &str) -> bool {
+    header == name || bracketed(header).is_some_and(|(own, _)| own == name)
+}
 
 /// How rows of a profile weigh in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,8 +113,9 @@ pub(super) struct Held {
 /// A duty cycle or a load spectrum: each row one operating condition, with a weight in time.
 ///
 /// # Format
-/// Commas between columns, decimal points; empty lines and lines that begin with `#` are skipped; the first line left
-/// is the header. A column is a quantity with its unit, `input.speed [rpm]`, `output.torque [N m]`,
+/// Commas, semicolons or tabs between columns, whichever the header has; with semicolons or tabs decimal commas are read
+/// too. Empty lines and lines that begin with `#` are skipped; the first line left is the header, of at most 4,096 columns.
+/// A column is a quantity with its unit, `input.speed [rpm]`, `output.torque [N m]`,
 /// `carrier.speed_rpm`, or a text, `state`; names are those of [`Target::parse`]. One column weighs the rows:
 ///
 /// | header | row |
@@ -290,10 +326,37 @@ impl Profile {
     /// Reads a profile.
     ///
     /// # Errors
-    /// All that is wrong with it, each with its line and column: no column that weighs the rows or several, unknown
-    /// quantities (with the nearest) and states, units of another kind, empty cells and such that are no finite number,
-    /// times that do not rise, a profile without rows or that lasts no time.
+    /// All that is wrong with it, each with its line and column, 50 at most: no column that weighs the rows or several,
+    /// unknown quantities (with the nearest) and states, units of another kind, empty cells and such that are no finite
+    /// number, times that do not rise, a profile without rows or that lasts no time.
     pub fn parse(text: &str, model: &Model) -> Result<Self, Diagnostics> {
+        Self::parse_columns(text, model, &ProfileColumns::All)
+    }
+
+    /// Reads some of the columns of a profile; [`Profile::notes`] tell which were left out.
+    ///
+    /// # Errors
+    /// Those of [`Profile::parse`], and names that no column has.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::model::Model;
+    /// use willis::study::{Profile, ProfileColumns};
+    ///
+    /// let text = willis::train::Train::builder("reducer")
+    ///     .members(["s", "c"])
+    ///     .terminals(["s", "c"])
+    ///     .set(willis::train::SetSpec::simple("P1", ("s", 30), ("frame", 70), "c"));
+    /// let model = Model::new(text)?;
+    /// let measured = "time [s];s.speed [rpm];vibration\n0;900,5;3\n2;1000;4\n";
+    /// assert!(Profile::parse(measured, &model).is_err());
+    /// let without = ProfileColumns::Without(vec!["vibration".into()]);
+    /// let profile = Profile::parse_columns(measured, &model, &without)?;
+    /// assert_eq!(profile.describe(0), "s.speed = 900.5 rpm");
+    /// assert_eq!(profile.notes(), ["columns left out: vibration"]);
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn parse_columns(text: &str, model: &Model, columns: &ProfileColumns) -> Result<Self, Diagnostics> {
         let mut wrong = Wrong { all: Diagnostics::default(), more: 0 };
         let mut rows = csv::rows(text);
         let Some(header) = rows.next() else {
@@ -301,7 +364,14 @@ impl Profile {
             return Err(d.hint("a header row comes first: `time [s],input.speed [rpm],output.torque [N m]`").into());
         };
         let whole = header.span.clone();
-        let (mut profile, header) = Self::headed(header, model, &mut wrong);
+        if header.count > csv::MOST_COLUMNS {
+            let line = format!("line {}", header.line);
+            // The line is too long to be shown.
+            wrong.at(line, whole.start..whole.start, csv::too_many(header.count), "");
+            wrong.all.stand_in(None, text);
+            return Err(wrong.all);
+        }
+        let (mut profile, header) = Self::headed(header, model, columns, &mut wrong);
         let mut progress = Progress { known: vec![HashMap::new(); profile.settings.len()], ..Progress::default() };
         for row in rows {
             profile.take(&row, &header, &mut progress, model, &mut wrong);
@@ -325,7 +395,7 @@ impl Profile {
     }
 
     /// A profile without rows, from its header.
-    fn headed<'t>(row: Row<'t>, model: &Model, wrong: &mut Wrong) -> (Self, Header<'t>) {
+    fn headed<'t>(row: Row<'t>, model: &Model, columns: &ProfileColumns, wrong: &mut Wrong) -> (Self, Header<'t>) {
         let mut profile = Self {
             basis: Basis::Trace,
             settings: vec![],
@@ -335,11 +405,32 @@ impl Profile {
             total_s: 0.0,
             notes: vec![],
         };
-        let Row { line, span: whole, cells } = row;
+        let Row { line, span: whole, cells, .. } = row;
+        for name in columns.names().iter().filter(|n| !cells.iter().any(|c| is_called(c.text, n))) {
+            let d = Diagnostic::new(Code::BadTable, "", format!("there is no column `{name}`"));
+            let d = d.suggest(name, cells.iter().map(|c| c.text));
+            wrong.push(d, whole.clone(), "");
+        }
+        let left: Vec<&str> = cells.iter().map(|c| c.text).filter(|name| !columns.takes(name)).collect();
+        if !left.is_empty() {
+            const MOST: usize = 12;
+            let more = if left.len() > MOST { format!(" and {} more", left.len() - MOST) } else { String::new() };
+            let shown: Vec<_> = left.iter().take(MOST).map(|name| printable(name)).collect();
+            profile.notes.push(format!("columns left out: {}{more}", shown.join(", ")));
+        }
         let mut weighing: Option<(usize, f64)> = None;
         let mut settings = vec![None; cells.len()];
+        let mut told = false;
         for (k, Cell { text: name, span }) in cells.iter().enumerate() {
             let place = format!("line {line}, column {}", k + 1);
+            if !columns.takes(name) {
+                continue;
+            }
+            // The nearest names of what is unknown take their time to find.
+            if wrong.all.len() >= MOST_ERRORS {
+                wrong.more += cells.len() - k;
+                break;
+            }
             match purpose(name, model) {
                 _ if name.is_empty() => wrong.at(place, whole.clone(), "the column has no name".into(), ""),
                 Ok(Purpose::Weight(basis, factor)) => match weighing {
@@ -364,10 +455,11 @@ impl Profile {
                 },
                 Err(mut d) => {
                     d.place = place;
-                    let hint = match cells.len() == 1 && (name.contains(';') || name.contains('\t')) {
-                        true => "commas separate columns",
-                        false => "",
+                    let hint = match d.code {
+                        Code::UnknownName if !told => "or leave the column out: name it in `ignore_column`",
+                        _ => "",
                     };
+                    told |= !hint.is_empty();
                     wrong.push(*d, span.clone(), hint);
                 }
             }
@@ -394,8 +486,8 @@ impl Profile {
         wrong: &mut Wrong,
     ) {
         let line = row.line;
-        if row.cells.len() != header.cells.len() {
-            let message = format!("line {line} has {} cells, the header has {}", row.cells.len(), header.cells.len());
+        if row.count != header.cells.len() {
+            let message = format!("line {line} has {} cells, the header has {}", row.count, header.cells.len());
             return wrong.at(format!("line {line}"), row.span.clone(), message, "");
         }
         let mut weight = None;
@@ -408,12 +500,12 @@ impl Profile {
             let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
             let read = match (header.weighing, header.settings[k]) {
                 (Some((column, factor)), _) if column == k => {
-                    self.weight(cell, factor, line, progress).map(|w| weight = Some(w)).map_err(fault)
+                    self.weight(row, cell, factor, progress).map(|w| weight = Some(w)).map_err(fault)
                 }
                 (_, Some(_)) if cell.is_empty() => Err(fault("the cell is empty".into())),
                 (_, Some(at)) => {
                     let setting = &mut self.settings[at];
-                    let value = progress.known[at].entry(cell).or_insert_with(|| setting.read(cell, model));
+                    let value = progress.known[at].entry(cell).or_insert_with(|| setting.read(row, cell, model));
                     value.clone().map(|value| condition[at] = value)
                 }
                 _ => continue,
@@ -436,14 +528,14 @@ impl Profile {
     }
 
     /// What a cell of the weighing column says, in seconds or parts of the whole.
-    fn weight(&self, cell: &str, factor: f64, line: usize, progress: &mut Progress<'_>) -> Result<f64, String> {
-        let x = csv::number(cell)?;
+    fn weight(&self, row: &Row<'_>, cell: &str, factor: f64, progress: &mut Progress<'_>) -> Result<f64, String> {
+        let x = row.value(cell).map_err(|why| why.of(cell))?;
         if self.basis == Basis::Trace {
             if let Some((before, other)) = progress.last.filter(|l| x * factor <= l.0) {
                 let word = if x * factor < before { "falls" } else { "does not rise" };
                 return Err(format!("the time {word}: {} s here, {} s in line {other}", x * factor, before));
             }
-            progress.last = Some((x * factor, line));
+            progress.last = Some((x * factor, row.line));
         } else if x < 0.0 {
             return Err(format!("`{cell}` is below zero, and this weighs a row"));
         }
@@ -596,17 +688,16 @@ impl Profile {
 
 impl Setting {
     /// The position of a cell's value among those known, checked where it is new.
-    fn read(&mut self, cell: &str, model: &Model) -> Result<u32, Box<Diagnostic>> {
+    fn read(&mut self, row: &Row<'_>, cell: &str, model: &Model) -> Result<u32, Box<Diagnostic>> {
         let fault = |message: String| Box::new(Diagnostic::new(Code::BadTable, "", message));
         let value = match self.target.measure(model) {
             Measure::Text | Measure::Flag => cell.to_owned(),
             measure => {
-                let plain = cell.replace('\u{2212}', "-");
-                let x = csv::number(&plain).map_err(fault)?;
-                if measure == Measure::Integer && x.fract() != 0.0 {
+                let plain = row.number(cell).map_err(|why| fault(why.of(cell)))?;
+                if measure == Measure::Integer && plain.parse().is_ok_and(|x: f64| x.fract() != 0.0) {
                     return Err(fault(format!("`{cell}` is not a whole number, and this quantity is one")));
                 }
-                plain.strip_prefix('+').unwrap_or(&plain).to_owned()
+                plain
             }
         };
         let text = if self.unit.is_empty() { value.clone() } else { format!("{value} {}", self.unit) };

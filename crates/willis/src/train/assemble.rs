@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::losses::Laws;
 
-use super::assembler::{Assembler, Load, NO_CONTROLS, bad_name, check_name, unique};
+use super::assembler::{Assembler, Load, check_name, check_text, unique};
 use super::described::{GivenFriction, GivenMesh, GivenSet, sign};
 use super::input::{Assembled, inputs};
 use super::physical::{BearingMount, Housing, Lubrication, Rotor, SealMount};
@@ -439,8 +439,11 @@ fn no_oil(place: String) -> Diagnostic {
 
 impl Assembler<'_> {
     fn name_members(&mut self, spec: &Specification) {
-        if spec.name.chars().any(char::is_control) {
-            bad_name(self, &spec.name, "name", NO_CONTROLS);
+        check_text(self, "a name", &spec.name, "name");
+        for (text, place) in [(&spec.source, "source"), (&spec.notes, "notes")] {
+            // These may have lines.
+            let plain = text.as_deref().unwrap_or_default().replace(['\n', '\r', '\t'], " ");
+            check_text(self, "a text", &plain, place);
         }
         for (k, name) in spec.members.iter().enumerate() {
             let place = format!("members[{k}]");

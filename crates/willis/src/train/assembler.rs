@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, is_printable};
 use crate::exact::Rational;
 use crate::losses::Laws;
 
@@ -171,18 +171,22 @@ pub(super) fn check_name(a: &mut Assembler<'_>, name: &str, place: &str, reserve
         "a name has at most 64 characters"
     } else if name.contains('.') && reserve {
         "a name has no dot (it separates a set from its planet)"
-    } else if name.chars().any(char::is_control) {
-        NO_CONTROLS
     } else {
-        return;
+        return check_text(a, "a name", name, place);
     };
     bad_name(a, name, place, why);
 }
 
-pub(super) const NO_CONTROLS: &str = "a name has no control characters";
+/// Refuses what cannot be shown.
+pub(super) fn check_text(a: &mut Assembler<'_>, what: &str, text: &str, place: &str) {
+    if let Some(c) = text.chars().find(|c| !is_printable(*c)) {
+        let kind = if c.is_control() { "a control character" } else { "a character that cannot be shown" };
+        bad_name(a, text, place, &format!("{what} has no U+{:04X}, {kind}", c as u32));
+    }
+}
 
 pub(super) fn bad_name(a: &mut Assembler<'_>, name: &str, place: &str, why: &str) {
-    a.report(Diagnostic::new(Code::BadName, place, format!("`{}`: {why}", clip(&name.escape_debug().to_string()))));
+    a.report(Diagnostic::new(Code::BadName, place, format!("`{}`: {why}", clip(name))));
 }
 
 pub(super) fn unique<'n>(a: &mut Assembler<'_>, what: &str, path: &str, names: impl Iterator<Item = &'n str>) {

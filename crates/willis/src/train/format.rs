@@ -7,6 +7,7 @@
 pub(crate) mod keys;
 mod node;
 mod reader;
+mod synonyms;
 
 pub(crate) use node::{Amount, Datum, Directed, Fields, Node, document};
 pub(crate) use reader::{Spans, fields, read};

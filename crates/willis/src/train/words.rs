@@ -1,12 +1,12 @@
 //! Words of users in messages.
 
+use crate::diagnostic::printable;
+
 /// Text from the user, short enough for a message.
 pub(super) fn clip(text: &str) -> String {
     // What a terminal would obey is shown instead.
-    let text: String =
-        text.chars().flat_map(|c| if c.is_control() { c.escape_debug().collect() } else { vec![c] }).collect();
-    let text = text.as_str();
-    if text.chars().count() > 64 { text.chars().take(64).chain(['…']).collect() } else { text.into() }
+    let text = printable(text);
+    if text.chars().count() > 64 { text.chars().take(64).chain(['…']).collect() } else { text.into_owned() }
 }
 
 /// Names for a hint, not more than fit a line.

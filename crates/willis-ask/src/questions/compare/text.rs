@@ -1,5 +1,6 @@
 //! Variants side by side, differences first, for eyes.
 
+use willis::diagnostic::is_printable;
 use willis::study::{
     Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapDifference, MapPair, TextDifference,
 };
@@ -76,7 +77,7 @@ pub fn text(c: &Comparison) -> String {
 }
 
 fn clipped(text: &str) -> String {
-    let shown: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let shown: String = text.chars().map(|c| if is_printable(c) { c } else { ' ' }).collect();
     match shown.chars().count() > MOST_LETTERS {
         true => shown.chars().take(MOST_LETTERS - 1).chain(['…']).collect(),
         false => shown,

@@ -1,5 +1,6 @@
 //! A run for eyes.
 
+use willis::diagnostic::is_printable;
 use willis::dynamics::{Event, ModeLabel, Outcome, RunReport};
 use willis::hypergraph::watts;
 
@@ -118,7 +119,7 @@ fn modes(event: &Event, most: usize) -> String {
 
 /// Without control characters, which a terminal would obey.
 fn clean(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+    text.chars().map(|c| if is_printable(c) { c } else { ' ' }).collect()
 }
 
 fn mode(m: ModeLabel) -> &'static str {

@@ -1,6 +1,7 @@
 //! Numbers and names as other programs read them.
 
 use crate::analysis::Verdict;
+use crate::diagnostic::is_printable;
 
 /// The shortest text that reads back as the same number.
 pub fn number(x: f64) -> String {
@@ -23,7 +24,7 @@ pub fn percent(x: f64) -> String {
 
 /// Text of the file on one line, printable: a comment must not end early.
 pub fn line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+    text.chars().map(|c| if is_printable(c) { c } else { ' ' }).collect()
 }
 
 /// The same inside an XML comment or attribute.

@@ -803,7 +803,7 @@ impl Assembler<'_> {
             }
         };
         for message in wrong {
-            let hint = "a header row, commas, decimal points, times in s that rise";
+            let hint = "a header row, then numbers; times in s that rise";
             self.refuse(Code::BadTable, place, format!("{}: {message}", clip(file)), hint);
         }
         None

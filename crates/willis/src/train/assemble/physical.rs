@@ -335,13 +335,23 @@ impl Assembler<'_> {
                 Bearing::new(name, kind, spec.series.as_deref().unwrap_or(""), bore, outside, width)
             }
             (None, ..) => {
-                let hint = "give kind, series, bore, outside_diameter and width";
+                let mut hint = "give kind, series, bore, outside_diameter and width".to_owned();
                 let d = match &spec.designation {
                     Some(name) => {
-                        let known = bearing::all().iter().map(|b| b.designation.as_str());
                         let message = format!("there is no bearing `{}` in the catalogue", clip(name));
                         let d = Diagnostic::new(Code::UnknownName, format!("{place}.designation"), message);
-                        d.suggest(name, known)
+                        // A bearing of another size is not what was meant, however alike the names are.
+                        let digits = |text: &str| text.chars().filter(char::is_ascii_digit).collect::<String>();
+                        let alike = |b: &&Bearing| digits(&b.designation) == digits(name);
+                        let d = d.suggest(name, bearing::all().iter().filter(alike).map(|b| b.designation.as_str()));
+                        if let Some((kind, series)) = bearing::kind_of(name) {
+                            let word = bearing::Kind::NAMES.iter().find(|n| n.1 == kind).map_or("", |n| n.0);
+                            hint = format!(
+                                "by its name it is a {kind}: give kind = \"{word}\", series = \"{series}\", bore, \
+                                 outside_diameter and width"
+                            );
+                        }
+                        d
                     }
                     None => {
                         let message = format!("bearing `{}` has no designation and no dimensions", clip(&spec.name));

@@ -13,6 +13,7 @@ use crate::units::{self, Dimension, Quantity, QuantityFault};
 
 use super::keys::{Kind, Measure, SignalKind, Table, about};
 use super::node::{Amount, Datum, Directed, Fields, Node};
+use super::synonyms;
 
 /// Where each place of the document stands in the text.
 #[derive(Clone, Debug, Default)]
@@ -133,8 +134,17 @@ impl Reader<'_> {
                 }
                 None => {
                     let message = format!("there is no key `{}` here", clip(name));
-                    let mut d =
-                        Diagnostic::new(Code::UnknownKey, place, message).suggest(name, table.keys().map(|k| k.name));
+                    let mut d = Diagnostic::new(Code::UnknownKey, place, message);
+                    let keys = table.keys().map(|k| k.name);
+                    match synonyms::meant(name, keys.clone()) {
+                        Some((key, more)) => {
+                            let with = if more.is_empty() { String::new() } else { format!(", with {more}") };
+                            d = d.hint(format!("it is called `{key}` here{with}"));
+                            // What needs more is not put right by the key alone.
+                            d.replacement = Some(key.to_owned()).filter(|_| more.is_empty());
+                        }
+                        None => d = d.suggest(name, keys),
+                    }
                     match takes {
                         Some(takes) => d = d.hint(takes),
                         None if d.hints.is_empty() => {
@@ -237,7 +247,10 @@ impl Reader<'_> {
                 found.map(Node::Flag)
             }
             Kind::Choice(choices) => match value.get_ref().as_str() {
-                Some(text) if choices.contains(&text) => Some(Node::Text(text.to_owned())),
+                Some(text) if choices.iter().any(|c| *c == text || *c == spelt(text)) => {
+                    let choice = choices.iter().find(|c| **c == text || **c == spelt(text));
+                    choice.map(|c| Node::Text((*c).to_owned()))
+                }
                 Some(text) => {
                     let message = format!("`{}` is not a known `{}`", clip(text), last(place));
                     let mut d =
@@ -612,4 +625,11 @@ fn join(path: &str, key: &str) -> String {
 
 fn last(place: &str) -> &str {
     place.rsplit('.').next().unwrap_or(place)
+}
+
+/// A choice as it may be written in a sentence: `Deep groove ball bearing` is `deep-groove-ball`.
+fn spelt(text: &str) -> String {
+    let plain = text.trim().to_lowercase().replace([' ', '_'], "-");
+    let plain = plain.strip_suffix("-bearing").unwrap_or(&plain);
+    plain.strip_prefix("two-row-").map_or(plain.to_owned(), |rest| format!("double-row-{rest}"))
 }
