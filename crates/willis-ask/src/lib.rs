@@ -54,6 +54,24 @@ pub use questions::{QUESTIONS, question};
 pub use refusal::{Refusal, RefusalReport};
 pub use style::quoted;
 
+/// An answer or a refusal as JSON, indented. What a terminal would obey is written as an escape, which means the same.
+pub fn json(contract: &impl serde::Serialize) -> String {
+    let plain = serde_json::to_string_pretty(contract).expect("plain data") + "\n";
+    let is_safe = |c: char| c == '\n' || willis::diagnostic::is_printable(c);
+    if plain.chars().all(is_safe) {
+        return plain;
+    }
+    let mut out = String::with_capacity(plain.len() + 64);
+    for c in plain.chars() {
+        match is_safe(c) {
+            true => out.push(c),
+            // Beyond texts there is nothing of the kind.
+            false => c.encode_utf16(&mut [0; 2]).iter().for_each(|u| out += &format!("\\u{u:04x}")),
+        }
+    }
+    out
+}
+
 /// The code of the page of this crate runs as a doctest.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -295,7 +295,7 @@ impl<Q: Question> Answer for Answered<'_, Q> {
     }
 
     fn json(&self) -> String {
-        serde_json::to_string_pretty(&self.answer).expect("plain data") + "\n"
+        crate::json(&self.answer)
     }
 
     fn tables(&self) -> Vec<Table> {

@@ -57,6 +57,15 @@ pub fn matches(words: impl IntoIterator<Item = OsString>) -> ArgMatches {
     command.get_matches_from(words)
 }
 
+/// `0.5%` or `0.005`
+fn part(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.trim().strip_suffix('%').map_or((text.trim(), 1.0), |n| (n.trim(), 0.01));
+    match number.parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x * unit),
+        _ => Err("write 0.5% or 0.005".into()),
+    }
+}
+
 /// The command of a question.
 fn of(entry: &Entry) -> Command {
     let mut c = entry.options(Command::new(entry.name));
@@ -78,6 +87,10 @@ fn of(entry: &Entry) -> Command {
             )
             .arg(many("set").value_name("QUANTITY=VALUE").help(
                 "Give a quantity of the file another value: P1.sun.teeth=23. Several times for several quantities",
+            ))
+            .arg(Arg::new("speed-tolerance").long("speed-tolerance").value_name("PART").value_parser(part).help(
+                "Measured speeds: they may contradict the gears by this part, 0.5% or 0.005; the answer tells by how \
+                 much they do at worst",
             ))
             .arg(
                 many("allow")

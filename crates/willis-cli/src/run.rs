@@ -64,7 +64,7 @@ impl<'a> Asked<'a> {
         if *refusal == Refusal::Cancelled {
             return Ended::Interrupted { out: String::new(), told: "interrupted: there is no answer\n".into() };
         }
-        let json = || serde_json::to_string_pretty(&refusal.report(of)).expect("plain data") + "\n";
+        let json = || willis_ask::json(&refusal.report(of));
         Ended::Refused { out: if self.form == JSON { json() } else { String::new() }, told: refusal.render(of, true) }
     }
 

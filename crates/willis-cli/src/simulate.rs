@@ -118,7 +118,7 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
         output::write(path, plot.svg(&report).as_bytes(), asked.force)?;
     }
     let told = match form {
-        JSON => serde_json::to_string_pretty(&report).expect("plain data") + "\n",
+        JSON => willis_ask::json(&report),
         _ => simulation_text(&report),
     };
     Ok(if report.outcome == Outcome::Interrupted {

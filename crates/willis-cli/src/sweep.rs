@@ -100,7 +100,7 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches) -> Result<Ended, Ended> 
 /// A report for the screen.
 fn told(asked: &Asked<'_>, report: &Report, of: &[Given]) -> String {
     match asked.form {
-        JSON => serde_json::to_string_pretty(report).expect("plain data") + "\n",
+        JSON => willis_ask::json(report),
         _ => sweep_text(report) + &notes(of[0].model.warnings(), of),
     }
 }

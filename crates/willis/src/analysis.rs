@@ -419,12 +419,28 @@ pub struct OperationReport {
     /// Laws that were used outside their ranges.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub outside_laws: Vec<OutsideLaw>,
+    /// Where prescribed speeds contradict the gears the most, within the tolerance that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_deviation: Option<SpeedDeviation>,
     /// Speeds, also when the torques have no answer; rad/s.
     pub speeds_rad_s: Named<Option<f64>>,
     /// Every equilibrium that drives a load (or, with two or more freedoms, any equilibrium).
     pub solutions: Vec<SolutionReport>,
     /// Of a locked train: equilibria in which every loaded member must push.
     pub dissipative_solutions: Vec<SolutionReport>,
+}
+
+/// Prescribed speeds that contradict the gears within the tolerance that was asked for
+/// ([`Train::with_speed_tolerance`]).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct SpeedDeviation {
+    /// The members that the gears tie together, in the order in which their speeds were given. The last one follows the
+    /// others.
+    pub members: Vec<String>,
+    /// By which part of the largest of their speeds, as the gears tie them, they contradict each other.
+    pub relative: f64,
 }
 
 impl OperationReport {
@@ -439,6 +455,7 @@ impl OperationReport {
             reason: None,
             why: None,
             outside_laws: vec![],
+            speed_deviation: None,
             speeds_rad_s: speeds,
             solutions: vec![],
             dissipative_solutions: vec![],

@@ -26,6 +26,7 @@
 
 mod codes;
 mod conversions;
+mod numbers;
 mod printable;
 mod span;
 
@@ -38,6 +39,7 @@ use crate::work::Cancelled;
 
 pub use codes::Code;
 pub(crate) use conversions::through_diagnostic;
+pub(crate) use numbers::apart;
 pub use printable::{is_printable, printable};
 pub use span::{Lines, Span};
 

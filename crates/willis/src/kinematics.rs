@@ -121,6 +121,18 @@ pub struct Motion {
     pub speeds: Vec<Option<Rational>>,
     /// Power of π that all speeds share.
     pub pi_power: i8,
+    /// Where prescribed speeds that the gears tie together contradict them the most, within the
+    /// [tolerance](Train::speed_tolerance) and beyond what makes no difference.
+    pub deviation: Option<Deviation>,
+}
+
+/// Speeds that contradict the gears a little.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deviation {
+    /// The members, in the order in which their speeds were given: the last one yields.
+    pub members: Vec<MemberId>,
+    /// By which part of the largest of their speeds, as the gears tie them.
+    pub relative: f64,
 }
 
 impl Motion {
@@ -327,32 +339,37 @@ impl<'t> Configuration<'t> {
         }
     }
 
-    /// Exact speeds for prescribed ones. `Err` gives the members of a contradiction: each list is
-    /// tied together by the gears in a way that the prescribed values do not respect.
+    /// Exact speeds for prescribed ones. What contradicts the gears by less than [`Train::SAME_SPEED`], or within the
+    /// [tolerance](Train::speed_tolerance) of the train, follows the speeds given before it. `Err` gives the members of
+    /// a contradiction: each list is tied together by the gears in a way that the prescribed values do not respect.
     pub fn motion(&self, prescribed: &[(MemberId, Quantity)]) -> Result<Motion, Vec<Vec<MemberId>>> {
         let members: Vec<_> = prescribed.iter().map(|(m, _)| *m).collect();
         let (values, pi_power) = common(prescribed.iter().map(|(_, q)| q));
-        let powers: Vec<i8> = prescribed.iter().filter(|(_, q)| !q.value.is_zero()).map(|(_, q)| q.pi_power).collect();
-        let mixed = powers.iter().any(|p| *p != powers[0]);
         let transfer = self.transfer(&members);
         let dot = |factors: &[Rational]| {
             factors.iter().zip(&values).fold(Rational::ZERO, |sum, (f, v)| if f.is_zero() { sum } else { sum + f * v })
         };
-        let broken: Vec<Vec<MemberId>> = transfer
-            .conflicts
-            .iter()
-            .filter(|c| {
-                let size: f64 = c.iter().zip(&values).map(|(f, v)| (f.to_f64() * v.to_f64()).abs()).sum();
-                // rpm beside rad/s: no exact form exists, round-off is no contradiction.
-                if mixed { dot(c).to_f64().abs() > 1e-12 * size } else { !dot(c).is_zero() }
-            })
-            .map(|c| (0..members.len()).filter(|&k| !c[k].is_zero()).map(|k| members[k]).collect())
-            .collect();
+        let tied = |c: &[Rational]| (0..members.len()).filter(|&k| !c[k].is_zero()).map(|k| members[k]).collect();
+        let (mut broken, mut deviation) = (vec![], None::<Deviation>);
+        for c in &transfer.conflicts {
+            let excess = dot(c);
+            if excess.is_zero() {
+                continue;
+            }
+            let most = c.iter().zip(&values).map(|(f, v)| (f.to_f64() * v.to_f64()).abs()).fold(0.0, f64::max);
+            let relative = excess.to_f64().abs() / most;
+            // Beyond floating point nothing can be said to be small.
+            if relative.is_nan() || relative > self.train.speed_tolerance {
+                broken.push(tied(c));
+            } else if relative > Train::SAME_SPEED && deviation.as_ref().is_none_or(|d| relative > d.relative) {
+                deviation = Some(Deviation { members: tied(c), relative });
+            }
+        }
         if !broken.is_empty() {
             return Err(broken);
         }
         let speeds = transfer.speeds.iter().map(|s| s.as_ref().map(|f| dot(f))).collect();
-        Ok(Motion { speeds, pi_power })
+        Ok(Motion { speeds, pi_power, deviation })
     }
 
     /// Rotors that cannot turn although no shift element or hold grips them directly.

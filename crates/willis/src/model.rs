@@ -45,6 +45,8 @@ pub struct Model {
     files: BTreeMap<String, Result<String, String>>,
     /// Laws in force over those of the text: family and name.
     laws: Vec<(String, String)>,
+    /// See [`Train::with_speed_tolerance`].
+    speed_tolerance: f64,
     train: Train,
     specification: Specification,
     /// Where everything stands in the text, and what was said when it was read.
@@ -109,7 +111,7 @@ impl Model {
             return Err(reading.diagnostics);
         };
         let document = Document::parse(text).expect("the text was read as TOML");
-        Ok(Self { text: text.to_owned(), document, files, laws: vec![], train, specification, reading })
+        Ok(Self { text: text.to_owned(), document, files, laws: vec![], speed_tolerance: Train::SAME_SPEED, train, specification, reading })
     }
 
     /// Puts laws into force over those of the text: pairs of family and name.
@@ -128,6 +130,16 @@ impl Model {
             })?;
             self.laws.push((family.to_owned(), law.to_owned()));
         }
+        Ok(self)
+    }
+
+    /// Lets prescribed speeds contradict the gears by this part: see [`Train::with_speed_tolerance`].
+    ///
+    /// # Errors
+    /// A number that is not from 0 to 0.1.
+    pub fn with_speed_tolerance(mut self, tolerance: f64) -> Result<Self, Diagnostics> {
+        self.train = self.train.with_speed_tolerance(tolerance)?;
+        self.speed_tolerance = tolerance;
         Ok(self)
     }
 
@@ -180,7 +192,7 @@ impl Model {
             laws.retain(|(family, _)| path.strip_prefix("laws.") != Some(family));
         }
         let read = Self::read(&document.text(), &mut |name| self.table(name)).map_err(elsewhere)?;
-        read.with_laws(laws)
+        read.with_laws(laws)?.with_speed_tolerance(self.speed_tolerance)
     }
 
     /// The text of a table that was read before.
@@ -240,7 +252,7 @@ impl Model {
                 for (family, law) in &self.laws {
                     train = train.with_law(family, law)?;
                 }
-                train
+                train.with_speed_tolerance(self.speed_tolerance)?
             }
         };
         for (target, value) in settings {

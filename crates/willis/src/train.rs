@@ -26,7 +26,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::losses::Laws;
 use crate::units::{AngularSpeed, Power, Quantity, Temperature, Torque};
@@ -362,6 +362,8 @@ pub struct Train {
     pub(crate) output: Option<MemberId>,
     pub(crate) studies: Vec<StudySpec>,
     pub(crate) warnings: Vec<Diagnostic>,
+    /// See [`Train::speed_tolerance`].
+    pub(crate) speed_tolerance: f64,
     pub(crate) assumptions: Vec<String>,
     pub(crate) lubrication: Option<Lubrication>,
     pub(crate) laws: Laws,
@@ -434,6 +436,55 @@ impl Train {
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Prescribed speeds are those that the gears allow when they differ from these by no more than this part of the
+    /// largest speed that they are tied to: a text has few digits, and the speeds of a train follow each other exactly.
+    pub const SAME_SPEED: f64 = 1e-9;
+
+    /// The largest [tolerance](Self::with_speed_tolerance).
+    pub const MOST_SPEED_TOLERANCE: f64 = 0.1;
+
+    /// By which part prescribed speeds may contradict the gears; [`SAME_SPEED`](Self::SAME_SPEED) where nobody says
+    /// more.
+    pub fn speed_tolerance(&self) -> f64 {
+        self.speed_tolerance
+    }
+
+    /// The same train, whose prescribed speeds may be measured ones: they may contradict the gears by this part of the
+    /// largest speed that they are tied to. The speeds that come last among those given then yield, and a warning
+    /// ([`Code::SpeedsYield`]) tells by how much.
+    ///
+    /// # Errors
+    /// A number that is not from 0 to 0.1.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::analysis::{Selection, analyze};
+    ///
+    /// // 1000 rpm of the sun make 300 rpm of the carrier; 300.5 were measured.
+    /// let text = r#"
+    ///     format = 1
+    ///     name = "measured"
+    ///     members = ["s", "c"]
+    ///     terminals = ["s", "c"]
+    ///     set = [{ name = "P1", sun = { member = "s", teeth = 30 }, ring = { member = "frame", teeth = 70 }, carrier = "c" }]
+    ///     operation = [{ name = "a", speeds = { s = "1000 rpm", c = "300.5 rpm" }, torques = { s = "10 N m" } }]
+    /// "#;
+    /// let train = willis::Train::from_toml(text)?;
+    /// assert!(analyze(&train, &Selection::default()).is_err());
+    /// let analysis = analyze(&train.with_speed_tolerance(0.01)?, &Selection::default())?;
+    /// let deviation = analysis.operations[0].speed_deviation.as_ref().unwrap();
+    /// assert!((deviation.relative - 0.5 / 300.5).abs() < 1e-4);
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn with_speed_tolerance(mut self, tolerance: f64) -> Result<Self, Diagnostics> {
+        if !(0.0..=Self::MOST_SPEED_TOLERANCE).contains(&tolerance) {
+            let message = format!("a speed tolerance of {tolerance}: it is a part from 0 to {}", Self::MOST_SPEED_TOLERANCE);
+            return Err(Diagnostic::new(Code::OutOfRange, "", message).hint("0.005 and 0.5 % are the same").into());
+        }
+        self.speed_tolerance = tolerance.max(Self::SAME_SPEED);
+        Ok(self)
     }
 
     /// Where its data come from, in the writer's words.

@@ -116,8 +116,7 @@ impl Question for Regimes {
         Ok(vec![match (form, answer) {
             #[cfg(feature = "pictures")]
             ("map-json", _) => {
-                let map = serde_json::to_string_pretty(&self.map(of)?).expect("plain data") + "\n";
-                File::text("regimes.json", map)
+                File::text("regimes.json", crate::json(&self.map(of)?))
             }
             (_, RegimesAnswer::Train(all)) => File::text("regimes.tex", latex::latex(all)),
             (_, RegimesAnswer::Family(all)) => File::text("family.tex", latex::family_latex(all)),

@@ -9,7 +9,7 @@ use super::balance::{Balance, Branch, Setting};
 use super::loads::Loads;
 use super::solution::Frame;
 use super::words::{Finding, Refusal, names};
-use super::{Boundary, OperationReport, OutsideLaw, Role, SolutionReport, Verdict, Why};
+use super::{Boundary, OperationReport, OutsideLaw, Role, SolutionReport, SpeedDeviation, Verdict, Why};
 
 /// A unique equilibrium with what its numbers are computed from.
 #[derive(Clone, Debug)]
@@ -51,7 +51,11 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
         return Err(vec![Refusal::SpeedTooLarge]);
     }
     let speeds = (1..train.members.len()).map(|m| (train.members[m].name.clone(), motion.si(MemberId(m))));
-    let report = OperationReport::new(train, operation, c.degrees_of_freedom(), speeds.collect());
+    let mut report = OperationReport::new(train, operation, c.degrees_of_freedom(), speeds.collect());
+    report.speed_deviation = motion.deviation.as_ref().map(|d| SpeedDeviation {
+        members: names(train, d.members.iter().copied()),
+        relative: d.relative,
+    });
     if c.degrees_of_freedom() == 0 {
         return Ok(Settled::without(report, Verdict::Locked, Why::NoFreedom));
     }
@@ -94,7 +98,7 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
         return Err(vec![Refusal::TorqueTooLarge]);
     }
 
-    let mut findings = Vec::new();
+    let mut findings: Vec<Finding> = report.speed_deviation.clone().map(Finding::Yield).into_iter().collect();
     if !loose.is_empty() {
         findings.push(Finding::MaySpin(loose));
     }
@@ -140,7 +144,9 @@ impl Settled<'_> {
     fn without(mut report: OperationReport, verdict: Verdict, why: Why) -> Self {
         report.verdict = verdict;
         report.explain(&why);
-        Self { report, point: None, findings: vec![Finding::Why(why)] }
+        let mut findings: Vec<Finding> = report.speed_deviation.clone().map(Finding::Yield).into_iter().collect();
+        findings.push(Finding::Why(why));
+        Self { report, point: None, findings }
     }
 }
 

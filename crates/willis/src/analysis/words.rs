@@ -1,9 +1,9 @@
 //! What an operating point gives rise to, told to people: the only place where its warnings and refusals become text.
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, apart};
 use crate::train::{MemberId, Operation, ShiftElementId, Train};
 
-use super::{Boundary, OutsideLaw, StictionRange, Why};
+use super::{Boundary, OutsideLaw, SpeedDeviation, StictionRange, Why};
 
 /// Why an operation makes no question.
 #[derive(Clone, Debug)]
@@ -41,6 +41,8 @@ pub(super) enum Finding {
     Outside(OutsideLaw),
     /// A one-way clutch would hold this torque, N m, against its free direction.
     OneWay(ShiftElementId, f64),
+    /// Prescribed speeds contradict the gears within the tolerance.
+    Yield(SpeedDeviation),
     /// A prescribed torque (or else speed) is near a boundary.
     Near { torque: bool, boundary: Boundary },
 }
@@ -73,20 +75,32 @@ impl Refusal {
                 let (last, others) = members.split_last().expect("a conflict names members");
                 let message = match others {
                     [] => format!("`{}` cannot turn, but {} rpm is prescribed", name(*last), short(*given_rpm)),
-                    _ => format!(
-                        "the gears tie {} together; with the other speeds `{}` turns at {} rpm, not at {} rpm",
-                        names(train, members.iter().copied()).join(", "),
-                        name(*last),
-                        follows_rpm.map_or("another number of".into(), short),
-                        short(*given_rpm)
-                    ),
+                    _ => {
+                        let [follows, given] = match follows_rpm {
+                            Some(follows) => apart(*follows, *given_rpm, short),
+                            None => ["another number of".into(), short(*given_rpm)],
+                        };
+                        format!(
+                            "the gears tie {} together; with the other speeds `{}` turns at {follows} rpm, not at {given} rpm",
+                            names(train, members.iter().copied()).join(", "),
+                            name(*last),
+                        )
+                    }
                 };
                 let hint = match freedoms {
                     0 => "nothing can turn here: release a shift element or a held member".to_owned(),
                     1 => "prescribe one speed in this configuration".to_owned(),
                     n => format!("prescribe {n} independent speeds in this configuration"),
                 };
-                Diagnostic::new(Code::ContradictorySpeeds, format!("{place}.speeds"), message).hint(hint)
+                let d = Diagnostic::new(Code::ContradictorySpeeds, format!("{place}.speeds"), message).hint(hint);
+                // Measured speeds contradict each other a little.
+                match follows_rpm.map(|w| (w - given_rpm).abs() / w.abs().max(given_rpm.abs())) {
+                    Some(part) if part < Train::MOST_SPEED_TOLERANCE => d.hint(format!(
+                        "they differ by {} %; where speeds are measured, `speed_tolerance` says how much they may",
+                        significant(100.0 * part)
+                    )),
+                    _ => d,
+                }
             }
             Self::SpeedTooLarge => Diagnostic::new(Code::TooLarge, place, "a speed is beyond 1e308 rad/s"),
             Self::TorqueTooLarge => Diagnostic::new(Code::TooLarge, place, "a torque or power is beyond 1e308"),
@@ -166,6 +180,16 @@ impl Finding {
                 );
                 Diagnostic::new(Code::Stiction, place, message)
             }
+            Self::Yield(d) => {
+                let (last, others) = d.members.split_last()?;
+                let message = format!(
+                    "the speeds of {} contradict the gears by {} % of the largest; `{last}` follows {}",
+                    d.members.join(", "),
+                    significant(100.0 * d.relative),
+                    if others.len() == 1 { "the other" } else { "the others" },
+                );
+                Diagnostic::new(Code::SpeedsYield, format!("{place}.speeds"), message)
+            }
             Self::Outside(law) => Diagnostic::new(Code::OutsideLaw, place, law.to_string()),
             Self::OneWay(element, torque) => {
                 let element = &train.shift_elements[element.0];
@@ -213,6 +237,12 @@ pub(super) fn freedoms(n: usize) -> String {
 }
 
 /// A number for a sentence.
+/// Two significant digits.
+fn significant(x: f64) -> String {
+    let decimals = (1 - x.abs().log10().floor() as i32).clamp(0, 12) as usize;
+    format!("{x:.decimals$}")
+}
+
 fn short(x: f64) -> String {
     let text = format!("{x:.4}");
     if text.parse::<f64>() == Ok(0.0) && x != 0.0 { format!("{x:.3e}") } else { text }

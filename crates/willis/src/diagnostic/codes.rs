@@ -194,6 +194,10 @@ codes! {
     /// Losses and loads depend on each other and were not brought into agreement to 1e-9 of the
     /// loss. What is shown is the last step; treat it as a hint only.
     W317 NotConverged: "the operating point did not converge";
+    /// The speeds that were prescribed contradict the gears, within the tolerance that was asked for:
+    /// measured speeds do. The answer is that of speeds which the gears allow: those given first hold, the others
+    /// follow. The deviation is the part of the largest of these speeds, as the gears tie them.
+    W318 SpeedsYield: "prescribed speeds agree only within the tolerance";
     /// A loaded mesh without relative motion: its friction may act in either direction, up to the
     /// sliding value, so torques behind it are known only within a range. Shown: the value
     /// without friction.

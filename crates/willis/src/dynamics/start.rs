@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, apart};
 use crate::train::MemberId;
 
 use super::engine::Engine;
@@ -58,13 +58,14 @@ fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostics>
     for (m, row, w, given) in &rows {
         let is: f64 = row.iter().zip(&x[..free]).map(|(a, b)| a * b).sum();
         let size: f64 = row.iter().zip(&x[..free]).map(|(a, b)| (a * b).abs()).sum::<f64>() + w.abs();
-        if *given && (is - w).abs() > 1e-9 * size {
+        if *given && (is - w).abs() > s.train.speed_tolerance() * size {
             let row = &s.speeds[m.index()];
             let name = s.train.member_name(*m);
+            let [given, follows] = apart(w + prescribed(row), is + prescribed(row), |x| short(x).to_string());
             let message = format!(
                 "`{name}` cannot start at {} rad/s: the gears and the other speeds given make it {} rad/s",
-                short(w + prescribed(row)),
-                short(is + prescribed(row))
+                given,
+                follows
             );
             let place = format!("{}.initial_speeds.{name}", s.scenario.place);
             let error = Diagnostic::new(Code::ContradictorySpeeds, place, message);

@@ -92,6 +92,8 @@ pub struct PointWarning {
     pub law: Option<LawChoice>,
     /// What it says.
     pub message: String,
+    /// By which part prescribed speeds contradict the gears, where it is about that.
+    pub deviation: Option<f64>,
 }
 
 /// The answer at one point.
@@ -116,14 +118,16 @@ impl PointAnswer {
             Err(wrong) => return Self::refused(wrong),
         };
         let oil = train.lubrication.iter().filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)));
-        let oil = oil.map(|beyond| PointWarning { code: Code::OutsideLaw, law: None, message: beyond.to_string() });
+        let oil = oil.map(|beyond| PointWarning { code: Code::OutsideLaw, law: None, message: beyond.to_string(), deviation: None });
         // The notes tell of the laws outside their ranges in the order of these.
         let mut outside = report.outside_laws.into_iter();
+        let deviation = report.speed_deviation.map(|d| d.relative);
         let own = notes.into_iter().filter(|d| d.severity == Severity::Warning && d.code != Code::SelfLocking);
         let own = own.map(|d| {
             let law = if d.code == Code::OutsideLaw { outside.next() } else { None };
             let law = law.map(|o| LawChoice { family: o.family, law: o.law });
-            PointWarning { code: d.code, law, message: d.message }
+            let deviation = deviation.filter(|_| d.code == Code::SpeedsYield);
+            PointWarning { code: d.code, law, message: d.message, deviation }
         });
         let warnings = oil.chain(own).collect();
         let is_one = matches!(report.verdict, Verdict::Unique | Verdict::Unloaded);

@@ -101,6 +101,8 @@ struct Told {
     rows: u64,
     time_s: f64,
     line: u32,
+    /// How far, where that can be told.
+    extent: Option<f64>,
 }
 
 /// Energies of some rows.
@@ -221,14 +223,17 @@ pub struct TerminalEnergy {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct RepeatedMessage {
-    /// What they say, at the first of them.
+    /// What they say, at the first of them; where it has an extent, at the worst.
     pub message: String,
     /// How many rows.
     pub rows: u64,
     /// Their time, s.
     pub time_s: f64,
-    /// Line of the first of them.
+    /// Line of the first of them; where it has an extent, of the worst.
     pub line: u32,
+    /// How far, where that can be told: the part by which prescribed speeds contradict the gears.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extent: Option<f64>,
 }
 
 /// Rows of a verdict.
@@ -535,7 +540,7 @@ impl<'a> Cycle<'a> {
         };
         for warning in &answer.warnings {
             let told = part.warnings.entry(warning.code).or_default();
-            tell(told, &warning.message, held);
+            tell(told, &warning.message, warning.deviation, held);
         }
         let mut point = CyclePoint {
             verdict: answer.verdict,
@@ -642,11 +647,11 @@ impl<'a> Cycle<'a> {
             verdict.0.rows += u64::from(held.rows);
             verdict.0.time_s += held.time_s;
             let Some(way) = p.way else {
-                tell(&mut verdict.1, &p.reason, held);
+                tell(&mut verdict.1, &p.reason, None, held);
                 continue;
             };
             if !p.reason.is_empty() {
-                tell(&mut verdict.1, &p.reason, held);
+                tell(&mut verdict.1, &p.reason, None, held);
             }
             whole.add(held, p);
             ways.entry(way).or_default().add(held, p);
@@ -785,14 +790,12 @@ fn gist(message: &str) -> String {
     message.chars().filter(|c| !c.is_ascii_digit() && !matches!(c, '.' | '-')).collect()
 }
 
-fn tell(all: &mut Vec<Told>, message: &str, held: Held) {
+fn tell(all: &mut Vec<Told>, message: &str, extent: Option<f64>, held: Held) {
     if held.rows == 0 {
         return;
     }
-    join(
-        all,
-        &[Told { message: message.to_owned(), rows: held.rows.into(), time_s: held.time_s, line: held.first_line }],
-    );
+    let (message, line) = (message.to_owned(), held.first_line);
+    join(all, &[Told { message, rows: held.rows.into(), time_s: held.time_s, line, extent }]);
 }
 
 fn join(all: &mut Vec<Told>, more: &[Told]) {
@@ -807,8 +810,11 @@ fn join(all: &mut Vec<Told>, more: &[Told]) {
         };
         match same {
             Some(k) => {
-                all[k].rows += new.rows;
-                all[k].time_s += new.time_s;
+                let (rows, time_s) = (all[k].rows + new.rows, all[k].time_s + new.time_s);
+                if new.extent > all[k].extent {
+                    all[k] = new.clone();
+                }
+                (all[k].rows, all[k].time_s) = (rows, time_s);
             }
             None => all.push(new.clone()),
         }
@@ -818,5 +824,8 @@ fn join(all: &mut Vec<Told>, more: &[Told]) {
 fn said(mut all: Vec<Told>) -> Vec<RepeatedMessage> {
     all.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));
     let all = all.into_iter().filter(|t| !t.message.is_empty()).take(MOST_REASONS);
-    all.map(|t| RepeatedMessage { message: t.message, rows: t.rows, time_s: t.time_s, line: t.line }).collect()
+    let told = |t: Told| {
+        RepeatedMessage { message: t.message, rows: t.rows, time_s: t.time_s, line: t.line, extent: t.extent }
+    };
+    all.map(told).collect()
 }

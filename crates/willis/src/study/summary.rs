@@ -224,26 +224,47 @@ impl TryFrom<String> for WarningKind {
 }
 
 /// Points that say the same.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct WarningCount {
     /// At how many points.
     pub count: u64,
-    /// What it says at the first of them that was looked at.
+    /// What it says at the first of them that was looked at; where it has an extent, at the worst.
     pub message: String,
     /// The number of that point.
     pub point: u64,
+    /// How far, where that can be told: the part by which prescribed speeds contradict the gears.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extent: Option<f64>,
+}
+
+impl WarningCount {
+    /// Counts later points.
+    fn join(&mut self, later: &Self) {
+        let count = self.count + later.count;
+        if later.extent > self.extent {
+            *self = later.clone();
+        }
+        self.count = count;
+    }
 }
 
 /// Counts of what points say, by kind.
 pub(super) type Seen = BTreeMap<WarningKind, WarningCount>;
 
 /// Counts one more point, or the first.
-pub(super) fn see(seen: &mut Seen, kind: WarningKind, message: &str, point: u64) {
+pub(super) fn see(seen: &mut Seen, kind: WarningKind, message: &str, extent: Option<f64>, point: u64) {
     match seen.get_mut(&kind) {
-        Some(own) => own.count += 1,
-        None => drop(seen.insert(kind, WarningCount { count: 1, message: message.into(), point })),
+        // Most points say what was said before.
+        Some(own) if extent.is_none() || extent <= own.extent => own.count += 1,
+        own => {
+            let later = WarningCount { count: 1, message: message.into(), point, extent };
+            match own {
+                Some(own) => own.join(&later),
+                None => drop(seen.insert(kind, later)),
+            }
+        }
     }
 }
 
@@ -251,7 +272,7 @@ pub(super) fn see(seen: &mut Seen, kind: WarningKind, message: &str, point: u64)
 pub(super) fn join(seen: &mut Seen, later: &Seen) {
     for (kind, count) in later {
         match seen.get_mut(kind) {
-            Some(own) => own.count += count.count,
+            Some(own) => own.join(count),
             None => drop(seen.insert(kind.clone(), count.clone())),
         }
     }
@@ -332,12 +353,12 @@ impl Summary {
     pub(super) fn hear(&mut self, answer: &PointAnswer, point: u64) {
         // What is to be said of a unique answer is a warning.
         if !answer.reason.is_empty() && !answer.is_unique() {
-            see(&mut self.seen, WarningKind::Reason(answer.verdict), &answer.reason, point);
+            see(&mut self.seen, WarningKind::Reason(answer.verdict), &answer.reason, None, point);
         }
         let mut last = None;
         for warning in &answer.warnings {
             if last != Some(warning.code) {
-                see(&mut self.seen, warning.code.into(), &warning.message, point);
+                see(&mut self.seen, warning.code.into(), &warning.message, warning.deviation, point);
             }
             last = Some(warning.code);
         }

@@ -496,14 +496,14 @@ impl<'s> UncertaintyPlan<'s> {
                 continue;
             }
             if !answer.reason.is_empty() {
-                summary::see(&mut all.seen, WarningKind::Reason(answer.verdict), &answer.reason, point as u64);
+                summary::see(&mut all.seen, WarningKind::Reason(answer.verdict), &answer.reason, None, point as u64);
             }
             let mut told: Vec<WarningKind> = vec![];
             for warning in &answer.warnings {
                 // Laws are counted one by one, places and numbers are not.
                 let kind = WarningKind::Warning { code: warning.code, law: warning.law.clone() };
                 if !told.contains(&kind) {
-                    summary::see(&mut all.seen, kind.clone(), &warning.message, point as u64);
+                    summary::see(&mut all.seen, kind.clone(), &warning.message, warning.deviation, point as u64);
                     told.push(kind);
                 }
             }

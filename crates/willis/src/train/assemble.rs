@@ -386,6 +386,7 @@ pub(super) fn assemble<'a>(
         input,
         output,
         warnings: diagnostics.iter().skip(before).cloned().collect(),
+        speed_tolerance: Train::SAME_SPEED,
         assumptions,
         lubrication,
         laws,

@@ -348,7 +348,10 @@ impl SweepReport {
                     SweepPlace::MostEfficiency => all.summary.efficiency.most != before.efficiency.most,
                     SweepPlace::LeastLoss => all.summary.loss_w.least != before.loss_w.least,
                     SweepPlace::MostLoss => all.summary.loss_w.most != before.loss_w.most,
-                    SweepPlace::First(kind) => !before.seen.contains_key(kind),
+                    SweepPlace::First(kind) => {
+                        let point = |s: &Summary| s.seen.get(kind).map(|seen| seen.point);
+                        point(&all.summary) != point(&before)
+                    }
                 };
                 if is_new {
                     all.places.insert(place.clone(), words.clone());
