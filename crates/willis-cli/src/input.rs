@@ -72,7 +72,8 @@ pub fn train(file: &str, matches: &ArgMatches) -> Result<Given, Refusal> {
     given.model = given.model.with_laws(laws).map_err(refused)?;
     if let Some(tolerance) = matches.try_get_one::<f64>("speed-tolerance").ok().flatten() {
         given.changes.push(format!("--speed-tolerance {tolerance}"));
-        given.model = given.model.with_speed_tolerance(*tolerance).map_err(|wrong| Refusal::Wrong(wrong, usize::MAX))?;
+        given.model =
+            given.model.with_speed_tolerance(*tolerance).map_err(|wrong| Refusal::Wrong(wrong, usize::MAX))?;
     }
     Ok(given)
 }

@@ -30,18 +30,82 @@ impl Dice {
 }
 
 const NUMBERS: &[&str] = &[
-    "0", "-1", "-0", "0.0", "1e308", "-1e308", "1e-308", "4.9e-324", "nan", "inf", "-inf", "99999999999999999999",
-    "9223372036854775807", "-9223372036854775808", "0x7fffffffffffffff", "0.1e-400", "3.0000000000000004", "1_000",
-    "100000", "100001", "1e5", "2.5", "true", "[]", "{}", "\"\"", "1979-05-27",
+    "0",
+    "-1",
+    "-0",
+    "0.0",
+    "1e308",
+    "-1e308",
+    "1e-308",
+    "4.9e-324",
+    "nan",
+    "inf",
+    "-inf",
+    "99999999999999999999",
+    "9223372036854775807",
+    "-9223372036854775808",
+    "0x7fffffffffffffff",
+    "0.1e-400",
+    "3.0000000000000004",
+    "1_000",
+    "100000",
+    "100001",
+    "1e5",
+    "2.5",
+    "true",
+    "[]",
+    "{}",
+    "\"\"",
+    "1979-05-27",
 ];
 
 const TEXTS: &[&str] = &[
-    "\"\"", "\" \"", "\"frame\"", "\"\\u0000\"", "\"\\u001b[31mred\"", "\"\\u009b31m\"", "\"\\u202eevil\"", "\"\\u2066x\"",
-    "\"\\uffff\"", "\"\\ufdd0\"", "\"a.b\"", "\"../../../etc/passwd\"", "\"/proc/self/environ\"", "\"<script>alert(1)</script>\"",
-    "\"' onload='x\"", "\"]]>\"", "\"--><x>\"", "\"%s%n%x\"", "\"=1+1\"", "\"$(id)\"", "\"`id`\"", "\"\\n\\r\\t\"", "\"\\\\\"",
-    "\"\\\"\"", "\"\u{301}\u{301}\u{301}\u{301}\"", "\"😀\"", "\"\u{5d0}\u{5d1}\"", "\"NaN rpm\"", "\"1e999 rpm\"", "\"-1e308 N m\"",
-    "\"0 rpm\"", "\"1 furlong\"", "\"∞ rpm\"", "\"1 rpm rpm\"", "\"1/0\"", "\"1/3\"", "\"1e-400 mm\"", "\"99999999999999999999/7\"",
-    "\"t\"", "\"((((((((((t\"", "\"t^t^t^t^t^t\"", "\"1/(t-t)\"", "\"sin(1e308*t)\"", "12", "[1, 2]", "{ a = 1 }",
+    "\"\"",
+    "\" \"",
+    "\"frame\"",
+    "\"\\u0000\"",
+    "\"\\u001b[31mred\"",
+    "\"\\u009b31m\"",
+    "\"\\u202eevil\"",
+    "\"\\u2066x\"",
+    "\"\\uffff\"",
+    "\"\\ufdd0\"",
+    "\"a.b\"",
+    "\"../../../etc/passwd\"",
+    "\"/proc/self/environ\"",
+    "\"<script>alert(1)</script>\"",
+    "\"' onload='x\"",
+    "\"]]>\"",
+    "\"--><x>\"",
+    "\"%s%n%x\"",
+    "\"=1+1\"",
+    "\"$(id)\"",
+    "\"`id`\"",
+    "\"\\n\\r\\t\"",
+    "\"\\\\\"",
+    "\"\\\"\"",
+    "\"\u{301}\u{301}\u{301}\u{301}\"",
+    "\"😀\"",
+    "\"\u{5d0}\u{5d1}\"",
+    "\"NaN rpm\"",
+    "\"1e999 rpm\"",
+    "\"-1e308 N m\"",
+    "\"0 rpm\"",
+    "\"1 furlong\"",
+    "\"∞ rpm\"",
+    "\"1 rpm rpm\"",
+    "\"1/0\"",
+    "\"1/3\"",
+    "\"1e-400 mm\"",
+    "\"99999999999999999999/7\"",
+    "\"t\"",
+    "\"((((((((((t\"",
+    "\"t^t^t^t^t^t\"",
+    "\"1/(t-t)\"",
+    "\"sin(1e308*t)\"",
+    "12",
+    "[1, 2]",
+    "{ a = 1 }",
 ];
 
 /// Numbers of a text: where they begin and end.
@@ -136,7 +200,11 @@ const SPOILERS: &[(&str, Spoiler)] = &[
         let times = dice.of(&[2, 20, 300]);
         for k in 0..times {
             // With a name of its own, or with the same.
-            let named = if dice.below(4) > 0 { block.replacen("name = \"", &format!("name = \"{k} "), 1) } else { (*block).into() };
+            let named = if dice.below(4) > 0 {
+                block.replacen("name = \"", &format!("name = \"{k} "), 1)
+            } else {
+                (*block).into()
+            };
             out += &format!("\n[[{named}");
         }
         out.into_bytes()
@@ -293,7 +361,8 @@ fn spoiled_trains_do_no_harm() {
     /// Files of each kind.
     const EACH: usize = 28;
     let folder = folder("trains");
-    let mut examples: Vec<PathBuf> = fs::read_dir(root().join("examples")).unwrap().map(|e| e.unwrap().path()).collect();
+    let mut examples: Vec<PathBuf> =
+        fs::read_dir(root().join("examples")).unwrap().map(|e| e.unwrap().path()).collect();
     examples.retain(|p| p.extension().is_some_and(|e| e == "toml"));
     examples.sort();
     let texts: Vec<String> = examples.iter().map(|p| fs::read_to_string(p).unwrap()).collect();
@@ -308,7 +377,10 @@ fn spoiled_trains_do_no_harm() {
             // One after the other, so that every kind of file meets every question.
             asked.extend((0..2).map(|j| 2 + (files * 2 + j) % (QUESTIONS.len() - 2)));
             lines.extend(asked.into_iter().map(|q| {
-                QUESTIONS[q].iter().map(|w| if *w == "FILE" { name.clone() } else { (*w).to_owned() }).collect::<Vec<_>>()
+                QUESTIONS[q]
+                    .iter()
+                    .map(|w| if *w == "FILE" { name.clone() } else { (*w).to_owned() })
+                    .collect::<Vec<_>>()
             }));
         }
     }
@@ -354,8 +426,26 @@ fn spoiled_requests_do_no_harm() {
     fs::copy(root().join("examples/zf-8hp70.toml"), folder.join("zf.toml")).unwrap();
     let mut lines = vec![];
     let odd = [
-        "", " ", "\u{1b}[31m", "\u{9b}31m", "\u{202e}x", "\u{ffff}", "-1", "1e308", "nan", "=", "a=b=c", "..", "1..2", "1..2:0",
-        "1..2:99999999999999999999", "0..1 rpm:1e9", "\u{301}", "'\"<>&", "%s", "999999999999999999999999999999",
+        "",
+        " ",
+        "\u{1b}[31m",
+        "\u{9b}31m",
+        "\u{202e}x",
+        "\u{ffff}",
+        "-1",
+        "1e308",
+        "nan",
+        "=",
+        "a=b=c",
+        "..",
+        "1..2",
+        "1..2:0",
+        "1..2:99999999999999999999",
+        "0..1 rpm:1e9",
+        "\u{301}",
+        "'\"<>&",
+        "%s",
+        "999999999999999999999999999999",
     ];
     for text in odd {
         for words in [

@@ -111,7 +111,16 @@ impl Model {
             return Err(reading.diagnostics);
         };
         let document = Document::parse(text).expect("the text was read as TOML");
-        Ok(Self { text: text.to_owned(), document, files, laws: vec![], speed_tolerance: Train::SAME_SPEED, train, specification, reading })
+        Ok(Self {
+            text: text.to_owned(),
+            document,
+            files,
+            laws: vec![],
+            speed_tolerance: Train::SAME_SPEED,
+            train,
+            specification,
+            reading,
+        })
     }
 
     /// Puts laws into force over those of the text: pairs of family and name.

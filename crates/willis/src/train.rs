@@ -480,7 +480,8 @@ impl Train {
     /// ```
     pub fn with_speed_tolerance(mut self, tolerance: f64) -> Result<Self, Diagnostics> {
         if !(0.0..=Self::MOST_SPEED_TOLERANCE).contains(&tolerance) {
-            let message = format!("a speed tolerance of {tolerance}: it is a part from 0 to {}", Self::MOST_SPEED_TOLERANCE);
+            let message =
+                format!("a speed tolerance of {tolerance}: it is a part from 0 to {}", Self::MOST_SPEED_TOLERANCE);
             return Err(Diagnostic::new(Code::OutOfRange, "", message).hint("0.005 and 0.5 % are the same").into());
         }
         self.speed_tolerance = tolerance.max(Self::SAME_SPEED);

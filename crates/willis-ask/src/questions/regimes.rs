@@ -115,9 +115,7 @@ impl Question for Regimes {
         let _ = of;
         Ok(vec![match (form, answer) {
             #[cfg(feature = "pictures")]
-            ("map-json", _) => {
-                File::text("regimes.json", crate::json(&self.map(of)?))
-            }
+            ("map-json", _) => File::text("regimes.json", crate::json(&self.map(of)?)),
             (_, RegimesAnswer::Train(all)) => File::text("regimes.tex", latex::latex(all)),
             (_, RegimesAnswer::Family(all)) => File::text("family.tex", latex::family_latex(all)),
         }])

@@ -52,10 +52,10 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
     }
     let speeds = (1..train.members.len()).map(|m| (train.members[m].name.clone(), motion.si(MemberId(m))));
     let mut report = OperationReport::new(train, operation, c.degrees_of_freedom(), speeds.collect());
-    report.speed_deviation = motion.deviation.as_ref().map(|d| SpeedDeviation {
-        members: names(train, d.members.iter().copied()),
-        relative: d.relative,
-    });
+    report.speed_deviation = motion
+        .deviation
+        .as_ref()
+        .map(|d| SpeedDeviation { members: names(train, d.members.iter().copied()), relative: d.relative });
     if c.degrees_of_freedom() == 0 {
         return Ok(Settled::without(report, Verdict::Locked, Why::NoFreedom));
     }

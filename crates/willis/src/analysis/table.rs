@@ -153,8 +153,11 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
     let train = c.train;
     let name = |m: MemberId| train.member_name(m).to_owned();
     let transfer = c.transfer(&[from]);
-    let motion =
-        Motion { speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(), pi_power: 0, deviation: None };
+    let motion = Motion {
+        speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(),
+        pi_power: 0,
+        deviation: None,
+    };
     let (Some(node_from), Some(node_to)) = (c.node(from), c.node(to)) else {
         return Direction::without(Verdict::Locked, Why::CannotTurn { member: name(from) });
     };

@@ -20,7 +20,12 @@ mod tests {
     fn numbers_that_differ_are_written_so() {
         let shown = |x: f64| format!("{x:.4}");
         assert_eq!(apart(300.0, 301.0, shown), ["300.0000", "301.0000"]);
-        for (a, b) in [(2894.1176, 2894.1176 * (1.0 + 2e-9)), (1.0, 1.0 + f64::EPSILON), (-0.03, -0.030000001), (1e300, 1e300 * (1.0 + 1e-12))] {
+        for (a, b) in [
+            (2894.1176, 2894.1176 * (1.0 + 2e-9)),
+            (1.0, 1.0 + f64::EPSILON),
+            (-0.03, -0.030000001),
+            (1e300, 1e300 * (1.0 + 1e-12)),
+        ] {
             let [x, y] = apart(a, b, shown);
             assert_ne!(x, y);
         }

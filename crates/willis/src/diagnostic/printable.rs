@@ -75,7 +75,21 @@ mod tests {
 
     #[test]
     fn what_cannot_be_shown_is_escaped_and_the_rest_stays() {
-        for c in ['\0', '\u{1b}', '\u{7f}', '\u{80}', '\u{9b}', '\u{202e}', '\u{2066}', '\u{200f}', '\u{2028}', '\u{fdd0}', '\u{ffff}', '\u{1fffe}', '\u{10ffff}'] {
+        for c in [
+            '\0',
+            '\u{1b}',
+            '\u{7f}',
+            '\u{80}',
+            '\u{9b}',
+            '\u{202e}',
+            '\u{2066}',
+            '\u{200f}',
+            '\u{2028}',
+            '\u{fdd0}',
+            '\u{ffff}',
+            '\u{1fffe}',
+            '\u{10ffff}',
+        ] {
             assert!(!is_printable(c), "{c:?}");
             assert!(printable(&c.to_string()).chars().all(is_printable));
         }

@@ -64,8 +64,7 @@ fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostics>
             let [given, follows] = apart(w + prescribed(row), is + prescribed(row), |x| short(x).to_string());
             let message = format!(
                 "`{name}` cannot start at {} rad/s: the gears and the other speeds given make it {} rad/s",
-                given,
-                follows
+                given, follows
             );
             let place = format!("{}.initial_speeds.{name}", s.scenario.place);
             let error = Diagnostic::new(Code::ContradictorySpeeds, place, message);

@@ -118,7 +118,12 @@ impl PointAnswer {
             Err(wrong) => return Self::refused(wrong),
         };
         let oil = train.lubrication.iter().filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)));
-        let oil = oil.map(|beyond| PointWarning { code: Code::OutsideLaw, law: None, message: beyond.to_string(), deviation: None });
+        let oil = oil.map(|beyond| PointWarning {
+            code: Code::OutsideLaw,
+            law: None,
+            message: beyond.to_string(),
+            deviation: None,
+        });
         // The notes tell of the laws outside their ranges in the order of these.
         let mut outside = report.outside_laws.into_iter();
         let deviation = report.speed_deviation.map(|d| d.relative);

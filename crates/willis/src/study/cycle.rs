@@ -824,8 +824,12 @@ fn join(all: &mut Vec<Told>, more: &[Told]) {
 fn said(mut all: Vec<Told>) -> Vec<RepeatedMessage> {
     all.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));
     let all = all.into_iter().filter(|t| !t.message.is_empty()).take(MOST_REASONS);
-    let told = |t: Told| {
-        RepeatedMessage { message: t.message, rows: t.rows, time_s: t.time_s, line: t.line, extent: t.extent }
+    let told = |t: Told| RepeatedMessage {
+        message: t.message,
+        rows: t.rows,
+        time_s: t.time_s,
+        line: t.line,
+        extent: t.extent,
     };
     all.map(told).collect()
 }

@@ -199,7 +199,8 @@ impl<'s> Sweep<'s> {
                 // What is wrong with this train and not with that of the file: planets that touch, for one.
                 let own = train.warnings().iter().filter(|d| d.severity == Severity::Warning);
                 let new = own.filter(|d| !base.iter().any(|b| b.code == d.code && b.message == d.message));
-                let told = new.map(|d| PointWarning { code: d.code, law: None, message: d.message.clone(), deviation: None });
+                let told =
+                    new.map(|d| PointWarning { code: d.code, law: None, message: d.message.clone(), deviation: None });
                 answer.warnings.extend(told);
                 answer
             }
