@@ -362,6 +362,8 @@ pub struct Train {
     pub(crate) output: Option<MemberId>,
     pub(crate) studies: Vec<StudySpec>,
     pub(crate) warnings: Vec<Diagnostic>,
+    /// See [`Train::unplaced_masses`].
+    pub(crate) unplaced_masses: Vec<String>,
     /// See [`Train::speed_tolerance`].
     pub(crate) speed_tolerance: f64,
     pub(crate) assumptions: Vec<String>,
@@ -436,6 +438,12 @@ impl Train {
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Planets whose mass is given and whose orbit is not known, by the names of their members: what they add to the
+    /// inertia of their carrier is missing.
+    pub fn unplaced_masses(&self) -> &[String] {
+        &self.unplaced_masses
     }
 
     /// Prescribed speeds are those that the gears allow when they differ from these by no more than this part of the

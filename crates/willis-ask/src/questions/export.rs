@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::study::export::{ExportRequest, KINDS, export};
+use willis::study::export::{ExportRequest, KINDS, NotCarried, export};
 use willis::work::Work;
 
 use super::names;
@@ -58,6 +58,9 @@ pub struct ExportAnswer {
     pub files: Vec<OneFile>,
     /// What the format cannot say, and what was taken for ranges that nobody gave.
     pub notes: Vec<String>,
+    /// What the train file says and the files do not.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_carried: Vec<NotCarried>,
     /// The kinds there are, where no kind was named.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kinds: Vec<OneKind>,
@@ -108,6 +111,7 @@ impl Question for Export {
             kind: kind.map(str::to_owned),
             files: vec![],
             notes: vec![],
+            not_carried: vec![],
             kinds: vec![],
         };
         let kind = match (self.kind.as_deref().filter(|k| *k != "list"), of) {
@@ -130,11 +134,12 @@ impl Question for Export {
             torques: self.torques.clone(),
             temperatures: (!self.temperature.is_empty()).then(|| self.temperature.join(",")),
         };
-        let done = export(of[0].model.train(), kind, &request)?;
+        let done = export(&of[0].model, kind, &request)?;
         let file = |f: willis::study::export::ExportedFile| OneFile { name: f.name, about: f.about, text: f.text };
         Ok(ExportAnswer {
             files: done.files.into_iter().map(file).collect(),
-            notes: done.notes.into_iter().map(|n| n.to_string()).collect(),
+            notes: done.notes,
+            not_carried: done.not_carried,
             ..answer(Some(kind))
         })
     }

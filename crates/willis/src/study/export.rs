@@ -7,6 +7,7 @@
 //!
 //! Text in memory; who calls writes it into files.
 
+mod carried;
 mod csv;
 mod drake;
 mod loss_table;
@@ -22,11 +23,14 @@ mod vecto;
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::model::Model;
 use crate::train::Train;
 use crate::units::{Dimension, Quantity};
 
 use super::axis::values;
 
+pub use carried::NotCarried;
+use carried::{Carries, left_out, sentence};
 pub use map::{Answer, Gear, Map, Point};
 
 /// What an export is asked.
@@ -114,6 +118,9 @@ pub struct Export {
     pub files: Vec<ExportedFile>,
     /// What the reader must know, and what the format cannot say.
     pub notes: Vec<String>,
+    /// What the train file says and the files do not.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_carried: Vec<NotCarried>,
 }
 
 /// A format.
@@ -124,26 +131,69 @@ pub struct Kind {
     /// What it is, in one line.
     pub about: &'static str,
     write: fn(&Train, &Asked) -> Result<Export, Diagnostics>,
+    carries: Carries,
+    /// What begins and ends a comment; empty where the format has none.
+    comment: [&'static str; 2],
 }
 
 /// Every format there is.
 pub const KINDS: &[Kind] = &[
-    Kind { id: "csv", about: "plain map: torque, loss, efficiency and verdict of every point", write: csv::write },
-    Kind { id: "vecto", about: "VECTO transmission loss maps (.vtlm), one a gear", write: vecto::write },
+    Kind {
+        id: "csv",
+        about: "plain map: torque, loss, efficiency and verdict of every point",
+        write: csv::write,
+        carries: carried::operating_point,
+        comment: ["", ""],
+    },
+    Kind {
+        id: "vecto",
+        about: "VECTO transmission loss maps (.vtlm), one a gear",
+        write: vecto::write,
+        carries: carried::operating_point,
+        comment: ["# ", ""],
+    },
     Kind {
         id: "modelica-loss-table",
         about: "lossTable and ratio of Modelica's LossyGear, whole gear, each state",
         write: loss_table::write,
+        carries: carried::operating_point,
+        comment: ["  // ", ""],
     },
     Kind {
         id: "modelica",
         about: "the train as a model of Modelica's Rotational library (.mo)",
         write: modelica::write,
+        carries: carried::drive_line,
+        comment: ["  // ", ""],
     },
-    Kind { id: "simscape", about: "efficiencies for Simscape Driveline gears (MATLAB script)", write: simscape::write },
-    Kind { id: "mujoco", about: "actuator with gear, armature and both efficiencies (MJCF)", write: mujoco::write },
-    Kind { id: "drake", about: "joint actuator with gear ratio and rotor inertia (URDF)", write: drake::write },
-    Kind { id: "openfast", about: "GBoxEff and GBRatio of ElastoDyn, side and sign told", write: openfast::write },
+    Kind {
+        id: "simscape",
+        about: "efficiencies for Simscape Driveline gears (MATLAB script)",
+        write: simscape::write,
+        carries: carried::operating_point,
+        comment: ["% ", ""],
+    },
+    Kind {
+        id: "mujoco",
+        about: "actuator with gear, armature and both efficiencies (MJCF)",
+        write: mujoco::write,
+        carries: carried::with_inertia,
+        comment: ["<!-- ", " -->"],
+    },
+    Kind {
+        id: "drake",
+        about: "joint actuator with gear ratio and rotor inertia (URDF)",
+        write: drake::write,
+        carries: carried::with_inertia,
+        comment: ["<!-- ", " -->"],
+    },
+    Kind {
+        id: "openfast",
+        about: "GBoxEff and GBRatio of ElastoDyn, side and sign told",
+        write: openfast::write,
+        carries: carried::operating_point,
+        comment: ["! ", ""],
+    },
 ];
 
 /// Exports a train in the format of that name.
@@ -155,26 +205,40 @@ pub const KINDS: &[Kind] = &[
 /// # Example
 /// ```
 /// use willis::study::export::{ExportRequest, export};
+/// use willis::model::Model;
 /// use willis::train::{SetSpec, Train};
 ///
-/// let train = Train::builder("reducer")
-///     .members(["sun", "carrier"])
-///     .terminals(["sun", "carrier"])
-///     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4).mesh_efficiency(0.99))
-///     .build()?;
-/// let table = export(&train, "modelica-loss-table", &ExportRequest::default())?;
+/// let model = Model::new(
+///     Train::builder("reducer")
+///         .members(["sun", "carrier"])
+///         .terminals(["sun", "carrier"])
+///         .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4).mesh_efficiency(0.99)),
+/// )?;
+/// let table = export(&model, "modelica-loss-table", &ExportRequest::default())?;
 /// assert!(table.files[0].text.contains("ratio = 10/3 "));
-/// assert!(export(&train, "vekto", &ExportRequest::default()).unwrap_err().to_string().contains("did you mean `vecto`?"));
+/// assert!(table.not_carried.is_empty());
+/// assert!(export(&model, "vekto", &ExportRequest::default()).unwrap_err().to_string().contains("did you mean `vecto`?"));
 /// # Ok::<(), willis::diagnostic::Diagnostics>(())
 /// ```
-pub fn export(train: &Train, kind: &str, request: &ExportRequest) -> Result<Export, Diagnostics> {
+pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Export, Diagnostics> {
     let Some(found) = KINDS.iter().find(|k| k.id == kind) else {
         let known = KINDS.iter().map(|k| k.id);
         let d = Diagnostic::new(Code::UnknownName, "", format!("there is no export `{kind}`"));
         let all: Vec<_> = known.clone().collect();
         return Err(d.suggest(kind, known).hint(format!("the exports are: {}", all.join(", "))).into());
     };
-    let mut done = (found.write)(train, &Asked::read(request)?)?;
+    let mut done = (found.write)(model.train(), &Asked::read(request)?)?;
+    done.not_carried = left_out(model, found.carries);
+    if let Some(told) = sentence(&done.not_carried) {
+        let [begin, end] = found.comment;
+        for file in done.files.iter_mut().filter(|_| !begin.is_empty()) {
+            // Below the first line: some formats want a header there, the others say whose file it is.
+            let at = file.text.find('\n').map_or(file.text.len(), |k| k + 1);
+            let comment = if end.is_empty() { names::line(&told) } else { names::xml(&told) };
+            file.text.insert_str(at, &format!("{begin}{comment}{end}\n"));
+        }
+        done.notes.push(told);
+    }
     let mut told: Vec<String> = Vec::new();
     for note in std::mem::take(&mut done.notes) {
         if !told.contains(&note) {
@@ -213,7 +277,7 @@ fn each(
             }
         }
     }
-    if files.is_empty() { Err(wrong) } else { Ok(Export { files, notes }) }
+    if files.is_empty() { Err(wrong) } else { Ok(Export { files, notes, not_carried: vec![] }) }
 }
 
 /// What every gear says of itself: numbers rest on assumptions, and one-way clutches overrun.

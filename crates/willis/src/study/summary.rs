@@ -408,8 +408,8 @@ mod tests {
         // Exactly, in rational numbers.
         use crate::exact::Rational;
         let exact = |x: &f64| Rational::from_f64(*x).expect("finite");
-        let sum = numbers.iter().map(exact).fold(Rational::zero(), |a, b| a + b);
-        let told = std::iter::once(&first.0).chain(&first.1).map(exact).fold(Rational::zero(), |a, b| a + b);
+        let sum = numbers.iter().map(exact).fold(Rational::ZERO, |a, b| a + b);
+        let told = std::iter::once(&first.0).chain(&first.1).map(exact).fold(Rational::ZERO, |a, b| a + b);
         assert_eq!(sum, told);
         assert_eq!(sum.to_f64(), first.0);
         assert_eq!(exact_sum([f64::MAX, f64::MAX].iter()), [f64::INFINITY]);

@@ -296,6 +296,7 @@ pub(super) fn assemble<'a>(
         members: vec![frame],
         meshes: vec![],
         assumptions: vec![],
+        unplaced_masses: vec![],
         laws: Laws::default(),
         friction_coefficient: crate::losses::mesh_friction::Constant::DEFAULT.mu,
         loss_tables: vec![],
@@ -365,7 +366,7 @@ pub(super) fn assemble<'a>(
     }
     let assumptions = a.assumptions();
     let set_planets: Vec<Vec<MemberId>> = sets.iter().map(|(_, planets)| planets.clone()).collect();
-    let Assembler { diagnostics, members, meshes: assembled, laws, loss_tables, .. } = a;
+    let Assembler { diagnostics, members, meshes: assembled, laws, loss_tables, unplaced_masses, .. } = a;
     let inputs = {
         let lubrication = lubrication.as_ref();
         let (bearings, planets, set_planets) = (&bearings[..], &planets[..], &set_planets[..]);
@@ -386,6 +387,7 @@ pub(super) fn assemble<'a>(
         input,
         output,
         warnings: diagnostics.iter().skip(before).cloned().collect(),
+        unplaced_masses,
         speed_tolerance: Train::SAME_SPEED,
         assumptions,
         lubrication,
@@ -414,6 +416,7 @@ pub(super) fn operating_point(train: &Train, spec: &OperationSpec) -> Result<Ope
         members: train.members.clone(),
         meshes: vec![],
         assumptions: vec![],
+        unplaced_masses: vec![],
         laws: train.laws,
         friction_coefficient: 0.0,
         loss_tables: vec![],

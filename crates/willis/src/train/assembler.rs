@@ -23,6 +23,8 @@ pub(super) struct Assembler<'a> {
     pub meshes: Vec<Mesh>,
     /// What it is about, and what was assumed of it.
     pub assumptions: Vec<(String, String)>,
+    /// Planets with a mass and without an orbit.
+    pub unplaced_masses: Vec<String>,
     pub laws: Laws,
     /// The coefficient of friction where nothing better is known.
     pub friction_coefficient: f64,

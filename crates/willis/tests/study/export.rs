@@ -4,10 +4,15 @@ use std::collections::BTreeMap;
 
 use willis::analysis::{Analysis, Selection, Verdict, analyze};
 use willis::exact::Rational;
+use willis::model::Model;
 use willis::study::export::{Export, ExportRequest, KINDS, export};
 use willis::train::Train;
 
-use crate::common::{self, example, train};
+use crate::common::{example, examples};
+
+fn train(name: &str) -> Model {
+    Model::from_toml(&example(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
 
 fn list(all: &[&str]) -> Option<String> {
     Some(all.join(", "))
@@ -30,7 +35,7 @@ fn small(request: ExportRequest) -> ExportRequest {
     }
 }
 
-fn made(train: &Train, kind: &str, request: &ExportRequest) -> Export {
+fn made(train: &Model, kind: &str, request: &ExportRequest) -> Export {
     export(train, kind, request).unwrap_or_else(|e| panic!("{kind}: {e}"))
 }
 
@@ -116,7 +121,7 @@ fn csv_tells_a_lock_and_leaves_its_numbers_empty() {
     assert!(rows.iter().filter(|r| sign(r) < 0.0).all(|r| r.verdict == "locked" && r.numbers == [None; 3]));
     let driving: Vec<_> = rows.iter().filter(|r| sign(r) > 0.0).collect();
     assert!(!driving.is_empty());
-    let a = analyze(&train("wolfrom-498-self-locking"), &Selection::default()).unwrap();
+    let a = analyze(train("wolfrom-498-self-locking").train(), &Selection::default()).unwrap();
     let eta = a.ratios.0[0].1.drive.efficiency.unwrap();
     for r in &driving {
         assert!((r.numbers[2].unwrap() - eta).abs() < 1e-12, "{r:?} {eta}");
@@ -163,7 +168,7 @@ fn vecto_maps_give_the_output_torque_back() {
     // Eight forward gears; reverse is none that VECTO has.
     assert_eq!(out.files.len(), 8);
     assert!(out.notes.iter().any(|n| n.contains("left out: state R")), "{:?}", out.notes);
-    let table = analyze(&zf, &Selection::default()).unwrap().ratios;
+    let table = analyze(zf.train(), &Selection::default()).unwrap().ratios;
     for (f, (name, row)) in out.files.iter().zip(table.iter()) {
         assert_eq!(f.name, format!("zf-8hp70-{name}.vtlm"));
         let rows = vtlm(&f.text);
@@ -315,7 +320,7 @@ fn a_gear_that_locks_has_no_loss_table() {
 }
 
 /// A Modelica model read back as a train: its lossy gears as pairs on carriers, its clutches and brakes.
-fn train_of(source: &str, states: &[(&str, Vec<&str>)], ends: [&str; 2]) -> Train {
+fn train_of(source: &str, states: &[(&str, Vec<&str>)], ends: [&str; 2]) -> Model {
     parsed(source);
     let mut at: BTreeMap<String, String> = BTreeMap::new();
     for line in source.lines().filter_map(|l| l.trim().strip_prefix("connect(")) {
@@ -360,7 +365,7 @@ fn train_of(source: &str, states: &[(&str, Vec<&str>)], ends: [&str; 2]) -> Trai
     for (name, engaged) in states {
         text += &format!("[[state]]\nname = \"{name}\"\nengaged = {engaged:?}\n");
     }
-    Train::from_toml(&text).unwrap_or_else(|e| panic!("{e}\n{text}"))
+    Model::from_toml(&text).unwrap_or_else(|e| panic!("{e}\n{text}"))
 }
 
 #[test]
@@ -375,7 +380,8 @@ fn the_model_read_back_is_the_train() {
     ] {
         let own = train(file);
         let ends = match ends {
-            ["", ""] => [own.input().unwrap(), own.output().unwrap()].map(|m| own.member_name(m).to_owned()),
+            ["", ""] => [own.train().input().unwrap(), own.train().output().unwrap()]
+                .map(|m| own.train().member_name(m).to_owned()),
             [a, b] => [a, b].map(str::to_owned),
         };
         let source = made(&own, "modelica", &ExportRequest::default()).files[0].text.clone();
@@ -383,15 +389,16 @@ fn the_model_read_back_is_the_train() {
         let word =
             |n: &str| if ["input", "output"].contains(&n) { format!("{n}_") } else { n.replace([' ', '-'], "_") };
         let names: Vec<(&str, Vec<&str>)> = own
+            .train()
             .states()
             .iter()
             .map(|s| {
-                let engaged = s.engaged.iter().map(|e| own.shift_elements()[e.index()].name.as_str());
+                let engaged = s.engaged.iter().map(|e| own.train().shift_elements()[e.index()].name.as_str());
                 (s.name.as_str(), engaged.collect())
             })
             .collect();
         let back = train_of(&source, &names, [&word(&ends[0]), &word(&ends[1])]);
-        let [a, b] = [&own, &back].map(|t| analyze(t, &Selection { operation: None, state: None }));
+        let [a, b] = [&own, &back].map(|t| analyze(t.train(), &Selection { operation: None, state: None }));
         let (a, b) = (a.unwrap(), b.unwrap());
         assert_eq!(a.ratios.0.len(), b.ratios.0.len(), "{file}");
         for ((name, x), (_, y)) in a.ratios.iter().zip(b.ratios.iter()) {
@@ -408,7 +415,7 @@ fn the_model_read_back_is_the_train() {
 #[test]
 fn models_of_every_example_are_read_by_a_parser() {
     let mut count = 0;
-    for (name, _) in common::examples() {
+    for (name, _) in examples() {
         parsed(&made(&train(&name), "modelica", &ExportRequest::default()).files[0].text);
         count += 1;
     }
@@ -470,7 +477,7 @@ fn xml(text: &str) -> Vec<(usize, String, BTreeMap<String, String>)> {
 #[test]
 fn mujoco_and_drake_say_ratio_inertia_and_both_efficiencies() {
     let wolfrom = train("wolfrom-236");
-    let row = analyze(&wolfrom, &Selection::default()).unwrap().ratios.0[0].1.clone();
+    let row = analyze(wolfrom.train(), &Selection::default()).unwrap().ratios.0[0].1.clone();
     let (eta, back) = (row.drive.efficiency.unwrap(), row.coast.efficiency.unwrap());
     let mjcf = xml(&made(&wolfrom, "mujoco", &ExportRequest::default()).files[0].text);
     assert_eq!(mjcf[0].1, "mujocoinclude");
@@ -507,18 +514,18 @@ fn inertias_are_reflected() {
         "[[shift_element]]\nname = \"B\"\nkind = \"brake\"\nmembers = [\"ring\"]\n[[state]]\nname = \"1\"\nengaged = [\"B\"]\n\
          input = \"sun\"\noutput = \"carrier\"\n[[operation]]",
     );
-    let train = Train::from_toml(&text).unwrap();
+    let heavy = Model::from_toml(&text).unwrap();
     let spin = 1.0 - 72.0 / 21.0;
     let carrier = 0.006 + 3.0 * 0.25 * 0.051f64.powi(2);
     let at_output = 0.002 * 3.4f64.powi(2) + carrier + 3.0 * 6e-5 * spin * spin;
-    let mjcf = xml(&made(&train, "mujoco", &ExportRequest::default()).files[0].text);
+    let mjcf = xml(&made(&heavy, "mujoco", &ExportRequest::default()).files[0].text);
     let joint = &mjcf.iter().find(|e| e.1 == "joint").unwrap().2;
     assert!((joint["armature"].parse::<f64>().unwrap() / at_output - 1.0).abs() < 1e-12, "{joint:?} {at_output}");
-    let urdf = xml(&made(&train, "drake", &ExportRequest::default()).files[0].text);
+    let urdf = xml(&made(&heavy, "drake", &ExportRequest::default()).files[0].text);
     let rotor: f64 = urdf.iter().find(|e| e.1 == "drake:rotor_inertia").unwrap().2["value"].parse().unwrap();
     assert!((rotor * 3.4 * 3.4 / at_output - 1.0).abs() < 1e-12);
     // As drawn it has two freedoms.
-    let wrong = export(&common::train("galvagno"), "mujoco", &ExportRequest::default()).unwrap_err().to_string();
+    let wrong = export(&train("galvagno"), "mujoco", &ExportRequest::default()).unwrap_err().to_string();
     assert!(wrong.contains("no single ratio") && wrong.contains("2 degrees of freedom"), "{wrong}");
 }
 
@@ -546,14 +553,14 @@ fn openfast_has_the_side_and_the_sign() {
     assert!((read["GBRatio"] - 75.0 / 19.0).abs() < 1e-12);
     assert!(out.files[0].text.contains("from carrier (LSS, rotor) to sun (HSS, generator)"), "{}", out.files[0].text);
     // One number: that of the operation.
-    let a = analyze(&nrel, &Selection::default()).unwrap();
+    let a = analyze(nrel.train(), &Selection::default()).unwrap();
     let eta = a.operations[0].solutions[0].efficiency.unwrap();
     assert!((read["GBoxEff"] - 100.0 * eta).abs() < 1e-7, "{} {eta}", read["GBoxEff"]);
     assert!(out.notes.iter().any(|n| n.contains("at 12.1 rpm and 3945990 N m")), "{:?}", out.notes);
 
     // The Wolfrom drive is driven at its fast end: its slow end is the ring, and what counts is backward.
     let wolfrom = train("wolfrom-236");
-    let row = analyze(&wolfrom, &Selection::default()).unwrap().ratios.0[0].1.clone();
+    let row = analyze(wolfrom.train(), &Selection::default()).unwrap().ratios.0[0].1.clone();
     let text = made(&wolfrom, "openfast", &ExportRequest::default()).files[0].text.clone();
     let read = openfast(&text);
     assert_eq!(read["GBoxEff"], 100.0 * row.coast.efficiency.unwrap());
@@ -593,7 +600,7 @@ fn matlab(text: &str) -> BTreeMap<String, Vec<Vec<f64>>> {
 fn simscape_has_the_efficiencies_of_gear_and_sets() {
     let out = made(&train("zf-8hp70"), "simscape", &all_states());
     let m = matlab(&out.files[0].text);
-    let table = analyze(&train("zf-8hp70"), &Selection::default()).unwrap().ratios;
+    let table = analyze(train("zf-8hp70").train(), &Selection::default()).unwrap().ratios;
     for (name, row) in table.iter() {
         let own = |f: &str| m[&format!("zf_8hp70.state_{name}.{f}")][0][0];
         assert_eq!(own("ratio"), row.value.unwrap());
@@ -645,7 +652,7 @@ fn two_freedoms_have_no_ratio_and_states_that_have_one_are_named() {
     }
     // An operation with two freedoms.
     let text = example("prius-p112").replace("engaged = [\"hold-mg1\"]", "engaged = []");
-    let free = Train::from_toml(&text).unwrap();
+    let free = Model::from_toml(&text).unwrap();
     let wrong = export(&free, "csv", &state("mg1 held")).unwrap_err().to_string();
     assert!(wrong.contains("state mg1 held has no single ratio"), "{wrong}");
     assert!(wrong.contains("states that can be exported: engine stopped, car held"), "{wrong}");
@@ -673,5 +680,152 @@ fn wrong_questions() {
     for kind in ["vecto", "modelica-loss-table", "mujoco", "drake", "openfast"] {
         let wrong = export(&train("fva-planetary-stage"), kind, &hot).unwrap_err().to_string();
         assert!(wrong.contains("one oil temperature") || wrong.contains("one number has"), "{kind}: {wrong}");
+    }
+}
+
+// ---- What is not carried over ----------------------------------------------------------------
+
+/// `../shared/cases/mass.toml` in short: four planets of 2 kg, a sun of 1e-5 kg m².
+fn weighing(planet: &str) -> Model {
+    let text = format!(
+        r#"
+        format = 1
+        name = "mass"
+        members = ["sun", "carrier"]
+        terminals = ["sun", "carrier"]
+        inertias = {{ sun = "1e-5 kg m^2" }}
+        [[set]]
+        name = "P1"
+        sun = {{ member = "sun", teeth = 30 }}
+        planet = {{ teeth = 20, count = 4, {planet} }}
+        ring = {{ member = "frame", teeth = 70 }}
+        carrier = "carrier"
+        mesh_efficiency = 0.99
+        "#
+    );
+    Model::from_toml(&text).unwrap()
+}
+
+#[test]
+fn formula_an_inertia_is_whole_or_not_there() {
+    let armature = |text: &str| -> Option<f64> {
+        let value = text.split("armature=\"").nth(1)?.split('"').next()?;
+        value.parse().ok()
+    };
+    let rotor =
+        |text: &str| -> Option<f64> { text.split("rotor_inertia value=\"").nth(1)?.split('"').next()?.parse().ok() };
+    // The sun turns 10/3 times as fast as the carrier; planets 50 mm from the axis weigh 2 kg each.
+    let whole = 1e-5 * (10.0f64 / 3.0).powi(2) + 4.0 * 2.0 * 0.05f64.powi(2);
+    for planet in ["mass = \"2 kg\", orbit_radius = \"50 mm\""] {
+        let out = made(&weighing(planet), "mujoco", &ExportRequest::default());
+        let found = armature(&out.files[0].text).unwrap();
+        assert!((found - whole).abs() < 1e-12 && (found - 0.0201).abs() < 1e-4, "{found}");
+        assert!(out.not_carried.is_empty(), "{:?}", out.not_carried);
+        let out = made(&weighing(planet), "drake", &ExportRequest::default());
+        let found = rotor(&out.files[0].text).unwrap();
+        assert!((found - whole * 0.09).abs() < 1e-12, "{found}");
+    }
+    for kind in ["mujoco", "drake"] {
+        let out = made(&weighing("mass = \"2 kg\""), kind, &ExportRequest::default());
+        let text = &out.files[0].text;
+        assert_eq!((armature(text), rotor(text)), (None, None), "{text}");
+        assert!(text.contains("not carried over from the file: set.planet.mass (P1)"), "{text}");
+        assert!(out.notes.iter().any(|n| n.contains("the planets P1.planet have a mass")), "{:?}", out.notes);
+    }
+}
+
+#[test]
+fn drag_is_told_where_it_has_no_place() {
+    let text =
+        example("zf-8hp70") + "\n[[drag]]\nname = \"open E\"\nmembers = [\"input\", \"output\"]\ncoulomb = \"3 N m\"\n";
+    let model = Model::from_toml(&text).unwrap();
+    for kind in KINDS.iter().map(|k| k.id) {
+        let out = made(
+            &model,
+            kind,
+            &ExportRequest { state: (kind != "modelica").then(|| "1".into()), ..Default::default() },
+        );
+        let is_told = out.not_carried.iter().any(|n| n.key == "drag.coulomb" && n.of == ["open E"]);
+        assert_eq!(is_told, kind != "modelica", "{kind}: {:?}", out.not_carried);
+        assert!(kind == "csv" || out.files[0].text.contains("drag.coulomb (open E)") == is_told, "{kind}");
+        assert!(!out.notes.iter().any(|n| n.contains("the file has no losses")), "{kind}");
+    }
+}
+
+/// What is said to be left out makes no difference to the numbers, in any example and any format.
+#[test]
+fn what_is_not_carried_changes_nothing() {
+    // Without what is told about it.
+    let numbers = |out: &Export| -> Vec<String> {
+        let told = |l: &&str| !["not carried over", "no inertias", "have a mass"].iter().any(|t| l.contains(t));
+        let plain =
+            |f: &willis::study::export::ExportedFile| f.text.lines().filter(told).collect::<Vec<_>>().join("\n");
+        out.files.iter().map(plain).collect()
+    };
+    let more = "\n[[drag]]\nname = \"d\"\nmembers = [\"sun\"]\ncoulomb = \"3 N m\"\nviscous = \"0.1 N m s/rad\"\n\
+                [[shift_element]]\nname = \"B\"\nkind = \"brake\"\nmembers = [\"sun\"]\ncapacity = \"80 N m\"\npeak = 1.2\n\
+                [[shaft]]\nname = \"s\"\nmembers = [\"sun\", \"carrier\"]\nstiffness = \"900 N m/rad\"\n";
+    let heavy = weighing("mass = \"2 kg\"").to_toml().to_owned() + more;
+    let texts = examples().into_iter().chain([("heavy".to_owned(), heavy)]);
+    let mut tried = 0;
+    for (name, text) in texts.filter(|(name, _)| !name.contains("fva") && !name.contains("nrel")) {
+        let Ok(model) = Model::from_toml(&text) else { continue };
+        for kind in KINDS.iter().map(|k| k.id) {
+            let request = match (kind, model.train().states()) {
+                ("modelica", _) | (_, []) => ExportRequest::default(),
+                (_, [first, ..]) => state(&first.name),
+            };
+            let Ok(whole) = export(&model, kind, &request) else { continue };
+            for left in &whole.not_carried {
+                let table = left.key.split('.').next().unwrap();
+                // A table of which nothing is carried goes as a whole.
+                let is_whole = ["drag", "shaft", "inertias"].contains(&table);
+                let mut document: toml::Table = text.parse().unwrap();
+                let steps: Vec<&str> = left.key.split('.').collect();
+                match is_whole {
+                    true => drop(document.remove(table)),
+                    false => without(&mut document, &steps),
+                }
+                let Ok(other) = Model::from_toml(&toml::to_string(&document).unwrap()) else { continue };
+                let other = made(&other, kind, &request);
+                assert_eq!(numbers(&whole), numbers(&other), "{name}, {kind}: {}", left.key);
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 50, "{tried}");
+}
+
+/// Removes a key wherever it is.
+fn without(table: &mut toml::Table, steps: &[&str]) {
+    let (first, rest) = steps.split_first().unwrap();
+    if rest.is_empty() {
+        table.remove(*first);
+        return;
+    }
+    match table.get_mut(*first) {
+        Some(toml::Value::Table(inner)) => without(inner, rest),
+        Some(toml::Value::Array(all)) => {
+            all.iter_mut().filter_map(toml::Value::as_table_mut).for_each(|inner| without(inner, rest));
+        }
+        _ => {}
+    }
+}
+
+/// Every key that a train file can have is carried by a format, or told when it is there: nothing is forgotten.
+#[test]
+fn every_key_is_carried_or_told() {
+    let written = |model: &Model| serde_json::to_value(model.specification()).unwrap();
+    for (name, text) in examples() {
+        let Ok(model) = Model::from_toml(&text) else { continue };
+        let spec = written(&model);
+        let has = |key: &str| spec.get(key).is_some_and(|v| !v.is_null() && *v != serde_json::json!([]));
+        for kind in KINDS.iter().map(|k| k.id) {
+            let Ok(out) = export(&model, kind, &ExportRequest::default()) else { continue };
+            for (key, carried) in [("drag", "modelica"), ("shaft", "modelica"), ("inertias", "modelica mujoco drake")] {
+                let told = out.not_carried.iter().any(|n| n.key.split('.').next() == Some(key));
+                assert!(!has(key) || told != carried.split(' ').any(|k| k == kind), "{name}, {kind}: {key}");
+            }
+        }
     }
 }

@@ -41,7 +41,7 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
             gear.title(),
             gear.input
         ),
-        None => format!("{}: no inertias are given in the file, so no rotor_inertia", gear.title()),
+        None => gear.no_inertia("rotor_inertia"),
     });
     let (name, joint) = (slug(train.name()), xml(&gear.output));
     let mut text = format!("<!-- {} -->\n", xml(&origin(train)));

@@ -228,6 +228,10 @@ impl Gear {
     /// All inertias as one at the output, kg m²; `None` where none is given or a speed is not determined.
     pub(super) fn inertia_at_output(&self) -> Option<f64> {
         let train = &self.train;
+        // A part of it would be taken for the whole.
+        if !train.unplaced_masses().is_empty() {
+            return None;
+        }
         let given = train.inertias.iter().filter(|i| i.value > 0.0);
         let keep: Vec<MemberId> = given.clone().flat_map(|i| [i.member, i.reference]).collect();
         let engaged = self.state.map_or(&[][..], |k| &train.states[k].engaged);
@@ -240,6 +244,19 @@ impl Gear {
             sum = Some(sum.unwrap_or(0.0) + i.value * relative * relative);
         }
         sum
+    }
+
+    /// Why there is no inertia.
+    pub(super) fn no_inertia(&self, name: &str) -> String {
+        match self.train.unplaced_masses() {
+            [] => format!("{}: no inertias are given in the file, so no {name}", self.title()),
+            planets => format!(
+                "{}: no {name}: the planets {} have a mass, and how far from the axis they turn is not known (give \
+                 `orbit_radius`, or the module of the teeth)",
+                self.title(),
+                planets.join(", ")
+            ),
+        }
     }
 
     /// The sets of the train and their meshes, by position.

@@ -66,7 +66,7 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
             gear.output,
             gear.output
         )),
-        None => own.push(format!("{}: no inertias are given in the file, so no armature", gear.title())),
+        None => own.push(gear.no_inertia("armature")),
     }
     let mut text = format!("<!-- {} -->\n", xml(&origin(train)));
     for note in &own {

@@ -64,6 +64,6 @@ pub(super) fn single(gear: &Gear) -> Result<Single, Diagnostics> {
         }
         all.notes.push(note + ": the efficiency depends on speed and load, and one number stands for all");
     }
-    all.notes.push(format!("{}: losses without load (drag) have no place in this format", gear.title()));
+    all.notes.push(format!("{}: a torque that is lost without load has no place in this format", gear.title()));
     Ok(all)
 }

@@ -94,7 +94,7 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
     let constant = !gear.is_physical();
     notes.push(match constant {
         true => format!(
-            "{}: the loss is a constant share of the torque: the file has no losses without load (bearings, oil, open \
+            "{}: the loss is a constant share of the torque: the map has no losses without load (bearings, oil, open \
              clutches)",
             gear.title()
         ),

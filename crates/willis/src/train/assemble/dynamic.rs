@@ -204,11 +204,13 @@ impl Assembler<'_> {
                 let Some(mass) = body.mass.filter(|_| carrier != FRAME) else { continue };
                 match body.orbit_radius.or(teeth) {
                     Some(r) => all.push(Inertia { member: carrier, reference: FRAME, value: count * mass * r * r }),
-                    None if moving => {
-                        let text = "orbit not known, its mass is left out of motions (give orbit_radius)";
-                        self.assume(&name, text);
+                    None => {
+                        self.unplaced_masses.push(name.clone());
+                        if moving {
+                            let text = "orbit not known, its mass is left out of motions (give orbit_radius)";
+                            self.assume(&name, text);
+                        }
                     }
-                    None => {}
                 }
             }
         }
