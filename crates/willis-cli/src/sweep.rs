@@ -4,6 +4,7 @@
 mod parquet;
 mod merge;
 mod parts;
+mod piece;
 mod table;
 
 use std::path::{Path, PathBuf};

@@ -53,6 +53,21 @@ impl Rational {
         Self(Repr::Small(Ratio::new(numerator as i128, denominator as i128)))
     }
 
+    /// The class modulo [`PRIME`]; none where that has none.
+    fn modulo(&self) -> Option<u64> {
+        let big = |n: &BigInt| {
+            let class: BigInt = ((n % PRIME) + PRIME) % PRIME;
+            class.to_u64().expect("below the prime")
+        };
+        let small = |n: i128| n.rem_euclid(i128::from(PRIME)) as u64;
+        let [numerator, denominator] = match &self.0 {
+            Repr::Small(r) => [small(*r.numer()), small(*r.denom())],
+            Repr::Big(r) => [big(r.numer()), big(r.denom())],
+        };
+        (denominator != 0)
+            .then(|| if denominator == 1 { numerator } else { times(numerator, power(denominator, PRIME - 2)) })
+    }
+
     /// The exact value of the shortest decimal that reads back as `value`: `0.98` becomes 49/50,
     /// as its writer meant, not the binary fraction next to it. `None` for NaN and infinities.
     pub fn from_f64(value: f64) -> Option<Self> {
@@ -395,6 +410,59 @@ pub(crate) fn solve(matrix: &Matrix, right: &[Rational]) -> Option<Vec<Rational>
     (reduce(&mut rows, n).len() == n).then(|| rows.into_iter().map(|mut r| r.pop().unwrap()).collect())
 }
 
+/// Whether a square matrix has an inverse.
+///
+/// Most have: elimination modulo a prime shows it, for what is not zero modulo a prime is not zero. Only what is zero there
+/// is looked at exactly.
+pub(crate) fn is_regular(matrix: &Matrix) -> bool {
+    is_regular_modulo(matrix) || !determinant(matrix).is_zero()
+}
+
+/// Whether the determinant is known not to be a multiple of a large prime.
+fn is_regular_modulo(matrix: &Matrix) -> bool {
+    let n = matrix.len();
+    let Some(mut m) =
+        matrix.iter().map(|row| row.iter().map(Rational::modulo).collect()).collect::<Option<Vec<Vec<u64>>>>()
+    else {
+        return false;
+    };
+    for c in 0..n {
+        let Some(p) = (c..n).find(|&r| m[r][c] != 0) else { return false };
+        m.swap(p, c);
+        let (done, rest) = m.split_at_mut(c + 1);
+        let pivot = &done[c];
+        let inverse = power(pivot[c], PRIME - 2);
+        for row in rest.iter_mut().filter(|row| row[c] != 0) {
+            let factor = times(row[c], inverse);
+            for k in c..n {
+                if pivot[k] != 0 {
+                    row[k] = (row[k] + PRIME - times(factor, pivot[k])) % PRIME;
+                }
+            }
+        }
+    }
+    true
+}
+
+/// 2⁶¹ − 1, a Mersenne prime.
+const PRIME: u64 = (1 << 61) - 1;
+
+fn times(a: u64, b: u64) -> u64 {
+    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+}
+
+fn power(mut base: u64, mut exponent: u64) -> u64 {
+    let mut result = 1;
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            result = times(result, base);
+        }
+        base = times(base, base);
+        exponent >>= 1;
+    }
+    result
+}
+
 /// Determinant of a square matrix.
 pub(crate) fn determinant(matrix: &Matrix) -> Rational {
     let mut m = matrix.clone();
@@ -424,6 +492,26 @@ pub(crate) fn determinant(matrix: &Matrix) -> Rational {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn regular_matrices_are_told_from_singular_ones() {
+        let prime = Rational::new(PRIME as i64, 1);
+        let huge = (0..9).fold(Rational::ONE, |x, _| x * Rational::new(i64::MAX, 3));
+        let rows = |m: [[Rational; 2]; 2]| -> Matrix { m.into_iter().map(|r| r.into_iter().collect()).collect() };
+        let [one, two, four] = [1, 2, 4].map(|k| Rational::new(k, 7));
+        // Regular, though zero modulo the prime; with numbers that have no class; with large ones.
+        assert!(is_regular(&rows([[prime.clone(), Rational::ZERO], [Rational::ZERO, Rational::ONE]])));
+        assert!(is_regular(&rows([[prime.recip(), Rational::ZERO], [Rational::ZERO, Rational::ONE]])));
+        assert!(is_regular(&rows([[huge.clone(), one.clone()], [one.clone(), -huge.clone()]])));
+        assert!(is_regular(&rows([[Rational::ZERO, one.clone()], [two.clone(), one.clone()]])));
+        for singular in [
+            rows([[one.clone(), two.clone()], [two, four]]),
+            rows([[huge.clone(), one.clone()], [&huge * &huge, &huge * &one]]),
+            rows([[Rational::ZERO, one.clone()], [Rational::ZERO, one]]),
+        ] {
+            assert!(!is_regular(&singular));
+        }
+    }
 
     #[test]
     fn reads_decimals_exactly() {

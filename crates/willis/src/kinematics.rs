@@ -350,7 +350,7 @@ impl<'t> Configuration<'t> {
             factors.iter().zip(&values).fold(Rational::ZERO, |sum, (f, v)| if f.is_zero() { sum } else { sum + f * v })
         };
         let tied = |c: &[Rational]| (0..members.len()).filter(|&k| !c[k].is_zero()).map(|k| members[k]).collect();
-        let (mut broken, mut deviation) = (vec![], None::<Deviation>);
+        let (mut broken, mut deviation, mut yields) = (vec![], None::<Deviation>, vec![]);
         for c in &transfer.conflicts {
             let excess = dot(c);
             if excess.is_zero() {
@@ -364,12 +364,21 @@ impl<'t> Configuration<'t> {
             } else if relative > Train::SAME_SPEED && deviation.as_ref().is_none_or(|d| relative > d.relative) {
                 deviation = Some(Deviation { members: tied(c), relative });
             }
+            yields.extend((0..members.len()).rfind(|&k| !c[k].is_zero()));
         }
         if !broken.is_empty() {
             return Err(broken);
         }
+        if !yields.is_empty() {
+            // What was given last follows the others, whatever the elimination began with.
+            let kept = prescribed.iter().enumerate().filter(|(k, _)| !yields.contains(k)).map(|(_, p)| p.clone());
+            let others = self.motion(&kept.collect::<Vec<_>>())?;
+            let deviation = [deviation, others.deviation].into_iter().flatten();
+            let deviation = deviation.max_by(|a, b| a.relative.total_cmp(&b.relative));
+            return Ok(Motion { deviation, ..others });
+        }
         let speeds = transfer.speeds.iter().map(|s| s.as_ref().map(|f| dot(f))).collect();
-        Ok(Motion { speeds, pi_power, deviation })
+        Ok(Motion { speeds, pi_power, deviation: None })
     }
 
     /// Rotors that cannot turn although no shift element or hold grips them directly.

@@ -225,7 +225,7 @@ impl Equilibrium {
             });
         }
         let mut problem = Self { columns, rows, elements: c.elements.len(), certificate: Certificate::Undecided };
-        if exact::determinant(&problem.exact_matrix(&|_| Rational::ONE)).is_zero() {
+        if !exact::is_regular(&problem.exact_matrix(&|_| Rational::ONE)) {
             return Err(Unsolvable::Indeterminate);
         }
         problem.certificate = problem.certify();

@@ -8,7 +8,8 @@ use willis::study::{Shard, SweepReport as Report};
 use willis_ask::questions::sweep_text;
 
 use super::parts::{said, sha256_of, sidecar, table};
-use super::table::{Form, Piece};
+use super::piece::Piece;
+use super::table::Form;
 use crate::{Ended, input, output};
 
 /// The command that puts shards together.

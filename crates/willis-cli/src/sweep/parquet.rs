@@ -16,7 +16,7 @@ use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 use willis::study::{ColumnValues, Rows, SweepColumn};
 
-use super::table::Piece;
+use super::piece::Piece;
 use crate::input;
 
 /// Rows as a piece of the table.

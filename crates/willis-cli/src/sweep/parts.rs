@@ -13,7 +13,8 @@ use sha2::{Digest, Sha256};
 use willis::contract::{Contract, Format};
 use willis::study::{Shard, Summary, SweepReport as Report, SweepStudy as Study};
 
-use super::table::{Form, Piece};
+use super::piece::Piece;
+use super::table::Form;
 use crate::input;
 use crate::output::{self, Unfinished};
 

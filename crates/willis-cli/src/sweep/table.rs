@@ -3,21 +3,15 @@
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use willis::study::{ColumnValues, Rows, SweepColumn};
 use willis_ask::table::{field, number};
 
 #[cfg(feature = "parquet")]
 use super::parquet;
+use super::piece::Piece;
 use crate::input;
-
-/// A file to put into a table.
-pub struct Piece {
-    pub path: PathBuf,
-    /// Whether it is a table with a header, not only rows.
-    pub is_table: bool,
-}
 
 /// What a table is written as, by the end of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -211,7 +211,8 @@ mod tests {
         };
         let same = [vec!["a".to_owned(), "b, c".into()], vec!["1".into(), "2".into()]];
         assert_eq!(all("a,\"b, c\"\n1,2\n"), same);
-        assert_eq!(all("a;b, c\n1;2\n"), same[..]);
+        assert_eq!(all("a;\"b, c\"\n1;2\n"), same);
+        assert_eq!(all("a;b, c;d\n")[0], ["a", "b, c", "d"]);
         assert_eq!(all("# x\n\u{feff}\na\tb, c\r\n1\t2"), [vec!["\u{feff}"], vec!["a\tb", "c"], vec!["1\t2"]]);
         assert_eq!(all("a\t\"b, c\"\r\n1\t2"), same);
         // One column has no separator.

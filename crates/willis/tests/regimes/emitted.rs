@@ -61,7 +61,7 @@ mesh_efficiency = { external = 0.97, internal = 0.99 }
 /// Names that end comments and strings, look like escapes, hide themselves or coincide once only
 /// letters are left.
 const HOSTILE: &str = r#"format = 1
-name = "3 coding: latin-1 */ /* \"\"\" \\ \"π\" ??/ \u202e\u2028 {x} \\N{x} class for end"
+name = "3 coding: latin-1 */ /* \"\"\" \\ \"π\" ??/ {x} \\N{x} class for end"
 members = ["a b", "a_b", "\"\"\" ring??/", "end\\*/"]
 terminals = ["a b", "a_b", "\"\"\" ring??/", "end\\*/"]
 input = "a b"
@@ -98,7 +98,7 @@ engaged = ["//"]
 name = "S\"\\"
 engaged = ["\\"]
 [[state]]
-name = "s%\u2069\\"
+name = "s%\\"
 engaged = ["//"]
 "#;
 

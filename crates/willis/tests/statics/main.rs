@@ -7,4 +7,5 @@ mod compiled;
 mod flow;
 mod operating_point;
 mod properties;
+mod speeds;
 mod theory;

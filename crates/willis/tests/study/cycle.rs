@@ -302,7 +302,8 @@ fn every_mistake_is_told_with_its_line_and_column() {
         (REDUCER, "hours,input.speed_nm\n1,1000\n".into(), "`nm` is not the unit of an angular speed"),
         (REDUCER, "hours,input.speed [rpm],\n1,1000,5\n".into(), "the column has no name"),
         (REDUCER, "hours,input.speed [rpm],input.speed [rad/s]\n1,1000,5\n".into(), "set the same quantity"),
-        (REDUCER, "hours;input.speed [rpm]\n1;1000\n".into(), "commas separate columns"),
+        (REDUCER, "hours;input.speed [rpm]\n1;1.000,5\n".into(), "has marks between its digits"),
+        (REDUCER, ",".repeat(100_000), "the header has 100001 columns; a table has at most 4096"),
         (REDUCER, "hours,state\n1,3\n".into(), "`state` cannot be varied: the train has no shift table"),
         (REDUCER, "hours,oil.temperature [degC]\n1,3\n".into(), "there is no oil"),
         (
@@ -361,6 +362,34 @@ fn all_mistakes_are_told_at_once_and_underlined() {
     assert_eq!(underlined, ["input.sped [rpm]", "1,1000,", "1", "nan"]);
     let many: String = (0..5000).map(|_| "0,x\n").collect();
     let all = wrong(REDUCER, &format!("hours,input.speed [rpm]\n{many}"));
-    assert_eq!(all.len(), 1001);
-    assert!(all.to_string().ends_with("4000 more errors of these kinds"));
+    assert_eq!(all.len(), 50);
+    assert!(all.to_string().ends_with("4951 more errors of these kinds"));
+}
+
+/// A measurement as another program wrote it: semicolons, decimal commas, channels that the train does not have.
+#[test]
+fn a_measurement_is_read_as_it_is() {
+    use willis::study::ProfileColumns;
+    let plain = "time [s],input.speed [rpm],input.torque [N m]\n0,900.5,10\n1.5,1000,12\n2,0,0\n";
+    let measured = "\u{feff}# of Monday\r\ntime [s];vibration;input.speed [rpm];\"note; of a person\";input.torque [N m]\r\n\
+                    0;3,1;900,5;x;10\r\n1,5;;1000;;12\r\n2;3;0;y;0\r\n";
+    let subject = subject(REDUCER);
+    let whole = Profile::parse(plain, &subject).unwrap();
+    let wrong = Profile::parse(measured, &subject).unwrap_err().to_string();
+    assert!(wrong.contains("no quantity `vibration`") && wrong.contains("`ignore_column`"), "{wrong}");
+    let names = |all: &[&str]| all.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
+    for columns in [
+        ProfileColumns::Without(names(&["vibration", "note; of a person"])),
+        ProfileColumns::Only(names(&["time", "input.speed [rpm]", "input.torque"])),
+    ] {
+        let read = Profile::parse_columns(measured, &subject, &columns).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!((read.total_s(), read.conditions()), (whole.total_s(), whole.conditions()));
+        for k in 0..read.conditions() {
+            assert_eq!(read.describe(k), whole.describe(k));
+        }
+        assert_eq!(read.notes(), ["columns left out: vibration, note; of a person"]);
+    }
+    let missing = ProfileColumns::Without(names(&["vibrations"]));
+    let wrong = Profile::parse_columns(measured, &subject, &missing).unwrap_err().to_string();
+    assert!(wrong.contains("no column `vibrations`") && wrong.contains("did you mean `vibration`"), "{wrong}");
 }

@@ -177,7 +177,8 @@ fn regress_every_code_has_a_case() {
     // E002 is about files, which the library never touches: crates/willis-cli/tests/cli.rs has it.
     // E208 to E210 are about questions other than `analyze`: `regress_e208` and `regress_e209` below; axes of studies
     // have `what_is_wrong_with_an_axis_is_told` in study.rs, E211 has `a_sweep_that_is_stopped_says_so` there.
-    let elsewhere = [Code::Unreadable, Code::Unfit, Code::NoInertia, Code::BadAxis, Code::Cancelled];
+    // W318 needs a tolerance: `measured_speeds_are_taken_within_a_tolerance` in tests/statics.
+    let elsewhere = [Code::Unreadable, Code::Unfit, Code::NoInertia, Code::BadAxis, Code::Cancelled, Code::SpeedsYield];
     let missing: Vec<_> =
         Code::ALL.iter().filter(|c| !elsewhere.contains(c) && !COVERED.contains(c)).map(|c| c.as_str()).collect();
     assert!(missing.is_empty(), "no case for {missing:?}");
@@ -758,4 +759,30 @@ fn long_chain() -> String {
         );
     }
     text
+}
+
+/// Whatever text of a file has a character that cannot be shown is refused, wherever it stands.
+#[test]
+fn no_text_of_a_file_hides_anything() {
+    let mut tried = 0;
+    for (name, text) in crate::common::examples() {
+        let marks: Vec<usize> = text.match_indices('"').map(|m| m.0).collect();
+        // Texts of one line.
+        for at in marks.chunks_exact(2).filter(|m| !text[m[0]..m[1]].contains(['\n', '#'])).map(|m| m[0] + 1).step_by(3)
+        {
+            for escape in ["\\u009B31m", "\\u202E", "\\uFFFF", "\\u001B[31m"] {
+                let spoiled = format!("{}{escape}{}", &text[..at], &text[at..]);
+                let reading = Train::read_toml(&spoiled);
+                assert!(
+                    reading.train.is_none(),
+                    "{name}: {escape} at {at}: {}",
+                    &spoiled[at.saturating_sub(40)..at + 20]
+                );
+                let told = reading.diagnostics.render("train.toml", &spoiled, false);
+                assert!(told.chars().all(|c| c == '\n' || willis::diagnostic::is_printable(c)), "{name}: {told}");
+                tried += 1;
+            }
+        }
+    }
+    assert!(tried > 1000, "{tried}");
 }

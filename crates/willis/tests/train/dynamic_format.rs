@@ -695,16 +695,16 @@ fn a_csv_file_is_told_apart_line_by_line() {
         train.map(|_| ()).ok_or(diagnostics.to_string())
     };
     assert_eq!(text("t,T\n0,1\n1,2\n"), Ok(()));
+    assert_eq!(text("t;T\n0,5;1\n1;2,5\n"), Ok(()));
     for (file, says) in [
         ("", "the file is empty"),
         ("t,T\n", "no row below the header"),
-        ("t;T\n0;1\n", "commas separate columns"),
         ("t,T\n0,1\n1\n", "line 3 has 1 cells, the header has 2"),
         ("t,T\n0,1\n1,\n", "line 3, column `T`: the cell is empty"),
-        ("t,T\n0,1\n1,x\n", "line 3, column `T`: `x` is no finite number"),
-        ("t,T\n0,1\n1,nan\n", "line 3, column `T`: `nan` is no finite number"),
-        ("t,T\n0,1\n\n-1,2\n", "line 4: the time -1 s lies before 0 s"),
-        ("time,T\n0,1\n", "no column `t`; the header has `time`, `T`"),
+        ("t,T\n0,1\n1,x\n", "line 3, column `T`: the cell is no finite number"),
+        ("t,T\n0,1\n1,nan\n", "line 3, column `T`: the cell is no finite number"),
+        ("t,T\n0,1\n\n-1,2\n", "line 4: the time lies before that of the row above"),
+        ("time,T\n0,1\n", "no column `t` among the 2 columns of line 1"),
     ] {
         let wrong = text(file).unwrap_err();
         assert!(wrong.contains(says) && wrong.contains("f.csv"), "{wrong}");

@@ -273,7 +273,7 @@ proptest! {
         speed in -1e4f64..1e4,
         torque in proptest::num::f64::NORMAL.prop_filter("sensible", |x| x.abs() > 1e-30 && x.abs() < 1e30),
         fraction in (1i64..1000, 1i64..1000),
-        name in "[^\\p{Cc}]{1,20}",
+        name in "[^\\p{Cc}\\p{Cf}\\p{Cn}\\u{2028}\\u{2029}]{1,20}",
     ) {
         let names: Vec<String> = (0..teeth.len() + 2).map(|k| format!("m{k}")).collect();
         let mut spec = Specification::new(name).members(names.iter().map(String::as_str)).terminals(["m0", "m1"]);

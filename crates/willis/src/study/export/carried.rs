@@ -56,16 +56,11 @@ pub(super) fn with_inertia(key: &[&str], train: &Train) -> bool {
     }
 }
 
-/// What a model of the drive line has: parts with given efficiencies, friction, inertia and stiffness.
+/// What a model of the drive line has: parts with given or nominal efficiencies, friction, inertia and stiffness.
 pub(super) fn drive_line(key: &[&str], train: &Train) -> bool {
-    let last = key.last().copied().unwrap_or_default();
     match key {
-        ["drag" | "shaft" | "inertias" | "shift_element", ..] => true,
+        ["drag" | "shaft" | "inertias" | "shift_element", ..] | ["mesh", "loss_table", ..] => true,
         ["laws" | "oil" | "housing" | "bearing" | "seal" | "rotor", ..] => false,
-        // Teeth in millimetres serve computed losses.
-        ["set" | "mesh", .., "geometry", _] => false,
-        ["set" | "mesh", ..] if ["roughness", "shift", "immersion", "addendum", "dedendum"].contains(&last) => false,
-        ["set" | "mesh", ..] if last.starts_with("tip_") => false,
         _ => with_inertia(key, train),
     }
 }

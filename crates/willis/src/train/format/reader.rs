@@ -6,7 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics, is_printable};
 use crate::exact::Rational;
 use crate::train::words::clip;
 use crate::units::{self, Dimension, Quantity, QuantityFault};
@@ -192,7 +192,17 @@ impl Reader<'_> {
                 (found == Some(1)).then_some(Node::Format)
             }
             Kind::Text | Kind::Name => match value.get_ref().as_str() {
-                Some(text) => Some(Node::Text(text.to_owned())),
+                Some(text) => {
+                    // Lines are for texts; names have none, which is checked with the names.
+                    let unfit = text.chars().find(|c| !is_printable(*c) && !matches!(c, '\n' | '\r' | '\t'));
+                    if let Some(c) = unfit {
+                        let message =
+                            format!("`{}`: a text has no U+{:04X}, which cannot be shown", clip(text), c as u32);
+                        self.report(Code::BadName, place, message, "leave it out");
+                        return None;
+                    }
+                    Some(Node::Text(text.to_owned()))
+                }
                 None => {
                     let hint = match value.get_ref().as_integer() {
                         Some(i) => format!(", write \"{}\"", i.as_str()),
