@@ -326,10 +326,10 @@ fn run(folder: &Path, arguments: &[&str]) {
             Err(e) => fault(&format!("no JSON: {e}")),
         }
     }
-    if arguments[0] == "draw" && !said.is_empty() {
-        if let Err(e) = roxmltree::Document::parse(&said) {
-            fault(&format!("no XML: {e}"));
-        }
+    if let ("draw", Err(e)) = (arguments[0], roxmltree::Document::parse(&said))
+        && !said.is_empty()
+    {
+        fault(&format!("no XML: {e}"));
     }
 }
 
