@@ -12,6 +12,8 @@ use serde_json::Value;
 pub(crate) struct Options {
     /// Seconds of fuzzing.
     pub(crate) seconds: Option<u64>,
+    /// Whether fuzzing takes its time.
+    pub(crate) long: bool,
     /// A folder with whole reference trajectories of Modelica's examples.
     pub(crate) modelica: Option<PathBuf>,
     /// Whether the program is built from nothing and timed.

@@ -1,4 +1,4 @@
-//! Random train files, begun from the examples.
+//! Random texts: train files begun from the examples, and every other text that is read.
 
 use std::fs;
 use std::path::Path;
@@ -7,9 +7,43 @@ use crate::context::{Context, passes};
 use crate::examples::example_files;
 use crate::step::{Outcome, outcome};
 
-/// Random train files, begun from the examples.
+/// The targets, each in a file of its own.
+const TARGETS: &[&str] = &["analyze", "texts"];
+
+/// Readers of the target `texts` that take a whole train file.
+const WHOLE: &[char] = &['d', 'v'];
+
+/// What is tried in `ci`, and by `--long`, seconds a target.
+const SECONDS: [u64; 2] = [20, 900];
+
+/// Puts the examples and the committed seeds into the corpora, which grow from run to run.
+fn seed(context: &Context) -> Result<(), String> {
+    let folder = |target: &str| -> Result<_, String> {
+        let corpus = context.root.join("fuzz/corpus").join(target);
+        fs::create_dir_all(&corpus).map_err(|e| format!("{}: {e}", corpus.display()))?;
+        Ok(corpus)
+    };
+    let [analyze, texts] = [folder(TARGETS[0])?, folder(TARGETS[1])?];
+    for file in example_files(context)? {
+        let name = Path::new(&file).file_name().expect("a file").to_string_lossy().into_owned();
+        let text = fs::read_to_string(context.root.join(&file)).map_err(|e| format!("{file}: {e}"))?;
+        let fail = |e| format!("the corpus, {name}: {e}");
+        fs::write(analyze.join(&name), &text).map_err(fail)?;
+        for reader in WHOLE {
+            fs::write(texts.join(format!("{reader}-{name}")), format!("{reader}{text}")).map_err(fail)?;
+        }
+    }
+    for entry in fs::read_dir(context.root.join("fuzz/seeds/texts")).map_err(|e| format!("fuzz/seeds: {e}"))? {
+        let entry = entry.map_err(|e| format!("fuzz/seeds: {e}"))?;
+        fs::copy(entry.path(), texts.join(entry.file_name()))
+            .map_err(|e| format!("{}: {e}", entry.path().display()))?;
+    }
+    Ok(())
+}
+
+/// Random texts for every target.
 pub(crate) fn fuzz(context: &Context) -> Outcome {
-    // The nightly toolchain only compiles the fuzz target; the rest of the project never needs it.
+    // The nightly toolchain only compiles the fuzz targets; the rest of the project never needs it.
     if !context.succeeds("cargo +nightly --version") {
         return Outcome::Skipped("there is no nightly toolchain here".into());
     }
@@ -19,25 +53,19 @@ pub(crate) fn fuzz(context: &Context) -> Outcome {
             return Outcome::Skipped("cargo-fuzz cannot be installed here".into());
         }
     }
-    let seed = || -> Result<(), String> {
-        let corpus = context.root.join("fuzz/corpus/analyze");
-        fs::create_dir_all(&corpus).map_err(|e| format!("the folder fuzz/corpus/analyze: {e}"))?;
-        for file in example_files(context)? {
-            let name = Path::new(&file).file_name().expect("a file");
-            fs::copy(context.root.join(&file), corpus.join(name)).map_err(|e| format!("{file}: {e}"))?;
-        }
-        Ok(())
-    };
-    if let Err(e) = seed() {
+    if let Err(e) = seed(context) {
         return Outcome::Failed(e);
     }
-    let seconds = context.options.seconds.unwrap_or(20);
-    let words = format!(
-        "cargo +nightly fuzz run --sanitizer none analyze -- -max_total_time={seconds} -timeout=20 \
-         -rss_limit_mb=4096 -dict=fuzz/analyze.dict -verbosity=0 -print_final_stats=1"
-    );
-    let mut command = context.words(&words);
-    // This program was started by another toolchain, whose settings must not reach nightly.
-    command.env_remove("RUSTUP_TOOLCHAIN").env_remove("LD_LIBRARY_PATH");
-    outcome(passes(&mut command, &words))
+    let seconds = context.options.seconds.unwrap_or(SECONDS[usize::from(context.options.long)]);
+    let one = |target: &&str| {
+        let words = format!(
+            "cargo +nightly fuzz run --sanitizer none {target} -- -max_total_time={seconds} -timeout=20 \
+             -rss_limit_mb=4096 -dict=fuzz/analyze.dict -verbosity=0 -print_final_stats=1"
+        );
+        let mut command = context.words(&words);
+        // This program was started by another toolchain, whose settings must not reach nightly.
+        command.env_remove("RUSTUP_TOOLCHAIN").env_remove("LD_LIBRARY_PATH");
+        passes(&mut command, &words)
+    };
+    outcome(TARGETS.iter().try_for_each(one))
 }

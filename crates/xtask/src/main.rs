@@ -57,8 +57,12 @@ const STEPS: &[Step] = &[
     Step::new("bench-gate", "work counts have not grown", Action::Call(bench::bench_gate)).may_skip(),
     Step::new("wasm", "the library answers as WebAssembly", Action::Call(wasm::wasm)).may_skip(),
     Step::new("pdf", "reports as PDF, by a typesetter that is built for nobody else", Action::Call(pdf::pdf)),
-    Step::new("fuzz", "no panic on random train files: [--seconds N], 20 if not said", Action::Call(fuzz::fuzz))
-        .may_skip(),
+    Step::new(
+        "fuzz",
+        "no panic on random texts: 20 s a target, [--seconds N], [--long] 15 min",
+        Action::Call(fuzz::fuzz),
+    )
+    .may_skip(),
 ];
 
 /// Tasks that are no steps of `ci`, but are shown like steps.
@@ -100,6 +104,10 @@ fn read(words: &[String]) -> Option<(&str, Options)> {
         rest = match (task.as_str(), flag.as_str(), more) {
             ("fuzz", "--seconds", [n, more @ ..]) => {
                 options.seconds = Some(n.parse().ok().filter(|n| *n > 0)?);
+                more
+            }
+            ("fuzz", "--long", more) => {
+                options.long = true;
                 more
             }
             ("validate", "--modelica", [folder, more @ ..]) => {
@@ -167,6 +175,7 @@ mod tests {
             read(&words).map(|(task, options)| (task.to_owned(), options.seconds, options.build))
         };
         assert_eq!(of("fuzz --seconds 300"), Some(("fuzz".into(), Some(300), false)));
+        assert_eq!(of("fuzz --long"), Some(("fuzz".into(), None, false)));
         assert_eq!(of("measure --build"), Some(("measure".into(), None, true)));
         assert_eq!((of("fuzz --seconds 0"), of("ci --build")), (None, None));
     }

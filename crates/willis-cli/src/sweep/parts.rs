@@ -232,9 +232,13 @@ impl Parts {
         Ok(())
     }
 
-    /// Removes everything that a sweep leaves here, but for the lock.
+    /// Removes everything that a sweep leaves here, but for the lock: pieces first and the report last, so that whoever
+    /// goes on from the middle of it finds out what is done.
     fn empty(&self) {
-        for name in names(&self.path).unwrap_or_default().iter().filter(|n| is_own(n) && *n != LOCK) {
+        let mut all: Vec<String> = names(&self.path).unwrap_or_default();
+        all.retain(|n| is_own(n) && n != LOCK);
+        all.sort_by_key(|n| [BEGUN, REPORT].iter().position(|last| n == last).map_or(0, |k| k + 1));
+        for name in all {
             let _ = fs::remove_file(self.path.join(name));
         }
     }

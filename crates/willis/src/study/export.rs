@@ -121,6 +121,15 @@ pub struct Export {
     /// What the train file says and the files do not.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_carried: Vec<NotCarried>,
+    /// Whether every file holds all that weighs.
+    #[serde(skip)]
+    has_inertia: bool,
+}
+
+impl Export {
+    fn new(files: Vec<ExportedFile>, notes: Vec<String>) -> Self {
+        Self { files, notes, not_carried: vec![], has_inertia: false }
+    }
 }
 
 /// A format.
@@ -228,7 +237,7 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
         return Err(d.suggest(kind, known).hint(format!("the exports are: {}", all.join(", "))).into());
     };
     let mut done = (found.write)(model.train(), &Asked::read(request)?)?;
-    done.not_carried = left_out(model, found.carries);
+    done.not_carried = left_out(model, found.carries, done.has_inertia);
     if let Some(told) = sentence(&done.not_carried) {
         let [begin, end] = found.comment;
         for file in done.files.iter_mut().filter(|_| !begin.is_empty()) {
@@ -277,7 +286,7 @@ fn each(
             }
         }
     }
-    if files.is_empty() { Err(wrong) } else { Ok(Export { files, notes, not_carried: vec![] }) }
+    if files.is_empty() { Err(wrong) } else { Ok(Export::new(files, notes)) }
 }
 
 /// What every gear says of itself: numbers rest on assumptions, and one-way clutches overrun.

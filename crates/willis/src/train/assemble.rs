@@ -572,6 +572,13 @@ impl Assembler<'_> {
         unique(self, "shaft", "shaft", spec.shaft.iter().map(|s| s.name.as_str()));
         unique(self, "scenario", "scenario", spec.scenario.iter().map(|s| s.name.as_str()));
         unique(self, "study", "study", spec.study.iter().map(|s| s.name.as_str()));
+        for (k, study) in spec.study.iter().enumerate() {
+            for (text, key) in
+                study.over.iter().map(|t| (t, "over")).chain(study.columns.iter().map(|t| (t, "columns")))
+            {
+                check_text(self, "a text", text, &format!("study[{k}].{key}"));
+            }
+        }
         self.studies(spec);
     }
 

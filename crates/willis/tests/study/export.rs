@@ -728,8 +728,23 @@ fn formula_an_inertia_is_whole_or_not_there() {
         let out = made(&weighing("mass = \"2 kg\""), kind, &ExportRequest::default());
         let text = &out.files[0].text;
         assert_eq!((armature(text), rotor(text)), (None, None), "{text}");
-        assert!(text.contains("not carried over from the file: set.planet.mass (P1)"), "{text}");
+        let keys: Vec<&str> = out.not_carried.iter().map(|n| n.key.as_str()).collect();
+        assert_eq!(keys, ["set.planet.mass", "inertias.sun"], "{text}");
+        assert!(text.contains("not carried over from the file: set.planet.mass (P1), inertias.sun"), "{text}");
         assert!(out.notes.iter().any(|n| n.contains("the planets P1.planet have a mass")), "{:?}", out.notes);
+    }
+}
+
+/// Wheels behind an elastic shaft do not follow the engine: what they weigh is at no one joint.
+#[test]
+fn an_inertia_behind_an_elastic_shaft_is_told() {
+    let model = train("launch");
+    assert!(!model.train().inertias().is_empty());
+    for kind in ["mujoco", "drake"] {
+        let request = state(&model.train().states()[0].name);
+        let Ok(out) = export(&model, kind, &request) else { continue };
+        assert!(out.not_carried.iter().any(|n| n.key.starts_with("inertias.")), "{:?}", out.not_carried);
+        assert!(!out.notes.iter().any(|n| n.contains("no inertias are given")), "{:?}", out.notes);
     }
 }
 
@@ -775,8 +790,9 @@ fn what_is_not_carried_changes_nothing() {
                 (_, [first, ..]) => state(&first.name),
             };
             let Ok(whole) = export(&model, kind, &request) else { continue };
-            // A mass without an orbit takes the whole inertia with it.
-            let is_inertia = |key: &str| key.ends_with(".mass") && !model.train().unplaced_masses().is_empty();
+            // What weighs is there as a whole or not at all: without the part that is unknown the rest is there.
+            let is_inertia =
+                |key: &str| ["mujoco", "drake"].contains(&kind) && (key.ends_with(".mass") || key.contains("inertia"));
             for left in whole.not_carried.iter().filter(|n| !is_inertia(&n.key)) {
                 let table = left.key.split('.').next().unwrap();
                 // A table of which nothing is carried goes as a whole.
@@ -825,6 +841,14 @@ fn every_key_is_carried_or_told() {
             let Ok(out) = export(&model, kind, &ExportRequest::default()) else { continue };
             for (key, carried) in [("drag", "modelica"), ("shaft", "modelica"), ("inertias", "modelica mujoco drake")] {
                 let told = out.not_carried.iter().any(|n| n.key.split('.').next() == Some(key));
+                // An inertia is there as a whole or not at all.
+                let is_there = |f: &willis::study::export::ExportedFile| {
+                    ["armature=", "rotor_inertia value"].iter().any(|a| f.text.contains(a))
+                };
+                if key == "inertias" && ["mujoco", "drake"].contains(&kind) {
+                    assert!(!has(key) || told != out.files.iter().all(is_there), "{name}, {kind}");
+                    continue;
+                }
                 assert!(!has(key) || told != carried.split(' ').any(|k| k == kind), "{name}, {kind}: {key}");
             }
         }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::model::Model;
-use crate::train::Train;
+use crate::train::{FRAME, Train};
 
 /// A key of the train file that is not in the export.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,57 +20,105 @@ pub struct NotCarried {
     pub of: Vec<String>,
 }
 
-/// Whether a format carries a key over.
-pub(super) type Carries = fn(&[&str], &Train) -> bool;
+/// Whether a format carries a key over; the last says whether what it wrote holds all that weighs.
+pub(super) type Carries = fn(&[&str], &Train, bool) -> bool;
 
 /// What tells nothing of the train: names, and what is to be asked of it.
 const ABOUT: &[&str] = &["format", "name", "source", "notes", "operation", "scenario", "study"];
 
-/// The keys of what weighs.
-const WEIGHS: &[&str] = &["mass", "inertia", "orbit_radius"];
+/// Of sets and meshes, what makes speeds and given efficiencies.
+const TEETH: &[&str] = &[
+    "type",
+    "member",
+    "carrier",
+    "teeth",
+    "planet_teeth",
+    "internal",
+    "side",
+    "sense",
+    "kind",
+    "count",
+    "efficiency",
+    "mesh_efficiency",
+    "basic_efficiency",
+    "forward",
+    "backward",
+    "external",
+];
+
+/// Of sets and meshes, what makes computed losses: shape and surface of the teeth, mass and orbit of planets, whose pull
+/// their bearings feel.
+const SHAPE: &[&str] = &[
+    "module",
+    "width",
+    "helix",
+    "double_helical",
+    "pressure_angle",
+    "centre_distance",
+    "youngs_modulus",
+    "poisson_ratio",
+    "roughness",
+    "shift",
+    "addendum",
+    "dedendum",
+    "tip_alteration",
+    "tip_diameter",
+    "immersion",
+    "mass",
+    "orbit_radius",
+];
 
 /// What an operating point depends on: ratios and losses.
-pub(super) fn operating_point(key: &[&str], train: &Train) -> bool {
+pub(super) fn operating_point(key: &[&str], train: &Train, _: bool) -> bool {
     let last = key.last().copied().unwrap_or_default();
     match key {
-        ["members" | "terminals" | "input" | "output" | "state", ..] => true,
+        ["members" | "terminals" | "input" | "output"] | ["state", "engaged" | "input" | "output"] => true,
         ["laws" | "oil" | "housing" | "bearing" | "seal" | "rotor", ..] => train.is_physical(),
         // Its first row alone.
         ["mesh", "loss_table", ..] => false,
-        ["mesh", ..] => true,
-        // The pull of planets on their bearings.
-        ["set", ..] if WEIGHS.contains(&last) => last != "inertia" && train.is_physical(),
-        ["set", ..] => true,
+        ["set" | "mesh", ..] => TEETH.contains(&last) || SHAPE.contains(&last) && train.is_physical(),
         ["shift_element", "kind" | "members" | "blocks"] => true,
         _ => false,
     }
 }
 
 /// The same, and what weighs.
-pub(super) fn with_inertia(key: &[&str], train: &Train) -> bool {
+pub(super) fn with_inertia(key: &[&str], train: &Train, has_inertia: bool) -> bool {
     let last = key.last().copied().unwrap_or_default();
-    match key {
-        ["inertias", ..] => true,
-        ["set", ..] if WEIGHS.contains(&last) => last == "inertia" || train.unplaced_masses().is_empty(),
-        _ => operating_point(key, train),
-    }
+    let weighs = match key {
+        ["inertias", ..] | ["set", .., "inertia"] => true,
+        // How far from the axis a mass turns.
+        ["set", .., "mass" | "orbit_radius" | "module" | "helix" | "centre_distance" | "pressure_angle"] => true,
+        ["set", ..] => last == "shift",
+        _ => false,
+    };
+    weighs && has_inertia || operating_point(key, train, has_inertia)
 }
 
 /// What a model of the drive line has: parts with given or nominal efficiencies, friction, inertia and stiffness.
-pub(super) fn drive_line(key: &[&str], train: &Train) -> bool {
+pub(super) fn drive_line(key: &[&str], train: &Train, _: bool) -> bool {
+    // A planet whose inertia counts its spin against its carrier has no part there.
+    let spins = || train.inertias().iter().any(|i| i.reference != FRAME);
     match key {
-        ["drag" | "shaft" | "inertias" | "shift_element", ..] | ["mesh", "loss_table", ..] => true,
+        ["set", .., "inertia"] => !spins(),
+        ["inertias", ..] | ["mesh", "loss_table", ..] => true,
+        ["drag", "members" | "coulomb" | "viscous" | "table" | "peak"] => true,
+        ["shaft", "members" | "stiffness" | "damping" | "backlash" | "contact"] => true,
+        ["shift_element", "capacity" | "peak" | "friction" | "normal_force" | "effective_radius"] => true,
         ["laws" | "oil" | "housing" | "bearing" | "seal" | "rotor", ..] => false,
-        _ => with_inertia(key, train),
+        // Of the surface of the teeth nothing is in their nominal efficiency.
+        ["set" | "mesh", .., "roughness" | "width" | "youngs_modulus" | "poisson_ratio" | "immersion"] => false,
+        ["set" | "mesh", .., "mass"] => train.unplaced_masses().is_empty(),
+        _ => with_inertia(key, train, true),
     }
 }
 
 /// What the file has and a format does not carry, in the order of the file.
-pub(super) fn left_out(model: &Model, carries: Carries) -> Vec<NotCarried> {
+pub(super) fn left_out(model: &Model, carries: Carries, has_inertia: bool) -> Vec<NotCarried> {
     let written = serde_json::to_value(model.specification()).expect("plain data");
     let mut all = vec![];
     collect(&written, &mut vec![], None, &mut |key, of| {
-        if ABOUT.contains(&key[0]) || key.last() == Some(&"name") || carries(key, model.train()) {
+        if ABOUT.contains(&key[0]) || key.last() == Some(&"name") || carries(key, model.train(), has_inertia) {
             return;
         }
         let key = key.join(".");

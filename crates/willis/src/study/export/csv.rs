@@ -45,11 +45,7 @@ pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostic
     }
     let state = request.state.as_deref().filter(|_| gears.len() == 1);
     let about = format!("{points} points");
-    Ok(Export {
-        files: vec![ExportedFile { name: file(train.name(), state, "csv"), text, about }],
-        notes,
-        not_carried: vec![],
-    })
+    Ok(Export::new(vec![ExportedFile { name: file(train.name(), state, "csv"), text, about }], notes))
 }
 
 fn quoted(text: &str) -> String {

@@ -7,6 +7,8 @@
 //! gets the inertia `ρ² I_rotor` ("and any additional shafts/gears"). The ratio does nothing else: actuation is the
 //! torque on the joint, and there is no efficiency. Both are told as comments.
 
+use std::cell::Cell;
+
 use crate::diagnostic::Diagnostics;
 use crate::train::Train;
 
@@ -17,10 +19,13 @@ use super::single::single;
 use super::{Asked, Export, ExportedFile, each, origin, told};
 
 pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
-    each(train, request, |gear, notes| one(train, gear, notes))
+    let whole = Cell::new(true);
+    let done = each(train, request, |gear, notes| one(train, gear, notes, &whole))?;
+    Ok(Export { has_inertia: whole.get(), ..done })
 }
 
-fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFile, Diagnostics> {
+/// One file; `whole` is told when it lacks what weighs.
+fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>, whole: &Cell<bool>) -> Result<ExportedFile, Diagnostics> {
     let found = single(gear)?;
     let mut own = told(gear);
     own.extend(found.notes);
@@ -34,14 +39,18 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
         gear.title(),
         gear.output
     ));
-    let rotor = gear.inertia_at_output().map(|j| j / (gear.ratio * gear.ratio));
-    own.push(match rotor {
-        Some(_) => format!(
+    let inertia = gear.inertia_at_output().map(|j| j / (gear.ratio * gear.ratio));
+    let rotor = inertia.as_ref().ok().copied();
+    own.push(match &inertia {
+        Ok(_) => format!(
             "{}: rotor_inertia holds every inertia of the file, reflected to {}; Drake multiplies by gear_ratio squared",
             gear.title(),
             gear.input
         ),
-        None => gear.no_inertia("rotor_inertia"),
+        Err(why) => {
+            whole.set(false);
+            format!("{}: no rotor_inertia: {why}", gear.title())
+        }
     });
     let (name, joint) = (slug(train.name()), xml(&gear.output));
     let mut text = format!("<!-- {} -->\n", xml(&origin(train)));

@@ -177,11 +177,7 @@ pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostic
     text += &format!("end {name};\n");
     let state = done[0].0.name.as_deref().filter(|_| done.len() == 1);
     let about = format!("{} loss table{}", done.len(), if done.len() == 1 { "" } else { "s" });
-    Ok(Export {
-        files: vec![ExportedFile { name: file(train.name(), state, "mo"), text, about }],
-        notes,
-        not_carried: vec![],
-    })
+    Ok(Export::new(vec![ExportedFile { name: file(train.name(), state, "mo"), text, about }], notes))
 }
 
 fn rows(gear: &Gear, notes: &mut Vec<String>) -> Result<Vec<Row>, Diagnostics> {

@@ -225,38 +225,37 @@ impl Gear {
         (within && speed.value.sign() > 0).then(|| (speed.clone(), Quantity { value, ..torque.clone() }))
     }
 
-    /// All inertias as one at the output, kg m²; `None` where none is given or a speed is not determined.
-    pub(super) fn inertia_at_output(&self) -> Option<f64> {
+    /// All inertias as one at the output, kg m²; or why that is not known. A part of it would be taken for the whole.
+    pub(super) fn inertia_at_output(&self) -> Result<f64, String> {
         let train = &self.train;
-        // A part of it would be taken for the whole.
         if !train.unplaced_masses().is_empty() {
-            return None;
+            return Err(format!(
+                "the planets {} have a mass, and how far from the axis they turn is not known (give `orbit_radius`, or \
+                 the module of the teeth)",
+                train.unplaced_masses().join(", ")
+            ));
         }
-        let given = train.inertias.iter().filter(|i| i.value > 0.0);
-        let keep: Vec<MemberId> = given.clone().flat_map(|i| [i.member, i.reference]).collect();
+        let given: Vec<_> = train.inertias.iter().filter(|i| i.value > 0.0).collect();
+        if given.is_empty() {
+            return Err("no inertias are given in the file".into());
+        }
+        let keep: Vec<MemberId> = given.iter().flat_map(|i| [i.member, i.reference]).collect();
         let engaged = self.state.map_or(&[][..], |k| &train.states[k].engaged);
         let transfer = Configuration::new(train, engaged, &[], &keep).transfer(&[self.ends[0]]);
-        let speed = |m: MemberId| transfer.speeds[m.0].as_ref().map(|w| w[0].clone());
+        let speed = |m: MemberId| {
+            let speed = transfer.speeds[m.0].as_ref().map(|w| w[0].clone());
+            speed.ok_or_else(|| {
+                format!(
+                    "the speed of `{}`, which has an inertia, does not follow from the input's",
+                    train.member_name(m)
+                )
+            })
+        };
         let output = speed(self.ends[1])?;
-        let mut sum = None;
-        for i in given {
+        given.iter().try_fold(0.0, |sum, i| {
             let relative = ((speed(i.member)? - speed(i.reference)?) / output.clone()).to_f64();
-            sum = Some(sum.unwrap_or(0.0) + i.value * relative * relative);
-        }
-        sum
-    }
-
-    /// Why there is no inertia.
-    pub(super) fn no_inertia(&self, name: &str) -> String {
-        match self.train.unplaced_masses() {
-            [] => format!("{}: no inertias are given in the file, so no {name}", self.title()),
-            planets => format!(
-                "{}: no {name}: the planets {} have a mass, and how far from the axis they turn is not known (give \
-                 `orbit_radius`, or the module of the teeth)",
-                self.title(),
-                planets.join(", ")
-            ),
-        }
+            Ok(sum + i.value * relative * relative)
+        })
     }
 
     /// The sets of the train and their meshes, by position.

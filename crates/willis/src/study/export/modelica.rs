@@ -234,9 +234,5 @@ pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostic
     text += &joints;
     text += &format!("end {name};\n");
     let about = format!("{} lossy gears, {} shift elements", c.elements.len(), train.shift_elements().len());
-    Ok(Export {
-        files: vec![ExportedFile { name: file(train.name(), None, "mo"), text, about }],
-        notes,
-        not_carried: vec![],
-    })
+    Ok(Export::new(vec![ExportedFile { name: file(train.name(), None, "mo"), text, about }], notes))
 }

@@ -14,6 +14,8 @@
 //! mu_avg - mu_dif = 1/efficiency_backward - 1      the joint drives the motor
 //! ```
 
+use std::cell::Cell;
+
 use crate::diagnostic::Diagnostics;
 use crate::train::Train;
 
@@ -23,10 +25,13 @@ use super::single::single;
 use super::{Asked, Export, ExportedFile, each, origin, told};
 
 pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
-    each(train, request, |gear, notes| one(train, gear, notes))
+    let whole = Cell::new(true);
+    let done = each(train, request, |gear, notes| one(train, gear, notes, &whole))?;
+    Ok(Export { has_inertia: whole.get(), ..done })
 }
 
-fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFile, Diagnostics> {
+/// One file; `whole` is told when it lacks what weighs.
+fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>, whole: &Cell<bool>) -> Result<ExportedFile, Diagnostics> {
     let found = single(gear)?;
     let mut own = told(gear);
     own.extend(found.notes);
@@ -58,15 +63,19 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFi
             gear.input
         ));
     }
-    let armature = gear.inertia_at_output();
-    match armature {
-        Some(_) => own.push(format!(
+    let inertia = gear.inertia_at_output();
+    let armature = inertia.as_ref().ok().copied();
+    match &inertia {
+        Ok(_) => own.push(format!(
             "{}: armature holds every inertia of the file, reflected to {}; give joint `{}` the class `{name}`",
             gear.title(),
             gear.output,
             gear.output
         )),
-        None => own.push(gear.no_inertia("armature")),
+        Err(why) => {
+            whole.set(false);
+            own.push(format!("{}: no armature: {why}", gear.title()));
+        }
     }
     let mut text = format!("<!-- {} -->\n", xml(&origin(train)));
     for note in &own {

@@ -64,7 +64,7 @@ pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostic
     let about = format!("{} gear{s} in {root}", gears.len());
     // A script is called by its name, which must be one.
     let name = file(train.name(), state, "m").replace('-', "_");
-    Ok(Export { files: vec![ExportedFile { name, text, about }], notes, not_carried: vec![] })
+    Ok(Export::new(vec![ExportedFile { name, text, about }], notes))
 }
 
 /// A row vector.
