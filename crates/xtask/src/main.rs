@@ -59,7 +59,7 @@ const STEPS: &[Step] = &[
     Step::new("pdf", "reports as PDF, by a typesetter that is built for nobody else", Action::Call(pdf::pdf)),
     Step::new(
         "fuzz",
-        "no panic on random texts: 20 s a target, [--seconds N], [--long] 15 min",
+        "no panic on random train files: 20 s, [--seconds N]; [--long] every text, 15 min a target",
         Action::Call(fuzz::fuzz),
     )
     .may_skip(),
