@@ -9,6 +9,7 @@ mod balance;
 mod batch;
 mod certificate;
 mod choose;
+mod decision;
 mod element;
 mod energy;
 mod engine;

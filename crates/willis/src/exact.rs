@@ -54,7 +54,7 @@ impl Rational {
     }
 
     /// The class modulo [`PRIME`]; none where that has none.
-    fn modulo(&self) -> Option<u64> {
+    pub(crate) fn modulo(&self) -> Option<u64> {
         let big = |n: &BigInt| {
             let class: BigInt = ((n % PRIME) + PRIME) % PRIME;
             class.to_u64().expect("below the prime")
@@ -306,6 +306,13 @@ impl Neg for Rational {
     }
 }
 
+impl Neg for &Rational {
+    type Output = Rational;
+    fn neg(self) -> Rational {
+        &Rational::ZERO - self
+    }
+}
+
 impl PartialEq for Rational {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
@@ -445,13 +452,15 @@ fn is_regular_modulo(matrix: &Matrix) -> bool {
 }
 
 /// 2⁶¹ − 1, a Mersenne prime.
-const PRIME: u64 = (1 << 61) - 1;
+pub(crate) const PRIME: u64 = (1 << 61) - 1;
 
-fn times(a: u64, b: u64) -> u64 {
+/// Product of two classes.
+pub(crate) fn times(a: u64, b: u64) -> u64 {
     (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
 }
 
-fn power(mut base: u64, mut exponent: u64) -> u64 {
+/// Power of a class; that of exponent `PRIME - 2` is its inverse.
+pub(crate) fn power(mut base: u64, mut exponent: u64) -> u64 {
     let mut result = 1;
     while exponent > 0 {
         if exponent & 1 == 1 {

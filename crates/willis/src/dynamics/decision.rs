@@ -1,0 +1,240 @@
+//! The mode of a state: which clutches hold, which meshes at rest begin to roll and which way power flows in each,
+//! decided as one linear complementarity problem.
+//!
+//! This is a function of linear data alone; it knows neither trains nor time. Unknown are all accelerations, two
+//! forces `f` and `e` for each mesh (what its gears put into it, over their factors) and the torque of each element:
+//!
+//! ```text
+//! J a + Σ (f z₁ at gear 1, e z₂ at gear 2, −f z₁ − e z₂ at the carrier) = T + Σ (τ at the first, −τ at the second)
+//! z₁ a₁ + z₂ a₂ − (z₁ + z₂) a_c = 0        z₂ < 0: internal
+//! rolling:  e = P h₊ − h₋ or h₊ − P h₋,   f = η₂₁ (h₊ − h₋),   P = η₁₂ η₂₁,   0 ≤ h₊ ⊥ h₋ ≥ 0
+//! at rest:  e = P h₊ − h₋ + u,   u + v = (1 − P)(h₊ + h₋),   0 ≤ α₊ ⊥ u ≥ 0,   0 ≤ α₋ ⊥ v ≥ 0,   α = z₁ (a₁ − a_c)
+//! element:  0 ≤ α₊ ⊥ c₊ + τ ≥ 0,   0 ≤ α₋ ⊥ c₋ − τ ≥ 0,   α = a_first − a_second
+//! ```
+//!
+//! An element that cannot slip in a direction has no such pair there, and a rigid hold none at all. Where holds
+//! and meshes say the same thing twice, the forces between them are those of equal compliances.
+//!
+//! A basis of these equations is a mode. Pivoting from the last one leads to that of the loads just after the
+//! instant, `d + ε d′`; where a force is at its limit within its own rounding bound, the rates `d′` decide, as an
+//! event of a run is such an instant. Signs of the matrix, which does not come out of a run, are exact. Pivoting is
+//! believed where a certificate says that every load has one motion. Otherwise all modes are searched, exactly, and
+//! only that may say that there is no motion, or that there are two.
+
+#![allow(dead_code)]
+
+mod basis;
+mod certificate;
+mod equations;
+mod pivoting;
+mod search;
+#[cfg(test)]
+mod tests;
+
+use crate::exact::Rational;
+
+use basis::{Basis, Vector};
+use equations::Equations;
+
+/// A member; none is the frame.
+pub(super) type Body = Option<usize>;
+
+/// Inertia of a member, measured against another one or the frame.
+#[derive(Clone, Debug)]
+pub(super) struct Inertia {
+    pub member: usize,
+    pub reference: Body,
+    pub value: f64,
+}
+
+/// A gear mesh, or a chain of them that carries nothing else.
+#[derive(Clone, Debug)]
+pub(super) struct Mesh {
+    /// Gear 1, gear 2, carrier.
+    pub bodies: [Body; 3],
+    /// Factors of the Willis equation: the teeth, those of gear 2 negative if it is internal.
+    pub factors: [Rational; 2],
+    /// Efficiency if gear 1 drives, and if gear 2 does: above 0, at most 1.
+    pub efficiency: [Rational; 2],
+    /// Sign of the speed of gear 1 relative to the carrier, times its factor; 0: at rest.
+    pub slip: i8,
+}
+
+/// What joins two members at no relative speed, by friction, freewheel or form.
+#[derive(Clone, Debug)]
+pub(super) struct Element {
+    pub bodies: [Body; 2],
+    /// Whether the first may begin to turn forward of the second, and backward. Neither: a rigid hold, or a
+    /// prescribed motion.
+    pub yields: [bool; 2],
+}
+
+/// What does not change with the loads.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Problem {
+    pub members: usize,
+    pub inertias: Vec<Inertia>,
+    pub meshes: Vec<Mesh>,
+    pub elements: Vec<Element>,
+}
+
+impl Problem {
+    /// The same without losses, and with all that touches held.
+    fn ideal(&self) -> Self {
+        let mut ideal = self.clone();
+        ideal.meshes.iter_mut().for_each(|m| m.efficiency = [Rational::ONE; 2]);
+        ideal.elements.iter_mut().for_each(|e| e.yields = [false; 2]);
+        ideal
+    }
+}
+
+/// What acts at an instant, and the rate of each: the rates decide where a force is just at its limit.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Load {
+    /// On each member, with the torques of what slides.
+    pub torques: Vec<[f64; 2]>,
+    /// For each element, the torque with which it can oppose slip forward and backward; read where it yields.
+    pub capacities: Vec<[[f64; 2]; 2]>,
+    /// For each element, the relative acceleration that it prescribes; 0 where it only holds.
+    pub accelerations: Vec<[f64; 2]>,
+}
+
+impl Load {
+    /// No load.
+    pub fn of(problem: &Problem) -> Self {
+        let (n, k) = (problem.members, problem.elements.len());
+        Self { torques: vec![[0.0; 2]; n], capacities: vec![[[0.0; 2]; 2]; k], accelerations: vec![[0.0; 2]; k] }
+    }
+}
+
+/// What was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// A motion. Whether it is proved that there is no other one.
+    One { proved: bool },
+    /// Two of different accelerations.
+    Two,
+    /// No motion agrees with the state.
+    None,
+    /// Holds prescribe what contradicts itself.
+    Contradiction,
+    /// The search was too long.
+    Undecided,
+}
+
+/// A force or an acceleration: its value, the bound of its rounding error, and its rate.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Amount {
+    pub value: f64,
+    pub error: f64,
+    pub rate: f64,
+    pub rate_error: f64,
+}
+
+impl Amount {
+    /// Sign just after the instant; 0 if value and rate are within their bounds.
+    pub fn sign(&self) -> i8 {
+        let sign = |x: f64, error: f64| if x > error { 1 } else { -i8::from(x < -error) };
+        match sign(self.value, self.error) {
+            0 => sign(self.rate, self.rate_error),
+            sign => sign,
+        }
+    }
+}
+
+/// What a mesh does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct MeshMotion {
+    /// `f` and `e`.
+    pub forces: [Amount; 2],
+    /// Sign of its slip just after the instant; 0: it stays at rest.
+    pub slip: i8,
+    /// Whether gear 1 drives, the sign of its slip given.
+    pub first_drives: bool,
+}
+
+/// What an element does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct ElementMotion {
+    /// On its first member.
+    pub torque: Amount,
+    /// Sign of its slip just after the instant; 0: it holds.
+    pub slip: i8,
+}
+
+/// A motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Motion {
+    pub accelerations: Vec<Amount>,
+    pub meshes: Vec<MeshMotion>,
+    pub elements: Vec<ElementMotion>,
+}
+
+/// The decision for one set of contacts, under whatever loads.
+#[derive(Clone)]
+pub(super) struct Decision {
+    equations: Equations,
+    /// The lossless train with all held, from whose forces a cold start takes its directions.
+    ideal: Box<(Equations, Basis)>,
+    basis: Basis,
+    /// Loads and unknowns, and their rates.
+    loads: [Vec<f64>; 2],
+    unknowns: [Vector; 2],
+    work: pivoting::Work,
+    certified: Option<bool>,
+    motion: Motion,
+    second: Motion,
+}
+
+impl Decision {
+    pub fn new(problem: &Problem) -> Self {
+        let equations = Equations::new(problem);
+        let ideal = Equations::new(&problem.ideal());
+        let ideal_basis = Basis::new(&ideal);
+        let rows = equations.rows;
+        Self {
+            basis: Basis::new(&equations),
+            ideal: Box::new((ideal, ideal_basis)),
+            loads: [vec![0.0; rows], vec![0.0; rows]],
+            unknowns: [Vector::new(rows), Vector::new(rows)],
+            work: pivoting::Work::new(rows),
+            certified: None,
+            motion: equations.motionless(),
+            second: equations.motionless(),
+            equations,
+        }
+    }
+
+    /// Whether every load has one motion.
+    pub fn is_certified(&mut self) -> bool {
+        *self.certified.get_or_insert_with(|| certificate::is_unique(&self.equations))
+    }
+
+    /// What happens under a load. Starts from the mode of the last time.
+    pub fn decide(&mut self, load: &Load) -> Verdict {
+        if !self.equations.load(load, &mut self.loads) {
+            return Verdict::Contradiction;
+        }
+        let found = self.pivot() || {
+            self.basis.forget();
+            self.pivot()
+        };
+        if found {
+            self.equations.read(&self.basis, &self.unknowns, &mut self.motion);
+        }
+        if found && self.is_certified() {
+            return Verdict::One { proved: true };
+        }
+        self.search(load, found)
+    }
+
+    /// The motion found last.
+    pub fn motion(&self) -> &Motion {
+        &self.motion
+    }
+
+    /// The other one, where there are two.
+    pub fn second(&self) -> &Motion {
+        &self.second
+    }
+}
