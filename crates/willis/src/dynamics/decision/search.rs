@@ -1,6 +1,259 @@
-use super::{Decision, Load, Verdict};
+//! The complete search over all modes, exact.
+//!
+//! What is not yet decided is a polyhedron: both unknowns of a pair may be positive. One that is empty ends the
+//! branch; so does one in which all accelerations are those of the motion that is known. Otherwise a pair is
+//! divided. What remains at the end is a mode.
+
+use crate::exact::{Rational, reduce};
+
+use super::{Amount, Decision, Load, Verdict};
+
+/// Polyhedra that are looked at, at most: a search that is longer says so.
+const MOST: usize = 20_000;
+
+/// `x ≥ 0` over equations, at a vertex.
+#[derive(Clone)]
+struct Polyhedron {
+    /// Coefficients over all unknowns, and the right side, which is the value of the basic one.
+    rows: Vec<Vec<Rational>>,
+    basis: Vec<usize>,
+    /// Unknowns that are zero.
+    banned: Vec<bool>,
+}
+
+impl Polyhedron {
+    /// None if it is empty.
+    fn new(mut rows: Vec<Vec<Rational>>, unknowns: usize) -> Option<Self> {
+        let m = rows.len();
+        for (i, row) in rows.iter_mut().enumerate() {
+            let right = row.pop().expect("a right side");
+            if right.sign() < 0 {
+                row.iter_mut().for_each(|x| *x = -&*x);
+            }
+            row.extend((0..m).map(|k| if k == i { Rational::ONE } else { Rational::ZERO }));
+            row.push(right.abs());
+        }
+        let basis = (unknowns..unknowns + m).collect();
+        let mut start = Self { rows, basis, banned: vec![false; unknowns + m] };
+        if !(unknowns..unknowns + m).all(|artificial| start.ban(artificial)) {
+            return None;
+        }
+        for row in &mut start.rows {
+            row.drain(unknowns..unknowns + m);
+        }
+        Some(start)
+    }
+
+    fn value(&self, row: usize) -> &Rational {
+        self.rows[row].last().expect("a right side")
+    }
+
+    fn pivot(&mut self, at: usize, unknown: usize) {
+        let inverse = self.rows[at][unknown].recip();
+        self.rows[at].iter_mut().filter(|x| !x.is_zero()).for_each(|x| *x = &*x * &inverse);
+        let top = std::mem::take(&mut self.rows[at]);
+        for row in self.rows.iter_mut().filter(|row| !row.is_empty() && !row[unknown].is_zero()) {
+            let factor = row[unknown].clone();
+            for (x, t) in row.iter_mut().zip(&top).filter(|(_, t)| !t.is_zero()) {
+                *x = &*x - &(&factor * t);
+            }
+        }
+        self.rows[at] = top;
+        self.basis[at] = unknown;
+    }
+
+    /// The row that an unknown meets first; `preferred` if it is among several.
+    fn blocking(&self, unknown: usize, preferred: Option<usize>) -> Option<usize> {
+        let rows = (0..self.rows.len()).filter(|&i| self.rows[i][unknown].sign() > 0);
+        let ratio = |i: usize| self.value(i) / &self.rows[i][unknown];
+        rows.map(|i| (ratio(i), preferred != Some(i), self.basis[i], i)).min().map(|(.., i)| i)
+    }
+
+    /// Makes an unknown zero for good. False if it cannot be.
+    fn ban(&mut self, unknown: usize) -> bool {
+        self.banned[unknown] = true;
+        while let Some(at) = self.basis.iter().position(|&j| j == unknown) {
+            let open = |j: &usize| !self.banned[*j];
+            let columns = self.rows[at].len() - 1;
+            // Bland's rule: the first that helps. It ends.
+            match (0..columns).filter(open).find(|&j| self.rows[at][j].sign() > 0) {
+                Some(j) => {
+                    let leaving = self.blocking(j, Some(at)).expect("this row at least");
+                    self.pivot(leaving, j);
+                }
+                None if !self.value(at).is_zero() => return false,
+                None => match (0..columns).filter(open).find(|&j| !self.rows[at][j].is_zero()) {
+                    Some(j) => self.pivot(at, j),
+                    // Nothing moves it.
+                    None => return true,
+                },
+            }
+        }
+        true
+    }
+
+    /// Raises `constant + Σ of x` until it is beyond `limit`, or no more. Whether it went beyond.
+    fn exceeds(&mut self, of: &[Rational], limit: &Rational) -> bool {
+        loop {
+            let mut reduced = of.to_vec();
+            let mut value = Rational::ZERO;
+            for (i, &j) in self.basis.iter().enumerate().filter(|(_, j)| !of[**j].is_zero()) {
+                value += &of[j] * self.value(i);
+                for (r, x) in reduced.iter_mut().zip(&self.rows[i]).filter(|(_, x)| !x.is_zero()) {
+                    *r = &*r - &(&of[j] * x);
+                }
+            }
+            if value > *limit {
+                return true;
+            }
+            let rises = |j: &usize| !self.banned[*j] && reduced[*j].sign() > 0 && !self.basis.contains(j);
+            let Some(j) = (0..reduced.len()).find(rises) else { return false };
+            match self.blocking(j, None) {
+                Some(at) => self.pivot(at, j),
+                None => {
+                    // Without end: what it grows to is beyond.
+                    return true;
+                }
+            }
+        }
+    }
+
+    fn point(&self, unknowns: usize) -> Vec<Rational> {
+        let mut x = vec![Rational::ZERO; unknowns];
+        for (i, &j) in self.basis.iter().enumerate().filter(|(_, j)| **j < unknowns) {
+            x[j] = self.value(i).clone();
+        }
+        x
+    }
+}
+
+/// The search.
+struct Search<'d> {
+    /// Unknowns in pairs.
+    pairs: Vec<[usize; 2]>,
+    /// Each acceleration as constant and coefficients of the unknowns in pairs.
+    accelerations: &'d [(Rational, Vec<Rational>)],
+    /// How far accelerations of one motion may differ.
+    bounds: Vec<Rational>,
+    /// Motions found: values of the unknowns in pairs.
+    found: Vec<Vec<Rational>>,
+    looked_at: usize,
+}
+
+impl Search<'_> {
+    fn acceleration(&self, i: usize, x: &[Rational]) -> Rational {
+        let (constant, of) = &self.accelerations[i];
+        of.iter().zip(x).filter(|(a, x)| !a.is_zero() && !x.is_zero()).fold(constant.clone(), |sum, (a, x)| sum + a * x)
+    }
+
+    /// Takes a polyhedron to a point whose accelerations are not those of the first motion. False if it has none.
+    fn leaves(&self, p: &mut Polyhedron, first: &[Rational]) -> bool {
+        (0..self.accelerations.len()).any(|i| {
+            let (_, of) = &self.accelerations[i];
+            let known = of.iter().zip(first).fold(Rational::ZERO, |sum, (a, x)| sum + a * x);
+            let opposite: Vec<Rational> = of.iter().map(|x| -x).collect();
+            p.exceeds(of, &(&known + &self.bounds[i])) || p.exceeds(&opposite, &(&self.bounds[i] - &known))
+        })
+    }
+
+    /// All modes within a polyhedron. False if that was too long.
+    fn explore(&mut self, mut p: Polyhedron) -> bool {
+        self.looked_at += 1;
+        if self.looked_at > MOST {
+            return false;
+        }
+        if let Some(first) = self.found.first()
+            && !self.leaves(&mut p, first)
+        {
+            return true;
+        }
+        let unknowns = 2 * self.pairs.len();
+        let x = p.point(unknowns);
+        let open = |&&[a, b]: &&[usize; 2]| !p.banned[a] && !p.banned[b];
+        let broken = self.pairs.iter().filter(open).find(|[a, b]| !x[*a].is_zero() && !x[*b].is_zero());
+        match broken.or_else(|| self.pairs.iter().find(open)).copied() {
+            None => {
+                self.found.push(x);
+                // Again, for others of the same mode.
+                self.found.len() > 1 || self.explore(p)
+            }
+            Some(pair) => pair.into_iter().all(|zero| {
+                let mut part = p.clone();
+                self.found.len() > 1 || !part.ban(zero) || self.explore(part)
+            }),
+        }
+    }
+}
+
 impl Decision {
-    pub(super) fn search(&mut self, _: &Load, _found: bool) -> Verdict {
-        Verdict::Undecided
+    /// Looks through all modes; `found` if a motion is known already.
+    pub(super) fn search(&mut self, load: &Load, found: bool) -> Verdict {
+        let equations = &self.equations;
+        let free: Vec<usize> = equations.free().collect();
+        let paired: Vec<usize> = (0..equations.cover()).filter(|&j| equations.partner[j].is_some()).collect();
+        // Equations over the free unknowns, the others, and the right side.
+        let mut rows = vec![vec![Rational::ZERO; free.len() + paired.len() + 1]; equations.rows];
+        for (place, &j) in free.iter().chain(&paired).enumerate() {
+            for e in &equations.columns[j] {
+                rows[e.row][place] = e.exact.clone();
+            }
+        }
+        let mut finite = true;
+        equations.right(load, 0, |row, value| {
+            let exact = Rational::from_f64(value);
+            finite &= exact.is_some();
+            *rows[row].last_mut().expect("a right side") = exact.unwrap_or(Rational::ZERO);
+        });
+        if !finite || reduce(&mut rows, free.len()).len() < free.len() {
+            return if found { Verdict::One { proved: false } } else { Verdict::Undecided };
+        }
+        let members = self.motion.accelerations.len();
+        let affine = |row: &Vec<Rational>| {
+            let of: Vec<Rational> = row[free.len()..free.len() + paired.len()].iter().map(|x| -x).collect();
+            (row.last().expect("a right side").clone(), of)
+        };
+        let given: Vec<(Rational, Vec<Rational>)> = rows[..free.len()].iter().map(affine).collect();
+        let rest: Vec<Vec<Rational>> = rows[free.len()..].iter().map(|row| row[free.len()..].to_vec()).collect();
+        let place = |j: usize| paired.iter().position(|&k| k == j).expect("in a pair");
+        let pairs: Vec<[usize; 2]> = (paired.iter())
+            .filter_map(|&j| equations.partner[j].filter(|&k| k > j).map(|k| [place(j), place(k)]))
+            .collect();
+        let bound = |a: &Amount| Rational::from_f64(if found { a.error } else { 0.0 }).unwrap_or(Rational::ZERO);
+        let bounds = self.motion.accelerations.iter().map(bound).collect();
+        let mut search = Search { pairs, accelerations: &given[..members], bounds, found: Vec::new(), looked_at: 0 };
+        let complete = match Polyhedron::new(rest, paired.len()) {
+            None => true,
+            Some(p) => search.explore(p),
+        };
+        let read = |x: &[Rational], motion: &mut super::Motion| {
+            let value = |j: usize| match free.iter().position(|&k| k == j) {
+                Some(i) => given[i].1.iter().zip(x).fold(given[i].0.clone(), |sum, (a, x)| sum + a * x),
+                None => x[place(j)].clone(),
+            };
+            let amount = |j: usize| {
+                let value = value(j).to_f64();
+                Amount { value, error: f64::EPSILON * value.abs(), ..Amount::default() }
+            };
+            let basic = |j: usize| value(j).sign() > 0;
+            equations.read_from(amount, basic, motion);
+        };
+        match (&search.found[..], complete) {
+            ([first, second, ..], _) => {
+                read(first, &mut self.motion);
+                read(second, &mut self.second);
+                Verdict::Two
+            }
+            (_, false) if found => Verdict::One { proved: false },
+            (_, false) => Verdict::Undecided,
+            ([first], true) => {
+                if !found {
+                    read(first, &mut self.motion);
+                }
+                Verdict::One { proved: true }
+            }
+            // A load at its limit within rounding, and exactly just beyond it.
+            ([], true) if found => Verdict::One { proved: false },
+            ([], true) => Verdict::None,
+        }
     }
 }
