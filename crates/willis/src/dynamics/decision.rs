@@ -212,20 +212,24 @@ impl Decision {
 
     /// What happens under a load. Starts from the mode of the last time.
     pub fn decide(&mut self, load: &Load) -> Verdict {
-        if !self.equations.load(load, &mut self.loads) {
-            return Verdict::Contradiction;
-        }
-        let found = self.pivot() || {
-            self.basis.forget();
-            self.pivot()
-        };
-        if found {
-            self.equations.read(&self.basis, &self.unknowns, &mut self.motion);
-        }
+        let Some(found) = self.follow(load) else { return Verdict::Contradiction };
         if found && self.is_certified() {
             return Verdict::One { proved: true };
         }
         self.search(load, found)
+    }
+
+    /// Pivots to a motion, and reads it. False says nothing about motions; none: a contradiction.
+    fn follow(&mut self, load: &Load) -> Option<bool> {
+        if !self.equations.load(load, &mut self.loads) {
+            return None;
+        }
+        // The second time from a cold start.
+        let found = self.pivot() || self.pivot();
+        if found {
+            self.equations.read(&self.basis, &self.unknowns, &mut self.motion);
+        }
+        Some(found)
     }
 
     /// The motion found last.

@@ -50,6 +50,7 @@ impl Decision {
     /// From the last basis to that of the loads. False if pivoting says nothing: no answer about motion.
     pub(super) fn pivot(&mut self) -> bool {
         if !self.basis.is_known() && !self.start() {
+            eprintln!("DBG start singular");
             return false;
         }
         // A tie within rounding may leave a trace: then once more from there.
@@ -193,9 +194,10 @@ impl Decision {
             work.candidates.retain(|&i| work.column.value[i] > 0.0);
             match self.least(entering, work) {
                 Some(next) => at = next,
-                None => return false,
+                None => { eprintln!("DBG ray"); return false },
             }
         }
+        eprintln!("DBG limit");
         false
     }
 

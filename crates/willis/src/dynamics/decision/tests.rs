@@ -140,3 +140,174 @@ fn val_modes_of_an_independent_program() {
         }
     }
 }
+
+/// Numbers that look random and are the same in every run.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, n: usize) -> usize {
+        // SplitMix64.
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) % n as u64) as usize
+    }
+
+    fn one_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+
+    fn between(&mut self, least: i64, most: i64) -> f64 {
+        (least + self.below((most - least + 1) as usize) as i64) as f64
+    }
+}
+
+/// Sets of which each has two shafts with others in common, elements between them, some of them redundant; massless
+/// planets, and shafts that only touch others.
+fn random_problem(dice: &mut Dice, sets: usize) -> Problem {
+    let shafts = 2 + sets;
+    let mut problem = Problem { members: shafts + sets, ..Problem::default() };
+    let resting = dice.one_in(2);
+    for set in 0..sets {
+        let mut of = vec![dice.below(2 + set), 2 + set];
+        while of.len() < 3 {
+            let next = dice.below(2 + set);
+            if !of.contains(&next) {
+                of.push(next);
+            }
+        }
+        of.rotate_left(dice.below(3));
+        let [sun, ring, carrier, planet] = [of[0], of[1], of[2], shafts + set].map(Some);
+        let (z, p) = (20 + dice.below(30) as i64, 15 + dice.below(20) as i64);
+        let slip = if resting || dice.one_in(4) { 0 } else { [-1, 1][dice.below(2)] };
+        let lossless = dice.one_in(8);
+        let mut efficiency = || if lossless { Rational::ONE } else { Rational::new(960 + dice.below(36) as i64, 1000) };
+        let [outer, inner] = [[efficiency(), efficiency()], [efficiency(), efficiency()]];
+        let factors = |a: i64, b: i64| [a, b].map(Rational::from);
+        let (a, b) = ([sun, planet, carrier], [planet, ring, carrier]);
+        problem.meshes.push(Mesh { bodies: a, factors: factors(z, p), efficiency: outer, slip });
+        problem.meshes.push(Mesh { bodies: b, factors: factors(p, -(z + 2 * p)), efficiency: inner, slip: -slip });
+    }
+    for member in 0..shafts {
+        let value = if dice.one_in(8) { 0.0 } else { dice.between(1, 40) / 100.0 };
+        problem.inertias.push(Inertia { member, reference: None, value });
+    }
+    for _ in 0..1 + dice.below(2 + sets) {
+        let first = dice.below(shafts);
+        let second = Some(dice.below(shafts)).filter(|&s| s != first && !dice.one_in(2));
+        let yields = [[true; 2], [true; 2], [false; 2], [true, false], [false, true]][dice.below(5)];
+        problem.elements.push(Element { bodies: [Some(first), second], yields });
+    }
+    problem
+}
+
+fn random_load(dice: &mut Dice, problem: &Problem) -> Load {
+    let mut load = Load::of(problem);
+    let shafts = problem.inertias.len();
+    for t in &mut load.torques[..shafts] {
+        if !dice.one_in(3) {
+            *t = [dice.between(-300, 300) / 7.0, dice.between(-300, 300)];
+        }
+    }
+    for c in &mut load.capacities {
+        *c = [[dice.between(1, 300), dice.between(-9, 9)]; 2];
+    }
+    load
+}
+
+/// Every equation and every complementarity, from the problem itself, within the bounds that the answer states.
+fn assert_motion(problem: &Problem, load: &Load, motion: &Motion) {
+    let a = |b: Body| b.map_or((0.0, 0.0), |i| (motion.accelerations[i].value, motion.accelerations[i].error));
+    let mut sums: Vec<(f64, f64)> = load.torques.iter().map(|t| (t[0], t[0].abs() * 1e-15)).collect();
+    let mut add = |b: Body, factor: f64, (value, error): (f64, f64)| {
+        if let Some(i) = b {
+            sums[i].0 += factor * value;
+            sums[i].1 += factor.abs() * (error + 1e-15 * value.abs());
+        }
+    };
+    let vanishes = |terms: &[(f64, (f64, f64))], what: &str| {
+        let sum: f64 = terms.iter().map(|(k, (x, _))| k * x).sum();
+        let bound: f64 = terms.iter().map(|(k, (x, e))| k.abs() * (e + 1e-15 * x.abs())).sum();
+        assert!(sum.abs() <= bound, "{what}: {sum} {bound} {problem:?} {load:?} {motion:?}");
+        bound
+    };
+    for inertia in &problem.inertias {
+        add(Some(inertia.member), -inertia.value, a(Some(inertia.member)));
+    }
+    for (mesh, m) in problem.meshes.iter().zip(&motion.meshes) {
+        let [first, second, carrier] = mesh.bodies;
+        let [z1, z2] = mesh.factors.clone().map(|z| z.to_f64());
+        let [f, e] = m.forces.map(|f| (f.value, f.error));
+        add(first, -z1, f);
+        add(second, -z2, e);
+        add(carrier, z1, f);
+        add(carrier, z2, e);
+        vanishes(&[(z1, a(first)), (z2, a(second)), (-z1 - z2, a(carrier))], "Willis");
+        let [along, back] = [mesh.efficiency[0].to_f64(), 1.0 / mesh.efficiency[1].to_f64()];
+        let slip_bound = z1 * (a(first).1 + a(carrier).1) + 1e-15 * z1 * (a(first).0.abs() + a(carrier).0.abs());
+        let slip = z1 * (a(first).0 - a(carrier).0);
+        let bound = 4.0 * (f.1 + e.1) + 1e-14 * (f.0.abs() + e.0.abs());
+        let [drives, is_driven] = [f.0 * along, f.0 * back];
+        let sign = if mesh.slip != 0 { f64::from(mesh.slip) } else if slip.abs() > slip_bound { slip.signum() } else { 0.0 };
+        // What the mesh gives back is the less of the two when it turns on, the more when it turns back.
+        let [least, most] = [drives.min(is_driven), drives.max(is_driven)];
+        let agrees = if sign > 0.0 {
+            (e.0 - least).abs() <= bound
+        } else if sign < 0.0 {
+            (e.0 - most).abs() <= bound
+        } else {
+            least - bound <= e.0 && e.0 <= most + bound
+        };
+        assert!(agrees, "friction {f:?} {e:?} {mesh:?} {m:?} {slip} {problem:?} {load:?}");
+    }
+    for ((element, m), capacity) in problem.elements.iter().zip(&motion.elements).zip(&load.capacities) {
+        let t = (m.torque.value, m.torque.error);
+        add(element.bodies[0], 1.0, t);
+        add(element.bodies[1], -1.0, t);
+        let [first, second] = element.bodies.map(a);
+        let slip = first.0 - second.0;
+        let bound = first.1 + second.1 + 1e-15 * (first.0.abs() + second.0.abs());
+        let limit = 2.0 * t.1 + 1e-14 * t.0.abs();
+        for (side, sign) in [(0, 1.0), (1, -1.0)] {
+            assert!(element.yields[side] || sign * slip <= bound, "a hold slips {slip} {bound} {problem:?} {load:?}");
+            assert!(!element.yields[side] || capacity[side][0] + sign * t.0 >= -limit, "beyond its capacity");
+            let opposed = sign * slip <= bound || (sign * t.0 + capacity[side][0]).abs() <= limit;
+            assert!(opposed, "slips with {t:?} of {capacity:?} {slip} {bound}");
+        }
+    }
+    for (sum, bound) in sums {
+        assert!(sum.abs() <= bound, "torques: {sum} {bound} {problem:?} {load:?}");
+    }
+}
+
+fn same(a: &Motion, b: &Motion) -> bool {
+    a.accelerations.iter().zip(&b.accelerations).all(|(x, y)| (x.value - y.value).abs() <= x.error + y.error)
+}
+
+#[test]
+fn random_trains_satisfy_their_equations() {
+    let mut counts = [0; 4];
+    for seed in 0..600 {
+        let dice = &mut Dice(seed);
+        let sets = 1 + dice.below(4);
+        let problem = random_problem(dice, sets);
+        let mut warm = Decision::new(&problem);
+        let certified = warm.is_certified();
+        for _ in 0..6 {
+            let load = random_load(dice, &problem);
+            let found = warm.follow(&load).expect("nothing is prescribed");
+            counts[usize::from(certified) * 2 + usize::from(found)] += 1;
+            if !found { eprintln!("DBG seed {seed} certified {certified}"); }
+            if found {
+                assert_motion(&problem, &load, warm.motion());
+                let mut cold = Decision::new(&problem);
+                if certified {
+                    if !cold.follow(&load).expect("nothing is prescribed") { eprintln!("DBG seed {seed} cold"); continue }
+                    assert!(same(warm.motion(), cold.motion()), "{seed}: {problem:?} {load:?}");
+                }
+            }
+        }
+    }
+    println!("{counts:?}");
+}
