@@ -5,6 +5,7 @@ mod common;
 
 mod compare;
 mod cycle;
+mod effort;
 mod export;
 mod sensitivity;
 mod sweep;

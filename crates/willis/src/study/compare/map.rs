@@ -8,7 +8,7 @@ use crate::study::axis::Axis;
 use crate::study::question::{Hold, Question, Trains};
 use crate::study::sweep::Sweep;
 use crate::train::Operation;
-use crate::work::{self, Cancelled, Work};
+use crate::work::{self, Cancelled, Effort, Work};
 
 use super::results::{point, prescribed, same};
 use super::{CompareRequest, TextDifference};
@@ -207,6 +207,13 @@ pub(super) fn compare(
         let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven);
         sweeps.push(question.and_then(|q| Sweep::new(q, axes, &[])).map_err(called)?);
     }
+    let of = |s: &Sweep<'_>| Effort::of_points(s.question().model().train(), s.len());
+    let all: Vec<Effort> = sweeps.iter().map(of).collect();
+    work.afford(&Effort {
+        what: all[0].what,
+        count: all.iter().map(|e| e.count).sum(),
+        seconds: all.iter().map(|e| e.seconds).sum(),
+    })?;
     let first = &sweeps[0];
     // Each against the first.
     for (k, other) in sweeps.iter().enumerate().skip(1) {
