@@ -207,13 +207,6 @@ pub(super) fn compare(
         let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven);
         sweeps.push(question.and_then(|q| Sweep::new(q, axes, &[])).map_err(called)?);
     }
-    let of = |s: &Sweep<'_>| Effort::of_points(s.question().model().train(), s.len());
-    let all: Vec<Effort> = sweeps.iter().map(of).collect();
-    work.afford(&Effort {
-        what: all[0].what,
-        count: all.iter().map(|e| e.count).sum(),
-        seconds: all.iter().map(|e| e.seconds).sum(),
-    })?;
     let first = &sweeps[0];
     // Each against the first.
     for (k, other) in sweeps.iter().enumerate().skip(1) {
@@ -233,6 +226,13 @@ pub(super) fn compare(
             .hint("fewer values tell where a variant is better")
             .into());
     }
+    let of = |s: &Sweep<'_>| Effort::of_points(s.question().model().train(), s.len());
+    let all: Vec<Effort> = sweeps.iter().map(of).collect();
+    work.afford(&Effort {
+        what: all[0].what,
+        count: all.iter().map(|e| e.count).sum(),
+        seconds: all.iter().map(|e| e.seconds).sum(),
+    })?;
     let mut pairs: Vec<MapPair> =
         (1..sweeps.len()).map(|k| MapPair::new(&labels[0], &labels[k], bands(first))).collect();
     for (point, answers) in (0..points).zip(answers(&sweeps, points, work)?) {
