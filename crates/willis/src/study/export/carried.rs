@@ -65,6 +65,8 @@ struct Leaf {
     of: Option<String>,
     /// What it could be as well.
     others: Vec<Value>,
+    /// Whether it is a word and no number.
+    is_text: bool,
 }
 
 /// What the file has and an export does not hold, in the order of the file.
@@ -134,8 +136,8 @@ impl Trial {
         Some((self.write)(&train, &self.asked).ok().map(texts))
     }
 
-    /// Whether other values of these make another file; none where there is no train with others.
-    fn moves(&self, leaves: &[&Leaf]) -> Option<bool> {
+    /// Whether other values of these make another file.
+    fn moves(&self, leaves: &[&Leaf]) -> bool {
         /// That many other values that change nothing are enough.
         const ENOUGH: usize = 2;
         let most = leaves.iter().map(|l| l.others.len()).max().unwrap_or(0);
@@ -152,32 +154,29 @@ impl Trial {
             }
             self.texts_of(&written)
         };
-        let others = (0..most).map(|k| with(Some(k)));
-        let is_text = leaves.iter().all(|l| l.others.iter().all(Value::is_string) && l.is_text(&self.written));
+        let is_text = leaves.iter().all(|l| l.is_text);
         let mut tried = 0;
-        for texts in others.flatten() {
-            if texts != self.texts {
-                return Some(true);
+        for texts in (0..most).filter_map(|k| with(Some(k))) {
+            if differ(&texts, &self.texts) {
+                return true;
             }
             tried += 1;
             if tried >= ENOUGH && !is_text {
                 break;
             }
         }
-        // Where nothing else fits, it may be left out.
         match tried {
-            0 => with(None).map(|texts| texts != self.texts),
-            _ => Some(false),
+            0 if is_text => with(None).is_some_and(|texts| differ(&texts, &self.texts)),
+            // A number that can be no other follows from the rest, as the teeth of a planet between sun and ring.
+            tried => tried == 0,
         }
     }
 
     /// What is left out of one key.
     fn left(&self, leaves: &[&Leaf]) -> Option<NotCarried> {
         let carried: Vec<bool> = match self.moves(leaves) {
-            Some(false) => vec![false; leaves.len()],
-            Some(true) if leaves.len() == 1 => vec![true],
-            // What cannot be tried is told.
-            _ => leaves.iter().map(|l| self.moves(&[l]) == Some(true)).collect(),
+            true if leaves.len() > 1 => leaves.iter().map(|l| self.moves(&[l])).collect(),
+            all => vec![all; leaves.len()],
         };
         let mut values: BTreeMap<Option<&str>, Vec<String>> = BTreeMap::new();
         let mut of: Vec<Option<&str>> = vec![];
@@ -200,10 +199,31 @@ impl Trial {
     }
 }
 
-impl Leaf {
-    fn is_text(&self, written: &Value) -> bool {
-        written.pointer(&self.pointer).and_then(Value::as_str).is_some_and(|text| measured(text).is_none())
-    }
+/// Whether files differ by more than rounding.
+fn differ(a: &Option<Vec<String>>, b: &Option<Vec<String>>) -> bool {
+    /// Of a number, and of the largest beside it: what is lost is a small difference of large numbers.
+    const ROUNDING: [f64; 2] = [1e-9, 1e-13];
+    let words = |line: &str| -> Vec<String> {
+        let parts = line.split(|c: char| !(c.is_alphanumeric() || matches!(c, '.' | '-' | '+')));
+        parts.filter(|w| !w.is_empty()).map(str::to_owned).collect()
+    };
+    let same_line = |(a, b): (&str, &str)| {
+        if a == b {
+            return true;
+        }
+        let [a, b] = [a, b].map(words);
+        let number = |w: &String| w.parse::<f64>().ok();
+        let largest = a.iter().filter_map(number).fold(0.0f64, |most, x| most.max(x.abs()));
+        a.len() == b.len()
+            && a.iter().zip(&b).all(|(a, b)| match (number(a), number(b)) {
+                (Some(x), Some(y)) => (x - y).abs() <= (ROUNDING[0] * x.abs().max(y.abs())).max(ROUNDING[1] * largest),
+                _ => a == b,
+            })
+    };
+    let (Some(a), Some(b)) = (a, b) else { return a.is_some() != b.is_some() };
+    let same =
+        |(a, b): (&String, &String)| a.lines().count() == b.lines().count() && a.lines().zip(b.lines()).all(same_line);
+    a.len() != b.len() || !a.iter().zip(b).all(same)
 }
 
 /// A key in a pointer of JSON.
@@ -259,7 +279,8 @@ fn collect(value: &Value, key: &mut Vec<String>, pointer: String, of: Option<&st
                 return;
             }
             let of = of.filter(|_| steps != ["oil", "name"]).map(str::to_owned);
-            all.push(Leaf { key: key.clone(), pointer, of, others: others(&steps, kind, value) });
+            let is_text = value.as_str().is_some_and(|text| measured(text).is_none());
+            all.push(Leaf { key: key.clone(), pointer, of, others: others(&steps, kind, value), is_text });
         }
     }
 }
