@@ -213,7 +213,8 @@ pub const KINDS: &[Kind] = &[
 /// )?;
 /// let table = export(&model, "modelica-loss-table", &ExportRequest::default())?;
 /// assert!(table.files[0].text.contains("ratio = 10/3 "));
-/// assert!(table.not_carried.is_empty());
+/// assert_eq!(table.not_carried[0].key, "set.planet.teeth");
+/// assert_eq!(table.not_carried[0].values, ["20"]);
 /// assert!(export(&model, "vekto", &ExportRequest::default()).unwrap_err().to_string().contains("did you mean `vecto`?"));
 /// # Ok::<(), willis::diagnostic::Diagnostics>(())
 /// ```

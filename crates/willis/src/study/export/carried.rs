@@ -138,8 +138,8 @@ impl Trial {
 
     /// Whether other values of these make another file.
     fn moves(&self, leaves: &[&Leaf]) -> bool {
-        /// That many other values that change nothing are enough.
-        const ENOUGH: usize = 2;
+        /// That many other numbers or words that change nothing are enough.
+        const ENOUGH: [usize; 2] = [2, 4];
         let most = leaves.iter().map(|l| l.others.len()).max().unwrap_or(0);
         let with = |k: Option<usize>| {
             let mut written = self.written.clone();
@@ -161,7 +161,7 @@ impl Trial {
                 return true;
             }
             tried += 1;
-            if tried >= ENOUGH && !is_text {
+            if tried >= ENOUGH[usize::from(is_text)] {
                 break;
             }
         }
