@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use willis::model::Model;
 use willis::study::export::{Export, ExportRequest, KINDS, export};
@@ -145,6 +146,10 @@ fn generated() -> Vec<(&'static str, String)> {
             apart(120.0)
         )
     };
+    let teeth = "sun = { member = 'sun', teeth = 17 }\nring = { member = 'frame', teeth = 61 }\n";
+    let plain = set("simple", teeth);
+    let by_kind = "mesh_efficiency = { external = { forward = 0.98, backward = 0.97 }, internal = { forward = 0.99, backward = \
+                   0.985 } }\n";
     let tips = [Some(76.0), Some(96.0), Some(236.0)];
     let held = simple([None; 3], &apart(78.0)).replace("'frame'", "'ring'");
     vec![
@@ -155,8 +160,13 @@ fn generated() -> Vec<(&'static str, String)> {
         ("double, tips", head(ends) + oil + two + &double([Some(128.0), Some(72.0)], &tooth(Some(312.0)))),
         ("stepped", head(ends) + oil + two + &stepped(false, &apart(120.0)) + "geometry = " + geometry),
         ("stepped, tips", head(ends) + oil + two + &stepped(true, geometry)),
+        ("efficiencies", head(ends) + &plain + "basic_efficiency = { forward = 0.98, backward = 0.97 }\n"),
+        ("efficiencies, by kind", head(ends) + &plain + by_kind),
         ("ravigneaux", head("'sun', 'carrier', 'wheel'") + oil + two + &ravigneaux(false)),
-        ("ravigneaux, tips", head("'sun', 'carrier', 'wheel'") + "[oil]\nname = 'ISO VG 220'\n" + &ravigneaux(true)),
+        (
+            "ravigneaux, tips",
+            head("'sun', 'carrier', 'wheel'") + "[oil]\nname = 'ISO VG 220'\nvolume = '4 l'\n" + &ravigneaux(true),
+        ),
         ("bevel", head(ends) + &bevel(None)),
         ("bevel, tips", head(ends) + &bevel(Some(70.0))),
         ("mesh", head("'sun', 'lay', 'mid', 'end', 'carrier'") + oil + two + &mesh(false)),
@@ -256,7 +266,7 @@ fn moved(a: &Export, b: &Export) -> bool {
         let most = a.iter().filter_map(number).fold(0.0f64, |m, x| m.max(x.abs()));
         a.len() != b.len()
             || a.iter().zip(&b).any(|(a, b)| match (number(a), number(b)) {
-                (Some(x), Some(y)) => (x - y).abs() > (1e-9 * x.abs()).max(1e-13 * most),
+                (Some(x), Some(y)) => (x - y).abs() > (1e-11 * x.abs()).max(1e-13 * most),
                 _ => a != b,
             })
     };
@@ -265,6 +275,7 @@ fn moved(a: &Export, b: &Export) -> bool {
 
 /// Words that may stand at a key.
 fn words(key: &str) -> Vec<String> {
+    static SCHEMA: LazyLock<BTreeMap<String, Vec<String>>> = LazyLock::new(schema_keys);
     match key.split_once('.').unwrap_or_default() {
         ("laws", family) => {
             willis::losses::entries().iter().filter(|e| e.family == family).map(|e| e.id.to_owned()).collect()
@@ -272,7 +283,7 @@ fn words(key: &str) -> Vec<String> {
         ("bearing", "designation") => vec!["NU 205".into(), "6206".into()],
         ("bearing", "series") => vec!["302".into(), "322".into()],
         ("oil", "name") => vec!["ISO VG 100".into()],
-        _ => schema_keys().remove(key).unwrap_or_default(),
+        _ => SCHEMA.get(key).cloned().unwrap_or_default(),
     }
 }
 
@@ -280,7 +291,7 @@ fn words(key: &str) -> Vec<String> {
 /// other.
 fn moves(text: &str, key: &str, kind: &str, request: &ExportRequest, whole: &Export) -> Option<bool> {
     // What is no number is left out, or another word.
-    let numbers = [(1.01, 1), (0.99, -1), (1.0001, 2), (1.1, 12)];
+    let numbers = [(1.1, 1), (0.9, -1), (1.0001, 2), (0.99, 12)];
     let numbers = numbers.map(|(factor, more)| -> Other { Box::new(move |value| larger(value, factor, more)) });
     let words = words(key).into_iter().map(|word| -> Other { Box::new(move |_| Some(word.clone().into())) });
     let mut any = None;
@@ -355,9 +366,13 @@ fn texts() -> impl Iterator<Item = (usize, (String, String))> {
     own.chain(examples()).filter(|(_, text)| Model::from_toml(text).is_ok()).enumerate()
 }
 
-/// Every key of every text meets one format, and all formats meet all kinds of keys.
-fn meet(text: usize, key: usize, kind: usize) -> bool {
-    (text + key + kind).is_multiple_of(KINDS.len())
+/// Which keys of a text meet a format: each key one; where losses are computed, which takes time, one in twelve meets two.
+fn meet(model: &Model, text: usize, kind: usize, keys: usize) -> Vec<usize> {
+    let meets = |key: &usize| match model.train().is_physical() {
+        true => (text + kind).is_multiple_of(4) && (text + key).is_multiple_of(12),
+        false => (text + key + kind).is_multiple_of(KINDS.len()),
+    };
+    (0..keys).filter(meets).collect()
 }
 
 // ---- Properties ------------------------------------------------------------------------------
@@ -386,50 +401,60 @@ fn no_key_of_the_schema_is_missing_from_the_generated_files() {
 /// Every key is told, or another value of it makes another file, or with the rest as it is it can have no other.
 #[test]
 fn every_key_is_told_or_moves_a_number() {
-    let mut tried = 0;
+    let (mut tried, mut wrong) = (0, vec![]);
     for (i, (name, text)) in texts() {
         let model = Model::from_toml(&text).unwrap();
         let mut all = vec![];
         keys(&text.parse::<toml::Table>().unwrap().into(), "", &mut all);
+        all.retain(|key| !is_train(key, &text));
         for (k, kind) in KINDS.iter().map(|k| k.id).enumerate() {
             let request = few(&model, kind);
-            let Ok(whole) = export(&model, kind, &request) else { continue };
-            for (_, key) in all.iter().enumerate().filter(|(j, key)| meet(i, *j, k) && !is_train(key, &text)) {
+            let met = meet(&model, i, k, all.len());
+            let Some(whole) = (!met.is_empty()).then(|| export(&model, kind, &request).ok()).flatten() else {
+                continue;
+            };
+            for key in met.into_iter().map(|j| &all[j]) {
                 if whole.not_carried.iter().any(|n| n.key == *key && !n.in_part) {
                     continue;
                 }
-                assert_ne!(moves(&text, key, kind, &request, &whole), Some(false), "{name}, {kind}: {key}");
+                if moves(&text, key, kind, &request, &whole) == Some(false) {
+                    wrong.push(format!("{name}, {kind}: {key}"));
+                }
                 tried += 1;
             }
         }
     }
-    assert!(tried > 200, "{tried}");
+    assert!(wrong.is_empty() && tried > 100, "{tried} {wrong:?}");
 }
 
 /// What is said to be left out makes no difference to the numbers.
 #[test]
 fn what_is_not_carried_changes_nothing() {
-    let mut tried = 0;
+    let (mut tried, mut wrong) = (0, vec![]);
     for (i, (name, text)) in texts() {
         let model = Model::from_toml(&text).unwrap();
-        for (k, kind) in KINDS.iter().map(|k| k.id).enumerate() {
+        // Where losses are computed, which takes time, two formats.
+        let kinds = KINDS.iter().map(|k| k.id).enumerate();
+        for (_, kind) in kinds.filter(|(k, _)| !model.train().is_physical() || (i + k).is_multiple_of(4)) {
             let request = few(&model, kind);
             let Ok(whole) = export(&model, kind, &request) else { continue };
             // What weighs is there as a whole or not at all: without the part that is unknown the rest is there.
             let is_inertia =
                 |key: &str| ["mujoco", "drake"].contains(&kind) && (key.ends_with(".mass") || key.contains("inertia"));
-            let left = whole.not_carried.iter().enumerate().filter(|(j, n)| meet(i, *j, k) && !is_inertia(&n.key));
-            for (_, left) in left.filter(|(_, n)| !n.in_part) {
+            let left = whole.not_carried.iter().filter(|n| !is_inertia(&n.key) && !n.in_part);
+            for left in left.skip(i % 3).step_by(3) {
                 // An entry of which nothing is carried goes as a whole.
                 let table = left.key.split('.').next().unwrap();
                 let key = if ["drag", "shaft"].contains(&table) { table } else { &left.key };
                 let Some(other) = changed(&text, key, &left.of, &|_| None) else { continue };
-                assert!(!moved(&whole, &made(&other, kind, &request)), "{name}, {kind}: {}", left.key);
+                if moved(&whole, &made(&other, kind, &request)) {
+                    wrong.push(format!("{name}, {kind}: {}", left.key));
+                }
                 tried += 1;
             }
         }
     }
-    assert!(tried > 50, "{tried}");
+    assert!(wrong.is_empty() && tried > 50, "{tried} {wrong:?}");
 }
 
 // ---- Worked numbers --------------------------------------------------------------------------
@@ -489,7 +514,7 @@ fn formula_an_inertia_is_whole_or_not_there() {
         assert_eq!((after(&out, "armature=\""), after(&out, "rotor_inertia value=\"")), (None, None), "{text}");
         let keys: Vec<&str> = out.not_carried.iter().map(|n| n.key.as_str()).collect();
         assert_eq!(keys, ["set.planet.teeth", "set.planet.count", "set.planet.mass", "inertias.sun"], "{text}");
-        assert!(text.contains("set.planet.mass (P1: 2 kg), inertias.sun (1e-5 kg m^2)"), "{text}");
+        assert!(text.contains("set.planet.mass (P1: 2 kg), inertias.sun (100 g cm^2)"), "{text}");
         assert!(out.notes.iter().any(|n| n.contains("the planets P1.planet have a mass")), "{:?}", out.notes);
     }
     let out = made(&unplaced, "modelica", &ExportRequest::default());

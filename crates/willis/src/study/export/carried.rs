@@ -202,7 +202,7 @@ impl Trial {
 /// Whether files differ by more than rounding.
 fn differ(a: &Option<Vec<String>>, b: &Option<Vec<String>>) -> bool {
     /// Of a number, and of the largest beside it: what is lost is a small difference of large numbers.
-    const ROUNDING: [f64; 2] = [1e-9, 1e-13];
+    const ROUNDING: [f64; 2] = [1e-11, 1e-13];
     let words = |line: &str| -> Vec<String> {
         let parts = line.split(|c: char| !(c.is_alphanumeric() || matches!(c, '.' | '-' | '+')));
         parts.filter(|w| !w.is_empty()).map(str::to_owned).collect()
@@ -315,7 +315,7 @@ fn others(key: &[&str], kind: KeyKind, value: &Value) -> Vec<Value> {
             [1, -1, n].map(|more| Value::from(n.saturating_add(more))).to_vec()
         }
         // Large enough to be seen behind rounding; smaller where the parts must fit.
-        _ => [1.01, 0.99, 1.1, 0.9, 1.0001, 0.9999].iter().filter_map(|factor| scaled(value, *factor)).collect(),
+        _ => [1.1, 0.9, 1.01, 0.99, 1.0001, 0.9999].iter().filter_map(|factor| scaled(value, *factor)).collect(),
     }
 }
 
