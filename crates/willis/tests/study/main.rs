@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod carried;
 mod compare;
 mod cycle;
 mod effort;
