@@ -366,10 +366,10 @@ fn texts() -> impl Iterator<Item = (usize, (String, String))> {
     own.chain(examples()).filter(|(_, text)| Model::from_toml(text).is_ok()).enumerate()
 }
 
-/// Which keys of a text meet a format: each key one; where losses are computed, which takes time, one in twelve meets two.
+/// Which keys of a text meet a format: each key one; where losses are computed, which takes time, one in 24 meets two.
 fn meet(model: &Model, text: usize, kind: usize, keys: usize) -> Vec<usize> {
     let meets = |key: &usize| match model.train().is_physical() {
-        true => (text + kind).is_multiple_of(4) && (text + key).is_multiple_of(12),
+        true => (text + kind).is_multiple_of(4) && (text + key).is_multiple_of(24),
         false => (text + key + kind).is_multiple_of(KINDS.len()),
     };
     (0..keys).filter(meets).collect()
@@ -398,6 +398,10 @@ fn no_key_of_the_schema_is_missing_from_the_generated_files() {
     assert!(schema_keys().len() > 150, "{}", schema_keys().len());
 }
 
+/// What every format has and moves no number there: text, key, why.
+const STILL: &[(&str, &str, &str)] =
+    &[("locked-both-ways", "set.basic_efficiency", "it locks as well with a little more or less friction")];
+
 /// Every key is told, or another value of it makes another file, or with the rest as it is it can have no other.
 #[test]
 fn every_key_is_told_or_moves_a_number() {
@@ -417,7 +421,8 @@ fn every_key_is_told_or_moves_a_number() {
                 if whole.not_carried.iter().any(|n| n.key == *key && !n.in_part) {
                     continue;
                 }
-                if moves(&text, key, kind, &request, &whole) == Some(false) {
+                let is_known = STILL.iter().any(|(text, of, _)| (*text, *of) == (name.as_str(), key.as_str()));
+                if !is_known && moves(&text, key, kind, &request, &whole) == Some(false) {
                     wrong.push(format!("{name}, {kind}: {key}"));
                 }
                 tried += 1;
