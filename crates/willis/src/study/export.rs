@@ -26,6 +26,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::Model;
 use crate::train::Train;
 use crate::units::{Dimension, Quantity};
+use crate::work::Effort;
 
 use super::axis::values;
 
@@ -192,6 +193,13 @@ pub const KINDS: &[Kind] = &[
         comment: ["! ", ""],
     },
 ];
+
+/// How much work an export is: its map, and the trials that show what is not in it.
+pub fn effort(model: &Model) -> Effort {
+    /// Points of a usual map.
+    const MAP: u64 = 500;
+    Effort::of_points(model.train(), MAP + carried::trials(model))
+}
 
 /// Exports a train in the format of that name.
 ///

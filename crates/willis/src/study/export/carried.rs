@@ -103,6 +103,16 @@ pub(super) fn left_out(
     keys.iter().flat_map(|key| trial.left(&leaves.iter().filter(|l| l.key == *key).collect::<Vec<_>>())).collect()
 }
 
+/// How many operating points [`left_out`] needs, at most about.
+pub(super) fn trials(model: &Model) -> u64 {
+    /// Points of a map at the ends of its ranges, for two other values of each.
+    const EACH: u64 = 8;
+    let written = serde_json::to_value(model.specification()).expect("plain data");
+    let mut leaves = vec![];
+    collect(&written, &mut vec![], String::new(), None, &mut leaves);
+    EACH * leaves.len() as u64
+}
+
 /// Exports of the same train with other values.
 struct Trial {
     written: Value,
