@@ -235,7 +235,11 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
     };
     let asked = Asked::read(request)?;
     let mut done = (found.write)(model.train(), &asked)?;
-    done.not_carried = left_out(model, found.write, &asked);
+    let ends = map::ends(model.train(), &asked);
+    done.not_carried = left_out(model, &|train| {
+        let done = (found.write)(train, &ends).ok()?;
+        Some(done.files.into_iter().map(|f| f.text).collect())
+    });
     if let Some(told) = sentence(&done.not_carried) {
         let [begin, end] = found.comment;
         for file in done.files.iter_mut().filter(|_| !begin.is_empty()) {

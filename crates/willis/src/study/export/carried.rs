@@ -11,14 +11,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::catalogue::{bearing, oil};
-use crate::diagnostic::Diagnostics;
 use crate::exact::Rational;
 use crate::losses;
 use crate::model::Model;
 use crate::train::{KeyKind, Specification, Train, kind_of};
-
-use super::map::gears;
-use super::{Asked, Export};
 
 /// A key of the train file that is not in the export.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -69,12 +65,11 @@ struct Leaf {
     is_text: bool,
 }
 
+/// What the files of an export say of a train; none where it cannot be exported.
+type Texts<'w> = &'w dyn Fn(&Train) -> Option<Vec<String>>;
+
 /// What the file has and an export does not hold, in the order of the file.
-pub(super) fn left_out(
-    model: &Model,
-    write: fn(&Train, &Asked) -> Result<Export, Diagnostics>,
-    asked: &Asked,
-) -> Vec<NotCarried> {
+pub(super) fn left_out(model: &Model, write: Texts<'_>) -> Vec<NotCarried> {
     let mut written = serde_json::to_value(model.specification()).expect("plain data");
     if let Some(table) = written.as_object_mut() {
         // Laws in force over those of the text are as if they stood there.
@@ -90,17 +85,14 @@ pub(super) fn left_out(
     // Beside viscosities the name of an oil is a label.
     let has_data = written["oil"].as_object().is_some_and(|oil| oil.keys().any(|key| key.starts_with("viscosity")));
     leaves.retain(|l| !(has_data && l.key == ["oil", "name"]));
-    if leaves.is_empty() {
-        return vec![];
-    }
-    let trial = Trial::new(written, write, asked, model.train());
+    let trial = Trial::new(written, write);
     let mut keys: Vec<&[String]> = vec![];
-    leaves.iter().for_each(|l| {
-        if !keys.contains(&&l.key[..]) {
-            keys.push(&l.key)
+    for leaf in &leaves {
+        if !keys.contains(&&leaf.key[..]) {
+            keys.push(&leaf.key);
         }
-    });
-    keys.iter().flat_map(|key| trial.left(&leaves.iter().filter(|l| l.key == *key).collect::<Vec<_>>())).collect()
+    }
+    keys.iter().filter_map(|key| trial.left(&leaves.iter().filter(|l| l.key == *key).collect::<Vec<_>>())).collect()
 }
 
 /// How many operating points [`left_out`] needs, at most about.
@@ -114,36 +106,24 @@ pub(super) fn trials(model: &Model) -> u64 {
 }
 
 /// Exports of the same train with other values.
-struct Trial {
+struct Trial<'w> {
     written: Value,
-    write: fn(&Train, &Asked) -> Result<Export, Diagnostics>,
-    asked: Asked,
+    write: Texts<'w>,
     /// What the files say of the train as it is.
     texts: Option<Vec<String>>,
 }
 
-impl Trial {
-    fn new(
-        written: Value,
-        write: fn(&Train, &Asked) -> Result<Export, Diagnostics>,
-        asked: &Asked,
-        train: &Train,
-    ) -> Self {
-        let mut trial = Self { written, write, asked: few_points(train, asked), texts: None };
+impl<'w> Trial<'w> {
+    fn new(written: Value, write: Texts<'w>) -> Self {
+        let mut trial = Self { written, write, texts: None };
         trial.texts = trial.texts_of(&trial.written).flatten();
-        if trial.texts.is_none() {
-            // Where the format needs more points.
-            trial.asked = asked.clone();
-            trial.texts = trial.texts_of(&trial.written).flatten();
-        }
         trial
     }
 
-    /// What the files say of a train, `None` within where it cannot be exported; `None` where there is no such train.
+    /// What the files say of a train; none where there is no such train.
     fn texts_of(&self, written: &Value) -> Option<Option<Vec<String>>> {
         let train = Specification::deserialize(written).ok()?.build().ok()?;
-        let texts = |done: Export| done.files.into_iter().map(|f| f.text).collect();
-        Some((self.write)(&train, &self.asked).ok().map(texts))
+        Some((self.write)(&train))
     }
 
     /// Whether other values of these make another file.
@@ -243,25 +223,6 @@ fn escaped(key: &str) -> String {
 
 fn unescaped(key: &str) -> String {
     key.replace("~1", "/").replace("~0", "~")
-}
-
-/// The gears of an export at the ends of their ranges: enough to see what a number depends on.
-fn few_points(train: &Train, asked: &Asked) -> Asked {
-    let Ok((gears, _)) = gears(train, asked) else { return asked.clone() };
-    let Some(gear) = gears.first() else { return asked.clone() };
-    let ends = |all: &[crate::units::Quantity]| {
-        let mut ends: Vec<_> = all.first().into_iter().chain(all.last().filter(|_| all.len() > 1)).cloned().collect();
-        ends.dedup_by(|a, b| a.si() == b.si());
-        ends
-    };
-    let moving: Vec<_> = gear.speeds.iter().filter(|s| s.value.sign() > 0).cloned().collect();
-    Asked {
-        state: if asked.all_states { None } else { gear.name.clone() },
-        operation: None,
-        speeds: ends(if moving.is_empty() { &gear.speeds } else { &moving }),
-        torques: ends(&gear.torques),
-        ..asked.clone()
-    }
 }
 
 /// Every value of the file that is tried.
