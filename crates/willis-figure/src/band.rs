@@ -14,7 +14,7 @@ use crate::parts::axes::{self, ChartAxis};
 pub(crate) const KIND: Kind<Bands> = Kind {
     title: "How sure it is",
     takes: &[Ask::State, Ask::Operation, Ask::Over],
-    effort: effort,
+    effort,
     make: |s, r| {
         let samples = if r.samples == 0 { SAMPLES } else { r.samples };
         let (operation, state) = (r.operation.clone(), r.state.clone());

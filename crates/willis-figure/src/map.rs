@@ -16,7 +16,7 @@ use crate::parts::axes::{self, ChartAxis};
 pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
     title: "Efficiency map",
     takes: &[Ask::State, Ask::Operation, Ask::Over],
-    effort: effort,
+    effort,
     make: |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
     draw: |data, _| draw::draw(data),
 };
