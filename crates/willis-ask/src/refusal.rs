@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::{Diagnostic, Diagnostics, printable};
-use willis::work::Cancelled;
+use willis::work::{Cancelled, TooLong};
 
 use crate::{Attachment, Given};
 
@@ -114,6 +114,12 @@ impl From<Diagnostics> for Refusal {
 impl From<Diagnostic> for Refusal {
     fn from(wrong: Diagnostic) -> Self {
         Self::Wrong(wrong.into(), 0)
+    }
+}
+
+impl From<TooLong> for Refusal {
+    fn from(why: TooLong) -> Self {
+        Diagnostics::from(why).into()
     }
 }
 

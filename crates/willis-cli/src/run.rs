@@ -155,7 +155,7 @@ pub fn run_on(threads: usize, entry: &'static Entry, matches: &ArgMatches) -> Re
         }
     }
     let of = asked.trains()?;
-    let terminal = Terminal::new(threads);
+    let terminal = Terminal::new(threads, matches!(matches.try_get_one("yes"), Ok(Some(true))));
     let answer = request.ask(&of, &terminal).map_err(|refusal| asked.refused(&refusal, &of))?;
     terminal.finish();
     for (extra, path) in extras {

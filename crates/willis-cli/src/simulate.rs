@@ -82,7 +82,7 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
         #[cfg(feature = "parquet")]
         Target::Parquet => Sink::Parquet(Box::new(parquet::Rows::new(handle))),
     };
-    let terminal = Terminal::new(1);
+    let terminal = Terminal::new(1, false);
     terminal.begin("thousandths of the scenario", STEPS);
     let mut listener = Listener {
         request,

@@ -12,7 +12,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use clap::{Arg, ArgMatches, Command, value_parser};
 use willis::study::{Shard, Summary, SweepPlan, SweepReport as Report, SweepWorkspace};
 use willis::work::{self, Work};
 use willis_ask::questions::{Sweep, bytes_in_words, duration_in_words, points_in_words, sweep_text};
@@ -29,12 +29,6 @@ use table::Form;
 /// The options of a sweep that only a terminal has.
 pub fn options(command: Command) -> Command {
     command
-        .arg(
-            Arg::new("yes")
-                .long("yes")
-                .action(ArgAction::SetTrue)
-                .help("Go, however long it takes and however large it gets"),
-        )
         .arg(
             Arg::new("shard")
                 .long("shard")
@@ -121,7 +115,7 @@ fn compute(
     let pieces = shard.map_or(0..plan.pieces(), |shard| shard.pieces(plan.pieces()));
     let size = |k: u64| plan.points(k).end - plan.points(k).start;
     let rows: u64 = pieces.clone().map(size).sum();
-    let terminal = Terminal::new(threads);
+    let terminal = Terminal::new(threads, yes);
     if !yes {
         ask(plan, out.map(|o| o.1), rows, threads, &terminal)?;
     }

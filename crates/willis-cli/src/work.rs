@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use willis::work::Work;
+use willis::work::{Serial, Work};
 
 use crate::interrupt::interrupted;
 
@@ -21,6 +21,8 @@ const PATIENCE: Duration = Duration::from_millis(500);
 /// The terminal as the surroundings of work: its cores, its standard error, Ctrl-C.
 pub struct Terminal {
     threads: usize,
+    /// However long it takes.
+    is_patient: bool,
     stage: Mutex<Option<Stage>>,
 }
 
@@ -32,9 +34,9 @@ struct Stage {
 }
 
 impl Terminal {
-    /// With so many threads.
-    pub fn new(threads: usize) -> Self {
-        Self { threads: threads.max(1), stage: Mutex::new(None) }
+    /// With so many threads, and whether everything may take as long as it takes.
+    pub fn new(threads: usize, is_patient: bool) -> Self {
+        Self { threads: threads.max(1), is_patient, stage: Mutex::new(None) }
     }
 
     /// Takes the bar away.
@@ -75,6 +77,10 @@ impl Work for Terminal {
             stage.is_shown = true;
             stage.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(5));
         }
+    }
+
+    fn patience(&self) -> f64 {
+        if self.is_patient { f64::INFINITY } else { Serial.patience() }
     }
 
     fn cancelled(&self) -> bool {

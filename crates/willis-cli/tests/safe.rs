@@ -77,6 +77,48 @@ fn with_table(name: &str) -> String {
     )
 }
 
+// ---- Time ---------------------------------------------------------------------------------
+
+/// Sixty sets in series: the longest train there may be, nearly.
+fn sixty_sets() -> String {
+    let member = |k: usize| if k == 60 { "out".to_owned() } else { format!("c{k}") };
+    let members: Vec<String> = (0..=60).map(|k| format!("{:?}", member(k))).collect();
+    let sets = (0..60).map(|k| {
+        let (sun, carrier) = (member(k), member(k + 1));
+        format!(
+            "[[set]]\nname = \"P{k}\"\nsun = {{ member = {sun:?}, teeth = 30 }}\nring = {{ member = \"frame\", teeth = 70 }}\n\
+             carrier = {carrier:?}\nmesh_efficiency = 0.98\n"
+        )
+    });
+    format!(
+        "format = 1\nname = \"series\"\nmembers = [{}]\nterminals = [\"c0\", \"out\"]\n{}\
+         [[operation]]\nname = \"o\"\nspeeds = {{ c0 = \"1000 rpm\" }}\ntorques = {{ c0 = \"10 N m\" }}\n",
+        members.join(", "),
+        sets.collect::<String>()
+    )
+}
+
+/// What would take minutes is refused with its size and time, in words and as JSON; a report leaves it out and says so.
+#[test]
+fn what_takes_minutes_is_not_begun_unasked() {
+    let folder = Folder::new("long");
+    let train = folder.write("long.toml", &sixty_sets());
+    let told = says(&["uncertainty", &train], 1);
+    for word in ["error[E212]", "operating points", "of one core", "`yes`"] {
+        assert!(told.contains(word), "{word}: {told}");
+    }
+    let json: serde_json::Value =
+        serde_json::from_str(&text(&willis(&["uncertainty", &train, "--format", "json"]).stdout)).unwrap();
+    assert_eq!(json["diagnostics"][0]["code"], "E212");
+    let report = folder.file("long.html");
+    says(&["report", &train, "-o", &report], 0);
+    let written = fs::read_to_string(&report).unwrap();
+    assert_eq!(written.matches("this picture could not be made. this takes long").count(), 2, "map and band");
+    // Allowed, it goes on.
+    says(&["draw", "stick", &train, "--yes", "-o", &folder.file("stick.svg")], 0);
+    says(&["uncertainty", FVA, "--samples", "128", "--yes"], 0);
+}
+
 // ---- Files from strangers ------------------------------------------------------------------
 
 /// A stranger's train file reads the tables in its own folder and nothing else, and tells nothing of what it did not

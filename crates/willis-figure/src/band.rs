@@ -5,14 +5,16 @@ pub mod draw;
 use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
-use willis::study::{Axis, UncertaintyPlan, UncertaintyRequest};
+use willis::study::{Axis, Hold, Question, UncertaintyPlan, UncertaintyRequest};
+use willis::work::Effort;
 
-use crate::kind::{Ask, Kind};
+use crate::kind::{Ask, FigureRequest, Kind};
 use crate::parts::axes::{self, ChartAxis};
 
 pub(crate) const KIND: Kind<Bands> = Kind {
     title: "How sure it is",
     takes: &[Ask::State, Ask::Operation, Ask::Over],
+    effort,
     make: |s, r| {
         let samples = if r.samples == 0 { SAMPLES } else { r.samples };
         let (operation, state) = (r.operation.clone(), r.state.clone());
@@ -20,6 +22,16 @@ pub(crate) const KIND: Kind<Bands> = Kind {
     },
     draw: |data, _| draw::draw(data),
 };
+
+/// The samples, each a train of its own, along the axis.
+fn effort(model: &Model, request: &FigureRequest) -> Effort {
+    let samples = if request.samples == 0 { SAMPLES } else { request.samples };
+    let steps = if request.over.is_empty() { STEPS } else { axes::points(&request.over, model) };
+    match Question::new(model, None, None, Hold::AsGiven) {
+        Ok(question) => question.effort(samples as u64, steps as u64),
+        Err(_) => Effort::of_points(model.train(), 1),
+    }
+}
 
 /// Samples where the caller does not say.
 const SAMPLES: usize = 256;

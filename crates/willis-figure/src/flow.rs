@@ -7,10 +7,15 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::hypergraph::{FlowReport, flows};
 use willis::model::Model;
 
-use crate::kind::{Ask, FigureRequest, Kind};
+use crate::kind::{self, Ask, FigureRequest, Kind};
 
-pub(crate) const KIND: Kind<FlowReport> =
-    Kind { title: "Power flow", takes: &[Ask::State, Ask::Operation], make: powers, draw: |data, _| draw::draw(data) };
+pub(crate) const KIND: Kind<FlowReport> = Kind {
+    title: "Power flow",
+    takes: &[Ask::State, Ask::Operation],
+    effort: kind::of_operations,
+    make: powers,
+    draw: |data, _| draw::draw(data),
+};
 
 /// The powers of the operations asked for, one at least.
 ///

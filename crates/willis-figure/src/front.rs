@@ -10,12 +10,13 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::geometry::Pair;
 use willis::train::{Gear, MemberKind, Train};
 
-use crate::kind::{Ask, Kind};
+use crate::kind::{self, Ask, Kind};
 use profile::Profile;
 
 pub(crate) const KIND: Kind<Front> = Kind {
     title: "Teeth in mesh",
     takes: &[Ask::Part, Ask::Nominal, Ask::Animated],
+    effort: kind::of_file,
     make: |s, r| front(s.train(), r.part.as_deref(), r.nominal),
     draw: |data, how| draw::draw(data, how.animated),
 };

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use willis::analysis::Selection;
 use willis::diagnostic::Diagnostics;
 use willis::model::Model;
+use willis::work::Effort;
 
 /// What a kind of figure says of itself. Each folder has one, as `KIND`.
 pub(crate) struct Kind<T> {
@@ -11,10 +12,22 @@ pub(crate) struct Kind<T> {
     pub title: &'static str,
     /// The questions that make a difference to it.
     pub takes: &'static [Ask],
+    /// How much work it is to make the data.
+    pub effort: fn(&Model, &FigureRequest) -> Effort,
     /// Makes the data.
     pub make: fn(&Model, &FigureRequest) -> Result<T, Diagnostics>,
     /// Draws them as SVG in its light form.
     pub draw: fn(&T, Drawing) -> String,
+}
+
+/// The effort of a kind that shows operating points of the file.
+pub(crate) fn of_operations(model: &Model, request: &FigureRequest) -> Effort {
+    Effort::of_analysis(model.train(), &request.selection())
+}
+
+/// The effort of a kind that shows what is in the file.
+pub(crate) fn of_file(model: &Model, _: &FigureRequest) -> Effort {
+    Effort::of_points(model.train(), 1)
 }
 
 /// A question of a [`FigureRequest`] or [`Drawing`].

@@ -24,7 +24,7 @@ use willis::train::{AS_DRAWN, Load, MemberId, Operation, ShiftElementId, Train};
 use willis::units::{Dimension, Quantity};
 use willis::unstable;
 
-use crate::kind::{Ask, FigureRequest, Kind};
+use crate::kind::{self, Ask, FigureRequest, Kind};
 use family::{Family, families};
 
 pub use role::LeverRole;
@@ -32,6 +32,7 @@ pub use role::LeverRole;
 pub(crate) const KIND: Kind<Lever> = Kind {
     title: "Levers",
     takes: &[Ask::State, Ask::Operation],
+    effort: kind::of_operations,
     make: |s, r| lever(s.train(), &LeverRequest::of(r)),
     draw: |data, _| draw::draw(data),
 };

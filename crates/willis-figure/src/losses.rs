@@ -7,16 +7,24 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::operating_point::LossKind;
 use willis::study::{Axis, Hold, PointAnswer, PointVerdict, Question, Sweep};
+use willis::work::Effort;
 
-use crate::kind::{Ask, Kind};
+use crate::kind::{Ask, FigureRequest, Kind};
 use crate::parts::axes::{self, ChartAxis};
 
 pub(crate) const KIND: Kind<LossChart> = Kind {
     title: "Losses by source",
     takes: &[Ask::State, Ask::Operation, Ask::Over],
+    effort,
     make: |s, r| loss_chart(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
     draw: |data, _| draw::draw(data),
 };
+
+/// The points along the axis.
+fn effort(model: &Model, request: &FigureRequest) -> Effort {
+    let steps = if request.over.is_empty() { STEPS } else { axes::points(&request.over, model) };
+    Effort::of_points(model.train(), steps as u64)
+}
 
 /// Points along the axis where the caller does not say.
 const STEPS: usize = 49;

@@ -7,14 +7,16 @@ use willis::analysis::{self, Selection};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Axis, Hold, PointAnswer, PointVerdict, Question, Sweep};
-use willis::train::{Load, MemberId, Operation};
+use willis::train::{Load, MemberId, Operation, Train};
+use willis::work::Effort;
 
-use crate::kind::{Ask, Kind};
+use crate::kind::{Ask, FigureRequest, Kind};
 use crate::parts::axes::{self, ChartAxis};
 
 pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
     title: "Efficiency map",
     takes: &[Ask::State, Ask::Operation, Ask::Over],
+    effort,
     make: |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
     draw: |data, _| draw::draw(data),
 };
@@ -102,6 +104,31 @@ impl MapPoint {
     }
 }
 
+/// The axes as asked, else the usual ones: of each, how many values it has.
+fn effort(model: &Model, request: &FigureRequest) -> Effort {
+    let train = model.train();
+    let one = Effort::of_points(train, 1).seconds;
+    let points = match &*request.over {
+        [] => {
+            // Where neither is named, every state may be tried.
+            let open = request.state.is_none() && request.operation.is_none();
+            let states = if open { train.states().len().max(1) } else { 1 };
+            usual(train).iter().product::<usize>().max(COLUMNS * ROWS * states)
+        }
+        over => axes::points(over, model),
+    };
+    Effort::new("operating points", points as u64, one)
+}
+
+/// How many columns and rows a map has where nothing is said.
+fn usual(train: &Train) -> [usize; 2] {
+    /// Points of a finer map take so long at most, s.
+    const QUICK: f64 = 2.0;
+    let finer = [COLUMNS, ROWS].map(|n| FINER * (n - 1) + 1);
+    let takes = Effort::of_points(train, finer.iter().product::<usize>() as u64).seconds;
+    if takes > QUICK || train.meshes().iter().any(|m| m.computed) { [COLUMNS, ROWS] } else { finer }
+}
+
 /// Computes an efficiency map. Without axes it runs over the first speed of the operation and its load (of a train with
 /// several freedoms: its first two speeds); of an automatic transmission, where neither state nor operation is named,
 /// over speed and torque of the output, and at every point the state that loses least of those that keep the input
@@ -155,8 +182,7 @@ pub fn efficiency_map(
     }
     let over = match over {
         [] => {
-            let finer = if train.meshes().iter().any(|m| m.computed) { 1 } else { FINER };
-            let [columns, rows] = [COLUMNS, ROWS].map(|n| finer * (n - 1) + 1);
+            let [columns, rows] = usual(train);
             vec![axes::usual_speed(&question, columns), axes::usual_load(&question, rows)]
         }
         [_, _] => over.to_vec(),

@@ -8,11 +8,12 @@ use willis::regimes::{Atlas, RegimeReport, RegimeSelection, RegionReport};
 use willis::train::Train;
 use willis::unstable::{Speeds, arrow};
 
-use crate::kind::{Ask, Kind};
+use crate::kind::{self, Ask, Kind};
 
 pub(crate) const KIND: Kind<RegimeMap> = Kind {
     title: "Regimes",
     takes: &[Ask::State, Ask::Terminals, Ask::Balance],
+    effort: kind::of_file,
     make: |s, r| {
         let (state, terminals, balance) = (r.state.clone(), r.terminals.clone(), r.balance.clone());
         regime_map(s.train(), &RegimeSelection { state, terminals, balance })

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::hypergraph::FlowReport;
 use willis::model::Model;
+use willis::work::{Effort, TooLong, Work};
 
 use crate::*;
 
@@ -65,7 +66,14 @@ macro_rules! kinds {
                 }
             }
 
-            /// Makes the figure of a train.
+            /// How much work it is to make the figure of a train.
+            pub fn effort(self, model: &Model, request: &FigureRequest) -> Effort {
+                match self {
+                    $(Self::$kind => ($entry.effort)(model, request),)*
+                }
+            }
+
+            /// Makes the figure of a train, however long it takes; see [`FigureKind::effort`].
             ///
             /// # Errors
             /// Why the kind does not apply to this train, and what would; no such state, operation or part.
@@ -164,10 +172,30 @@ impl FigureKind {
         })
     }
 
-    /// The kinds that can be made of a train as it is.
+    /// The kinds that can be made of a train as it is, of those that do not take long to make.
     pub fn applicable(model: &Model) -> Vec<Self> {
+        /// What a list may cost, s.
+        const LONGEST: f64 = 2.0;
         let request = FigureRequest { samples: 128, ..Default::default() };
-        Self::ALL.iter().copied().filter(|k| k.make(model, &request).is_ok()).collect()
+        let fits = |k: &Self| k.effort(model, &request).seconds < LONGEST && k.make(model, &request).is_ok();
+        Self::ALL.iter().copied().filter(fits).collect()
+    }
+
+    /// Makes one of many figures: it may take its share of the [patience](Work::patience).
+    ///
+    /// # Errors
+    /// What [`FigureKind::make`] says; it would take longer.
+    pub fn make_among_many(
+        self,
+        model: &Model,
+        request: &FigureRequest,
+        work: &dyn Work,
+    ) -> Result<Figure, Diagnostics> {
+        const SHARE: f64 = 1.0 / 6.0;
+        match self.effort(model, request) {
+            long if long.seconds > SHARE * work.patience() => Err(TooLong(long).into()),
+            _ => self.make(model, request),
+        }
     }
 
     /// The first question that is answered in vain: it makes no difference to this kind.

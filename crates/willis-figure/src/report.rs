@@ -16,13 +16,15 @@ use willis::diagnostic::{Code, Severity};
 use willis::hypergraph::watts;
 use willis::model::Model;
 use willis::study::{Sensitivity, sensitivity};
-use willis::work::{self, Cancelled, Work};
+use willis::work::{self, Cancelled, Effort, Work};
 
 use crate::report::document::{Block, Column, Document, Level, Section};
 use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
 /// Operations that get pictures of their own; all are told in tables.
 const PICTURED: usize = 4;
+/// Operations that are told one by one, and rows of a table: a report is read by people.
+const TOLD: usize = 100;
 
 /// What a report is about.
 #[derive(Clone, Debug, Default)]
@@ -177,10 +179,13 @@ fn worth_showing(figure: &Figure) -> bool {
 pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result<Document, Diagnostics> {
     let train = model.train();
     let selection = Selection { state: None, operation: request.operation.clone() };
+    work.afford(&Effort::of_analysis(train, &selection))?;
     let analysis = analyze(train, &selection)?;
-    let sensitivity = (!analysis.operations.is_empty()).then(|| sensitivity(train, &selection));
+    // Only the first operation's is shown.
+    let first = analysis.operations.first().map(|o| Selection { operation: Some(o.name.clone()), ..selection });
+    let sensitivity = first.map(|first| sensitivity(train, &first));
     let wanted = wanted(model, request, &analysis);
-    let figures = Figures::make(work, &wanted, |kind, request| kind.make(model, request))?;
+    let figures = Figures::make(work, &wanted, |kind, request| kind.make_among_many(model, request, work))?;
     let all = Findings { model, request, analysis, sensitivity, figures };
     let sections = [
         Some(summary(&all)),
@@ -200,8 +205,27 @@ pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result
         title: train.name().to_owned(),
         subtitle: "Gear train report".to_owned(),
         facts: facts(&all),
-        sections: sections.into_iter().flatten().filter(|s| !s.blocks.is_empty()).collect(),
+        sections: sections.into_iter().flatten().filter(|s| !s.blocks.is_empty()).map(shortened).collect(),
     })
+}
+
+/// That only the first of many are told.
+fn and_more(count: usize, what: &str) -> Option<Block> {
+    let text = || format!("These are the first {TOLD} of {count} {what}; `analyze` has all.");
+    (count > TOLD).then(|| Block::Notice { level: Level::Note, text: text() })
+}
+
+/// Long tables by their first rows, with the number of all.
+fn shortened(mut section: Section) -> Section {
+    for block in &mut section.blocks {
+        if let Block::Table { caption, rows, .. } = block
+            && rows.len() > TOLD
+        {
+            *caption += &format!("; the first {TOLD} of {} rows, `analyze` has all", rows.len());
+            rows.truncate(TOLD);
+        }
+    }
+    section
 }
 
 /// The pictures that a report asks for.
@@ -303,9 +327,9 @@ fn summary(all: &Findings<'_>) -> Section {
     if !rows.is_empty() {
         blocks.push(Block::Table { caption: "Operating points".into(), columns, rows });
     }
-    for o in all.analysis.operations.iter().filter(|o| o.verdict != Verdict::Unique) {
-        blocks.push(notice(o));
-    }
+    let open = || all.analysis.operations.iter().filter(|o| o.verdict != Verdict::Unique);
+    blocks.extend(open().take(TOLD).map(notice));
+    blocks.extend(and_more(open().count(), "operating points without a single answer"));
     let all_proved =
         |o: &OperationReport| o.verdict == Verdict::Unique && o.certificate.is_some_and(|c| c.unique_for_every_load);
     if !all.analysis.operations.is_empty() && all.analysis.operations.iter().all(all_proved) {

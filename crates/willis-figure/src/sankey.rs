@@ -18,11 +18,12 @@ use willis::analysis::Verdict;
 use willis::hypergraph::{FlowReport, Hypergraph, Node, NodeKind};
 
 use crate::flow::powers;
-use crate::kind::{Ask, Kind};
+use crate::kind::{self, Ask, Kind};
 
 pub(crate) const KIND: Kind<Sankey> = Kind {
     title: "Power flow to scale",
     takes: &[Ask::State, Ask::Operation],
+    effort: kind::of_operations,
     make: |s, r| Ok(sankey(&powers(s, r)?)),
     draw: |data, _| draw::draw(data),
 };

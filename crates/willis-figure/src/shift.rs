@@ -10,10 +10,15 @@ use willis::exact::Rational;
 use willis::train::{ShiftElementKind, Train};
 use willis::unstable;
 
-use crate::kind::Kind;
+use crate::kind::{self, Kind};
 
-pub(crate) const KIND: Kind<ShiftTable> =
-    Kind { title: "Shift table", takes: &[], make: |s, _| shift(s.train()), draw: |data, _| draw::draw(data) };
+pub(crate) const KIND: Kind<ShiftTable> = Kind {
+    title: "Shift table",
+    takes: &[],
+    effort: kind::of_operations,
+    make: |s, _| shift(s.train()),
+    draw: |data, _| draw::draw(data),
+};
 
 /// A shift table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -21,11 +21,12 @@ use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::train::Train;
 
-use crate::kind::{Ask, Kind};
+use crate::kind::{self, Ask, Kind};
 
 pub(crate) const KIND: Kind<Stick> = Kind {
     title: "Kinematic schematic",
     takes: &[Ask::State],
+    effort: kind::of_file,
     make: |s, r| stick(s.train(), r.state.as_deref()),
     draw: |data, _| draw::draw(data),
 };

@@ -11,11 +11,12 @@ use willis::dynamics::{
 };
 use willis::train::{MemberKind, Train};
 
-use crate::kind::{Ask, Kind};
+use crate::kind::{self, Ask, Kind};
 
 pub(crate) const KIND: Kind<TimePlot> = Kind {
     title: "Motion over time",
     takes: &[Ask::Part],
+    effort: kind::of_file,
     make: |s, r| scenario(s.train(), r.part.as_deref()),
     draw: |data, _| draw::draw(data),
 };

@@ -7,11 +7,12 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Sensitivity, StepKind, sensitivity};
 
-use crate::kind::{Ask, FigureRequest, Kind};
+use crate::kind::{self, Ask, FigureRequest, Kind};
 
 pub(crate) const KIND: Kind<Tornado> = Kind {
     title: "What matters most",
     takes: &[Ask::State, Ask::Operation],
+    effort: kind::of_operations,
     make: ranking,
     draw: |data, _| draw::draw(data),
 };

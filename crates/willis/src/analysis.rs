@@ -5,6 +5,7 @@
 //! renamed. Units are SI and stand in the names.
 
 mod balance;
+mod effort;
 mod loads;
 mod losses;
 mod margin;

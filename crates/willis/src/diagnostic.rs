@@ -35,7 +35,7 @@ use std::fmt;
 use annotate_snippets::{AnnotationKind, Group, Level, Patch, Renderer, Snippet};
 use serde::{Deserialize, Serialize};
 
-use crate::work::Cancelled;
+use crate::work::{Cancelled, TooLong};
 
 pub use codes::Code;
 pub(crate) use conversions::through_diagnostic;
@@ -254,6 +254,14 @@ impl Diagnostics {
             out += &format!("… and {} more of the kind\n\n", self.0.len() - Self::MOST_SHOWN);
         }
         out
+    }
+}
+
+/// What would take too long has the code [`Code::TooLong`].
+impl From<TooLong> for Diagnostics {
+    fn from(why: TooLong) -> Self {
+        let hint = "ask for fewer, or say `yes` to let it go on";
+        Diagnostic::new(Code::TooLong, "", why.to_string()).hint(hint).into()
     }
 }
 

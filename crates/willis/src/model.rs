@@ -241,16 +241,16 @@ impl Model {
         self.reading.locate(&self.text, diagnostics);
     }
 
-    /// The train with other values.
+    /// The train of a document with other values.
     ///
     /// # Errors
     /// What is wrong with it then.
-    pub fn train_with(&self, settings: &[(&Target, String)]) -> Result<Train, Diagnostics> {
+    pub(crate) fn train_with(&self, document: &Document, settings: &[(&Target, String)]) -> Result<Train, Diagnostics> {
         let of_file = |t: &Target| matches!(t, Target::File(_));
         let mut train = match settings.iter().any(|s| of_file(s.0)) {
             false => self.train.clone(),
             true => {
-                let mut document = self.document.clone();
+                let mut document = document.clone();
                 for (target, value) in settings {
                     let Target::File(key) = target else { continue };
                     document.set(key, value).map_err(|what| one(bad_value(value, &what)))?;

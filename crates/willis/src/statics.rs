@@ -19,6 +19,7 @@
 //! lie anywhere between, which is reported, not guessed. An element with zero force is idle: it
 //! has no driver and no loss (the one deterministic rule for idle meshes).
 
+mod blocks;
 mod problem;
 
 use std::collections::HashSet;
@@ -29,6 +30,8 @@ use serde::{Deserialize, Serialize};
 use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Node};
+
+use blocks::{Block, blocks};
 
 pub use problem::{Balanced, Equilibria, Problem, Unposed};
 
@@ -156,6 +159,8 @@ pub(crate) struct Equilibrium {
     /// Node of each row.
     rows: Vec<usize>,
     elements: usize,
+    /// Diagonal blocks of the equations, in the order in which they are solved.
+    blocks: Vec<Block>,
     certificate: Certificate,
 }
 
@@ -224,12 +229,42 @@ impl Equilibrium {
                 rho,
             });
         }
-        let mut problem = Self { columns, rows, elements: c.elements.len(), certificate: Certificate::Undecided };
-        if !exact::is_regular(&problem.exact_matrix(&|_| Rational::ONE)) {
+        let rows_of: Vec<Vec<usize>> = columns.iter().map(|c| c.entries.iter().map(|e| e.0).collect()).collect();
+        let blocks = blocks(&rows_of).ok_or(Unsolvable::Indeterminate)?;
+        let certificate = Certificate::Undecided;
+        let mut problem = Self { columns, rows, elements: c.elements.len(), blocks, certificate };
+        let parts = problem.parts();
+        if !parts.iter().all(|p| exact::is_regular(&p.exact_matrix(&|_| Rational::ONE))) {
             return Err(Unsolvable::Indeterminate);
         }
-        problem.certificate = problem.certify();
+        problem.certificate = match parts.iter().map(Self::certify).collect::<Option<Vec<_>>>() {
+            Some(all) if all.contains(&Certificate::Determinants) => Certificate::Determinants,
+            Some(_) => Certificate::SpectralRadius,
+            None if problem.moving() <= MOST_ENUMERATED => Certificate::Enumeration,
+            None => Certificate::Undecided,
+        };
         Ok(problem)
+    }
+
+    /// The diagonal blocks as problems of their own.
+    fn parts(&self) -> Vec<Self> {
+        if self.blocks.len() == 1 {
+            return vec![self.clone()];
+        }
+        let mut row_in = vec![None; self.rows.len()];
+        let part = |block: &Block| {
+            block.rows.iter().enumerate().for_each(|(k, &row)| row_in[row] = Some(k));
+            let columns = block.columns.iter().map(|&j| {
+                let c = &self.columns[j];
+                let inside = c.entries.iter().filter_map(|(r, a, b)| Some((row_in[*r]?, a.clone(), b.clone())));
+                let floats = c.floats.iter().filter_map(|&(r, a, b)| Some((row_in[r]?, a, b)));
+                Column { entries: inside.collect(), floats: floats.collect(), rho: c.rho.clone(), ..*c }
+            });
+            let columns = columns.collect();
+            block.rows.iter().for_each(|&row| row_in[row] = None);
+            Self { columns, rows: block.rows.clone(), blocks: vec![], ..*self }
+        };
+        self.blocks.iter().map(part).collect()
     }
 
     /// What is known about the number of solutions, before any load is given.
@@ -312,7 +347,8 @@ impl Equilibrium {
         false
     }
 
-    fn certify(&self) -> Certificate {
+    /// The certificate of a block; none where it has no regular box, or too many boxes to look at.
+    fn certify(&self) -> Option<Certificate> {
         let n = self.columns.len();
         let full: Vec<(f64, f64)> = self
             .columns
@@ -325,7 +361,7 @@ impl Equilibrium {
             .collect();
         let (centre, radius): (Vec<f64>, Vec<f64>) = full.iter().copied().unzip();
         if n == 0 || self.regular(&centre, &radius) {
-            return Certificate::SpectralRadius;
+            return Some(Certificate::SpectralRadius);
         }
         // Split the box, widest column first. det B is affine in each ρ_j, so the vertices decide.
         let mut sign = 0i8;
@@ -334,11 +370,7 @@ impl Equilibrium {
         while let Some(fixed) = open.pop() {
             looked_at += 1;
             if looked_at > MOST_BOXES.min(WORK / (n * n * n)) {
-                return if self.moving() <= MOST_ENUMERATED {
-                    Certificate::Enumeration
-                } else {
-                    Certificate::Undecided
-                };
+                return None;
             }
             let vertex = |j: usize, p: bool| self.columns[j].rho[usize::from(!p)].clone();
             let at = |j: usize| fixed[j].map_or(full[j].0, |p| self.columns[j].rho_floats[usize::from(!p)]);
@@ -350,11 +382,7 @@ impl Equilibrium {
             if widest.is_none() || self.regular(&centre, &radius) {
                 let here = exact::determinant(&self.exact_matrix(&|j| vertex(j, fixed[j].unwrap_or(true)))).sign();
                 if here == 0 || (sign != 0 && here != sign) {
-                    return if self.moving() <= MOST_ENUMERATED {
-                        Certificate::Enumeration
-                    } else {
-                        Certificate::Undecided
-                    };
+                    return None;
                 }
                 sign = here;
             } else if let Some(j) = widest {
@@ -365,7 +393,7 @@ impl Equilibrium {
                 }
             }
         }
-        Certificate::Determinants
+        Some(Certificate::Determinants)
     }
 
     /// Elements whose sign matters.
@@ -462,7 +490,34 @@ impl Equilibrium {
     }
 
     fn exact_forces(&self, choice: &[Option<bool>], t: &[Rational]) -> Option<Vec<Rational>> {
-        exact::solve(&self.exact_matrix(&|j| self.rho_exact(j, choice[j])), t)
+        let n = self.columns.len();
+        // What the blocks that are solved leave of the loads.
+        let mut left = t.to_vec();
+        let (mut forces, mut row_in) = (vec![Rational::ZERO; n], vec![None; n]);
+        for Block { rows, columns } in &self.blocks {
+            rows.iter().enumerate().for_each(|(k, &row)| row_in[row] = Some(k));
+            let coefficients = |j: usize| {
+                let rho = self.rho_exact(j, choice[j]);
+                self.columns[j].entries.iter().map(move |(row, a, b)| (*row, a + &(b * &rho)))
+            };
+            let mut matrix = vec![vec![Rational::ZERO; rows.len()]; rows.len()];
+            for (k, &j) in columns.iter().enumerate() {
+                for (row, coefficient) in coefficients(j) {
+                    if let Some(row) = row_in[row] {
+                        matrix[row][k] = coefficient;
+                    }
+                }
+            }
+            let right: Vec<Rational> = rows.iter().map(|&row| left[row].clone()).collect();
+            for (&j, force) in columns.iter().zip(exact::solve(&matrix, &right)?) {
+                if !force.is_zero() {
+                    coefficients(j).for_each(|(row, coefficient)| left[row] -= &coefficient * &force);
+                }
+                forces[j] = force;
+            }
+            rows.iter().for_each(|&row| row_in[row] = None);
+        }
+        Some(forces)
     }
 
     fn rho_exact(&self, j: usize, choice: Option<bool>) -> Rational {

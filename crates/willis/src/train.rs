@@ -37,12 +37,14 @@ pub use dynamic::{
 };
 pub use edit::{Document, Key, Measure};
 pub use find::AS_DRAWN;
+pub(crate) use format::keys::Kind as KeyKind;
 pub use formula::Formula;
 pub(crate) use input::{BearingNumber, Input, RotorNumber, Slot};
 pub(crate) use physical::steel_mass;
 pub use physical::{BearingMount, Housing, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
 pub use reading::Reading;
 pub use schema::schema;
+pub(crate) use specification::kind_of;
 pub use specification::{
     BearingSpec, BevelSpec, CentralSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec, EfficiencySpec,
     EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec, LinearSpec,

@@ -1,6 +1,9 @@
 //! What long computations ask of their surroundings: who runs the parts, who shows how far it is, and whether to
 //! stop.
 //!
+//! How long a computation takes is told before it begins: [`Effort`], counted and not measured, so that the same question
+//! is refused on every machine or on none.
+//!
 //! The library starts no threads and reads no clock. A computation of many independent parts takes a [`Work`] and
 //! gives it the parts; the terminal runs them on all cores with a bar, a browser one after the other ([`Serial`]), and
 //! the answer is the same.
@@ -19,6 +22,20 @@ pub trait Work: Sync {
         let _ = steps;
     }
 
+    /// How many seconds of one core a computation may take by its own [`Effort`] before somebody must have allowed it.
+    /// Infinite where that has happened.
+    fn patience(&self) -> f64 {
+        60.0
+    }
+
+    /// Refuses what would take too long.
+    ///
+    /// # Errors
+    /// The effort is above the [patience](Work::patience).
+    fn afford(&self, effort: &Effort) -> Result<(), TooLong> {
+        if effort.seconds <= self.patience() { Ok(()) } else { Err(TooLong(*effort)) }
+    }
+
     /// Whether the computation should stop early. What is not done then is left out, and the caller is told.
     fn cancelled(&self) -> bool {
         false
@@ -35,6 +52,60 @@ pub trait Work: Sync {
         }
     }
 }
+
+/// How much work a computation is, told before it begins. It is counted and not measured: the same everywhere, and right
+/// within a factor of about three on an ordinary computer of 2026.
+///
+/// # Example
+/// ```
+/// use willis::work::{Effort, Serial, Work};
+///
+/// let effort = Effort::new("points", 1_000_000, 2e-4);
+/// assert_eq!(effort.to_string(), "1000000 points, about 3 minutes of one core");
+/// assert!(Serial.afford(&effort).is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// What there is of it, in the plural: `points`.
+    pub what: &'static str,
+    /// How many of them.
+    pub count: u64,
+    /// Time for all of them on one core, s.
+    pub seconds: f64,
+}
+
+impl Effort {
+    /// So many things that take so many seconds each.
+    pub fn new(what: &'static str, count: u64, each: f64) -> Self {
+        Self { what, count, seconds: count as f64 * each }
+    }
+}
+
+impl std::fmt::Display for Effort {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (amount, unit) = match self.seconds {
+            s if s < 100.0 => (s, "second"),
+            s if s < 6000.0 => (s / 60.0, "minute"),
+            s if s < 200_000.0 => (s / 3600.0, "hour"),
+            s => (s / 86_400.0, "day"),
+        };
+        let amount = amount.ceil();
+        let ending = if amount == 1.0 { "" } else { "s" };
+        write!(f, "{} {}, about {amount:.0} {unit}{ending} of one core", self.count, self.what)
+    }
+}
+
+/// A computation would take longer than is done without having been allowed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TooLong(pub Effort);
+
+impl std::fmt::Display for TooLong {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "this takes long: {}", self.0)
+    }
+}
+
+impl std::error::Error for TooLong {}
 
 /// One part after the other, on the caller's thread, without a word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

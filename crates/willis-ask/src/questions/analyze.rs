@@ -7,7 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::analysis::{self, Analysis, Selection};
 use willis::diagnostic::Diagnostic;
-use willis::work::Work;
+use willis::work::{Effort, Work};
 
 use crate::table::Table;
 use crate::{Given, Question, Refusal};
@@ -46,8 +46,9 @@ impl Question for Analyze {
     ];
     type Answer = Analysis;
 
-    fn ask(&self, of: &[Given], _: &dyn Work) -> Result<Analysis, Refusal> {
+    fn ask(&self, of: &[Given], work: &dyn Work) -> Result<Analysis, Refusal> {
         let selection = Selection { state: self.state.clone(), operation: self.operation.clone() };
+        work.afford(&Effort::of_analysis(of[0].model.train(), &selection))?;
         Ok(analysis::analyze(of[0].model.train(), &selection)?)
     }
 

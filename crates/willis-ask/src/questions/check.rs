@@ -6,7 +6,7 @@ use willis::analysis::{self, Selection};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::{Diagnostic, Diagnostics, Severity};
 use willis::study;
-use willis::work::Work;
+use willis::work::{Effort, Work};
 
 use crate::style::plural;
 use crate::{Given, Question, Refusal};
@@ -54,9 +54,10 @@ impl Question for Check {
     const NOTES_FIRST: bool = true;
     type Answer = CheckAnswer;
 
-    fn ask(&self, of: &[Given], _: &dyn Work) -> Result<CheckAnswer, Refusal> {
+    fn ask(&self, of: &[Given], work: &dyn Work) -> Result<CheckAnswer, Refusal> {
         let given = &of[0];
         let train = given.model.train();
+        work.afford(&Effort::of_analysis(train, &Selection::default()))?;
         let mut diagnostics: Diagnostics =
             analysis::analyze(train, &Selection::default())?.diagnostics.into_iter().collect();
         let mut wrong = Diagnostics::default();

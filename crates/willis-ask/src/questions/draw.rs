@@ -208,7 +208,8 @@ impl Question for Draw {
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<DrawAnswer, Refusal> {
         let (model, request) = (&of[0].model, self.request()?);
         if self.kind == "all" {
-            let made = willis::work::map(work, FigureKind::ALL.len(), |k| FigureKind::ALL[k].make(model, &request))?;
+            let one = |k: usize| FigureKind::ALL[k].make_among_many(model, &request, work);
+            let made = willis::work::map(work, FigureKind::ALL.len(), one)?;
             let (mut figures, mut missing) = (vec![], vec![]);
             for (kind, made) in FigureKind::ALL.iter().zip(made) {
                 match made {
@@ -225,6 +226,7 @@ impl Question for Draw {
         self.heard(kind, &request)?;
         let narrows = |a: &Ask| matches!(a, Ask::State | Ask::Operation | Ask::Part | Ask::Over);
         let asked = request.asks().iter().any(narrows);
+        work.afford(&kind.effort(model, &request))?;
         match kind.make(model, &request) {
             Ok(figure) => Ok(DrawAnswer::One(Box::new(figure))),
             // Where a kind does not apply to a train at all, those that do are told.

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::study::export::{ExportRequest, KINDS, NotCarried, export};
+use willis::study::export::{ExportRequest, KINDS, NotCarried, effort, export};
 use willis::work::Work;
 
 use super::names;
@@ -105,7 +105,7 @@ impl Question for Export {
         ])
     }
 
-    fn ask(&self, of: &[Given], _: &dyn Work) -> Result<ExportAnswer, Refusal> {
+    fn ask(&self, of: &[Given], work: &dyn Work) -> Result<ExportAnswer, Refusal> {
         let answer = |kind: Option<&str>| ExportAnswer {
             format: Format::new(),
             kind: kind.map(str::to_owned),
@@ -134,6 +134,7 @@ impl Question for Export {
             torques: self.torques.clone(),
             temperatures: (!self.temperature.is_empty()).then(|| self.temperature.join(",")),
         };
+        work.afford(&effort(&of[0].model))?;
         let done = export(&of[0].model, kind, &request)?;
         let file = |f: willis::study::export::ExportedFile| OneFile { name: f.name, about: f.about, text: f.text };
         Ok(ExportAnswer {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use willis::analysis::Selection;
 use willis::diagnostic::Diagnostic;
 use willis::hypergraph::{FlowReport, flows};
-use willis::work::Work;
+use willis::work::{Effort, Work};
 
 #[cfg(feature = "pictures")]
 use crate::{File, Form};
@@ -39,8 +39,9 @@ impl Question for Flow {
     ];
     type Answer = FlowReport;
 
-    fn ask(&self, of: &[Given], _: &dyn Work) -> Result<FlowReport, Refusal> {
+    fn ask(&self, of: &[Given], work: &dyn Work) -> Result<FlowReport, Refusal> {
         let selection = Selection { state: self.state.clone(), operation: self.operation.clone() };
+        work.afford(&Effort::of_analysis(of[0].model.train(), &selection))?;
         Ok(flows(of[0].model.train(), &selection)?)
     }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use willis::analysis::{self, LossRequest, LossTable};
 use willis::diagnostic::Diagnostics;
 use willis::units::{Dimension, Quantity};
-use willis::work::Work;
+use willis::work::{Effort, Work};
 
 use super::amount::values;
 use super::names;
@@ -53,7 +53,7 @@ impl Question for Losses {
         names::apart(&[[("powers", !self.powers.is_empty()), ("torques", !self.torques.is_empty())]])
     }
 
-    fn ask(&self, of: &[Given], _: &dyn Work) -> Result<LossTable, Refusal> {
+    fn ask(&self, of: &[Given], work: &dyn Work) -> Result<LossTable, Refusal> {
         let request = LossRequest {
             operation: self.operation.clone(),
             speeds: values("speeds", &self.speeds, Dimension::ANGULAR_SPEED)?,
@@ -65,7 +65,9 @@ impl Question for Losses {
                 .collect(),
             compare: self.compare.clone(),
         };
-        Ok(analysis::losses(of[0].model.train(), &request)?)
+        let train = of[0].model.train();
+        work.afford(&Effort::of_points(train, request.points(train)))?;
+        Ok(analysis::losses(train, &request)?)
     }
 
     fn text(&self, answer: &LossTable, _: &[Given]) -> String {

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::analysis::Selection;
 use willis::diagnostic::Diagnostic;
-use willis::work::Work;
+use willis::work::{Effort, Work};
 
 use crate::table::Table;
 use crate::{Given, Question, Refusal};
@@ -33,8 +33,9 @@ impl Question for Sensitivity {
     const TABLES: &'static [&'static str] = &["quantities"];
     type Answer = willis::study::Sensitivity;
 
-    fn ask(&self, of: &[Given], _: &dyn Work) -> Result<Self::Answer, Refusal> {
+    fn ask(&self, of: &[Given], work: &dyn Work) -> Result<Self::Answer, Refusal> {
         let selection = Selection { state: self.state.clone(), operation: self.operation.clone() };
+        work.afford(&Effort::of_analysis(of[0].model.train(), &selection))?;
         Ok(willis::study::sensitivity(of[0].model.train(), &selection)?)
     }
 

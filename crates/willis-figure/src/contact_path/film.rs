@@ -3,7 +3,7 @@
 use svg::node::element::{Circle, Group, Path};
 
 use super::{ContactPath, MeshPath, contact_path};
-use crate::kind::{Ask, Kind};
+use crate::kind::{self, Ask, Kind};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
 };
@@ -11,6 +11,7 @@ use crate::parts::style::{
 pub(crate) const KIND: Kind<ContactPath> = Kind {
     title: "Oil film along the path of contact",
     takes: &[Ask::Operation, Ask::Part],
+    effort: kind::of_operations,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
     draw: |data, _| draw(data),
 };

@@ -4,7 +4,7 @@ use svg::node::element::{Group, Path};
 
 use super::film::heading;
 use super::{ContactPath, MeshPath, PathPoint, contact_path};
-use crate::kind::{Ask, Kind};
+use crate::kind::{self, Ask, Kind};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks,
 };
@@ -12,6 +12,7 @@ use crate::parts::style::{
 pub(crate) const KIND: Kind<ContactPath> = Kind {
     title: "Contact along its path",
     takes: &[Ask::Operation, Ask::Part],
+    effort: kind::of_operations,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
     draw: |data, _| draw(data),
 };

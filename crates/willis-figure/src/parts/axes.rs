@@ -31,6 +31,11 @@ impl ChartAxis {
     }
 }
 
+/// How many points axes have together; 0 where they cannot be read, which is told when the figure is made.
+pub fn points(over: &[String], model: &Model) -> usize {
+    over.iter().map(|text| Axis::parse(text, model).map_or(0, |a| a.len())).fold(1, usize::saturating_mul)
+}
+
 /// Axes as the caller writes them; each must be one of ascending numbers.
 pub fn parse(over: &[String], model: &Model) -> Result<Vec<Axis>, Diagnostics> {
     let mut wrong = Diagnostics::default();

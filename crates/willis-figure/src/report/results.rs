@@ -8,7 +8,7 @@ use willis::regimes::{FormulaRequest, formulas as closed};
 use willis::statics::Certificate;
 use willis::symbolic::Notation;
 
-use super::{Findings, notice};
+use super::{Findings, TOLD, and_more, notice};
 use crate::FigureKind;
 use crate::report::document::{Block, Column, Level, Section};
 
@@ -130,7 +130,8 @@ fn state(name: &str, s: &StateReport) -> Vec<String> {
 
 pub fn operations(all: &Findings<'_>) -> Option<Section> {
     let mut blocks = vec![];
-    for o in &all.analysis.operations {
+    blocks.extend(and_more(all.analysis.operations.len(), "operating points"));
+    for o in all.analysis.operations.iter().take(TOLD) {
         let state = o.state.as_ref().map(|s| format!(", state {s}")).unwrap_or_default();
         blocks.push(Block::Heading { text: format!("{}{state}", o.name) });
         blocks.push(notice(o));
@@ -248,7 +249,7 @@ fn elements(s: &SolutionReport) -> Option<Block> {
 pub fn losses(all: &Findings<'_>) -> Option<Section> {
     let mut blocks = vec![];
     blocks.extend(all.figures.block(FigureKind::Losses, None, "Losses by source"));
-    for o in &all.analysis.operations {
+    for o in all.analysis.operations.iter().take(TOLD) {
         let Some(s) = single(o).filter(|s| !s.sources.is_empty()) else { continue };
         let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();

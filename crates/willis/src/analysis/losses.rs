@@ -1,5 +1,7 @@
 //! Losses at a few points: over speed, load and temperature, and law beside law.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Serialize};
 
 use crate::contract::{Contract, Format};
@@ -25,6 +27,17 @@ pub struct LossRequest {
     pub temperatures: Vec<f64>,
     /// A family of laws: every point is evaluated with every law of it.
     pub compare: Option<String>,
+}
+
+impl LossRequest {
+    /// How many points it asks for.
+    pub fn points(&self, train: &Train) -> u64 {
+        let operations = if self.operation.is_some() { 1 } else { train.operations.len() };
+        let laws = (self.compare.as_ref()).map_or(1, |f| losses::entries().iter().filter(|e| e.family == *f).count());
+        let values = [&self.speeds, &self.powers, &self.torques].map(|v| v.len()).into_iter();
+        let all = values.chain([self.temperatures.len(), operations, laws]);
+        all.fold(1, |n: u64, k| n.saturating_mul(k.max(1) as u64))
+    }
 }
 
 /// One point.
@@ -178,9 +191,12 @@ pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnos
     if wrong.has_errors() {
         return Err(wrong);
     }
-    let laws: Vec<Option<Entry>> = match &request.compare {
-        Some(family) => losses::entries().into_iter().filter(|e| e.family == *family).map(Some).collect(),
-        None => vec![None],
+    let laws: Vec<(Option<Entry>, Cow<'_, Train>)> = match &request.compare {
+        // A law that needs what this train does not give is left out.
+        Some(family) => (losses::entries().into_iter().filter(|e| e.family == *family))
+            .filter_map(|e| train.clone().with_law(family, e.id).ok().map(|train| (Some(e), Cow::Owned(train))))
+            .collect(),
+        None => vec![(None, Cow::Borrowed(train))],
     };
     let mut table = LossTable {
         format: Format::new(),
@@ -192,23 +208,16 @@ pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnos
     for operation in chosen {
         for varied in variants(operation, request, &mut wrong) {
             let from = table.points.len();
-            for law in &laws {
-                let mut own = train.clone();
-                if let (Some(law), Some(family)) = (law, &request.compare) {
-                    match own.with_law(family, law.id) {
-                        Ok(train) => own = train,
-                        // A law that needs what this train does not give is left out.
-                        Err(_) => continue,
-                    }
-                }
-                match point(&own, &varied, law.as_ref().map(|l| l.id)) {
+            for (law, train) in &laws {
+                match point(train, &varied, law.as_ref().map(|l| l.id)) {
                     Ok(p) => table.points.push(p),
                     Err(d) => wrong.extend(d),
                 }
             }
             if let Some(family) = &request.compare {
-                let compatibility =
-                    |id: &str| laws.iter().flatten().any(|e| e.id == id && e.tags.contains(&Tag::Compatibility));
+                let compatibility = |id: &str| {
+                    laws.iter().filter_map(|l| l.0.as_ref()).any(|e| e.id == id && e.tags.contains(&Tag::Compatibility))
+                };
                 table.spreads.extend(spread(&table.points[from..], family, compatibility));
             }
         }

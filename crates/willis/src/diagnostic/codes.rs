@@ -141,6 +141,10 @@ codes! {
     /// A long computation was told to stop before it was done, by Ctrl-C for example. Nothing is wrong with the question:
     /// asked again, it begins anew.
     E211 Cancelled: "the computation was stopped";
+    /// How long a computation takes is counted before it begins: so many operating points, each as long as the train is
+    /// large. What would take minutes is not begun unasked, and in a report such a part is left out. Allow it with `--yes`,
+    /// or ask for fewer points.
+    E212 TooLong: "the computation would take long";
     /// Profile shift (or another number of planet teeth) has to close a difference of one or two
     /// teeth between ring and sun plus planets. Ratios and efficiencies do not depend on it.
     W301 NearlyCoaxial: "the set closes only with profile shift";

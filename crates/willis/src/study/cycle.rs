@@ -13,7 +13,7 @@ use crate::model::{Model, Target, Who};
 use crate::named::Named;
 use crate::operating_point::LossKind;
 use crate::train::{Load, Operation, Train};
-use crate::work::{self, Work};
+use crate::work::{self, Effort, Work};
 
 use super::answer::{PointAnswer, PointVerdict};
 use super::column::{Column, ColumnTable, ColumnValues};
@@ -460,6 +460,7 @@ impl<'a> Cycle<'a> {
     /// No condition makes a question; the work was cancelled.
     pub fn run(&self, work: &dyn Work) -> Result<CycleAnswer, Diagnostics> {
         let n = self.profile.conditions();
+        work.afford(&Effort::of_points(self.question.model().train(), n as u64))?;
         work.begin("conditions", n as u64);
         let parts = work::map(work, n.div_ceil(Self::AT_ONCE), |k| {
             let conditions = k * Self::AT_ONCE..((k + 1) * Self::AT_ONCE).min(n);

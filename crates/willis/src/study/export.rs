@@ -26,11 +26,12 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::Model;
 use crate::train::Train;
 use crate::units::{Dimension, Quantity};
+use crate::work::Effort;
 
 use super::axis::values;
 
 pub use carried::NotCarried;
-use carried::{Carries, left_out, sentence};
+use carried::{left_out, sentence};
 pub use map::{Answer, Gear, Map, Point};
 
 /// What an export is asked.
@@ -121,14 +122,11 @@ pub struct Export {
     /// What the train file says and the files do not.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub not_carried: Vec<NotCarried>,
-    /// Whether every file holds all that weighs.
-    #[serde(skip)]
-    has_inertia: bool,
 }
 
 impl Export {
     fn new(files: Vec<ExportedFile>, notes: Vec<String>) -> Self {
-        Self { files, notes, not_carried: vec![], has_inertia: false }
+        Self { files, notes, not_carried: vec![] }
     }
 }
 
@@ -140,7 +138,6 @@ pub struct Kind {
     /// What it is, in one line.
     pub about: &'static str,
     write: fn(&Train, &Asked) -> Result<Export, Diagnostics>,
-    carries: Carries,
     /// What begins and ends a comment; empty where the format has none.
     comment: [&'static str; 2],
 }
@@ -151,59 +148,58 @@ pub const KINDS: &[Kind] = &[
         id: "csv",
         about: "plain map: torque, loss, efficiency and verdict of every point",
         write: csv::write,
-        carries: carried::operating_point,
         comment: ["", ""],
     },
     Kind {
         id: "vecto",
         about: "VECTO transmission loss maps (.vtlm), one a gear",
         write: vecto::write,
-        carries: carried::operating_point,
         comment: ["# ", ""],
     },
     Kind {
         id: "modelica-loss-table",
         about: "lossTable and ratio of Modelica's LossyGear, whole gear, each state",
         write: loss_table::write,
-        carries: carried::operating_point,
         comment: ["  // ", ""],
     },
     Kind {
         id: "modelica",
         about: "the train as a model of Modelica's Rotational library (.mo)",
         write: modelica::write,
-        carries: carried::drive_line,
         comment: ["  // ", ""],
     },
     Kind {
         id: "simscape",
         about: "efficiencies for Simscape Driveline gears (MATLAB script)",
         write: simscape::write,
-        carries: carried::operating_point,
         comment: ["% ", ""],
     },
     Kind {
         id: "mujoco",
         about: "actuator with gear, armature and both efficiencies (MJCF)",
         write: mujoco::write,
-        carries: carried::with_inertia,
         comment: ["<!-- ", " -->"],
     },
     Kind {
         id: "drake",
         about: "joint actuator with gear ratio and rotor inertia (URDF)",
         write: drake::write,
-        carries: carried::with_inertia,
         comment: ["<!-- ", " -->"],
     },
     Kind {
         id: "openfast",
         about: "GBoxEff and GBRatio of ElastoDyn, side and sign told",
         write: openfast::write,
-        carries: carried::operating_point,
         comment: ["! ", ""],
     },
 ];
+
+/// How much work an export is: its map, and the trials that show what is not in it.
+pub fn effort(model: &Model) -> Effort {
+    /// Points of a usual map.
+    const MAP: u64 = 500;
+    Effort::of_points(model.train(), MAP + carried::trials(model))
+}
 
 /// Exports a train in the format of that name.
 ///
@@ -225,7 +221,8 @@ pub const KINDS: &[Kind] = &[
 /// )?;
 /// let table = export(&model, "modelica-loss-table", &ExportRequest::default())?;
 /// assert!(table.files[0].text.contains("ratio = 10/3 "));
-/// assert!(table.not_carried.is_empty());
+/// assert_eq!(table.not_carried[0].key, "set.planet.teeth");
+/// assert_eq!(table.not_carried[0].values, ["20"]);
 /// assert!(export(&model, "vekto", &ExportRequest::default()).unwrap_err().to_string().contains("did you mean `vecto`?"));
 /// # Ok::<(), willis::diagnostic::Diagnostics>(())
 /// ```
@@ -236,8 +233,13 @@ pub fn export(model: &Model, kind: &str, request: &ExportRequest) -> Result<Expo
         let all: Vec<_> = known.clone().collect();
         return Err(d.suggest(kind, known).hint(format!("the exports are: {}", all.join(", "))).into());
     };
-    let mut done = (found.write)(model.train(), &Asked::read(request)?)?;
-    done.not_carried = left_out(model, found.carries, done.has_inertia);
+    let asked = Asked::read(request)?;
+    let mut done = (found.write)(model.train(), &asked)?;
+    let ends = map::ends(model.train(), &asked);
+    done.not_carried = left_out(model, &|train| {
+        let done = (found.write)(train, &ends).ok()?;
+        Some(done.files.into_iter().map(|f| f.text).collect())
+    });
     if let Some(told) = sentence(&done.not_carried) {
         let [begin, end] = found.comment;
         for file in done.files.iter_mut().filter(|_| !begin.is_empty()) {

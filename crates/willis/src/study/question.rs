@@ -1,7 +1,7 @@
 //! What is asked at every point of a study: the operating point that the settings of a point mean.
 
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +10,9 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::model::{Model, Target, Who, oil_temperature, quantity};
-use crate::train::{Load, MemberId, Operation, Train};
+use crate::train::{Document, Load, MemberId, Operation, Train};
 use crate::units::{Dimension, Quantity};
+use crate::work::Effort;
 
 /// What stays the same while other quantities vary.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -61,6 +62,8 @@ pub struct Question<'s> {
     hold: Hold,
     /// The torque that the output keeps, positive where it drives.
     output: Option<Quantity>,
+    /// The file without its questions, for trains with other values: the point has its operation already.
+    alone: OnceLock<Document>,
 }
 
 /// Trains that differ in quantities of their file, kept for the next point.
@@ -106,7 +109,7 @@ impl<'s> Question<'s> {
             place: String::new(),
         });
         base.state = state.or(base.state);
-        let mut question = Self { model, base, hold, output: None };
+        let mut question = Self { model, base, hold, output: None, alone: OnceLock::new() };
         question.settle()?;
         Ok(question)
     }
@@ -119,6 +122,16 @@ impl<'s> Question<'s> {
     /// The operating point from which the study starts.
     pub fn base(&self) -> &Operation {
         &self.base
+    }
+
+    /// How much work it is at so many trains that differ in values of their file, at so many points each.
+    pub fn effort(&self, trains: u64, points_each: u64) -> Effort {
+        Effort::of_trains(self.model.train(), self.alone().text().len(), trains, points_each)
+    }
+
+    /// The file without its questions.
+    fn alone(&self) -> &Document {
+        self.alone.get_or_init(|| self.model.document().without_questions())
     }
 
     /// What is held.
@@ -250,7 +263,12 @@ impl<'s> Question<'s> {
         if trains.0.len() >= MOST_TRAINS {
             trains.0.clear();
         }
-        let train = self.model.train_with(&of_train).map(Arc::new);
+        let leads_into_a_question = |s: &(&Target, String)| matches!(s.0, Target::File(key) if key.is_of_a_question());
+        let document = match of_train.iter().any(leads_into_a_question) {
+            true => self.model.document(),
+            false => self.alone(),
+        };
+        let train = self.model.train_with(document, &of_train).map(Arc::new);
         trains.0.insert(key, train.clone());
         train
     }

@@ -10,7 +10,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target, Who};
 use crate::train::{Load, Measure, Train};
 use crate::units::{self, Quantity};
-use crate::work::{self, Cancelled, Work};
+use crate::work::{self, Cancelled, Effort, Work};
 
 use super::answer::{LawChoice, PointAnswer, PointVerdict};
 use super::axis::with_unit;
@@ -175,6 +175,7 @@ pub fn uncertainty(
     work: &dyn Work,
 ) -> Result<UncertaintyAnswer, Diagnostics> {
     let plan = UncertaintyPlan::new(model, request)?;
+    work.afford(&plan.effort())?;
     let evaluated = plan.evaluate_all(work)?;
     Ok(UncertaintyAnswer { report: plan.finish(&evaluated), samples: plan.table(&evaluated) })
 }
@@ -414,6 +415,11 @@ impl<'s> UncertaintyPlan<'s> {
     /// Whether there are none; never.
     pub fn is_empty(&self) -> bool {
         false
+    }
+
+    /// How much work all points are.
+    pub fn effort(&self) -> Effort {
+        self.question.effort(self.len() as u64, 1)
     }
 
     /// So many points belong together: pieces of whole groups read the train file less often.

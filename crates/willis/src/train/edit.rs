@@ -26,6 +26,9 @@ pub enum Measure {
     Flag,
 }
 
+/// Lists of what is asked of a train.
+const QUESTIONS: [&str; 3] = ["operation", "scenario", "study"];
+
 /// One step from a table to what is in it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Step {
@@ -39,6 +42,13 @@ pub struct Key {
     steps: Vec<Step>,
     /// What its value is.
     pub measure: Measure,
+}
+
+impl Key {
+    /// Whether it is in an operation, scenario or study.
+    pub(crate) fn is_of_a_question(&self) -> bool {
+        matches!(self.steps.first(), Some(Step::Key(name)) if QUESTIONS.contains(&name.as_str()))
+    }
 }
 
 /// The text of a train file, any value of which can be set anew; all the rest stays as written.
@@ -172,7 +182,7 @@ impl Document {
             }
         }
         let message = format!("the train file has no quantity `{}`", clip(path));
-        let all = self.paths();
+        let all: Vec<String> = self.quantities().into_iter().map(|q| q.0).collect();
         let d = Diagnostic::new(Code::UnknownName, "", message).suggest(path, all.iter().map(String::as_str));
         let first = path.split('.').next().unwrap_or(path);
         let near: Vec<&String> = all.iter().filter(|p| after(p, first).is_some()).collect();
@@ -186,11 +196,18 @@ impl Document {
         }))
     }
 
-    /// The paths of all quantities that the format has for what is in this file, given or not.
-    pub fn paths(&self) -> Vec<String> {
+    /// All quantities that the format has for what is in this file, given or not: their paths and keys.
+    pub fn quantities(&self) -> Vec<(String, Key)> {
         let mut all = vec![];
-        collect(Some(self.0.as_table()), FILE, "", &mut all);
+        collect(Some(self.0.as_table()), FILE, "", &mut vec![], &mut all);
         all
+    }
+
+    /// The train alone, without what is asked of it: operations, scenarios and studies.
+    pub(crate) fn without_questions(&self) -> Self {
+        let mut table = self.0.clone();
+        QUESTIONS.iter().for_each(|list| drop(table.remove(list)));
+        Self(table)
     }
 
     /// What stands at a key, as written; none where the file does not have it.
@@ -302,30 +319,42 @@ fn walk(table: Option<&dyn TableLike>, of: &'static Table, path: &str, steps: &m
     }
 }
 
-fn collect(table: Option<&dyn TableLike>, of: &'static Table, before: &str, all: &mut Vec<String>) {
+fn collect(
+    table: Option<&dyn TableLike>,
+    of: &'static Table,
+    before: &str,
+    steps: &mut Vec<Step>,
+    all: &mut Vec<(String, Key)>,
+) {
     // Motions have studies of their own.
     let keys = of.keys().filter(|k| !(before.is_empty() && matches!(k.name, "scenario" | "study" | "state")));
     for key in keys {
         let item = table.and_then(|t| t.get(key.name));
         let path = format!("{before}{}", key.name);
+        steps.push(Step::Key(key.name.to_owned()));
+        let mut add = |path: String, more: &[&str], measure| {
+            let steps = steps.iter().cloned().chain(more.iter().map(|name| Step::Key((*name).to_owned())));
+            all.push((path, Key { steps: steps.collect(), measure }));
+        };
         match place(item, &key.kind) {
             Place::Value(Measure::Text) if matches!(key.name, "name" | "source" | "notes") => {}
-            Place::Value(_) => all.push(path),
-            Place::Table(inner, of) => collect(inner, of, &format!("{path}."), all),
-            Place::Named(inner, _) => {
-                all.extend(inner.into_iter().flat_map(|t| t.iter()).map(|(name, _)| format!("{path}.{name}")));
+            Place::Value(measure) => add(path, &[], measure),
+            Place::Table(inner, of) => collect(inner, of, &format!("{path}."), steps, all),
+            Place::Named(inner, measure) => {
+                inner.into_iter().flat_map(|t| t.iter()).for_each(|(n, _)| add(format!("{path}.{n}"), &[n], measure));
             }
-            Place::Efficiency(Some(inner), _) => {
+            Place::Efficiency(inner, _) => {
                 // One number may take the place of several.
-                all.push(path.clone());
-                for (name, item) in inner.iter() {
+                add(path.clone(), &[], Measure::Number);
+                for (name, item) in inner.into_iter().flat_map(|t| t.iter()) {
                     match item.as_table_like() {
-                        Some(t) => all.extend(t.iter().map(|(deep, _)| format!("{path}.{name}.{deep}"))),
-                        None => all.push(format!("{path}.{name}")),
+                        Some(t) => t.iter().for_each(|(deep, _)| {
+                            add(format!("{path}.{name}.{deep}"), &[name, deep], Measure::Number);
+                        }),
+                        None => add(format!("{path}.{name}"), &[name], Measure::Number),
                     }
                 }
             }
-            Place::Efficiency(None, _) => all.push(path),
             Place::List(entries) => {
                 for (k, (name, table, of)) in entries.into_iter().enumerate() {
                     let called = match name {
@@ -333,11 +362,14 @@ fn collect(table: Option<&dyn TableLike>, of: &'static Table, before: &str, all:
                         Some(name) => format!("{path}.{name}."),
                         None => format!("{path}.{k}."),
                     };
-                    collect(Some(table), of, &called, all);
+                    steps.push(Step::Entry(k));
+                    collect(Some(table), of, &called, steps, all);
+                    steps.pop();
                 }
             }
             Place::Other => {}
         }
+        steps.pop();
     }
 }
 

@@ -447,6 +447,21 @@ specification! {
 /// The keys of a train file.
 pub(super) const FILE: &Table = Specification::TABLE;
 
+/// What a key takes, by the keys that lead to it; positions in lists are left out.
+pub(crate) fn kind_of(steps: &[&str]) -> Option<Kind> {
+    fn within(table: &Table, steps: &[&str]) -> Option<Kind> {
+        let (first, rest) = steps.split_first()?;
+        let kind = table.key(first)?.kind;
+        match kind {
+            Kind::Table(of) | Kind::Tables(of, _) if !rest.is_empty() => within(of, rest),
+            Kind::Variants(all) if !rest.is_empty() => all.iter().find_map(|(_, of)| within(of, rest)),
+            // Below it stand names and directions.
+            kind => Some(kind),
+        }
+    }
+    within(FILE, steps)
+}
+
 impl Specification {
     /// Begins a train.
     pub fn new(name: impl Into<String>) -> Self {

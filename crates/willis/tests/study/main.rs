@@ -3,8 +3,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod carried;
 mod compare;
 mod cycle;
+mod effort;
 mod export;
 mod sensitivity;
 mod sweep;

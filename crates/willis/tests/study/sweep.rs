@@ -326,13 +326,14 @@ fn paths_lead_to_what_they_name() {
         let document = Document::parse(&text).unwrap();
         assert_eq!(document.text(), text);
         let mut all = Document::parse(&text).unwrap();
-        let paths = document.paths();
-        for (k, name) in paths.iter().enumerate() {
-            assert!(!paths[..k].contains(name), "{file}: {name} twice");
-            let key = document.find(name).unwrap_or_else(|d| panic!("{file}: {name}: {}", d.message));
-            let Some(value) = document.value(&key) else { continue };
-            all.set(&key, &value).unwrap_or_else(|e| panic!("{file}: {name}: {e}"));
-            assert_eq!(all.value(&key), Some(value), "{name}");
+        let quantities = document.quantities();
+        for (k, (name, key)) in quantities.iter().enumerate() {
+            assert!(!quantities[..k].iter().any(|q| q.0 == *name), "{file}: {name} twice");
+            let found = document.find(name).unwrap_or_else(|d| panic!("{file}: {name}: {}", d.message));
+            assert_eq!(found, *key, "{file}: {name}");
+            let Some(value) = document.value(key) else { continue };
+            all.set(key, &value).unwrap_or_else(|e| panic!("{file}: {name}: {e}"));
+            assert_eq!(all.value(key), Some(value), "{name}");
             checked += 1;
         }
         let same: [toml::Table; 2] = [&text, &all.text()].map(|t| t.parse().unwrap());

@@ -8,7 +8,7 @@ use crate::study::axis::Axis;
 use crate::study::question::{Hold, Question, Trains};
 use crate::study::sweep::Sweep;
 use crate::train::Operation;
-use crate::work::{self, Cancelled, Work};
+use crate::work::{self, Cancelled, Effort, Work};
 
 use super::results::{point, prescribed, same};
 use super::{CompareRequest, TextDifference};
@@ -226,6 +226,13 @@ pub(super) fn compare(
             .hint("fewer values tell where a variant is better")
             .into());
     }
+    let of = |s: &Sweep<'_>| Effort::of_points(s.question().model().train(), s.len());
+    let all: Vec<Effort> = sweeps.iter().map(of).collect();
+    work.afford(&Effort {
+        what: all[0].what,
+        count: all.iter().map(|e| e.count).sum(),
+        seconds: all.iter().map(|e| e.seconds).sum(),
+    })?;
     let mut pairs: Vec<MapPair> =
         (1..sweeps.len()).map(|k| MapPair::new(&labels[0], &labels[k], bands(first))).collect();
     for (point, answers) in (0..points).zip(answers(&sweeps, points, work)?) {

@@ -7,8 +7,6 @@
 //! gets the inertia `ρ² I_rotor` ("and any additional shafts/gears"). The ratio does nothing else: actuation is the
 //! torque on the joint, and there is no efficiency. Both are told as comments.
 
-use std::cell::Cell;
-
 use crate::diagnostic::Diagnostics;
 use crate::train::Train;
 
@@ -19,13 +17,10 @@ use super::single::single;
 use super::{Asked, Export, ExportedFile, each, origin, told};
 
 pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
-    let whole = Cell::new(true);
-    let done = each(train, request, |gear, notes| one(train, gear, notes, &whole))?;
-    Ok(Export { has_inertia: whole.get(), ..done })
+    each(train, request, |gear, notes| one(train, gear, notes))
 }
 
-/// One file; `whole` is told when it lacks what weighs.
-fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>, whole: &Cell<bool>) -> Result<ExportedFile, Diagnostics> {
+fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFile, Diagnostics> {
     let found = single(gear)?;
     let mut own = told(gear);
     own.extend(found.notes);
@@ -47,10 +42,7 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>, whole: &Cell<bool>) 
             gear.title(),
             gear.input
         ),
-        Err(why) => {
-            whole.set(false);
-            format!("{}: no rotor_inertia: {why}", gear.title())
-        }
+        Err(why) => format!("{}: no rotor_inertia: {why}", gear.title()),
     });
     let (name, joint) = (slug(train.name()), xml(&gear.output));
     let mut text = format!("<!-- {} -->\n", xml(&origin(train)));

@@ -270,7 +270,8 @@ fn misfit(map: &Map, rows: &[Row], ratio: f64) -> (f64, String) {
             let ours = -a.output_torque_n_m / ratio;
             largest = largest.max(ours.abs());
             let miss = (row.out(p.torque_n_m) - ours).abs();
-            if miss > worst.0 {
+            // Where the lines fit, rounding has no place.
+            if miss > worst.0 + 1e-12 * ours.abs() {
                 worst = (miss, format!("{} rpm and {} N m", short(p.speed_rpm), short(p.torque_n_m)));
             }
         }

@@ -343,6 +343,25 @@ pub(super) fn gears(train: &Train, request: &Asked) -> Result<(Vec<Gear>, Vec<St
     Ok((gears, notes))
 }
 
+/// A request for the ends of the ranges alone: enough to see what a number depends on.
+pub(super) fn ends(train: &Train, asked: &Asked) -> Asked {
+    let Ok((gears, _)) = gears(train, asked) else { return asked.clone() };
+    let Some(gear) = gears.first() else { return asked.clone() };
+    let of = |all: &[Quantity]| {
+        let mut ends: Vec<_> = all.first().into_iter().chain(all.last().filter(|_| all.len() > 1)).cloned().collect();
+        ends.dedup_by(|a, b| a.si() == b.si());
+        ends
+    };
+    let moving: Vec<_> = gear.speeds.iter().filter(|s| s.value.sign() > 0).cloned().collect();
+    Asked {
+        state: if asked.all_states { None } else { gear.name.clone() },
+        operation: None,
+        speeds: of(if moving.is_empty() { &gear.speeds } else { &moving }),
+        torques: of(&gear.torques),
+        ..asked.clone()
+    }
+}
+
 /// What can be wrong with a request before anything is computed.
 fn check(train: &Train, request: &Asked) -> Result<(), Diagnostics> {
     let rising = |q: &[Quantity]| q.windows(2).all(|w| w[0].si() < w[1].si());

@@ -14,8 +14,6 @@
 //! mu_avg - mu_dif = 1/efficiency_backward - 1      the joint drives the motor
 //! ```
 
-use std::cell::Cell;
-
 use crate::diagnostic::Diagnostics;
 use crate::train::Train;
 
@@ -25,13 +23,10 @@ use super::single::single;
 use super::{Asked, Export, ExportedFile, each, origin, told};
 
 pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostics> {
-    let whole = Cell::new(true);
-    let done = each(train, request, |gear, notes| one(train, gear, notes, &whole))?;
-    Ok(Export { has_inertia: whole.get(), ..done })
+    each(train, request, |gear, notes| one(train, gear, notes))
 }
 
-/// One file; `whole` is told when it lacks what weighs.
-fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>, whole: &Cell<bool>) -> Result<ExportedFile, Diagnostics> {
+fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>) -> Result<ExportedFile, Diagnostics> {
     let found = single(gear)?;
     let mut own = told(gear);
     own.extend(found.notes);
@@ -72,10 +67,7 @@ fn one(train: &Train, gear: &Gear, notes: &mut Vec<String>, whole: &Cell<bool>) 
             gear.output,
             gear.output
         )),
-        Err(why) => {
-            whole.set(false);
-            own.push(format!("{}: no armature: {why}", gear.title()));
-        }
+        Err(why) => own.push(format!("{}: no armature: {why}", gear.title())),
     }
     let mut text = format!("<!-- {} -->\n", xml(&origin(train)));
     for note in &own {

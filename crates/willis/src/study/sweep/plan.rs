@@ -13,7 +13,7 @@ use crate::study::column::{Column, ColumnTable, Rows};
 use crate::study::compiled::{CompiledSweep, SweepWorkspace};
 use crate::study::question::{Hold, Question, Trains};
 use crate::study::summary::Summary;
-use crate::work::{self, Cancelled, Work};
+use crate::work::{self, Cancelled, Effort, Work};
 
 use super::Sweep;
 use super::report::{Shard, SweepMethod, SweepReport, SweepStudy};
@@ -120,6 +120,7 @@ pub fn sweep(model: &Model, request: &SweepRequest, work: &dyn Work) -> Result<S
         let d = Diagnostic::new(Code::Unfit, "", message);
         return Err(d.hint("ask for the summary alone, or take fewer values or columns").into());
     }
+    work.afford(&plan.effort())?;
     let rooms = Pool::default();
     work.begin("points", plan.sweep().len());
     let pieces = usize::try_from(plan.pieces()).unwrap_or(usize::MAX);
@@ -246,6 +247,17 @@ impl<'s> SweepPlan<'s> {
     /// The columns of the rows.
     pub fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    /// How much work all points are.
+    pub fn effort(&self) -> Effort {
+        /// A point of the compiled train, with its row, s.
+        const COMPILED: f64 = 5e-8;
+        let points = self.sweep.len();
+        match self.compiled {
+            Some(_) => Effort::new("points", points, COMPILED),
+            None => Effort::of_points(self.sweep.question().model().train(), points),
+        }
     }
 
     /// How many pieces there are.

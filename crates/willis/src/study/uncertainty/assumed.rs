@@ -122,8 +122,7 @@ pub(super) fn quantities(question: &Question<'_>) -> (Vec<Uncertain>, Vec<String
     let (mut all, mut told) = (vec![], vec![]);
     let mut losses: Vec<String> = vec![];
     let mut roughness: Vec<String> = vec![];
-    for path in document.paths() {
-        let Ok(key) = document.find(&path) else { continue };
+    for (path, key) in document.quantities() {
         let Some(text) = document.value(&key) else { continue };
         let Some((value, unit)) = Reader::base_of(&text, key.measure) else { continue };
         let mut parts = path.rsplit('.');
