@@ -292,6 +292,33 @@ impl Equations {
         }
     }
 
+    /// Puts in the place of each column that depends on those before it the other one of its pair.
+    pub fn mend(&self, columns: &mut [usize]) {
+        // Reduced columns so far, each with the row of its pivot.
+        let mut reduced: Vec<(usize, Vec<f64>)> = Vec::new();
+        for j in columns {
+            for candidate in [Some(*j), self.partner[*j]].into_iter().flatten() {
+                let mut column = vec![0.0; self.rows];
+                self.columns[candidate].iter().for_each(|e| column[e.row] = e.value);
+                for (pivot, other) in &reduced {
+                    let factor = column[*pivot];
+                    if factor != 0.0 {
+                        column.iter_mut().zip(other).for_each(|(x, y)| *x -= factor * y);
+                    }
+                }
+                let size = |r: &usize| column[*r].abs();
+                let pivot = (0..self.rows).max_by(|p, q| size(p).total_cmp(&size(q))).expect("not empty");
+                let value = column[pivot];
+                if value.abs() > 1e-10 {
+                    column.iter_mut().for_each(|x| *x /= value);
+                    reduced.push((pivot, column));
+                    *j = candidate;
+                    break;
+                }
+            }
+        }
+    }
+
     /// Makes a column that of the covering unknown.
     pub fn set_cover(&mut self, column: BTreeMap<usize, Rational>) {
         let cover = self.cover();

@@ -50,7 +50,6 @@ impl Decision {
     /// From the last basis to that of the loads. False if pivoting says nothing: no answer about motion.
     pub(super) fn pivot(&mut self) -> bool {
         if !self.basis.is_known() && !self.start() {
-            eprintln!("DBG start singular");
             return false;
         }
         // A tie within rounding may leave a trace: then once more from there.
@@ -86,7 +85,8 @@ impl Decision {
         })
     }
 
-    /// A first basis: all slips forward, forces as in the lossless train in which all is held.
+    /// A first basis: all slips forward, forces as in the lossless train in which all is held. Where that is singular,
+    /// as where something without inertia would be held by nothing, some of it is at rest.
     fn start(&mut self) -> bool {
         let (ideal, ideal_basis) = &mut *self.ideal;
         let known = ideal_basis.is_known() || {
@@ -118,7 +118,10 @@ impl Decision {
             columns.extend(e.yields[0].map(|[slip, _]| slip));
             columns.extend(e.yields[1].map(|[_, spare]| spare));
         }
-        self.basis.set(&self.equations, columns.into_iter())
+        self.basis.set(&self.equations, columns.iter().copied()) || {
+            self.equations.mend(&mut columns);
+            self.basis.set(&self.equations, columns.into_iter())
+        }
     }
 
     /// The column that covers what is negative, as the friction of the meshes at rest allows.
@@ -194,10 +197,9 @@ impl Decision {
             work.candidates.retain(|&i| work.column.value[i] > 0.0);
             match self.least(entering, work) {
                 Some(next) => at = next,
-                None => { eprintln!("DBG ray"); return false },
+                None => return false,
             }
         }
-        eprintln!("DBG limit");
         false
     }
 
