@@ -5,10 +5,9 @@
 //! a mode the right-hand side is smooth, and changes of mode are located as events. Source:
 //! Galvagno 2010 with corrected signs and its loop solved.
 
-mod balance;
 mod batch;
-mod certificate;
 mod choose;
+mod contacts;
 mod decision;
 mod element;
 mod energy;

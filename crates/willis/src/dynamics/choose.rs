@@ -1,22 +1,17 @@
 //! Which mode a state is in: decided by accelerations and forces, never by the sign of a small speed.
 //!
 //! At a change of mode some groups are at zero slip. Each may be held or slide off either way, and the tooth
-//! forces may turn round; the right choice is the one whose accelerations and forces agree with it. Single
-//! disagreements are flipped, starting from the mode before (Murty's pivoting: finite where the solution is
-//! unique); where that does not settle, friction is balanced by projected sweeps; what is left is
-//! tried one by one. Without a certificate all modes are tried, so that several solutions, or none, are found and
-//! said (the gear form of Painlevé's paradox).
-
-use std::collections::HashSet;
+//! forces may turn round; what happens is [decided](super::decision) for all of them at once, and several solutions,
+//! or none, are found and said (the gear form of Painlevé's paradox).
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::train::SourceKind;
 
+use super::decision::Verdict;
 use super::engine::Engine;
 use super::event::short;
-use super::margins::{Margin, NOISE, Watch};
-use super::mode::{Mode, Side, dot, dot_size};
+use super::mode::{Mode, dot, dot_size};
 
 /// Why there is no one mode.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,9 +25,6 @@ pub(super) enum Trouble {
     /// Several do; the first of them.
     Several(String, Mode),
 }
-
-/// Modes that are tried one by one, at most.
-const MOST_TRIED: usize = 20_000;
 
 impl Engine {
     /// Speeds in the state made exactly those of groups at rest, with the least change in kinetic energy.
@@ -138,32 +130,30 @@ impl Engine {
                 start.slip[g] = self.departure(g);
             }
         }
-        let found = self.pivot(t, x, at_rest, &start).or_else(|| {
-            let balanced = self.balance_guess(t, x, at_rest, &start);
-            self.pivot(t, x, at_rest, &balanced)
-        });
-        let untried = self.combinations(at_rest) > MOST_TRIED;
-        let found = match found {
-            Some(mode) if untried || self.certified => {
-                self.unsearched += usize::from(!self.certified);
-                return Ok(mode);
+        for g in 0..at_rest.len() {
+            if at_rest[g] && !self.system.groups[g].driven {
+                start.slip[g] = 0;
             }
-            None if untried => return Err(Trouble::NotFound(Self::not_found())),
-            other => other,
-        };
-        let all = self.try_all(t, x, at_rest, &start);
-        match (all.len(), found) {
-            (0, Some(mode)) => Ok(mode),
-            (0, None) => Err(Trouble::None(self.no_solution(at_rest))),
-            (1, _) => Ok(all.into_iter().next().expect("one")),
-            (n, _) => {
+        }
+        let (verdict, mode) = self.decide(t, x, &start);
+        match verdict {
+            Verdict::One { proved } => {
+                self.unproved += usize::from(!proved);
+                Ok(mode)
+            }
+            Verdict::Two => {
+                let [first, second] = self.two_motions().map(|a| self.accelerations(&a));
                 let why = format!(
-                    "{n} sets of tooth forces and accelerations agree with this state; the first gives {}, the second {}",
-                    self.accelerations_of(t, x, &all[0]),
-                    self.accelerations_of(t, x, &all[1]),
+                    "2 sets of tooth forces and accelerations agree with this state; the first gives {first}, the second {second}"
                 );
-                Err(Trouble::Several(why, all.into_iter().next().expect("several")))
+                Err(Trouble::Several(why, mode))
             }
+            Verdict::None | Verdict::Contradiction => Err(Trouble::None(self.no_solution(at_rest))),
+            Verdict::Undecided => Err(Trouble::NotFound(
+                "no accelerations and tooth forces were found that agree with each other; there are too many combinations of \
+                 sticking and driving to look through them all"
+                    .to_owned(),
+            )),
         }
     }
 
@@ -183,15 +173,10 @@ impl Engine {
         first.map_or(0, |(slip, _)| if slip > 0.0 { 1 } else { -1 })
     }
 
-    fn accelerations_of(&mut self, t: f64, x: &[f64], mode: &Mode) -> String {
-        self.enter(mode);
-        self.solve(t, x);
-        let list: Vec<String> = (0..self.system.free)
-            .map(|k| {
-                let name = self.system.train.member_name(self.system.coordinates[k]);
-                format!("{name}: {} rad/s²", short(self.acceleration[k]))
-            })
-            .collect();
+    fn accelerations(&self, of: &[f64]) -> String {
+        let name = |k: usize| self.system.train.member_name(self.system.coordinates[k]);
+        let list: Vec<String> =
+            (0..self.system.free).map(|k| format!("{}: {} rad/s²", name(k), short(of[k]))).collect();
         list.join(", ")
     }
 
@@ -204,125 +189,5 @@ impl Engine {
         format!(
             "no accelerations and tooth forces agree with each other{still}: friction grows with the force it causes"
         )
-    }
-
-    fn not_found() -> String {
-        format!(
-            "no accelerations and tooth forces were found that agree with each other; more than {MOST_TRIED} \
-             combinations of sticking and driving are too many to try them all"
-        )
-    }
-
-    fn combinations(&self, at_rest: &[bool]) -> usize {
-        let mut n = 1usize;
-        for (g, group) in self.system.groups.iter().enumerate() {
-            if at_rest[g] && !group.driven {
-                n = n.saturating_mul(3);
-            }
-            n = n.saturating_mul(1usize << group.elements.len().min(30));
-        }
-        n
-    }
-
-    /// Margins of the present mode and those of groups that start to slide. Empty vector: it agrees.
-    fn disagreements(&mut self, t: f64, x: &[f64], at_rest: &[bool], out: &mut Vec<Margin>) {
-        self.margins(t, x, out);
-        out.retain(|m| match m.watch {
-            Watch::Slip(g) => !at_rest[g],
-            Watch::Touch(_) | Watch::Engage(_) => false,
-            _ => true,
-        });
-        let Some(map) = self.map.clone() else { return };
-        for g in (0..at_rest.len()).filter(|&g| at_rest[g]) {
-            let sign = self.mode.slip[g];
-            if sign != 0 {
-                let value = f64::from(sign) * self.group_acceleration(g);
-                let row = &self.system.groups[g].row[..self.system.free];
-                let size: f64 = row.iter().enumerate().map(|(i, r)| r.abs() * map.size(i, &self.tau)).sum();
-                out.push(Margin { watch: Watch::Slip(g), value, noise: NOISE * size });
-            }
-        }
-        out.retain(Margin::is_broken);
-    }
-
-    /// Flips single disagreements until there are none.
-    fn pivot(&mut self, t: f64, x: &[f64], at_rest: &[bool], start: &Mode) -> Option<Mode> {
-        let mut mode = start.clone();
-        let mut seen: HashSet<Mode> = HashSet::new();
-        let mut broken = Vec::new();
-        let mut least_index = false;
-        for _ in 0..400 {
-            if !self.enter(&mode) {
-                return None;
-            }
-            self.solve(t, x);
-            self.disagreements(t, x, at_rest, &mut broken);
-            let worst = |m: &Margin| -m.value / (m.noise + 1e-300);
-            let pick =
-                if least_index { broken.first() } else { broken.iter().max_by(|a, b| worst(a).total_cmp(&worst(b))) };
-            let Some(&pick) = pick else { return Some(mode) };
-            match pick.watch {
-                Watch::Slip(g) => mode.slip[g] = 0,
-                Watch::Hold(g, sign) => mode.slip[g] = sign,
-                Watch::Side(j) => mode.side[j] = mode.side[j].other(),
-                Watch::HoldAll => {
-                    let next = self.balance_guess(t, x, at_rest, &mode);
-                    if next == mode {
-                        return None;
-                    }
-                    mode = next;
-                }
-                Watch::Touch(_) | Watch::Engage(_) => unreachable!("left out"),
-            }
-            if !seen.insert(mode.clone()) {
-                if least_index {
-                    return None;
-                }
-                least_index = true;
-                seen.clear();
-            }
-        }
-        None
-    }
-
-    /// Every mode that agrees with the state, those of equal accelerations once.
-    pub fn try_all(&mut self, t: f64, x: &[f64], at_rest: &[bool], start: &Mode) -> Vec<Mode> {
-        if self.combinations(at_rest) > MOST_TRIED {
-            return vec![];
-        }
-        let open: Vec<usize> = (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
-        let sides: Vec<usize> = self.system.groups.iter().flat_map(|g| g.elements.iter().copied()).collect();
-        let mut found: Vec<(Mode, Vec<f64>)> = Vec::new();
-        let mut broken = Vec::new();
-        for state in 0..3usize.pow(open.len() as u32) {
-            let mut mode = start.clone();
-            let mut rest = state;
-            for &g in &open {
-                mode.slip[g] = [0, 1, -1][rest % 3];
-                rest /= 3;
-            }
-            let moving: Vec<usize> =
-                sides.iter().copied().filter(|&j| mode.element_slip(&self.system, j) != 0).collect();
-            for pattern in 0..1usize << moving.len() {
-                for (k, &j) in moving.iter().enumerate() {
-                    mode.side[j] = if pattern >> k & 1 == 0 { Side::Drive } else { Side::Coast };
-                }
-                if !self.enter(&mode) {
-                    continue;
-                }
-                self.solve(t, x);
-                self.disagreements(t, x, at_rest, &mut broken);
-                if !broken.is_empty() {
-                    continue;
-                }
-                let a = self.acceleration.clone();
-                let size = a.iter().fold(0.0f64, |s, a| s.max(a.abs()));
-                let known = found.iter().any(|(_, b)| a.iter().zip(b).all(|(x, y)| (x - y).abs() <= 1e-8 * size));
-                if !known {
-                    found.push((mode.clone(), a));
-                }
-            }
-        }
-        found.into_iter().map(|(mode, _)| mode).collect()
     }
 }

@@ -21,8 +21,6 @@
 //! believed where a certificate says that every load has one motion. Otherwise all modes are searched, exactly, and
 //! only that may say that there is no motion, or that there are two.
 
-#![allow(dead_code)]
-
 mod basis;
 mod certificate;
 mod equations;
@@ -107,6 +105,14 @@ impl Load {
     }
 }
 
+/// Choices that a certificate looks at, at most.
+const MOST_CHOICES: usize = 1 << 17;
+
+/// Whether every load of a problem has one motion; none if there are more choices than these to look at.
+pub(super) fn is_unique(problem: &Problem, most: usize) -> Option<bool> {
+    certificate::is_unique(&Equations::new(problem), most)
+}
+
 /// What was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
@@ -173,6 +179,7 @@ pub(super) struct Motion {
 /// The decision for one set of contacts, under whatever loads.
 #[derive(Clone)]
 pub(super) struct Decision {
+    problem: Problem,
     equations: Equations,
     /// The lossless train with all held, from whose forces a cold start takes its directions.
     ideal: Box<(Equations, Basis)>,
@@ -201,19 +208,21 @@ impl Decision {
             certified: None,
             motion: equations.motionless(),
             second: equations.motionless(),
+            problem: problem.clone(),
             equations,
         }
     }
 
     /// Whether every load has one motion.
     pub fn is_certified(&mut self) -> bool {
-        *self.certified.get_or_insert_with(|| certificate::is_unique(&self.equations))
+        *self.certified.get_or_insert_with(|| certificate::is_unique(&self.equations, MOST_CHOICES) == Some(true))
     }
 
-    /// What happens under a load. Starts from the mode of the last time.
-    pub fn decide(&mut self, load: &Load) -> Verdict {
+    /// What happens under a load; `certified`: it is known that every load has one motion. Starts from the mode of the
+    /// last time.
+    pub fn decide(&mut self, load: &Load, certified: bool) -> Verdict {
         let Some(found) = self.follow(load) else { return Verdict::Contradiction };
-        if found && self.is_certified() {
+        if found && (certified || self.is_certified()) {
             return Verdict::One { proved: true };
         }
         self.search(load, found)
@@ -230,6 +239,25 @@ impl Decision {
             self.equations.read(&self.basis, &self.unknowns, &mut self.motion);
         }
         Some(found)
+    }
+
+    /// How far what holds is from slipping under a load: the least of its spare forces, of no particular unit. Below 0
+    /// where something slips: how fast, over the bound of its error.
+    pub fn spare(&mut self, load: &Load) -> f64 {
+        if self.follow(load) != Some(true) && !matches!(self.search(load, false), Verdict::One { .. }) {
+            return f64::NEG_INFINITY;
+        }
+        let (problem, motion) = (&self.problem, &self.motion);
+        let beyond = |[a, b]: [Body; 2]| {
+            let of = |b: Body| b.map_or((0.0, 0.0), |i| (motion.accelerations[i].value, motion.accelerations[i].error));
+            let (a, b) = (of(a), of(b));
+            (a.0 - b.0).abs() / (a.1 + b.1 + f64::MIN_POSITIVE)
+        };
+        let meshes = problem.meshes.iter().zip(&motion.meshes).filter(|(p, m)| p.slip == 0 && m.slip != 0);
+        let elements = problem.elements.iter().zip(&motion.elements).filter(|(_, m)| m.slip != 0);
+        let slips = (meshes.map(|(p, _)| [p.bodies[0], p.bodies[2]])).chain(elements.map(|(p, _)| p.bodies));
+        let worst = slips.map(beyond).fold(0.0, f64::max);
+        if worst > 0.0 { -worst } else { self.least_spare() }
     }
 
     /// The motion found last.

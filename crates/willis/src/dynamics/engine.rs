@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::operating_point::LEAST_SPEED;
 use crate::train::{Contact, MemberId, SourceKind};
 
-use super::certificate::{rolling_is_unique, sticking_is_unique};
+use super::contacts::{Contacts, every_state_is_unique};
 use super::element::Loss;
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
 use super::shows::Shows;
@@ -64,18 +64,20 @@ pub(crate) struct Engine {
     pub speed: Vec<f64>,
     pub acceleration: Vec<f64>,
     pub tau: Vec<f64>,
-    /// Sides of the elements of a group as they would be if it broke away.
-    pub away: Vec<[Vec<Side>; 2]>,
-    /// Whether one solution is certain in every state.
+    /// What is in contact, and the decisions of what it does.
+    pub contacts: Contacts,
+    /// Whether one motion is certain in every state.
     pub certified: bool,
+    /// The same; none if there were too many states to look at.
+    pub certificate: Option<bool>,
     /// Whether forces and laws agreed at the state solved last.
     pub agrees: bool,
     /// Whether energies are counted.
     pub counts: bool,
     /// Sizes of the states, against which errors are measured where a state is small.
     pub scales: Vec<f64>,
-    /// Choices in which there were too many combinations to search for other solutions.
-    pub unsearched: usize,
+    /// Choices of which it was not proved that they are the only ones.
+    pub unproved: usize,
     /// Size of the energies, J, likewise.
     pub energy_scale: f64,
     /// What can be read, in the order of the columns.
@@ -91,7 +93,7 @@ impl Engine {
     pub fn new(system: System) -> Self {
         let (groups, elements) = (system.groups.len(), system.elements.len());
         let mode = Mode { slip: vec![0; groups], side: vec![Side::Drive; elements] };
-        let away = system.groups.iter().map(|g| [0, 1].map(|_| vec![Side::Drive; g.elements.len()])).collect();
+        let certificate = every_state_is_unique(&system);
         Self {
             maps: Maps::default(),
             mode,
@@ -103,16 +105,17 @@ impl Engine {
             speed: vec![0.0; system.all()],
             acceleration: vec![0.0; system.all()],
             tau: vec![0.0; system.ports],
-            away,
             scales: vec![LEAST_SCALE; system.free + system.all() + system.integrals],
             energy_scale: LEAST_ENERGY,
-            unsearched: 0,
+            unproved: 0,
+            contacts: Contacts::default(),
             spare: vec![0.0; system.ports],
             shows: Shows::all(&system),
             agrees: true,
             slack: 1.0,
             counts: true,
-            certified: rolling_is_unique(&system) == Some(true) && sticking_is_unique(&system) == Some(true),
+            certified: certificate == Some(true),
+            certificate,
             system,
         }
     }

@@ -55,7 +55,7 @@ fn unseen(engine: &Engine, why: Option<Why>) -> Option<Happening> {
             let kind = if engine.engaged[k] { HappeningKind::Engages } else { HappeningKind::Opens };
             (kind, vec![s.frictions[k].name.clone()])
         }
-        Watch::Hold(..) | Watch::HoldAll => return None,
+        Watch::Hold(..) | Watch::Rest => return None,
     };
     Some(Happening { kind, of })
 }

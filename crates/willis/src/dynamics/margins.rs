@@ -12,8 +12,8 @@ pub(super) enum Watch {
     Slip(usize),
     /// A held group breaks away, forward or backward.
     Hold(usize, i8),
-    /// Held groups, held several times over, break away.
-    HoldAll,
+    /// Something of what is held breaks away, decided for all of it together.
+    Rest,
     /// The drive of an element reverses.
     Side(usize),
     /// A backlash or its damper changes.
@@ -77,12 +77,15 @@ impl Engine {
     pub fn margins(&mut self, t: f64, x: &[f64], out: &mut Vec<Margin>) {
         out.clear();
         let Some(map) = self.map.clone() else { return };
+        // Alone, what holds a group is what would be lost if it slid; teeth, and what shares, are looked at together.
+        let rests = |g: usize| self.mode.slip[g] == 0 && !self.system.groups[g].driven;
+        let with_teeth = (0..self.system.groups.len()).any(|g| rests(g) && !self.system.groups[g].elements.is_empty());
+        let together = with_teeth || map.is_redundant();
         for g in 0..self.system.groups.len() {
             let slip = self.group_slip(g);
             match self.mode.slip[g] {
-                0 if self.system.groups[g].driven => {}
-                0 if map.is_redundant() => {}
-                0 => self.hold_margins(g, t, x, &map, out),
+                0 if self.system.groups[g].driven || together => {}
+                0 => self.hold_margins(g, t, &map, out),
                 sign => {
                     let noise = NOISE
                         * 1e-3
@@ -91,8 +94,10 @@ impl Engine {
                 }
             }
         }
-        if map.is_redundant() {
-            out.push(Margin { watch: Watch::HoldAll, value: if self.holds(t, x) { 1.0 } else { -1.0 }, noise: 0.0 });
+        if together {
+            // What slips is as many times its bound of rounding as what slips elsewhere is of its own.
+            let value = self.spare(t);
+            out.push(Margin { watch: Watch::Rest, value, noise: self.slack * NOISE / f64::EPSILON });
         }
         for j in 0..self.system.elements.len() {
             if self.mode.element_slip(&self.system, j) != 0 {
@@ -144,98 +149,19 @@ impl Engine {
         }
     }
 
-    /// Margins of a held group against breaking away forward and backward.
-    fn hold_margins(&mut self, g: usize, t: f64, x: &[f64], map: &Map, out: &mut Vec<Margin>) {
+    /// Margins of a held group of friction elements alone against breaking away forward and backward.
+    fn hold_margins(&mut self, g: usize, t: f64, map: &Map, out: &mut Vec<Margin>) {
         let capacity = self.capacity(g, true, t);
-        if self.system.groups[g].elements.is_empty() {
-            let (_, lead) = self.system.groups[g].lead;
-            // What holds must not exceed what can be held against slip in either direction.
-            let force = lead * map.held(g, &self.tau);
-            let noise = NOISE * (map.held_size(g, &self.tau) + 1e-300);
-            for (sign, most) in [(1, capacity.forward), (-1, capacity.backward)] {
-                if most.is_finite() {
-                    let value = most + f64::from(sign) * force;
-                    let noise = self.slack * (noise + NOISE * most);
-                    out.push(Margin { watch: Watch::Hold(g, sign), value, noise });
-                }
-            }
-            return;
-        }
+        let (_, lead) = self.system.groups[g].lead;
+        // What holds must not exceed what can be held against slip in either direction.
+        let force = lead * map.held(g, &self.tau);
+        let noise = NOISE * (map.held_size(g, &self.tau) + 1e-300);
         for (sign, most) in [(1, capacity.forward), (-1, capacity.backward)] {
             if most.is_finite() {
-                let (value, noise) = self.breakaway(g, sign, t, x);
-                out.push(Margin { watch: Watch::Hold(g, sign), value, noise: self.slack * noise });
+                let value = most + f64::from(sign) * force;
+                let noise = self.slack * (noise + NOISE * most);
+                out.push(Margin { watch: Watch::Hold(g, sign), value, noise });
             }
         }
-    }
-
-    /// Slip acceleration, against its direction, that a held group would have if it slid: positive if
-    /// friction holds it. The sides of its elements are those that agree.
-    fn breakaway(&mut self, g: usize, sign: i8, t: f64, x: &[f64]) -> (f64, f64) {
-        let _ = x;
-        let mut mode = self.mode.clone();
-        mode.slip[g] = sign;
-        let members = self.system.groups[g].elements.clone();
-        let direction = usize::from(sign < 0);
-        for (k, &j) in members.iter().enumerate() {
-            mode.side[j] = self.away[g][direction][k];
-        }
-        let mut tau = std::mem::take(&mut self.spare);
-        let mut answer = (f64::NAN, 0.0);
-        let held = self.system.laws.as_ref().map(|laws| laws.found());
-        // First from the sides of the last time, flipping what disagrees; then all.
-        let tries = 6 + (1usize << members.len().min(10));
-        for attempt in 0..tries {
-            if attempt >= 6 {
-                for (k, &j) in members.iter().enumerate() {
-                    mode.side[j] = if (attempt - 6) >> k & 1 == 0 { Side::Drive } else { Side::Coast };
-                }
-            }
-            tau.copy_from_slice(&self.tau);
-            for &f in &self.system.groups[g].frictions {
-                tau[self.system.frictions[f].port] += self.friction_torque(f, &mode, true, t);
-            }
-            for &j in &members {
-                tau[self.system.elements[j].port] = self.constant_loss(j, &mode);
-            }
-            let Some(map) = self.agreed_map(&mode, t, &mut tau) else { continue };
-            let group = &self.system.groups[g];
-            let mut value = 0.0;
-            let mut size = 0.0;
-            for i in 0..self.system.free {
-                value += group.row[i] * map.unknown(i, &tau);
-                size += group.row[i].abs() * map.size(i, &tau);
-            }
-            for i in self.system.free..self.system.all() {
-                value += group.row[i] * self.acceleration[i];
-            }
-            let mut agrees = true;
-            for &j in &members {
-                let a = self.system.elements[j].factors[0];
-                let row = self.system.all() + j;
-                let (torque, amount) = (a * map.unknown(row, &tau), a.abs() * map.size(row, &tau));
-                let (margin, noise) = self.side_margin(j, &mode, torque, amount);
-                if margin < -noise {
-                    agrees = false;
-                    if attempt < 5 {
-                        mode.side[j] = mode.side[j].other();
-                    }
-                }
-            }
-            if agrees || answer.0.is_nan() {
-                answer = (-f64::from(sign) * value, NOISE * size);
-            }
-            if agrees {
-                for (k, &j) in members.iter().enumerate() {
-                    self.away[g][direction][k] = mode.side[j];
-                }
-                break;
-            }
-        }
-        self.spare = tau;
-        if let (Some(laws), Some(held)) = (&mut self.system.laws, held) {
-            laws.recall(held);
-        }
-        answer
     }
 }

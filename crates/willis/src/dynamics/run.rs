@@ -9,7 +9,6 @@ use crate::contract::Format;
 use crate::diagnostic::Diagnostics;
 use crate::train::{MemberId, Train};
 
-use super::certificate::{rolling_is_unique, sticking_is_unique};
 use super::choose::Trouble;
 use super::engine::Engine;
 use super::event::{Why, event, short};
@@ -477,18 +476,14 @@ impl Simulation {
             return true;
         }
         let x = std::mem::take(&mut self.x);
-        let mode = self.engine.mode.clone();
-        let at_rest = self.at_rest.clone();
-        let all = self.engine.try_all(self.t, &x, &at_rest, &mode);
-        self.engine.enter(&mode);
         self.engine.solve(self.t, &x);
+        let single = self.engine.is_single(self.t);
         self.x = x;
-        if all.len() > 1 {
+        if !single {
             self.rolling = false;
             self.why = None;
-            return false;
         }
-        true
+        single
     }
 
     fn before_break(&mut self, recorder: &mut dyn Recorder) -> Stretch {
@@ -620,11 +615,11 @@ impl Simulation {
             .map(|(m, member)| (member.name.clone(), self.engine.member_speed(MemberId(m))))
             .filter(|(_, speed)| speed.is_finite());
         let mut notes = self.notes.clone();
-        if self.engine.unsearched > 0 {
+        if self.engine.unproved > 0 {
             notes.push(format!(
-                "{} times too many things were at rest to search for other motions: whether the one taken is the only one is \
-                 not known",
-                self.engine.unsearched
+                "{} times it was not proved that the motion taken is the only one: too many things were at rest to search for \
+                 others",
+                self.engine.unproved
             ));
         }
         if let Some((why, times)) = &self.ambiguous {
@@ -663,13 +658,10 @@ impl Simulation {
 
 /// What there is to know where no certificate says that the forces are unique.
 fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
-    if engine.certified {
-        return None;
-    }
-    let what = match (rolling_is_unique(&engine.system), sticking_is_unique(&engine.system)) {
-        (Some(false), _) => "the tooth forces may have several solutions, or none, in some states of this train",
-        (_, Some(false)) => "sticking and sliding may both be possible in some states of this train",
-        _ => return Some("too many meshes and friction elements for a certificate that the forces are unique".into()),
+    let what = match engine.certificate {
+        Some(true) => return None,
+        Some(false) => "there may be several motions, or none, in some states of this train",
+        None => return Some("too many meshes and friction elements for a certificate that the motion is unique".into()),
     };
     let done = match method {
         Method::Adaptive => "every change of mode was searched for all of them",

@@ -32,6 +32,8 @@ use crate::diagnostic::Diagnostics;
 use crate::kinematics::Configuration;
 use crate::train::{MemberId, Scenario, Signal, SourceKind, Train};
 
+use super::contacts::Bodies;
+use super::decision::Body;
 use super::element::Element;
 use super::laws::Laws;
 use super::report::EnergyLossKind;
@@ -58,6 +60,9 @@ pub(crate) struct System {
     /// Prescribed coordinates, after them.
     pub prescribed: usize,
     pub coordinates: Vec<MemberId>,
+    /// Their bodies.
+    pub coordinate_bodies: Vec<Body>,
+    pub bodies: Bodies,
     pub nodes: usize,
     /// Every member's speed over the coordinates.
     pub speeds: Vec<Vec<f64>>,
@@ -129,6 +134,16 @@ impl System {
         let Meshes { mut elements, gear, loss } = Meshes::of(c, &coordinates, laws.is_some(), &mut ports);
         let groups = slip_together(c, &coordinates, &mut frictions, &mut elements);
 
+        let node = |m: &MemberId| c.node(*m);
+        let coordinate_bodies: Vec<Body> = coordinates.chosen.iter().map(node).collect();
+        let bodies = Bodies {
+            count: c.nodes,
+            inertias: inertia.parts.clone(),
+            meshes: meshes::contacts(c, &elements),
+            frictions: frictions.iter().map(|f| f.members.map(|m| c.node(m))).collect(),
+            prescribed: coordinate_bodies[coordinates.free..].to_vec(),
+        };
+
         // What resists acceleration.
         let Accelerations { left, prescribed, mass, energy } = inertia.accelerations(&coordinates);
         let port_of_prescribed = ports.count();
@@ -151,6 +166,8 @@ impl System {
             free: coordinates.free,
             prescribed: coordinates.prescribed().len(),
             coordinates: coordinates.chosen,
+            coordinate_bodies,
+            bodies,
             nodes: c.nodes,
             speeds: coordinates.speeds,
             elements,
@@ -202,10 +219,16 @@ impl System {
         x.iter().all(|v| v.is_finite()).then_some(x)
     }
 
-    /// Determinant of the equations over that without losses.
-    pub fn determinant(&self, slopes: &[f64]) -> f64 {
-        let lossless = vec![0.0; slopes.len()];
-        self.matrix(slopes).lu().determinant() / self.matrix(&lossless).lu().determinant()
+    /// Adds the torques of the first ports to those on the nodes.
+    pub fn add_torques(&self, tau: &[f64], torques: &mut [[f64; 2]]) {
+        for (column, tau) in self.port_columns.column_iter().zip(tau).filter(|(_, tau)| **tau != 0.0) {
+            column.iter().zip(&mut *torques).for_each(|(x, sum)| sum[0] += x * tau);
+        }
+    }
+
+    /// Adds what a force in a mesh element puts on the nodes, without loss.
+    pub fn add_force(&self, element: usize, force: f64, torques: &mut [[f64; 2]]) {
+        self.gear.column(element).iter().zip(torques).for_each(|(x, sum)| sum[0] += x * force);
     }
 
     /// What governs how far a friction element is engaged, if anything does: the position among the signals, and

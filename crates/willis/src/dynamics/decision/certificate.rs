@@ -13,9 +13,6 @@ use crate::exact::{PRIME, power, times};
 use super::basis::add;
 use super::equations::{Entry, Equations};
 
-/// Choices that are looked at, at most: more are not certified.
-const MOST: usize = 4_000_000;
-
 /// A number with the bound of its error and its residue; exactly zero where the residue is.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tracked {
@@ -81,7 +78,8 @@ struct Tree {
 /// Why the walk ended before its end.
 struct Refused;
 
-pub(super) fn is_unique(equations: &Equations) -> bool {
+/// None if there are more choices to look at than these.
+pub(super) fn is_unique(equations: &Equations, most: usize) -> Option<bool> {
     let column = |j: usize| -> Column {
         let mut column = vec![Tracked::default(); equations.rows];
         for Entry { row, value, residue, .. } in &equations.columns[j] {
@@ -119,7 +117,7 @@ pub(super) fn is_unique(equations: &Equations) -> bool {
     let choices = open.iter().fold(1usize, |n, place| n.saturating_mul(place.len()));
     places.extend(open);
     let mut seen = None;
-    choices <= MOST && Tree { places, sign: 1 }.walk(&mut seen).is_ok() && seen.is_some()
+    (choices <= most).then(|| Tree { places, sign: 1 }.walk(&mut seen).is_ok() && seen.is_some())
 }
 
 impl Tree {

@@ -51,6 +51,8 @@ pub(super) struct Equations {
     pub partner: Vec<Option<usize>>,
     /// The mesh at rest that each unknown belongs to, if its equation of friction can slave it.
     pub rests: Vec<Option<usize>>,
+    /// What is left of a force before something slips.
+    pub is_spare: Vec<bool>,
     pub meshes: Vec<MeshPlaces>,
     pub elements: Vec<ElementPlaces>,
     /// Powers of two by which rows and unknowns are multiplied.
@@ -234,8 +236,13 @@ impl Equations {
                 b.add(*row, body, value);
             }
         }
+        let mut is_spare = vec![false; b.columns.len() + 1];
+        let rests = meshes.iter().filter_map(|m: &MeshPlaces| m.rest).flat_map(|[_, spares]| spares);
+        let yields = elements.iter().flat_map(|e: &ElementPlaces| e.yields).flatten().map(|[_, spare]| spare);
+        rests.chain(yields).for_each(|j| is_spare[j] = true);
         let mut equations = Self {
             rows: b.rows,
+            is_spare,
             members: n,
             columns: b.columns.into_iter().map(entries).collect(),
             partner: b.partner,

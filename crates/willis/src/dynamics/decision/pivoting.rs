@@ -85,6 +85,12 @@ impl Decision {
         })
     }
 
+    /// The least of the spare forces.
+    pub(super) fn least_spare(&self) -> f64 {
+        let spare = |i: &usize| self.equations.is_spare[self.basis.columns()[*i]] && self.is_bound(*i, None);
+        (0..self.equations.rows).filter(spare).map(|i| self.unknowns[0].value[i].max(0.0)).fold(f64::INFINITY, f64::min)
+    }
+
     /// A first basis: all slips forward, forces as in the lossless train in which all is held. Where that is singular,
     /// as where something without inertia would be held by nothing, some of it is at rest.
     fn start(&mut self) -> bool {

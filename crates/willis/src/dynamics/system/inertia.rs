@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::dynamics::decision::Inertia;
 use crate::kinematics::Configuration;
 use crate::train::{FRAME, MemberId, Scenario, Train};
 
@@ -16,29 +17,49 @@ pub(super) struct NodeInertia<'c> {
     pub real: DMatrix<f64>,
     /// What accelerations feel: the same, with what controllers add.
     pub felt: DMatrix<f64>,
+    /// That one by one.
+    pub parts: Vec<Inertia>,
 }
 
 impl<'c> NodeInertia<'c> {
     /// That of the members.
     pub fn of(configuration: &'c Configuration<'c>) -> Self {
         let nodes = configuration.nodes;
-        let mut real = DMatrix::zeros(nodes, nodes);
+        let mut all = Self {
+            configuration,
+            real: DMatrix::zeros(nodes, nodes),
+            felt: DMatrix::zeros(nodes, nodes),
+            parts: Vec::new(),
+        };
         for i in configuration.train.inertias() {
-            real += turning(configuration, [i.member, i.reference], i.value);
+            let added = all.feel([i.member, i.reference], i.value);
+            all.real += added;
         }
-        Self { configuration, felt: real.clone(), real }
+        all
+    }
+
+    /// Adds to what accelerations feel; what that is.
+    fn feel(&mut self, [member, reference]: [MemberId; 2], value: f64) -> DMatrix<f64> {
+        let added = turning(self.configuration, [member, reference], value);
+        self.felt += &added;
+        match [member, reference].map(|m| self.configuration.node(m)) {
+            [Some(member), reference] | [reference, Some(member)] => {
+                self.parts.push(Inertia { member, reference, value });
+            }
+            [None, None] => {}
+        }
+        added
     }
 
     /// Adds what turns with a member and stores energy.
     pub fn add(&mut self, member: MemberId, value: f64) {
-        let added = turning(self.configuration, [member, FRAME], value);
-        self.felt += &added;
-        self.real += &added;
+        let added = self.feel([member, FRAME], value);
+        self.real += added;
     }
 
     /// Adds what resists acceleration of a member without storing energy.
     pub fn add_felt(&mut self, member: MemberId, value: f64) {
-        self.felt += turning(self.configuration, [member, FRAME], value);
+        self.feel([member, FRAME], value);
     }
 
     /// What it makes of the accelerations of coordinates.

@@ -2,6 +2,7 @@
 
 use nalgebra::DMatrix;
 
+use crate::dynamics::decision::Mesh;
 use crate::dynamics::element::{Element, MOST_LOST, Pass, shares};
 use crate::exact::Rational;
 use crate::kinematics::{self, Configuration, Link};
@@ -49,6 +50,21 @@ impl Meshes {
         }
         Self { elements, gear, loss }
     }
+}
+
+/// The same as contacts, at rest, with constant efficiencies; none is lost where nothing can move.
+pub(super) fn contacts(c: &Configuration<'_>, elements: &[Element]) -> Vec<Mesh> {
+    (c.elements.iter().zip(elements))
+        .map(|(e, made)| Mesh {
+            bodies: [e.p, e.q, e.carrier].map(|m| c.node(m)),
+            factors: [e.a.clone(), e.b.clone()],
+            efficiency: match made.group {
+                None => [Rational::ONE; 2],
+                Some(_) => [e.forward.clone(), e.backward.clone()],
+            },
+            slip: 0,
+        })
+        .collect()
 }
 
 /// The mesh of an element if its loss follows a law.
