@@ -164,7 +164,7 @@ impl Model {
 
     /// The value of a quantity by its path, as written; none where it is not given.
     ///
-    /// Paths are those of [`Document`]: `P1.planet.count`, `oil.viscosity_40`, `C.capacity`; [`Document::paths`] lists
+    /// Paths are those of [`Document`]: `P1.planet.count`, `oil.viscosity_40`, `C.capacity`; [`Document::quantities`] lists
     /// them all.
     ///
     /// # Errors

@@ -61,7 +61,7 @@ pub trait Work: Sync {
 /// use willis::work::{Effort, Serial, Work};
 ///
 /// let effort = Effort::new("points", 1_000_000, 2e-4);
-/// assert_eq!(effort.to_string(), "1000000 points, about 3 minutes of one core");
+/// assert_eq!(effort.to_string(), "1000000 points, about 4 minutes of one core");
 /// assert!(Serial.afford(&effort).is_err());
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
