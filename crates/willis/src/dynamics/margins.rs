@@ -97,7 +97,7 @@ impl Engine {
         if together {
             // What slips is as many times its bound of rounding as what slips elsewhere is of its own.
             let value = self.spare(t);
-            out.push(Margin { watch: Watch::Rest, value, noise: self.slack * NOISE / f64::EPSILON });
+            out.push(Margin { watch: Watch::Rest, value, noise: self.slack * NOISE / (16.0 * f64::EPSILON) });
         }
         for j in 0..self.system.elements.len() {
             if self.mode.element_slip(&self.system, j) != 0 {
