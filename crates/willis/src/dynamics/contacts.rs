@@ -260,8 +260,7 @@ impl Engine {
                     let later: Vec<f64> = x.iter().zip(&rates).map(|(x, r)| x + step * r).collect();
                     self.mode.clone_from(start);
                     self.load(t, x);
-                    verdict =
-                        self.ask_contacts(t, Some((t + step, &later)), |d, load| d.decide(load, certified));
+                    verdict = self.ask_contacts(t, Some((t + step, &later)), |d, load| d.decide(load, certified));
                     found = self.mode_found(start);
                 }
             }
@@ -342,7 +341,10 @@ impl Engine {
 
     /// Whether the present motion, at the state solved last, is the only one.
     pub fn is_single(&mut self, t: f64) -> bool {
-        self.certified || self.ask_contacts(t, None, |d, load| d.is_certified() || matches!(d.decide(load, false), Verdict::One { .. }))
+        self.certified
+            || self.ask_contacts(t, None, |d, load| {
+                d.is_certified() || matches!(d.decide(load, false), Verdict::One { .. })
+            })
     }
 
     /// How far what is held, at the state solved last, is from breaking away; where it does, less than 0: how fast,

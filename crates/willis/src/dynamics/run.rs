@@ -661,7 +661,9 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     let what = match engine.certificate {
         Some(true) => return None,
         Some(false) => "there may be several motions, or none, in some states of this train",
-        None => return Some("too many meshes and friction elements for a certificate that the motion is unique".into()),
+        None => {
+            return Some("too many meshes and friction elements for a certificate that the motion is unique".into());
+        }
     };
     let done = match method {
         Method::Adaptive => "every change of mode was searched for all of them",

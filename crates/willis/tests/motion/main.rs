@@ -3,6 +3,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod gears;
 mod laws;
+mod rows;
 mod runs;
 mod steps;

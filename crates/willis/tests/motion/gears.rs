@@ -1,0 +1,247 @@
+//! The ordinary work of a transmission, with each automatic of the examples: every gear drives away, runs on a test
+//! bench, holds, lets go, shifts and reverses.
+
+use std::fmt::Write as _;
+
+use willis::dynamics::{Options, Outcome};
+use willis::exact::Rational;
+use willis::train::{MemberKind, ShiftElementKind, Train};
+
+use crate::common::example;
+use crate::rows::run;
+
+/// Every example with a shift table of an automatic.
+const AUTOMATICS: [&str; 12] = [
+    "aisin-ab80",
+    "aisin-tl-80sn",
+    "ford-10r80",
+    "ford-aod",
+    "mercedes-9g-tronic",
+    "mercedes-w5a580",
+    "simpson-ford-c4",
+    "zf-4hp22",
+    "zf-5hp24",
+    "zf-6hp26",
+    "zf-8hp-gen4",
+    "zf-8hp70",
+];
+
+/// A train as numbers, which owes nothing to how it was written.
+struct Gearbox {
+    name: &'static str,
+    /// The frame first.
+    members: Vec<String>,
+    planets: Vec<bool>,
+    /// Gear 1, gear 2, carrier; teeth, internal below 0; efficiencies.
+    meshes: Vec<([usize; 3], [f64; 2], [f64; 2])>,
+    elements: Vec<(String, [usize; 2])>,
+    one_way: Vec<i8>,
+    states: Vec<(String, Vec<usize>)>,
+    ends: [usize; 2],
+    /// As the example writes it, without what is to be done with it.
+    sets: toml::Table,
+}
+
+impl Gearbox {
+    fn new(name: &'static str) -> Self {
+        let text = example(name);
+        let train = Train::from_toml(&text).unwrap();
+        let mut sets: toml::Table = toml::from_str(&text).unwrap();
+        for part in ["operation", "scenario", "study", "inertias", "rotor"] {
+            sets.remove(part);
+        }
+        // Planets of which only the suns and rings are known have parts of a tooth; only ratios matter.
+        let scale = 12;
+        let teeth = |g: &willis::train::Gear| {
+            (&g.teeth * &Rational::from(scale)).to_f64() * if g.internal { -1.0 } else { 1.0 }
+        };
+        Self {
+            name,
+            members: train.members().iter().map(|m| m.name.replace('.', "-")).collect(),
+            planets: train.members().iter().map(|m| m.kind == MemberKind::Planet).collect(),
+            meshes: (train.meshes().iter())
+                .map(|m| {
+                    assert!(m.same_sense == m.gears.iter().any(|g| g.internal) && !m.bevel, "{name}");
+                    let [a, b] = &m.gears;
+                    let eta = [m.efficiency.forward.to_f64(), m.efficiency.backward.to_f64()];
+                    ([a.member.index(), b.member.index(), m.carrier.index()], [teeth(a), teeth(b)], eta)
+                })
+                .collect(),
+            elements: train.shift_elements().iter().map(|e| (e.name.clone(), e.members.map(|m| m.index()))).collect(),
+            one_way: (train.shift_elements().iter())
+                .map(|e| if e.kind == ShiftElementKind::OneWay { e.blocks } else { 0 })
+                .collect(),
+            states: (train.states().iter())
+                .map(|s| (s.name.clone(), s.engaged.iter().map(|e| e.index()).collect()))
+                .collect(),
+            ends: [train.input().unwrap().index(), train.output().unwrap().index()],
+            sets,
+        }
+    }
+
+    /// Inertias of all members, kg m²; planets have none.
+    fn inertias(&self, output: f64) -> Vec<f64> {
+        let of = |m: usize| match m {
+            0 => 0.0,
+            m if m == self.ends[0] => 0.1,
+            m if m == self.ends[1] => output,
+            m if self.planets[m] => 0.0,
+            _ => 0.02,
+        };
+        (0..self.members.len()).map(of).collect()
+    }
+
+    /// The train as a file; the capacity of every shift element, N m, none if rigid.
+    fn text(&self, mesh_by_mesh: bool, capacity: Option<f64>, output: f64, scenario: &str) -> String {
+        let inertias: toml::Table = (self.members.iter().zip(self.inertias(output)))
+            .filter(|(_, j)| *j > 0.0)
+            .map(|(m, j)| (m.clone(), format!("{j} kg m^2").into()))
+            .collect();
+        let head = toml::to_string(&toml::Table::from_iter([("inertias".to_owned(), inertias.into())])).unwrap();
+        let mut text = if mesh_by_mesh { self.core(capacity) } else { self.as_sets(capacity) };
+        text.push_str(&head);
+        text.push_str(scenario);
+        text
+    }
+
+    fn as_sets(&self, capacity: Option<f64>) -> String {
+        let mut sets = self.sets.clone();
+        for element in sets["shift_element"].as_array_mut().unwrap() {
+            let element = element.as_table_mut().unwrap();
+            element.remove("capacity");
+            if let Some(c) = capacity {
+                element.insert("capacity".into(), format!("{c} N m").into());
+            }
+        }
+        toml::to_string(&sets).unwrap()
+    }
+
+    fn core(&self, capacity: Option<f64>) -> String {
+        let mut t = String::from("format = 1\nname = \"mesh by mesh\"\n");
+        let names: Vec<String> = self.members[1..].iter().map(|m| format!("{m:?}")).collect();
+        writeln!(t, "members = [{}]", names.join(", ")).unwrap();
+        writeln!(t, "terminals = [{:?}, {:?}]", self.members[self.ends[0]], self.members[self.ends[1]]).unwrap();
+        for (bodies, teeth, eta) in &self.meshes {
+            let gear = |k: usize| {
+                let internal = if teeth[k] < 0.0 { ", internal = true" } else { "" };
+                format!("{{ member = {:?}, teeth = {}{internal} }}", self.members[bodies[k]], teeth[k].abs())
+            };
+            writeln!(t, "[[mesh]]\ngears = [ {}, {} ]", gear(0), gear(1)).unwrap();
+            if bodies[2] != 0 {
+                writeln!(t, "carrier = {:?}", self.members[bodies[2]]).unwrap();
+            }
+            writeln!(t, "efficiency = {{ forward = {}, backward = {} }}", eta[0], eta[1]).unwrap();
+        }
+        for ((name, bodies), blocks) in self.elements.iter().zip(&self.one_way) {
+            let members: Vec<String> =
+                bodies.iter().filter(|m| **m != 0).map(|m| format!("{:?}", self.members[*m])).collect();
+            let kind = match (blocks, members.len()) {
+                (0, 1) => "brake",
+                (0, _) => "clutch",
+                _ => "one-way",
+            };
+            writeln!(t, "[[shift_element]]\nname = {name:?}\nkind = {kind:?}\nmembers = [{}]", members.join(", "))
+                .unwrap();
+            if *blocks != 0 {
+                let sense = if *blocks > 0 { "forward" } else { "backward" };
+                writeln!(t, "blocks = {sense:?}").unwrap();
+            }
+            if let Some(c) = capacity {
+                writeln!(t, "capacity = \"{c} N m\"").unwrap();
+            }
+        }
+        for (name, engaged) in &self.states {
+            let engaged: Vec<String> = engaged.iter().map(|e| format!("{:?}", self.elements[*e].0)).collect();
+            writeln!(t, "[[state]]\nname = {name:?}\nengaged = [{}]", engaged.join(", ")).unwrap();
+        }
+        t
+    }
+
+    fn end(&self, k: usize) -> &str {
+        &self.members[self.ends[k]]
+    }
+}
+
+/// What each run of a kind gave, for all automatics, states, capacities, ways to write them, and output inertias.
+fn every(kind: &str, scenario: impl Fn(&Gearbox, &str) -> String) {
+    let mut bad = vec![];
+    let mut runs = 0;
+    let clock = std::time::Instant::now();
+    for name in AUTOMATICS {
+        let train = Gearbox::new(name);
+        for (state, _) in &train.states {
+            for capacity in [None, Some(20_000.0), Some(3000.0)] {
+                for mesh_by_mesh in [false, true] {
+                    for output in [0.02, 1.0, 200.0] {
+                        let text = train.text(mesh_by_mesh, capacity, output, &scenario(&train, state));
+                        let (_, report) = run(&text, &Options::default());
+                        runs += 1;
+                        if report.outcome != Outcome::Finished {
+                            bad.push(format!(
+                                "{name} {state} {capacity:?} {mesh_by_mesh} {output}: {:?} at {}",
+                                report.outcome, report.end_s
+                            ));
+                        }
+                    }
+                }
+            }
+        }
+        eprintln!("{name} {:.1} s", clock.elapsed().as_secs_f64());
+    }
+    assert!(bad.is_empty(), "{kind}: {} of {runs} end early:\n{}", bad.len(), bad.join("\n"));
+}
+
+#[test]
+fn every_gear_drives_away() {
+    every("drive away", |g, state| {
+        format!(
+            "[[scenario]]\nname = \"run\"\nduration = \"1 s\"\nstate = {state:?}\n[[scenario.source]]\nmember = {:?}\n\
+             torque = {{ type = \"ramp\", height = \"300 N m\", at = \"0 s\", duration = \"1 s\" }}\n",
+            g.end(0)
+        )
+    });
+}
+
+/// A source of torque, N m, by points.
+fn torque(member: &str, points: &[[f64; 2]]) -> String {
+    let points: Vec<String> = points.iter().map(|[t, m]| format!("[\"{t} s\", \"{m} N m\"]")).collect();
+    format!(
+        "[[scenario.source]]\nmember = {member:?}\ntorque = {{ type = \"table\", points = [ {} ] }}\n",
+        points.join(", ")
+    )
+}
+
+fn head(state: &str, duration: f64) -> String {
+    format!("[[scenario]]\nname = \"run\"\nduration = \"{duration} s\"\nstate = {state:?}\n")
+}
+
+#[test]
+fn every_gear_stops_and_goes() {
+    every("stop and go", |g, state| {
+        let drag = "[[scenario.source]]\nmember = \"OUT\"\nvehicle = { mass = \"1800 kg\", wheel_radius = \"0.33 m\", final_drive = 3.2, rolling = 0.012, drag_area = \"0.6 m^2\" }\n";
+        head(state, 6.0)
+            + &torque(
+                g.end(0),
+                &[
+                    [0.0, 0.0],
+                    [1.0, 250.0],
+                    [2.0, 250.0],
+                    [2.2, -200.0],
+                    [3.0, -200.0],
+                    [4.0, 0.0],
+                    [5.0, 0.0],
+                    [6.0, 200.0],
+                ],
+            )
+            + &drag.replace("OUT", g.end(1))
+    });
+}
+
+#[test]
+fn every_gear_holds_on_a_hill_and_rolls_when_let_go() {
+    every("hill hold", |g, state| {
+        head(state, 2.0)
+            + &torque(g.end(1), &[[0.0, -100.0], [2.0, -100.0]])
+            + &torque(g.end(0), &[[0.0, 200.0], [0.5, 200.0], [1.0, 0.0], [2.0, 0.0]])
+    });
+}
