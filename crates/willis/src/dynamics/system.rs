@@ -36,6 +36,7 @@ use super::contacts::Bodies;
 use super::decision::Body;
 use super::element::Element;
 use super::laws::Laws;
+use super::mode::unless_rounding;
 use super::report::EnergyLossKind;
 use super::source::{signals_of, upright};
 
@@ -214,8 +215,13 @@ impl System {
     /// have no unique solution with these slopes.
     pub fn response(&self, slopes: &[f64]) -> Option<DMatrix<f64>> {
         let matrix = self.matrix(slopes);
-        let lu = matrix.lu();
-        let x = lu.solve(&self.port_columns)?;
+        let inverse = matrix.clone().lu().try_inverse()?;
+        let mut x = &inverse * &self.port_columns;
+        x += &inverse * (&self.port_columns - &matrix * &x);
+        // Bound of the error that rounding of the equations makes (Skeel 1979): what is within it is zero, as the force
+        // in an idle mesh.
+        let bound = inverse.abs() * (matrix.abs() * x.abs() + self.port_columns.abs());
+        x.zip_apply(&bound, |x, bound| *x = unless_rounding(*x, bound));
         x.iter().all(|v| v.is_finite()).then_some(x)
     }
 
