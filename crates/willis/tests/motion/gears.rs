@@ -9,6 +9,7 @@ use willis::exact::Rational;
 use willis::train::{MemberKind, ShiftElementKind, Train};
 
 use crate::common::example;
+use crate::reference::{Element, Mesh, Reference};
 use crate::rows::run;
 
 /// Every example with a shift table of an automatic.
@@ -292,4 +293,107 @@ fn every_gear_runs_on_a_test_bench() {
             head(g, state, 0.1) + &g.initial(state, speed)? + &torque(g.end(0), &[[0.0, 300.0], [0.1, 300.0]]) + &brake,
         )
     });
+}
+
+/// A value between points.
+fn between(points: &[[f64; 2]], t: f64) -> f64 {
+    let Some(k) = points.iter().position(|p| p[0] > t) else { return points.last().map_or(0.0, |p| p[1]) };
+    let Some([[t0, a], [t1, b]]) = k.checked_sub(1).map(|i| [points[i], points[k]]) else { return points[0][1] };
+    a + (b - a) * (t - t0) / (t1 - t0)
+}
+
+impl Gearbox {
+    fn reference(&self, capacity: Option<f64>, output: f64) -> Reference {
+        Reference {
+            inertias: self.inertias(output),
+            meshes: (self.meshes.iter())
+                .map(|&(bodies, teeth, efficiency)| Mesh { bodies, teeth, efficiency })
+                .collect(),
+            elements: self.elements.iter().map(|&(_, bodies)| Element { bodies, capacity }).collect(),
+        }
+    }
+}
+
+#[test]
+fn every_swap_of_one_element_comes_to_its_end() {
+    let mut bad = vec![];
+    let mut runs = 0;
+    let mut worst = 0.0f64;
+    let clock = std::time::Instant::now();
+    let points = [[0.0, 150.0], [2.0, 150.0]];
+    for name in AUTOMATICS {
+        let g = Gearbox::new(name);
+        for from in 0..g.states.len() {
+            let Some(unit) = g.speeds(from, 1.0) else { continue };
+            let ratio = unit[g.ends[0]];
+            let start = if ratio == 0.0 { 0.0 } else { 200.0 / ratio };
+            let Some(initial) = g.initial(from, start) else { continue };
+            let speeds = g.speeds(from, start).unwrap();
+            for to in 0..g.states.len() {
+                let swapped = g.states[from].1.iter().filter(|e| !g.states[to].1.contains(e)).count();
+                if from == to || swapped != 1 {
+                    continue;
+                }
+                for capacity in [20_000.0, 3000.0] {
+                    let output = 20.0;
+                    let reference = g.reference(Some(capacity), output).run(
+                        &speeds,
+                        2.0,
+                        1000,
+                        |t| {
+                            (0..g.members.len())
+                                .map(|m| if m == g.ends[0] { between(&points, t) } else { 0.0 })
+                                .collect()
+                        },
+                        |t| {
+                            let [a, b] = [from, to].map(|s| &g.states[s].1);
+                            (0..g.elements.len())
+                                .map(|e| {
+                                    let of = |s: &Vec<usize>| f64::from(u8::from(s.contains(&e)));
+                                    between(&[[0.5, of(a)], [0.7, of(b)]], t)
+                                })
+                                .collect()
+                        },
+                    );
+                    for mesh_by_mesh in [false, true] {
+                        let scenario = format!(
+                            "[[scenario]]\nname = \"run\"\nduration = \"2 s\"\ngears = [ [\"0 s\", {:?}], [\"0.5 s\", {:?}] ]\n\
+                             shift_time = \"0.2 s\"\n{initial}",
+                            g.states[from].0, g.states[to].0
+                        ) + &torque(g.end(0), &points);
+                        let text = g.text(mesh_by_mesh, Some(capacity), output, &scenario);
+                        let (rows, report) = run(&text, &Options::default());
+                        if let Ok(w) = std::env::var("WHICH")
+                            && w == format!(
+                                "{name} {} to {} {capacity} {mesh_by_mesh}",
+                                g.states[from].0, g.states[to].0
+                            )
+                        {
+                            std::fs::write("/tmp/which.toml", &text).unwrap();
+                            for e in &rows.events {
+                                eprintln!("{e:?}");
+                            }
+                        }
+                        runs += 1;
+                        let what =
+                            format!("{name} {} to {} {capacity} {mesh_by_mesh}", g.states[from].0, g.states[to].0);
+                        if report.outcome != Outcome::Finished {
+                            bad.push(format!("{what}: {:?} at {}", report.outcome, report.end_s));
+                        }
+                        let most = reference.iter().fold(0.0f64, |m, w| m.max(w.abs()));
+                        for (m, name) in g.members.iter().enumerate().filter(|(m, _)| *m > 0 && !g.planets[*m]) {
+                            let found = *report.final_speeds_rad_s.get(name).unwrap();
+                            let off = (found - reference[m]).abs() / most;
+                            worst = worst.max(off);
+                            if off > 1e-2 {
+                                bad.push(format!("{what}: {name} {found} against {}", reference[m]));
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        eprintln!("{name} {:.1} s {runs} {worst:.2e}", clock.elapsed().as_secs_f64());
+    }
+    assert!(bad.is_empty(), "{} of {runs} end early:\n{}", bad.len(), bad.join("\n"));
 }

@@ -5,6 +5,7 @@ mod common;
 
 mod gears;
 mod laws;
+mod reference;
 mod rows;
 mod runs;
 mod steps;
