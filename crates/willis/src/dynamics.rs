@@ -32,6 +32,7 @@ mod signal;
 mod simulate;
 mod source;
 mod start;
+mod still;
 mod system;
 
 pub use batch::Batch;

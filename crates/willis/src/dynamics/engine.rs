@@ -10,6 +10,7 @@ use super::element::Loss;
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
 use super::shows::Shows;
 use super::source::source_torque;
+use super::still::Still;
 use super::system::{Rubs, System};
 
 /// What a backlash does.
@@ -82,8 +83,10 @@ pub(crate) struct Engine {
     pub energy_scale: f64,
     /// What can be read, in the order of the columns.
     pub shows: Vec<Shows>,
-    /// Room for port torques.
-    pub spare: Vec<f64>,
+    /// What stands still exactly; none while that is not known.
+    pub still: Option<Arc<Still>>,
+    /// Those met so far.
+    pub stills: Vec<Arc<Still>>,
     /// By how many times its round-off a force has to be beyond its limit before that counts as an event: what
     /// the integrator leaves open.
     pub slack: f64,
@@ -109,7 +112,8 @@ impl Engine {
             energy_scale: LEAST_ENERGY,
             unproved: 0,
             contacts: Contacts::default(),
-            spare: vec![0.0; system.ports],
+            still: None,
+            stills: vec![],
             shows: Shows::all(&system),
             agrees: true,
             slack: 1.0,
@@ -134,15 +138,14 @@ impl Engine {
     }
 
     pub fn group_slip(&self, g: usize) -> f64 {
-        dot(&self.system.groups[g].row, &self.speed)
-    }
-
-    pub fn group_acceleration(&self, g: usize) -> f64 {
-        dot(&self.system.groups[g].row, &self.acceleration)
+        match &self.still {
+            Some(still) if still.holds(g) => 0.0,
+            _ => dot(&self.system.groups[g].row, &self.speed),
+        }
     }
 
     pub fn member_speed(&self, m: MemberId) -> f64 {
-        dot(&self.system.speeds[m.index()], &self.speed)
+        dot(self.row_of(m.index()), &self.speed)
     }
 
     /// Takes over the speeds of a state.
@@ -154,6 +157,9 @@ impl Engine {
                 self.speed[free + i] = signal.value(t, self.inside, &|_| 0.0);
                 self.acceleration[free + i] = signal.rate(t, self.inside, &|_| 0.0);
             }
+        }
+        if let Some(still) = &self.still {
+            still.settle(&mut self.speed);
         }
     }
 
@@ -388,6 +394,9 @@ impl Engine {
                 for i in 0..self.system.free {
                     self.acceleration[i] = map.unknown(i, &self.tau);
                 }
+                if let Some(still) = &self.still {
+                    still.settle(&mut self.acceleration);
+                }
             }
             None => self.acceleration[..self.system.free].iter_mut().for_each(|a| *a = f64::NAN),
         }
@@ -435,22 +444,6 @@ impl Engine {
             self.load(t, x);
             self.map = self.map_of(&mode);
         }
-    }
-
-    /// The map of a mode tried at the state looked at, with laws that agree with it; `tau` is made that of the mode.
-    pub fn agreed_map(&mut self, mode: &Mode, t: f64, tau: &mut [f64]) -> Option<Arc<Map>> {
-        for _ in 0..MOST_ROUNDS {
-            for k in 0..self.system.frictions.len() {
-                if matches!(self.system.frictions[k].what, Rubs::Law(_)) {
-                    tau[self.system.frictions[k].port] = self.friction_torque(k, mode, true, t);
-                }
-            }
-            let map = self.map_of(mode)?;
-            if self.system.laws.is_none() || self.ask(mode, &map, tau) {
-                return Some(map);
-            }
-        }
-        None
     }
 
     /// Asks the laws at the forces of a map. True if the answer is that of the last time, which then stands.

@@ -107,7 +107,7 @@ impl Engine {
             Shows::Time => t,
             Shows::Speed(m) => self.member_speed(MemberId(m)),
             Shows::Angle(m) => dot(&s.speeds[m], &x[s.free..s.free + s.all()]),
-            Shows::Acceleration(m) => dot(&s.speeds[m], &self.acceleration),
+            Shows::Acceleration(m) => dot(self.row_of(m), &self.acceleration),
             Shows::SourceTorque(k) => self.applied_torque(k, t),
             Shows::SourcePower(k) => self.source_power(k, t),
             Shows::FrictionTorque(k) => self.rubbing(k, t).torque,

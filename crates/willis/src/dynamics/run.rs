@@ -325,6 +325,7 @@ impl Simulation {
         self.engine.rest_with_others(&mut self.at_rest);
         self.engine.bring_to_rest(&mut x, &self.at_rest);
         self.engine.look(self.t, &x);
+        self.engine.still = None;
         let at_rest = std::mem::take(&mut self.at_rest);
         let mut guess = self.engine.mode.clone();
         for (slip, rest) in guess.slip.iter_mut().zip(&at_rest) {
@@ -362,6 +363,7 @@ impl Simulation {
         };
         self.at_rest = mode.slip.iter().map(|s| *s == 0).collect();
         self.engine.enter(&mode);
+        self.engine.stand_still(&mode, &mut x);
         let labels = self.engine.labels();
         if let Some(event) = event(&self.engine, self.t, self.why.take(), &self.labels, &labels) {
             self.labels = labels;

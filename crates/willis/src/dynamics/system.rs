@@ -26,9 +26,12 @@ mod meshes;
 mod ports;
 mod shafts;
 
+use std::sync::Arc;
+
 use nalgebra::DMatrix;
 
 use crate::diagnostic::Diagnostics;
+use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::train::{MemberId, Scenario, Signal, SourceKind, Train};
 
@@ -67,6 +70,8 @@ pub(crate) struct System {
     pub nodes: usize,
     /// Every member's speed over the coordinates.
     pub speeds: Vec<Vec<f64>>,
+    /// The same, exactly.
+    pub exact_speeds: Arc<[Vec<Rational>]>,
     pub elements: Vec<Element>,
     pub frictions: Vec<Friction>,
     pub groups: Vec<Group>,
@@ -171,6 +176,7 @@ impl System {
             bodies,
             nodes: c.nodes,
             speeds: coordinates.speeds,
+            exact_speeds: coordinates.exact.into(),
             elements,
             frictions,
             groups,

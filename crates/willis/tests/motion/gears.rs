@@ -4,13 +4,13 @@
 use std::fmt::Write as _;
 
 use nalgebra::{DMatrix, DVector};
-use willis::dynamics::{Options, Outcome};
+use willis::dynamics::{Options, Outcome, RunReport};
 use willis::exact::Rational;
 use willis::train::{MemberKind, ShiftElementKind, Train};
 
 use crate::common::example;
 use crate::reference::{Element, Mesh, Reference};
-use crate::rows::run;
+use crate::rows::{Rows, run};
 
 /// Every example with a shift table of an automatic.
 const AUTOMATICS: [&str; 12] = [
@@ -197,203 +197,265 @@ impl Gearbox {
         Some(format!("initial_speeds = {{ {} }}\n", list.join(", ")))
     }
 
-    fn end(&self, k: usize) -> &str {
-        &self.members[self.ends[k]]
+    fn reference(&self, capacity: Option<f64>, output: f64, vehicle: bool) -> Reference {
+        let mut inertias = self.inertias(output);
+        let mut elements: Vec<Element> =
+            self.elements.iter().map(|&(_, bodies)| Element { bodies, capacity }).collect();
+        if vehicle {
+            let arm = RADIUS / FINAL_DRIVE;
+            inertias[self.ends[1]] += MASS * arm * arm;
+            let rolling = ROLLING * MASS * 9.806_65 * arm;
+            elements.push(Element { bodies: [self.ends[1], 0], capacity: Some(rolling) });
+        }
+        let meshes =
+            (self.meshes.iter()).map(|&(bodies, teeth, efficiency)| Mesh { bodies, teeth, efficiency }).collect();
+        Reference { inertias, meshes, elements }
     }
 }
 
-/// What each run of a kind gave, for all automatics, states, capacities, ways to write them, and output inertias.
-fn every(kind: &str, scenario: impl Fn(&Gearbox, usize) -> Option<String>) {
-    let mut bad = vec![];
-    let mut runs = 0;
-    let clock = std::time::Instant::now();
-    for name in AUTOMATICS {
-        let train = Gearbox::new(name);
-        for state in 0..train.states.len() {
-            let Some(scenario) = scenario(&train, state) else { continue };
-            let state = &train.states[state].0;
-            for capacity in [None, Some(20_000.0), Some(3000.0)] {
-                for mesh_by_mesh in [false, true] {
-                    for output in [0.02, 1.0, 200.0] {
-                        let text = train.text(mesh_by_mesh, capacity, output, &scenario);
-                        let (_, report) = run(&text, &Options::default());
-                        runs += 1;
-                        if report.outcome != Outcome::Finished {
-                            bad.push(format!(
-                                "{name} {state} {capacity:?} {mesh_by_mesh} {output}: {:?} at {}",
-                                report.outcome, report.end_s
-                            ));
-                        }
-                    }
-                }
+const MASS: f64 = 1800.0;
+const RADIUS: f64 = 0.33;
+const FINAL_DRIVE: f64 = 3.2;
+const ROLLING: f64 = 0.012;
+const DRAG_AREA: f64 = 0.6;
+
+/// What is done with a gearbox: times, s, and torques, N m, by points.
+#[derive(Default)]
+struct Work {
+    duration: f64,
+    /// State, and the one that follows at 0.5 s within 0.2 s.
+    states: [usize; 2],
+    /// Speed of the output at the start, rad/s.
+    start: f64,
+    input: Vec<[f64; 2]>,
+    output: Vec<[f64; 2]>,
+    /// Whether the output drives a vehicle.
+    vehicle: bool,
+    /// Whether the output keeps its speed.
+    bench: bool,
+}
+
+impl Work {
+    /// As a scenario of a train file; none if the state does not join all members, so that it cannot start turning.
+    fn text(&self, g: &Gearbox) -> Option<String> {
+        let [from, to] = self.states.map(|s| &g.states[s].0);
+        let mut text = format!("[[scenario]]\nname = \"run\"\nduration = \"{} s\"\n", self.duration);
+        if from == to {
+            writeln!(text, "state = {from:?}").unwrap();
+        } else {
+            writeln!(text, "gears = [ [\"0 s\", {from:?}], [\"0.5 s\", {to:?}] ]\nshift_time = \"0.2 s\"").unwrap();
+        }
+        if self.start != 0.0 {
+            text.push_str(&g.initial(self.states[0], self.start)?);
+        }
+        let [input, output] = g.ends.map(|m| &g.members[m]);
+        for (member, points) in [(input, &self.input), (output, &self.output)] {
+            let points: Vec<String> = points.iter().map(|[t, m]| format!("[\"{t} s\", \"{m} N m\"]")).collect();
+            if !points.is_empty() {
+                let points = points.join(", ");
+                writeln!(
+                    text,
+                    "[[scenario.source]]\nmember = {member:?}\ntorque = {{ type = \"table\", points = [ {points} ] }}"
+                )
+                .unwrap();
             }
         }
-        eprintln!("{name} {:.1} s", clock.elapsed().as_secs_f64());
+        if self.vehicle {
+            writeln!(
+                text,
+                "[[scenario.source]]\nmember = {output:?}\nvehicle = {{ mass = \"{MASS} kg\", wheel_radius = \"{RADIUS} m\", \
+                 final_drive = {FINAL_DRIVE}, rolling = {ROLLING}, drag_area = \"{DRAG_AREA} m^2\" }}"
+            )
+            .unwrap();
+        }
+        if self.bench {
+            writeln!(text, "[[scenario.source]]\nmember = {output:?}\nspeed = \"{} rad/s\"", self.start).unwrap();
+        }
+        Some(text)
     }
-    assert!(bad.is_empty(), "{kind}: {} of {runs} end early:\n{}", bad.len(), bad.join("\n"));
+
+    /// Speeds at the end, as the reference has them, and the largest on the way.
+    fn reference(&self, g: &Gearbox, capacity: Option<f64>, output: f64) -> (Vec<f64>, f64) {
+        let start =
+            if self.start == 0.0 { vec![0.0; g.members.len()] } else { g.speeds(self.states[0], self.start).unwrap() };
+        // What nothing can slow down keeps its speed.
+        let reference = g.reference(capacity, if self.bench { 1e9 } else { output }, self.vehicle);
+        let torques = |t: f64, speeds: &[f64]| {
+            let mut torques = vec![0.0; g.members.len()];
+            torques[g.ends[0]] += between(&self.input, t);
+            let w = speeds[g.ends[1]];
+            torques[g.ends[1]] += between(&self.output, t);
+            if self.vehicle {
+                torques[g.ends[1]] -= 0.5 * 1.2 * DRAG_AREA * w * w.abs() * (RADIUS / FINAL_DRIVE).powi(3);
+            }
+            torques
+        };
+        let engaged = |t: f64| {
+            let [a, b] = self.states.map(|s| &g.states[s].1);
+            let of = |s: &Vec<usize>, e| if s.contains(&e) { 1.0 } else { 0.0 };
+            // Rolling resistance is always there.
+            let of = |e| if e < g.elements.len() { between(&[[0.5, of(a, e)], [0.7, of(b, e)]], t) } else { 1.0 };
+            (0..reference.elements.len()).map(of).collect()
+        };
+        reference.run(&start, self.duration, 1000, torques, engaged)
+    }
 }
 
-/// A source of torque, N m, by points.
-fn torque(member: &str, points: &[[f64; 2]]) -> String {
-    let points: Vec<String> = points.iter().map(|[t, m]| format!("[\"{t} s\", \"{m} N m\"]")).collect();
-    format!(
-        "[[scenario.source]]\nmember = {member:?}\ntorque = {{ type = \"table\", points = [ {} ] }}\n",
-        points.join(", ")
-    )
-}
-
-fn vehicle(member: &str) -> String {
-    format!(
-        "[[scenario.source]]\nmember = {member:?}\nvehicle = {{ mass = \"1800 kg\", wheel_radius = \"0.33 m\", final_drive = 3.2, \
-         rolling = 0.012, drag_area = \"0.6 m^2\" }}\n"
-    )
-}
-
-fn head(g: &Gearbox, state: usize, duration: f64) -> String {
-    format!("[[scenario]]\nname = \"run\"\nduration = \"{duration} s\"\nstate = {:?}\n", g.states[state].0)
-}
-
-#[test]
-fn every_gear_drives_away() {
-    every("drive away", |g, state| Some(head(g, state, 1.0) + &torque(g.end(0), &[[0.0, 0.0], [1.0, 300.0]])));
-}
-
-#[test]
-fn every_gear_stops_and_goes() {
-    let points =
-        [[0.0, 0.0], [1.0, 250.0], [2.0, 250.0], [2.2, -200.0], [3.0, -200.0], [4.0, 0.0], [5.0, 0.0], [6.0, 200.0]];
-    every("stop and go", |g, state| Some(head(g, state, 6.0) + &torque(g.end(0), &points) + &vehicle(g.end(1))));
-}
-
-#[test]
-fn every_gear_holds_on_a_hill_and_rolls_when_let_go() {
-    every("hill hold", |g, state| {
-        let hill = torque(g.end(1), &[[0.0, -100.0], [2.0, -100.0]]);
-        Some(head(g, state, 2.0) + &hill + &torque(g.end(0), &[[0.0, 200.0], [0.5, 200.0], [1.0, 0.0], [2.0, 0.0]]))
-    });
-}
-
-#[test]
-fn every_gear_coasts_to_rest_and_reverses() {
-    every("coast", |g, state| {
-        Some(
-            head(g, state, 3.0)
-                + &g.initial(state, 40.0)?
-                + &torque(g.end(0), &[[0.0, 0.0], [0.5, -200.0], [3.0, -200.0]]),
-        )
-    });
-}
-
-#[test]
-fn every_gear_runs_on_a_test_bench() {
-    every("bench", |g, state| {
-        let speed = 100.0;
-        let brake = format!("[[scenario.source]]\nmember = {:?}\nspeed = \"{speed} rad/s\"\n", g.end(1));
-        Some(
-            head(g, state, 0.1) + &g.initial(state, speed)? + &torque(g.end(0), &[[0.0, 300.0], [0.1, 300.0]]) + &brake,
-        )
-    });
-}
-
-/// A value between points.
+/// A value between points; 0 if there are none.
 fn between(points: &[[f64; 2]], t: f64) -> f64 {
     let Some(k) = points.iter().position(|p| p[0] > t) else { return points.last().map_or(0.0, |p| p[1]) };
     let Some([[t0, a], [t1, b]]) = k.checked_sub(1).map(|i| [points[i], points[k]]) else { return points[0][1] };
     a + (b - a) * (t - t0) / (t1 - t0)
 }
 
-impl Gearbox {
-    fn reference(&self, capacity: Option<f64>, output: f64) -> Reference {
-        Reference {
-            inertias: self.inertias(output),
-            meshes: (self.meshes.iter())
-                .map(|&(bodies, teeth, efficiency)| Mesh { bodies, teeth, efficiency })
-                .collect(),
-            elements: self.elements.iter().map(|&(_, bodies)| Element { bodies, capacity }).collect(),
+/// What a run must be beside finished: its energy closes and nothing slips that is held.
+fn faults(g: &Gearbox, work: &Work, rigid: bool, rows: &Rows, report: &RunReport) -> Vec<String> {
+    let mut faults = vec![];
+    if report.outcome != Outcome::Finished {
+        faults.push(format!("{:?} at {}", report.outcome, report.end_s));
+    }
+    let energy = report.energy.as_ref().unwrap();
+    if energy.residual_j.abs() > 1e-9 * (energy.turned_over_j + energy.stored_j.abs()) {
+        faults.push(format!("energy {} of {}", energy.residual_j, energy.turned_over_j));
+    }
+    if rigid && work.states[0] == work.states[1] {
+        let column = |m: usize| rows.names.iter().position(|n| *n == format!("speed.{}", g.members[m]));
+        for &e in &g.states[work.states[0]].1 {
+            let [a, b] = g.elements[e].1.map(column);
+            if g.one_way[e] != 0 {
+                continue;
+            }
+            let of = |row: &[f64], k: Option<usize>| k.map_or(0.0, |k| row[k]);
+            let slip = rows.rows.iter().map(|row| (of(row, a) - of(row, b)).abs()).fold(0.0, f64::max);
+            if slip != 0.0 {
+                faults.push(format!("{} slips at {slip} rad/s", g.elements[e].0));
+            }
         }
     }
+    faults
 }
 
-#[test]
-fn every_swap_of_one_element_comes_to_its_end() {
+/// Runs of a kind, for all automatics, states, capacities, ways to write them and output inertias: they come to their
+/// end, and for one inertia each with the speeds that the reference gives.
+fn every(kind: &str, outputs: &[f64], capacities: &[Option<f64>], works: impl Fn(&Gearbox) -> Vec<Work>) {
     let mut bad = vec![];
-    let mut runs = 0;
-    let mut worst = 0.0f64;
-    let clock = std::time::Instant::now();
-    let points = [[0.0, 150.0], [2.0, 150.0]];
+    let (mut runs, mut compared, mut worst) = (0, 0, 0.0f64);
     for name in AUTOMATICS {
         let g = Gearbox::new(name);
-        for from in 0..g.states.len() {
-            let Some(unit) = g.speeds(from, 1.0) else { continue };
-            let ratio = unit[g.ends[0]];
-            let start = if ratio == 0.0 { 0.0 } else { 200.0 / ratio };
-            let Some(initial) = g.initial(from, start) else { continue };
-            let speeds = g.speeds(from, start).unwrap();
-            for to in 0..g.states.len() {
-                let swapped = g.states[from].1.iter().filter(|e| !g.states[to].1.contains(e)).count();
-                if from == to || swapped != 1 {
-                    continue;
-                }
-                for capacity in [20_000.0, 3000.0] {
-                    let output = 20.0;
-                    let reference = g.reference(Some(capacity), output).run(
-                        &speeds,
-                        2.0,
-                        1000,
-                        |t| {
-                            (0..g.members.len())
-                                .map(|m| if m == g.ends[0] { between(&points, t) } else { 0.0 })
-                                .collect()
-                        },
-                        |t| {
-                            let [a, b] = [from, to].map(|s| &g.states[s].1);
-                            (0..g.elements.len())
-                                .map(|e| {
-                                    let of = |s: &Vec<usize>| f64::from(u8::from(s.contains(&e)));
-                                    between(&[[0.5, of(a)], [0.7, of(b)]], t)
-                                })
-                                .collect()
-                        },
-                    );
+        for (k, work) in works(&g).iter().enumerate() {
+            let Some(scenario) = work.text(&g) else { continue };
+            for &capacity in capacities {
+                for (o, &output) in outputs.iter().enumerate() {
+                    let reference = ((o + k) % outputs.len() == 0 && capacity != Some(20_000.0)
+                        || capacities.len() == 2)
+                        .then(|| work.reference(&g, capacity, output));
                     for mesh_by_mesh in [false, true] {
-                        let scenario = format!(
-                            "[[scenario]]\nname = \"run\"\nduration = \"2 s\"\ngears = [ [\"0 s\", {:?}], [\"0.5 s\", {:?}] ]\n\
-                             shift_time = \"0.2 s\"\n{initial}",
-                            g.states[from].0, g.states[to].0
-                        ) + &torque(g.end(0), &points);
-                        let text = g.text(mesh_by_mesh, Some(capacity), output, &scenario);
+                        let text = g.text(mesh_by_mesh, capacity, output, &scenario);
                         let (rows, report) = run(&text, &Options::default());
-                        if let Ok(w) = std::env::var("WHICH")
-                            && w == format!(
-                                "{name} {} to {} {capacity} {mesh_by_mesh}",
-                                g.states[from].0, g.states[to].0
-                            )
-                        {
-                            std::fs::write("/tmp/which.toml", &text).unwrap();
-                            for e in &rows.events {
-                                eprintln!("{e:?}");
-                            }
-                        }
                         runs += 1;
-                        let what =
-                            format!("{name} {} to {} {capacity} {mesh_by_mesh}", g.states[from].0, g.states[to].0);
-                        if report.outcome != Outcome::Finished {
-                            bad.push(format!("{what}: {:?} at {}", report.outcome, report.end_s));
-                        }
-                        let most = reference.iter().fold(0.0f64, |m, w| m.max(w.abs()));
-                        for (m, name) in g.members.iter().enumerate().filter(|(m, _)| *m > 0 && !g.planets[*m]) {
-                            let found = *report.final_speeds_rad_s.get(name).unwrap();
-                            let off = (found - reference[m]).abs() / most;
-                            worst = worst.max(off);
-                            if off > 1e-2 {
-                                bad.push(format!("{what}: {name} {found} against {}", reference[m]));
+                        let [from, to] = work.states.map(|s| &g.states[s].0);
+                        let mut found = faults(&g, work, capacity.is_none(), &rows, &report);
+                        if let Some((speeds, most)) = &reference {
+                            compared += 1;
+                            for m in (1..g.members.len()).filter(|m| !g.planets[*m]) {
+                                let here = *report.final_speeds_rad_s.get(&g.members[m]).unwrap();
+                                let off = (here - speeds[m]).abs() / most;
+                                worst = worst.max(off);
+                                if off > 1e-2 {
+                                    found.push(format!("{} {here} against {}", g.members[m], speeds[m]));
+                                }
                             }
+                        }
+                        if !found.is_empty() {
+                            bad.push(format!(
+                                "{name} {from} to {to}, capacity {capacity:?}, mesh by mesh {mesh_by_mesh}, output {output}: {}",
+                                found.join("; ")
+                            ));
                         }
                     }
                 }
             }
         }
-        eprintln!("{name} {:.1} s {runs} {worst:.2e}", clock.elapsed().as_secs_f64());
     }
-    assert!(bad.is_empty(), "{} of {runs} end early:\n{}", bad.len(), bad.join("\n"));
+    println!("{kind}: {runs} runs, {compared} beside the reference, {worst:.1e} off at most");
+    assert!(bad.is_empty(), "{kind}: {} of {runs} are wrong:\n{}", bad.len(), bad.join("\n"));
+}
+
+/// One state each.
+fn each_state(kind: &str, work: impl Fn(&Gearbox, usize) -> Work) {
+    let works = |g: &Gearbox| {
+        let of = |state| Work { states: [state; 2], ..work(g, state) };
+        (0..g.states.len()).map(of).collect()
+    };
+    every(kind, &[0.02, 1.0, 200.0], &[None, Some(20_000.0), Some(3000.0)], works);
+}
+
+#[test]
+fn every_gear_drives_away() {
+    each_state("drive away", |_, _| Work { duration: 1.0, input: vec![[0.0, 0.0], [1.0, 300.0]], ..Work::default() });
+}
+
+#[test]
+fn every_gear_stops_and_goes() {
+    each_state("stop and go", |_, _| Work {
+        duration: 6.0,
+        input: vec![
+            [0.0, 0.0],
+            [1.0, 250.0],
+            [2.0, 250.0],
+            [2.2, -200.0],
+            [3.0, -200.0],
+            [4.0, 0.0],
+            [5.0, 0.0],
+            [6.0, 200.0],
+        ],
+        vehicle: true,
+        ..Work::default()
+    });
+}
+
+#[test]
+fn every_gear_holds_on_a_hill_and_rolls_when_let_go() {
+    each_state("hill hold", |_, _| Work {
+        duration: 2.0,
+        input: vec![[0.0, 200.0], [0.5, 200.0], [1.0, 0.0], [2.0, 0.0]],
+        output: vec![[0.0, -100.0], [2.0, -100.0]],
+        ..Work::default()
+    });
+}
+
+#[test]
+fn every_gear_coasts_to_rest_and_reverses() {
+    each_state("coast", |_, _| Work {
+        duration: 3.0,
+        start: 40.0,
+        input: vec![[0.0, 0.0], [0.5, -200.0], [3.0, -200.0]],
+        ..Work::default()
+    });
+}
+
+#[test]
+fn every_gear_runs_on_a_test_bench() {
+    each_state("bench", |_, _| Work {
+        duration: 0.1,
+        start: 100.0,
+        input: vec![[0.0, 300.0], [0.1, 300.0]],
+        bench: true,
+        ..Work::default()
+    });
+}
+
+#[test]
+fn every_swap_of_one_element_comes_to_its_end() {
+    every("swaps", &[20.0], &[Some(20_000.0), Some(3000.0)], |g| {
+        let swapped = |from: usize, to: usize| g.states[from].1.iter().filter(|e| !g.states[to].1.contains(e)).count();
+        let n = g.states.len();
+        let pairs = (0..n).flat_map(|from| (0..n).map(move |to| [from, to]));
+        let work = |states: [usize; 2]| {
+            let ratio = g.speeds(states[0], 1.0)?[g.ends[0]];
+            let start = if ratio == 0.0 { 0.0 } else { 200.0 / ratio };
+            Some(Work { duration: 2.0, states, start, input: vec![[0.0, 150.0], [2.0, 150.0]], ..Work::default() })
+        };
+        pairs.filter(|[a, b]| a != b && swapped(*a, *b) == 1).filter_map(work).collect()
+    });
 }

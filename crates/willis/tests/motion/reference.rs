@@ -41,23 +41,26 @@ fn saturated(x: f64) -> (f64, f64) {
 }
 
 impl Reference {
-    /// Speeds at the end. `torques`: on each body at a time; `engaged`: how far each element is, at a time.
+    /// Speeds at the end, and the largest on the way. `torques`: on each body, at a time and with these speeds;
+    /// `engaged`: how far each element is, at a time.
     pub fn run(
         &self,
         start: &[f64],
         duration: f64,
         steps: usize,
-        torques: impl Fn(f64) -> Vec<f64>,
+        torques: impl Fn(f64, &[f64]) -> Vec<f64>,
         engaged: impl Fn(f64) -> Vec<f64>,
-    ) -> Vec<f64> {
+    ) -> (Vec<f64>, f64) {
         let (n, m, k) = (self.inertias.len(), self.meshes.len(), self.elements.len());
         let mut y = DVector::zeros(n + 2 * m + k);
         y.rows_mut(0, n).copy_from_slice(start);
+        let mut most = y.rows(0, n).amax();
         for step in 0..steps {
             let at = |step: usize| duration * step as f64 / steps as f64;
             self.step(&mut y, at(step), at(step + 1), &torques, &engaged, 0);
+            most = most.max(y.rows(0, n).amax());
         }
-        y.rows(0, n).iter().copied().collect()
+        (y.rows(0, n).iter().copied().collect(), most)
     }
 
     /// One step, or two of half the length where Newton's method does not find its way.
@@ -66,14 +69,14 @@ impl Reference {
         y: &mut DVector<f64>,
         from: f64,
         to: f64,
-        torques: &impl Fn(f64) -> Vec<f64>,
+        torques: &impl Fn(f64, &[f64]) -> Vec<f64>,
         engaged: &impl Fn(f64) -> Vec<f64>,
         depth: usize,
     ) {
         let middle = 0.5 * (from + to);
         let before: Vec<f64> = y.rows(0, self.inertias.len()).iter().copied().collect();
         let mut next = y.clone();
-        if self.newton(&mut next, &before, to - from, &torques(middle), &engaged(middle), STEEP) {
+        if self.newton(&mut next, &before, to - from, &torques(middle, &before), &engaged(middle), STEEP) {
             *y = next;
             return;
         }

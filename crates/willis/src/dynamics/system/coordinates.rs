@@ -15,7 +15,7 @@ pub(super) struct Coordinates {
     pub free: usize,
     /// Every member's speed over them.
     pub speeds: Vec<Vec<f64>>,
-    exact: Vec<Vec<Rational>>,
+    pub exact: Vec<Vec<Rational>>,
 }
 
 impl Coordinates {

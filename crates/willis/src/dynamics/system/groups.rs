@@ -14,6 +14,8 @@ pub(in crate::dynamics) struct Group {
     pub names: Vec<String>,
     /// Its slip over the coordinates.
     pub row: Vec<f64>,
+    /// The same, exactly.
+    pub exact: Vec<Rational>,
     pub frictions: Vec<usize>,
     pub elements: Vec<usize>,
     /// Only prescribed speeds move it: it cannot be held.
@@ -23,12 +25,10 @@ pub(in crate::dynamics) struct Group {
     pub lead: (usize, f64),
 }
 
-/// Groups with the exact slip of each over the coordinates.
+/// Groups over so many free coordinates.
 struct Joined {
-    /// Free coordinates.
     free: usize,
     groups: Vec<Group>,
-    rows: Vec<Vec<Rational>>,
 }
 
 impl Joined {
@@ -36,7 +36,7 @@ impl Joined {
     /// `lead` is what holds its group if it is the first of it.
     fn join(&mut self, row: Vec<Rational>, name: &str, lead: (usize, f64)) -> Option<(usize, f64)> {
         let first = row.iter().position(|x| !x.is_zero())?;
-        for (g, other) in self.rows.iter().enumerate() {
+        for (g, other) in self.groups.iter().map(|g| &g.exact).enumerate() {
             if other[first].is_zero() {
                 continue;
             }
@@ -54,8 +54,8 @@ impl Joined {
             elements: vec![],
             driven: row[..self.free].iter().all(Rational::is_zero),
             lead,
+            exact: row,
         });
-        self.rows.push(row);
         Some((self.groups.len() - 1, 1.0))
     }
 }
@@ -67,7 +67,7 @@ pub(super) fn slip_together(
     frictions: &mut [Friction],
     elements: &mut [Element],
 ) -> Vec<Group> {
-    let mut joined = Joined { free: coordinates.free, groups: Vec::new(), rows: Vec::new() };
+    let mut joined = Joined { free: coordinates.free, groups: Vec::new() };
     for f in frictions.iter_mut() {
         let rubs = f.rigid || matches!(f.what, Rubs::Law(_)) || f.torque.points().iter().any(|p| p[1] > 0.0);
         if rubs && !f.open {
