@@ -97,14 +97,6 @@ pub(super) struct Load {
     pub accelerations: Vec<[f64; 2]>,
 }
 
-impl Load {
-    /// No load.
-    pub fn of(problem: &Problem) -> Self {
-        let (n, k) = (problem.members, problem.elements.len());
-        Self { torques: vec![[0.0; 2]; n], capacities: vec![[[0.0; 2]; 2]; k], accelerations: vec![[0.0; 2]; k] }
-    }
-}
-
 /// Choices that a certificate looks at, at most.
 const MOST_CHOICES: usize = 1 << 17;
 

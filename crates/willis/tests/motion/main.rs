@@ -3,8 +3,10 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod gearbox;
 mod gears;
 mod laws;
+mod random;
 mod reference;
 mod rows;
 mod runs;

@@ -8,8 +8,11 @@ use crate::exact::{Rational, reduce};
 
 use super::{Amount, Decision, Load, Verdict};
 
-/// Polyhedra that are looked at, at most: a search that is longer says so.
+/// Polyhedra that are looked at, at most, to find a motion: a search that is longer says so.
 const MOST: usize = 20_000;
+
+/// The same where a motion is known and others are looked for: a run waits for that at every change of mode.
+const MOST_PROOF: usize = 500;
 
 /// `x ≥ 0` over equations, at a vertex.
 #[derive(Clone)]
@@ -137,15 +140,11 @@ struct Search<'d> {
     bounds: Vec<Rational>,
     /// Motions found: values of the unknowns in pairs.
     found: Vec<Vec<Rational>>,
-    looked_at: usize,
+    /// Polyhedra that may still be looked at.
+    left: usize,
 }
 
 impl Search<'_> {
-    fn acceleration(&self, i: usize, x: &[Rational]) -> Rational {
-        let (constant, of) = &self.accelerations[i];
-        of.iter().zip(x).filter(|(a, x)| !a.is_zero() && !x.is_zero()).fold(constant.clone(), |sum, (a, x)| sum + a * x)
-    }
-
     /// Takes a polyhedron to a point whose accelerations are not those of the first motion. False if it has none.
     fn leaves(&self, p: &mut Polyhedron, first: &[Rational]) -> bool {
         (0..self.accelerations.len()).any(|i| {
@@ -158,10 +157,8 @@ impl Search<'_> {
 
     /// All modes within a polyhedron. False if that was too long.
     fn explore(&mut self, mut p: Polyhedron) -> bool {
-        self.looked_at += 1;
-        if self.looked_at > MOST {
-            return false;
-        }
+        let Some(left) = self.left.checked_sub(1) else { return false };
+        self.left = left;
         if let Some(first) = self.found.first()
             && !self.leaves(&mut p, first)
         {
@@ -220,7 +217,8 @@ impl Decision {
             .collect();
         let bound = |a: &Amount| Rational::from_f64(if found { a.error } else { 0.0 }).unwrap_or(Rational::ZERO);
         let bounds = self.motion.accelerations.iter().map(bound).collect();
-        let mut search = Search { pairs, accelerations: &given[..members], bounds, found: Vec::new(), looked_at: 0 };
+        let left = if found { MOST_PROOF } else { MOST };
+        let mut search = Search { pairs, accelerations: &given[..members], bounds, found: Vec::new(), left };
         let complete = match Polyhedron::new(rest, paired.len()) {
             None => true,
             Some(p) => search.explore(p),
