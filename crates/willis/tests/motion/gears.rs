@@ -1,8 +1,9 @@
 //! The ordinary work of a transmission, with each automatic of the examples: every gear drives away, runs on a test
 //! bench, holds, lets go, shifts and reverses.
 
-use willis::dynamics::Options;
+use willis::dynamics::{Options, Outcome};
 
+use crate::common::example;
 use crate::gearbox::{Gearbox, Work, faults, off};
 use crate::rows::run;
 
@@ -140,4 +141,48 @@ fn every_swap_of_one_element_comes_to_its_end() {
         };
         pairs.filter(|[a, b]| a != b && swapped(*a, *b) == 1).filter_map(work).collect()
     });
+}
+
+/// Input torque that moves the Ford C4 in second gear against 20 N m at the output: both sets at rest bear by the friction
+/// of their teeth. By a linear programme; inertias do not matter.
+const C4_MOVES_AT: f64 = 13.843_944_139_685_4;
+
+#[test]
+fn val_the_ford_c4_breaks_away_where_a_linear_programme_says() {
+    let g = Gearbox::new("simpson-ford-c4");
+    let state = g.states.iter().position(|s| s.0 == "2").unwrap();
+    let work =
+        Work { duration: 0.5, states: [state; 2], input: vec![[0.0, 0.0], [0.2, 0.0], [0.5, 60.0]], ..Work::default() };
+    let road = "[[drag]]\nname = \"road\"\nmembers = [\"output\"]\ncoulomb = \"20 N m\"\n";
+    let scenario = work.text(&g).unwrap() + road;
+    for capacity in [None, Some(20_000.0), Some(3000.0)] {
+        for output in [0.02, 0.2, 2.0, 20.0, 200.0] {
+            for mesh_by_mesh in [false, true] {
+                let (rows, report) = run(&g.text(mesh_by_mesh, capacity, output, &scenario), &Options::default());
+                assert_eq!(report.outcome, Outcome::Finished);
+                let of = |name: &str| rows.names.iter().position(|n| n == name).unwrap();
+                let (time, speed) = (of("time_s"), of("speed.output"));
+                let moves = rows.rows.iter().find(|row| row[speed] != 0.0).unwrap()[time];
+                // The event is a row; the one after it moves.
+                let at = rows.rows.iter().rev().find(|row| row[time] < moves).unwrap()[time];
+                let expected = 0.2 + C4_MOVES_AT / 200.0;
+                assert!((at - expected).abs() < 1e-9, "{capacity:?} {output} {mesh_by_mesh}: {at} for {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wolfrom_drive_closes_its_energy_from_either_side() {
+    let text = example("wolfrom-236") + "\n[[scenario]]\nname = \"run\"\nduration = \"2 s\"\n";
+    let inertias = "inertias = { sun = \"1e-4 kg m^2\", carrier = \"1e-3 kg m^2\", ring = \"0.05 kg m^2\" }\n";
+    let text = text.replacen("[[set]]", &format!("{inertias}[[set]]"), 1);
+    for (member, torque) in [("ring", 50.0), ("ring", -300.0), ("sun", 0.5), ("sun", -0.5)] {
+        let source = format!("[[scenario.source]]\nmember = {member:?}\ntorque = \"{torque} N m\"\n");
+        let (_, report) = run(&format!("{text}{source}"), &Options::default());
+        assert_eq!(report.outcome, Outcome::Finished);
+        let energy = report.energy.as_ref().unwrap();
+        let part = energy.residual_j / (energy.turned_over_j + energy.stored_j.abs());
+        assert!(part.abs() < 1e-9, "{member} {torque}: {part}");
+    }
 }
