@@ -8,12 +8,11 @@ use willis::exact::Rational;
 use willis::train::{MemberKind, ShiftElementKind, Train};
 
 use crate::common::example;
-use crate::reference::{Element, Mesh, Reference};
+use crate::reference::{Element, Mesh, Reference, Shaft};
 use crate::rows::Rows;
 
 /// A train as numbers, which owes nothing to how it was written.
 pub struct Gearbox {
-    pub name: &'static str,
     /// The frame first.
     pub members: Vec<String>,
     pub planets: Vec<bool>,
@@ -21,6 +20,10 @@ pub struct Gearbox {
     pub meshes: Vec<([usize; 3], [f64; 2], [f64; 2])>,
     pub elements: Vec<(String, [usize; 2])>,
     pub one_way: Vec<i8>,
+    /// Coulomb friction, N m, and N m s/rad.
+    pub drags: Vec<([usize; 2], f64, f64)>,
+    /// N m/rad and N m s/rad.
+    pub shafts: Vec<([usize; 2], f64, f64)>,
     pub states: Vec<(String, Vec<usize>)>,
     pub ends: [usize; 2],
     /// As the example writes it, without what is to be done with it.
@@ -41,7 +44,6 @@ impl Gearbox {
             (&g.teeth * &Rational::from(scale)).to_f64() * if g.internal { -1.0 } else { 1.0 }
         };
         Self {
-            name,
             members: train.members().iter().map(|m| m.name.replace('.', "-")).collect(),
             planets: train.members().iter().map(|m| m.kind == MemberKind::Planet).collect(),
             meshes: (train.meshes().iter())
@@ -53,6 +55,8 @@ impl Gearbox {
                 })
                 .collect(),
             elements: train.shift_elements().iter().map(|e| (e.name.clone(), e.members.map(|m| m.index()))).collect(),
+            drags: vec![],
+            shafts: vec![],
             one_way: (train.shift_elements().iter())
                 .map(|e| if e.kind == ShiftElementKind::OneWay { e.blocks } else { 0 })
                 .collect(),
@@ -131,9 +135,19 @@ impl Gearbox {
                 let sense = if *blocks > 0 { "forward" } else { "backward" };
                 writeln!(t, "blocks = {sense:?}").unwrap();
             }
-            if let Some(c) = capacity {
+            if let Some(c) = capacity.filter(|_| *blocks == 0) {
                 writeln!(t, "capacity = \"{c} N m\"").unwrap();
             }
+        }
+        let pair =
+            |bodies: &[usize; 2]| format!("members = [{:?}, {:?}]", self.members[bodies[0]], self.members[bodies[1]]);
+        for (k, (bodies, coulomb, viscous)) in self.drags.iter().enumerate() {
+            let torques = format!("coulomb = \"{coulomb} N m\"\nviscous = \"{viscous} N m s/rad\"");
+            writeln!(t, "[[drag]]\nname = \"D{k}\"\n{}\n{torques}", pair(bodies)).unwrap();
+        }
+        for (k, (bodies, stiffness, damping)) in self.shafts.iter().enumerate() {
+            let of = format!("stiffness = \"{stiffness} N m/rad\"\ndamping = \"{damping} N m s/rad\"");
+            writeln!(t, "[[shaft]]\nname = \"S{k}\"\n{}\n{of}", pair(bodies)).unwrap();
         }
         for (name, engaged) in &self.states {
             let engaged: Vec<String> = engaged.iter().map(|e| format!("{:?}", self.elements[*e].0)).collect();
@@ -182,17 +196,26 @@ impl Gearbox {
 
     pub fn reference(&self, capacity: Option<f64>, output: f64, vehicle: bool) -> Reference {
         let mut inertias = self.inertias(output);
-        let mut elements: Vec<Element> =
-            self.elements.iter().map(|&(_, bodies)| Element { bodies, capacity }).collect();
+        let mut elements: Vec<Element> = (self.elements.iter().zip(&self.one_way))
+            .map(|(&(_, bodies), &blocks)| Element { bodies, capacity, blocks, viscous: 0.0 })
+            .chain(self.drags.iter().map(|&(bodies, coulomb, viscous)| Element {
+                bodies,
+                capacity: Some(coulomb),
+                blocks: 0,
+                viscous,
+            }))
+            .collect();
         if vehicle {
             let arm = RADIUS / FINAL_DRIVE;
             inertias[self.ends[1]] += MASS * arm * arm;
             let rolling = ROLLING * MASS * 9.806_65 * arm;
-            elements.push(Element { bodies: [self.ends[1], 0], capacity: Some(rolling) });
+            elements.push(Element { bodies: [self.ends[1], 0], capacity: Some(rolling), blocks: 0, viscous: 0.0 });
         }
         let meshes =
             (self.meshes.iter()).map(|&(bodies, teeth, efficiency)| Mesh { bodies, teeth, efficiency }).collect();
-        Reference { inertias, meshes, elements }
+        let shafts =
+            (self.shafts.iter()).map(|&(bodies, stiffness, damping)| Shaft { bodies, stiffness, damping }).collect();
+        Reference { inertias, meshes, elements, shafts, steep: 1e-3, soft: 1e-7 }
     }
 }
 
@@ -257,12 +280,16 @@ impl Work {
         Some(text)
     }
 
-    /// Speeds at the end, as the reference has them, and the largest on the way.
-    pub fn reference(&self, g: &Gearbox, capacity: Option<f64>, output: f64) -> (Vec<f64>, f64) {
+    /// Speeds at the end, as the reference has them, and the largest on the way; none where it has none.
+    ///
+    /// `fine`: by how much its steps are shorter and its friction is steeper than usual.
+    pub fn reference(&self, g: &Gearbox, capacity: Option<f64>, output: f64, fine: usize) -> Option<(Vec<f64>, f64)> {
         let start =
             if self.start == 0.0 { vec![0.0; g.members.len()] } else { g.speeds(self.states[0], self.start).unwrap() };
         // What nothing can slow down keeps its speed.
-        let reference = g.reference(capacity, if self.bench { 1e9 } else { output }, self.vehicle);
+        let mut reference = g.reference(capacity, if self.bench { 1e9 } else { output }, self.vehicle);
+        reference.steep /= fine as f64;
+        reference.soft /= fine as f64;
         let torques = |t: f64, speeds: &[f64]| {
             let mut torques = vec![0.0; g.members.len()];
             torques[g.ends[0]] += between(&self.input, t);
@@ -276,11 +303,12 @@ impl Work {
         let engaged = |t: f64| {
             let [a, b] = self.states.map(|s| &g.states[s].1);
             let of = |s: &Vec<usize>, e| if s.contains(&e) { 1.0 } else { 0.0 };
-            // Rolling resistance is always there.
+            // Drags and rolling resistance are always there.
             let of = |e| if e < g.elements.len() { between(&[[0.5, of(a, e)], [0.7, of(b, e)]], t) } else { 1.0 };
             (0..reference.elements.len()).map(of).collect()
         };
-        reference.run(&start, self.duration, 1000, torques, engaged)
+        let steps = fine * if g.shafts.is_empty() { 1000 } else { 4000 };
+        reference.run(&start, self.duration, steps, torques, engaged)
     }
 }
 
@@ -298,7 +326,7 @@ pub fn faults(g: &Gearbox, work: &Work, rigid: bool, rows: &Rows, report: &RunRe
         faults.push(format!("{:?} at {}", report.outcome, report.end_s));
     }
     let energy = report.energy.as_ref().unwrap();
-    if energy.residual_j.abs() > 1e-9 * (energy.turned_over_j + energy.stored_j.abs()) {
+    if energy.residual_j.abs() > 1e-9 * (energy.turned_over_j + energy.stored_j.abs()) + 1e-30 {
         faults.push(format!("energy {} of {}", energy.residual_j, energy.turned_over_j));
     }
     if rigid && work.states[0] == work.states[1] {

@@ -36,7 +36,7 @@ fn every(kind: &str, outputs: &[f64], capacities: &[Option<f64>], works: impl Fn
                 for (o, &output) in outputs.iter().enumerate() {
                     let reference = ((o + k) % outputs.len() == 0 && capacity != Some(20_000.0)
                         || capacities.len() == 2)
-                        .then(|| work.reference(&g, capacity, output));
+                        .then(|| work.reference(&g, capacity, output, 1).expect("the reference converges"));
                     for mesh_by_mesh in [false, true] {
                         let text = g.text(mesh_by_mesh, capacity, output, &scenario);
                         let (rows, report) = run(&text, &Options::default());

@@ -68,12 +68,25 @@ fn gearbox(dice: &mut Dice) -> Gearbox {
             (format!("E{k}"), [first, if second == first { 0 } else { second }])
         })
         .collect();
-    let state = |dice: &mut Dice| (0..elements.len()).filter(|_| dice.one_in(2)).collect();
+    let one_way: Vec<i8> = elements.iter().map(|_| if dice.one_in(6) { [-1, 1][dice.below(2)] } else { 0 }).collect();
+    let mut any = |dice: &mut Dice| {
+        let first = 1 + dice.below(shafts);
+        let second = if dice.one_in(2) { 0 } else { 1 + dice.below(shafts) };
+        [first, if second == first { 0 } else { second }]
+    };
+    let drags =
+        (0..dice.below(3)).map(|_| (any(dice), dice.below(4) as f64 * 5.0, dice.below(3) as f64 * 0.1)).collect();
+    // Well damped: the reference damps by itself.
+    let springs: Vec<([usize; 2], f64, f64)> = (0..dice.below(4) / 2)
+        .map(|_| (any(dice), 100.0 + dice.below(400) as f64, 2.0 + dice.below(5) as f64))
+        .collect();
+    let state = |dice: &mut Dice| (0..elements.len()).filter(|k| one_way[*k] == 0 && dice.one_in(2)).collect();
     let states = vec![("a".to_owned(), state(dice)), ("b".to_owned(), state(dice))];
     Gearbox {
-        name: "random",
         planets: (0..members.len()).map(|m| m > shafts).collect(),
-        one_way: vec![0; elements.len()],
+        one_way,
+        drags,
+        shafts: springs,
         ends: [1, 2],
         sets: toml::Table::new(),
         members,
@@ -86,7 +99,7 @@ fn gearbox(dice: &mut Dice) -> Gearbox {
 /// Runs of these seeds; how many come to their end.
 fn runs(seeds: std::ops::Range<u64>) {
     let mut bad = vec![];
-    let (mut finished, mut ended, mut worst) = (0, 0, 0.0f64);
+    let (mut finished, mut compared, mut worst) = (0, 0, 0.0f64);
     for seed in seeds {
         let dice = &mut Dice(seed);
         let g = gearbox(dice);
@@ -105,19 +118,29 @@ fn runs(seeds: std::ops::Range<u64>) {
         let text = g.text(true, capacity, output, &work.text(&g).expect("it starts at rest"));
         let (rows, report) = run(&text, &Options::default());
         let mut found = faults(&g, &work, rigid, &rows, &report);
+        finished += usize::from(report.outcome == Outcome::Finished);
         if report.outcome == Outcome::Finished {
-            finished += 1;
-            let (members, most) = off(&g, &report, &work.reference(&g, capacity, output), 2e-2);
-            found.extend(members);
-            worst = worst.max(most);
-        } else {
-            ended += 1;
+            // Where friction nearly gives way the reference creeps, and follows a change late: then finer.
+            let near = [1, 10, 100].into_iter().filter_map(|fine| work.reference(&g, capacity, output, fine));
+            let mut near = near.map(|reference| off(&g, &report, &reference, 2e-2));
+            let mut last = near.next();
+            while last.as_ref().is_some_and(|(members, _)| !members.is_empty()) {
+                match near.next() {
+                    Some(finer) => last = Some(finer),
+                    None => break,
+                }
+            }
+            if let Some((members, most)) = last {
+                compared += 1;
+                found.extend(members);
+                worst = worst.max(most);
+            }
         }
         if !found.is_empty() {
             bad.push(format!("{seed}: {}", found.join("; ")));
         }
     }
-    println!("{finished} finished, {ended} did not, {worst:.1e} off at most");
+    println!("{finished} finished, {compared} beside the reference, {worst:.1e} off at most");
     assert!(bad.is_empty(), "{} are wrong:\n{}", bad.len(), bad.join("\n"));
 }
 

@@ -14,6 +14,9 @@ const MOST: usize = 20_000;
 /// The same where a motion is known and others are looked for: a run waits for that at every change of mode.
 const MOST_PROOF: usize = 500;
 
+/// One over the part of the sizes of an acceleration's terms by which rounding of the loads may change it.
+const NOISE: i64 = 1 << 36;
+
 /// `x ≥ 0` over equations, at a vertex.
 #[derive(Clone)]
 struct Polyhedron {
@@ -136,8 +139,9 @@ struct Search<'d> {
     pairs: Vec<[usize; 2]>,
     /// Each acceleration as constant and coefficients of the unknowns in pairs.
     accelerations: &'d [(Rational, Vec<Rational>)],
-    /// How far accelerations of one motion may differ.
+    /// How far accelerations of one motion may differ, and beside that how much of what they are the sum of.
     bounds: Vec<Rational>,
+    noise: Rational,
     /// Motions found: values of the unknowns in pairs.
     found: Vec<Vec<Rational>>,
     /// Polyhedra that may still be looked at.
@@ -148,10 +152,13 @@ impl Search<'_> {
     /// Takes a polyhedron to a point whose accelerations are not those of the first motion. False if it has none.
     fn leaves(&self, p: &mut Polyhedron, first: &[Rational]) -> bool {
         (0..self.accelerations.len()).any(|i| {
-            let (_, of) = &self.accelerations[i];
+            let (constant, of) = &self.accelerations[i];
             let known = of.iter().zip(first).fold(Rational::ZERO, |sum, (a, x)| sum + a * x);
+            // What rounding has made of the loads is no other motion.
+            let parts = of.iter().zip(first).fold(constant.abs(), |sum, (a, x)| sum + (a * x).abs());
+            let bound = &self.bounds[i] + &(&parts * &self.noise);
             let opposite: Vec<Rational> = of.iter().map(|x| -x).collect();
-            p.exceeds(of, &(&known + &self.bounds[i])) || p.exceeds(&opposite, &(&self.bounds[i] - &known))
+            p.exceeds(of, &(&known + &bound)) || p.exceeds(&opposite, &(&bound - &known))
         })
     }
 
@@ -218,7 +225,14 @@ impl Decision {
         let bound = |a: &Amount| Rational::from_f64(if found { a.error } else { 0.0 }).unwrap_or(Rational::ZERO);
         let bounds = self.motion.accelerations.iter().map(bound).collect();
         let left = if found { MOST_PROOF } else { MOST };
-        let mut search = Search { pairs, accelerations: &given[..members], bounds, found: Vec::new(), left };
+        let mut search = Search {
+            pairs,
+            accelerations: &given[..members],
+            bounds,
+            noise: Rational::new(1, NOISE),
+            found: Vec::new(),
+            left,
+        };
         let complete = match Polyhedron::new(rest, paired.len()) {
             None => true,
             Some(p) => search.explore(p),
