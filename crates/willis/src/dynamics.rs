@@ -6,8 +6,10 @@
 //! Galvagno 2010 with corrected signs and its loop solved.
 
 mod batch;
+mod bodies;
 mod choose;
 mod contacts;
+mod decide;
 mod decision;
 mod element;
 mod energy;
@@ -26,6 +28,7 @@ pub mod offset;
 mod output;
 mod rate;
 mod report;
+mod rounding;
 mod run;
 mod shows;
 mod signal;

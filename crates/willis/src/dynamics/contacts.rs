@@ -8,37 +8,15 @@ use std::collections::HashMap;
 
 use crate::exact::Rational;
 
-use super::decision::{Body, Decision, Element, Inertia, Load, Mesh, Motion, Problem, Verdict, is_unique};
-use super::element::Loss;
-use super::engine::Engine;
-use super::mode::{Mode, Side};
-use super::system::System;
+use super::bodies::Bodies;
+use super::decision::{Decision, Element, Load, Problem};
 
 /// Sets of contacts that are kept, at most: where losses follow speed or load, each state is a new one.
 const MOST_KEPT: usize = 256;
 
-/// Choices of directions and holds up to which a run asks for a certificate of all its states.
-const MOST_CHOICES: usize = 1 << 15;
-
-/// A part of a long way: loads are derived by their change over it.
-const SHORT: f64 = 1e-4;
-
-/// The bodies of a train in a scenario, and what is between them: what does not change with the contacts.
-#[derive(Clone)]
-pub(super) struct Bodies {
-    pub count: usize,
-    pub inertias: Vec<Inertia>,
-    /// One for each mesh element, with its constant efficiencies.
-    pub meshes: Vec<Mesh>,
-    /// One for each friction element.
-    pub frictions: Vec<[Body; 2]>,
-    /// Those of prescribed speeds.
-    pub prescribed: Vec<Body>,
-}
-
 /// What joins bodies at no relative speed, beside prescribed speeds.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-enum Joint {
+pub(super) enum Joint {
     /// A friction element.
     Friction(usize),
     /// Friction of a mesh that does not follow its load.
@@ -47,11 +25,11 @@ enum Joint {
 
 /// A set of contacts.
 #[derive(Clone, Default, PartialEq, Eq, Hash)]
-struct Set {
+pub(super) struct Set {
     /// The sign of the slip of each mesh element, and its efficiencies, bit by bit, where they vary.
-    meshes: Vec<(i8, [u64; 2])>,
+    pub meshes: Vec<(i8, [u64; 2])>,
     /// Each joint, and whether it yields forward and backward.
-    joints: Vec<(Joint, [bool; 2])>,
+    pub joints: Vec<(Joint, [bool; 2])>,
 }
 
 impl Set {
@@ -80,296 +58,31 @@ impl Set {
 #[derive(Clone, Default)]
 pub(super) struct Contacts {
     known: HashMap<Set, Decision>,
-    set: Set,
-    load: Load,
+    pub set: Set,
+    pub load: Load,
     /// Sign of the force in each mesh as it was found last: on it the friction of teeth at rest may depend.
-    forces: Vec<i8>,
-    tau: Vec<f64>,
+    pub forces: Vec<i8>,
+    pub tau: Vec<f64>,
 }
 
-/// Whether every state of a train in a scenario has one motion, whatever the loads; none if there are too many
-/// states to look at. A mesh whose loss varies may lose anything up to its most: the determinants are affine in each
-/// loss, so the ends decide for everything between.
-pub(super) fn every_state_is_unique(s: &System) -> Option<bool> {
-    let mut problem = Problem { members: s.bodies.count, inertias: s.bodies.inertias.clone(), ..Problem::default() };
-    for (mesh, e) in s.bodies.meshes.iter().zip(&s.elements) {
-        let mut mesh = mesh.clone();
-        mesh.slip = 0;
-        if e.group.is_some() && (e.varies() || e.rows.len() > 1) {
-            let least = |of: fn(&crate::train::LossRow) -> f64| {
-                Rational::from_f64(e.rows.iter().map(of).fold(1.0, f64::min)).unwrap_or(Rational::ONE)
-            };
-            mesh.efficiency = [least(|r| r.forward), least(|r| r.backward)];
+impl Contacts {
+    /// Asks the decision of the contacts that are set about the load that is set.
+    pub fn ask<T>(&mut self, bodies: &Bodies, ask: impl FnOnce(&mut Decision, &Load) -> T) -> T {
+        if self.known.len() >= MOST_KEPT && !self.known.contains_key(&self.set) {
+            self.known.clear();
         }
-        problem.meshes.push(mesh);
-    }
-    for (f, &bodies) in s.frictions.iter().zip(&s.bodies.frictions) {
-        if f.group.is_some_and(|(g, _)| !s.groups[g].driven) {
-            problem.elements.push(Element { bodies, yields: [true; 2] });
+        if !self.known.contains_key(&self.set) {
+            self.known.insert(self.set.clone(), Decision::new(&self.set.problem(bodies)));
         }
-    }
-    problem.elements.extend(s.bodies.prescribed.iter().map(|&b| Element { bodies: [b, None], yields: [false; 2] }));
-    is_unique(&problem, MOST_CHOICES)
-}
-
-/// A constant friction that is the same whichever gear drives, and where the kink between the two is: force variable
-/// and loss there.
-fn kink(loss: &Loss, factor: f64, sign: f64) -> [f64; 2] {
-    let (spread, extra) = (loss.drive - loss.coast, loss.drive_torque - loss.coast_torque);
-    if spread == 0.0 {
-        return [0.0, sign * loss.drive_torque.max(loss.coast_torque)];
-    }
-    let torque = -sign * extra / spread;
-    [torque / factor, loss.drive * torque + sign * loss.drive_torque]
-}
-
-impl Engine {
-    /// The contacts of the present mode, and the loads on them, from the port torques found last.
-    fn gather(&self, contacts: &mut Contacts, t: f64) {
-        let s = &self.system;
-        let Contacts { set, load, forces, tau, .. } = contacts;
-        forces.resize(s.elements.len(), 0);
-        set.meshes.clear();
-        set.joints.clear();
-        load.torques.clear();
-        load.torques.resize(s.bodies.count, [0.0; 2]);
-        load.capacities.clear();
-        load.accelerations.clear();
-        tau.clear();
-        tau.extend_from_slice(&self.tau[..s.port_of_prescribed]);
-        for (k, f) in s.frictions.iter().enumerate() {
-            let Some((g, _)) = f.group else { continue };
-            if self.mode.slip[g] != 0 {
-                continue;
-            }
-            let capacity = match (f.rigid && f.blocks.is_none(), self.engaged[k]) {
-                (true, true) => [f64::INFINITY; 2],
-                (true, false) => [0.0; 2],
-                (false, _) => [1, -1].map(|sign| self.sliding(k, 0.0, sign, true, t).abs()),
-            };
-            if capacity != [0.0; 2] {
-                set.joints.push((Joint::Friction(k), capacity.map(f64::is_finite)));
-                load.capacities.push(capacity.map(|c| [if c.is_finite() { c } else { 0.0 }, 0.0]));
-            }
-        }
-        for (j, e) in s.elements.iter().enumerate() {
-            tau[e.port] = 0.0;
-            let Some((g, _)) = e.group else {
-                set.meshes.push((0, [0; 2]));
-                continue;
-            };
-            let sign = self.mode.element_slip(s, j) * e.factors[0].signum() as i8;
-            let rests = self.mode.slip[g] == 0;
-            let loss = if rests && e.law.is_none() { self.loss_at(j, 0.0) } else { self.loss(j) };
-            let bits = if e.varies() { [1.0 - loss.drive, 1.0 / (1.0 - loss.coast)].map(f64::to_bits) } else { [0; 2] };
-            set.meshes.push((sign, bits));
-            if loss.drive_torque == 0.0 && loss.coast_torque == 0.0 {
-                continue;
-            }
-            if rests {
-                // By the gear that would drive if it began to turn forward.
-                let along = [loss.drive_torque, loss.coast_torque];
-                let [forward, backward] = if forces[j] < 0 { [along[1], along[0]] } else { along };
-                set.joints.push((Joint::Teeth(j), [true; 2]));
-                load.capacities.push([[forward, 0.0], [backward, 0.0]]);
-            } else {
-                let [force, lost] = kink(&loss, e.factors[0], f64::from(self.mode.element_slip(s, j)));
-                tau[e.port] = lost;
-                s.add_force(j, -force, &mut load.torques);
-            }
-        }
-        s.add_torques(tau, &mut load.torques);
-        load.accelerations.resize(set.joints.len(), [0.0; 2]);
-        for &a in &self.acceleration[s.free..] {
-            load.capacities.push([[0.0; 2]; 2]);
-            load.accelerations.push([a, 0.0]);
-        }
-    }
-
-    /// Asks the decision of the contacts of the present mode, at the port torques found last; `rates`: the time after
-    /// which loads are looked at once more, and the state then.
-    fn ask_contacts<T>(
-        &mut self,
-        t: f64,
-        rates: Option<(f64, &[f64])>,
-        ask: impl FnOnce(&mut Decision, &Load) -> T,
-    ) -> T {
-        let mut contacts = std::mem::take(&mut self.contacts);
-        self.gather(&mut contacts, t);
-        if let Some((later, x)) = rates {
-            self.add_rates(&mut contacts, t, later, x);
-        }
-        if contacts.known.len() >= MOST_KEPT && !contacts.known.contains_key(&contacts.set) {
-            contacts.known.clear();
-        }
-        if !contacts.known.contains_key(&contacts.set) {
-            let decision = Decision::new(&contacts.set.problem(&self.system.bodies));
-            contacts.known.insert(contacts.set.clone(), decision);
-        }
-        let decision = contacts.known.get_mut(&contacts.set).expect("just made");
-        let answer = ask(decision, &contacts.load);
-        for (sign, mesh) in contacts.forces.iter_mut().zip(&decision.motion().meshes) {
-            *sign = mesh.forces[0].sign();
-        }
-        self.contacts = contacts;
+        let decision = self.known.get_mut(&self.set).expect("just made");
+        let answer = ask(decision, &self.load);
+        self.forces.clear();
+        self.forces.extend(decision.motion().meshes.iter().map(|mesh| mesh.forces[0].sign()));
         answer
     }
 
-    /// Rates of the loads, from those at a later state. What is within round-off is none.
-    fn add_rates(&mut self, contacts: &mut Contacts, t: f64, later: f64, x: &[f64]) {
-        let now = std::mem::take(&mut contacts.load);
-        let set = contacts.set.clone();
-        let (tau, speed, acceleration) = (self.tau.clone(), self.speed.clone(), self.acceleration.clone());
-        self.load(later, x);
-        self.gather(contacts, later);
-        (self.tau, self.speed, self.acceleration) = (tau, speed, acceleration);
-        let then = std::mem::replace(&mut contacts.load, now);
-        if contacts.set.meshes.len() == set.meshes.len() && contacts.set.joints == set.joints {
-            let rate = |a: f64, b: f64| {
-                let change = b - a;
-                if change.abs() <= 64.0 * f64::EPSILON * (a.abs() + b.abs()) { 0.0 } else { change / (later - t) }
-            };
-            let load = &mut contacts.load;
-            load.torques.iter_mut().zip(&then.torques).for_each(|(a, b)| a[1] = rate(a[0], b[0]));
-            load.accelerations.iter_mut().zip(&then.accelerations).for_each(|(a, b)| a[1] = rate(a[0], b[0]));
-            for (a, b) in load.capacities.iter_mut().flatten().zip(then.capacities.iter().flatten()) {
-                a[1] = rate(a[0], b[0]);
-            }
-        }
-        contacts.set = set;
-    }
-
-    /// What happens at a state with these groups at rest, as `start` has the others.
-    pub fn decide(&mut self, t: f64, x: &[f64], start: &Mode) -> (Verdict, Mode) {
-        let mut mode = start.clone();
-        let certified = self.certified;
-        let mut verdict = Verdict::Undecided;
-        // Losses that follow the load are those of the forces found; friction at rest may follow their direction.
-        for _ in 0..8 {
-            self.mode.clone_from(start);
-            self.load(t, x);
-            verdict = self.ask_contacts(t, None, |d, load| d.decide(load, certified));
-            let mut found = self.mode_found(start);
-            // Where something is at its limit, what comes next decides.
-            let ahead = 2.0 * (self.inside - t);
-            if matches!(verdict, Verdict::One { .. }) && ahead > 0.0 && self.enter(&found) {
-                let step = ahead * SHORT;
-                let mut rates = vec![0.0; x.len()];
-                super::integrator::Smooth::rate(self, t, x, &mut rates);
-                if rates.iter().all(|r| r.is_finite()) {
-                    let later: Vec<f64> = x.iter().zip(&rates).map(|(x, r)| x + step * r).collect();
-                    self.mode.clone_from(start);
-                    self.load(t, x);
-                    verdict = self.ask_contacts(t, Some((t + step, &later)), |d, load| d.decide(load, certified));
-                    found = self.mode_found(start);
-                }
-            }
-            let again = self.follows_load() && found != mode;
-            mode = found;
-            if !again || !matches!(verdict, Verdict::One { .. }) || !self.enter(&mode) {
-                break;
-            }
-            self.solve(t, x);
-        }
-        (verdict, mode)
-    }
-
-    /// Whether losses depend on loads in a way that a decision does not know.
-    fn follows_load(&self) -> bool {
-        self.system.laws.is_some()
-            || self.system.elements.iter().any(|e| e.rows.iter().any(|r| r.forward_torque != r.backward_torque))
-    }
-
-    /// The mode in which the motion found last goes on.
-    fn mode_found(&self, start: &Mode) -> Mode {
-        let s = &self.system;
-        let mut mode = start.clone();
-        let contacts = &self.contacts;
-        let motion = self.motion();
-        let sign = |x: f64| x.signum() as i8;
-        // What cannot hold slides, if only at no speed.
-        let mut slips: Vec<Option<i8>> = vec![None; s.groups.len()];
-        let mut note = |g: usize, slip: i8| {
-            let known = slips[g].get_or_insert(0);
-            if *known == 0 {
-                *known = slip;
-            }
-        };
-        for (&(joint, _), element) in contacts.set.joints.iter().zip(&motion.elements) {
-            let (g, factor) = match joint {
-                Joint::Friction(k) => s.frictions[k].group.expect("it rubs"),
-                Joint::Teeth(j) => s.elements[j].group.expect("it rubs"),
-            };
-            note(g, element.slip * sign(factor));
-        }
-        for (j, e) in s.elements.iter().enumerate() {
-            if let Some((g, factor)) = e.group
-                && start.slip[g] == 0
-            {
-                note(g, motion.meshes[j].slip * sign(factor) * sign(e.factors[0]));
-            }
-        }
-        for g in (0..s.groups.len()).filter(|&g| start.slip[g] == 0) {
-            mode.slip[g] = slips[g].unwrap_or_else(|| if self.drift(g) < -1.0 { -1 } else { 1 });
-        }
-        for (j, mesh) in motion.meshes.iter().enumerate() {
-            if mode.element_slip(s, j) != 0 {
-                mode.side[j] = if mesh.first_drives { Side::Drive } else { Side::Coast };
-            }
-        }
-        mode
-    }
-
-    /// How fast a group that nothing holds begins to slip, over the bound of that number's error.
-    fn drift(&self, g: usize) -> f64 {
-        let s = &self.system;
-        let &f = s.groups[g].frictions.first().expect("teeth hold");
-        let (_, factor) = s.frictions[f].group.expect("of this group");
-        let of = |b: Body| {
-            b.map_or((0.0, 0.0), |i| {
-                let a = &self.motion().accelerations[i];
-                (a.value, a.error)
-            })
-        };
-        let [a, b] = s.bodies.frictions[f].map(of);
-        factor.signum() * (a.0 - b.0) / (a.1 + b.1 + f64::MIN_POSITIVE)
-    }
-
-    fn motion(&self) -> &Motion {
-        self.contacts.known[&self.contacts.set].motion()
-    }
-
-    /// The motions found last, of the coordinates, where there are two of them.
-    pub fn two_motions(&self) -> [Vec<f64>; 2] {
-        let decision = &self.contacts.known[&self.contacts.set];
-        [decision.motion(), decision.second()].map(|m| {
-            let of = |node: &Body| node.map_or(0.0, |i| m.accelerations[i].value);
-            self.system.coordinate_bodies.iter().map(of).collect()
-        })
-    }
-
-    /// Whether the present motion, at the state solved last, is the only one.
-    pub fn is_single(&mut self, t: f64) -> bool {
-        self.certified
-            || self.ask_contacts(t, None, |d, load| {
-                d.is_certified() || matches!(d.decide(load, false), Verdict::One { .. })
-            })
-    }
-
-    /// How far what is held, at the state solved last, is from breaking away; where it does, less than 0: how fast,
-    /// over the round-off of that.
-    pub fn spare(&mut self, t: f64) -> f64 {
-        let spare = self.ask_contacts(t, None, |d, load| d.spare(load));
-        // What can hold nothing at this instant is no contact.
-        let held = |g: usize| {
-            let joints = &self.contacts.set.joints;
-            joints.iter().any(|(joint, _)| matches!(joint, Joint::Friction(k) if self.system.frictions[*k].group.is_some_and(|(of, _)| of == g)))
-        };
-        (0..self.system.groups.len())
-            .filter(|&g| self.mode.slip[g] == 0)
-            .filter(|&g| !self.system.groups[g].driven && self.system.groups[g].elements.is_empty() && !held(g))
-            .map(|g| self.drift(g).abs())
-            .filter(|drift| *drift > 1.0)
-            .fold(spare, |spare, drift| spare.min(-drift))
+    /// The decision asked last.
+    pub fn decision(&self) -> &Decision {
+        &self.known[&self.set]
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::operating_point::LEAST_SPEED;
 use crate::train::{Contact, MemberId, SourceKind};
 
-use super::contacts::{Contacts, every_state_is_unique};
+use super::contacts::Contacts;
 use super::element::Loss;
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
 use super::shows::Shows;
@@ -96,7 +96,7 @@ impl Engine {
     pub fn new(system: System) -> Self {
         let (groups, elements) = (system.groups.len(), system.elements.len());
         let mode = Mode { slip: vec![0; groups], side: vec![Side::Drive; elements] };
-        let certificate = every_state_is_unique(&system);
+        let certificate = system.every_state_is_unique();
         Self {
             maps: Maps::default(),
             mode,
@@ -146,6 +146,32 @@ impl Engine {
 
     pub fn member_speed(&self, m: MemberId) -> f64 {
         dot(self.row_of(m.index()), &self.speed)
+    }
+
+    /// From now on what this mode holds stands still exactly, in the state too; the engine looks at it.
+    pub fn stand_still(&mut self, mode: &Mode, x: &mut [f64]) {
+        let groups = &self.system.groups;
+        let held: Vec<bool> = (0..groups.len()).map(|g| mode.slip[g] == 0 && !groups[g].driven).collect();
+        let still = match self.stills.iter().find(|still| still.held == held) {
+            Some(still) => still.clone(),
+            None => {
+                let still = Arc::new(Still::of(&self.system, held));
+                self.stills.push(still.clone());
+                still
+            }
+        };
+        still.settle(&mut self.speed);
+        let free = self.system.free;
+        x[..free].copy_from_slice(&self.speed[..free]);
+        self.still = Some(still);
+    }
+
+    /// Every member's speed, or acceleration, over the coordinates.
+    pub fn row_of(&self, member: usize) -> &[f64] {
+        match &self.still {
+            Some(still) => &still.members[member],
+            None => &self.system.speeds[member],
+        }
     }
 
     /// Takes over the speeds of a state.

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::element::Loss;
+use super::rounding::unless_rounding;
 use super::system::System;
 
 /// Which side of its kink a mesh's loss is on: whose gear drives.
@@ -123,15 +124,6 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[inline]
 pub(super) fn dot_size(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x * y).abs()).sum()
-}
-
-/// A sum, or zero if that is no more than round-off of the amounts added up.
-///
-/// In a linear map a zero is a fact of the train: what is idle bears no force and what is held has no acceleration. Noise
-/// in its place has a sign, which would be taken for a direction of power.
-#[inline]
-pub(super) fn unless_rounding(sum: f64, amounts: f64) -> f64 {
-    if sum.abs() <= 64.0 * f64::EPSILON * amounts { 0.0 } else { sum }
 }
 
 /// What follows from the loss slopes alone: unknowns × ports, and slip accelerations of all groups × ports.

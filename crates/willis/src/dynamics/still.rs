@@ -5,28 +5,25 @@
 //! but from the others. Members that turn alike then have the same row, and to the last bit the same speed; what
 //! is held to the frame has a row of zeros.
 
-use std::sync::Arc;
-
 use crate::exact::Rational;
 
-use super::engine::Engine;
-use super::mode::{Mode, dot};
+use super::mode::dot;
 use super::system::System;
 
 /// The speeds of a mode.
 #[derive(Debug)]
 pub(super) struct Still {
     /// Which groups are held.
-    held: Vec<bool>,
+    pub held: Vec<bool>,
     /// Free coordinates that follow from the others, each with its row over all of them; the entries of all that
     /// follow are zero.
     follow: Vec<(usize, Vec<f64>)>,
     /// The speed of each member, likewise.
-    members: Vec<Vec<f64>>,
+    pub members: Vec<Vec<f64>>,
 }
 
 impl Still {
-    fn of(system: &System, held: Vec<bool>) -> Self {
+    pub fn of(system: &System, held: Vec<bool>) -> Self {
         // Solved rows: the coordinate, and what it is made of.
         let mut solved: Vec<(usize, Vec<Rational>)> = vec![];
         let insert = |row: &mut [Rational], k: usize, of: &[Rational]| {
@@ -68,34 +65,6 @@ impl Still {
     pub fn settle(&self, coordinates: &mut [f64]) {
         for (k, row) in &self.follow {
             coordinates[*k] = dot(row, coordinates);
-        }
-    }
-}
-
-impl Engine {
-    /// From now on what this mode holds stands still exactly, in the state too; the engine looks at it.
-    pub fn stand_still(&mut self, mode: &Mode, x: &mut [f64]) {
-        let groups = &self.system.groups;
-        let held: Vec<bool> = (0..groups.len()).map(|g| mode.slip[g] == 0 && !groups[g].driven).collect();
-        let still = match self.stills.iter().find(|still| still.held == held) {
-            Some(still) => still.clone(),
-            None => {
-                let still = Arc::new(Still::of(&self.system, held));
-                self.stills.push(still.clone());
-                still
-            }
-        };
-        still.settle(&mut self.speed);
-        let free = self.system.free;
-        x[..free].copy_from_slice(&self.speed[..free]);
-        self.still = Some(still);
-    }
-
-    /// Every member's speed, or acceleration, over the coordinates.
-    pub fn row_of(&self, member: usize) -> &[f64] {
-        match &self.still {
-            Some(still) => &still.members[member],
-            None => &self.system.speeds[member],
         }
     }
 }

@@ -25,6 +25,7 @@ mod inertia;
 mod meshes;
 mod ports;
 mod shafts;
+mod uniqueness;
 
 use std::sync::Arc;
 
@@ -35,12 +36,12 @@ use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::train::{MemberId, Scenario, Signal, SourceKind, Train};
 
-use super::contacts::Bodies;
+use super::bodies::Bodies;
 use super::decision::Body;
 use super::element::Element;
 use super::laws::Laws;
-use super::mode::unless_rounding;
 use super::report::EnergyLossKind;
+use super::rounding::unless_rounding;
 use super::source::{signals_of, upright};
 
 use coordinates::Coordinates;

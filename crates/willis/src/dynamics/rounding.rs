@@ -1,0 +1,10 @@
+//! Zeros that rounding hides.
+
+/// A sum, or zero if that is no more than round-off of the amounts added up.
+///
+/// In a linear map a zero is a fact of the train: what is idle bears no force and what is held has no acceleration. Noise
+/// in its place has a sign, which would be taken for a direction of power.
+#[inline]
+pub(super) fn unless_rounding(sum: f64, amounts: f64) -> f64 {
+    if sum.abs() <= 64.0 * f64::EPSILON * amounts { 0.0 } else { sum }
+}
