@@ -24,78 +24,18 @@
 mod basis;
 mod certificate;
 mod equations;
+mod motion;
 mod pivoting;
+mod problem;
 mod search;
 #[cfg(test)]
 mod tests;
 
-use crate::exact::Rational;
-
-use basis::{Basis, Vector};
+use basis::{Basis, Vector, Work};
 use equations::Equations;
 
-/// A member; none is the frame.
-pub(super) type Body = Option<usize>;
-
-/// Inertia of a member, measured against another one or the frame.
-#[derive(Clone, Debug)]
-pub(super) struct Inertia {
-    pub member: usize,
-    pub reference: Body,
-    pub value: f64,
-}
-
-/// A gear mesh, or a chain of them that carries nothing else.
-#[derive(Clone, Debug)]
-pub(super) struct Mesh {
-    /// Gear 1, gear 2, carrier.
-    pub bodies: [Body; 3],
-    /// Factors of the Willis equation: the teeth, those of gear 2 negative if it is internal.
-    pub factors: [Rational; 2],
-    /// Efficiency if gear 1 drives, and if gear 2 does: above 0, at most 1.
-    pub efficiency: [Rational; 2],
-    /// Sign of the speed of gear 1 relative to the carrier, times its factor; 0: at rest.
-    pub slip: i8,
-}
-
-/// What joins two members at no relative speed, by friction, freewheel or form.
-#[derive(Clone, Debug)]
-pub(super) struct Element {
-    pub bodies: [Body; 2],
-    /// Whether the first may begin to turn forward of the second, and backward. Neither: a rigid hold, or a
-    /// prescribed motion.
-    pub yields: [bool; 2],
-}
-
-/// What does not change with the loads.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Problem {
-    pub members: usize,
-    pub inertias: Vec<Inertia>,
-    pub meshes: Vec<Mesh>,
-    pub elements: Vec<Element>,
-}
-
-impl Problem {
-    /// The same without losses, and with all that touches held.
-    fn ideal(&self) -> Self {
-        let mut ideal = self.clone();
-        ideal.meshes.iter_mut().for_each(|m| m.efficiency = [Rational::ONE; 2]);
-        ideal.elements.iter_mut().for_each(|e| e.yields = [false; 2]);
-        ideal
-    }
-}
-
-/// What acts at an instant, and the rate of each: the rates decide where a force is just at its limit.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Load {
-    /// On each member, with the torques of what slides.
-    pub torques: Vec<[f64; 2]>,
-    /// For each element, the torque with which it can oppose slip forward and backward; read where it yields.
-    pub capacities: Vec<[[f64; 2]; 2]>,
-    /// For each element, the relative acceleration that it prescribes; 0 where it only holds.
-    pub accelerations: Vec<[f64; 2]>,
-}
+pub(super) use motion::{Motion, Verdict};
+pub(super) use problem::{Body, Element, Inertia, Load, Mesh, Problem};
 
 /// Choices that a certificate looks at, at most.
 const MOST_CHOICES: usize = 1 << 17;
@@ -103,69 +43,6 @@ const MOST_CHOICES: usize = 1 << 17;
 /// Whether every load of a problem has one motion; none if there are more choices than these to look at.
 pub(super) fn is_unique(problem: &Problem, most: usize) -> Option<bool> {
     certificate::is_unique(&Equations::new(problem), most)
-}
-
-/// What was found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Verdict {
-    /// A motion. Whether it is proved that there is no other one.
-    One { proved: bool },
-    /// Two of different accelerations.
-    Two,
-    /// No motion agrees with the state.
-    None,
-    /// Holds prescribe what contradicts itself.
-    Contradiction,
-    /// The search was too long.
-    Undecided,
-}
-
-/// A force or an acceleration: its value, the bound of its rounding error, and its rate.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Amount {
-    pub value: f64,
-    pub error: f64,
-    pub rate: f64,
-    pub rate_error: f64,
-}
-
-impl Amount {
-    /// Sign just after the instant; 0 if value and rate are within their bounds.
-    pub fn sign(&self) -> i8 {
-        let sign = |x: f64, error: f64| if x > error { 1 } else { -i8::from(x < -error) };
-        match sign(self.value, self.error) {
-            0 => sign(self.rate, self.rate_error),
-            sign => sign,
-        }
-    }
-}
-
-/// What a mesh does.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct MeshMotion {
-    /// `f` and `e`.
-    pub forces: [Amount; 2],
-    /// Sign of its slip just after the instant; 0: it stays at rest.
-    pub slip: i8,
-    /// Whether gear 1 drives, the sign of its slip given.
-    pub first_drives: bool,
-}
-
-/// What an element does.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct ElementMotion {
-    /// On its first member.
-    pub torque: Amount,
-    /// Sign of its slip just after the instant; 0: it holds.
-    pub slip: i8,
-}
-
-/// A motion.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Motion {
-    pub accelerations: Vec<Amount>,
-    pub meshes: Vec<MeshMotion>,
-    pub elements: Vec<ElementMotion>,
 }
 
 /// The decision for one set of contacts, under whatever loads.
@@ -179,7 +56,7 @@ pub(super) struct Decision {
     /// Loads and unknowns, and their rates.
     loads: [Vec<f64>; 2],
     unknowns: [Vector; 2],
-    work: pivoting::Work,
+    work: Work,
     certified: Option<bool>,
     motion: Motion,
     second: Motion,
@@ -196,7 +73,7 @@ impl Decision {
             ideal: Box::new((ideal, ideal_basis)),
             loads: [vec![0.0; rows], vec![0.0; rows]],
             unknowns: [Vector::new(rows), Vector::new(rows)],
-            work: pivoting::Work::new(rows),
+            work: Work::new(rows),
             certified: None,
             motion: equations.motionless(),
             second: equations.motionless(),
@@ -228,7 +105,7 @@ impl Decision {
         // The second time from a cold start.
         let found = self.pivot() || self.pivot();
         if found {
-            self.equations.read(&self.basis, &self.unknowns, &mut self.motion);
+            self.basis.read(&self.equations, &self.unknowns, &mut self.motion);
         }
         Some(found)
     }

@@ -6,6 +6,7 @@
 use crate::exact::{PRIME, Rational, power, times};
 
 use super::equations::{Equations, exact_solution};
+use super::motion::{Amount, Motion};
 
 /// Half a unit in the last place of one.
 const ROUNDING: f64 = f64::EPSILON;
@@ -279,10 +280,48 @@ impl Basis {
         self.columns[at] = unknown;
         self.positions[unknown] = Some(at);
     }
+
+    /// What its unknowns say.
+    pub fn read(&self, equations: &Equations, x: &[Vector; 2], motion: &mut Motion) {
+        let amount = |j: usize| match self.position(j) {
+            None => Amount::default(),
+            Some(i) => {
+                let scale = equations.column_scale[j];
+                Amount {
+                    value: x[0].value[i] * scale,
+                    error: x[0].error[i] * scale,
+                    rate: x[1].value[i] * scale,
+                    rate_error: x[1].error[i] * scale,
+                }
+            }
+        };
+        equations.read_from(amount, |j| self.position(j).is_some(), motion);
+    }
 }
 
 /// Sum of two classes.
 pub(super) fn add(a: u64, b: u64) -> u64 {
     let sum = a + b;
     if sum >= PRIME { sum - PRIME } else { sum }
+}
+
+/// Room for pivoting.
+#[derive(Clone)]
+pub(super) struct Work {
+    pub column: Vector,
+    pub level: Vector,
+    pub candidates: Vec<usize>,
+    /// Unknowns whose columns break the last ties.
+    pub order: Vec<usize>,
+}
+
+impl Work {
+    pub fn new(rows: usize) -> Self {
+        Self {
+            column: Vector::new(rows),
+            level: Vector::new(rows),
+            candidates: Vec::with_capacity(rows),
+            order: Vec::with_capacity(rows),
+        }
+    }
 }

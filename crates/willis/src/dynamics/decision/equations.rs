@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use crate::exact::{self, Matrix, Rational};
 
-use super::basis::{Basis, Vector};
-use super::{Amount, Body, Load, Motion, Problem};
+use super::motion::{Amount, Motion};
+use super::problem::{Body, Load, Problem};
 
 /// An entry of a column.
 #[derive(Clone, Debug)]
@@ -383,23 +383,6 @@ impl Equations {
             meshes: vec![Default::default(); self.meshes.len()],
             elements: vec![Default::default(); self.elements.len()],
         }
-    }
-
-    /// What the unknowns of a basis say.
-    pub fn read(&self, basis: &Basis, x: &[Vector; 2], motion: &mut Motion) {
-        let amount = |j: usize| match basis.position(j) {
-            None => Amount::default(),
-            Some(i) => {
-                let scale = self.column_scale[j];
-                Amount {
-                    value: x[0].value[i] * scale,
-                    error: x[0].error[i] * scale,
-                    rate: x[1].value[i] * scale,
-                    rate_error: x[1].error[i] * scale,
-                }
-            }
-        };
-        self.read_from(amount, |j| basis.position(j).is_some(), motion);
     }
 
     /// What unknowns say; `basic` where a sign alone does not tell which of a pair is meant.

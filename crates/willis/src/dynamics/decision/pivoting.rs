@@ -12,29 +12,8 @@ use std::collections::BTreeMap;
 use crate::exact::{PRIME, Rational, times};
 
 use super::Decision;
-use super::basis::{Basis, Vector, add};
+use super::basis::{Basis, Vector, Work, add};
 use super::equations::{Equations, exact_solution};
-
-/// Room for pivoting.
-#[derive(Clone)]
-pub(super) struct Work {
-    column: Vector,
-    level: Vector,
-    candidates: Vec<usize>,
-    /// Unknowns whose columns break the last ties.
-    order: Vec<usize>,
-}
-
-impl Work {
-    pub fn new(rows: usize) -> Self {
-        Self {
-            column: Vector::new(rows),
-            level: Vector::new(rows),
-            candidates: Vec::with_capacity(rows),
-            order: Vec::with_capacity(rows),
-        }
-    }
-}
 
 /// Whether an unknown follows from the friction of its mesh, with this one entering.
 fn is_slaved(equations: &Equations, basis: &Basis, j: usize, entering: Option<usize>) -> bool {

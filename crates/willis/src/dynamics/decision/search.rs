@@ -6,7 +6,9 @@
 
 use crate::exact::{Rational, reduce};
 
-use super::{Amount, Decision, Load, Verdict};
+use super::Decision;
+use super::motion::{Amount, Motion, Verdict};
+use super::problem::Load;
 
 /// Polyhedra that are looked at, at most, to find a motion: a search that is longer says so.
 const MOST: usize = 20_000;
@@ -237,7 +239,7 @@ impl Decision {
             None => true,
             Some(p) => search.explore(p),
         };
-        let read = |x: &[Rational], motion: &mut super::Motion| {
+        let read = |x: &[Rational], motion: &mut Motion| {
             let value = |j: usize| match free.iter().position(|&k| k == j) {
                 Some(i) => given[i].1.iter().zip(x).fold(given[i].0.clone(), |sum, (a, x)| sum + a * x),
                 None => x[place(j)].clone(),

@@ -4,7 +4,8 @@ use serde_json::Value;
 
 use crate::exact::Rational;
 
-use super::{Amount, Body, Decision, Element, Inertia, Load, Mesh, Motion, Problem, Verdict};
+use super::motion::Amount;
+use super::{Body, Decision, Element, Inertia, Load, Mesh, Motion, Problem, Verdict};
 
 fn number(v: &Value) -> f64 {
     v.as_f64().expect("a number")
