@@ -69,7 +69,7 @@ fn gearbox(dice: &mut Dice) -> Gearbox {
         })
         .collect();
     let one_way: Vec<i8> = elements.iter().map(|_| if dice.one_in(6) { [-1, 1][dice.below(2)] } else { 0 }).collect();
-    let mut any = |dice: &mut Dice| {
+    let any = |dice: &mut Dice| {
         let first = 1 + dice.below(shafts);
         let second = if dice.one_in(2) { 0 } else { 1 + dice.below(shafts) };
         [first, if second == first { 0 } else { second }]

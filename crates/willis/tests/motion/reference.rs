@@ -74,7 +74,7 @@ impl Reference {
         let mut twists = vec![0.0; self.shafts.len()];
         for step in 0..steps {
             let at = |step: usize| duration * step as f64 / steps as f64;
-            self.step(&mut y, &mut twists, at(step), at(step + 1), &torques, &engaged, 0)?;
+            self.step(&mut y, &mut twists, [at(step), at(step + 1)], &torques, &engaged, 0)?;
             most = most.max(y.rows(0, n).amax());
         }
         Some((y.rows(0, n).iter().copied().collect(), most))
@@ -85,8 +85,7 @@ impl Reference {
         &self,
         y: &mut DVector<f64>,
         twists: &mut Vec<f64>,
-        from: f64,
-        to: f64,
+        [from, to]: [f64; 2],
         torques: &impl Fn(f64, &[f64]) -> Vec<f64>,
         engaged: &impl Fn(f64) -> Vec<f64>,
         depth: usize,
@@ -105,8 +104,8 @@ impl Reference {
         if depth == 14 {
             return None;
         }
-        self.step(y, twists, from, middle, torques, engaged, depth + 1)?;
-        self.step(y, twists, middle, to, torques, engaged, depth + 1)
+        self.step(y, twists, [from, middle], torques, engaged, depth + 1)?;
+        self.step(y, twists, [middle, to], torques, engaged, depth + 1)
     }
 
     fn newton(
