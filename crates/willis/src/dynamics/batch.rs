@@ -6,6 +6,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{SourceKind, Train};
 
+use super::engine::Touch;
 use super::fixed::FixedStep;
 use super::fixed::groups::UNBOUNDED;
 use super::fused::BLOCK;
@@ -34,6 +35,7 @@ struct Block {
     /// Modes of the runs one after another.
     sign: Vec<i8>,
     side: Vec<Side>,
+    touch: Vec<Touch>,
     present: [Option<u32>; LANES],
     /// Whether that is the same in all of them.
     uniform: bool,
@@ -107,6 +109,7 @@ impl Batch {
             least: vec![],
             sign: one.sign.repeat(LANES),
             side: one.side.repeat(LANES),
+            touch: one.shafts.iter().map(|shaft| shaft.touch).collect::<Vec<_>>().repeat(LANES),
             present: [None; LANES],
             uniform: true,
         };
@@ -364,6 +367,8 @@ impl Block {
         let (groups, elements) = (one.sign.len(), one.side.len());
         one.sign.copy_from_slice(&self.sign[lane * groups..(lane + 1) * groups]);
         one.side.copy_from_slice(&self.side[lane * elements..(lane + 1) * elements]);
+        let touch = self.touch.chunks_exact(one.shafts.len().max(1)).nth(lane).unwrap_or_default();
+        one.shafts.iter_mut().zip(touch).for_each(|(shaft, touch)| shaft.touch = *touch);
         one.present = None;
         // Where runs never go together, each goes on in its own mode.
         if let (Some(k), true) = (self.present[lane], one.needs_itself()) {
@@ -381,6 +386,8 @@ impl Block {
         paste_lane(&one.inputs, lane, &mut self.inputs);
         self.sign[lane * groups..(lane + 1) * groups].copy_from_slice(&one.sign);
         self.side[lane * elements..(lane + 1) * elements].copy_from_slice(&one.side);
+        let touch = self.touch.chunks_exact_mut(one.shafts.len().max(1)).nth(lane).unwrap_or_default();
+        touch.iter_mut().zip(&one.shafts).for_each(|(touch, shaft)| *touch = shaft.touch);
         self.present[lane] = one.present;
         if one.present.is_some() {
             for (from, to) in [(&one.base, &mut self.base), (&one.least, &mut self.least)] {
