@@ -197,8 +197,8 @@ pub struct FixedStep {
     /// Why the run cannot go on.
     pub(super) verdict: Option<Outcome>,
     /// Twice the largest speeds met, as a square, and how often in a row they turned round while they passed that.
-    bound: f64,
-    turns: u32,
+    pub(super) bound: f64,
+    pub(super) turns: u32,
 }
 
 impl FixedStep {
