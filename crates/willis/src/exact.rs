@@ -255,13 +255,66 @@ impl Rational {
     }
 }
 
+/// Operations of fractions of single words, which nearly all are: in double words they cannot overflow, and common
+/// divisors are those of single words (Knuth, The Art of Computer Programming 2, 4.5.1).
+mod word {
+    use num_integer::Integer;
+    use num_rational::Ratio;
+
+    type Word = (i64, i64);
+
+    pub fn of(r: &Ratio<i128>) -> Option<Word> {
+        Some((i64::try_from(*r.numer()).ok()?, i64::try_from(*r.denom()).ok()?))
+    }
+
+    /// Both of the double words of a product.
+    fn wide(a: i64, b: i64) -> i128 {
+        i128::from(a) * i128::from(b)
+    }
+
+    pub fn add((a, b): Word, (c, d): Word) -> Option<Ratio<i128>> {
+        if b == 1 && d == 1 {
+            return Some(Ratio::new_raw(i128::from(a) + i128::from(c), 1));
+        }
+        let g = b.gcd(&d);
+        let sum = wide(a, d / g) + wide(c, b / g);
+        // What is common to the sum and the denominator is a part of `g`.
+        let common = if g == 1 { 1 } else { ((sum % i128::from(g)) as i64).gcd(&g) };
+        Some(Ratio::new_raw(if common == 1 { sum } else { sum / i128::from(common) }, wide(b / g, d / common)))
+    }
+
+    pub fn sub(x: Word, (c, d): Word) -> Option<Ratio<i128>> {
+        add(x, (c.checked_neg()?, d))
+    }
+
+    pub fn mul((a, b): Word, (c, d): Word) -> Option<Ratio<i128>> {
+        if a == 0 || c == 0 {
+            return Some(Ratio::new_raw(0, 1));
+        }
+        // The divisor of the least number has no absolute value.
+        if a == i64::MIN || c == i64::MIN {
+            return None;
+        }
+        let (g, h) = (a.gcd(&d), c.gcd(&b));
+        Some(Ratio::new_raw(wide(a / g, c / h), wide(b / h, d / g)))
+    }
+
+    pub fn div(x: Word, (c, d): Word) -> Option<Ratio<i128>> {
+        match c {
+            0 | i64::MIN => None,
+            _ => mul(x, (d * c.signum(), c.abs())),
+        }
+    }
+}
+
 macro_rules! operator {
     ($trait:ident, $method:ident, $checked:ident, $op:tt) => {
         impl $trait<&Rational> for &Rational {
             type Output = Rational;
             fn $method(self, other: &Rational) -> Rational {
                 if let (Repr::Small(a), Repr::Small(b)) = (&self.0, &other.0) {
-                    if let Some(r) = a.$checked(b) {
+                    let quick = word::of(a).zip(word::of(b)).and_then(|(a, b)| word::$method(a, b));
+                    if let Some(r) = quick.or_else(|| a.$checked(b)) {
                         return Rational(Repr::Small(r));
                     }
                 }
@@ -534,6 +587,23 @@ mod tests {
         }
         assert_eq!(Rational::from_f64(0.98).unwrap().to_string(), "49/50");
         assert_eq!(Rational::from_f64(f64::NAN), None);
+    }
+
+    #[test]
+    fn fractions_of_words_are_those_of_any_length() {
+        let words = [0, 1, -1, 2, 3, 6, -12, 35, 1 << 31, (1 << 62) - 1, i64::MAX, i64::MIN + 1, i64::MIN];
+        let parts: Vec<Rational> =
+            (words.iter()).flat_map(|&n| words.iter().filter(|d| **d > 0).map(move |&d| Rational::new(n, d))).collect();
+        for a in &parts {
+            for b in &parts {
+                let all = [(a + b, a.big() + b.big()), (a - b, a.big() - b.big()), (a * b, a.big() * b.big())];
+                let quotient = (!b.is_zero()).then(|| (a / b, a.big() / b.big()));
+                for (found, exact) in all.into_iter().chain(quotient) {
+                    let found = found.big();
+                    assert_eq!((found.numer(), found.denom()), (exact.numer(), exact.denom()), "{a} and {b}");
+                }
+            }
+        }
     }
 
     #[test]

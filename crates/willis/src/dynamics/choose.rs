@@ -64,12 +64,12 @@ impl Engine {
         }
     }
 
-    /// Groups whose slip is zero but for round-off.
-    pub fn at_rest(&self) -> Vec<bool> {
+    /// Groups whose slip is zero but for a part of their speeds.
+    pub fn at_rest(&self, within: f64) -> Vec<bool> {
         (0..self.system.groups.len())
             .map(|g| {
                 let row = &self.system.groups[g].row;
-                self.group_slip(g).abs() <= 1e-11 * dot_size(row, &self.speed)
+                self.group_slip(g).abs() <= within * dot_size(row, &self.speed)
             })
             .collect()
     }

@@ -260,8 +260,7 @@ impl Engine {
                     let later: Vec<f64> = x.iter().zip(&rates).map(|(x, r)| x + step * r).collect();
                     self.mode.clone_from(start);
                     self.load(t, x);
-                    verdict =
-                        self.ask_contacts(t, Some((t + step, &later)), |d, load| d.decide(load, certified));
+                    verdict = self.ask_contacts(t, Some((t + step, &later)), |d, load| d.decide(load, certified));
                     found = self.mode_found(start);
                 }
             }
@@ -311,13 +310,7 @@ impl Engine {
             }
         }
         for g in (0..s.groups.len()).filter(|&g| start.slip[g] == 0) {
-            mode.slip[g] = slips[g].unwrap_or_else(|| {
-                let &f = s.groups[g].frictions.first().expect("no mesh");
-                let (_, factor) = s.frictions[f].group.expect("of this group");
-                let [a, b] = s.bodies.frictions[f]
-                    .map(|b| b.map_or((0.0, 0.0), |i| (motion.accelerations[i].value, motion.accelerations[i].error)));
-                if (a.0 - b.0) * factor < -(a.1 + b.1) * factor.abs() { -1 } else { 1 }
-            });
+            mode.slip[g] = slips[g].unwrap_or_else(|| if self.drift(g) < -1.0 { -1 } else { 1 });
         }
         for (j, mesh) in motion.meshes.iter().enumerate() {
             if mode.element_slip(s, j) != 0 {
@@ -325,6 +318,21 @@ impl Engine {
             }
         }
         mode
+    }
+
+    /// How fast a group that nothing holds begins to slip, over the bound of that number's error.
+    fn drift(&self, g: usize) -> f64 {
+        let s = &self.system;
+        let &f = s.groups[g].frictions.first().expect("teeth hold");
+        let (_, factor) = s.frictions[f].group.expect("of this group");
+        let of = |b: Body| {
+            b.map_or((0.0, 0.0), |i| {
+                let a = &self.motion().accelerations[i];
+                (a.value, a.error)
+            })
+        };
+        let [a, b] = s.bodies.frictions[f].map(of);
+        factor.signum() * (a.0 - b.0) / (a.1 + b.1 + f64::MIN_POSITIVE)
     }
 
     fn motion(&self) -> &Motion {
@@ -342,12 +350,26 @@ impl Engine {
 
     /// Whether the present motion, at the state solved last, is the only one.
     pub fn is_single(&mut self, t: f64) -> bool {
-        self.certified || self.ask_contacts(t, None, |d, load| d.is_certified() || matches!(d.decide(load, false), Verdict::One { .. }))
+        self.certified
+            || self.ask_contacts(t, None, |d, load| {
+                d.is_certified() || matches!(d.decide(load, false), Verdict::One { .. })
+            })
     }
 
     /// How far what is held, at the state solved last, is from breaking away; where it does, less than 0: how fast,
     /// over the round-off of that.
     pub fn spare(&mut self, t: f64) -> f64 {
-        self.ask_contacts(t, None, |d, load| d.spare(load))
+        let spare = self.ask_contacts(t, None, |d, load| d.spare(load));
+        // What can hold nothing at this instant is no contact.
+        let held = |g: usize| {
+            let joints = &self.contacts.set.joints;
+            joints.iter().any(|(joint, _)| matches!(joint, Joint::Friction(k) if self.system.frictions[*k].group.is_some_and(|(of, _)| of == g)))
+        };
+        (0..self.system.groups.len())
+            .filter(|&g| self.mode.slip[g] == 0)
+            .filter(|&g| !self.system.groups[g].driven && self.system.groups[g].elements.is_empty() && !held(g))
+            .map(|g| self.drift(g).abs())
+            .filter(|drift| *drift > 1.0)
+            .fold(spare, |spare, drift| spare.min(-drift))
     }
 }

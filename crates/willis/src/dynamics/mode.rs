@@ -125,6 +125,15 @@ pub(super) fn dot_size(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (x * y).abs()).sum()
 }
 
+/// A sum, or zero if that is no more than round-off of the amounts added up.
+///
+/// In a linear map a zero is a fact of the train: what is idle bears no force and what is held has no acceleration. Noise
+/// in its place has a sign, which would be taken for a direction of power.
+#[inline]
+pub(super) fn unless_rounding(sum: f64, amounts: f64) -> f64 {
+    if sum.abs() <= 64.0 * f64::EPSILON * amounts { 0.0 } else { sum }
+}
+
 /// What follows from the loss slopes alone: unknowns × ports, and slip accelerations of all groups × ports.
 #[derive(Clone)]
 pub(super) struct Pattern {
@@ -146,10 +155,10 @@ impl Pattern {
         let mut slip = vec![0.0; system.groups.len() * p];
         for (g, group) in system.groups.iter().enumerate() {
             let row = &mut slip[g * p..(g + 1) * p];
-            for (i, d) in group.row[..system.free].iter().enumerate() {
-                for k in 0..p {
-                    row[k] += d * response[i * p + k];
-                }
+            for (k, entry) in row.iter_mut().enumerate() {
+                let parts = group.row[..system.free].iter().enumerate().map(|(i, d)| d * response[i * p + k]);
+                let (sum, amounts) = parts.fold((0.0, 0.0), |(sum, amounts), x: f64| (sum + x, amounts + x.abs()));
+                *entry = unless_rounding(sum, amounts);
             }
             for i in 0..system.prescribed {
                 row[system.port_of_prescribed + i] += group.row[system.free + i];
@@ -265,6 +274,8 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
         })
         .collect();
     let mut matrix: Vec<Vec<f64>> = rows.iter().map(|row| unknown.iter().map(|&port| row[port]).collect()).collect();
+    // What the conditions add up to in amounts, by which their solution may be wrong in its last places.
+    let mut amounts: Vec<Vec<f64>> = rights.iter().map(|right| right.iter().map(|x| x.abs()).collect()).collect();
     // Gauss–Jordan; a condition that others fulfil already has nothing left to be solved for.
     let mut carried = vec![false; system.groups.len()];
     let mut solved = vec![false; count];
@@ -290,8 +301,9 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
                     matrix[r][c] -= factor * x;
                 }
                 for c in 0..p {
-                    let x = rights[i][c];
+                    let (x, size) = (rights[i][c], amounts[i][c]);
                     rights[r][c] -= factor * x;
+                    amounts[r][c] += (factor * size).abs();
                 }
             }
         }
@@ -315,22 +327,26 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
     }
     let mut holding = vec![0.0; system.groups.len() * p];
     let mut response = pattern.response.clone();
+    let mut size = vec![0.0; p];
     // Columns of unknown ports act through their solution only.
     for row in 0..n {
         let line = &mut response[row * p..(row + 1) * p];
         let weights: Vec<f64> = unknown.iter().map(|&port| std::mem::take(&mut line[port])).collect();
+        size.iter_mut().zip(&*line).for_each(|(size, x)| *size = x.abs());
         for i in (0..count).filter(|&i| solved[i] && weights[i] != 0.0) {
             let w = weights[i] / matrix[i][i];
             for c in 0..p {
                 line[c] += w * rights[i][c];
+                size[c] += w.abs() * amounts[i][c];
             }
         }
+        line.iter_mut().zip(&size).for_each(|(x, size)| *x = unless_rounding(*x, *size));
     }
     for (k, &g) in held.iter().enumerate() {
         let i = varying.len() + k;
         if solved[i] {
             for c in 0..p {
-                holding[g * p + c] = rights[i][c] / matrix[i][i];
+                holding[g * p + c] = unless_rounding(rights[i][c], amounts[i][c]) / matrix[i][i];
             }
         }
     }

@@ -16,11 +16,14 @@ use super::handles::{Input, InputInfo, InputRefused, Output};
 use super::integrator::{Dopri5, Implicit, Smooth, StepError, Stepper};
 use super::margins::{Margin, NOISE, Watch};
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
-use super::start::initial_state;
+use super::start::{AS_WRITTEN, initial_state};
 use super::system::System;
 
 /// How often in a run what a formula does to a held element is looked at, at least.
 const LOOKS: f64 = 1000.0;
+
+/// Slip that is none, over the speeds of which it is the difference.
+const ROUND_OFF: f64 = 1e-11;
 
 /// A scenario that is being run.
 ///
@@ -315,7 +318,8 @@ impl Simulation {
             self.x = x;
             return Err(Outcome::Impact(why));
         }
-        for (rest, now) in self.at_rest.iter_mut().zip(self.engine.at_rest()) {
+        let within = if matches!(self.why, Some(Why::Start)) { AS_WRITTEN } else { ROUND_OFF };
+        for (rest, now) in self.at_rest.iter_mut().zip(self.engine.at_rest(within)) {
             *rest |= now;
         }
         self.engine.rest_with_others(&mut self.at_rest);
@@ -661,7 +665,9 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
     let what = match engine.certificate {
         Some(true) => return None,
         Some(false) => "there may be several motions, or none, in some states of this train",
-        None => return Some("too many meshes and friction elements for a certificate that the motion is unique".into()),
+        None => {
+            return Some("too many meshes and friction elements for a certificate that the motion is unique".into());
+        }
     };
     let done = match method {
         Method::Adaptive => "every change of mode was searched for all of them",

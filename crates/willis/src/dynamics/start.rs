@@ -9,6 +9,10 @@ use super::engine::Engine;
 use super::event::short;
 use super::integrator::Smooth;
 
+/// Difference between speeds, relative to them, up to which they are the same number written down: what the program
+/// prints it takes back.
+pub(super) const AS_WRITTEN: f64 = 1e-9;
+
 /// The state at the start, without energies; the engine looks at it.
 pub(super) fn initial_state(engine: &mut Engine) -> Result<Vec<f64>, Diagnostics> {
     let start = engine.system.scenario.start;
@@ -57,8 +61,10 @@ fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostics>
     }
     for (m, row, w, given) in &rows {
         let is: f64 = row.iter().zip(&x[..free]).map(|(a, b)| a * b).sum();
-        let size: f64 = row.iter().zip(&x[..free]).map(|(a, b)| (a * b).abs()).sum::<f64>() + w.abs();
-        if *given && (is - w).abs() > s.train.speed_tolerance() * size {
+        let size: f64 = (s.speeds[m.index()].iter().zip(x[..free].iter().chain(&engine.speed[free..])))
+            .map(|(a, b)| (a * b).abs())
+            .sum();
+        if *given && (is - w).abs() > s.train.speed_tolerance().max(AS_WRITTEN) * (size + w.abs()) {
             let row = &s.speeds[m.index()];
             let name = s.train.member_name(*m);
             let [given, follows] = apart(w + prescribed(row), is + prescribed(row), |x| short(x).to_string());

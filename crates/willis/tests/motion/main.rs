@@ -3,6 +3,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod gears;
 mod laws;
+mod reference;
+mod rows;
 mod runs;
 mod steps;

@@ -1,59 +1,11 @@
 //! Whole runs: verdicts where the motion is not determined, energy that closes, and symmetries that no
 //! implementation may break.
 
-use std::ops::ControlFlow;
-
 use proptest::prelude::*;
-use willis::dynamics::{ColumnKind, Event, Method, Options, Outcome, Recorder, RunReport, Sample, simulate};
+use willis::dynamics::{ColumnKind, Method, Options, Outcome, RunReport, simulate};
 use willis::named::Named;
-use willis::train::Train;
 
-/// What a run gave.
-#[derive(Default)]
-struct Rows {
-    names: Vec<String>,
-    rows: Vec<Vec<f64>>,
-    events: Vec<Event>,
-}
-
-impl Rows {
-    /// All values of the columns that begin so.
-    fn of<'a>(&'a self, prefix: &'a str) -> impl Iterator<Item = f64> + 'a {
-        let columns: Vec<usize> = (0..self.names.len()).filter(|&k| self.names[k].starts_with(prefix)).collect();
-        self.rows.iter().flat_map(move |row| columns.iter().map(|&k| row[k]).collect::<Vec<_>>())
-    }
-
-    fn greatest(&self, prefix: &str) -> f64 {
-        self.of(prefix).fold(0.0, |most, x| most.max(x.abs()))
-    }
-}
-
-impl Recorder for Rows {
-    fn columns(&mut self, columns: &[willis::dynamics::Column]) -> ControlFlow<()> {
-        self.names = columns.iter().map(|c| c.name.clone()).collect();
-        ControlFlow::Continue(())
-    }
-
-    fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
-        self.rows.push(sample.values.to_vec());
-        ControlFlow::Continue(())
-    }
-
-    fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.events.push(event.clone());
-        ControlFlow::Continue(())
-    }
-}
-
-fn train(text: &str) -> Train {
-    Train::from_toml(text).unwrap_or_else(|e| panic!("{e}\n{text}"))
-}
-
-fn run(text: &str, options: &Options) -> (Rows, RunReport) {
-    let mut rows = Rows::default();
-    let report = simulate(&train(text), "run", options, &mut rows).unwrap_or_else(|e| panic!("{e}\n{text}"));
-    (rows, report)
-}
+use crate::rows::{run, train};
 
 /// What does not close, as a part of all that came in, also from the store.
 fn open_part(report: &RunReport) -> f64 {

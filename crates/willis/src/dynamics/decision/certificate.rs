@@ -51,8 +51,8 @@ impl Tracked {
     /// `self / pivot`, whose sign is known.
     fn over(self, pivot: Self) -> Self {
         let value = self.value / pivot.value;
-        let error = (self.error + value.abs() * pivot.error) / (pivot.value.abs() - pivot.error)
-            + f64::EPSILON * value.abs();
+        let error =
+            (self.error + value.abs() * pivot.error) / (pivot.value.abs() - pivot.error) + f64::EPSILON * value.abs();
         Self::new(value, error, times(self.residue, power(pivot.residue, PRIME - 2)))
     }
 }

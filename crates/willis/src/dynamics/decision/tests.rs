@@ -249,7 +249,13 @@ fn assert_motion(problem: &Problem, load: &Load, motion: &Motion) {
         let slip = z1 * (a(first).0 - a(carrier).0);
         let bound = 4.0 * (f.1 + e.1) + 1e-14 * (f.0.abs() + e.0.abs());
         let [drives, is_driven] = [f.0 * along, f.0 * back];
-        let sign = if mesh.slip != 0 { f64::from(mesh.slip) } else if slip.abs() > slip_bound { slip.signum() } else { 0.0 };
+        let sign = if mesh.slip != 0 {
+            f64::from(mesh.slip)
+        } else if slip.abs() > slip_bound {
+            slip.signum()
+        } else {
+            0.0
+        };
         // What the mesh gives back is the less of the two when it turns on, the more when it turns back.
         let [least, most] = [drives.min(is_driven), drives.max(is_driven)];
         let agrees = if sign > 0.0 {
@@ -298,12 +304,15 @@ fn random_trains_satisfy_their_equations() {
             let load = random_load(dice, &problem);
             let found = warm.follow(&load).expect("nothing is prescribed");
             counts[usize::from(certified) * 2 + usize::from(found)] += 1;
-            if !found {  }
+            if !found {}
             if found {
                 assert_motion(&problem, &load, warm.motion());
                 let mut cold = Decision::new(&problem);
                 if certified {
-                    if !cold.follow(&load).expect("nothing is prescribed") { eprintln!("DBG seed {seed} cold"); continue }
+                    if !cold.follow(&load).expect("nothing is prescribed") {
+                        eprintln!("DBG seed {seed} cold");
+                        continue;
+                    }
                     assert!(same(warm.motion(), cold.motion()), "{seed}: {problem:?} {load:?}");
                 }
             }

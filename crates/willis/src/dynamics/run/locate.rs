@@ -1,6 +1,6 @@
 //! Events within a step.
 
-use crate::dynamics::margins::{Margin, Watch};
+use crate::dynamics::margins::{Margin, NOISE, Watch};
 
 use super::Simulation;
 
@@ -71,11 +71,14 @@ impl Simulation {
         self.margins = start;
         for (watch, values) in candidates {
             let (mut t, mut y) = ([t_old, 0.5 * (t_old + t_new), t_new], values);
+            // Below this a value within the step is round-off of the interpolation, as where a group has just left
+            // rest.
+            let unseen = NOISE * values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
             for _ in 0..4 {
                 let Some(lowest) = vertex(t, y).filter(|v| *v > t[0] && *v < t[2] && *v != t[1]) else { break };
                 self.margins_at(lowest);
                 let Some(m) = self.margins.iter().find(|m| m.watch == watch) else { break };
-                if m.is_broken() {
+                if m.is_broken() && m.value < -unseen {
                     found = Some(lowest);
                     break;
                 }
