@@ -6,10 +6,12 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::{SourceKind, Train};
 
+use super::engine::Touch;
 use super::fixed::FixedStep;
 use super::fixed::groups::UNBOUNDED;
 use super::fused::BLOCK;
 use super::mode::{Side, dot};
+use super::report::Outcome;
 
 /// Runs in a block.
 const LANES: usize = 8;
@@ -34,9 +36,14 @@ struct Block {
     /// Modes of the runs one after another.
     sign: Vec<i8>,
     side: Vec<Side>,
+    touch: Vec<Touch>,
     present: [Option<u32>; LANES],
     /// Whether that is the same in all of them.
     uniform: bool,
+    /// What a step looks at growth by, in each run, and why some of them ended.
+    bound: Lanes,
+    turns: [u32; LANES],
+    verdict: [Option<Outcome>; LANES],
 }
 
 /// Several runs of a scenario in steps of fixed length, which differ in initial speeds and in the size of torques.
@@ -107,8 +114,12 @@ impl Batch {
             least: vec![],
             sign: one.sign.repeat(LANES),
             side: one.side.repeat(LANES),
+            touch: one.shafts.iter().map(|shaft| shaft.touch).collect::<Vec<_>>().repeat(LANES),
             present: [None; LANES],
             uniform: true,
+            bound: [0.0; LANES],
+            turns: [0; LANES],
+            verdict: Default::default(),
         };
         Ok(Self {
             blocks: (0..runs.div_ceil(LANES)).map(|_| block()).collect(),
@@ -220,6 +231,11 @@ impl Batch {
         self.impacts
     }
 
+    /// Why a run cannot go on: it stays at the last state that can be believed, while the others go on.
+    pub fn verdict(&self, run: usize) -> Option<&Outcome> {
+        self.blocks.get(run / LANES)?.verdict[run % LANES].as_ref()
+    }
+
     /// Takes steps.
     pub fn run(&mut self, steps: u64) {
         for _ in 0..steps {
@@ -249,7 +265,7 @@ impl Batch {
         for (b, block) in self.blocks.iter_mut().enumerate() {
             let lanes = (self.len - b * LANES).min(LANES);
             // Those in the same mode go together; those that leave it, alone.
-            let mut left = ((1u32 << lanes) - 1) as u8;
+            let mut left = ((1u32 << lanes) - 1) as u8 & !block.ended();
             let mut alone = 0;
             while left != 0 {
                 let present = block.present[left.trailing_zeros() as usize];
@@ -289,7 +305,7 @@ impl Batch {
                 self.impacts += std::mem::take(&mut one.impacts);
                 one.count = count;
             }
-            block.uniform = block.present[..lanes].iter().all(|p| *p == block.present[0]);
+            block.uniform = block.present[..lanes].iter().all(|p| *p == block.present[0]) && block.ended() == 0;
         }
         one.count = count + 1;
     }
@@ -299,6 +315,11 @@ impl Block {
     fn forget(&mut self, lane: usize) {
         self.present[lane] = None;
         self.uniform = false;
+    }
+
+    /// Runs that cannot go on, as bits.
+    fn ended(&self) -> u8 {
+        self.verdict.iter().enumerate().map(|(lane, v)| u8::from(v.is_some()) << lane).sum()
     }
 
     /// Runs in a mode, as bits.
@@ -364,6 +385,8 @@ impl Block {
         let (groups, elements) = (one.sign.len(), one.side.len());
         one.sign.copy_from_slice(&self.sign[lane * groups..(lane + 1) * groups]);
         one.side.copy_from_slice(&self.side[lane * elements..(lane + 1) * elements]);
+        let touch = self.touch.chunks_exact(one.shafts.len().max(1)).nth(lane).unwrap_or_default();
+        one.shafts.iter_mut().zip(touch).for_each(|(shaft, touch)| shaft.touch = *touch);
         one.present = None;
         // Where runs never go together, each goes on in its own mode.
         if let (Some(k), true) = (self.present[lane], one.needs_itself()) {
@@ -375,12 +398,16 @@ impl Block {
             }
             one.present = Some(k);
         }
+        (one.bound, one.turns) = (self.bound[lane], self.turns[lane]);
         one.step();
+        (self.bound[lane], self.turns[lane], self.verdict[lane]) = (one.bound, one.turns, one.verdict.take());
         paste_lane(&one.v, lane, &mut self.v);
         paste_lane(&one.rest, lane, &mut self.rest);
         paste_lane(&one.inputs, lane, &mut self.inputs);
         self.sign[lane * groups..(lane + 1) * groups].copy_from_slice(&one.sign);
         self.side[lane * elements..(lane + 1) * elements].copy_from_slice(&one.side);
+        let touch = self.touch.chunks_exact_mut(one.shafts.len().max(1)).nth(lane).unwrap_or_default();
+        touch.iter_mut().zip(&one.shafts).for_each(|(touch, shaft)| *touch = shaft.touch);
         self.present[lane] = one.present;
         if one.present.is_some() {
             for (from, to) in [(&one.base, &mut self.base), (&one.least, &mut self.least)] {
@@ -465,11 +492,21 @@ impl pulp::WithSimd for Glide<'_> {
         }
         let rows = fused.rows;
         alone |= product(simd, packed, terms, &block.base[..rows], &block.least[..rows], &mut ends[..rows]);
+        // As a single run looks at its growth; what is no number counts as grown.
+        let mut square = [0.0; LANES];
+        let mut add = |of: &Lanes| (0..LANES).for_each(|lane| square[lane] += of[lane] * of[lane]);
+        ends[..fused.free].iter().for_each(&mut add);
+        let s = &one.engine.system;
+        for (_, u) in s.drivers.iter().zip(&block.inputs).filter(|(driver, _)| driver.prescribed.is_some()) {
+            add(u);
+        }
+        for (lane, (square, bound)) in square.iter().zip(&block.bound).enumerate() {
+            alone |= u8::from(!(square <= bound)) << lane;
+        }
         alone &= alike;
         let going = alike & !alone;
         let free = fused.free;
         block.v[..free].iter_mut().zip(ends.iter()).for_each(|(v, end)| write(v, end, going));
-        let s = &one.engine.system;
         if s.prescribed > 0 {
             for (driver, u) in s.drivers.iter().zip(&block.inputs) {
                 if let Some(i) = driver.prescribed {

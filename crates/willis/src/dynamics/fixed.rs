@@ -14,17 +14,19 @@ mod look;
 pub(super) mod map;
 pub(super) mod recorded;
 mod settle;
+pub(super) mod shafts;
 mod step;
+mod verdict;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::Train;
 
 use super::element::{Loss, element_name};
-use super::engine::Engine;
+use super::engine::{Engine, Touch};
 use super::fused::{ByKey, Exactly, Fused};
 use super::handles::{Input, InputInfo, InputRefused, Output};
 use super::mode::{Mode, Pattern, Side, dot};
-use super::report::Column;
+use super::report::{Column, Outcome};
 use super::shows::Shows;
 use super::source::signals_of;
 use super::start::initial_state;
@@ -32,6 +34,7 @@ use super::system::System;
 
 use groups::{GroupStep, Rub};
 use map::{Key, StepMap};
+use shafts::{MOST_SHAFTS, ShaftStep};
 
 /// Groups and elements that fit the key of a mode.
 const MOST_GROUPS: usize = 48;
@@ -138,8 +141,9 @@ pub struct FixedStep {
     teeth: Vec<(usize, f64, Loss)>,
     /// Whether any group shares.
     shares: bool,
-    /// The state at the start of the step, where shafts need it.
-    state: Vec<f64>,
+    pub(super) shafts: Vec<ShaftStep>,
+    /// Torques of the shafts against their relative accelerations.
+    resists: Vec<f64>,
     maps: Vec<StepMap>,
     by_key: ByKey<Key>,
     /// The map of the last step and its key.
@@ -172,8 +176,8 @@ pub struct FixedStep {
     pub(super) ends: Vec<f64>,
     keeps_angles: bool,
     arch: pulp::Arch,
-    /// Speeds, angles with integrals, and signs at the start.
-    at_start: (Vec<f64>, Vec<f64>, Vec<i8>),
+    /// Speeds, angles with integrals, signs and contacts at the start.
+    at_start: (Vec<f64>, Vec<f64>, Vec<i8>, Vec<Touch>),
     /// Energies as the engine counts them; empty unless asked for.
     pub(super) energies: Vec<f64>,
     pub(super) came_in: Vec<f64>,
@@ -190,6 +194,11 @@ pub struct FixedStep {
     seen_at: Option<u64>,
     /// Whether an output that takes forces was asked for.
     shows_forces: bool,
+    /// Why the run cannot go on.
+    pub(super) verdict: Option<Outcome>,
+    /// Twice the largest speeds met, as a square, and how often in a row they turned round while they passed that.
+    pub(super) bound: f64,
+    pub(super) turns: u32,
 }
 
 impl FixedStep {
@@ -211,6 +220,11 @@ impl FixedStep {
                 system.groups.len(),
                 system.elements.len()
             );
+            return Err(fail(message, "use the adaptive method"));
+        }
+        if system.elastic.len() > MOST_SHAFTS {
+            let message =
+                format!("{} elastic shafts: steps of fixed length take at most {MOST_SHAFTS}", system.elastic.len());
             return Err(fail(message, "use the adaptive method"));
         }
         if system.laws.is_some() {
@@ -258,6 +272,7 @@ impl FixedStep {
         let v = engine.speed.clone();
         let sign: Vec<i8> = groups.iter().map(|group| if dot(&group.row, &v) < 0.0 { -1 } else { 1 }).collect();
         let rest = x[s.free..s.free + s.all() + s.integrals].to_vec();
+        let shafts = ShaftStep::all(s, h);
         let signals = s.signals().count();
         let signal_of = (s.scenario.sources.iter())
             .scan(0, |at, source| {
@@ -278,7 +293,7 @@ impl FixedStep {
             h,
             start: s.scenario.start,
             count: 0,
-            at_start: (v.clone(), rest.clone(), sign.clone()),
+            at_start: (v.clone(), rest.clone(), sign.clone(), shafts.iter().map(|shaft| shaft.touch).collect()),
             rest,
             tau: vec![0.0; p + g],
             slip: vec![0.0; g],
@@ -294,7 +309,8 @@ impl FixedStep {
                 })
                 .collect(),
             shares: groups.iter().any(|g| g.shares),
-            state: vec![],
+            resists: vec![0.0; s.elastic.len()],
+            shafts,
             groups,
             maps: Vec::with_capacity(64),
             by_key: ByKey::with_capacity_and_hasher(64, Default::default()),
@@ -330,6 +346,9 @@ impl FixedStep {
             seen_mode: engine.mode.clone(),
             seen_at: None,
             shows_forces: false,
+            verdict: None,
+            bound: 0.0,
+            turns: 0,
             engine,
         })
     }
@@ -343,6 +362,11 @@ impl FixedStep {
     pub fn speed(&self, member: &str) -> Option<f64> {
         let s = &self.engine.system;
         Some(dot(&s.speeds[s.train.member(member)?.index()], &self.v))
+    }
+
+    /// Why the run cannot go on: from then on it stays at the last state that can be believed, and steps do nothing.
+    pub fn verdict(&self) -> Option<&Outcome> {
+        self.verdict.as_ref()
     }
 
     /// Steps whose mode was not settled within the bounded number of trials.
@@ -435,14 +459,16 @@ impl FixedStep {
 
     /// Goes back to the start. What was learned about modes stays, and so do inputs that were replaced.
     pub fn reset(&mut self) {
-        let (v, rest, sign) = &self.at_start;
+        let (v, rest, sign, _) = &self.at_start;
         self.v.copy_from_slice(v);
         self.rest.copy_from_slice(rest);
         self.sign.copy_from_slice(sign);
         self.side.fill(Side::Drive);
         self.energies.fill(0.0);
         self.came_in.fill(0.0);
+        self.shafts.iter_mut().zip(&self.at_start.3).for_each(|(shaft, touch)| shaft.touch = *touch);
         (self.count, self.unsettled, self.impacts) = (0, 0, 0);
+        (self.verdict, self.bound, self.turns) = (None, 0.0, 0);
         (self.present, self.last, self.until) = (None, None, f64::NEG_INFINITY);
         self.seen_at = None;
     }
@@ -467,7 +493,7 @@ impl FixedStep {
         ((self.engine.system.scenario.end - self.start) / self.h - 1e-9).ceil() as u64
     }
 
-    /// Takes steps.
+    /// Takes steps; none after a [verdict](Self::verdict).
     pub fn run(&mut self, steps: u64) {
         for _ in 0..steps {
             self.step();

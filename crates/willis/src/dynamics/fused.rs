@@ -7,6 +7,7 @@
 use super::element::Loss;
 use super::fixed::groups::{GroupStep, UNBOUNDED};
 use super::fixed::map::StepMap;
+use super::fixed::shafts::ShaftStep;
 use super::mode::Side;
 use super::system::System;
 
@@ -34,6 +35,8 @@ pub(super) struct Exactly {
     pub forward: u64,
     pub idle: u64,
     pub coast: u64,
+    /// Contacts of the shafts.
+    pub touch: u64,
 }
 
 /// Mixes the words of a key: the few modes of a train need no defence against chosen keys.
@@ -75,6 +78,7 @@ impl Fused {
         s: &System,
         groups: &[GroupStep],
         teeth: &[(usize, f64, Loss)],
+        shafts: &[ShaftStep],
         map: &StepMap,
         mode: &Exactly,
         h: f64,
@@ -102,7 +106,10 @@ impl Fused {
                 }
             }
             for (k, e) in s.elastic.iter().enumerate() {
-                x[all + drivers + frictions + k] += row[e.port];
+                let [spring, damper, constant] = shafts[k].resists();
+                x[all + drivers + frictions + k] -= row[e.port] * spring;
+                x[all + one] -= row[e.port] * constant;
+                x.iter_mut().zip(&e.row).for_each(|(x, w)| *x -= row[e.port] * damper * w);
             }
             for (g, group) in groups.iter().enumerate() {
                 let per_step = row[s.ports + g] / h;
@@ -136,23 +143,31 @@ impl Fused {
             row[i] += 1.0;
             rows.push(row);
         }
-        for (g, group) in groups.iter().enumerate() {
-            if Exactly::has(mode.held, g) || Exactly::has(mode.idle, g) {
-                continue;
-            }
+        // A sum over the speeds at the end of the step.
+        let at_end = |of: &[f64], factor: f64| -> Vec<f64> {
             let mut row = vec![0.0; width];
-            for i in 0..free {
-                let next = std::mem::take(&mut rows[i]);
-                add(&mut row, &next, mode.sign(g) * group.row[i]);
-                rows[i] = next;
+            for (next, w) in rows.iter().zip(of) {
+                add(&mut row, next, factor * w);
             }
             for (k, driver) in s.drivers.iter().enumerate() {
                 if let Some(i) = driver.prescribed {
-                    row[all + k] += mode.sign(g) * group.row[free + i];
+                    row[all + k] += factor * of[free + i];
                 }
             }
-            rows.push(row);
+            row
+        };
+        let slides = |g: &usize| !Exactly::has(mode.held, *g) && !Exactly::has(mode.idle, *g);
+        let mut margins: Vec<Vec<f64>> =
+            (0..groups.len()).filter(slides).map(|g| at_end(&groups[g].row, mode.sign(g))).collect();
+        for (k, shaft) in shafts.iter().enumerate() {
+            for [twist, rate, constant] in shaft.margins() {
+                let mut row = at_end(&s.elastic[k].row, rate);
+                row[all + drivers + frictions + k] += twist;
+                row[all + one] += constant;
+                margins.push(row);
+            }
         }
+        rows.append(&mut margins);
         let mut lines = map.rows[free * cols..].chunks_exact(cols);
         let mut still = map.still.iter();
         for &g in &map.held {

@@ -135,8 +135,8 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    pub fn new(system: &System, slopes: &[f64]) -> Option<Self> {
-        let x = system.response(slopes)?;
+    pub fn new(system: &System, slopes: &[f64], resists: &[f64]) -> Option<Self> {
+        let x = system.response(slopes, resists)?;
         let (n, p) = (system.unknowns(), system.ports);
         let mut response = vec![0.0; n * p];
         for i in 0..n {
@@ -198,12 +198,18 @@ impl Maps {
     }
 
     pub fn pattern(&mut self, system: &System, mode: &Mode) -> Option<&Pattern> {
-        let key = Self::pattern_key(system, mode);
+        self.pattern_with(system, mode, &[])
+    }
+
+    /// The same where each shaft resists its relative acceleration.
+    pub fn pattern_with(&mut self, system: &System, mode: &Mode, resists: &[f64]) -> Option<&Pattern> {
+        let mut key = Self::pattern_key(system, mode);
+        key.extend(resists.iter().flat_map(|d| d.to_bits().to_le_bytes()));
         self.patterns
             .entry(key)
             .or_insert_with(|| {
                 let slopes: Vec<f64> = (0..system.elements.len()).map(|j| mode.slope(system, j)).collect();
-                Pattern::new(system, &slopes)
+                Pattern::new(system, &slopes, resists)
             })
             .as_ref()
     }

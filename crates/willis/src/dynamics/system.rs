@@ -207,27 +207,41 @@ impl System {
         self.nodes
     }
 
-    /// The equations with loss slopes `slopes`, one for each element.
-    fn matrix(&self, slopes: &[f64]) -> DMatrix<f64> {
+    /// The equations with loss slopes `slopes`, one for each element, and with a torque against the relative
+    /// acceleration of each shaft.
+    fn matrix(&self, slopes: &[f64], resists: &[f64]) -> DMatrix<f64> {
         let mut k = DMatrix::zeros(self.nodes, self.nodes);
         k.columns_mut(0, self.all()).copy_from(&self.left);
         for (j, e) in self.elements.iter().enumerate() {
             let column = self.gear.column(j) + self.loss.column(j) * (slopes[j] * e.factors[0]);
             k.set_column(self.all() + j, &column);
         }
+        for (e, d) in self.elastic.iter().zip(resists) {
+            for i in 0..self.free {
+                k.column_mut(i).axpy(d * e.row[i], &self.port_columns.column(e.port), 1.0);
+            }
+        }
         k
     }
 
     /// Accelerations and forces for a unit torque in each port: unknowns × ports. `None` if the equations
-    /// have no unique solution with these slopes.
-    pub fn response(&self, slopes: &[f64]) -> Option<DMatrix<f64>> {
-        let matrix = self.matrix(slopes);
+    /// have no unique solution with these slopes. `resists`: the torque of each shaft against its relative
+    /// acceleration, which steps of fixed length add; empty where there is none.
+    pub fn response(&self, slopes: &[f64], resists: &[f64]) -> Option<DMatrix<f64>> {
+        let matrix = self.matrix(slopes, resists);
+        let mut right = self.port_columns.clone();
+        for (e, d) in self.elastic.iter().zip(resists) {
+            for i in 0..self.prescribed {
+                let mut column = right.column_mut(self.port_of_prescribed + i);
+                column.axpy(-d * e.row[self.free + i], &self.port_columns.column(e.port), 1.0);
+            }
+        }
         let inverse = matrix.clone().lu().try_inverse()?;
-        let mut x = &inverse * &self.port_columns;
-        x += &inverse * (&self.port_columns - &matrix * &x);
+        let mut x = &inverse * &right;
+        x += &inverse * (&right - &matrix * &x);
         // Bound of the error that rounding of the equations makes (Skeel 1979): what is within it is zero, as the force
         // in an idle mesh.
-        let bound = inverse.abs() * (matrix.abs() * x.abs() + self.port_columns.abs());
+        let bound = inverse.abs() * (matrix.abs() * x.abs() + right.abs());
         x.zip_apply(&bound, |x, bound| *x = unless_rounding(*x, bound));
         x.iter().all(|v| v.is_finite()).then_some(x)
     }

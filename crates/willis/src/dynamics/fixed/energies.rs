@@ -50,8 +50,9 @@ impl FixedStep {
         }
         at += s.frictions.len();
         for (k, e) in s.elastic.iter().enumerate() {
-            let (spring, _) = self.engine.shaft_parts(k, &self.state);
-            self.energies[at + k] -= (tau[e.port] + spring) * dot(&e.row, &mean) * self.h;
+            // What looking ahead takes from a spring is no loss that the shaft has: it stays in the residual.
+            let damper = self.shafts[k].damper_torque(dot(&e.row, &self.next));
+            self.energies[at + k] += damper * dot(&e.row, &mean) * self.h;
         }
         at += s.elastic.len();
         if self.swept {

@@ -1,4 +1,4 @@
-//! What enters a step: torques and end speeds of sources, what friction elements can hold, torques of shafts.
+//! What enters a step: torques and end speeds of sources, what friction elements can hold, twists of shafts.
 
 use crate::dynamics::mode::dot;
 use crate::dynamics::source::{signals_of, source_torque};
@@ -36,7 +36,7 @@ impl FixedStep {
     }
 
     /// What enters a step: torque or end speed of each source, torque with which each friction element can
-    /// oppose slip, torque of each shaft, one.
+    /// oppose slip, twist of each shaft, one.
     #[inline]
     pub(in crate::dynamics) fn enters(&self, k: usize, middle: f64) -> f64 {
         let w = dot(self.row_of_input(k), &self.v);
@@ -93,7 +93,7 @@ impl FixedStep {
         let f = k - drivers;
         let Some(friction) = s.frictions.get(f) else {
             let e = f - s.frictions.len();
-            return if e < s.elastic.len() { self.engine.shaft_torque(e, &self.state) } else { 1.0 };
+            return if e < s.elastic.len() { self.twist(e) } else { 1.0 };
         };
         if friction.group.is_none() || friction.blocks.is_some() {
             return 0.0;
@@ -106,22 +106,14 @@ impl FixedStep {
         }
     }
 
-    /// The state as the engine's shafts know it.
-    pub(super) fn look_at_shafts(&mut self) {
-        self.engine.speed.copy_from_slice(&self.v);
-        self.state.clear();
-        self.state.extend_from_slice(&self.v[..self.engine.system.free]);
-        self.state.extend_from_slice(&self.rest);
-        for k in 0..self.engine.system.elastic.len() {
-            self.engine.touch[k] = self.engine.touch_now(k, &self.state);
-        }
+    /// Twist of a shaft.
+    fn twist(&self, k: usize) -> f64 {
+        let e = &self.engine.system.elastic[k];
+        e.twist + dot(&e.row, &self.rest[..self.v.len()])
     }
 
     /// Torques of the ports in the middle of the step, friction and losses excluded, slips and capacities.
     pub(super) fn load(&mut self, middle: f64) {
-        if !self.engine.system.elastic.is_empty() {
-            self.look_at_shafts();
-        }
         for k in 0..self.inputs.len() {
             self.inputs[k] = self.enters(k, middle);
         }
@@ -142,8 +134,8 @@ impl FixedStep {
             self.tau[f.port] -= f.viscous * dot(&f.row, v);
         }
         let of_frictions = s.drivers.len();
-        for (k, e) in s.elastic.iter().enumerate() {
-            self.tau[e.port] = self.inputs[of_frictions + s.frictions.len() + k];
+        for (k, shaft) in self.shafts.iter_mut().enumerate() {
+            shaft.begin(self.inputs[of_frictions + s.frictions.len() + k]);
         }
         let (h, next) = (self.h, &self.next);
         for (g, group) in self.groups.iter_mut().enumerate() {

@@ -15,6 +15,7 @@ impl FixedStep {
         let t = self.time();
         self.engine.inside = t;
         self.engine.look(t, x);
+        self.engine.touch.iter_mut().zip(&self.shafts).for_each(|(touch, shaft)| *touch = shaft.touch);
         let mut mode = std::mem::replace(&mut self.seen_mode, Mode { slip: vec![], side: vec![] });
         for (g, slip) in mode.slip.iter_mut().enumerate() {
             *slip = if self.groups[g].driven && self.slip[g] == 0.0 { 0 } else { self.sign[g] };
@@ -33,7 +34,7 @@ impl FixedStep {
         std::mem::swap(&mut self.sign, &mut other.sign);
         std::mem::swap(&mut self.side, &mut other.side);
         std::mem::swap(&mut self.slip, &mut other.slip);
-        self.engine.touch.clone_from(&other.engine.touch);
+        std::mem::swap(&mut self.shafts, &mut other.shafts);
     }
 
     /// Forces at the time reached, in the mode of the last step; before the first one, in that which it will choose.

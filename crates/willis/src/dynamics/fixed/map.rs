@@ -30,6 +30,8 @@ impl StepMap {
 pub(super) struct Key {
     pub held: u64,
     pub coast: u64,
+    /// The contacts of the shafts.
+    pub touch: u64,
 }
 
 impl Key {

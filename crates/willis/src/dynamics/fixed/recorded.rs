@@ -1,13 +1,13 @@
 //! A run in steps of fixed length that is recorded.
 
 use crate::diagnostic::Diagnostics;
-use crate::dynamics::engine::Touch;
 use crate::dynamics::event::event;
 use crate::dynamics::report::{Options, Outcome, Recorder, RunReport, Sample};
 use crate::dynamics::run::Simulation;
 use crate::train::Train;
 
 use super::FixedStep;
+use super::shafts::word;
 
 /// A run in steps of fixed length.
 pub(in crate::dynamics) fn fixed(
@@ -63,6 +63,12 @@ pub(in crate::dynamics) fn fixed(
         }
         if sampled && step > 0 {
             stepper.engine.row(t, &x, &mut run.row);
+            // The forces of a row are those at its time, not in the middle of a step.
+            if stepper.engine.acceleration.iter().any(|a| !a.is_finite()) {
+                stepper.stop("accelerations are not finite: a formula leaves its domain");
+                run.outcome.clone_from(&stepper.verdict);
+                break;
+            }
             if recorder.sample(Sample { time_s: t, values: &run.row }).is_break() {
                 run.outcome = Some(Outcome::Interrupted);
             }
@@ -70,16 +76,14 @@ pub(in crate::dynamics) fn fixed(
         if step % 256 == 0 && recorder.progress(t).is_break() {
             run.outcome = Some(Outcome::Interrupted);
         }
-        if (step % 256 == 0 || step == steps) && !stepper.is_finite() {
-            let why = format!(
-                "speeds are no longer finite at t = {t} s: a formula leaves its domain, or the step is too long"
-            );
-            run.outcome = Some(Outcome::NotConverged(why));
-        }
         if step == steps || run.outcome != Some(Outcome::Finished) {
             break;
         }
         stepper.step();
+        if let Some(verdict) = stepper.verdict() {
+            run.outcome = Some(verdict.clone());
+            break;
+        }
         run.steps += 1;
     }
     stepper.copy_to_engine(&mut x);
@@ -110,13 +114,7 @@ impl FixedStep {
     fn state_of_modes(&self) -> (u64, u64, u64, f64) {
         let held = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s == 0) << g).sum();
         let forward = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s > 0) << g).sum();
-        let code = |touch: &Touch| match touch {
-            Touch::Gap => 0,
-            Touch::On(side) => 1 + i64::from(*side),
-            Touch::Limited(side) => 4 + i64::from(*side),
-            Touch::Parting(side) => 7 + i64::from(*side),
-        };
-        let touch = self.engine.touch.iter().fold(0u64, |sum, t| sum.wrapping_mul(9).wrapping_add(code(t) as u64));
+        let touch = word(&self.shafts);
         (held, forward, touch, self.until)
     }
 }

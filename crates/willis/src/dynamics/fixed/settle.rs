@@ -1,11 +1,13 @@
 //! The mode of a step: one that agrees with the speeds at its end.
 
+use crate::dynamics::engine::Touch;
 use crate::dynamics::fused::NOISE;
 use crate::dynamics::mode::{Side, dot, dot_size, slope};
 
 use super::FixedStep;
 use super::groups::{GroupStep, LEAST_UNBOUNDED};
 use super::map::{Key, StepMap, step_map};
+use super::shafts::word;
 
 impl FixedStep {
     /// The map of a mode, made if it was not met before: the only place that takes more than bounded time.
@@ -29,7 +31,9 @@ impl FixedStep {
     fn make(&mut self, key: Key) -> Option<u32> {
         let s = &self.engine.system;
         let mode = key.mode(s);
-        let made = self.engine.maps.pattern(s, &mode).and_then(|pattern| step_map(s, &mode, pattern));
+        let resists = &self.resists;
+        let made =
+            self.engine.maps.pattern_with(s, &mode, resists).and_then(|pattern| step_map(s, &mode, pattern));
         let k = match made {
             Some(map) => {
                 self.maps.push(map);
@@ -47,7 +51,8 @@ impl FixedStep {
             return (k != u32::MAX).then_some(k as usize);
         }
         let s = &self.engine.system;
-        let made = self.engine.maps.pattern(s, &key.mode(s)).map(|pattern| pattern.with_slips(self.groups.len()));
+        let made = (self.engine.maps.pattern_with(s, &key.mode(s), &self.resists))
+            .map(|pattern| pattern.with_slips(self.groups.len()));
         let k = match made {
             Some(wide) => {
                 self.wides.push(wide);
@@ -62,7 +67,7 @@ impl FixedStep {
     /// Which groups are held and which sides drive: the key of the present mode.
     #[inline]
     fn key(&self) -> Key {
-        let mut key = Key { held: 0, coast: 0 };
+        let mut key = Key { held: 0, coast: 0, touch: word(&self.shafts) };
         for (g, group) in self.groups.iter().enumerate() {
             if self.sign[g] == 0 && !group.driven {
                 key.held |= 1 << g;
@@ -97,6 +102,22 @@ impl FixedStep {
                 self.tau[port] = f64::from(sign) * factor.signum() * torque;
             }
         }
+    }
+
+    /// Torques of the shafts in their present contacts, without what follows from the accelerations.
+    fn twist_shafts(&mut self) {
+        for (k, e) in self.engine.system.elastic.iter().enumerate() {
+            let [spring, damper, constant] = self.shafts[k].resists();
+            self.tau[e.port] = -(spring * self.shafts[k].twist + damper * dot(&e.row, &self.v) + constant);
+            self.resists[k] = damper * self.h;
+        }
+    }
+
+    /// The first shaft whose contact and the end of the step disagree.
+    fn turned_shaft(&self) -> Option<Flip> {
+        let elastic = &self.engine.system.elastic;
+        (self.shafts.iter().zip(elastic).enumerate())
+            .find_map(|(k, (shaft, e))| Some(Flip::Shaft(k, shaft.turns_to(dot(&e.row, &self.next))?)))
     }
 
     /// Round-off of the slip of a group at the end of the step.
@@ -257,6 +278,7 @@ impl FixedStep {
     /// Solves the step in the present mode.
     #[inline(always)]
     fn solve(&mut self, free: usize, cols: usize) -> Option<u32> {
+        self.twist_shafts();
         let map = self.map(self.key())?;
         self.rub(None);
         let rows = &self.maps[map as usize].rows;
@@ -269,7 +291,7 @@ impl FixedStep {
     /// Finds the mode of the step and its end.
     #[inline(always)]
     fn settle(&mut self, free: usize, cols: usize) -> bool {
-        let trials = 4 * (self.groups.len() + self.side.len()) + 4;
+        let trials = 4 * (self.groups.len() + self.side.len() + self.shafts.len()) + 4;
         // The group released last, and those that came to rest again at once.
         let (mut released, mut kept) = (None, 0u64);
         for _ in 0..trials {
@@ -277,6 +299,7 @@ impl FixedStep {
             let mut trial = std::mem::take(&mut self.trial);
             let mut flip = self.disagreement(&mut trial, &self.maps[map as usize], free, cols, kept);
             self.trial = trial;
+            flip = self.turned_shaft().or(flip);
             if flip.is_none() && self.shares && !self.maps[map as usize].is_redundant() {
                 for g in 0..self.groups.len() {
                     if self.sign[g] == 0
@@ -303,6 +326,7 @@ impl FixedStep {
                         self.sign[g] = sign;
                     }
                 }
+                Some(Flip::Shaft(k, touch)) => self.shafts[k].turn(touch),
                 Some(Flip::Side(j)) => self.side[j] = self.side[j].other(),
                 Some(Flip::Stuck) => return false,
             }
@@ -321,7 +345,7 @@ impl FixedStep {
         let still = |slip: f64, group: &GroupStep, v: &[f64]| slip.abs() <= 1e-9 * dot_size(&group.row, v);
         let mut converged = false;
         for _ in 0..ROUNDS {
-            let mut key = Key { held: 0, coast: 0 };
+            let mut key = Key { held: 0, coast: 0, touch: word(&self.shafts) };
             for (g, group) in self.groups.iter().enumerate() {
                 self.direction[g] = if self.slip[g] < 0.0 { -1 } else { 1 };
                 if still(self.slip[g], group, &self.v) && !group.driven {
@@ -431,6 +455,7 @@ impl pulp::WithSimd for Settle<'_> {
 enum Flip {
     Group(usize, i8),
     Side(usize),
+    Shaft(usize, Touch),
     /// Only groups that are kept would have to be released.
     Stuck,
 }

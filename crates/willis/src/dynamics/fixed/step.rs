@@ -7,6 +7,7 @@ use crate::train::{MemberId, SourceKind};
 use super::FixedStep;
 use super::groups::UNBOUNDED;
 use super::settle::Settle;
+use super::shafts::word;
 
 impl FixedStep {
     /// The mode in every detail.
@@ -23,6 +24,7 @@ impl FixedStep {
             }
         }
         key.coast = self.coasting();
+        key.touch = word(&self.shafts);
         key
     }
 
@@ -44,7 +46,7 @@ impl FixedStep {
             Some(&k) => k,
             None => {
                 let s = &self.engine.system;
-                self.fused.push(Fused::new(s, &self.groups, &self.teeth, map, &key, self.h));
+                self.fused.push(Fused::new(s, &self.groups, &self.teeth, &self.shafts, map, &key, self.h));
                 let k = self.fused.len() as u32 - 1;
                 self.by_exact_key.insert(key, k);
                 k
@@ -60,9 +62,6 @@ impl FixedStep {
     #[inline]
     fn glide(&mut self, middle: f64) -> bool {
         let Some(k) = self.present else { return false };
-        if !self.engine.system.elastic.is_empty() {
-            self.look_at_shafts();
-        }
         let fused = &self.fused[k as usize];
         let all = self.v.len();
         self.ends.copy_from_slice(&self.base);
@@ -83,8 +82,9 @@ impl FixedStep {
             add_column(&mut self.ends, fused.column(all + k), u);
             self.inputs[k] = u;
         }
-        let broken = self.ends.iter().zip(&self.least).fold(false, |broken, (end, least)| broken | (end < least));
-        if broken {
+        // What is no number breaks too.
+        let holds = self.ends.iter().zip(&self.least).fold(true, |holds, (end, least)| holds & (end >= least));
+        if !holds {
             return false;
         }
         self.next[..s.free].copy_from_slice(&self.ends[..s.free]);
@@ -108,13 +108,18 @@ impl FixedStep {
         middle >= self.until || self.until == f64::NEG_INFINITY
     }
 
-    /// Whether all speeds are finite.
-    pub(super) fn is_finite(&self) -> bool {
-        self.v.iter().all(|v| v.is_finite())
+    /// Whether the speeds at the end of the step may be those of a motion.
+    #[inline]
+    fn stays_bounded(&mut self) -> bool {
+        let square = dot(&self.next, &self.next);
+        square <= self.bound || self.may_grow(square)
     }
 
-    /// Takes one step.
+    /// Takes one step; none after a [verdict](Self::verdict).
     pub fn step(&mut self) {
+        if self.verdict.is_some() {
+            return;
+        }
         let middle = self.middle();
         if self.is_over(middle) {
             let ended = self.until;
@@ -124,16 +129,24 @@ impl FixedStep {
         }
         if !self.glide(middle) {
             self.load(middle);
+            if !self.enters_finite(middle) {
+                return;
+            }
             let free = self.engine.system.free;
             let cols = self.tau.len();
             self.swept = false;
             if !self.arch.dispatch(Settle { step: self, free, cols }) && !self.sweep(free, cols) {
                 self.unsettled += 1;
             }
+            if !self.stays_bounded() {
+                return;
+            }
             if !self.energies.is_empty() {
                 self.count_energies();
             }
             self.fuse();
+        } else if !self.stays_bounded() {
+            return;
         }
         // What is held is at rest exactly, not but for round-off.
         if self.keeps_angles {
