@@ -388,8 +388,8 @@ impl Block {
         let touch = self.touch.chunks_exact(one.shafts.len().max(1)).nth(lane).unwrap_or_default();
         one.shafts.iter_mut().zip(touch).for_each(|(shaft, touch)| shaft.touch = *touch);
         one.present = None;
-        // Where runs never go together, each goes on in its own mode.
-        if let (Some(k), true) = (self.present[lane], one.needs_itself()) {
+        // Each goes on in its own mode if it can, as a single run does.
+        if let Some(k) = self.present[lane] {
             let rows = one.fused[k as usize].rows;
             for (from, to) in [(&self.base, &mut one.base), (&self.least, &mut one.least), (&self.least, &mut one.ends)]
             {
