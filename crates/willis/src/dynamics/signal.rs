@@ -44,7 +44,9 @@ impl Signal {
                 }
             },
             Self::Product(of) => of[0].value(t, inside, speed) * of[1].value(t, inside, speed),
-            Self::Expression { formula, speeds } => expression(speeds, speed, |speeds| formula.value(t, speeds)),
+            Self::Expression { formula, speeds } => {
+                expression(speeds, speed, |speeds| formula.value_within(t, inside, speeds))
+            }
         }
     }
 
@@ -108,7 +110,7 @@ impl Signal {
                 of[0].rate(t, inside, speed) * of[1].value(t, inside, speed)
                     + of[0].value(t, inside, speed) * of[1].rate(t, inside, speed)
             }
-            Self::Expression { formula, speeds } => expression(speeds, speed, |speeds| formula.rate(t, speeds)),
+            Self::Expression { formula, speeds } => expression(speeds, speed, |speeds| formula.rate(t, inside, speeds)),
         }
     }
 
@@ -116,7 +118,8 @@ impl Signal {
     pub(crate) fn next_break(&self, t: f64) -> f64 {
         let first = |times: &[f64]| times.iter().copied().filter(|&b| b > t).fold(f64::INFINITY, f64::min);
         match self {
-            Self::Constant(_) | Self::Expression { .. } => f64::INFINITY,
+            Self::Constant(_) => f64::INFINITY,
+            Self::Expression { formula, .. } => formula.next_jump(t),
             Self::Step { at, .. } | Self::Sine { at, .. } => first(&[*at]),
             Self::Ramp { at, duration, .. } => first(&[*at, at + duration]),
             Self::Pulse { period, width, at, .. } => {

@@ -7,6 +7,13 @@ use std::str::FromStr;
 use exmex::{BinOp, Express, Operator};
 use num_dual::{Dual64, DualNum};
 
+mod jumps;
+
+use jumps::{Span, SpanOperators};
+
+/// The functions whose value jumps.
+const JUMPING: [&str; 6] = ["signum", "floor", "ceil", "round", "trunc", "fract"];
+
 /// A parsed formula of the time `t` and of speeds `w_member`.
 ///
 /// # Example
@@ -25,6 +32,8 @@ pub struct Formula {
     expression: Box<exmex::FlatEx<f64>>,
     /// The same, that takes derivatives along.
     rising: Box<exmex::FlatEx<Rising, RisingOperators>>,
+    /// The same over stretches of time, if it has functions that jump.
+    spans: Option<Box<exmex::FlatEx<Span, SpanOperators>>>,
     /// For each variable of the expression: the time, or the position of a speed.
     variables: Vec<Option<usize>>,
 }
@@ -162,8 +171,11 @@ impl Formula {
                 _ => return Err(format!("`{name}` is neither the time t nor a speed such as w_sun")),
             }
         }
+        let jumps = tokens(text).iter().any(|t| JUMPING.contains(t));
+        let spans =
+            jumps.then(|| exmex::FlatEx::parse(&ordered).map(Box::new)).transpose().map_err(|e| e.to_string())?;
         let (expression, rising) = (Box::new(expression), Box::new(rising));
-        Ok((Self { text: text.to_owned(), expression, rising, variables }, speeds))
+        Ok((Self { text: text.to_owned(), expression, rising, spans, variables }, speeds))
     }
 
     /// The text.
@@ -181,19 +193,71 @@ impl Formula {
         self.evaluate(&self.expression, |v| v.map_or(time, |k| speeds[k])).unwrap_or(f64::NAN)
     }
 
-    /// Derivative with respect to the time, 1/s, speeds held. NaN outside its domain. At a kink (`abs`, `min`, `max`)
-    /// it is that of one side; where the formula [jumps](Self::jumps), it does not tell of the jump.
-    pub fn rate(&self, time: f64, speeds: &[f64]) -> f64 {
-        let rising = self.evaluate(&self.rising, |v| match v {
-            None => Rising(Dual64::from(time).derivative()),
-            Some(k) => Rising(Dual64::from(speeds[*k])),
-        });
-        rising.map_or(f64::NAN, |r| r.0.eps)
+    /// Value at a time as if the formula went on as it is at the time `inside`: a function that jumps stays at the
+    /// value that it has there.
+    pub fn value_within(&self, time: f64, inside: f64, speeds: &[f64]) -> f64 {
+        if self.jumps() { self.rising(time, inside, speeds).0.re } else { self.value(time, speeds) }
+    }
+
+    /// Derivative with respect to the time, 1/s, speeds held, as if the formula went on as it is at the time `inside`.
+    /// NaN outside its domain. At a kink (`abs`, `min`, `max`) it is that of one side; where the formula
+    /// [jumps](Self::jumps), it does not tell of the jump.
+    pub fn rate(&self, time: f64, inside: f64, speeds: &[f64]) -> f64 {
+        self.rising(time, inside, speeds).0.eps
     }
 
     /// Whether it has a function whose value jumps: `signum`, `floor`, `ceil`, `round`, `trunc`, `fract`.
     pub fn jumps(&self) -> bool {
-        tokens(&self.text).iter().any(|t| ["signum", "floor", "ceil", "round", "trunc", "fract"].contains(t))
+        self.spans.is_some()
+    }
+
+    /// A time after `t`, s, before which it does not jump: that of its next jump, or an earlier one where the bounds
+    /// of its values do not tell.
+    pub fn next_jump(&self, t: f64) -> f64 {
+        let Some(spans) = self.spans.as_ref().filter(|_| self.depends_on_time()) else { return f64::INFINITY };
+        jumps::next(t, |from, to| {
+            let values = |v: &Option<usize>| v.map_or(Span::new(from, to), |_| Span::ALL);
+            self.evaluate(spans, values).is_none_or(|s| s.jumps)
+        })
+    }
+
+    /// A function that jumps and the speed in its argument, as it is written: when it jumps is not known beforehand.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::train::Formula;
+    ///
+    /// let (formula, _) = Formula::parse("5*floor(t) + 2*signum(w_out - 3)")?;
+    /// assert_eq!(formula.jumps_with_speed().as_deref(), Some("signum(w_out-3)"));
+    /// # Ok::<(), String>(())
+    /// ```
+    pub fn jumps_with_speed(&self) -> Option<String> {
+        let tokens = tokens(&self.text);
+        let of_speed = |t: &&str| t.trim_start_matches('{').starts_with("w_");
+        (0..tokens.len()).filter(|k| JUMPING.contains(&tokens[*k])).find_map(|k| {
+            let mut depth = 0i32;
+            let is_function = |n: usize| {
+                tokens[n].starts_with(char::is_alphabetic)
+                    && !of_speed(&tokens[n])
+                    && tokens
+                        .get(n + 1)
+                        .is_some_and(|next| is_call_without_brackets(tokens[n], Some(next)) || *next == "(")
+            };
+            let last = (k + 1..tokens.len()).find(|&n| {
+                depth += i32::from(tokens[n] == "(") - i32::from(tokens[n] == ")");
+                depth <= 0 && !is_function(n)
+            });
+            let call = &tokens[k..=last.unwrap_or(tokens.len() - 1)];
+            call.iter().any(of_speed).then(|| call.concat())
+        })
+    }
+
+    fn rising(&self, time: f64, inside: f64, speeds: &[f64]) -> Rising {
+        let rising = self.evaluate(&self.rising, |v| match v {
+            None => Rising(Dual64::from(time).derivative(), inside),
+            Some(k) => Rising::from(speeds[*k]),
+        });
+        rising.unwrap_or_else(|| Rising::from(f64::NAN))
     }
 
     fn evaluate<T: exmex::DataType + Copy, O: exmex::MakeOperators<T>>(
@@ -216,13 +280,31 @@ impl Formula {
     }
 }
 
-/// A value and its derivative, as the type of numbers of a formula.
+/// A value and its derivative, and the value at the time inside a piece that says which one it is, as the type of
+/// numbers of a formula.
 #[derive(Clone, Copy, Debug)]
-struct Rising(Dual64);
+struct Rising(Dual64, f64);
+
+impl Rising {
+    fn map(self, rising: fn(Dual64) -> Dual64, inside: fn(f64) -> f64) -> Self {
+        Self(rising(self.0), inside(self.1))
+    }
+
+    /// The same at every place of a piece.
+    fn level(self, value: fn(f64) -> f64) -> Self {
+        Self::from(value(self.1))
+    }
+}
+
+impl From<f64> for Rising {
+    fn from(value: f64) -> Self {
+        Self(Dual64::from(value), value)
+    }
+}
 
 impl Default for Rising {
     fn default() -> Self {
-        Self(Dual64::from(0.0))
+        Self::from(0.0)
     }
 }
 
@@ -230,19 +312,20 @@ impl FromStr for Rising {
     type Err = ParseFloatError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        text.parse().map(|value: f64| Self(Dual64::from(value)))
+        text.parse().map(|value: f64| Self::from(value))
     }
 }
 
 /// Of two, by the order of their values.
 fn lesser(a: Rising, b: Rising, order: Ordering) -> Rising {
     let first = a.0.re.is_nan() || a.0.re.partial_cmp(&b.0.re) == Some(order) || a.0.re == b.0.re;
-    if first { a } else { b }
+    let inside = if order.is_lt() { a.1.min(b.1) } else { a.1.max(b.1) };
+    Rising(if first { a.0 } else { b.0 }, inside)
 }
 
 /// `a^b`, also of negative numbers to whole powers.
-fn raise(Rising(a): Rising, Rising(b): Rising) -> Rising {
-    if b.eps == 0.0 { Rising(a.powf(b.re)) } else { Rising(a.powd(b)) }
+fn raise(Rising(a, within): Rising, Rising(b, power): Rising) -> Rising {
+    Rising(if b.eps == 0.0 { a.powf(b.re) } else { a.powd(b) }, within.powf(power))
 }
 
 /// The operators of the library for [`f64`], over derivatives.
@@ -253,46 +336,44 @@ impl exmex::MakeOperators<Rising> for RisingOperators {
     fn make<'a>() -> Vec<Operator<'a, Rising>> {
         let binary = |apply, prio, is_commutative| BinOp { apply, prio, is_commutative };
         let unary = Operator::make_unary;
-        let constant = |name, value: f64| Operator::make_constant(name, Rising(Dual64::from(value)));
-        /// The same at every place between its jumps.
-        fn level(r: Rising, value: fn(f64) -> f64) -> Rising {
-            Rising(Dual64::from(value(r.0.re)))
-        }
+        let constant = |name, value: f64| Operator::make_constant(name, Rising::from(value));
         vec![
             Operator::make_bin("^", binary(raise, 4, false)),
-            Operator::make_bin("*", binary(|a, b| Rising(a.0 * b.0), 2, true)),
-            Operator::make_bin("/", binary(|a, b| Rising(a.0 / b.0), 3, false)),
-            Operator::make_bin_unary("+", binary(|a, b| Rising(a.0 + b.0), 0, true), |a| a),
-            Operator::make_bin_unary("-", binary(|a, b| Rising(a.0 - b.0), 1, false), |a| Rising(-a.0)),
-            Operator::make_bin("atan2", binary(|y, x| Rising(y.0.atan2(x.0)), 0, false)),
+            Operator::make_bin("*", binary(|a, b| Rising(a.0 * b.0, a.1 * b.1), 2, true)),
+            Operator::make_bin("/", binary(|a, b| Rising(a.0 / b.0, a.1 / b.1), 3, false)),
+            Operator::make_bin_unary("+", binary(|a, b| Rising(a.0 + b.0, a.1 + b.1), 0, true), |a| a),
+            Operator::make_bin_unary("-", binary(|a, b| Rising(a.0 - b.0, a.1 - b.1), 1, false), |a| {
+                Rising(-a.0, -a.1)
+            }),
+            Operator::make_bin("atan2", binary(|y, x| Rising(y.0.atan2(x.0), y.1.atan2(x.1)), 0, false)),
             Operator::make_bin("min", binary(|a, b| lesser(a, b, Ordering::Less), 0, true)),
             Operator::make_bin("max", binary(|a, b| lesser(a, b, Ordering::Greater), 0, true)),
-            unary("abs", |a| if a.0.re < 0.0 { Rising(-a.0) } else { a }),
-            unary("signum", |a| level(a, f64::signum)),
-            unary("floor", |a| level(a, f64::floor)),
-            unary("round", |a| level(a, f64::round)),
-            unary("ceil", |a| level(a, f64::ceil)),
-            unary("trunc", |a| level(a, f64::trunc)),
-            unary("fract", |a| Rising(a.0 - a.0.re.trunc())),
-            unary("sin", |a| Rising(a.0.sin())),
-            unary("cos", |a| Rising(a.0.cos())),
-            unary("tan", |a| Rising(a.0.tan())),
-            unary("asin", |a| Rising(a.0.asin())),
-            unary("acos", |a| Rising(a.0.acos())),
-            unary("atan", |a| Rising(a.0.atan())),
-            unary("sinh", |a| Rising(a.0.sinh())),
-            unary("cosh", |a| Rising(a.0.cosh())),
-            unary("tanh", |a| Rising(a.0.tanh())),
-            unary("asinh", |a| Rising(a.0.asinh())),
-            unary("acosh", |a| Rising(a.0.acosh())),
-            unary("atanh", |a| Rising(a.0.atanh())),
-            unary("exp", |a| Rising(a.0.exp())),
-            unary("sqrt", |a| Rising(a.0.sqrt())),
-            unary("cbrt", |a| Rising(a.0.cbrt())),
-            unary("ln", |a| Rising(a.0.ln())),
-            unary("log", |a| Rising(a.0.ln())),
-            unary("log2", |a| Rising(a.0.log2())),
-            unary("log10", |a| Rising(a.0.log10())),
+            unary("abs", |a| a.map(|x| if x.re < 0.0 { -x } else { x }, f64::abs)),
+            unary("signum", |a| a.level(f64::signum)),
+            unary("floor", |a| a.level(f64::floor)),
+            unary("round", |a| a.level(f64::round)),
+            unary("ceil", |a| a.level(f64::ceil)),
+            unary("trunc", |a| a.level(f64::trunc)),
+            unary("fract", |a| Rising(a.0 - a.1.trunc(), a.1.fract())),
+            unary("sin", |a| a.map(|x| x.sin(), f64::sin)),
+            unary("cos", |a| a.map(|x| x.cos(), f64::cos)),
+            unary("tan", |a| a.map(|x| x.tan(), f64::tan)),
+            unary("asin", |a| a.map(|x| x.asin(), f64::asin)),
+            unary("acos", |a| a.map(|x| x.acos(), f64::acos)),
+            unary("atan", |a| a.map(|x| x.atan(), f64::atan)),
+            unary("sinh", |a| a.map(|x| x.sinh(), f64::sinh)),
+            unary("cosh", |a| a.map(|x| x.cosh(), f64::cosh)),
+            unary("tanh", |a| a.map(|x| x.tanh(), f64::tanh)),
+            unary("asinh", |a| a.map(|x| x.asinh(), f64::asinh)),
+            unary("acosh", |a| a.map(|x| x.acosh(), f64::acosh)),
+            unary("atanh", |a| a.map(|x| x.atanh(), f64::atanh)),
+            unary("exp", |a| a.map(|x| x.exp(), f64::exp)),
+            unary("sqrt", |a| a.map(|x| x.sqrt(), f64::sqrt)),
+            unary("cbrt", |a| a.map(|x| x.cbrt(), f64::cbrt)),
+            unary("ln", |a| a.map(|x| x.ln(), f64::ln)),
+            unary("log", |a| a.map(|x| x.ln(), f64::ln)),
+            unary("log2", |a| a.map(|x| x.log2(), f64::log2)),
+            unary("log10", |a| a.map(|x| x.log10(), f64::log10)),
             constant("PI", std::f64::consts::PI),
             constant("π", std::f64::consts::PI),
             constant("E", std::f64::consts::E),
@@ -362,11 +443,127 @@ mod tests {
             let (formula, _) = Formula::parse(text).unwrap_or_else(|e| panic!("{text}: {e}"));
             let (t, h) = (1.01, 1e-6);
             let difference = (formula.value(t + h, &[3.0]) - formula.value(t - h, &[3.0])) / (2.0 * h);
-            let rate = formula.rate(t, &[3.0]);
+            let rate = formula.rate(t, t, &[3.0]);
             assert!((rate - difference).abs() <= 1e-5 * (1.0 + difference.abs()), "{text}: {rate}, not {difference}");
         }
         for text in ["floor(t)", "2*signum(t - 1)", "round(t)"] {
             assert!(Formula::parse(text).unwrap().0.jumps(), "{text}");
+        }
+    }
+
+    /// The jumps of formulas whose jumps are known.
+    #[test]
+    fn val_the_next_jump_is_where_the_argument_says() {
+        let cases: [(&str, f64, f64); 16] = [
+            ("floor(2*t)", 0.0, 0.5),
+            ("floor(2*t)", 0.5, 1.0),
+            ("20000*t - floor(20000*t)", 0.0, 5e-5),
+            ("floor(2*fract(1e4*t))", 1e-4, 1.5e-4),
+            ("floor(2*fract(1e4*t))", 1.5e-4, 2e-4),
+            ("ceil(4*t)", 0.0, 0.25),
+            ("round(t - 0.25)", 0.0, 0.75),
+            ("trunc(t - 1)", 0.5, 2.0),
+            ("signum(sin(2*PI*t))", 0.0, 0.5),
+            ("signum(cos(2*PI*t))", 0.25, 0.75),
+            ("floor(0.9*sin(t))", 0.0, std::f64::consts::PI),
+            ("signum(t^2 - 2)", 0.0, std::f64::consts::SQRT_2),
+            ("floor(exp(-t) + 0.5)", 0.0, std::f64::consts::LN_2),
+            ("floor(sqrt(t - 1))", 0.0, 2.0),
+            ("floor(3/(t + 1))", 0.0, 0.0),
+            ("floor(floor(3*t)/2)", 1.0 / 3.0, 2.0 / 3.0),
+        ];
+        for (text, t, expected) in cases {
+            let formula = Formula::parse(text).unwrap().0;
+            let next = formula.next_jump(t);
+            let near = if expected == t { next - t < 1e-12 && next > t } else { (next - expected).abs() <= 1e-13 };
+            assert!(near, "{text} after {t}: {next}, not {expected}");
+        }
+        for text in ["t^2 + sin(t)", "floor(0.5)*t", "signum(2 + sin(t))*w_a"] {
+            let formula = Formula::parse(text).unwrap().0;
+            let mut t = 0.0;
+            for _ in 0..1000 {
+                let next = formula.next_jump(t);
+                assert!(next > t + 1e-3, "{text} at {t}: {next}");
+                t = next;
+            }
+        }
+    }
+
+    /// No jump of any function lies between two breaks: the value goes on there as it is in their middle.
+    #[test]
+    fn no_jump_is_missed() {
+        let arguments = [
+            "3*t - 1",
+            "2*sin(7*t)",
+            "5*cos(t^2)",
+            "tan(t)",
+            "2*asin(sin(t))",
+            "acos(cos(3*t))",
+            "atan(9*t - 4)",
+            "sinh(t - 1)",
+            "3*cosh(t - 1)",
+            "4*tanh(t - 1)",
+            "asinh(5*t)",
+            "acosh(1 + 3*t)",
+            "atanh(t/2 - 0.5)",
+            "exp(t)",
+            "5*sqrt(t)",
+            "3*cbrt(t - 1)",
+            "ln(t)",
+            "log2(t)",
+            "log10(t)",
+            "6*abs(t - 1)",
+            "1/(t - 1.1)",
+            "(t - 1)^3*4",
+            "(t - 1)^-1",
+            "3*2^t",
+            "(t - 1)^2*5",
+            "3*t^1.5",
+            "atan2(t - 1, t - 1.5)",
+            "min(3*t, 4 - t)",
+            "max(3*t, 4 - t)",
+            "floor(9*t)/2",
+            "-5*t*sin(9*t)",
+        ];
+        for argument in arguments {
+            for function in JUMPING {
+                let text = format!("{function}({argument})");
+                let formula = Formula::parse(&text).unwrap_or_else(|e| panic!("{text}: {e}")).0;
+                let mut t = 0.0123;
+                let mut breaks = 0;
+                while t < 2.0 {
+                    let next = formula.next_jump(t).min(2.0);
+                    let middle = 0.5 * (t + next);
+                    for k in 1..20 {
+                        let at = t + (next - t) * f64::from(k) / 20.0;
+                        let (is, goes_on) = (formula.value(at, &[]), formula.value_within(at, middle, &[]));
+                        let same = is == goes_on || (is - goes_on).abs() < 1e-9 || is.is_nan() && goes_on.is_nan();
+                        // At a pole the value is as large as it likes.
+                        assert!(same || next - t < 1e-9, "{text} at {at} in [{t}, {next}]: {is}, {goes_on}");
+                    }
+                    t = next;
+                    breaks += 1;
+                    assert!(breaks < 5000, "{text} at {t}");
+                    if breaks == 300 {
+                        break;
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_jump_at_a_speed_is_told() {
+        let cases = [
+            ("floor(t)*w_a", None),
+            ("signum(w_a)", Some("signum(w_a)")),
+            ("floor(t) + round(2*(t - {w_P1.planet}))", Some("round(2*(t-{w_P1.planet}))")),
+            ("w_a*floor(t) + w_b", None),
+            ("floor sin(w_a)", Some("floorsin(w_a)")),
+            ("signum w_a + t", Some("signumw_a")),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(Formula::parse(text).unwrap().0.jumps_with_speed().as_deref(), expected, "{text}");
         }
     }
 
@@ -380,6 +577,9 @@ mod tests {
             t.sort_unstable();
             t.join(" ")
         };
-        assert_eq!(all(names.iter().map(|o| o.repr()).collect()), all(mine.iter().map(|o| o.repr()).collect()));
+        let spans = <SpanOperators as exmex::MakeOperators<Span>>::make();
+        let expected = all(names.iter().map(|o| o.repr()).collect());
+        assert_eq!(all(mine.iter().map(|o| o.repr()).collect()), expected);
+        assert_eq!(all(spans.iter().map(|o| o.repr()).collect()), expected);
     }
 }

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::dynamics::source::{MOST_PULSES, shortest_pulse, signals_of};
 use crate::kinematics::Configuration;
-use crate::train::{Scenario, SourceKind};
+use crate::train::{Scenario, Signal, SourceKind};
 
 /// An error if meshes constrain each other, or if nothing can move.
 pub(super) fn forces_and_freedom(c: &Configuration<'_>, scenario: &Scenario) -> Result<(), Diagnostics> {
@@ -36,8 +36,31 @@ pub(super) fn pulses(scenario: &Scenario) -> Result<(), Diagnostics> {
             );
             return Err(unfit(scenario, message, "take its mean, or a shorter scenario"));
         }
+        if let Some(t) = jumps_too_often(signal, scenario.start, scenario.end) {
+            let message = format!(
+                "a formula with jumps, as `floor` and `signum` have, jumps too often near t = {t} s, or its values do not \
+                 tell when: more than {MOST_PULSES:.0e} times in this scenario"
+            );
+            return Err(unfit(scenario, message, "let `t` stand once in what is rounded, or take a table or a pulse"));
+        }
     }
     Ok(())
+}
+
+/// A time near which the breaks of a formula with jumps stand so close that the run would not come past them.
+fn jumps_too_often(signal: &Signal, start: f64, end: f64) -> Option<f64> {
+    /// Times that are looked at, and breaks after each.
+    const LOOKS: [u8; 2] = [4, 8];
+    if signal.has_rate() {
+        return None;
+    }
+    let least = f64::from(LOOKS[1]) * (end - start) / MOST_PULSES;
+    (0..LOOKS[0]).find_map(|k| {
+        // Not at round times, where several jumps may be by intent.
+        let t = start + (f64::from(k) + 0.37) / f64::from(LOOKS[0]) * (end - start);
+        let last = (0..LOOKS[1]).fold(t, |t, _| if t < end { signal.next_break(t) } else { t });
+        (last < end && last - t < least).then_some(t)
+    })
 }
 
 /// An error if the equations need the rate of a signal that has none.

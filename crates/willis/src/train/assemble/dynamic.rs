@@ -825,6 +825,15 @@ impl Assembler<'_> {
                 None
             }
             Ok((formula, names)) => {
+                if let Some(jump) = formula.jumps_with_speed() {
+                    let message = format!(
+                        "\"{}\" jumps at a speed, in `{}`: when that will be is not known beforehand",
+                        clip(text),
+                        clip(&jump)
+                    );
+                    let hint = "for a jump in time, let its argument be of `t` only, or take a table or a pulse; for one in speed, take a smooth step such as tanh(w_sun/0.1)";
+                    self.refuse(Code::BadFormula, &place, message, hint);
+                }
                 let speeds: Vec<_> = names.iter().map(|name| self.resolve_in_text(name, &place)).collect();
                 Some(Signal::Expression { formula, speeds: speeds.into_iter().collect::<Option<_>>()? })
             }
