@@ -9,7 +9,7 @@ use super::contacts::Contacts;
 use super::element::Loss;
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
 use super::shows::Shows;
-use super::source::source_torque;
+use super::source::{out_of_domain, source_torque};
 use super::still::Still;
 use super::system::{Rubs, System};
 
@@ -146,6 +146,12 @@ impl Engine {
 
     pub fn member_speed(&self, m: MemberId) -> f64 {
         dot(self.row_of(m.index()), &self.speed)
+    }
+
+    /// A formula that has no finite value at a time, at the speeds looked at last, in words.
+    pub fn out_of_domain(&self, t: f64) -> Option<String> {
+        let s = &self.system;
+        out_of_domain(&s.train, &s.scenario, t, self.inside, &|m| self.member_speed(m))
     }
 
     /// From now on what this mode holds stands still exactly, in the state too; the engine looks at it.

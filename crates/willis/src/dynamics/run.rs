@@ -325,6 +325,10 @@ impl Simulation {
         self.engine.rest_with_others(&mut self.at_rest);
         self.engine.bring_to_rest(&mut x, &self.at_rest);
         self.engine.look(self.t, &x);
+        if let Some(why) = self.engine.out_of_domain(self.t) {
+            self.x = x;
+            return Err(Outcome::NotConverged(why));
+        }
         self.engine.still = None;
         let at_rest = std::mem::take(&mut self.at_rest);
         let mut guess = self.engine.mode.clone();
@@ -412,7 +416,10 @@ impl Simulation {
                     self.rolling = false;
                     return Stretch::Again;
                 }
+                let formula =
+                    if matches!(error, StepError::NotFinite) { self.out_of_domain_before(goal) } else { None };
                 return Stretch::Ended(Outcome::NotConverged(match error {
+                    StepError::NotFinite if formula.is_some() => formula.unwrap_or_default(),
                     StepError::NotFinite if !self.engine.agrees => {
                         format!(
                             "at t = {} s losses and forces do not agree: friction grows with the force it causes",
@@ -420,8 +427,7 @@ impl Simulation {
                         )
                     }
                     StepError::NotFinite => format!(
-                        "accelerations are not finite at t = {} s: a formula leaves its domain, or the equations lose their \
-                         unique solution",
+                        "accelerations are not finite at t = {} s: the equations lose their unique solution",
                         self.t
                     ),
                     _ => format!("at t = {} s the tolerance cannot be kept with any step", self.t),
@@ -473,6 +479,17 @@ impl Simulation {
                 return Stretch::Again;
             }
         }
+    }
+
+    /// A formula that leaves its domain at the present state, or soonest after it, in words.
+    fn out_of_domain_before(&mut self, goal: f64) -> Option<String> {
+        /// Times that are looked at, each twice as far ahead as the one before.
+        const LOOKS: i32 = 50;
+        let x = std::mem::take(&mut self.x);
+        self.engine.look(self.t, &x);
+        self.x = x;
+        let ahead = (0..=LOOKS).rev().map(|k| self.t + (goal - self.t) * 0.5f64.powi(k));
+        std::iter::once(self.t).chain(ahead).find_map(|t| self.engine.out_of_domain(t))
     }
 
     /// Without a certificate: whether the present solution is the only one. If not, the mode is chosen anew,

@@ -7,6 +7,18 @@
 use crate::train::{MemberId, Signal};
 
 impl Signal {
+    /// A formula in it that has no finite value at `t` in the piece that holds `inside`, and what it has instead.
+    pub(crate) fn not_finite(&self, t: f64, inside: f64, speed: &dyn Fn(MemberId) -> f64) -> Option<(&str, f64)> {
+        match self {
+            Self::Product(of) => of.iter().find_map(|s| s.not_finite(t, inside, speed)),
+            Self::Expression { formula, .. } => {
+                let value = self.value(t, inside, speed);
+                (!value.is_finite()).then(|| (formula.text(), value))
+            }
+            _ => None,
+        }
+    }
+
     /// Value at `t` in the piece that holds `inside`; `speed` tells the speed of a member.
     pub(crate) fn value(&self, t: f64, inside: f64, speed: &dyn Fn(MemberId) -> f64) -> f64 {
         match self {

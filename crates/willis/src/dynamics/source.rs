@@ -1,6 +1,6 @@
 //! Sources: their signals, and the torque that follows from what those are worth.
 
-use crate::train::{Signal, SourceKind};
+use crate::train::{MemberId, Scenario, Signal, SourceKind, Train};
 
 /// Standard acceleration of free fall, m/s² (ISO 80000-3).
 pub(super) const GRAVITY: f64 = 9.80665;
@@ -14,6 +14,24 @@ pub(super) fn shortest_pulse(signal: &Signal) -> Option<f64> {
         Signal::Product(of) => of.iter().filter_map(shortest_pulse).min_by(f64::total_cmp),
         _ => None,
     }
+}
+
+/// The first formula that has no finite value at a time, in words: whose it is, its text, the time and the value.
+pub(super) fn out_of_domain(
+    train: &Train,
+    scenario: &Scenario,
+    t: f64,
+    inside: f64,
+    speed: &dyn Fn(MemberId) -> f64,
+) -> Option<String> {
+    let of_sources = scenario.sources.iter().flat_map(|s| signals_of(&s.kind).map(|signal| (s.name.as_str(), signal)));
+    let of_elements =
+        (scenario.engagements.iter()).map(|e| (train.shift_elements()[e.element.index()].name.as_str(), &e.signal));
+    of_sources.chain(of_elements).find_map(|(name, signal)| {
+        let (text, value) = signal.not_finite(t, inside, speed)?;
+        let value = if value.is_nan() { "not a number".to_owned() } else { value.to_string() };
+        Some(format!("`{name}`: the formula \"{text}\" is {value} at t = {t} s"))
+    })
 }
 
 pub(super) fn signals_of(kind: &SourceKind) -> impl Iterator<Item = &Signal> {

@@ -443,10 +443,68 @@ fn formulas_beyond_their_domain_end_the_run() {
         let (_, report) = run(&motor, &Options { method, ..Options::default() });
         assert!(matches!(report.outcome, Outcome::NotConverged(_)), "{method:?}: {:?}", report.outcome);
     }
+    let cases = [
+        ("sqrt(0.5 - t)", "not a number", 0.5),
+        ("ln(t - 1)", "not a number", 0.0),
+        ("ln(1 - t)", "", 1.0),
+        ("4/0", "inf", 0.0),
+        ("asin(2*t)", "not a number", 0.5),
+        ("4 + floor(t)*ln(1.5 - t)", "", 1.5),
+    ];
+    for (formula, value, at) in cases {
+        let text = rotor(&format!(r#"{{ type = "expression", formula = "{formula}" }}"#)).replace("3 N m", "0 N m");
+        for method in [Method::Adaptive, Method::Fixed { step_s: 1e-3 }] {
+            let (_, report) = run(&text, &Options { method, ..Options::default() });
+            let Outcome::NotConverged(why) = &report.outcome else { panic!("{formula}: {:?}", report.outcome) };
+            let told = format!("`motor`: the formula \"{formula}\" is {value}");
+            assert!(why.contains(&told), "{method:?}: {why}");
+            let time = why.rsplit_once("at t = ").and_then(|(_, t)| t.split(' ').next()?.parse::<f64>().ok());
+            assert!(time.is_some_and(|t| (t - at).abs() < 2e-3), "{formula}, {method:?}: {why}");
+        }
+    }
     let follows =
         rotor("\"0 N m\"").replace("torque = \"0 N m\"", r#"speed = { type = "expression", formula = "10 + w_a" }"#);
     let error = simulate(&train(&follows), "run", &Options::default(), &mut ()).unwrap_err();
     assert!(error.to_string().contains("cannot follow the speeds"), "{error}");
+}
+
+/// A torque that a formula turns on and off: what it does over time is known in closed form, at any frequency.
+#[test]
+fn val_formulas_that_jump_act_as_they_say() {
+    // Formula, and its integral from 0 to 2 s.
+    let cases = [
+        ("25*floor(2*fract(t))".to_owned(), 25.0),
+        ("25*floor(2*fract(100*t))".to_owned(), 25.0),
+        ("12.5*(1 + signum(sin(200*PI*t)))".to_owned(), 25.0),
+        ("25*floor(2*fract(10000*t))".to_owned(), 25.0),
+        ("25*t*floor(2*fract(10*t + 0.3))".to_owned(), 25.0 * shifted()),
+        ("floor(floor(3*t)/2)".to_owned(), (4.0 - 2.0) / 3.0 + 2.0 * (2.0 - 4.0 / 3.0)),
+        ("signum(t^2 - 2)".to_owned(), 2.0 - 2.0 * std::f64::consts::SQRT_2),
+        ("fract(50*t)".to_owned(), 1.0),
+    ];
+    for (formula, integral) in cases {
+        let text = rotor(&format!(r#"{{ type = "expression", formula = "{formula}" }}"#)).replace("3 N m", "0 N m");
+        let (rows, report) = run(&text, &Options { energies: false, ..Options::default() });
+        assert_eq!(report.outcome, Outcome::Finished, "{formula}");
+        let speed = rows.of("speed").last().unwrap();
+        assert!((speed - integral / 0.5).abs() < 1e-7, "{formula}: {speed}, not {}", integral / 0.5);
+    }
+    // What does not fit between two looks is refused, and so is what hangs on speeds.
+    for (formula, why) in
+        [("25*floor(2*fract(1e8*t))", "jumps too often"), ("floor(2*t - fract(2*t))", "jumps too often")]
+    {
+        let text = rotor(&format!(r#"{{ type = "expression", formula = "{formula}" }}"#));
+        let error = simulate(&train(&text), "run", &Options::default(), &mut ()).unwrap_err();
+        assert!(error.to_string().contains(why), "{error}");
+    }
+    let text = rotor(r#"{ type = "expression", formula = "5*floor(t) - 2*signum(w_a - 3)" }"#);
+    let error = willis::train::Train::from_toml(&text).unwrap_err();
+    assert!(error.to_string().contains("`signum(w_a-3)`"), "{error}");
+}
+
+/// ∫ t dt over what of 2 s is on: from 0.02 s to 0.07 s of each tenth of a second.
+fn shifted() -> f64 {
+    (0..20).map(|k| f64::from(k) * 0.1).map(|t| 0.5 * ((t + 0.07).powi(2) - (t + 0.02).powi(2))).sum()
 }
 
 /// The lost energy of the rows is that of the report.

@@ -65,7 +65,8 @@ pub(in crate::dynamics) fn fixed(
             stepper.engine.row(t, &x, &mut run.row);
             // The forces of a row are those at its time, not in the middle of a step.
             if stepper.engine.acceleration.iter().any(|a| !a.is_finite()) {
-                stepper.stop("accelerations are not finite: a formula leaves its domain");
+                let formula = stepper.engine.out_of_domain(t);
+                stepper.stop(formula.as_deref().unwrap_or("accelerations are not finite"));
                 run.outcome.clone_from(&stepper.verdict);
                 break;
             }

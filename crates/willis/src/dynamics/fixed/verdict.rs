@@ -3,6 +3,8 @@
 use crate::dynamics::event::short;
 use crate::dynamics::mode::dot;
 use crate::dynamics::report::Outcome;
+use crate::dynamics::source::out_of_domain;
+use crate::train::MemberId;
 
 use super::FixedStep;
 
@@ -43,14 +45,21 @@ impl FixedStep {
         let Some(k) = self.inputs.iter().position(|u| !u.is_finite()) else { return true };
         let s = &self.engine.system;
         let drivers = s.drivers.len();
+        let speed = |m: MemberId| dot(&s.speeds[m.index()], &self.v);
+        // Speeds are prescribed for the end of a step.
+        let formula = [middle, middle + 0.5 * self.h]
+            .into_iter()
+            .find_map(|t| out_of_domain(&s.train, &s.scenario, t, middle, &speed));
+        if let Some(why) = formula {
+            self.stop(&why);
+            return false;
+        }
         let what = match (s.scenario.sources.get(k), s.frictions.get(k.wrapping_sub(drivers))) {
             (Some(source), _) => format!("`{}`", source.name),
             (_, Some(friction)) => format!("the friction of `{}`", friction.name),
             _ => "the twist of a shaft".to_owned(),
         };
-        let why = format!(
-            "{what} is not finite in the step around {middle} s: a formula leaves its domain, or grows without bound"
-        );
+        let why = format!("{what} is not finite in the step around {middle} s: it grows without bound");
         self.stop(&why);
         false
     }
