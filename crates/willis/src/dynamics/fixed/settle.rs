@@ -32,8 +32,7 @@ impl FixedStep {
         let s = &self.engine.system;
         let mode = key.mode(s);
         let resists = &self.resists;
-        let made =
-            self.engine.maps.pattern_with(s, &mode, resists).and_then(|pattern| step_map(s, &mode, pattern));
+        let made = self.engine.maps.pattern_with(s, &mode, resists).and_then(|pattern| step_map(s, &mode, pattern));
         let k = match made {
             Some(map) => {
                 self.maps.push(map);

@@ -91,9 +91,7 @@ impl ShaftStep {
         match self.touch {
             Touch::Gap | Touch::Parting(_) => 0.0,
             Touch::On(_) => self.damping * rate,
-            Touch::Limited(side) => {
-                self.stiffness * (self.twist + self.ahead * rate - f64::from(side) * self.half)
-            }
+            Touch::Limited(side) => self.stiffness * (self.twist + self.ahead * rate - f64::from(side) * self.half),
         }
     }
 

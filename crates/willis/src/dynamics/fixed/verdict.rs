@@ -48,7 +48,9 @@ impl FixedStep {
             (_, Some(friction)) => format!("the friction of `{}`", friction.name),
             _ => "the twist of a shaft".to_owned(),
         };
-        let why = format!("{what} is not finite in the step around {middle} s: a formula leaves its domain, or grows without bound");
+        let why = format!(
+            "{what} is not finite in the step around {middle} s: a formula leaves its domain, or grows without bound"
+        );
         self.stop(&why);
         false
     }
