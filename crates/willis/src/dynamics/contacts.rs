@@ -63,6 +63,9 @@ pub(super) struct Contacts {
     /// Sign of the force in each mesh as it was found last: on it the friction of teeth at rest may depend.
     pub forces: Vec<i8>,
     pub tau: Vec<f64>,
+    /// Friction elements that have broken away: they oppose slip with what they do while they slide, not with their
+    /// peak.
+    pub broken: Vec<bool>,
 }
 
 impl Contacts {

@@ -25,7 +25,7 @@ impl Engine {
     /// The contacts of the present mode, and the loads on them, from the port torques found last.
     fn gather(&self, contacts: &mut Contacts, t: f64) {
         let s = &self.system;
-        let Contacts { set, load, forces, tau, .. } = contacts;
+        let Contacts { set, load, forces, tau, broken, .. } = contacts;
         forces.resize(s.elements.len(), 0);
         set.meshes.clear();
         set.joints.clear();
@@ -43,7 +43,10 @@ impl Engine {
             let capacity = match (f.rigid && f.blocks.is_none(), self.engaged[k]) {
                 (true, true) => [f64::INFINITY; 2],
                 (true, false) => [0.0; 2],
-                (false, _) => [1, -1].map(|sign| self.sliding(k, 0.0, sign, true, t).abs()),
+                (false, _) => {
+                    let peak = !broken.get(k).is_some_and(|broken| *broken);
+                    [1, -1].map(|sign| self.sliding(k, 0.0, sign, peak, t).abs())
+                }
             };
             if capacity != [0.0; 2] {
                 set.joints.push((Joint::Friction(k), capacity.map(f64::is_finite)));
@@ -128,6 +131,34 @@ impl Engine {
 
     /// What happens at a state with these groups at rest, as `start` has the others.
     pub fn decide(&mut self, t: f64, x: &[f64], start: &Mode) -> (Verdict, Mode) {
+        self.contacts.broken.clear();
+        self.contacts.broken.resize(self.system.frictions.len(), false);
+        let mut answer = self.decide_as_broken(t, x, start);
+        // What breaks away falls from its peak to what it rubs with, which moves the forces of all the others; it may be
+        // that more break away, never less.
+        while matches!(answer.0, Verdict::One { .. }) && self.break_away() {
+            answer = self.decide_as_broken(t, x, start);
+        }
+        self.contacts.broken.fill(false);
+        answer
+    }
+
+    /// Notes what breaks away from a peak in the motion found last. False if that is nothing new.
+    fn break_away(&mut self) -> bool {
+        let contacts = &self.contacts;
+        let slips = contacts.set.joints.iter().zip(&self.motion().elements);
+        let new: Vec<usize> = slips
+            .filter_map(|(&(joint, _), element)| match joint {
+                Joint::Friction(k) if element.slip != 0 => Some(k),
+                _ => None,
+            })
+            .filter(|&k| self.system.frictions[k].peak != 1.0 && !contacts.broken[k])
+            .collect();
+        new.iter().for_each(|&k| self.contacts.broken[k] = true);
+        !new.is_empty()
+    }
+
+    fn decide_as_broken(&mut self, t: f64, x: &[f64], start: &Mode) -> (Verdict, Mode) {
         let mut mode = start.clone();
         let certified = self.certified;
         let mut verdict = Verdict::Undecided;

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use willis::dynamics::{ColumnKind, Method, Options, Outcome, RunReport, simulate};
 use willis::named::Named;
 
+use crate::common::examples;
 use crate::rows::{run, train};
 
 /// What does not close, as a part of all that came in, also from the store.
@@ -42,6 +43,17 @@ fn two_suns(carrier_inertia: f64, carrier_speed: f64) -> String {
         torque = "1 N m"
         "#
     )
+}
+
+#[test]
+fn every_scenario_of_the_examples_comes_to_its_end() {
+    for (name, text) in examples() {
+        let train = train(&text);
+        for scenario in train.scenarios() {
+            let report = simulate(&train, &scenario.name, &Options::default(), &mut ()).expect("it begins");
+            assert_eq!(report.outcome, Outcome::Finished, "{name}, {}", scenario.name);
+        }
+    }
 }
 
 #[test]

@@ -119,7 +119,7 @@ fn compare(case: &Value, names: &[String], problem: &Problem, motion: &Motion) {
 
 #[test]
 fn val_modes_of_an_independent_program() {
-    let data: Value = serde_json::from_str(include_str!("../../../tests/motion/modes.json")).expect("cases");
+    let data: Value = serde_json::from_str(include_str!("modes.json")).expect("cases");
     for case in data["cases"].as_array().expect("cases") {
         let (names, problem, load) = read(case);
         let mut decision = Decision::new(&problem);
