@@ -1,5 +1,7 @@
 //! What happens at a state: its contacts and their loads, and the mode in which the motion found goes on.
 
+use crate::exact::Rational;
+
 use super::contacts::{Contacts, Joint};
 use super::decision::{Body, Decision, Load, Motion, Verdict};
 use super::element::Loss;
@@ -9,6 +11,9 @@ use super::mode::{Mode, Side};
 
 /// A part of a long way: loads are derived by their change over it.
 const SHORT: f64 = 1e-4;
+
+/// Rounds, at most, in which what teeth at rest can hold is brought into agreement with what they carry.
+const MOST_ROUNDS: usize = 100;
 
 /// A constant friction that is the same whichever gear drives, and where the kink between the two is: force variable
 /// and loss there.
@@ -21,12 +26,19 @@ fn kink(loss: &Loss, factor: f64, sign: f64) -> [f64; 2] {
     [torque / factor, loss.drive * torque + sign * loss.drive_torque]
 }
 
+/// What a mesh that begins to slip loses beside what it would lose without constant friction, if it carries this torque
+/// along the slip: with that, which gear drives changes elsewhere.
+fn beside_load(loss: &Loss, torque: f64) -> f64 {
+    let with = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
+    with - (loss.drive * torque).max(loss.coast * torque)
+}
+
 impl Engine {
     /// The contacts of the present mode, and the loads on them, from the port torques found last.
     fn gather(&self, contacts: &mut Contacts, t: f64) {
         let s = &self.system;
         let Contacts { set, load, forces, tau, broken, .. } = contacts;
-        forces.resize(s.elements.len(), 0);
+        forces.resize(s.elements.len(), 0.0);
         set.meshes.clear();
         set.joints.clear();
         load.torques.clear();
@@ -68,11 +80,13 @@ impl Engine {
                 continue;
             }
             if rests {
-                // By the gear that would drive if it began to turn forward.
-                let along = [loss.drive_torque, loss.coast_torque];
-                let [forward, backward] = if forces[j] < 0 { [along[1], along[0]] } else { along };
+                // Forward and backward slip of gear 2.
+                let factors = s.bodies.meshes[j].factors.each_ref().map(Rational::to_f64);
+                let ratio = factors[1] / factors[0];
+                let torque = forces[j] * e.factors[0];
+                let against = |sign: f64| ratio.abs() * beside_load(&loss, sign * torque);
                 set.joints.push((Joint::Teeth(j), [true; 2]));
-                load.capacities.push([[forward, 0.0], [backward, 0.0]]);
+                load.capacities.push([-ratio.signum(), ratio.signum()].map(|sign| [against(sign), 0.0]));
             } else {
                 let [force, lost] = kink(&loss, e.factors[0], f64::from(self.mode.element_slip(s, j)));
                 tau[e.port] = lost;
@@ -93,14 +107,28 @@ impl Engine {
         &mut self,
         t: f64,
         rates: Option<(f64, &[f64])>,
-        ask: impl FnOnce(&mut Decision, &Load) -> T,
+        ask: impl Fn(&mut Decision, &Load) -> T,
     ) -> T {
         let mut contacts = std::mem::take(&mut self.contacts);
         self.gather(&mut contacts, t);
-        if let Some((later, x)) = rates {
-            self.add_rates(&mut contacts, t, later, x);
-        }
-        let answer = contacts.ask(&self.system.bodies, ask);
+        let mut rounds = 0;
+        let answer = loop {
+            let capacities = contacts.load.capacities.clone();
+            if let Some((later, x)) = rates {
+                self.add_rates(&mut contacts, t, later, x);
+            }
+            let answer = contacts.ask(&self.system.bodies, &ask);
+            // What teeth at rest can hold may depend on what they carry.
+            self.gather(&mut contacts, t);
+            let near = |a: &f64, b: &f64| (a - b).abs() <= 4.0 * f64::EPSILON * (a.abs() + b.abs());
+            let before = capacities.iter().flatten().map(|of| &of[0]);
+            let now = contacts.load.capacities.iter().flatten().map(|of| &of[0]);
+            contacts.agrees = before.zip(now).all(|(a, b)| near(a, b));
+            rounds += 1;
+            if contacts.agrees || rounds == MOST_ROUNDS {
+                break answer;
+            }
+        };
         self.contacts = contacts;
         answer
     }
@@ -162,7 +190,7 @@ impl Engine {
         let mut mode = start.clone();
         let certified = self.certified;
         let mut verdict = Verdict::Undecided;
-        // Losses that follow the load are those of the forces found; friction at rest may follow their direction.
+        // Losses under a law are those of the forces found.
         for _ in 0..8 {
             self.mode.clone_from(start);
             self.load(t, x);
@@ -182,7 +210,10 @@ impl Engine {
                     found = self.mode_found(start);
                 }
             }
-            let again = self.follows_load() && found != mode;
+            if !self.contacts.agrees {
+                verdict = Verdict::Undecided;
+            }
+            let again = self.system.laws.is_some() && found != mode;
             mode = found;
             if !again || !matches!(verdict, Verdict::One { .. }) || !self.enter(&mode) {
                 break;
@@ -190,12 +221,6 @@ impl Engine {
             self.solve(t, x);
         }
         (verdict, mode)
-    }
-
-    /// Whether losses depend on loads in a way that a decision does not know.
-    fn follows_load(&self) -> bool {
-        self.system.laws.is_some()
-            || self.system.elements.iter().any(|e| e.rows.iter().any(|r| r.forward_torque != r.backward_torque))
     }
 
     /// The mode in which the motion found last goes on.
@@ -216,7 +241,12 @@ impl Engine {
         for (&(joint, _), element) in contacts.set.joints.iter().zip(&motion.elements) {
             let (g, factor) = match joint {
                 Joint::Friction(k) => s.frictions[k].group.expect("it rubs"),
-                Joint::Teeth(j) => s.elements[j].group.expect("it rubs"),
+                Joint::Teeth(j) => {
+                    let (g, factor) = s.elements[j].group.expect("it rubs");
+                    // Gear 2 turns as gear 1 does if their factors differ in sign.
+                    let [z1, z2] = &s.bodies.meshes[j].factors;
+                    (g, -factor * f64::from(z1.sign() * z2.sign()))
+                }
             };
             note(g, element.slip * sign(factor));
         }
