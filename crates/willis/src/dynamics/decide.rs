@@ -3,7 +3,7 @@
 use crate::exact::Rational;
 
 use super::contacts::{Contacts, Joint};
-use super::decision::{Body, Decision, Load, Motion, Verdict};
+use super::decision::{Amount, Body, Decision, Load, Motion, Verdict};
 use super::element::Loss;
 use super::engine::Engine;
 use super::integrator::Smooth;
@@ -103,12 +103,7 @@ impl Engine {
 
     /// Asks the decision of the contacts of the present mode, at the port torques found last; `rates`: the time after
     /// which loads are looked at once more, and the state then.
-    fn ask_contacts<T>(
-        &mut self,
-        t: f64,
-        rates: Option<(f64, &[f64])>,
-        ask: impl Fn(&mut Decision, &Load) -> T,
-    ) -> T {
+    fn ask_contacts<T>(&mut self, t: f64, rates: Option<(f64, &[f64])>, ask: impl Fn(&mut Decision, &Load) -> T) -> T {
         let mut contacts = std::mem::take(&mut self.contacts);
         self.gather(&mut contacts, t);
         let mut rounds = 0;
@@ -258,7 +253,7 @@ impl Engine {
             }
         }
         for g in (0..s.groups.len()).filter(|&g| start.slip[g] == 0) {
-            mode.slip[g] = slips[g].unwrap_or_else(|| if self.drift(g) < -1.0 { -1 } else { 1 });
+            mode.slip[g] = slips[g].unwrap_or_else(|| if self.drift(g).sign() < 0 { -1 } else { 1 });
         }
         for (j, mesh) in motion.meshes.iter().enumerate() {
             if mode.element_slip(s, j) != 0 {
@@ -268,19 +263,20 @@ impl Engine {
         mode
     }
 
-    /// How fast a group that nothing holds begins to slip, over the bound of that number's error.
-    fn drift(&self, g: usize) -> f64 {
+    /// How fast a group that nothing holds begins to slip.
+    fn drift(&self, g: usize) -> Amount {
         let s = &self.system;
         let &f = s.groups[g].frictions.first().expect("teeth hold");
         let (_, factor) = s.frictions[f].group.expect("of this group");
-        let of = |b: Body| {
-            b.map_or((0.0, 0.0), |i| {
-                let a = &self.motion().accelerations[i];
-                (a.value, a.error)
-            })
-        };
+        let of = |b: Body| b.map_or(Amount::default(), |i| self.motion().accelerations[i]);
         let [a, b] = s.bodies.frictions[f].map(of);
-        factor.signum() * (a.0 - b.0) / (a.1 + b.1 + f64::MIN_POSITIVE)
+        let along = factor.signum();
+        Amount {
+            value: along * (a.value - b.value),
+            error: a.error + b.error,
+            rate: along * (a.rate - b.rate),
+            rate_error: a.rate_error + b.rate_error,
+        }
     }
 
     fn motion(&self) -> &Motion {
@@ -316,7 +312,8 @@ impl Engine {
         (0..self.system.groups.len())
             .filter(|&g| self.mode.slip[g] == 0)
             .filter(|&g| !self.system.groups[g].driven && self.system.groups[g].elements.is_empty() && !held(g))
-            .map(|g| self.drift(g).abs())
+            .map(|g| self.drift(g))
+            .map(|drift| drift.value.abs() / (drift.error + f64::MIN_POSITIVE))
             .filter(|drift| *drift > 1.0)
             .fold(spare, |spare, drift| spare.min(-drift))
     }

@@ -166,7 +166,13 @@ fn random_trains_whose_elements_fall_from_a_peak_come_to_their_end() {
         let text = g.text(true, Some(capacity), 0.3, &work.text(&g).expect("it starts at rest"));
         let text = text.replace("\ncapacity = ", "\npeak = 1.2\ncapacity = ");
         let (_, report) = run(&text, &Options::default());
-        if report.outcome != Outcome::Finished {
+        let mut ended = report.outcome == Outcome::Finished;
+        if matches!(report.outcome, Outcome::SeveralSolutions(_)) && !report.unique_for_every_load {
+            // A train that wedges: it may rest where it also may move, for a while before it must.
+            let (_, first) = run(&text, &Options { continue_when_ambiguous: true, ..Options::default() });
+            ended = first.outcome == Outcome::Finished;
+        }
+        if !ended {
             bad.push(format!("{seed}: {:?}", report.outcome));
         }
     }
