@@ -66,11 +66,12 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
     if let (Some(path), Some(extra)) = (plot, entry.extras.first()) {
         asked.guard_extra(extra, path, &[file])?;
     }
+    let terminal = Terminal::new(1, matches.get_flag("yes"));
     let of = asked.trains()?;
     let train = of[0].model.train();
     let (scenario, options) = request
         .scenario(train)
-        .and_then(|s| Ok((s, request.options()?)))
+        .and_then(|s| Ok((s, request.options(&terminal)?)))
         .map_err(|refusal| asked.refused(&refusal, &of))?;
     let span = [scenario.start, scenario.end];
     // From here on Ctrl-C ends the run and not the program.
@@ -82,7 +83,6 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
         #[cfg(feature = "parquet")]
         Target::Parquet => Sink::Parquet(Box::new(parquet::Rows::new(handle))),
     };
-    let terminal = Terminal::new(1, false);
     terminal.begin("thousandths of the scenario", STEPS);
     let mut listener = Listener {
         request,

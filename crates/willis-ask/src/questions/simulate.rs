@@ -86,8 +86,9 @@ impl Simulate {
     ///
     /// # Errors
     /// A fixed step that is no time above zero.
-    pub fn options(&self) -> Result<Options, Refusal> {
+    pub fn options(&self, work: &dyn Work) -> Result<Options, Refusal> {
         let mut options = Options {
+            patience_s: work.patience(),
             samples: self.samples.map(|n| n as usize),
             continue_when_ambiguous: self.continue_when_ambiguous,
             lagged_forces: self.lagged_forces,
@@ -229,7 +230,7 @@ impl Question for Simulate {
 
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<RunReport, Refusal> {
         let train = of[0].model.train();
-        let (scenario, options) = (self.scenario(train)?, self.options()?);
+        let (scenario, options) = (self.scenario(train)?, self.options(work)?);
         let rows = options.samples.unwrap_or(scenario.samples);
         if rows > MOST_ROWS {
             let hint = "stream them into a file: -o run.csv or -o run.parquet";

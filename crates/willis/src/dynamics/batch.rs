@@ -501,7 +501,7 @@ impl pulp::WithSimd for Glide<'_> {
             add(u);
         }
         for (lane, (square, bound)) in square.iter().zip(&block.bound).enumerate() {
-            alone |= u8::from(!(square <= bound)) << lane;
+            alone |= u8::from(*square > *bound || square.is_nan()) << lane;
         }
         alone &= alike;
         let going = alike & !alone;

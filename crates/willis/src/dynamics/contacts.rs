@@ -44,7 +44,8 @@ impl Set {
         let joints = self.joints.iter().map(|&(joint, yields)| {
             let bodies = match joint {
                 Joint::Friction(k) => bodies.frictions[k],
-                Joint::Teeth(j) => [bodies.meshes[j].bodies[0], bodies.meshes[j].bodies[2]],
+                // Behind what follows the load: at gear 2.
+                Joint::Teeth(j) => [bodies.meshes[j].bodies[1], bodies.meshes[j].bodies[2]],
             };
             Element { bodies, yields }
         });
@@ -60,9 +61,14 @@ pub(super) struct Contacts {
     known: HashMap<Set, Decision>,
     pub set: Set,
     pub load: Load,
-    /// Sign of the force in each mesh as it was found last: on it the friction of teeth at rest may depend.
-    pub forces: Vec<i8>,
+    /// Force at gear 1 of each mesh as it was found last: on it the friction of teeth at rest may depend.
+    pub forces: Vec<f64>,
+    /// Whether that friction is the one of the forces that were found with it.
+    pub agrees: bool,
     pub tau: Vec<f64>,
+    /// Friction elements that have broken away: they oppose slip with what they do while they slide, not with their
+    /// peak.
+    pub broken: Vec<bool>,
 }
 
 impl Contacts {
@@ -77,7 +83,7 @@ impl Contacts {
         let decision = self.known.get_mut(&self.set).expect("just made");
         let answer = ask(decision, &self.load);
         self.forces.clear();
-        self.forces.extend(decision.motion().meshes.iter().map(|mesh| mesh.forces[0].sign()));
+        self.forces.extend(decision.motion().meshes.iter().map(|mesh| mesh.forces[0].value));
         answer
     }
 

@@ -1,7 +1,9 @@
 //! What happens at a state: its contacts and their loads, and the mode in which the motion found goes on.
 
+use crate::exact::Rational;
+
 use super::contacts::{Contacts, Joint};
-use super::decision::{Body, Decision, Load, Motion, Verdict};
+use super::decision::{Amount, Body, Decision, Load, Motion, Verdict};
 use super::element::Loss;
 use super::engine::Engine;
 use super::integrator::Smooth;
@@ -9,6 +11,9 @@ use super::mode::{Mode, Side};
 
 /// A part of a long way: loads are derived by their change over it.
 const SHORT: f64 = 1e-4;
+
+/// Rounds, at most, in which what teeth at rest can hold is brought into agreement with what they carry.
+const MOST_ROUNDS: usize = 100;
 
 /// A constant friction that is the same whichever gear drives, and where the kink between the two is: force variable
 /// and loss there.
@@ -21,12 +26,19 @@ fn kink(loss: &Loss, factor: f64, sign: f64) -> [f64; 2] {
     [torque / factor, loss.drive * torque + sign * loss.drive_torque]
 }
 
+/// What a mesh that begins to slip loses beside what it would lose without constant friction, if it carries this torque
+/// along the slip: with that, which gear drives changes elsewhere.
+fn beside_load(loss: &Loss, torque: f64) -> f64 {
+    let with = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
+    with - (loss.drive * torque).max(loss.coast * torque)
+}
+
 impl Engine {
     /// The contacts of the present mode, and the loads on them, from the port torques found last.
     fn gather(&self, contacts: &mut Contacts, t: f64) {
         let s = &self.system;
-        let Contacts { set, load, forces, tau, .. } = contacts;
-        forces.resize(s.elements.len(), 0);
+        let Contacts { set, load, forces, tau, broken, .. } = contacts;
+        forces.resize(s.elements.len(), 0.0);
         set.meshes.clear();
         set.joints.clear();
         load.torques.clear();
@@ -43,7 +55,10 @@ impl Engine {
             let capacity = match (f.rigid && f.blocks.is_none(), self.engaged[k]) {
                 (true, true) => [f64::INFINITY; 2],
                 (true, false) => [0.0; 2],
-                (false, _) => [1, -1].map(|sign| self.sliding(k, 0.0, sign, true, t).abs()),
+                (false, _) => {
+                    let peak = !broken.get(k).is_some_and(|broken| *broken);
+                    [1, -1].map(|sign| self.sliding(k, 0.0, sign, peak, t).abs())
+                }
             };
             if capacity != [0.0; 2] {
                 set.joints.push((Joint::Friction(k), capacity.map(f64::is_finite)));
@@ -65,11 +80,13 @@ impl Engine {
                 continue;
             }
             if rests {
-                // By the gear that would drive if it began to turn forward.
-                let along = [loss.drive_torque, loss.coast_torque];
-                let [forward, backward] = if forces[j] < 0 { [along[1], along[0]] } else { along };
+                // Forward and backward slip of gear 2.
+                let factors = s.bodies.meshes[j].factors.each_ref().map(Rational::to_f64);
+                let ratio = factors[1] / factors[0];
+                let torque = forces[j] * e.factors[0];
+                let against = |sign: f64| ratio.abs() * beside_load(&loss, sign * torque);
                 set.joints.push((Joint::Teeth(j), [true; 2]));
-                load.capacities.push([[forward, 0.0], [backward, 0.0]]);
+                load.capacities.push([-ratio.signum(), ratio.signum()].map(|sign| [against(sign), 0.0]));
             } else {
                 let [force, lost] = kink(&loss, e.factors[0], f64::from(self.mode.element_slip(s, j)));
                 tau[e.port] = lost;
@@ -86,18 +103,27 @@ impl Engine {
 
     /// Asks the decision of the contacts of the present mode, at the port torques found last; `rates`: the time after
     /// which loads are looked at once more, and the state then.
-    fn ask_contacts<T>(
-        &mut self,
-        t: f64,
-        rates: Option<(f64, &[f64])>,
-        ask: impl FnOnce(&mut Decision, &Load) -> T,
-    ) -> T {
+    fn ask_contacts<T>(&mut self, t: f64, rates: Option<(f64, &[f64])>, ask: impl Fn(&mut Decision, &Load) -> T) -> T {
         let mut contacts = std::mem::take(&mut self.contacts);
         self.gather(&mut contacts, t);
-        if let Some((later, x)) = rates {
-            self.add_rates(&mut contacts, t, later, x);
-        }
-        let answer = contacts.ask(&self.system.bodies, ask);
+        let mut rounds = 0;
+        let answer = loop {
+            let capacities = contacts.load.capacities.clone();
+            if let Some((later, x)) = rates {
+                self.add_rates(&mut contacts, t, later, x);
+            }
+            let answer = contacts.ask(&self.system.bodies, &ask);
+            // What teeth at rest can hold may depend on what they carry.
+            self.gather(&mut contacts, t);
+            let near = |a: &f64, b: &f64| (a - b).abs() <= 4.0 * f64::EPSILON * (a.abs() + b.abs());
+            let before = capacities.iter().flatten().map(|of| &of[0]);
+            let now = contacts.load.capacities.iter().flatten().map(|of| &of[0]);
+            contacts.agrees = before.zip(now).all(|(a, b)| near(a, b));
+            rounds += 1;
+            if contacts.agrees || rounds == MOST_ROUNDS {
+                break answer;
+            }
+        };
         self.contacts = contacts;
         answer
     }
@@ -128,10 +154,38 @@ impl Engine {
 
     /// What happens at a state with these groups at rest, as `start` has the others.
     pub fn decide(&mut self, t: f64, x: &[f64], start: &Mode) -> (Verdict, Mode) {
+        self.contacts.broken.clear();
+        self.contacts.broken.resize(self.system.frictions.len(), false);
+        let mut answer = self.decide_as_broken(t, x, start);
+        // What breaks away falls from its peak to what it rubs with, which moves the forces of all the others; it may be
+        // that more break away, never less.
+        while matches!(answer.0, Verdict::One { .. }) && self.break_away() {
+            answer = self.decide_as_broken(t, x, start);
+        }
+        self.contacts.broken.fill(false);
+        answer
+    }
+
+    /// Notes what breaks away from a peak in the motion found last. False if that is nothing new.
+    fn break_away(&mut self) -> bool {
+        let contacts = &self.contacts;
+        let slips = contacts.set.joints.iter().zip(&self.motion().elements);
+        let new: Vec<usize> = slips
+            .filter_map(|(&(joint, _), element)| match joint {
+                Joint::Friction(k) if element.slip != 0 => Some(k),
+                _ => None,
+            })
+            .filter(|&k| self.system.frictions[k].peak != 1.0 && !contacts.broken[k])
+            .collect();
+        new.iter().for_each(|&k| self.contacts.broken[k] = true);
+        !new.is_empty()
+    }
+
+    fn decide_as_broken(&mut self, t: f64, x: &[f64], start: &Mode) -> (Verdict, Mode) {
         let mut mode = start.clone();
         let certified = self.certified;
         let mut verdict = Verdict::Undecided;
-        // Losses that follow the load are those of the forces found; friction at rest may follow their direction.
+        // Losses under a law are those of the forces found.
         for _ in 0..8 {
             self.mode.clone_from(start);
             self.load(t, x);
@@ -151,7 +205,10 @@ impl Engine {
                     found = self.mode_found(start);
                 }
             }
-            let again = self.follows_load() && found != mode;
+            if !self.contacts.agrees {
+                verdict = Verdict::Undecided;
+            }
+            let again = self.system.laws.is_some() && found != mode;
             mode = found;
             if !again || !matches!(verdict, Verdict::One { .. }) || !self.enter(&mode) {
                 break;
@@ -159,12 +216,6 @@ impl Engine {
             self.solve(t, x);
         }
         (verdict, mode)
-    }
-
-    /// Whether losses depend on loads in a way that a decision does not know.
-    fn follows_load(&self) -> bool {
-        self.system.laws.is_some()
-            || self.system.elements.iter().any(|e| e.rows.iter().any(|r| r.forward_torque != r.backward_torque))
     }
 
     /// The mode in which the motion found last goes on.
@@ -185,7 +236,12 @@ impl Engine {
         for (&(joint, _), element) in contacts.set.joints.iter().zip(&motion.elements) {
             let (g, factor) = match joint {
                 Joint::Friction(k) => s.frictions[k].group.expect("it rubs"),
-                Joint::Teeth(j) => s.elements[j].group.expect("it rubs"),
+                Joint::Teeth(j) => {
+                    let (g, factor) = s.elements[j].group.expect("it rubs");
+                    // Gear 2 turns as gear 1 does if their factors differ in sign.
+                    let [z1, z2] = &s.bodies.meshes[j].factors;
+                    (g, -factor * f64::from(z1.sign() * z2.sign()))
+                }
             };
             note(g, element.slip * sign(factor));
         }
@@ -197,7 +253,7 @@ impl Engine {
             }
         }
         for g in (0..s.groups.len()).filter(|&g| start.slip[g] == 0) {
-            mode.slip[g] = slips[g].unwrap_or_else(|| if self.drift(g) < -1.0 { -1 } else { 1 });
+            mode.slip[g] = slips[g].unwrap_or_else(|| if self.drift(g).sign() < 0 { -1 } else { 1 });
         }
         for (j, mesh) in motion.meshes.iter().enumerate() {
             if mode.element_slip(s, j) != 0 {
@@ -207,19 +263,20 @@ impl Engine {
         mode
     }
 
-    /// How fast a group that nothing holds begins to slip, over the bound of that number's error.
-    fn drift(&self, g: usize) -> f64 {
+    /// How fast a group that nothing holds begins to slip.
+    fn drift(&self, g: usize) -> Amount {
         let s = &self.system;
         let &f = s.groups[g].frictions.first().expect("teeth hold");
         let (_, factor) = s.frictions[f].group.expect("of this group");
-        let of = |b: Body| {
-            b.map_or((0.0, 0.0), |i| {
-                let a = &self.motion().accelerations[i];
-                (a.value, a.error)
-            })
-        };
+        let of = |b: Body| b.map_or(Amount::default(), |i| self.motion().accelerations[i]);
         let [a, b] = s.bodies.frictions[f].map(of);
-        factor.signum() * (a.0 - b.0) / (a.1 + b.1 + f64::MIN_POSITIVE)
+        let along = factor.signum();
+        Amount {
+            value: along * (a.value - b.value),
+            error: a.error + b.error,
+            rate: along * (a.rate - b.rate),
+            rate_error: a.rate_error + b.rate_error,
+        }
     }
 
     fn motion(&self) -> &Motion {
@@ -255,7 +312,8 @@ impl Engine {
         (0..self.system.groups.len())
             .filter(|&g| self.mode.slip[g] == 0)
             .filter(|&g| !self.system.groups[g].driven && self.system.groups[g].elements.is_empty() && !held(g))
-            .map(|g| self.drift(g).abs())
+            .map(|g| self.drift(g))
+            .map(|drift| drift.value.abs() / (drift.error + f64::MIN_POSITIVE))
             .filter(|drift| *drift > 1.0)
             .fold(spare, |spare, drift| spare.min(-drift))
     }

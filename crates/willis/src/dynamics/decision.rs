@@ -34,7 +34,7 @@ mod tests;
 use basis::{Basis, Vector, Work};
 use equations::Equations;
 
-pub(super) use motion::{Motion, Verdict};
+pub(super) use motion::{Amount, Motion, Verdict};
 pub(super) use problem::{Body, Element, Inertia, Load, Mesh, Problem};
 
 /// Choices that a certificate looks at, at most.
@@ -126,7 +126,14 @@ impl Decision {
         let elements = problem.elements.iter().zip(&motion.elements).filter(|(_, m)| m.slip != 0);
         let slips = (meshes.map(|(p, _)| [p.bodies[0], p.bodies[2]])).chain(elements.map(|(p, _)| p.bodies));
         let worst = slips.map(beyond).fold(0.0, f64::max);
-        if worst > 0.0 { -worst } else { self.least_spare() }
+        if worst == 0.0 {
+            self.least_spare()
+        } else if !self.is_certified() && self.can_rest(load) {
+            // Another motion than the present one, which goes on.
+            0.0
+        } else {
+            -worst
+        }
     }
 
     /// The motion found last.

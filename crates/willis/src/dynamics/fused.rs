@@ -9,13 +9,11 @@ use super::fixed::groups::{GroupStep, UNBOUNDED};
 use super::fixed::map::StepMap;
 use super::fixed::shafts::ShaftStep;
 use super::mode::Side;
+use super::rounding::NOISE;
 use super::system::System;
 
 /// Rows come in blocks of as many, so that the product runs without a remainder.
 pub(super) const BLOCK: usize = 4;
-
-/// Round-off of a margin, relative to the sum of amounts.
-pub(super) const NOISE: f64 = 1e-11;
 
 /// The affine map of a step in a mode.
 #[derive(Clone)]

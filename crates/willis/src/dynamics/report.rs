@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::named::Named;
+use crate::work::{Serial, Work as _};
 
 /// How to run a scenario.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +28,9 @@ pub struct Options {
     pub energies: bool,
     /// How many rows; that of the scenario unless given.
     pub samples: Option<usize>,
+    /// Work of one core, s, that a run may take, by a count of its steps and changes of mode: one that would take longer at
+    /// its pace ends with [`Outcome::TooLong`]. Infinite: however long it takes.
+    pub patience_s: f64,
 }
 
 impl Default for Options {
@@ -39,6 +43,7 @@ impl Default for Options {
             lagged_forces: false,
             energies: true,
             samples: None,
+            patience_s: Serial.patience(),
         }
     }
 }
@@ -58,6 +63,9 @@ impl Options {
         }
         if let Some(n @ 0..2) = self.samples {
             refuse(format!("{n} rows do not reach from the start to the end"), "two rows or more");
+        }
+        if self.patience_s.is_nan() {
+            refuse("how long a run may take is no number".into(), "seconds, as in 60, or infinity");
         }
         if self.most_events == 0 {
             refuse("no change of mode is allowed, not even the first".into(), "one or more");
@@ -377,6 +385,8 @@ pub enum Outcome {
     NotConverged(String),
     /// A speed would have to change at once: members joined, or a prescribed speed that jumps.
     Impact(String),
+    /// It would take longer than [allowed](Options::patience_s).
+    TooLong(String),
 }
 
 impl Outcome {
@@ -390,6 +400,7 @@ impl Outcome {
             Self::TooManyEvents(_) => "stopped: modes change too often",
             Self::NotConverged(_) => "stopped: the equations could not be solved",
             Self::Impact(_) => "stopped at an impact: a speed would have to change at once",
+            Self::TooLong(_) => "stopped: it would take too long",
         }
     }
 
@@ -401,7 +412,8 @@ impl Outcome {
             | Self::SeveralSolutions(why)
             | Self::TooManyEvents(why)
             | Self::NotConverged(why)
-            | Self::Impact(why) => why,
+            | Self::Impact(why)
+            | Self::TooLong(why) => why,
         }
     }
 }

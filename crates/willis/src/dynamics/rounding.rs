@@ -1,5 +1,8 @@
 //! Zeros that rounding hides.
 
+/// Round-off of a margin of a step of fixed length, relative to the sum of amounts.
+pub(super) const NOISE: f64 = 1e-11;
+
 /// A sum, or zero if that is no more than round-off of the amounts added up.
 ///
 /// In a linear map a zero is a fact of the train: what is idle bears no force and what is held has no acceleration. Noise

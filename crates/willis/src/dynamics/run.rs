@@ -1,6 +1,7 @@
 //! From start to end: smooth motion, changes of mode, rows and events.
 
 mod locate;
+mod pace;
 
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -18,6 +19,7 @@ use super::margins::{Margin, NOISE, Watch};
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
 use super::start::{AS_WRITTEN, initial_state};
 use super::system::System;
+use pace::Pace;
 
 /// How often in a run what a formula does to a held element is looked at, at least.
 const LOOKS: f64 = 1000.0;
@@ -87,6 +89,7 @@ pub struct Simulation {
     pub(super) next_sample: usize,
     samples: usize,
     recent: VecDeque<f64>,
+    pace: Pace,
     last_step: Option<f64>,
     pub(super) steps: usize,
     pub(super) events: usize,
@@ -152,6 +155,7 @@ impl Simulation {
             next_sample: 0,
             samples,
             recent: VecDeque::new(),
+            pace: Pace::new([engine.system.all(), engine.system.nodes], start, options.patience_s),
             last_step: None,
             steps: 0,
             events: 0,
@@ -267,6 +271,10 @@ impl Simulation {
             {
                 break Some(trouble);
             }
+            let start = self.engine.system.scenario.start;
+            if let Some(why) = self.pace.is_too_long([start, self.t, end]) {
+                break Some(Outcome::TooLong(why));
+            }
             if self.t >= target {
                 break (self.t >= end).then_some(Outcome::Finished);
             }
@@ -290,6 +298,7 @@ impl Simulation {
 
     /// Chooses the mode at the present state and tells of the change.
     pub(super) fn choose(&mut self, recorder: &mut dyn Recorder) -> Result<(), Outcome> {
+        self.pace.choice();
         let end = self.engine.system.scenario.end;
         let inside = self.engine.inside;
         let next = self.engine.system.signals().map(|s| s.next_break(self.t)).fold(f64::INFINITY, f64::min);
@@ -434,6 +443,7 @@ impl Simulation {
                 }));
             }
             self.steps += 1;
+            self.pace.step();
             let (t_old, t_new) = self.span();
             self.last_step = Some(t_new - t_old);
             // One beyond the time asked for is found again when it is reached.
@@ -462,6 +472,10 @@ impl Simulation {
             self.take_state(t_new);
             if recorder.progress(self.t).is_break() {
                 return Stretch::Ended(Outcome::Interrupted);
+            }
+            let whole = &self.engine.system.scenario;
+            if let Some(why) = self.pace.is_too_long([whole.start, self.t, whole.end]) {
+                return Stretch::Ended(Outcome::TooLong(why));
             }
             if !self.engine.certified && !self.still_single() {
                 return Stretch::Again;

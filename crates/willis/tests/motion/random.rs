@@ -150,6 +150,36 @@ fn random_trains_move_as_the_reference_does() {
 }
 
 #[test]
+fn random_trains_whose_elements_fall_from_a_peak_come_to_their_end() {
+    let mut bad = vec![];
+    for seed in 0..300 {
+        let dice = &mut Dice(seed);
+        let g = gearbox(dice);
+        let capacity = 20.0 + dice.below(300) as f64;
+        let work = Work {
+            duration: 1.0,
+            states: [0, 1],
+            input: dice.torques(1.0),
+            output: dice.torques(1.0),
+            ..Work::default()
+        };
+        let text = g.text(true, Some(capacity), 0.3, &work.text(&g).expect("it starts at rest"));
+        let text = text.replace("\ncapacity = ", "\npeak = 1.2\ncapacity = ");
+        let (_, report) = run(&text, &Options::default());
+        let mut ended = report.outcome == Outcome::Finished;
+        if matches!(report.outcome, Outcome::SeveralSolutions(_)) && !report.unique_for_every_load {
+            // A train that wedges: it may rest where it also may move, for a while before it must.
+            let (_, first) = run(&text, &Options { continue_when_ambiguous: true, ..Options::default() });
+            ended = first.outcome == Outcome::Finished;
+        }
+        if !ended {
+            bad.push(format!("{seed}: {:?}", report.outcome));
+        }
+    }
+    assert!(bad.is_empty(), "{} are wrong:\n{}", bad.len(), bad.join("\n"));
+}
+
+#[test]
 #[ignore = "takes a quarter of an hour"]
 fn ten_thousand_random_trains_move_as_the_reference_does() {
     runs(0..10_000);

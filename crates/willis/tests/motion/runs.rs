@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use willis::dynamics::{ColumnKind, Method, Options, Outcome, RunReport, simulate};
 use willis::named::Named;
 
+use crate::common::examples;
 use crate::rows::{run, train};
 
 /// What does not close, as a part of all that came in, also from the store.
@@ -42,6 +43,17 @@ fn two_suns(carrier_inertia: f64, carrier_speed: f64) -> String {
         torque = "1 N m"
         "#
     )
+}
+
+#[test]
+fn every_scenario_of_the_examples_comes_to_its_end() {
+    for (name, text) in examples() {
+        let train = train(&text);
+        for scenario in train.scenarios() {
+            let report = simulate(&train, &scenario.name, &Options::default(), &mut ()).expect("it begins");
+            assert_eq!(report.outcome, Outcome::Finished, "{name}, {}", scenario.name);
+        }
+    }
 }
 
 #[test]
@@ -562,5 +574,81 @@ fn a_rotor_that_nothing_acts_on_keeps_its_speed() {
         assert_eq!(report.outcome, Outcome::Finished);
         assert!(rows.of("speed").all(|w| (w - 10.0).abs() < 1e-12));
         assert_eq!(report.energy.expect("counted").residual_j, 0.0);
+    }
+}
+
+/// A wheel on a spring, with this source.
+fn wheel(source: &str, duration: &str) -> String {
+    format!(
+        "format = 1\nname = \"wheel\"\nmembers = [\"a\", \"b\"]\ninertias = {{ a = \"0.1 kg m^2\", b = \"1 kg m^2\" }}\n\
+         [[shaft]]\nname = \"S\"\nmembers = [\"a\", \"b\"]\nstiffness = \"1000 N m/rad\"\ndamping = \"1 N m s/rad\"\n\
+         [[scenario]]\nname = \"run\"\nduration = {duration:?}\n[[scenario.source]]\nmember = \"a\"\n{source}\n"
+    )
+}
+
+#[test]
+fn a_run_without_end_is_not_gone_on_with() {
+    let sine = "torque = { type = \"sine\", amplitude = \"10 N m\", frequency = \"1e7 Hz\" }";
+    let gain = "controller = { setpoint = \"10 rad/s\", proportional = \"1 N m s/rad\", integral = \"1e30 N m/rad\" }";
+    for (text, what) in
+        [(wheel(sine, "1 s"), "minutes of one core"), (wheel(gain, "1 s"), "does not end in a lifetime")]
+    {
+        let (rows, report) = run(&text, &Options::default());
+        let Outcome::TooLong(why) = &report.outcome else { panic!("{:?}", report.outcome) };
+        assert!(why.contains(what), "{why}");
+        assert!(!rows.rows.is_empty() && report.end_s > 0.0);
+    }
+    // As long as it takes, if that is allowed: as much work as the run that ended above had, and more.
+    let options = Options { patience_s: f64::INFINITY, ..Options::default() };
+    let (_, report) = run(&wheel(sine, "0.01 s"), &options);
+    assert_eq!(report.outcome, Outcome::Finished);
+}
+
+#[test]
+fn too_many_steps_of_fixed_length_are_not_begun() {
+    let method = Method::Fixed { step_s: 1e-9 };
+    let (rows, report) = run(&wheel("torque = \"10 N m\"", "10 s"), &Options { method, ..Options::default() });
+    assert!(matches!(report.outcome, Outcome::TooLong(_)), "{:?}", report.outcome);
+    assert!(rows.rows.is_empty() && report.steps == 0);
+}
+
+#[test]
+fn shafts_stiffer_than_a_fixed_step_stay_bounded_and_right_in_the_mean() {
+    for (stiffness, damping, backlash) in [(1e6, 0.0, 0.0), (1e6, 20.0, 0.0), (1e6, 20.0, 2e-3), (1e9, 0.0, 0.0)] {
+        let text = format!(
+            "format = 1\nname = \"stiff\"\nmembers = [\"a\", \"b\"]\ninertias = {{ a = \"1e-3 kg m^2\", b = \"0.2 kg m^2\" }}\n\
+             [[shaft]]\nname = \"S\"\nmembers = [\"a\", \"b\"]\nstiffness = \"{stiffness} N m/rad\"\n\
+             damping = \"{damping} N m s/rad\"\nbacklash = \"{backlash} rad\"\n\
+             [[scenario]]\nname = \"run\"\nduration = \"2 s\"\n[[scenario.source]]\nmember = \"a\"\ntorque = \"20 N m\"\n\
+             [[scenario.source]]\nmember = \"b\"\ntorque = \"-10 N m\"\n"
+        );
+        let method = Method::Fixed { step_s: 1e-3 };
+        let (rows, report) = run(&text, &Options { method, samples: Some(1001), ..Options::default() });
+        assert_eq!(report.outcome, Outcome::Finished);
+        // Both go on as one: (20 − 10) N m on 0.201 kg m², 20 − 0.001·α on the shaft.
+        let rate = 10.0 / 0.201;
+        let end = *report.final_speeds_rad_s.get("b").unwrap();
+        assert!((end / (2.0 * rate) - 1.0).abs() < 2e-3, "{stiffness} {damping} {backlash}: {end}");
+        let torque = rows.names.iter().position(|n| n == "torque.S").unwrap();
+        let last = &rows.rows[rows.rows.len() / 2..];
+        let mean = last.iter().map(|row| row[torque]).sum::<f64>() / last.len() as f64;
+        assert!((mean.abs() / (20.0 - 1e-3 * rate) - 1.0).abs() < 2e-2, "{stiffness} {damping} {backlash}: {mean}");
+        assert!(rows.greatest("torque.S") < 2e4, "{}", rows.greatest("torque.S"));
+    }
+}
+
+#[test]
+fn fixed_steps_that_diverge_end_with_a_verdict() {
+    let gain = "controller = { setpoint = \"10 rad/s\", proportional = \"1e4 N m s/rad\", integral = \"1e9 N m/rad\" }";
+    let domain = "torque = { type = \"expression\", formula = \"sqrt(0.5 - t)\" }";
+    for source in [gain, domain] {
+        let method = Method::Fixed { step_s: 1e-3 };
+        let (rows, report) = run(&wheel(source, "1 s"), &Options { method, ..Options::default() });
+        let Outcome::NotConverged(why) = &report.outcome else { panic!("{source}: {:?}", report.outcome) };
+        assert!(why.contains("at t = "), "{why}");
+        // An efficiency may be undetermined.
+        for column in ["speed", "angle", "torque", "acceleration"] {
+            assert!(rows.of(column).all(|x| x.is_finite()), "{source}: {column}");
+        }
     }
 }

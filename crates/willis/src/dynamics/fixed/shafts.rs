@@ -9,8 +9,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::dynamics::engine::Touch;
-use crate::dynamics::fused::NOISE;
 use crate::dynamics::mode::dot;
+use crate::dynamics::rounding::NOISE;
 use crate::dynamics::system::System;
 use crate::train::Contact;
 

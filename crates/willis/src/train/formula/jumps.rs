@@ -11,8 +11,9 @@ use std::str::FromStr;
 
 use exmex::{BinOp, Operator};
 
-/// Jumps closer to each other than this part of their time, or of a millisecond, count as one.
-const CLOSE: f64 = 8.0 * f64::EPSILON;
+/// Jumps closer to each other than this part of their time, or of a millisecond, count as one: several functions of a
+/// formula that jump at once do so to their own rounding, and a run takes steps between jumps.
+const CLOSE: f64 = 1e-12;
 /// The first stretch that is looked at, s.
 const FIRST: f64 = 1e-3;
 /// No jump is looked for farther ahead, s: what is found there ends a stretch at which nothing jumps.
