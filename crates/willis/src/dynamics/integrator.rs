@@ -211,7 +211,8 @@ impl Track {
         self.evaluate(sys);
         self.rate_old.copy_from_slice(&self.rate);
         match first {
-            Some(h) => self.next = h,
+            // One that was cut short says little.
+            Some(h) => self.next = h.max(1e-12 * t.abs()),
             None if self.next > 0.0 => {}
             None => self.next = self.first_step(sys, t_end - t, order, work),
         }

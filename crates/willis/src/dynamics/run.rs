@@ -413,7 +413,9 @@ impl Simulation {
     /// Steps until something happens.
     fn stretch(&mut self, target: f64, recorder: &mut dyn Recorder) -> Stretch {
         loop {
-            let goal = self.segment.min(self.t + self.longest);
+            // What is left of a stretch is not tiny.
+            let goal = self.t + self.longest;
+            let goal = if goal + 0.01 * self.longest < self.segment { goal } else { self.segment };
             let taken = if self.stiff {
                 self.implicit.step(&mut self.engine, goal)
             } else {

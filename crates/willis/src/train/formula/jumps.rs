@@ -14,6 +14,8 @@ use exmex::{BinOp, Operator};
 /// Jumps closer to each other than this part of their time, or of a millisecond, count as one: several functions of a
 /// formula that jump at once do so to their own rounding, and a run takes steps between jumps.
 const CLOSE: f64 = 1e-12;
+/// A jump is found to this part of its time, or of a millisecond.
+const FOUND: f64 = 8.0 * f64::EPSILON;
 /// The first stretch that is looked at, s.
 const FIRST: f64 = 1e-3;
 /// No jump is looked for farther ahead, s: what is found there ends a stretch at which nothing jumps.
@@ -21,14 +23,10 @@ const FAR: f64 = 1e9;
 /// Most stretches that are looked at for one jump.
 const LOOKS: usize = 2000;
 
-/// The shortest stretch that is told apart from its start.
-pub(super) fn shortest(t: f64) -> f64 {
-    CLOSE * t.abs().max(FIRST)
-}
-
 /// A time after `t`, s, before which there is no jump: that of the first one wherever the bounds tell.
 pub(super) fn next(t: f64, jumps_within: impl Fn(f64, f64) -> bool) -> f64 {
-    let mut from = t + shortest(t);
+    let part = |t: f64, part: f64| part * t.abs().max(FIRST);
+    let mut from = t + part(t, CLOSE);
     let mut width = FIRST;
     // The end of a stretch that may hold a jump.
     let mut within: Option<f64> = None;
@@ -46,7 +44,7 @@ pub(super) fn next(t: f64, jumps_within: impl Fn(f64, f64) -> bool) -> f64 {
             continue;
         };
         width = 0.5 * (to - from);
-        if to - from <= shortest(from) {
+        if to - from <= part(from, FOUND) {
             return to;
         }
         let middle = from + width;
