@@ -128,7 +128,9 @@ impl Span {
 
     /// Whether it holds `at`, or a place any number of periods away.
     fn holds(self, at: f64, period: f64) -> bool {
-        !(at + ((self.low - at) / period).ceil() * period > self.high)
+        let first = at + ((self.low - at) / period).ceil() * period;
+        // Of an end that is infinite it cannot be told.
+        first <= self.high || first.is_nan()
     }
 
     /// A wave that has its greatest value, one, at `top`.
