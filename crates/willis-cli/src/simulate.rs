@@ -73,7 +73,7 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
         .scenario(train)
         .and_then(|s| Ok((s, request.options(&terminal)?)))
         .map_err(|refusal| asked.refused(&refusal, &of))?;
-    let span = [scenario.start, scenario.end];
+    let span = [scenario.start, options.to_s.unwrap_or(scenario.end)];
     // From here on Ctrl-C ends the run and not the program.
     interrupted();
     let unfinished = Unfinished::new(out, asked.force)?;
@@ -92,7 +92,7 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
         kept: vec![],
         row: vec![],
         sink,
-        plot: plot.and_then(|_| Plot::new(train, span)),
+        plot: plot.and_then(|_| Plot::new(train, [options.from_s.unwrap_or(span[0]), span[1]])),
         all_events: form == JSON,
         events: vec![],
         wrong: None,

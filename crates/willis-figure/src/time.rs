@@ -132,12 +132,13 @@ pub struct TimeMark {
 
 /// Kinds of columns that make panels, with their quantity; the first five wherever they are, the
 /// others where none of the first is.
-const KINDS: [(ColumnKind, &str); 8] = [
+const KINDS: [(ColumnKind, &str); 9] = [
     (ColumnKind::Speed, "Speed"),
     (ColumnKind::Torque, "Torque"),
     (ColumnKind::Power, "Power"),
     (ColumnKind::Energy, "Energy"),
     (ColumnKind::Twist, "Twist"),
+    (ColumnKind::Reaction, "Reaction"),
     (ColumnKind::Acceleration, "Acceleration"),
     (ColumnKind::Angle, "Angle"),
     (ColumnKind::Efficiency, "Efficiency"),

@@ -37,6 +37,7 @@ mod source;
 mod start;
 mod still;
 mod system;
+mod window;
 
 pub use batch::Batch;
 pub use fixed::FixedStep;

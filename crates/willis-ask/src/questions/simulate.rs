@@ -45,6 +45,12 @@ pub struct Simulate {
     /// How many rows, evenly spaced in time; else as the scenario says.
     #[cfg_attr(feature = "clap", arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000_000)))]
     pub samples: Option<u32>,
+    /// Rows and events from this time on: '2 s'. The run begins at its start, and energies are those of the whole run.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME", allow_hyphen_values = true))]
+    pub from: Option<String>,
+    /// End the run here instead of at the end of the scenario: '3 s'.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME", allow_hyphen_values = true))]
+    pub to: Option<String>,
     /// Relative tolerance of speeds and angles, from 1e-13 to 1e-2 [default: 1e-10].
     #[cfg_attr(feature = "clap", arg(long, value_name = "TOLERANCE", value_parser = tolerance))]
     pub tolerance: Option<f64>,
@@ -96,6 +102,11 @@ impl Simulate {
         };
         options.tolerance = self.tolerance.unwrap_or(options.tolerance);
         options.most_events = self.most_events.map_or(options.most_events, |n| n as usize);
+        let time = |field: &str, given: &Option<String>| {
+            let given = given.as_ref().map(std::slice::from_ref).unwrap_or_default();
+            Ok::<_, Refusal>(values(field, given, Dimension::TIME)?.first().map(|q| q.si()))
+        };
+        (options.from_s, options.to_s) = (time("from", &self.from)?, time("to", &self.to)?);
         if let Some(text) = &self.fixed_step {
             let step_s = values("fixed-step", std::slice::from_ref(text), Dimension::TIME)?[0].si();
             if step_s <= 0.0 {
@@ -240,7 +251,7 @@ impl Question for Simulate {
         let mut keeper = Keeper {
             request: self,
             work,
-            span: [scenario.start, scenario.end],
+            span: [scenario.start, options.to_s.unwrap_or(scenario.end)],
             told: 0,
             kept: vec![],
             columns: vec![],
@@ -290,7 +301,8 @@ impl Question for Simulate {
 
     #[cfg(feature = "pictures")]
     fn extra(&self, answer: &RunReport, _: &str, of: &[Given]) -> Result<Vec<File>, Refusal> {
-        let mut plot = TimePlotBuilder::new(of[0].model.train(), [answer.start_s, answer.scenario_end_s]);
+        let mut plot =
+            TimePlotBuilder::new(of[0].model.train(), [answer.from_s.unwrap_or(answer.start_s), answer.scenario_end_s]);
         let _ = plot.columns(answer.columns.as_deref().unwrap_or_default());
         for row in answer.rows.iter().flatten() {
             let values: Vec<f64> = row.iter().map(|x| x.unwrap_or(f64::NAN)).collect();

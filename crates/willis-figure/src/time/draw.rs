@@ -90,11 +90,13 @@ fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
 fn description(plot: &TimePlot) -> String {
     let mut words = vec![format!("The run {}", plot.outcome.words())];
     for p in &plot.panels {
+        // As drawn, but without prefixes.
+        let (unit, scale) = unit(p.unit, 1.0);
         let ends = p.lines.iter().map(|l| {
             let last = l.pieces.last().and_then(|p| p.last()).map_or(f64::NAN, |p| p[1]);
-            format!("{} {}", l.names.join(", "), short_number(last))
+            format!("{} {}", l.names.join(", "), short_number(last / scale))
         });
-        words.push(format!("{} at the end, {}: {}", p.quantity, p.unit.symbol(), ends.collect::<Vec<_>>().join("; ")));
+        words.push(format!("{} at the end, {unit}: {}", p.quantity, ends.collect::<Vec<_>>().join("; ")));
     }
     words.join(". ")
 }
@@ -155,6 +157,9 @@ impl TimeAxis {
 /// The unit to draw in, and how much of SI it is.
 fn unit(of: ColumnUnit, most: f64) -> (String, f64) {
     let unit = of.symbol();
+    if of == ColumnUnit::RadianPerSecond {
+        return ("rpm".to_owned(), std::f64::consts::TAU / 60.0);
+    }
     let prefixes = match of {
         ColumnUnit::Watt | ColumnUnit::Joule | ColumnUnit::NewtonMetre => true,
         ColumnUnit::Radian => most < 0.1,

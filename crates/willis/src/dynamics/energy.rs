@@ -19,8 +19,10 @@ pub(super) struct Rubbing {
 /// What an element takes at its first gear, and what it costs.
 #[derive(Clone, Copy)]
 pub(super) struct Meshing {
-    /// N m
+    /// N m; one of several where it is [open](Engine::is_held_openly).
     pub torque: f64,
+    /// The loss as a torque at the first gear, N m.
+    pub lost: f64,
     /// W
     pub loss: f64,
 }
@@ -68,12 +70,8 @@ impl Engine {
             return Rubbing { torque: viscous + sliding, loss: -(viscous + sliding) * w };
         }
         // Held: the torque is determined where nothing else shares in it.
-        let can_hold = |f: usize| {
-            let (p, m) = (self.sliding(f, 0.0, 1, true, t), self.sliding(f, 0.0, -1, true, t));
-            p != 0.0 || m != 0.0
-        };
-        let alone = group.elements.is_empty() && group.frictions.iter().filter(|&&f| can_hold(f)).count() == 1;
-        let torque = match (&self.map, can_hold(k)) {
+        let alone = group.elements.is_empty() && group.frictions.iter().filter(|&&f| self.can_hold(f, t)).count() == 1;
+        let torque = match (&self.map, self.can_hold(k, t)) {
             (_, false) => viscous,
             (Some(map), _) if alone && !map.open_groups[g] && !group.driven => {
                 group.lead.1 * map.held(g, &self.tau) / factor + viscous
@@ -89,22 +87,64 @@ impl Engine {
         let (torque, _) = self.element_torque(j);
         let sign = self.mode.element_slip(&self.system, j);
         if sign == 0 {
-            // How the elements of a locked group share what holds it is open, and with it their forces.
-            let open = e.group.is_some_and(|(g, _)| {
-                let group = &self.system.groups[g];
-                group.elements.len() + group.frictions.len() > 1
-                    || self.map.as_ref().is_some_and(|m| m.open_unknowns[self.system.all() + j])
-            });
-            return Meshing { torque: if open { f64::NAN } else { torque }, loss: 0.0 };
+            return Meshing { torque, lost: 0.0, loss: 0.0 };
         }
-        let w = dot(&e.row, &self.speed);
         let loss = self.loss(j);
         let side = self.mode.side[j];
         let constant = match side {
             Side::Drive => loss.drive_torque,
             Side::Coast => loss.coast_torque,
         };
-        Meshing { torque, loss: (slope(loss, side) * torque + f64::from(sign) * constant) * w }
+        let lost = slope(loss, side) * torque + f64::from(sign) * constant;
+        Meshing { torque, lost, loss: lost * dot(&e.row, &self.speed) }
+    }
+
+    /// Whether an element does not slide, and its torque depends on how what is held shares the torque that holds it.
+    pub fn is_held_openly(&self, j: usize, t: f64) -> bool {
+        self.mode.element_slip(&self.system, j) == 0 && self.is_open(self.system.all() + j, t)
+    }
+
+    /// Whether an unknown of the equations depends on how what is held shares the torque that holds it, which is open.
+    fn is_open(&self, unknown: usize, t: f64) -> bool {
+        let Some(map) = &self.map else { return true };
+        if map.open_unknowns[unknown] {
+            return true;
+        }
+        let s = &self.system;
+        // What is passed from one holder of a group to another changes no acceleration, but what lies between them.
+        let changes = |port: usize| map.response[unknown * map.ports + port] != 0.0;
+        s.groups.iter().enumerate().filter(|(g, _)| self.mode.slip[*g] == 0).any(|(_, group)| {
+            let rubbing = group.frictions.iter().filter(|&&f| self.can_hold(f, t)).map(|&f| s.frictions[f].port);
+            let ports = || rubbing.clone().chain(group.elements.iter().map(|&j| s.elements[j].port));
+            ports().count() + usize::from(group.driven) > 1 && ports().any(changes)
+        })
+    }
+
+    /// Whether a friction element takes torque while it does not slide.
+    fn can_hold(&self, f: usize, t: f64) -> bool {
+        [1, -1].iter().any(|&sign| self.sliding(f, 0.0, sign, true, t) != 0.0)
+    }
+
+    /// The torque with which the frame holds a member, or all, at the state solved last; NaN where what holds it
+    /// is not determined.
+    pub fn reaction(&self, k: usize, t: f64) -> f64 {
+        let s = &self.system;
+        let of = &s.reactions[k];
+        let elements = of.elements.iter().map(|&(j, force, loss)| {
+            let Meshing { torque, lost, .. } = self.meshing(j);
+            if force != 0.0 && self.is_held_openly(j, t) { f64::NAN } else { force * torque + loss * lost }
+        });
+        let frictions = of.frictions.iter().map(|&(f, side)| -side * self.rubbing(f, t).torque);
+        let shafts = of.shafts.iter().map(|&(k, side)| -side * self.tau[s.elastic[k].port]);
+        let sources = of.sources.iter().map(|&k| {
+            let driver = &s.drivers[k];
+            let behind_speed = driver.prescribed.is_some_and(|i| self.is_open(s.free + i, t));
+            let rolls = driver.rolling.is_some_and(|f| self.rubbing(f, t).torque.is_nan());
+            if behind_speed || rolls { f64::NAN } else { -self.applied_torque(k, t) }
+        });
+        // Idle elements give a negative zero, which a sum that begins with zero does not show.
+        let others: f64 = elements.chain(frictions).chain(shafts).chain(sources).fold(0.0, |sum, x| sum + x);
+        dot(&of.momentum, &self.acceleration) + others
     }
 
     /// How the loss of an element divides among its meshes at present: mesh and part.

@@ -6,6 +6,7 @@ use crate::train::Train;
 use super::integrator::Smooth;
 use super::report::{Options, Outcome, Recorder, RunReport, Sample};
 use super::run::Simulation;
+use super::window::Window;
 
 /// The method of the paper: classical Runge–Kutta steps in which the side of each tooth force is that of
 /// the step before, and Coulomb friction follows the sign of the speed without ever sticking. It is wrong for
@@ -34,6 +35,7 @@ pub(super) fn lagged(
     for g in 0..groups {
         mode.slip[g] = if run.engine.group_slip(g) < 0.0 { -1 } else { 1 };
     }
+    let recorder = &mut Window::new(run.from, recorder);
     let (start, end) = (run.t, run.engine.system.scenario.end);
     let steps = ((end - start) / h - 1e-9).ceil() as u64;
     let mut k = vec![vec![0.0; n]; 4];

@@ -57,11 +57,14 @@ impl Engine {
     }
 
     /// Torque that the first gear of a mesh takes from its shaft, at the state solved last.
-    fn mesh_torque(&self, mesh: usize) -> f64 {
+    fn mesh_torque(&self, mesh: usize, t: f64) -> f64 {
         let s = &self.system;
         for (j, e) in s.elements.iter().enumerate() {
             if e.passes.iter().all(|p| p.mesh != mesh) {
                 continue;
+            }
+            if self.is_held_openly(j, t) {
+                return f64::NAN;
             }
             let drive = self.mode.side[j] == Side::Drive;
             let at_rest = self.mode.element_slip(s, j) == 0;
@@ -113,7 +116,8 @@ impl Engine {
             Shows::FrictionTorque(k) => self.rubbing(k, t).torque,
             Shows::ShaftTorque(k) => self.tau[s.elastic[k].port],
             Shows::Twist(k) => self.twist(k, x),
-            Shows::MeshTorque(k) => self.mesh_torque(k),
+            Shows::MeshTorque(k) => self.mesh_torque(k, t),
+            Shows::Reaction(k) => self.reaction(k, t),
             Shows::Loss => self.lost_power(t, x),
             Shows::Stored => self.stored(x),
             Shows::Lost => {

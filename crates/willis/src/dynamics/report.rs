@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::named::Named;
+use crate::train::Scenario;
 use crate::work::{Serial, Work as _};
 
 /// How to run a scenario.
@@ -28,6 +29,11 @@ pub struct Options {
     pub energies: bool,
     /// How many rows; that of the scenario unless given.
     pub samples: Option<usize>,
+    /// Rows and events from this time on, s; from the start unless given. The run begins at the start in any case, and
+    /// its energies are those of the whole run.
+    pub from_s: Option<f64>,
+    /// Where the run ends, s, instead of at the end of the scenario.
+    pub to_s: Option<f64>,
     /// Work of one core, s, that a run may take, by a count of its steps and changes of mode: one that would take longer at
     /// its pace ends with [`Outcome::TooLong`]. Infinite: however long it takes.
     pub patience_s: f64,
@@ -43,6 +49,8 @@ impl Default for Options {
             lagged_forces: false,
             energies: true,
             samples: None,
+            from_s: None,
+            to_s: None,
             patience_s: Serial.patience(),
         }
     }
@@ -82,6 +90,27 @@ impl Options {
         }
         if wrong.has_errors() { Err(wrong) } else { Ok(()) }
     }
+
+    /// From when on there are rows, and where a run of the scenario ends.
+    pub(super) fn window(&self, scenario: &Scenario) -> Result<[f64; 2], Diagnostics> {
+        let (start, end) = (scenario.start, scenario.end);
+        let mut wrong = Diagnostics::default();
+        let mut refuse = |message: String| {
+            let hint = format!("times from {start} s to {end} s, the first before the second");
+            wrong.push(Diagnostic::new(Code::OutOfRange, "", message).hint(hint));
+        };
+        let [from, to] = [self.from_s.unwrap_or(start), self.to_s.unwrap_or(end)];
+        if !(from >= start && from < end) {
+            refuse(format!("`from` {from} s is not within scenario `{}`", scenario.name));
+        }
+        if !(to > start && to <= end) {
+            refuse(format!("`to` {to} s is not within scenario `{}`", scenario.name));
+        }
+        if from >= to {
+            refuse(format!("from {from} s to {to} s is no time"));
+        }
+        if wrong.has_errors() { Err(wrong) } else { Ok([from, to]) }
+    }
 }
 
 /// How to advance in time.
@@ -107,7 +136,7 @@ pub struct Column {
     pub unit: ColumnUnit,
     /// What the values are.
     pub kind: ColumnKind,
-    /// The member, mesh, source, shaft or shift element; empty for the train as a whole.
+    /// The member, mesh, source, shaft or shift element, or `frame`; empty for the train as a whole.
     pub of: String,
 }
 
@@ -127,6 +156,9 @@ pub enum ColumnKind {
     Acceleration,
     /// Torque of a source on its member, of friction or a shaft on its first member, of a mesh at its first gear.
     Torque,
+    /// Torque with which the frame holds a member of `fixed`; that of `frame` is all that the frame gives, through
+    /// such members and whatever else is borne by it.
+    Reaction,
     /// Power of a source, or lost in all.
     Power,
     /// State of motion of an element: -1 backward, 0 stuck, 1 forward, 2 free ([`ModeLabel`]).
@@ -148,6 +180,7 @@ impl ColumnKind {
             Self::Angle => "angle",
             Self::Acceleration => "acceleration",
             Self::Torque => "torque",
+            Self::Reaction => "reaction",
             Self::Power => "power",
             Self::Mode => "mode",
             Self::Twist => "twist",
@@ -163,7 +196,7 @@ impl ColumnKind {
             Self::Speed => ColumnUnit::RadianPerSecond,
             Self::Angle | Self::Twist => ColumnUnit::Radian,
             Self::Acceleration => ColumnUnit::RadianPerSecondSquared,
-            Self::Torque => ColumnUnit::NewtonMetre,
+            Self::Torque | Self::Reaction => ColumnUnit::NewtonMetre,
             Self::Power => ColumnUnit::Watt,
             Self::Energy => ColumnUnit::Joule,
             Self::Mode | Self::Efficiency => ColumnUnit::None,
@@ -529,6 +562,9 @@ pub struct RunReport {
     pub outcome: Outcome,
     /// Where it began, s.
     pub start_s: f64,
+    /// From when on there are rows and events, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_s: Option<f64>,
     /// Where it ended, s.
     pub end_s: f64,
     /// Members whose speeds are the coordinates.
@@ -547,7 +583,7 @@ pub struct RunReport {
     pub assumptions: Vec<String>,
     /// What the reader must know.
     pub notes: Vec<String>,
-    /// Where the scenario ends, s.
+    /// Where the scenario ends, or was [told to](Options::to_s), s.
     pub scenario_end_s: f64,
     /// Number of changes of mode, the start among them.
     pub event_count: usize,

@@ -19,6 +19,7 @@ use super::margins::{Margin, NOISE, Watch};
 use super::report::{Column, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample};
 use super::start::{AS_WRITTEN, initial_state};
 use super::system::System;
+use super::window::Window;
 use pace::Pace;
 
 /// How often in a run what a formula does to a held element is looked at, at least.
@@ -74,6 +75,8 @@ pub struct Simulation {
     /// Of the energies of the sources what came in, in steps that are over.
     pub(super) came_in: Vec<f64>,
     segment: f64,
+    /// From when on there are rows.
+    pub(super) from: f64,
     /// The longest step that sees what the signals do.
     longest: f64,
     at_rest: Vec<bool>,
@@ -123,6 +126,8 @@ impl Simulation {
         options.check()?;
         let system = System::new(train, scenario)?;
         let mut engine = Engine::new(system);
+        let [from, to] = options.window(&engine.system.scenario)?;
+        engine.system.scenario.end = to;
         engine.counts = options.energies;
         engine.slack = (0.1 * options.tolerance / NOISE).max(1.0);
         let start = engine.system.scenario.start;
@@ -144,6 +149,7 @@ impl Simulation {
             x,
             came_in: vec![0.0; if options.energies { drivers } else { 0 }],
             segment: start,
+            from,
             longest: f64::INFINITY,
             at_rest: vec![false; groups],
             labels: vec![],
@@ -263,6 +269,7 @@ impl Simulation {
             return self.outcome.clone();
         }
         self.row_is_present = false;
+        let recorder = &mut Window::new(self.from, recorder);
         let end = self.engine.system.scenario.end;
         let target = if until.is_nan() { self.t } else { until.min(end) };
         let outcome = loop {
@@ -608,8 +615,8 @@ impl Simulation {
     }
 
     fn sample_time(&self, k: usize) -> f64 {
-        let s = &self.engine.system.scenario;
-        if k + 1 == self.samples { s.end } else { s.start + (s.end - s.start) * k as f64 / (self.samples - 1) as f64 }
+        let (from, end) = (self.from, self.engine.system.scenario.end);
+        if k + 1 == self.samples { end } else { from + (end - from) * k as f64 / (self.samples - 1) as f64 }
     }
 
     /// Rows of the grid up to a time in the last step; breaks with the time of the last one that was wanted.
@@ -674,6 +681,7 @@ impl Simulation {
             scenario: s.scenario.name.clone(),
             outcome: self.outcome.clone().unwrap_or(Outcome::Interrupted),
             start_s: s.scenario.start,
+            from_s: self.options.from_s,
             end_s: self.t,
             coordinates: s.coordinates.iter().map(|m| s.train.member_name(*m).to_owned()).collect(),
             unique_for_every_load: self.engine.certified,

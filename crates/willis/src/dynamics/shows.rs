@@ -17,6 +17,7 @@ pub(super) enum Shows {
     ShaftTorque(usize),
     Twist(usize),
     MeshTorque(usize),
+    Reaction(usize),
     Loss,
     Stored,
     Lost,
@@ -52,6 +53,7 @@ impl Shows {
             .chain(rubs.map(Self::FrictionTorque))
             .chain(shafts.flat_map(|k| [Self::ShaftTorque(k), Self::Twist(k)]))
             .chain((0..s.train.meshes().len()).map(Self::MeshTorque))
+            .chain((0..s.reactions.len()).map(Self::Reaction))
             .chain([Self::Loss, Self::Stored, Self::Lost, Self::Efficiency])
             .chain(Moves::all(s).into_iter().map(Self::Mode))
             .collect()
@@ -72,6 +74,7 @@ impl Shows {
             Self::ShaftTorque(k) => (ColumnKind::Torque, s.train.shafts()[k].name.clone()),
             Self::Twist(k) => (ColumnKind::Twist, s.train.shafts()[k].name.clone()),
             Self::MeshTorque(k) => (ColumnKind::Torque, s.train.meshes()[k].name.clone()),
+            Self::Reaction(k) => (ColumnKind::Reaction, member(s.reactions[k].member.index())),
             Self::Loss => (ColumnKind::Power, String::new()),
             Self::Stored | Self::Lost => (ColumnKind::Energy, String::new()),
             Self::Efficiency => (ColumnKind::Efficiency, String::new()),

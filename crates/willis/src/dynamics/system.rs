@@ -24,6 +24,7 @@ mod groups;
 mod inertia;
 mod meshes;
 mod ports;
+mod reactions;
 mod shafts;
 mod uniqueness;
 
@@ -51,6 +52,7 @@ use groups::{Group, slip_together};
 use inertia::{Accelerations, NodeInertia, massless};
 use meshes::Meshes;
 use ports::Ports;
+use reactions::{Reaction, reactions};
 use shafts::{Elastic, shafts};
 
 pub(super) use frictions::Rubs;
@@ -77,6 +79,8 @@ pub(crate) struct System {
     pub frictions: Vec<Friction>,
     pub groups: Vec<Group>,
     pub elastic: Vec<Elastic>,
+    /// What holds it from outside.
+    pub reactions: Vec<Reaction>,
     pub drivers: Vec<Driver>,
     /// Number of controller integrals.
     pub integrals: usize,
@@ -140,6 +144,7 @@ impl System {
         let elastic = shafts(train, scenario, &mut ports);
         let Meshes { mut elements, gear, loss } = Meshes::of(c, &coordinates, laws.is_some(), &mut ports);
         let groups = slip_together(c, &coordinates, &mut frictions, &mut elements);
+        let reactions = reactions(c, scenario, &coordinates, &frictions);
 
         let node = |m: &MemberId| c.node(*m);
         let coordinate_bodies: Vec<Body> = coordinates.chosen.iter().map(node).collect();
@@ -182,6 +187,7 @@ impl System {
             frictions,
             groups,
             elastic,
+            reactions,
             drivers,
             integrals,
             laws: laws.map(Box::new),

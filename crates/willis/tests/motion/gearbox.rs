@@ -329,6 +329,7 @@ pub fn faults(g: &Gearbox, work: &Work, rigid: bool, rows: &Rows, report: &RunRe
     if energy.residual_j.abs() > 1e-9 * (energy.turned_over_j + energy.stored_j.abs()) + 1e-30 {
         faults.push(format!("energy {} of {}", energy.residual_j, energy.turned_over_j));
     }
+    faults.extend(frame_fault(g, rows));
     if rigid && work.states[0] == work.states[1] {
         let column = |m: usize| rows.names.iter().position(|n| *n == format!("speed.{}", g.members[m]));
         for &e in &g.states[work.states[0]].1 {
@@ -344,6 +345,31 @@ pub fn faults(g: &Gearbox, work: &Work, rigid: bool, rows: &Rows, report: &RunRe
         }
     }
     faults
+}
+
+/// What the frame gives must be what the brakes, drags and shafts on it take, wherever these are determined.
+fn frame_fault(g: &Gearbox, rows: &Rows) -> Option<String> {
+    if g.meshes.iter().any(|(bodies, ..)| bodies.contains(&0)) {
+        return None;
+    }
+    // What a run never engages has no column.
+    let column = |name: &str| rows.names.iter().position(|n| n == name);
+    let frame = column("reaction.frame").unwrap();
+    let drags = g.drags.iter().enumerate().map(|(k, (bodies, ..))| (format!("torque.D{k}"), *bodies));
+    let shafts = g.shafts.iter().enumerate().map(|(k, (bodies, ..))| (format!("torque.S{k}"), *bodies));
+    let all = g.elements.iter().map(|(name, bodies)| (format!("torque.{name}"), *bodies)).chain(drags).chain(shafts);
+    let borne: Vec<(usize, f64)> = all
+        .filter(|(_, bodies)| bodies.contains(&0))
+        .filter_map(|(name, bodies)| Some((column(&name)?, if bodies[0] == 0 { -1.0 } else { 1.0 })))
+        .collect();
+    let torques: Vec<usize> = (0..rows.names.len()).filter(|&k| rows.names[k].starts_with("torque.")).collect();
+    rows.rows.iter().find_map(|row| {
+        let sum: f64 = borne.iter().map(|&(k, sign)| sign * row[k]).sum();
+        let size = torques.iter().map(|&k| row[k].abs()).fold(0.0, f64::max);
+        let off = (row[frame] - sum).abs();
+        // Torques that are not determined are NaN.
+        (off > 1e-9 * size).then(|| format!("at {} s the frame gives {} and takes {sum}", row[0], row[frame]))
+    })
 }
 
 /// Speed, rad/s, at which what the reference holds may creep.

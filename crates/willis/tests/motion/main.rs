@@ -7,6 +7,7 @@ mod gearbox;
 mod gears;
 mod laws;
 mod random;
+mod reactions;
 mod reference;
 mod rows;
 mod runs;

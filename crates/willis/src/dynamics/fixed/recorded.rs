@@ -4,6 +4,7 @@ use crate::diagnostic::Diagnostics;
 use crate::dynamics::event::event;
 use crate::dynamics::report::{Options, Outcome, Recorder, RunReport, Sample};
 use crate::dynamics::run::Simulation;
+use crate::dynamics::window::Window;
 use crate::train::Train;
 use crate::work::Effort;
 
@@ -31,6 +32,8 @@ pub(in crate::dynamics) fn fixed(
         return Ok(run.report());
     }
     let end = run.engine.system.scenario.end;
+    stepper.engine.system.scenario.end = end;
+    let recorder = &mut Window::new(run.from, recorder);
     let mut x = Vec::new();
     let mut key = None;
     let steps = stepper.steps();
