@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use clap::ArgMatches;
 use willis::dynamics::{Column, Event, Outcome, Recorder, RunReport, Sample};
 use willis::work::Work;
-use willis_ask::questions::{MOST_EVENTS, Simulate, simulation_text};
+use willis_ask::questions::{MOST_EVENTS, MOST_KEPT, Simulate, simulation_text, tell_of_events_left_out};
 use willis_ask::{Entry, Refusal};
 
 use crate::Ended;
@@ -93,19 +93,25 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
         row: vec![],
         sink,
         plot: plot.and_then(|_| Plot::new(train, [options.from_s.unwrap_or(span[0]), span[1]])),
-        all_events: form == JSON,
+        most_events: if form == JSON { MOST_KEPT } else { MOST_EVENTS },
         events: vec![],
         wrong: None,
     };
     let result = willis::dynamics::simulate(train, &scenario.name, &options, &mut listener);
     terminal.finish();
     match listener.wrong {
-        Some(Wrong::File(why)) => return Err(format!("{}: {why}\n", out.display()).into()),
+        Some(Wrong::File(why)) => {
+            drop(listener.sink);
+            return Err(kept(unfinished, out, &why, span[1]).into());
+        }
         Some(Wrong::Request(refusal)) => return Err(asked.refused(&refusal, &of)),
         None => {}
     }
     let mut report = result.map_err(|wrong| asked.refused(&wrong.into(), &of))?;
     report.events = listener.events;
+    if form == JSON {
+        tell_of_events_left_out(&mut report);
+    }
     let early = (report.outcome != Outcome::Finished).then(|| early(&report, span[1]));
     let closed = match listener.sink {
         Sink::Csv(rows) => rows.finish(early.as_deref()),
@@ -126,6 +132,20 @@ pub fn run(entry: &'static Entry, matches: &ArgMatches, out: &Path) -> Result<En
     } else {
         Ended::Answered(told)
     })
+}
+
+/// Keeps the rows that were written before a disk was full, where the form of the file allows it; what is told.
+fn kept(unfinished: Unfinished, out: &Path, why: &str, end: f64) -> String {
+    let told = format!("{}: {why}", out.display());
+    if Target::of(out) != Some(Target::Csv) {
+        return told + "\n";
+    }
+    let words = |time: &str| format!("ended at t = {time} s of {end} s: the rows could not be written; {why}");
+    let time = csv::salvage(unfinished.file(), words).ok().flatten();
+    match time.filter(|_| unfinished.complete().is_ok()) {
+        Some(time) => format!("{told}; it has the rows up to t = {time} s\n"),
+        None => told + "\n",
+    }
 }
 
 /// What a file says of a run that did not reach its end.
@@ -161,7 +181,8 @@ struct Listener<'a> {
     row: Vec<f64>,
     sink: Sink,
     plot: Option<Plot>,
-    all_events: bool,
+    /// The text shows the first of them only.
+    most_events: usize,
     events: Vec<Event>,
     wrong: Option<Wrong>,
 }
@@ -219,8 +240,7 @@ impl Recorder for Listener<'_> {
         if let Some(plot) = &mut self.plot {
             let _ = plot.listener().event(event);
         }
-        // The text shows the first of them only.
-        if self.all_events || self.events.len() < MOST_EVENTS {
+        if self.events.len() < self.most_events {
             self.events.push(event.clone());
         }
         ControlFlow::Continue(())

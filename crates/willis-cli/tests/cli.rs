@@ -1337,14 +1337,14 @@ fn regress_simulate_wrong_trains() {
     snapshot!(all);
 }
 
-/// Ctrl-C in the middle of a run with very many rows: a whole file that says so.
+/// Ctrl-C, a request to end or a terminal that is closed in the middle of a run with very many rows: a whole file that says so.
 #[cfg(unix)]
 #[test]
 fn regress_simulate_interrupted() {
     let folder = folder("interrupted");
     let train = folder.join("braked.toml");
     std::fs::write(&train, BRAKED).expect("written");
-    for name in ["run.csv", "run.parquet"] {
+    for (name, signal) in [("run.csv", "-INT"), ("run.parquet", "-TERM"), ("other.csv", "-HUP")] {
         let (train, out) = (train.to_str().expect("text"), folder.join(name));
         let entries = || std::fs::read_dir(&folder).expect("the folder").filter_map(Result::ok);
         let before: Vec<_> = entries().map(|e| e.path()).collect();
@@ -1356,12 +1356,12 @@ fn regress_simulate_interrupted() {
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
         let pid = child.id().to_string();
-        assert!(Command::new("kill").args(["-INT", &pid]).status().expect("a signal").success());
+        assert!(Command::new("kill").args([signal, &pid]).status().expect("a signal").success());
         let output = child.wait_with_output().expect("it ends");
         assert_eq!(output.status.code(), Some(130), "{}", text(&output.stderr));
         assert!(text(&output.stdout).contains("the run was interrupted, at t = "));
         let written = std::fs::read(&out).expect("rows");
-        if name == "run.csv" {
+        if name.ends_with(".csv") {
             let told = text(&written);
             let last = told.lines().last().expect("lines");
             assert!(last.starts_with("# interrupted at t = ") && last.ends_with("the run was interrupted"), "{last}");
@@ -1384,6 +1384,37 @@ fn regress_simulate_to_a_full_disk() {
     let output = child.wait_with_output().expect("it ends");
     assert_eq!(output.status.code(), Some(1));
     assert!(text(&output.stderr).contains("No space left on device"), "{}", text(&output.stderr));
+}
+
+/// Rows that were written before the disk was full stay, and the last line says so.
+#[cfg(target_os = "linux")]
+#[test]
+fn rows_written_before_a_full_disk_stay() {
+    let folder = folder("full");
+    std::fs::write(folder.join("braked.toml"), BRAKED).expect("written");
+    for name in ["run.csv", "run.parquet"] {
+        // A limit on the size of files stands for the end of the disk.
+        let line = format!(
+            "ulimit -f 100; trap '' XFSZ; exec {} simulate braked.toml --samples 1000000 -o {name}",
+            env!("CARGO_BIN_EXE_willis")
+        );
+        let output = Command::new("bash").current_dir(&folder).args(["-c", &line]).output().expect("it runs");
+        assert_eq!(output.status.code(), Some(1));
+        let told = text(&output.stderr);
+        if name == "run.parquet" {
+            // Its index comes last, so there is nothing to read before.
+            assert!(!folder.join(name).exists(), "{told}");
+            continue;
+        }
+        let rows = std::fs::read_to_string(folder.join(name)).expect("rows");
+        let lines: Vec<&str> = rows.lines().collect();
+        let (last, table) = lines.split_last().expect("lines");
+        let time = table.last().and_then(|row| row.split(',').next()).expect("a row");
+        assert!(last.starts_with(&format!("# ended at t = {time} s of ")) && rows.ends_with('\n'), "{last}");
+        assert!(told.contains(&format!("it has the rows up to t = {time} s")), "{told}");
+        assert!(table.len() > 100 && table.iter().all(|r| r.matches(',').count() == table[0].matches(',').count()));
+    }
+    std::fs::remove_dir_all(&folder).expect("removed");
 }
 
 // ---- modes -----------------------------------------------------------------------------------

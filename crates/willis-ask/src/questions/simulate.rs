@@ -31,7 +31,7 @@ pub use text::MOST_EVENTS;
 ///
 /// Rows are in SI units; where a value is not determined the field is empty (CSV) or null. Modes are 1 forward, -1
 /// backward, 0 stuck, 2 free. A CSV of a run that ended early has a last line that begins with `# ` and says when and
-/// why; in Parquet the metadata `willis.complete` is false and `willis.ended_s` has the time.
+/// why, also where the disk was full; in Parquet the metadata `willis.complete` is false and `willis.ended_s` has the time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
@@ -80,8 +80,18 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Rows that are kept in memory for an answer.
+/// Rows that are kept in memory for an answer, those at events apart.
 const MOST_ROWS: usize = 1_000_000;
+
+/// Events that an answer has.
+pub const MOST_KEPT: usize = 100_000;
+
+/// Says how many changes of mode an answer does not have.
+pub fn tell_of_events_left_out(report: &mut RunReport) {
+    if report.event_count > report.events.len() && report.events.len() >= MOST_KEPT {
+        report.notes.push(format!("of {} changes of mode the first {MOST_KEPT} are told", report.event_count));
+    }
+}
 
 fn wrong(message: impl Into<String>, hint: impl Into<String>) -> Refusal {
     Diagnostic::new(Code::UnknownSelection, "", message).hint(hint).into()
@@ -198,13 +208,20 @@ impl Recorder for Keeper<'_> {
     }
 
     fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
+        if self.rows.len() >= MOST_ROWS + 2 * MOST_KEPT {
+            let hint = "stream them into a file: -o run.csv or -o run.parquet";
+            self.wrong = Some(wrong(format!("more than {} rows are too many for one answer", self.rows.len()), hint));
+            return ControlFlow::Break(());
+        }
         let finite = |&k: &usize| Some(sample.values[k]).filter(|x| x.is_finite());
         self.rows.push(self.kept.iter().map(finite).collect());
         self.progress(sample.time_s)
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.events.push(event.clone());
+        if self.events.len() < MOST_KEPT {
+            self.events.push(event.clone());
+        }
         ControlFlow::Continue(())
     }
 
@@ -265,6 +282,7 @@ impl Question for Simulate {
         }
         let mut report = run?;
         report.events = keeper.events;
+        tell_of_events_left_out(&mut report);
         report.columns = Some(keeper.columns);
         report.rows = Some(keeper.rows);
         Ok(report)

@@ -1,6 +1,7 @@
 //! Rows as CSV, written as they come.
 
-use std::io::{BufWriter, Write};
+use std::fs::File;
+use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
 
 use willis::dynamics::Column;
 use willis_ask::table::{field, number};
@@ -50,4 +51,31 @@ impl<W: Write> Rows<W> {
         }
         self.out.flush().map_err(|e| e.to_string())
     }
+}
+
+/// Bytes from the end in which whole lines are looked for.
+const TAIL: u64 = 1 << 20;
+
+/// Makes a file whole whose writing failed: whole rows, and in the place of the last of them a line that says when and
+/// why it ends. The time of the last row, as it is written; none if there is no row.
+pub fn salvage(mut file: &File, why: impl Fn(&str) -> String) -> std::io::Result<Option<String>> {
+    let length = file.metadata()?.len();
+    let begins = length.saturating_sub(TAIL);
+    file.seek(SeekFrom::Start(begins))?;
+    let mut tail = Vec::new();
+    file.read_to_end(&mut tail)?;
+    let ends: Vec<usize> = (0..tail.len()).filter(|&k| tail[k] == b'\n').map(|k| k + 1).collect();
+    // From the last row backwards, until the words fit where there were bytes before.
+    for pair in ends.windows(2).rev() {
+        let row = String::from_utf8_lossy(&tail[pair[0]..pair[1]]);
+        let Some(time) = row.split(',').next().filter(|t| t.parse::<f64>().is_ok()) else { break };
+        let line = format!("# {}\n", why(time));
+        if pair[1] + line.len() <= tail.len() {
+            file.set_len(begins + pair[1] as u64)?;
+            file.seek(SeekFrom::End(0))?;
+            file.write_all(line.as_bytes())?;
+            return Ok(Some(time.to_owned()));
+        }
+    }
+    Ok(None)
 }

@@ -353,6 +353,7 @@ impl Simulation {
                 *slip = 0;
             }
         }
+        let touch = self.engine.touch.clone();
         let mode = match self.engine.choose(self.t, &x, &at_rest, &guess) {
             // Where the drive of a mesh reverses, both sides agree to within what the integrator leaves open: the other
             // one goes on.
@@ -381,6 +382,15 @@ impl Simulation {
                 });
             }
         };
+        // Just before its limit everything is as it was; what happens is told once, where it does.
+        let happened = match self.why {
+            Some(Why::Watch(Watch::Side(j))) => mode.side[j] != guess.side[j],
+            Some(Why::Watch(Watch::Touch(k))) => self.engine.touch[k] != touch[k],
+            _ => true,
+        };
+        if !happened {
+            self.why = None;
+        }
         self.at_rest = mode.slip.iter().map(|s| *s == 0).collect();
         self.engine.enter(&mode);
         self.engine.stand_still(&mode, &mut x);

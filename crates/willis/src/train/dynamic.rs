@@ -323,7 +323,7 @@ pub struct Scenario {
     pub end: f64,
     /// Speeds at the start, rad/s; those that the gears settle follow, what is left is at rest.
     pub initial_speeds: Vec<(MemberId, f64)>,
-    /// Twist of shafts at the start, by position in [`Train::shafts`](super::Train::shafts), rad;
+    /// Twist of shafts at the start, angle of the first member less that of the second, by position in [`Train::shafts`](super::Train::shafts), rad;
     /// zero unless given.
     pub initial_twists: Vec<(usize, f64)>,
     /// Members held at rest from outside.

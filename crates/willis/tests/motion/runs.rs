@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use willis::dynamics::{ColumnKind, Method, Options, Outcome, RunReport, simulate};
 use willis::named::Named;
 
-use crate::common::examples;
-use crate::rows::{run, train};
+use crate::common::{example, examples};
+use crate::rows::{Rows, run, train};
 
 /// What does not close, as a part of all that came in, also from the store.
 fn open_part(report: &RunReport) -> f64 {
@@ -52,6 +52,61 @@ fn every_scenario_of_the_examples_comes_to_its_end() {
         for scenario in train.scenarios() {
             let report = simulate(&train, &scenario.name, &Options::default(), &mut ()).expect("it begins");
             assert_eq!(report.outcome, Outcome::Finished, "{name}, {}", scenario.name);
+        }
+    }
+}
+
+/// What happens to something is told once, not just before it and where it does.
+#[test]
+fn nothing_happens_twice_at_one_time() {
+    for (name, text) in examples() {
+        let train = train(&text);
+        for scenario in train.scenarios() {
+            let mut rows = Rows::default();
+            simulate(&train, &scenario.name, &Options::default(), &mut rows).expect("it begins");
+            for pair in rows.events.windows(2) {
+                let apart = pair[1].time_s - pair[0].time_s > 1e-9 * (scenario.end - scenario.start);
+                let of = |k: usize| pair[k].happenings.iter().flat_map(|h| &h.of).collect::<Vec<_>>();
+                let again = of(0).iter().any(|name| of(1).contains(name));
+                assert!(apart || !again, "{name}, {}: {pair:?}", scenario.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_part_of_a_run_has_its_rows_and_events() {
+    let text = example("shift-8hp70");
+    let train = train(&text);
+    let of = |options: &Options| {
+        let mut rows = Rows::default();
+        let report = simulate(&train, "1 to 2, handed over", options, &mut rows).expect("it begins");
+        (rows, report)
+    };
+    for method in [Method::Adaptive, Method::Fixed { step_s: 1e-3 }] {
+        let whole = Options { method, samples: Some(11), ..Options::default() };
+        let end = of(&whole).1.end_s;
+        let options = |from: f64, to: f64| Options { from_s: Some(from), to_s: Some(to), ..whole.clone() };
+        let (rows, report) = of(&options(0.2 * end, 0.8 * end));
+        assert_eq!(report.outcome, Outcome::Finished);
+        assert!(
+            (report.end_s - 0.8 * end).abs() < 1e-9
+                && (report.from_s, report.scenario_end_s) == (Some(0.2 * end), 0.8 * end)
+        );
+        let times: Vec<f64> = rows.rows.iter().map(|row| row[0]).collect();
+        assert!((times[0] - 0.2 * end).abs() < 1e-9 && (times[times.len() - 1] - 0.8 * end).abs() < 1e-9);
+        assert!(times.windows(2).all(|w| w[0] <= w[1]) && times.len() >= 11);
+        assert!(rows.events.iter().all(|e| e.time_s >= 0.2 * end - 1e-9 && e.time_s <= 0.8 * end + 1e-9));
+        // The motion is that of the whole run.
+        let (all, _) = of(&Options { samples: Some(11), ..whole.clone() });
+        let at = |rows: &Rows, t: f64| rows.rows.iter().rev().find(|row| (row[0] - t).abs() < 1e-9).unwrap().clone();
+        let speeds = rows.names.iter().filter(|n| n.starts_with("speed.")).count();
+        for (a, b) in at(&rows, 0.8 * end).iter().zip(&at(&all, 0.8 * end)).skip(1).take(speeds) {
+            assert!((a - b).abs() < 1e-6 * (1.0 + a.abs()), "{a} {b}");
+        }
+        for (from, to) in [(-1.0, end), (0.0, 2.0 * end), (end, end), (0.5 * end, 0.2 * end), (f64::NAN, end)] {
+            let refused = simulate(&train, "1 to 2, handed over", &options(from, to), &mut ());
+            assert!(refused.is_err(), "{from} {to}");
         }
     }
 }

@@ -116,7 +116,8 @@ specification! {
         may samples: Option<i64> as Kind::Samples,
         /// Speeds at the start; those that the gears settle follow, what is left is at rest.
         may initial_speeds: Vec<(String, AngularSpeed)>,
-        /// Twist of shafts at the start. Default: none.
+        /// Twist of shafts at the start: how far the first of its members is turned beyond the second, so that a positive
+        /// twist turns the first back. Default: none.
         may initial_twists: Vec<(String, Angle)>,
         /// Members held at rest from outside.
         may fixed: Vec<String>,
