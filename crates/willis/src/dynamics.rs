@@ -42,7 +42,7 @@ mod window;
 pub use batch::Batch;
 pub use fixed::FixedStep;
 pub use handles::{Input, InputInfo, InputKind, InputRefused, Output};
-pub use modes::{Mode, ModesReport, Part, RigidMode, modes};
+pub use modes::{Mode, ModesReport, Part, PlanetMode, RigidMode, modes};
 pub use report::{
     Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind, Method,
     ModeLabel, Options, Outcome, Recorder, RunReport, Sample, SourceEnergy,

@@ -15,6 +15,7 @@
 mod fault;
 mod involute;
 mod planetary;
+mod stiffness;
 
 pub use fault::{Fault, Quantity, Remark};
 pub use involute::{inverse_involute, involute};

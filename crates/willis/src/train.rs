@@ -48,9 +48,9 @@ pub(crate) use specification::kind_of;
 pub use specification::{
     BearingSpec, BevelSpec, CentralSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec, EfficiencySpec,
     EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec, LinearSpec,
-    LossRowSpec, MeshSpec, MotorSpec, OilSpec, OilSupply, OperationSpec, PairKind, PlanetBodySpec, PlanetSpec,
-    QuadraticSpec, RavigneauxSpec, RotorSpec, ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts, SetSpec,
-    ShaftSpec, ShiftElementSpec, Side, SideSpec, SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec,
+    LossRowSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec, OilSupply, OperationSpec, PairKind, PlanetBodySpec,
+    PlanetSpec, QuadraticSpec, RavigneauxSpec, RotorSpec, ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts,
+    SetSpec, ShaftSpec, ShiftElementSpec, Side, SideSpec, SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec,
     StepSpec, SteppedPlanetSpec, SteppedSpec, StudySpec, ToothSpec, VehicleSpec,
 };
 

@@ -4,6 +4,8 @@
 //! row `d` of ±1 for every inertia J (kg m²) and shaft of stiffness k (N m/rad) and damping c (N m
 //! s/rad), the small vibration is
 //! `M v'' + C v' + K v = 0`, `M = Nᵀ (Σ J d dᵀ) N`, `K = Nᵀ (Σ k d dᵀ) N`, `C = Nᵀ (Σ c d dᵀ) N`.
+//! A mesh with a stiffness c, N/m, is a spring too: over its line of action its flanks approach by `r_b1 (ω_1 − ω_c) ±
+//! r_b2 (ω_2 − ω_c)`, and it no longer ties its gears.
 //! What has no inertia follows the rest without delay (static condensation). Source: Meirovitch,
 //! Fundamentals of Vibrations, 2001, chapter 7; Guyan 1965 for the condensation.
 
@@ -23,26 +25,30 @@ use crate::contract::Format;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::train::Train;
+use crate::train::{MemberId, MemberKind, ShiftElementId, Train};
 
 use condensation::Condensed;
 use coordinates::{Coordinates, Felt};
 use damping::{Damped, Damping};
 use normal::Normal;
-use oscillator::Oscillator;
+use oscillator::{Oscillator, spring};
 use rows::null_space;
 use selection::selection;
 use shape::Shapes;
 
-pub use report::{Mode, ModesReport, Part, RigidMode};
+pub use report::{Mode, ModesReport, Part, PlanetMode, RigidMode};
 
 /// Torsional natural frequencies and mode shapes in a state of the shift table (`None`: as drawn),
 /// with the members `fixed` held.
 ///
+/// A mesh is rigid, or a spring where its geometry says so ([`GeometrySpec::mesh_stiffness`](crate::train::GeometrySpec)); the
+/// planets of a set with such meshes also swing against each other ([`PlanetMode`]). Only turning is described: axes of
+/// gears and planets do not move.
+///
 /// Undamped frequencies solve `det(K − ω² M) = 0`; damping ratios come from the eigenvalues λ of
 /// `λ² M + λ C + K` with the viscous damping of shafts and drags. For two inertias J₁, J₂ (kg m²)
 /// on a shaft k (N m/rad), `ω = √(k (1/J₁ + 1/J₂))`. Source: Meirovitch, Fundamentals of
-/// Vibrations, 2001, chapter 7.
+/// Vibrations, 2001, chapter 7; for elastic meshes Kahraman, Journal of Sound and Vibration 173 (1994), 125–130.
 ///
 /// # Errors
 /// An unknown state or member; no inertia at all; a motion that has neither inertia nor stiffness.
@@ -63,14 +69,82 @@ pub use report::{Mode, ModesReport, Part, RigidMode};
 pub fn modes(train: &Train, state: Option<&str>, fixed: &[&str]) -> Result<ModesReport, Diagnostics> {
     let (engaged, held) = selection(train, state, fixed)?;
     let oscillator = Oscillator::of(train)?;
-    let configuration = Configuration::new(train, &engaged, &held, &oscillator.members());
-    let coordinates = Coordinates::of(&configuration, &oscillator);
+    let tied = tied(train);
+    let Solution { coordinates, rigid, vibrations, mut notes } = solve(&oscillator, &tied, &engaged, &held)?;
+    if oscillator.springs.is_empty() {
+        notes.push("no shaft is elastic: there are only motions without strain".to_owned());
+    }
+    if coordinates.is_empty() {
+        notes.push("nothing that has inertia can move".to_owned());
+    }
+    Ok(ModesReport {
+        format: Format::new(),
+        train: train.name.clone(),
+        state: state.unwrap_or("as drawn").to_owned(),
+        fixed: fixed.iter().map(|m| (*m).to_owned()).collect(),
+        coordinates: coordinates.iter().map(|m| train.member_name(*m).to_owned()).collect(),
+        rigid_body_modes: rigid,
+        modes: vibrations,
+        planet_modes: planet_modes(&oscillator, &tied, &held)?,
+        assumptions: oscillator.assumptions(),
+        notes,
+    })
+}
+
+/// The train as its rigid meshes tie it.
+fn tied(train: &Train) -> Train {
+    let mut tied = train.clone();
+    tied.meshes.retain(|mesh| spring(mesh).is_none());
+    tied
+}
+
+/// The planets of each set against each other. The sum over them is zero in what they exert on sun, ring and carrier,
+/// which are at rest; all have one frequency, which is that of all together against members at rest.
+fn planet_modes(oscillator: &Oscillator<'_>, tied: &Train, held: &[MemberId]) -> Result<Vec<PlanetMode>, Diagnostics> {
+    let train = oscillator.train;
+    let mut all = Vec::new();
+    for (k, set) in train.sets.iter().enumerate() {
+        let own = || train.meshes.iter().filter(|mesh| mesh.set == Some(k));
+        let planets: Vec<MemberId> = (own().flat_map(|mesh| mesh.gears.iter().map(|g| g.member)))
+            .filter(|m| train.members[m.0].kind == MemberKind::Planet)
+            .collect();
+        let number = own().map(|mesh| mesh.count).max().unwrap_or(1);
+        let swings = |m: &MemberId| oscillator.rotors.iter().any(|j| j.member == *m || j.reference == *m);
+        let is_elastic = own().any(|mesh| spring(mesh).is_some());
+        if number < 2 || !is_elastic || !planets.iter().any(swings) || held.iter().any(|m| planets.contains(m)) {
+            continue;
+        }
+        let others: Vec<MemberId> = (1..train.members.len()).map(MemberId).filter(|m| !planets.contains(m)).collect();
+        for mode in solve(oscillator, tied, &[], &others)?.vibrations {
+            all.push(PlanetMode { set: set.name.clone(), multiplicity: number - 1, mode });
+        }
+    }
+    Ok(all)
+}
+
+/// Motions of an oscillator.
+struct Solution {
+    coordinates: Vec<MemberId>,
+    rigid: Vec<RigidMode>,
+    vibrations: Vec<Mode>,
+    notes: Vec<String>,
+}
+
+fn solve(
+    oscillator: &Oscillator<'_>,
+    tied: &Train,
+    engaged: &[ShiftElementId],
+    held: &[MemberId],
+) -> Result<Solution, Diagnostics> {
+    let train = oscillator.train;
+    let configuration = Configuration::new(tied, engaged, held, &oscillator.members());
+    let coordinates = Coordinates::of(&configuration, oscillator);
     let n = coordinates.count();
-    let felt = Felt::of(&oscillator, &coordinates);
+    let felt = Felt::of(oscillator, &coordinates);
     felt.check(train, &coordinates)?;
     let mut notes = Vec::new();
 
-    let condensed = Condensed::of(&felt, &oscillator).ok_or_else(singular)?;
+    let condensed = Condensed::of(&felt, oscillator).ok_or_else(singular)?;
     if !condensed.followers.is_empty() {
         let names: Vec<_> = condensed.followers.iter().map(|&k| train.member_name(coordinates.chosen[k])).collect();
         notes.push(format!(
@@ -78,7 +152,7 @@ pub fn modes(train: &Train, state: Option<&str>, fixed: &[&str]) -> Result<Modes
             names.join("`, `")
         ));
     }
-    let normal = Normal::of(&condensed, &felt, &oscillator).ok_or_else(singular)?;
+    let normal = Normal::of(&condensed, &felt, oscillator).ok_or_else(singular)?;
 
     // Motions without strain are found exactly; the others are vibrations.
     let rigid: Vec<DVector<f64>> = null_space(felt.twists.exact.clone(), n)
@@ -87,7 +161,7 @@ pub fn modes(train: &Train, state: Option<&str>, fixed: &[&str]) -> Result<Modes
         .collect();
     let vibrations = normal.vibrations(rigid.len());
 
-    let damping = Damping::of(&oscillator, &coordinates);
+    let damping = Damping::of(oscillator, &coordinates);
     for name in &damping.left_out {
         notes.push(format!("`{name}` acts on a motion without inertia and stiffness and is left out"));
     }
@@ -104,23 +178,11 @@ pub fn modes(train: &Train, state: Option<&str>, fixed: &[&str]) -> Result<Modes
             "modes with a damping ratio of 1 or more do not vibrate; theirs is that of the undamped shape".to_owned(),
         );
     }
-
-    let shapes = Shapes::new(&oscillator, &coordinates, &felt);
-    if oscillator.springs.is_empty() {
-        notes.push("no shaft is elastic: there are only motions without strain".to_owned());
-    }
-    if n == 0 {
-        notes.push("nothing that has inertia can move".to_owned());
-    }
-    Ok(ModesReport {
-        format: Format::new(),
-        train: train.name.clone(),
-        state: state.unwrap_or("as drawn").to_owned(),
-        fixed: fixed.iter().map(|m| (*m).to_owned()).collect(),
-        coordinates: coordinates.chosen.iter().map(|m| train.member_name(*m).to_owned()).collect(),
-        rigid_body_modes: rigid.iter().map(|x| shapes.rigid(x)).collect(),
-        modes: vibrations.iter().zip(damped).map(|(v, damped)| shapes.vibration(v, damped, &normal)).collect(),
-        assumptions: oscillator.assumptions(),
+    let shapes = Shapes::new(oscillator, &coordinates, &felt);
+    Ok(Solution {
+        rigid: rigid.iter().map(|x| shapes.rigid(x)).collect(),
+        vibrations: vibrations.iter().zip(damped).map(|(v, damped)| shapes.vibration(v, damped, &normal)).collect(),
+        coordinates: coordinates.chosen,
         notes,
     })
 }
@@ -136,8 +198,10 @@ mod tests {
 
     use super::*;
     use crate::train::{
-        Contact, Curve, DragMount, FRAME, GearSpec, Inertia, MeshSpec, SetSpec, Shaft, ShiftElementSpec, StateSpec,
+        Contact, Curve, DragMount, FRAME, GearSpec, GeometrySpec, Inertia, MeshSpec, MeshStiffness, SetSpec, Shaft,
+        ShiftElementSpec, StateSpec,
     };
+    use crate::units::{Length, Pressure};
 
     fn inertia(train: &mut Train, member: &str, value: f64) {
         let member = train.member(member).unwrap();
@@ -312,6 +376,64 @@ mod tests {
                 assert!((p.value.abs() - value(&b.shape, &p.name).abs()).abs() < 1e-9);
             }
         }
+    }
+
+    /// The fixed-ring set of Kahraman (1994): three planets, base radii 0.5, 0.5 and 1.5 m, 7 and 11 N/m in each mesh,
+    /// inertias of sun 0.5, each planet 0.75, carrier 4 kg m². Frequencies of Drivetrain-python, tests/test_kahraman_1994.
+    #[test]
+    fn val_elastic_meshes_of_a_set_have_published_frequencies() {
+        let angle = 20f64.to_radians();
+        let mut geometry = GeometrySpec::new(Length::m(1.0 / (40.0 * angle.cos())), Length::m(0.1));
+        geometry.external_mesh_stiffness = Some(Pressure::pa(70.0));
+        geometry.internal_mesh_stiffness = Some(Pressure::pa(110.0));
+        let set = SetSpec::simple("P1", ("s", 40), ("r", 120), "c").planet(40, 3).geometry(geometry);
+        let mut t = Train::builder("Kahraman 1994").members(["s", "r", "c"]).set(set).build().unwrap();
+        [("s", 0.5), ("c", 4.0), ("P1.planet", 3.0 * 0.75)].iter().for_each(|(m, j)| inertia(&mut t, m, *j));
+        let report = modes(&t, None, &["r"]).unwrap();
+        let found: Vec<f64> = report.modes.iter().map(|m| m.frequency_hz).collect();
+        assert_eq!((found.len(), report.rigid_body_modes.len(), report.planet_modes.len()), (2, 1, 1));
+        close(found[0], 0.508728970094716);
+        close(found[1], 0.707886793423852);
+        let planets = &report.planet_modes[0];
+        assert_eq!((planets.set.as_str(), planets.multiplicity), ("P1", 2));
+        close(planets.mode.frequency_hz, 0.389848400616838);
+        assert!((planets.mode.strain_energy.iter().map(|p| p.value).sum::<f64>() - 1.0).abs() < 1e-12);
+        // The more stiff the teeth are, the nearer to gears that tie.
+        let of = |stiffness: Option<f64>| {
+            let mut t = t.clone();
+            for mesh in &mut t.meshes {
+                mesh.teeth.as_mut().unwrap().stiffness = stiffness;
+            }
+            shaft(&mut t, "out", ["c", "frame"], 50.0, 0.0);
+            modes(&t, None, &["r"]).unwrap().modes[0].frequency_hz
+        };
+        assert!((of(Some(1e9)) / of(None) - 1.0).abs() < 1e-6);
+        assert!(of(Some(10.0)) < 0.99 * of(None));
+    }
+
+    /// Two gears on the spring of their teeth: ω² = c (r_b1²/J_1 + r_b2²/J_2).
+    #[test]
+    fn val_two_gears_on_their_teeth() {
+        let mut geometry = GeometrySpec::new(Length::mm(2.0), Length::mm(20.0));
+        geometry.external_mesh_stiffness = Some(Pressure::gpa(18.0));
+        let mesh = MeshSpec::new(GearSpec::external("p", 25), GearSpec::external("q", 50)).geometry(geometry.clone());
+        let mut t = Train::builder("pair").members(["p", "q"]).mesh(mesh).build().unwrap();
+        [("p", 2e-4), ("q", 3e-3)].iter().for_each(|(m, j)| inertia(&mut t, m, *j));
+        let report = modes(&t, None, &[]).unwrap();
+        let [r1, r2] = [25.0, 50.0].map(|z| z * 1e-3 * 20f64.to_radians().cos());
+        let c = 18e9 * 20e-3;
+        close(report.modes[0].angular_frequency_rad_s, f64::sqrt(c * (r1 * r1 / 2e-4 + r2 * r2 / 3e-3)));
+        assert!(
+            (value(&report.rigid_body_modes[0].shape, "p") + 2.0 * value(&report.rigid_body_modes[0].shape, "q")).abs()
+                < 1e-12
+        );
+        // By the standard: of the size that textbooks give, 20 N/(mm µm).
+        geometry.external_mesh_stiffness = None;
+        geometry.mesh_stiffness = Some(MeshStiffness::Iso6336);
+        let mesh = MeshSpec::new(GearSpec::external("p", 25), GearSpec::external("q", 50)).geometry(geometry);
+        let t = Train::builder("pair").members(["p", "q"]).mesh(mesh).build().unwrap();
+        let c = t.meshes[0].teeth.as_ref().unwrap().stiffness.unwrap() / 20e-3;
+        assert!((15e9..22e9).contains(&c), "{c}");
     }
 
     #[test]

@@ -22,6 +22,10 @@ pub struct Teeth<R = f64> {
     pub youngs_modulus: R,
     /// Poisson's ratio.
     pub poisson_ratio: R,
+    /// Stiffness of one pair along the line of action over its whole width, N/m; `None`: rigid.
+    pub stiffness: Option<f64>,
+    /// Whether it may follow from the teeth, by ISO 6336-1.
+    pub stiffness_by_standard: bool,
 }
 
 impl<R: Real> Teeth<R> {

@@ -25,7 +25,8 @@ pub(super) use dynamic::{
     PlainController, PlainDrag, PlainLossRow, PlainPlanetBody, PlainScenario, PlainShaft, PlainSource,
 };
 pub use physical::{
-    BearingSpec, Fluid, GeometrySpec, HousingSpec, LawsSpec, OilSpec, OilSupply, RotorSpec, SealSpec, ToothSpec,
+    BearingSpec, Fluid, GeometrySpec, HousingSpec, LawsSpec, MeshStiffness, OilSpec, OilSupply, RotorSpec, SealSpec,
+    ToothSpec,
 };
 pub(super) use physical::{PlainBearing, PlainGeometry, PlainHousing, PlainOil, PlainRotor, PlainSeal, PlainTooth};
 pub use set::{

@@ -38,6 +38,23 @@ pub fn text(all: &ModesReport) -> String {
         right(&mut t, 0..5);
         out += &show(&t);
     }
+    if !all.planet_modes.is_empty() {
+        out += &format!("\n{}\n", bold("Planets against each other, all else at rest"));
+        let mut t = table();
+        set_header(&mut t, &["set", "f Hz", "ω rad/s", "damping ζ", "such vibrations", "strains most"]);
+        for p in &all.planet_modes {
+            t.add_row([
+                p.set.clone(),
+                significant(p.mode.frequency_hz, 6),
+                significant(p.mode.angular_frequency_rad_s, 6),
+                p.mode.damping_ratio.map_or("-".into(), |z| significant(z, 3)),
+                p.multiplicity.to_string(),
+                most(&p.mode.strain_energy),
+            ]);
+        }
+        right(&mut t, 1..5);
+        out += &show(&t);
+    }
     let rigid: Vec<(String, &[Part])> =
         all.rigid_body_modes.iter().enumerate().map(|(k, m)| (format!("0 Hz, {}", k + 1), &m.shape[..])).collect();
     let shapes: Vec<_> = rigid.into_iter().chain(columns(&all.modes, |m| &m.shape)).collect();
@@ -45,7 +62,7 @@ pub fn text(all: &ModesReport) -> String {
     let energy = columns(&all.modes, |m| &m.kinetic_energy);
     out += &matrix("Kinetic energy", "member", &energy, percent);
     let energy = columns(&all.modes, |m| &m.strain_energy);
-    out += &matrix("Strain energy", "shaft", &energy, percent);
+    out += &matrix("Strain energy", "shaft or mesh", &energy, percent);
     for (head, lines) in [("Assumptions in force", &all.assumptions), ("Notes", &all.notes)] {
         if lines.is_empty() {
             continue;

@@ -40,6 +40,16 @@ impl Coordinates {
         Some(a.iter().zip(b).map(|(a, b)| a - b).collect())
     }
 
+    /// A sum over the speeds of members, if they are settled.
+    pub fn sum(&self, of: &[(MemberId, Rational)]) -> Option<Vec<Rational>> {
+        let mut sum = vec![Rational::ZERO; self.count()];
+        for (member, factor) in of {
+            let speed = self.speeds[member.0].as_ref()?;
+            sum.iter_mut().zip(speed).for_each(|(sum, x)| *sum = &*sum + &(factor * x));
+        }
+        Some(sum)
+    }
+
     /// Speeds of all members, the matrix N; rows of zeros where nothing settles them.
     pub fn of_members(&self) -> DMatrix<f64> {
         let n = self.count();
@@ -52,7 +62,7 @@ impl Coordinates {
 pub(super) struct Felt {
     /// How each inertia turns.
     pub turns: Rows,
-    /// How each shaft is twisted.
+    /// How each shaft and elastic mesh is strained.
     pub twists: Rows,
 }
 
@@ -61,7 +71,7 @@ impl Felt {
         let known = "the coordinates settle it";
         let row = |members: [MemberId; 2]| coordinates.slip(members).expect(known);
         let turns = oscillator.rotors.iter().map(|j| row([j.member, j.reference])).collect();
-        let twists = oscillator.springs.iter().map(|s| row(s.members)).collect();
+        let twists = oscillator.springs.iter().map(|s| coordinates.sum(&s.strain).expect(known)).collect();
         let n = coordinates.count();
         Self { turns: Rows::new(turns, n), twists: Rows::new(twists, n) }
     }

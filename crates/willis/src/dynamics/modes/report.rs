@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::contract::{Contract, Format};
 
-/// A number that belongs to a member or a shaft.
+/// A number that belongs to a member, a shaft or a mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Part {
-    /// The member or shaft.
+    /// The member, shaft or mesh.
     pub name: String,
     /// Its number.
     pub value: f64,
@@ -45,8 +45,21 @@ pub struct Mode {
     pub shape: Vec<Part>,
     /// Share of the kinetic energy by member; 1 in all.
     pub kinetic_energy: Vec<Part>,
-    /// Share of the strain energy by shaft; 1 in all.
+    /// Share of the strain energy by shaft and elastic mesh; 1 in all.
     pub strain_energy: Vec<Part>,
+}
+
+/// Vibrations in which the planets of a set swing against each other, and nothing else moves.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct PlanetMode {
+    /// The set.
+    pub set: String,
+    /// How many such vibrations there are: one less than planets.
+    pub multiplicity: u32,
+    /// One of them; its shape is that of one planet.
+    pub mode: Mode,
 }
 
 /// Natural frequencies of a train.
@@ -68,6 +81,9 @@ pub struct ModesReport {
     pub rigid_body_modes: Vec<RigidMode>,
     /// Vibrations, by rising frequency.
     pub modes: Vec<Mode>,
+    /// Planets against each other, of sets with elastic meshes.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub planet_modes: Vec<PlanetMode>,
     /// What stands in for data that were not given.
     pub assumptions: Vec<String>,
     /// What the reader must know.

@@ -81,7 +81,7 @@ impl<'a> Shapes<'a> {
     fn strain_energy(&self, strain: &DVector<f64>) -> Vec<Part> {
         let total = strain.norm_squared();
         (self.oscillator.springs.iter().zip(strain.iter()))
-            .map(|(s, t)| Part { name: s.name.clone(), value: t * t / total })
+            .map(|(s, t)| Part { name: s.name.to_owned(), value: t * t / total })
             .collect()
     }
 }

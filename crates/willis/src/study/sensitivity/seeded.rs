@@ -30,6 +30,8 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[Slot]) -
             immersion: [0, 1].map(|k| t.immersion[k].map(|depth| seeded(Slot::Immersion(j, k), depth))),
             youngs_modulus: seeded(Slot::YoungsModulus(j), t.youngs_modulus),
             poisson_ratio: seeded(Slot::PoissonRatio(j), t.poisson_ratio),
+            stiffness: t.stiffness,
+            stiffness_by_standard: t.stiffness_by_standard,
         }));
     }
     let bearings: Vec<MountNumbers<Dual64>> = train

@@ -10,7 +10,8 @@ use crate::losses::seal::Material;
 use crate::train::assembler::Assembler;
 use crate::train::physical::{BearingMount, Known, Lubrication, PlanetBody, Rotor, SealMount, Teeth, steel_mass};
 use crate::train::specification::{
-    Fluid, LawsSpec, PlainBearing, PlainGeometry, PlainHousing, PlainOil, PlainRotor, PlainSeal, PlainTooth,
+    Fluid, LawsSpec, MeshStiffness, PlainBearing, PlainGeometry, PlainHousing, PlainOil, PlainRotor, PlainSeal,
+    PlainTooth,
 };
 use crate::train::words::{clip, list};
 use crate::train::{Efficiency, FRAME, MemberId, MemberKind, MeshId};
@@ -58,6 +59,20 @@ impl Assembler<'_> {
             (g.width * 1e3, false, "a face width", "mm", "width"),
             (g.youngs_modulus() / 1e9, false, "a modulus", "GPa", "youngs_modulus"),
             (g.roughness.unwrap_or(0.0) * 1e6, true, "a roughness", "µm", "roughness"),
+            (
+                g.external_mesh_stiffness.unwrap_or(1e9) / 1e9,
+                false,
+                "a stiffness",
+                "N/(mm µm)",
+                "external_mesh_stiffness",
+            ),
+            (
+                g.internal_mesh_stiffness.unwrap_or(1e9) / 1e9,
+                false,
+                "a stiffness",
+                "N/(mm µm)",
+                "internal_mesh_stiffness",
+            ),
         ] {
             good &= self.positive(value, zero, what, unit, &format!("{at}.{key}"));
         }
@@ -113,13 +128,36 @@ impl Assembler<'_> {
         if roughness.iter().any(Option::is_none) {
             self.assume(title, "roughness not given, taken as Ra 0.4 µm (ground)");
         }
+        let stiffness = self.mesh_stiffness(g, &pair, title, &at);
         Some(Teeth {
             pair,
             roughness: roughness.map(|r| r.unwrap_or(ROUGHNESS)),
             immersion: gears.map(|(_, _, t)| t.immersion),
             youngs_modulus: g.youngs_modulus(),
             poisson_ratio: g.poisson_ratio(),
+            stiffness,
+            stiffness_by_standard: g.mesh_stiffness == Some(MeshStiffness::Iso6336),
         })
+    }
+
+    /// Stiffness of a pair along the line of action, N/m.
+    fn mesh_stiffness(&mut self, g: &PlainGeometry, pair: &Pair, title: &str, at: &str) -> Option<f64> {
+        let given = match pair.data.wheels.iter().any(|w| w.internal) {
+            true => g.internal_mesh_stiffness,
+            false => g.external_mesh_stiffness,
+        };
+        let width = pair.data.width * if pair.data.double_helical { 2.0 } else { 1.0 };
+        if let Some(over_width) = given {
+            return Some(over_width * width);
+        }
+        if g.mesh_stiffness != Some(MeshStiffness::Iso6336) {
+            return None;
+        }
+        if let Some(how) = pair.beyond_stiffness() {
+            let message = format!("{}: the stiffness by ISO 6336-1 is a guess for {how}", clip(title));
+            self.report_once(Diagnostic::new(Code::DoubtfulGeometry, at, message));
+        }
+        Some(pair.mesh_stiffness(g.youngs_modulus()) * width)
     }
 
     /// The efficiency of a mesh under the nominal coefficient of friction, to six decimals, so that

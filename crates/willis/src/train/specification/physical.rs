@@ -67,6 +67,19 @@ pub enum Fluid {
 }
 choice!(Fluid { Oil = "oil", Mist = "mist", Air = "air" });
 
+/// What a mesh is between its gears when a train vibrates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum MeshStiffness {
+    /// It ties them.
+    #[default]
+    Rigid,
+    /// A spring, by ISO 6336-1, method B.
+    Iso6336,
+}
+choice!(MeshStiffness { Rigid = "rigid", Iso6336 = "iso-6336" });
+
 specification! {
     /// The teeth of one gear, as far as known.
     ToothSpec => PlainTooth {
@@ -130,6 +143,13 @@ specification! {
         may youngs_modulus: Option<Pressure>,
         /// Of the gear material. Default: 0.3.
         may poisson_ratio: Option<f64>,
+        /// What the meshes are between their gears in `modes`: `rigid`, or springs by `iso-6336`. Default: rigid.
+        may mesh_stiffness: Option<MeshStiffness>,
+        /// Mean stiffness of each pair of external gears along the line of action over the face width, c_gamma, instead:
+        /// 20 N/(mm um).
+        may external_mesh_stiffness: Option<Pressure>,
+        /// The same of each pair with a ring gear.
+        may internal_mesh_stiffness: Option<Pressure>,
     }
 
     /// The lubricant. Either a name of the catalogue (`willis laws --oils`), or its data.
