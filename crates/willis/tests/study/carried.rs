@@ -38,7 +38,7 @@ fn generated() -> Vec<(&'static str, String)> {
         format!("shift = 0.0, dedendum = 1.25, roughness = '0.5 um', immersion = '3 mm', {tip}")
     };
     let geometry = "{ module = '4 mm', width = '50 mm', pressure_angle = '20 deg', helix = '0 deg', double_helical = true, \
-                    addendum = 1.0, dedendum = 1.25, roughness = '0.6 um', youngs_modulus = '206 GPa', poisson_ratio = 0.3 }";
+                    addendum = 1.0, dedendum = 1.25, roughness = '0.6 um', youngs_modulus = '206 GPa', poisson_ratio = 0.3, mesh_stiffness = 'iso-6336', external_mesh_stiffness = '18 N/(mm um)', internal_mesh_stiffness = '19 N/(mm um)' }";
     let apart = |distance: f64| geometry.replace(" }", &format!(", centre_distance = '{distance} mm' }}"));
     let body = |orbit: f64| format!("mass = '0.4 kg', inertia = '2e-4 kg m^2', orbit_radius = '{orbit} mm'");
     let oil = "[oil]\nname = 'own'\nbase = 'pao'\ndensity_15 = '880 kg/m^3'\npressure_viscosity = '18 1/GPa'\n\
