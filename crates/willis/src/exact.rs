@@ -463,6 +463,23 @@ pub(crate) fn reduce(matrix: &mut Matrix, columns: usize) -> Vec<usize> {
     pivots
 }
 
+/// Basis of the vectors that the rows take to zero. Each has an entry 1, its last that is not zero, where the others
+/// have 0.
+pub(crate) fn null_space(mut rows: Matrix, columns: usize) -> Matrix {
+    let pivots = reduce(&mut rows, columns);
+    (0..columns)
+        .filter(|k| !pivots.contains(k))
+        .map(|free| {
+            let mut vector = vec![Rational::ZERO; columns];
+            vector[free] = Rational::ONE;
+            for (row, &pivot) in rows.iter().zip(&pivots) {
+                vector[pivot] = -row[free].clone();
+            }
+            vector
+        })
+        .collect()
+}
+
 /// Solution of a square system, or `None` when it is singular.
 pub(crate) fn solve(matrix: &Matrix, right: &[Rational]) -> Option<Vec<Rational>> {
     let n = right.len();

@@ -132,8 +132,9 @@ codes! {
     /// operating point as many speeds and torques as are independent.
     E208 Unfit: "the question does not fit this train";
     /// In a simulation torques become accelerations by inertia. Some members can move together, along the
-    /// gears, without any of them having a moment of inertia, so that no acceleration follows. Give
-    /// one of them an inertia in `[inertias]`, prescribe a speed, or hold one of them.
+    /// gears, without any of them having a moment of inertia, and without a shaft, a damper or a slipping clutch that
+    /// they could follow, so that no acceleration follows. Give one of them an inertia in `[inertias]`, prescribe a speed,
+    /// or hold one of them.
     E209 NoInertia: "inertia is missing";
     /// An axis of a study is a quantity and its values, `input.speed=500 rpm..12000 rpm:100`. Ranges run upwards, say how
     /// many values they have or how far apart, and are written in a unit of the quantity.

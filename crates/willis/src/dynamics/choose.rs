@@ -74,6 +74,34 @@ impl Engine {
             .collect()
     }
 
+    /// Finds out which friction elements are engaged at the state looked at.
+    pub fn engage(&mut self, t: f64) {
+        for k in 0..self.engaged.len() {
+            let threshold = if self.system.frictions[k].rigid { 0.5 } else { 0.0 };
+            let above = self.engagement(k, t) - threshold;
+            // Just at the threshold the direction decides.
+            let rate = self.engagement_rate(k, t);
+            let locks = self.system.frictions[k].rigid && rate == 0.0 && above >= 0.0;
+            self.engaged[k] = if above.abs() <= 1e-12 { rate > 0.0 || locks } else { above > 0.0 };
+        }
+    }
+
+    /// Whether something engaged holds against the slip that a group has, whatever that takes.
+    fn stops(&self, g: usize, t: f64) -> bool {
+        let capacity = self.capacity(g, false, t);
+        let against = if self.group_slip(g) > 0.0 { capacity.forward } else { capacity.backward };
+        against.is_infinite()
+    }
+
+    /// Adds the groups that something engaged holds rigidly and whose slip is zero but for a part of their speeds: both
+    /// sides are known to that part only, so that they turn alike as far as anybody can tell.
+    pub fn rest_where_joined(&mut self, t: f64, within: f64, at_rest: &mut [bool]) {
+        self.engage(t);
+        for (g, alike) in self.at_rest(within).into_iter().enumerate() {
+            at_rest[g] |= alike && self.stops(g, t);
+        }
+    }
+
     /// Adds the groups whose slip is zero because that of others is: the last of several that stop together.
     pub fn rest_with_others(&self, at_rest: &mut [bool]) {
         let groups = &self.system.groups;
@@ -101,14 +129,7 @@ impl Engine {
     /// The mode of a state. `at_rest`: groups at zero slip; `guess`: the mode before.
     pub fn choose(&mut self, t: f64, x: &[f64], at_rest: &[bool], guess: &Mode) -> Result<Mode, Trouble> {
         self.look(t, x);
-        for k in 0..self.engaged.len() {
-            let threshold = if self.system.frictions[k].rigid { 0.5 } else { 0.0 };
-            let above = self.engagement(k, t) - threshold;
-            // Just at the threshold the direction decides.
-            let rate = self.engagement_rate(k, t);
-            let locks = self.system.frictions[k].rigid && rate == 0.0 && above >= 0.0;
-            self.engaged[k] = if above.abs() <= 1e-12 { rate > 0.0 || locks } else { above > 0.0 };
-        }
+        self.engage(t);
         for k in 0..self.touch.len() {
             self.touch[k] = self.touch_now(k, x);
         }
@@ -117,8 +138,7 @@ impl Engine {
             let slip = self.group_slip(g);
             if !at_rest[g] {
                 start.slip[g] = if slip > 0.0 { 1 } else { -1 };
-                let c = self.capacity(g, false, t);
-                if (slip > 0.0 && c.forward.is_infinite()) || (slip < 0.0 && c.backward.is_infinite()) {
+                if self.stops(g, t) {
                     return Err(Trouble::Impact(format!(
                         "{} would stop a relative speed of {} rad/s at once; give the shift element a capacity, or \
                          engage it when its sides turn alike",

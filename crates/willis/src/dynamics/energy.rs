@@ -232,8 +232,11 @@ impl Engine {
         let mut losses = Vec::new();
         let mut at = n;
         for (k, f) in s.frictions.iter().enumerate() {
-            if let (Some(kind), false) = (s.loss_kind(k), f.open) {
-                losses.push(EnergyLoss { name: f.name.clone(), kind, energy_j: energies[at + k] });
+            let Some(kind) = s.loss_kind(k).filter(|_| !f.open) else { continue };
+            match losses.last_mut().filter(|_| f.what == Rubs::Trace && s.frictions[k - 1].what == Rubs::Trace) {
+                // They are told together.
+                Some(EnergyLoss { energy_j, .. }) => *energy_j += energies[at + k],
+                None => losses.push(EnergyLoss { name: f.name.clone(), kind, energy_j: energies[at + k] }),
             }
         }
         at += s.frictions.len();

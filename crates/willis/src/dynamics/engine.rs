@@ -45,6 +45,10 @@ const MOST_ROUNDS: usize = 100;
 /// Size below which a speed, rad/s, or an angle, rad, counts as small at the start of a run.
 const LEAST_SCALE: f64 = 1e-3;
 
+/// The same for what has but a trace of inertia: its angle says where it is, and its speed, a difference of large angles
+/// over a short time, need not be better than that.
+const FOLLOWS: f64 = 1e6;
+
 /// The same for an energy, J.
 const LEAST_ENERGY: f64 = 1e-6;
 
@@ -97,6 +101,8 @@ impl Engine {
         let (groups, elements) = (system.groups.len(), system.elements.len());
         let mode = Mode { slip: vec![0; groups], side: vec![Side::Drive; elements] };
         let certificate = system.every_state_is_unique();
+        let mut scales = vec![LEAST_SCALE; system.free + system.all() + system.integrals];
+        system.followers.iter().for_each(|(k, _)| scales[*k] = FOLLOWS);
         Self {
             maps: Maps::default(),
             mode,
@@ -108,7 +114,7 @@ impl Engine {
             speed: vec![0.0; system.all()],
             acceleration: vec![0.0; system.all()],
             tau: vec![0.0; system.ports],
-            scales: vec![LEAST_SCALE; system.free + system.all() + system.integrals],
+            scales,
             energy_scale: LEAST_ENERGY,
             unproved: 0,
             contacts: Contacts::default(),

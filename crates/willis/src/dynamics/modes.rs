@@ -23,7 +23,7 @@ use nalgebra::DVector;
 
 use crate::contract::Format;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::exact::Rational;
+use crate::exact::{Rational, null_space};
 use crate::kinematics::Configuration;
 use crate::train::{MemberId, MemberKind, ShiftElementId, Train};
 
@@ -32,7 +32,6 @@ use coordinates::{Coordinates, Felt};
 use damping::{Damped, Damping};
 use normal::Normal;
 use oscillator::{Oscillator, spring};
-use rows::null_space;
 use selection::selection;
 use shape::Shapes;
 

@@ -124,7 +124,7 @@ impl Simulation {
     /// An unknown scenario, contradictory speeds, inertia that is missing.
     pub fn new(train: &Train, scenario: &str, options: &Options) -> Result<Self, Diagnostics> {
         options.check()?;
-        let system = System::new(train, scenario)?;
+        let system = System::new(train, scenario, 0.0)?;
         let mut engine = Engine::new(system);
         let [from, to] = options.window(&engine.system.scenario)?;
         engine.system.scenario.end = to;
@@ -338,6 +338,8 @@ impl Simulation {
         for (rest, now) in self.at_rest.iter_mut().zip(self.engine.at_rest(within)) {
             *rest |= now;
         }
+        let known = AS_WRITTEN.max(10.0 * self.options.tolerance);
+        self.engine.rest_where_joined(self.t, known, &mut self.at_rest);
         self.engine.rest_with_others(&mut self.at_rest);
         self.engine.bring_to_rest(&mut x, &self.at_rest);
         self.engine.look(self.t, &x);

@@ -43,7 +43,7 @@ impl Shows {
     pub fn all(s: &System) -> Vec<Self> {
         let (members, sources, shafts) = (1..s.speeds.len(), 0..s.drivers.len(), 0..s.elastic.len());
         let rubs = (0..s.frictions.len())
-            .filter(|&k| !s.frictions[k].open && !matches!(s.frictions[k].what, Rubs::Rolling(_)));
+            .filter(|&k| !s.frictions[k].open && !matches!(s.frictions[k].what, Rubs::Rolling(_) | Rubs::Trace));
         std::iter::once(Self::Time)
             .chain(members.clone().map(Self::Speed))
             .chain(members.clone().map(Self::Angle))
@@ -105,7 +105,7 @@ impl Moves {
                         && group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
                 }
                 Rubs::Shift(_) => true,
-                Rubs::Drag(_) | Rubs::Rolling(_) => f.group.is_some(),
+                Rubs::Drag(_) | Rubs::Rolling(_) | Rubs::Trace => f.group.is_some(),
             }
         };
         let elements = (0..s.elements.len()).filter(|&j| s.elements[j].group.is_some());

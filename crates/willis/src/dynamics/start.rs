@@ -37,6 +37,10 @@ fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostics>
         let row = &s.speeds[m.index()];
         rows.push((m, row[..free].to_vec(), w - prescribed(row), true));
     }
+    // What has no inertia turns as what acts on it will have it.
+    for (k, row) in &s.followers {
+        rows.push((s.coordinates[*k], row[..free].to_vec(), -prescribed(row), false));
+    }
     for &m in &s.coordinates[..free] {
         rows.push((m, s.speeds[m.index()][..free].to_vec(), -prescribed(&s.speeds[m.index()]), false));
     }

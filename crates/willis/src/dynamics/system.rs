@@ -26,6 +26,7 @@ mod meshes;
 mod ports;
 mod reactions;
 mod shafts;
+mod traces;
 mod uniqueness;
 
 use std::sync::Arc;
@@ -54,6 +55,7 @@ use meshes::Meshes;
 use ports::Ports;
 use reactions::{Reaction, reactions};
 use shafts::{Elastic, shafts};
+use traces::Traces;
 
 pub(super) use frictions::Rubs;
 
@@ -67,7 +69,9 @@ pub(crate) struct System {
     /// Prescribed coordinates, after them.
     pub prescribed: usize,
     pub coordinates: Vec<MemberId>,
-    /// Their bodies.
+    /// Those that have but a trace of inertia, and the row that is zero where they start as what leads them.
+    pub followers: Vec<(usize, Vec<f64>)>,
+    /// Bodies of the coordinates.
     pub coordinate_bodies: Vec<Body>,
     pub bodies: Bodies,
     pub nodes: usize,
@@ -107,7 +111,9 @@ impl System {
     /// # Errors
     /// Speeds that contradict each other, coordinates without inertia, meshes whose forces are not
     /// determined.
-    pub fn new(train: &Train, name: &str) -> Result<Self, Diagnostics> {
+    ///
+    /// `step`: the length of the steps, s, it is made for; 0 where that is adapted.
+    pub fn new(train: &Train, name: &str, step: f64) -> Result<Self, Diagnostics> {
         let scenario = train.find_scenario(name)?;
         let laws = Laws::of(train);
         let c = Configuration::new(train, &[], &scenario.fixed, &visible(train, scenario, laws.as_ref()));
@@ -115,12 +121,13 @@ impl System {
         checks::pulses(scenario)?;
         checks::rates(scenario)?;
         let coordinates = Coordinates::of(&c, scenario)?;
-        Self::assemble(scenario, &c, coordinates, laws)
+        Self::assemble(scenario, step, &c, coordinates, laws)
     }
 
     /// The equations of motion, part by part. The order of the parts is that of their ports.
     fn assemble(
         scenario: &Scenario,
+        step: f64,
         c: &Configuration<'_>,
         coordinates: Coordinates,
         mut laws: Option<Laws>,
@@ -142,9 +149,16 @@ impl System {
             assumptions.extend(laws.assumptions(train));
         }
         let elastic = shafts(train, scenario, &mut ports);
+        let traces = Traces::of(scenario, step, &coordinates, train, &frictions, &elastic, &inertia);
+        assumptions.extend(traces.assumption(train));
+        traces.given.iter().for_each(|&(member, value)| inertia.add(member, value));
+        // Steps of fixed length damp by themselves what they do not resolve.
+        if step == 0.0 {
+            frictions.extend(traces.dampers(train, &coordinates, &elastic, &mut ports));
+        }
         let Meshes { mut elements, gear, loss } = Meshes::of(c, &coordinates, laws.is_some(), &mut ports);
         let groups = slip_together(c, &coordinates, &mut frictions, &mut elements);
-        let reactions = reactions(c, scenario, &coordinates, &frictions);
+        let reactions = reactions(c, scenario, &coordinates, &frictions, &traces.given);
 
         let node = |m: &MemberId| c.node(*m);
         let coordinate_bodies: Vec<Body> = coordinates.chosen.iter().map(node).collect();
@@ -177,6 +191,11 @@ impl System {
             scenario: scenario.clone(),
             free: coordinates.free,
             prescribed: coordinates.prescribed().len(),
+            followers: (traces.given.iter().zip(traces.leads))
+                .map(|((member, _), lead)| {
+                    (coordinates.chosen.iter().position(|m| m == member).expect("a coordinate"), lead)
+                })
+                .collect(),
             coordinates: coordinates.chosen,
             coordinate_bodies,
             bodies,
@@ -297,6 +316,7 @@ impl System {
             Rubs::Drag(_) => Some(EnergyLossKind::Drag),
             Rubs::Shift(_) => Some(EnergyLossKind::ShiftElement),
             Rubs::Rolling(_) => None,
+            Rubs::Trace => Some(EnergyLossKind::Shaft),
             Rubs::Law(place) => self.laws.as_ref().map(|laws| laws.places[place].loss_kind()),
         }
     }

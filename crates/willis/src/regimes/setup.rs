@@ -1,7 +1,7 @@
 //! A train as the regimes see it: terminals, the speeds that are free, the elements that carry
 //! load, and the forms whose signs matter.
 
-use crate::exact::{self, Matrix, Rational};
+use crate::exact::{self, Matrix, Rational, null_space};
 use crate::kinematics::{Configuration, Element};
 use crate::named::Named;
 use crate::statics::{self, Equilibrium, Unsolvable};
@@ -534,17 +534,3 @@ impl<'t> Setup<'t> {
 
 /// Most elements with relative motion and loss for which every pattern of drivers is tried.
 pub(crate) const MOST_TRIED: u32 = 12;
-
-/// Vectors that span the solutions of `rows · f = 0`.
-fn null_space(mut rows: Matrix, columns: usize) -> Vec<Vec<Rational>> {
-    let pivots = exact::reduce(&mut rows, columns);
-    (0..columns)
-        .filter(|c| !pivots.contains(c))
-        .map(|free| {
-            let mut v = vec![Rational::ZERO; columns];
-            v[free] = Rational::ONE;
-            pivots.iter().zip(&rows).for_each(|(&p, row)| v[p] = -row[free].clone());
-            v
-        })
-        .collect()
-}

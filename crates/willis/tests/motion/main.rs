@@ -6,6 +6,7 @@ mod common;
 mod gearbox;
 mod gears;
 mod laws;
+mod massless;
 mod random;
 mod reactions;
 mod reference;

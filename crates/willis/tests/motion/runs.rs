@@ -707,3 +707,41 @@ fn fixed_steps_that_diverge_end_with_a_verdict() {
         }
     }
 }
+
+/// A rigid clutch joins what turns alike to within what is known of the speeds, and nothing else.
+#[test]
+fn what_turns_alike_can_be_joined() {
+    for (apart, joins) in [(0.0, true), (4e-10, true), (1e-7, false), (1e-4, false)] {
+        let text = format!(
+            r#"
+            format = 1
+            name = "two rotors"
+            members = ["a", "b"]
+            inertias = {{ a = "1 kg m^2", b = "3 kg m^2" }}
+
+            [[shift_element]]
+            name = "C"
+            kind = "clutch"
+            members = ["a", "b"]
+
+            [[scenario]]
+            name = "join"
+            duration = "2 s"
+            initial_speeds = {{ a = "178.023584 rad/s", b = "{} rad/s" }}
+            engagement = [{{ element = "C", value = {{ type = "step", at = "1 s", height = 1 }} }}]
+            "#,
+            178.023584 * (1.0 + apart)
+        );
+        let train = train(&text);
+        let report = simulate(&train, "join", &Options::default(), &mut ()).expect("a run");
+        match report.outcome {
+            Outcome::Finished => assert!(joins, "{apart:e}"),
+            Outcome::Impact(why) => {
+                assert!(!joins, "{apart:e}: {why}");
+                // The amount is told, however small.
+                assert!(!why.contains("of 0 rad/s") && !why.contains("of -0 rad/s"), "{why}");
+            }
+            other => panic!("{apart:e}: {other:?}"),
+        }
+    }
+}

@@ -6,7 +6,7 @@ use crate::exact;
 
 use super::coordinates::Felt;
 use super::oscillator::Oscillator;
-use super::rows::{floats, null_space};
+use super::rows::floats;
 
 /// The coordinates x over as many coordinates a as feel inertia.
 pub(super) struct Condensed {
@@ -25,7 +25,7 @@ impl Condensed {
         let mut reduced = felt.turns.exact.clone();
         let pivots = exact::reduce(&mut reduced, n);
         reduced.truncate(pivots.len());
-        let massless = null_space(felt.turns.exact.clone(), n);
+        let massless = exact::null_space(felt.turns.exact.clone(), n);
         let mut to_all = DMatrix::zeros(n, pivots.len());
         pivots.iter().enumerate().for_each(|(k, &p)| to_all[(p, k)] = 1.0);
         if !massless.is_empty() {

@@ -3,12 +3,12 @@
 use nalgebra::DMatrix;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
-use crate::exact::{Matrix, Rational};
+use crate::exact::{Matrix, Rational, null_space};
 use crate::kinematics::Configuration;
 use crate::train::{MemberId, Train};
 
 use super::oscillator::Oscillator;
-use super::rows::{Rows, floats, null_space};
+use super::rows::{Rows, floats};
 
 /// Independent speeds that settle those of all inertias and shafts.
 pub(super) struct Coordinates {

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::exact::{self, Matrix, Rational};
+use crate::exact::Matrix;
 
 /// Rows over the coordinates.
 pub(super) struct Rows {
@@ -18,20 +18,4 @@ impl Rows {
 
 pub(super) fn floats(rows: &Matrix, columns: usize) -> DMatrix<f64> {
     DMatrix::from_fn(rows.len(), columns, |i, k| rows[i][k].to_f64())
-}
-
-/// Basis of the vectors that the rows take to zero.
-pub(super) fn null_space(mut rows: Matrix, columns: usize) -> Matrix {
-    let pivots = exact::reduce(&mut rows, columns);
-    (0..columns)
-        .filter(|k| !pivots.contains(k))
-        .map(|free| {
-            let mut vector = vec![Rational::ZERO; columns];
-            vector[free] = Rational::ONE;
-            for (row, &pivot) in rows.iter().zip(&pivots) {
-                vector[pivot] = -row[free].clone();
-            }
-            vector
-        })
-        .collect()
 }

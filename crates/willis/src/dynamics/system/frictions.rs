@@ -16,6 +16,8 @@ pub(in crate::dynamics) enum Rubs {
     Rolling(usize),
     /// A place of the laws.
     Law(usize),
+    /// The swing of a member that has but a trace of inertia.
+    Trace,
 }
 
 /// A friction element between two members.

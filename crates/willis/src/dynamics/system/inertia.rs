@@ -19,6 +19,8 @@ pub(super) struct NodeInertia<'c> {
     pub felt: DMatrix<f64>,
     /// That one by one.
     pub parts: Vec<Inertia>,
+    /// Members whose relative speeds it acts on.
+    pub pairs: Vec<[MemberId; 2]>,
 }
 
 impl<'c> NodeInertia<'c> {
@@ -30,6 +32,7 @@ impl<'c> NodeInertia<'c> {
             real: DMatrix::zeros(nodes, nodes),
             felt: DMatrix::zeros(nodes, nodes),
             parts: Vec::new(),
+            pairs: Vec::new(),
         };
         for i in configuration.train.inertias() {
             let added = all.feel([i.member, i.reference], i.value);
@@ -42,6 +45,9 @@ impl<'c> NodeInertia<'c> {
     fn feel(&mut self, [member, reference]: [MemberId; 2], value: f64) -> DMatrix<f64> {
         let added = turning(self.configuration, [member, reference], value);
         self.felt += &added;
+        if value != 0.0 {
+            self.pairs.push([member, reference]);
+        }
         match [member, reference].map(|m| self.configuration.node(m)) {
             [Some(member), reference] | [reference, Some(member)] => {
                 self.parts.push(Inertia { member, reference, value });

@@ -45,6 +45,13 @@ impl<'c> Ports<'c> {
         self.columns.len() - 1
     }
 
+    /// A sum of ports, each with its part.
+    pub fn sum(&self, parts: impl Iterator<Item = (usize, f64)>) -> DVector<f64> {
+        let mut sum = DVector::zeros(self.configuration.nodes);
+        parts.for_each(|(port, part)| sum.axpy(part, &self.columns[port], 1.0));
+        sum
+    }
+
     /// Adds that of a torque between two members.
     pub fn between(&mut self, members: [MemberId; 2]) -> Between {
         let [a, b] = members;

@@ -29,13 +29,19 @@ pub(super) fn reactions(
     scenario: &Scenario,
     coordinates: &Coordinates,
     frictions: &[Friction],
+    traces: &[(MemberId, f64)],
 ) -> Vec<Reaction> {
     let held = |&member: &MemberId| of_member(c, scenario, coordinates, frictions, member);
-    std::iter::once(of_frame(c, scenario, coordinates)).chain(scenario.fixed.iter().map(held)).collect()
+    std::iter::once(of_frame(c, scenario, coordinates, traces)).chain(scenario.fixed.iter().map(held)).collect()
 }
 
 /// Inner torques come in pairs, so what the frame gives is the rate of all angular momentum less what sources give.
-fn of_frame(c: &Configuration<'_>, scenario: &Scenario, coordinates: &Coordinates) -> Reaction {
+fn of_frame(
+    c: &Configuration<'_>,
+    scenario: &Scenario,
+    coordinates: &Coordinates,
+    traces: &[(MemberId, f64)],
+) -> Reaction {
     let mut momentum = vec![0.0; coordinates.all()];
     for i in c.train.inertias() {
         // Measured against another member, it passes on to that one what it takes.
@@ -44,6 +50,9 @@ fn of_frame(c: &Configuration<'_>, scenario: &Scenario, coordinates: &Coordinate
                 add(&mut momentum, i.value, &coordinates.speeds[member.index()]);
             }
         }
+    }
+    for (member, value) in traces {
+        add(&mut momentum, *value, &coordinates.speeds[member.index()]);
     }
     for source in &scenario.sources {
         if let SourceKind::Vehicle { mass, wheel_radius, final_drive, .. } = &source.kind {
