@@ -92,7 +92,6 @@ pub struct Batch {
     packed: Vec<Vec<f64>>,
     /// Room for what changes from step to step: speeds, and inputs that are not level.
     terms: Vec<Lanes>,
-    unsettled: u64,
     impacts: u64,
 }
 
@@ -129,7 +128,6 @@ impl Batch {
             common: vec![],
             packed: vec![],
             terms: vec![],
-            unsettled: 0,
             impacts: 0,
             one,
         })
@@ -221,11 +219,6 @@ impl Batch {
         }
     }
 
-    /// Steps, over all runs, whose mode was not settled within the bounded number of trials.
-    pub fn unsettled_steps(&self) -> u64 {
-        self.unsettled
-    }
-
     /// Steps, over all runs, in which parts of different speed were joined at once, as in an inelastic impact.
     pub fn impacts(&self) -> u64 {
         self.impacts
@@ -301,7 +294,6 @@ impl Batch {
             }
             for lane in (0..lanes).filter(|lane| alone >> lane & 1 == 1) {
                 block.step_alone(one, lane);
-                self.unsettled += std::mem::take(&mut one.unsettled);
                 self.impacts += std::mem::take(&mut one.impacts);
                 one.count = count;
             }

@@ -17,7 +17,7 @@ const MOST_ROUNDS: usize = 100;
 
 /// A constant friction that is the same whichever gear drives, and where the kink between the two is: force variable
 /// and loss there.
-fn kink(loss: &Loss, factor: f64, sign: f64) -> [f64; 2] {
+pub(super) fn kink(loss: &Loss, factor: f64, sign: f64) -> [f64; 2] {
     let (spread, extra) = (loss.drive - loss.coast, loss.drive_torque - loss.coast_torque);
     if spread == 0.0 {
         return [0.0, sign * loss.drive_torque.max(loss.coast_torque)];
@@ -28,7 +28,7 @@ fn kink(loss: &Loss, factor: f64, sign: f64) -> [f64; 2] {
 
 /// What a mesh that begins to slip loses beside what it would lose without constant friction, if it carries this torque
 /// along the slip: with that, which gear drives changes elsewhere.
-fn beside_load(loss: &Loss, torque: f64) -> f64 {
+pub(super) fn beside_load(loss: &Loss, torque: f64) -> f64 {
     let with = (loss.drive * torque + loss.drive_torque).max(loss.coast * torque + loss.coast_torque);
     with - (loss.drive * torque).max(loss.coast * torque)
 }
@@ -45,6 +45,7 @@ impl Engine {
         load.torques.resize(s.bodies.count, [0.0; 2]);
         load.capacities.clear();
         load.accelerations.clear();
+        load.slips.clear();
         tau.clear();
         tau.extend_from_slice(&self.tau[..s.port_of_prescribed]);
         for (k, f) in s.frictions.iter().enumerate() {

@@ -7,6 +7,7 @@
 //! torques at the mean of both speeds. Sources: Moreau's time stepping, as in Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical
 //! Systems*, 2008, ch. 10.
 
+mod decide;
 mod energies;
 pub(super) mod groups;
 mod inputs;
@@ -25,13 +26,14 @@ use super::element::{Loss, element_name};
 use super::engine::{Engine, Touch};
 use super::fused::{ByKey, Exactly, Fused};
 use super::handles::{Input, InputInfo, InputRefused, Output};
-use super::mode::{Mode, Pattern, Side, dot};
+use super::mode::{Mode, Side, dot};
 use super::report::{Column, Outcome};
 use super::shows::Shows;
 use super::source::signals_of;
 use super::start::initial_state;
 use super::system::System;
 
+use decide::Decided;
 use groups::{GroupStep, Rub};
 use map::{Key, StepMap};
 use shafts::{MOST_SHAFTS, ShaftStep};
@@ -148,12 +150,8 @@ pub struct FixedStep {
     by_key: ByKey<Key>,
     /// The map of the last step and its key.
     last: Option<(Key, u32)>,
-    /// Maps in which nothing is held yet, for sweeps.
-    wides: Vec<Pattern>,
-    by_wide_key: ByKey<Key>,
-    /// Room for the torques that holding is tried with, and for the directions of a sweep.
-    trial: Vec<f64>,
-    direction: Vec<i8>,
+    /// Decisions of contacts.
+    decided: Vec<Decided>,
     /// Values of signals that are level until `until`.
     level: Vec<Option<f64>>,
     pub(super) until: f64,
@@ -181,12 +179,11 @@ pub struct FixedStep {
     /// Energies as the engine counts them; empty unless asked for.
     pub(super) energies: Vec<f64>,
     pub(super) came_in: Vec<f64>,
-    /// Losses of the elements and torques behind prescribed speeds, when balanced by sweeps.
+    /// Losses of the elements and torques behind prescribed speeds, when decided.
     losses: Vec<f64>,
     reactions: Vec<f64>,
-    /// Whether the last step was balanced by sweeps: the port torques are then complete.
-    swept: bool,
-    pub(super) unsettled: u64,
+    /// Whether the last step was decided: the port torques are then complete.
+    is_decided: bool,
     pub(super) impacts: u64,
     /// State and mode as the engine knows them, and the step after which they were taken over.
     seen: Vec<f64>,
@@ -315,10 +312,7 @@ impl FixedStep {
             maps: Vec::with_capacity(64),
             by_key: ByKey::with_capacity_and_hasher(64, Default::default()),
             last: None,
-            wides: vec![],
-            by_wide_key: ByKey::default(),
-            trial: vec![0.0; p + g],
-            direction: vec![0; g],
+            decided: vec![],
             level: vec![None; signals],
             until: f64::NEG_INFINITY,
             governors,
@@ -339,8 +333,7 @@ impl FixedStep {
             came_in: vec![],
             losses: vec![0.0; e],
             reactions: vec![0.0; s.prescribed],
-            swept: false,
-            unsettled: 0,
+            is_decided: false,
             impacts: 0,
             seen: vec![],
             seen_mode: engine.mode.clone(),
@@ -367,11 +360,6 @@ impl FixedStep {
     /// Why the run cannot go on: from then on it stays at the last state that can be believed, and steps do nothing.
     pub fn verdict(&self) -> Option<&Outcome> {
         self.verdict.as_ref()
-    }
-
-    /// Steps whose mode was not settled within the bounded number of trials.
-    pub fn unsettled_steps(&self) -> u64 {
-        self.unsettled
     }
 
     /// Steps in which parts of different speed were joined at once, as in an inelastic impact.
@@ -467,7 +455,7 @@ impl FixedStep {
         self.energies.fill(0.0);
         self.came_in.fill(0.0);
         self.shafts.iter_mut().zip(&self.at_start.3).for_each(|(shaft, touch)| shaft.touch = *touch);
-        (self.count, self.unsettled, self.impacts) = (0, 0, 0);
+        (self.count, self.impacts) = (0, 0);
         (self.verdict, self.bound, self.turns) = (None, 0.0, 0);
         (self.present, self.last, self.until) = (None, None, f64::NEG_INFINITY);
         self.seen_at = None;

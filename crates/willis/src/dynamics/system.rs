@@ -148,7 +148,7 @@ impl System {
             frictions.extend(law_places(laws, &mut ports));
             assumptions.extend(laws.assumptions(train));
         }
-        let elastic = shafts(train, scenario, &mut ports);
+        let elastic = shafts(c, scenario, &mut ports);
         let traces = Traces::of(scenario, step, &coordinates, train, &frictions, &elastic, &inertia);
         assumptions.extend(traces.assumption(train));
         traces.given.iter().for_each(|&(member, value)| inertia.add(member, value));

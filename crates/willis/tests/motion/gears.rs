@@ -1,7 +1,7 @@
 //! The ordinary work of a transmission, with each automatic of the examples: every gear drives away, runs on a test
 //! bench, holds, lets go, shifts and reverses.
 
-use willis::dynamics::{Options, Outcome};
+use willis::dynamics::{Method, Options, Outcome};
 
 use crate::common::example;
 use crate::gearbox::{Gearbox, Work, faults, off};
@@ -141,6 +141,68 @@ fn every_swap_of_one_element_comes_to_its_end() {
         };
         pairs.filter(|[a, b]| a != b && swapped(*a, *b) == 1).filter_map(work).collect()
     });
+}
+
+/// Steps of fixed length go through the same motions: the speeds at the end are those of the adaptive
+/// method to the order of the step.
+#[test]
+fn every_gear_does_the_same_in_steps_of_fixed_length() {
+    let works = |state: usize| {
+        let ramp = |points: &[[f64; 2]]| points.to_vec();
+        [
+            ("drive away", Work { duration: 1.0, input: ramp(&[[0.0, 0.0], [1.0, 300.0]]), ..Work::default() }),
+            (
+                "hill hold",
+                Work {
+                    duration: 2.0,
+                    input: ramp(&[[0.0, 200.0], [0.5, 200.0], [1.0, 0.0], [2.0, 0.0]]),
+                    output: ramp(&[[0.0, -100.0], [2.0, -100.0]]),
+                    ..Work::default()
+                },
+            ),
+            (
+                "coast",
+                Work {
+                    duration: 2.0,
+                    start: 40.0,
+                    input: ramp(&[[0.0, 0.0], [0.5, -200.0], [2.0, -200.0]]),
+                    ..Work::default()
+                },
+            ),
+        ]
+        .map(|(kind, work)| (kind, Work { states: [state; 2], ..work }))
+    };
+    let mut bad = vec![];
+    let (mut runs, mut worst) = (0, 0.0f64);
+    for name in AUTOMATICS {
+        let g = Gearbox::new(name);
+        for (state, (kind, work)) in (0..g.states.len()).flat_map(|state| works(state).map(|work| (state, work))) {
+            let Some(scenario) = work.text(&g) else { continue };
+            for capacity in [None, Some(3000.0)] {
+                for mesh_by_mesh in [false, true] {
+                    let text = g.text(mesh_by_mesh, capacity, 1.0, &scenario);
+                    let (_, exact) = run(&text, &Options::default());
+                    let (_, steps) =
+                        run(&text, &Options { method: Method::Fixed { step_s: 1e-3 }, ..Options::default() });
+                    runs += 1;
+                    let fastest = exact.final_speeds_rad_s.iter().map(|(_, w)| w.abs()).fold(1.0, f64::max);
+                    let most = (exact.final_speeds_rad_s.iter().zip(steps.final_speeds_rad_s.iter()))
+                        .map(|((_, a), (_, b))| (a - b).abs() / fastest)
+                        .fold(0.0, f64::max);
+                    worst = worst.max(most);
+                    if steps.outcome != Outcome::Finished || most > 1e-3 {
+                        let state = &g.states[state].0;
+                        bad.push(format!(
+                            "{name} {state} {kind} {capacity:?} mesh by mesh {mesh_by_mesh}: {:?}, {most:.1e} off",
+                            steps.outcome
+                        ));
+                    }
+                }
+            }
+        }
+    }
+    println!("{runs} runs in steps, {worst:.1e} off at most");
+    assert!(bad.is_empty(), "{} of {runs} are wrong:\n{}", bad.len(), bad.join("\n"));
 }
 
 /// Input torque that moves the Ford C4 in second gear against 20 N m at the output: both sets at rest bear by the friction

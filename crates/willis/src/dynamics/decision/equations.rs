@@ -27,6 +27,7 @@ pub(super) struct MeshPlaces {
     pub parts: Option<[usize; 2]>,
     /// `[α₊, α₋]` and `[u, v]` of a lossy mesh at rest.
     pub rest: Option<[[usize; 2]; 2]>,
+    slip_row: usize,
     /// What is lost each way and back, `1 − P`.
     pub lost: Rational,
     pub slip: i8,
@@ -153,7 +154,14 @@ impl Equations {
                 let equal = b.row();
                 b.add(equal, forces[0], &one);
                 b.add(equal, forces[1], &minus);
-                meshes.push(MeshPlaces { forces, parts: None, rest: None, lost: Rational::ZERO, slip: mesh.slip });
+                meshes.push(MeshPlaces {
+                    forces,
+                    parts: None,
+                    rest: None,
+                    slip_row: 0,
+                    lost: Rational::ZERO,
+                    slip: mesh.slip,
+                });
                 continue;
             }
             let parts = b.pair();
@@ -166,7 +174,7 @@ impl Equations {
             b.add(e_row, parts[0], &-drive);
             b.add(e_row, parts[1], coast);
             let lost = &one - &product;
-            let mut rest = None;
+            let (mut rest, mut its_slip) = (None, 0);
             if mesh.slip == 0 {
                 let ([ahead, u], [back, v]) = (b.pair(), b.pair());
                 let [slip_row, friction] = [b.row(), b.row()];
@@ -183,8 +191,9 @@ impl Equations {
                     b.rests[x] = Some(meshes.len());
                 }
                 rest = Some([[ahead, back], [u, v]]);
+                its_slip = slip_row;
             }
-            meshes.push(MeshPlaces { forces, parts: Some(parts), rest, lost, slip: mesh.slip });
+            meshes.push(MeshPlaces { forces, parts: Some(parts), rest, slip_row: its_slip, lost, slip: mesh.slip });
         }
         let mut elements = Vec::new();
         for element in &problem.elements {
@@ -339,6 +348,9 @@ impl Equations {
     pub fn right(&self, load: &Load, of: usize, mut set: impl FnMut(usize, f64)) {
         for (i, t) in load.torques.iter().enumerate() {
             set(i, t[of]);
+        }
+        for (m, slip) in self.meshes.iter().zip(&load.slips).filter(|(m, _)| m.rest.is_some()) {
+            set(m.slip_row, -slip[of]);
         }
         for (k, e) in self.elements.iter().enumerate() {
             if !self.replaced[e.motion_row] {

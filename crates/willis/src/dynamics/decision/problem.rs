@@ -63,4 +63,7 @@ pub(in crate::dynamics) struct Load {
     pub capacities: Vec<[[f64; 2]; 2]>,
     /// For each element, the relative acceleration that it prescribes; 0 where it only holds.
     pub accelerations: Vec<[f64; 2]>,
+    /// For each mesh at rest, the acceleration of its slip, times the factor of gear 1, at which it counts as at rest; none:
+    /// all at 0.
+    pub slips: Vec<[f64; 2]>,
 }

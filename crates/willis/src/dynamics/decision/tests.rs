@@ -17,7 +17,12 @@ fn exact(v: &Value) -> Rational {
 
 fn no_load(problem: &Problem) -> Load {
     let (n, k) = (problem.members, problem.elements.len());
-    Load { torques: vec![[0.0; 2]; n], capacities: vec![[[0.0; 2]; 2]; k], accelerations: vec![[0.0; 2]; k] }
+    Load {
+        torques: vec![[0.0; 2]; n],
+        capacities: vec![[[0.0; 2]; 2]; k],
+        accelerations: vec![[0.0; 2]; k],
+        slips: vec![],
+    }
 }
 
 /// A case: members by name, the problem and the load.

@@ -15,7 +15,7 @@ impl FixedStep {
         let map = &self.maps[map as usize];
         // Holding torques join those of the ports.
         let mut tau = self.tau[..s.ports].to_vec();
-        for (k, &g) in map.held.iter().enumerate().filter(|_| !self.swept) {
+        for (k, &g) in map.held.iter().enumerate().filter(|_| !self.is_decided) {
             let row = &map.rows[(free + k) * cols..(free + k + 1) * cols];
             tau[self.groups[usize::from(g)].lead.0] += dot(row, &self.tau);
         }
@@ -24,7 +24,7 @@ impl FixedStep {
             let row = &s.speeds[driver.member.index()];
             let mut torque = match driver.prescribed {
                 Some(i) => {
-                    if self.swept {
+                    if self.is_decided {
                         self.reactions[i]
                     } else {
                         dot(&map.reactions[i * cols..(i + 1) * cols], &self.tau)
@@ -55,7 +55,7 @@ impl FixedStep {
             self.energies[at + k] += damper * dot(&e.row, &mean) * self.h;
         }
         at += s.elastic.len();
-        if self.swept {
+        if self.is_decided {
             for (j, e) in s.elements.iter().enumerate() {
                 let energy = self.losses[j] * dot(&e.row, &mean) * self.h;
                 for &(mesh, part) in &e.shares[usize::from(self.side[j] == Side::Coast)] {

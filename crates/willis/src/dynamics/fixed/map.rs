@@ -12,17 +12,10 @@ pub(in crate::dynamics) struct StepMap {
     pub moving: Vec<u16>,
     /// Torques at the first gears of the elements of held groups, in the order of `held`.
     pub still: Vec<(u16, Vec<f64>)>,
-    /// Where some of what is held is held several times over: slip accelerations of `held` with nothing held yet.
-    pub slips: Option<Vec<f64>>,
+    /// Whether some of what is held is held several times over.
+    pub is_redundant: bool,
     /// Torques behind prescribed speeds.
     pub reactions: Vec<f64>,
-}
-
-impl StepMap {
-    /// Whether some of what is held is held several times over.
-    pub fn is_redundant(&self) -> bool {
-        self.slips.is_some()
-    }
 }
 
 /// Key of a map: which groups are held, and the sides of what moves.
@@ -72,10 +65,6 @@ pub(super) fn step_map(s: &System, mode: &Mode, pattern: &Pattern) -> Option<Ste
     }
     let still =
         (held.iter()).flat_map(|&g| &s.groups[usize::from(g)].elements).map(|&j| (j as u16, torque_row(j))).collect();
-    let slips = map.is_redundant().then(|| {
-        let row = |g: &u16| wide.slip[usize::from(*g) * cols..][..cols].iter().copied();
-        held.iter().flat_map(row).collect()
-    });
     let reactions = map.response[s.free * cols..s.all() * cols].to_vec();
-    Some(StepMap { rows, held, moving, still, slips, reactions })
+    Some(StepMap { rows, held, moving, still, is_redundant: map.is_redundant(), reactions })
 }

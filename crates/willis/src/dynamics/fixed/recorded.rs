@@ -106,11 +106,8 @@ pub(in crate::dynamics) fn fixed(
     if run.t > end + 1e-9 * h {
         run.notes.push(format!("the last step ends at t = {} s, past the end of the scenario", run.t));
     }
-    let (unsettled, impacts) = (stepper.unsettled_steps(), stepper.impacts());
+    let impacts = stepper.impacts();
     let in_steps = |n: u64| if n == 1 { "in one step".to_owned() } else { format!("in {n} steps") };
-    if unsettled > 0 {
-        run.notes.push(format!("{} the mode was not settled within the bounded number of trials", in_steps(unsettled)));
-    }
     if impacts > 0 {
         run.notes.push(format!(
             "{} parts of different speed were joined at once, as in an inelastic impact",

@@ -1,11 +1,11 @@
 //! The mode of a step: one that agrees with the speeds at its end.
 
 use crate::dynamics::engine::Touch;
-use crate::dynamics::mode::{Side, dot, dot_size, slope};
+use crate::dynamics::mode::{Side, dot, dot_size};
 use crate::dynamics::rounding::NOISE;
 
 use super::FixedStep;
-use super::groups::{GroupStep, LEAST_UNBOUNDED};
+use super::groups::LEAST_UNBOUNDED;
 use super::map::{Key, StepMap, step_map};
 use super::shafts::word;
 
@@ -42,25 +42,6 @@ impl FixedStep {
         };
         self.by_key.insert(key, k);
         (k != u32::MAX).then_some(k)
-    }
-
-    /// The map of a mode with nothing held yet; made if it was not met before.
-    fn wide(&mut self, key: Key) -> Option<usize> {
-        if let Some(&k) = self.by_wide_key.get(&key) {
-            return (k != u32::MAX).then_some(k as usize);
-        }
-        let s = &self.engine.system;
-        let made = (self.engine.maps.pattern_with(s, &key.mode(s), &self.resists))
-            .map(|pattern| pattern.with_slips(self.groups.len()));
-        let k = match made {
-            Some(wide) => {
-                self.wides.push(wide);
-                self.wides.len() as u32 - 1
-            }
-            None => u32::MAX,
-        };
-        self.by_wide_key.insert(key, k);
-        (k != u32::MAX).then_some(k as usize)
     }
 
     /// Which groups are held and which sides drive: the key of the present mode.
@@ -104,7 +85,7 @@ impl FixedStep {
     }
 
     /// Torques of the shafts in their present contacts, without what follows from the accelerations.
-    fn twist_shafts(&mut self) {
+    pub(super) fn twist_shafts(&mut self) {
         for (k, e) in self.engine.system.elastic.iter().enumerate() {
             let [spring, damper, constant] = self.shafts[k].resists();
             self.tau[e.port] = -(spring * self.shafts[k].twist + damper * dot(&e.row, &self.v) + constant);
@@ -112,25 +93,24 @@ impl FixedStep {
         }
     }
 
-    /// The first shaft whose contact and the end of the step disagree.
-    fn turned_shaft(&self) -> Option<Flip> {
+    /// The first shaft whose contact and the end of the step disagree, and what it turns to.
+    pub(super) fn turned(&self) -> Option<(usize, Touch)> {
         let elastic = &self.engine.system.elastic;
         (self.shafts.iter().zip(elastic).enumerate())
-            .find_map(|(k, (shaft, e))| Some(Flip::Shaft(k, shaft.turns_to(dot(&e.row, &self.next))?)))
+            .find_map(|(k, (shaft, e))| Some((k, shaft.turns_to(dot(&e.row, &self.next))?)))
     }
 
     /// Round-off of the slip of a group at the end of the step.
-    fn round_off(&self, g: usize) -> f64 {
+    pub(super) fn round_off(&self, g: usize) -> f64 {
         NOISE * (dot_size(&self.groups[g].row, &self.next) + self.slip[g].abs())
     }
 
     /// The first thing in which the mode and the end of the step disagree. Groups in `kept` came to rest at once after
     /// they were released: those that others hold as well go on sliding without moving, the rest is not released again.
     #[inline(always)]
-    fn disagreement(&self, trial: &mut [f64], map: &StepMap, free: usize, cols: usize, kept: u64) -> Option<Flip> {
+    fn disagreement(&self, map: &StepMap, free: usize, cols: usize, kept: u64) -> Option<Flip> {
         let mut rows = map.rows[free * cols..].chunks_exact(cols);
         let mut stuck = None;
-        let mut split = None;
         let mut teeth = map.still.iter();
         for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
             if self.sign[g] != 0 {
@@ -146,7 +126,7 @@ impl FixedStep {
                 continue;
             }
             let force = group.lead.1 * dot(rows.next().expect("a row for each"), &self.tau);
-            if group.shares && !map.is_redundant() {
+            if group.shares && !map.is_redundant {
                 // What teeth hold follows from the torque in them once they slide: that is tried.
                 teeth.by_ref().nth(group.elements.len() - 1);
                 continue;
@@ -170,8 +150,8 @@ impl FixedStep {
                 _ => continue,
             };
             // Where several hold together, some other split of the torques among them may do.
-            if *split.get_or_insert_with(|| self.splits(map, trial, cols)) {
-                continue;
+            if map.is_redundant {
+                return Some(Flip::Stuck);
             }
             if kept >> g & 1 == 0 {
                 return Some(Flip::Group(g, sign));
@@ -194,31 +174,6 @@ impl FixedStep {
             }
         }
         stuck
-    }
-
-    /// Whether groups that are held several times over stay held: friction is balanced by projected sweeps, each element
-    /// within what it holds at most; teeth at rest do not help.
-    fn splits(&self, map: &StepMap, trial: &mut [f64], cols: usize) -> bool {
-        const MOST_SWEEPS: usize = 200;
-        let Some(slips) = &map.slips else { return false };
-        trial.copy_from_slice(&self.tau);
-        let rows = || map.held.iter().map(|g| &self.groups[usize::from(*g)]).zip(slips.chunks_exact(cols));
-        for _ in 0..MOST_SWEEPS {
-            let mut change = 0.0f64;
-            for (group, row) in rows() {
-                for rub in &group.rubs {
-                    let [low, high] = rub.range(rub.peak);
-                    let old = trial[rub.port] - rub.viscous;
-                    let next = (old - dot(row, trial) / row[rub.port]).clamp(low, high);
-                    change = change.max((next - old).abs() / (next.abs() + 1e-300));
-                    trial[rub.port] = next + rub.viscous;
-                }
-            }
-            if change <= 1e-12 {
-                break;
-            }
-        }
-        rows().all(|(_, row)| dot(row, trial).abs() <= 1e-9 * dot_size(row, trial))
     }
 
     /// Whether a held group whose parts share in holding would slide off: tried in both directions.
@@ -295,11 +250,9 @@ impl FixedStep {
         let (mut released, mut kept) = (None, 0u64);
         for _ in 0..trials {
             let Some(map) = self.solve(free, cols) else { return false };
-            let mut trial = std::mem::take(&mut self.trial);
-            let mut flip = self.disagreement(&mut trial, &self.maps[map as usize], free, cols, kept);
-            self.trial = trial;
-            flip = self.turned_shaft().or(flip);
-            if flip.is_none() && self.shares && !self.maps[map as usize].is_redundant() {
+            let mut flip = self.disagreement(&self.maps[map as usize], free, cols, kept);
+            flip = self.turned().map(|(k, touch)| Flip::Shaft(k, touch)).or(flip);
+            if flip.is_none() && self.shares && !self.maps[map as usize].is_redundant {
                 for g in 0..self.groups.len() {
                     if self.sign[g] == 0
                         && self.groups[g].shares
@@ -332,107 +285,6 @@ impl FixedStep {
         }
         false
     }
-
-    /// Balances the friction of clutches, brakes and drags by projected sweeps, where flipping single modes does not
-    /// settle: each takes the torque that brings its slip to rest by the end of the step, within what it can
-    /// hold. Teeth that move lose what they lose on their present sides; teeth at rest are taken to follow
-    /// what holds the shafts around them, without friction of their own. True if that converged.
-    #[cold]
-    pub(super) fn sweep(&mut self, free: usize, cols: usize) -> bool {
-        const MOST_SWEEPS: usize = 2000;
-        const ROUNDS: usize = 8;
-        let still = |slip: f64, group: &GroupStep, v: &[f64]| slip.abs() <= 1e-9 * dot_size(&group.row, v);
-        let mut converged = false;
-        for _ in 0..ROUNDS {
-            let mut key = Key { held: 0, coast: 0, touch: word(&self.shafts) };
-            for (g, group) in self.groups.iter().enumerate() {
-                self.direction[g] = if self.slip[g] < 0.0 { -1 } else { 1 };
-                if still(self.slip[g], group, &self.v) && !group.driven {
-                    self.direction[g] = 0;
-                    key.held |= 1 << g;
-                    continue;
-                }
-                for &j in &group.elements {
-                    key.coast |= u64::from(self.side[j] == Side::Coast) << j;
-                }
-            }
-            let Some(wide) = self.wide(key) else { return false };
-            let (s, wide, direction) = (&self.engine.system, &self.wides[wide], &self.direction);
-            let tau = &mut self.tau;
-            for (g, group) in self.groups.iter().enumerate() {
-                group.rubs.iter().for_each(|r| tau[r.port] = r.viscous);
-                for &(j, port, [drive, coast]) in &group.constants {
-                    let along = f64::from(direction[g]) * self.teeth[j].1.signum();
-                    tau[port] = along * if self.side[j] == Side::Drive { drive } else { coast };
-                }
-            }
-            converged = false;
-            for _ in 0..MOST_SWEEPS {
-                let (mut change, mut largest) = (0.0f64, 0.0f64);
-                for (g, group) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
-                    let row = &wide.slip[g * cols..(g + 1) * cols];
-                    for rub in &group.rubs {
-                        let [low, high] = rub.range(1.0);
-                        let old = tau[rub.port] - rub.viscous;
-                        let next = (old - dot(row, tau) / row[rub.port]).clamp(low, high);
-                        change = change.max((next - old).abs());
-                        largest = largest.max(next.abs());
-                        tau[rub.port] = next + rub.viscous;
-                    }
-                }
-                if change <= 1e-13 * largest {
-                    converged = true;
-                    break;
-                }
-            }
-            for i in 0..free {
-                self.next[i] = self.v[i] + self.h * dot(&wide.response[i * cols..(i + 1) * cols], tau);
-            }
-            // The losses stand beside the ports, for the count of energies.
-            let all = s.all();
-            for (j, e) in s.elements.iter().enumerate() {
-                self.losses[j] = match e.group {
-                    Some((g, _)) if direction[g] != 0 => {
-                        let row = &wide.response[(all + j) * cols..(all + j + 1) * cols];
-                        slope(self.teeth[j].2, self.side[j]) * e.factors[0] * dot(row, tau) + tau[e.port]
-                    }
-                    _ => 0.0,
-                };
-            }
-            for i in 0..s.prescribed {
-                self.reactions[i] = dot(&wide.response[(free + i) * cols..(free + i + 1) * cols], tau);
-            }
-            // Sides of what moves.
-            let mut turned = false;
-            for (g, group) in self.groups.iter().enumerate() {
-                let end = dot(&group.row, &self.next);
-                let rest = still(end, group, &self.v) && still(end, group, &self.next);
-                self.sign[g] = if rest && !group.driven {
-                    0
-                } else if end < 0.0 {
-                    -1
-                } else {
-                    1
-                };
-                for &j in &group.elements {
-                    let (_, factor, loss) = self.teeth[j];
-                    let torque =
-                        s.elements[j].factors[0] * dot(&wide.response[(all + j) * cols..(all + j + 1) * cols], tau);
-                    let along =
-                        f64::from(if self.sign[g] == 0 { direction[g] } else { self.sign[g] }) * factor.signum();
-                    let value = along * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
-                    let side = if value >= 0.0 { Side::Drive } else { Side::Coast };
-                    turned |= side != self.side[j] && direction[g] != 0;
-                    self.side[j] = side;
-                }
-            }
-            if !turned {
-                break;
-            }
-        }
-        self.swept = true;
-        converged
-    }
 }
 
 /// [`FixedStep::settle`] with the widest registers there are.
@@ -455,6 +307,6 @@ enum Flip {
     Group(usize, i8),
     Side(usize),
     Shaft(usize, Touch),
-    /// Only groups that are kept would have to be released.
+    /// Only groups that are kept would have to be released, or some of several that hold together.
     Stuck,
 }

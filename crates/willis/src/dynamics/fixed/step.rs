@@ -34,7 +34,7 @@ impl FixedStep {
         let Some((_, map)) = self.last else { return };
         let map = &self.maps[map as usize];
         let held_shares = self.groups.iter().zip(&self.sign).any(|(group, sign)| *sign == 0 && group.shares);
-        if self.swept || !self.energies.is_empty() || held_shares && !map.is_redundant() {
+        if self.is_decided || !self.energies.is_empty() || held_shares && !map.is_redundant {
             return;
         }
         for (j, row) in &map.still {
@@ -134,9 +134,12 @@ impl FixedStep {
             }
             let free = self.engine.system.free;
             let cols = self.tau.len();
-            self.swept = false;
-            if !self.arch.dispatch(Settle { step: self, free, cols }) && !self.sweep(free, cols) {
-                self.unsettled += 1;
+            self.is_decided = false;
+            if !self.arch.dispatch(Settle { step: self, free, cols })
+                && let Err(verdict) = self.decide()
+            {
+                self.stop_without_motion(verdict);
+                return;
             }
             if !self.stays_bounded() {
                 return;

@@ -1,5 +1,6 @@
 //! When a run cannot go on.
 
+use crate::dynamics::decision::Verdict;
 use crate::dynamics::event::short;
 use crate::dynamics::mode::dot;
 use crate::dynamics::report::Outcome;
@@ -62,6 +63,20 @@ impl FixedStep {
         let why = format!("{what} is not finite in the step around {middle} s: it grows without bound");
         self.stop(&why);
         false
+    }
+
+    /// Ends the run before a step that has no motion, or whose motion was not found.
+    #[cold]
+    pub(super) fn stop_without_motion(&mut self, verdict: Verdict) {
+        let none = verdict != Verdict::Undecided;
+        self.stop(if none {
+            "no speeds at the end of the next step agree with its tooth forces and friction"
+        } else {
+            "the contacts of the next step are too many to decide"
+        });
+        if let (true, Some(Outcome::NotConverged(why))) = (none, &mut self.verdict) {
+            self.verdict = Some(Outcome::NoSolution(std::mem::take(why)));
+        }
     }
 
     /// Ends the run at the state reached.
