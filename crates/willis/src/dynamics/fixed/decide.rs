@@ -66,19 +66,27 @@ impl FixedStep {
         self.twist_shafts();
         let k = self.decided();
         let Decided { bodies, mut contacts, resists, mut before } = self.decided.swap_remove(k);
-        let mut verdict = Verdict::Undecided;
+        let near = |[a, b]: [&f64; 2]| (a - b).abs() <= 4.0 * f64::EPSILON * (a.abs() + b.abs());
+        let (mut found, mut agrees) = (None, false);
         // What teeth at rest can hold may depend on what they carry.
         for _ in 0..MOST_ROUNDS {
             before.clone_from(&contacts.load.capacities);
             self.gather(&mut contacts, *stops, *broken);
-            if contacts.load.capacities == before && verdict != Verdict::Undecided {
+            let now = contacts.load.capacities.iter().flatten().flatten();
+            agrees = found.is_some() && before.iter().flatten().flatten().zip(now).all(|(a, b)| near([a, b]));
+            if agrees {
                 break;
             }
-            verdict = contacts.ask(&bodies, |decision, load| decision.decide(load, false));
+            found = Some(contacts.ask(&bodies, |decision, load| decision.decide(load, false)));
+            if !matches!(found, Some(Verdict::One { .. } | Verdict::Two)) {
+                break;
+            }
         }
-        let round = match verdict {
-            Verdict::One { .. } | Verdict::Two => self.take(&contacts, stops, broken),
-            none => Round::None(none),
+        let round = match found {
+            // Of two motions the first: steps of fixed length do not ask whether there is another.
+            Some(Verdict::One { .. } | Verdict::Two) if agrees => self.take(&contacts, stops, broken),
+            Some(none @ (Verdict::None | Verdict::Contradiction)) => Round::None(none),
+            _ => Round::None(Verdict::Undecided),
         };
         self.decided.push(Decided { resists, bodies, contacts, before });
         round
