@@ -8,6 +8,7 @@
 //! Systems*, 2008, ch. 10.
 
 mod decide;
+mod decided;
 mod energies;
 pub(super) mod groups;
 mod inputs;
@@ -33,7 +34,7 @@ use super::source::signals_of;
 use super::start::initial_state;
 use super::system::System;
 
-use decide::Decided;
+use decided::Decided;
 use groups::{GroupStep, Rub};
 use map::{Key, StepMap};
 use shafts::{MOST_SHAFTS, ShaftStep};

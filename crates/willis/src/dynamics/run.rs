@@ -411,10 +411,8 @@ impl Simulation {
             }
             self.told = event.cause;
         }
-        let s = &self.engine.system;
-        let patience = (s.scenario.end - s.scenario.start) / LOOKS;
-        let inside = self.engine.inside;
-        self.longest = s.signals().map(|s| s.longest_step(inside, patience)).fold(f64::INFINITY, f64::min);
+        self.longest = f64::INFINITY;
+        self.look_ahead();
         let tolerance = self.options.tolerance;
         let (t, segment, hint) = (self.t, self.segment, self.last_step);
         if segment > t {
@@ -429,9 +427,23 @@ impl Simulation {
         Ok(())
     }
 
+    /// How far the next step sees what the signals do, at most twice as far as the last one.
+    fn look_ahead(&mut self) {
+        let engine = &self.engine;
+        let s = &engine.system;
+        let most = ((s.scenario.end - s.scenario.start) / LOOKS).min(2.0 * self.longest);
+        let speed = |m| engine.member_speed(m);
+        let each = s.signals().map(|signal| signal.longest_step(self.t, engine.inside, most, &speed));
+        self.longest = each.fold(f64::INFINITY, f64::min);
+    }
+
     /// Steps until something happens.
     fn stretch(&mut self, target: f64, recorder: &mut dyn Recorder) -> Stretch {
+        let waves = self.engine.system.signals().any(|s| s.waves());
         loop {
+            if waves {
+                self.look_ahead();
+            }
             // What is left of a stretch is not tiny.
             let goal = self.t + self.longest;
             let goal = if goal + 0.01 * self.longest < self.segment { goal } else { self.segment };

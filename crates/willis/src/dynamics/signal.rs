@@ -147,14 +147,32 @@ impl Signal {
         }
     }
 
-    /// The longest step that sees what it does within the piece that holds `inside`, s: an eighth of a period. A
-    /// formula tells nothing of itself; it is looked at as often as `patience`, s, asks.
-    pub(crate) fn longest_step(&self, inside: f64, patience: f64) -> f64 {
+    /// The longest step from `t` that sees what it does within the piece that holds `inside`, s: an eighth of a period. A
+    /// formula tells of itself how quickly its waves turn; beside that it is looked at as often as `most`, s, asks.
+    pub(crate) fn longest_step(&self, t: f64, inside: f64, most: f64, speed: &dyn Fn(MemberId) -> f64) -> f64 {
+        const PART: f64 = 0.125;
         match self {
-            Self::Sine { frequency, at, .. } if inside >= *at => 0.125 / frequency.abs(),
-            Self::Product(of) => of[0].longest_step(inside, patience).min(of[1].longest_step(inside, patience)),
-            Self::Expression { .. } => patience,
+            Self::Sine { frequency, at, .. } if inside >= *at => PART / frequency.abs(),
+            Self::Product(of) => {
+                of[0].longest_step(t, inside, most, speed).min(of[1].longest_step(t, inside, most, speed))
+            }
+            Self::Expression { formula, speeds } => expression(speeds, speed, |speeds| {
+                let mut step = most;
+                while formula.turns(t, t + step, speeds) > PART && t + step > t {
+                    step *= 0.5;
+                }
+                step
+            }),
             _ => f64::INFINITY,
+        }
+    }
+
+    /// Whether that step is another one at every time.
+    pub(crate) fn waves(&self) -> bool {
+        match self {
+            Self::Expression { formula, .. } => formula.waves(),
+            Self::Product(of) => of.iter().any(Self::waves),
+            _ => false,
         }
     }
 

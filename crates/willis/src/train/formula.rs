@@ -14,6 +14,9 @@ use jumps::{Span, SpanOperators};
 /// The functions whose value jumps.
 const JUMPING: [&str; 6] = ["signum", "floor", "ceil", "round", "trunc", "fract"];
 
+/// The functions that repeat themselves.
+const WAVES: [&str; 3] = ["sin", "cos", "tan"];
+
 /// A parsed formula of the time `t` and of speeds `w_member`.
 ///
 /// # Example
@@ -32,8 +35,10 @@ pub struct Formula {
     expression: Box<exmex::FlatEx<f64>>,
     /// The same, that takes derivatives along.
     rising: Box<exmex::FlatEx<Rising, RisingOperators>>,
-    /// The same over stretches of time, if it has functions that jump.
+    /// The same over stretches of time, if it has functions that jump or repeat themselves.
     spans: Option<Box<exmex::FlatEx<Span, SpanOperators>>>,
+    jumps: bool,
+    waves: bool,
     /// For each variable of the expression: the time, or the position of a speed.
     variables: Vec<Option<usize>>,
 }
@@ -171,11 +176,12 @@ impl Formula {
                 _ => return Err(format!("`{name}` is neither the time t nor a speed such as w_sun")),
             }
         }
-        let jumps = tokens(text).iter().any(|t| JUMPING.contains(t));
-        let spans =
-            jumps.then(|| exmex::FlatEx::parse(&ordered).map(Box::new)).transpose().map_err(|e| e.to_string())?;
+        let has = |functions: &[&str]| tokens(text).iter().any(|t| functions.contains(t));
+        let (jumps, waves) = (has(&JUMPING), has(&WAVES));
+        let spans = (jumps || waves).then(|| exmex::FlatEx::parse(&ordered).map(Box::new));
+        let spans = spans.transpose().map_err(|e| e.to_string())?;
         let (expression, rising) = (Box::new(expression), Box::new(rising));
-        Ok((Self { text: text.to_owned(), expression, rising, spans, variables }, speeds))
+        Ok((Self { text: text.to_owned(), expression, rising, spans, jumps, waves, variables }, speeds))
     }
 
     /// The text.
@@ -208,13 +214,28 @@ impl Formula {
 
     /// Whether it has a function whose value jumps: `signum`, `floor`, `ceil`, `round`, `trunc`, `fract`.
     pub fn jumps(&self) -> bool {
-        self.spans.is_some()
+        self.jumps
+    }
+
+    /// Whether it has a function of the time that repeats itself: `sin`, `cos`, `tan`.
+    pub(crate) fn waves(&self) -> bool {
+        self.waves && self.depends_on_time()
+    }
+
+    /// Through how many periods of a function that repeats itself it goes, at most, from a time to a later one while the
+    /// speeds stay.
+    pub(crate) fn turns(&self, from: f64, to: f64, speeds: &[f64]) -> f64 {
+        let Some(spans) = self.spans.as_ref().filter(|_| self.waves()) else { return 0.0 };
+        let values = |v: &Option<usize>| v.map_or(Span::new(from, to), |k| Span::new(speeds[k], speeds[k]));
+        self.evaluate(spans, values).map_or(f64::INFINITY, |s| s.turns)
     }
 
     /// A time after `t`, s, before which it does not jump: that of its next jump, or an earlier one where the bounds
     /// of its values do not tell.
     pub fn next_jump(&self, t: f64) -> f64 {
-        let Some(spans) = self.spans.as_ref().filter(|_| self.depends_on_time()) else { return f64::INFINITY };
+        let Some(spans) = self.spans.as_ref().filter(|_| self.jumps && self.depends_on_time()) else {
+            return f64::INFINITY;
+        };
         jumps::next(t, |from, to| {
             let values = |v: &Option<usize>| v.map_or(Span::new(from, to), |_| Span::ALL);
             self.evaluate(spans, values).is_none_or(|s| s.jumps)

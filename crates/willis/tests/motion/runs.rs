@@ -659,6 +659,24 @@ fn a_run_without_end_is_not_gone_on_with() {
     assert_eq!(report.outcome, Outcome::Finished);
 }
 
+/// What a formula does is seen however quickly its waves turn; what takes too many steps for that is not begun.
+#[test]
+fn val_waves_of_formulas_are_not_stepped_over() {
+    // ∫ sin(1000 t²) from 0 to 2: Simpson's rule with 4e6 points.
+    let chirp = rotor(r#"{ type = "expression", formula = "60*sin(1000*t^2)" }"#).replace("3 N m", "0 N m");
+    let (rows, _) = run(&chirp, &Options::default());
+    let speed = rows.of("speed").last().expect("rows");
+    assert!((speed - 120.0 * 0.019_999_144_578_852).abs() < 1e-7, "{speed}");
+    // Held but for an eighth of a millisecond every 2 ms: at every thousandth of the run it is zero.
+    let peaks = rotor(r#"{ type = "expression", formula = "3.1*sin(500*PI*t)" }"#);
+    let (rows, _) = run(&peaks, &Options::default());
+    let expected = (3.0f64 / 3.1).asin() / (500.0 * std::f64::consts::PI);
+    assert!((rows.events[1].time_s - expected).abs() < 1e-9, "{:?}", rows.events[1]);
+    let (_, report) =
+        run(&rotor(r#"{ type = "expression", formula = "10*tan(PI*t*1e9)" }"#), &Options::default());
+    assert!(matches!(report.outcome, Outcome::TooLong(_)), "{:?}", report.outcome);
+}
+
 #[test]
 fn too_many_steps_of_fixed_length_are_not_begun() {
     let method = Method::Fixed { step_s: 1e-9 };

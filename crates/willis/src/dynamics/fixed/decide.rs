@@ -13,6 +13,7 @@ use crate::dynamics::mode::{Side, dot, dot_size};
 use crate::exact::Rational;
 
 use super::FixedStep;
+use super::decided::Decided;
 use super::groups::LEAST_UNBOUNDED;
 
 /// Rounds, at most, in which contacts that turn round, shafts that touch and what breaks away are taken in.
@@ -20,16 +21,6 @@ const MOST_ROUNDS: usize = 64;
 
 /// Sets of resisting shafts that are kept, at most.
 const MOST_KEPT: usize = 64;
-
-/// Decisions for one set of resisting shafts.
-#[derive(Clone)]
-pub(super) struct Decided {
-    resists: Vec<f64>,
-    bodies: Bodies,
-    contacts: Contacts,
-    /// What the contacts could hold in the round before.
-    before: Vec<[[f64; 2]; 2]>,
-}
 
 /// What a round found.
 enum Round {
@@ -338,7 +329,6 @@ mod tests {
                 }
             }
         }
-        println!("{settled} of {steps} steps settle");
         assert!(settled < steps, "some are decided at once");
     }
 }

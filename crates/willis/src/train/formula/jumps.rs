@@ -66,18 +66,21 @@ pub(super) struct Span {
     high: f64,
     /// Whether a function may jump in it.
     pub jumps: bool,
+    /// Through how many periods a function that repeats itself goes, at most.
+    pub turns: f64,
 }
 
 impl Span {
-    pub const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, jumps: false };
+    pub const ALL: Self = Self { low: f64::NEG_INFINITY, high: f64::INFINITY, jumps: false, turns: 0.0 };
 
     /// An end that cannot be told is far out; both are not numbers outside the domain of a function.
     pub fn new(low: f64, high: f64) -> Self {
-        match (low.is_nan(), high.is_nan()) {
-            (true, false) => Self { low: f64::NEG_INFINITY, high, jumps: false },
-            (false, true) => Self { low, high: f64::INFINITY, jumps: false },
-            _ => Self { low, high, jumps: false },
-        }
+        let (low, high) = match (low.is_nan(), high.is_nan()) {
+            (true, false) => (f64::NEG_INFINITY, high),
+            (false, true) => (low, f64::INFINITY),
+            _ => (low, high),
+        };
+        Self { low, high, ..Self::default() }
     }
 
     /// The least that holds these values.
@@ -87,7 +90,7 @@ impl Span {
     }
 
     fn after(self, a: Self) -> Self {
-        Self { jumps: self.jumps || a.jumps, ..self }
+        Self { jumps: self.jumps || a.jumps, turns: self.turns.max(a.turns), ..self }
     }
 
     fn corners(a: Self, b: Self, f: impl Fn(f64, f64) -> f64) -> Self {
@@ -113,12 +116,13 @@ impl Span {
     /// A function that stays at one value between its jumps.
     fn level(self, f: fn(f64) -> f64) -> Self {
         let (low, high) = (f(self.low), f(self.high));
-        Self { low, high, jumps: self.jumps || (low != high && !self.low.is_nan()) }
+        Self { low, high, jumps: self.jumps || (low != high && !self.low.is_nan()), ..self }
     }
 
     fn fract(self) -> Self {
         let whole = self.level(f64::trunc);
-        if whole.jumps { Self::new(-1.0, 1.0).after(whole) } else { Self::new(self.low.fract(), self.high.fract()) }
+        let of = if whole.jumps { Self::new(-1.0, 1.0) } else { Self::new(self.low.fract(), self.high.fract()) };
+        of.after(whole)
     }
 
     fn abs(self) -> Self {
@@ -133,6 +137,12 @@ impl Span {
         first <= self.high || first.is_nan()
     }
 
+    /// A function that repeats itself after `period`, of this argument.
+    fn turning(self, argument: Self, period: f64) -> Self {
+        let turns = (argument.high - argument.low) / period;
+        Self { turns: self.turns.max(if turns.is_nan() { 0.0 } else { turns }), ..self }
+    }
+
     /// A wave that has its greatest value, one, at `top`.
     fn wave(self, f: fn(f64) -> f64, top: f64) -> Self {
         let ends = self.monotonic(f);
@@ -141,11 +151,12 @@ impl Span {
         }
         let low = if self.holds(top + PI, TAU) { -1.0 } else { ends.low };
         let high = if self.holds(top, TAU) { 1.0 } else { ends.high };
-        Self { low, high, ..ends }
+        Self { low, high, ..ends }.turning(self, TAU)
     }
 
     fn tan(self) -> Self {
-        if self.holds(FRAC_PI_2, PI) { Self::ALL.after(self) } else { self.monotonic(f64::tan) }
+        let of = if self.holds(FRAC_PI_2, PI) { Self::ALL.after(self) } else { self.monotonic(f64::tan) };
+        of.turning(self, PI)
     }
 
     fn divided(self, by: Self) -> Self {
