@@ -23,6 +23,7 @@ mod report;
 mod sensitivity;
 mod simulate;
 mod sweep;
+mod table;
 mod uncertainty;
 mod validate;
 
@@ -47,6 +48,7 @@ pub use report::Report;
 pub use sensitivity::Sensitivity;
 pub use simulate::{MOST_EVENTS, MOST_KEPT, Simulate, run_text as simulation_text, tell_of_events_left_out};
 pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
+pub use table::Table;
 pub use uncertainty::{Uncertainty, UncertaintyAnswer};
 pub use validate::Validate;
 
@@ -55,6 +57,7 @@ use crate::Entry;
 /// All questions, in the order in which help lists them.
 pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Analyze>(),
+    Entry::of::<Table>(),
     Entry::of::<New>(),
     Entry::of::<Check>(),
     Entry::of::<Flow>(),

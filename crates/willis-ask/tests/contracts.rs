@@ -52,6 +52,7 @@ fn requests(entry: &Entry, given: &Given) -> Vec<Value> {
         "regimes" => vec![json!({}), json!({ "family": true })],
         "locate" => train.operations().iter().map(|o| json!({ "operation": o.name })).collect(),
         "export" => willis::study::export::KINDS.iter().map(|k| json!({ "kind": k.id })).collect(),
+        "table" => vec![json!({}), json!({ "lossless": true, "speed": "2000 rpm" })],
         "formula" => vec![json!({ "derivatives": true })],
         "cycle" => {
             let states = train.states().iter().map(|s| s.name.as_str());

@@ -317,7 +317,7 @@ fn summary(all: &Findings<'_>) -> Section {
             let state = o.state.as_ref().map(|s| format!(", state {s}")).unwrap_or_default();
             vec![
                 format!("{}{state}", o.name),
-                o.verdict.words().to_owned(),
+                o.verdict_words().to_owned(),
                 one.map_or("–".into(), results::efficiency),
                 one.map_or("–".into(), |s| watts(s.input_power_w)),
                 one.map_or("–".into(), |s| watts(s.loss_w)),
@@ -360,7 +360,7 @@ fn notice(o: &OperationReport) -> Block {
         Verdict::Unloaded => Level::Note,
         _ => Level::Stop,
     };
-    let mut text = format!("{}: {}", o.name, o.verdict.words());
+    let mut text = format!("{}: {}", o.name, o.verdict_words());
     if let Some(c) = &o.certificate {
         text += &format!("; {}", results::certificate(o.verdict, c));
     }

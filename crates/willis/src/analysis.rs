@@ -11,6 +11,7 @@ mod losses;
 mod margin;
 mod operation;
 mod outside;
+mod shafts;
 mod solution;
 mod table;
 mod why;
@@ -18,7 +19,8 @@ mod words;
 
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 pub use outside::{OutsideAt, OutsideLaw};
-pub use why::Why;
+pub use shafts::{ShaftElement, ShaftMember, ShaftState, ShaftTable, shaft_table};
+pub use why::{TorqueRange, Why};
 
 pub use crate::named::Named;
 pub(crate) use operation::Point;
@@ -445,6 +447,15 @@ pub struct SpeedDeviation {
 }
 
 impl OperationReport {
+    /// The verdict for people. An equilibrium that is the only one but for the friction of loaded meshes at rest, which may
+    /// be anything up to its limit, is called so; what that leaves open is in `stiction`.
+    pub fn verdict_words(&self) -> &'static str {
+        match self.verdict {
+            Verdict::Unique if self.solutions.iter().any(|s| !s.stiction.is_empty()) => "unique up to friction at rest",
+            verdict => verdict.words(),
+        }
+    }
+
     /// An operating point before anything but its speeds is known.
     fn new(train: &Train, operation: &Operation, freedoms: usize, speeds: Named<Option<f64>>) -> Self {
         Self {

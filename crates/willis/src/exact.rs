@@ -5,6 +5,8 @@
 //! with ratio 10000/9999 is a real thing), so they are computed here. A [`Rational`] is a pair of
 //! `i128` until it no longer fits, then a big integer; no operation can overflow or round.
 
+mod polyhedron;
+
 use std::borrow::Cow;
 use std::cmp::Ordering;
 use std::fmt;
@@ -16,6 +18,8 @@ use num_rational::{BigRational, Ratio};
 use num_traits::{CheckedAdd, CheckedDiv, CheckedMul, CheckedSub, Signed, ToPrimitive, Zero};
 use serde::de::{Deserialize, Deserializer, Error, Unexpected};
 use serde::ser::{Serialize, Serializer};
+
+pub(crate) use polyhedron::Polyhedron;
 
 /// An exact rational number, as small as it can be and as large as it must be.
 ///

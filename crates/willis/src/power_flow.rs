@@ -54,6 +54,8 @@ pub struct Flow<R = f64> {
     pub torques: Vec<Option<R>>,
     /// Speed of each member, rad/s.
     pub speeds: Vec<R>,
+    /// Where external power enters (1) and leaves (−1) the train, by member; by exact signs of torque and speed.
+    pub roles: Vec<i8>,
     /// Every mesh.
     pub meshes: Vec<MeshFlow<R>>,
     /// Every engaged shift element.
@@ -76,8 +78,10 @@ pub struct Flow<R = f64> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct External {
     pub member: MemberId,
-    /// `None`: whatever balances the train.
-    pub torque: Option<f64>,
+    /// N m.
+    pub torque: f64,
+    /// The sign of its power, exactly.
+    pub power: i8,
 }
 
 /// A torque that two members exert on each other against their relative motion: a bearing, a seal,
@@ -128,36 +132,24 @@ impl Flow {
             dragged[d.members[1].0] -= d.torque;
         }
         let mut external: Vec<f64> = vec![0.0; train.members.len()];
+        let mut roles: Vec<i8> = vec![0; train.members.len()];
         for x in externals {
-            if let Some(t) = x.torque {
-                external[x.member.0] = t;
-            }
-        }
-        for x in externals.iter().filter(|x| x.torque.is_none()) {
-            let Some(node) = c.node(x.member) else { continue };
-            let own = || (1..demand.len()).filter(|&m| !c.inner[m] && c.node_of[m] == Some(node));
-            let total: f64 = own().map(|m| demand[m] - external[m] - dragged[m]).sum();
-            let size: f64 = own().map(|m| demand[m].abs() + external[m].abs() + dragged[m].abs()).sum();
-            // Torques that cancel up to round-off are no torque.
-            let total = if total.abs() <= 1e-13 * size { 0.0 } else { total };
-            external[x.member.0] = total;
+            external[x.member.0] = x.torque;
+            roles[x.member.0] = x.power;
         }
         let applied: Vec<f64> = external.iter().zip(&dragged).map(|(x, d)| x + d).collect();
         let (ties, reactions) = self::ties(c, &demand, &applied);
         let torques: Vec<Option<f64>> = (0..external.len()).map(|m| reactions[m].map(|r| external[m] + r)).collect();
 
         let powers: Vec<f64> = (0..external.len()).map(|m| external[m] * speeds[m]).collect();
-        let largest = powers.iter().fold(0.0f64, |a, p| a.max(p.abs()));
-        // A torque that is zero comes out as round-off; it makes no input or output.
-        let real = |p: &&f64| p.abs() > 1e-12 * largest;
-        let input_power: f64 = powers.iter().filter(real).filter(|p| **p > 0.0).sum();
-        let output_power: f64 = -powers.iter().filter(real).filter(|p| **p < 0.0).sum::<f64>();
+        let sum = |role: i8| powers.iter().zip(&roles).filter(|(_, r)| **r == role).map(|(p, _)| p.abs()).sum();
+        let (input_power, output_power) = (sum(1), sum(-1));
         let drag_losses: Vec<f64> =
             drags.iter().map(|d| d.torque * (speeds[d.members[1].0] - speeds[d.members[0].0])).collect();
         let loss = meshes.iter().map(|m| m.loss).chain(drag_losses.iter().copied()).sum::<f64>();
         let residual = powers.iter().sum::<f64>() - loss;
         let circulations = circulations(c, &meshes, &speeds, input_power);
-        Self { torques, speeds, meshes, ties, input_power, output_power, loss, drag_losses, residual, circulations }
+        Self { torques, speeds, roles, meshes, ties, input_power, output_power, loss, drag_losses, residual, circulations }
     }
 }
 

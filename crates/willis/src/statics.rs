@@ -20,6 +20,7 @@
 //! has no driver and no loss (the one deterministic rule for idle meshes).
 
 mod blocks;
+mod enumeration;
 mod problem;
 
 use std::collections::HashSet;
@@ -30,9 +31,11 @@ use serde::{Deserialize, Serialize};
 use crate::diagnostic::{Code, Diagnostic, through_diagnostic};
 use crate::exact::{self, Matrix, Rational};
 use crate::kinematics::{Configuration, Node};
+use crate::train::MemberId;
 
 use blocks::{Block, blocks};
 
+pub(crate) use enumeration::Stretch;
 pub use problem::{Balanced, Equilibria, Problem, Unposed};
 
 /// How uniqueness was established.
@@ -133,6 +136,8 @@ pub(crate) struct Solution {
     pub(crate) forces: Vec<f64>,
     /// ρ of each element.
     pub(crate) rho: Vec<f64>,
+    /// How far each may be from the exact force.
+    errors: Vec<f64>,
     /// Exact forces, where they were needed for a decision or asked for.
     pub(crate) exact: Option<Vec<Rational>>,
     /// For each element: p drives, q drives, or neither (idle or at rest).
@@ -147,8 +152,8 @@ pub(crate) struct Answer {
     pub solutions: Vec<Solution>,
     /// What is known about their number.
     pub certificate: Certificate,
-    /// A continuum of solutions exists beside those listed.
-    pub continuum: bool,
+    /// Whole ranges of solutions; their ends, as far as they have any, are among those listed.
+    pub stretches: Vec<Stretch>,
 }
 
 /// The equilibrium problem of a configuration with given directions of motion: which torques are
@@ -234,7 +239,7 @@ impl Equilibrium {
         let certificate = Certificate::Undecided;
         let mut problem = Self { columns, rows, elements: c.elements.len(), blocks, certificate };
         let parts = problem.parts();
-        if !parts.iter().all(|p| exact::is_regular(&p.exact_matrix(&|_| Rational::ONE))) {
+        if !parts.iter().all(Self::determines_forces) {
             return Err(Unsolvable::Indeterminate);
         }
         problem.certificate = match parts.iter().map(Self::certify).collect::<Option<Vec<_>>>() {
@@ -265,6 +270,20 @@ impl Equilibrium {
             Self { columns, rows: block.rows.clone(), blocks: vec![], ..*self }
         };
         self.blocks.iter().map(part).collect()
+    }
+
+    /// Whether some choice of drivers determines the forces. Without friction they may not be determined all the same:
+    /// where a basic ratio is one, only friction balances the carrier.
+    ///
+    /// The determinant is affine in each ρ, so it vanishes for every choice only where it vanishes everywhere. It is
+    /// looked at without friction, then, modulo a prime, at one point off the box that no relation among tooth numbers
+    /// and efficiencies singles out.
+    fn determines_forces(&self) -> bool {
+        let somewhere = |j: usize| match &self.columns[j].rho {
+            [low, high] if low != high => low + &((high - low) * Rational::from((j as i64 + 2) * 0x9e37_79b9 + 1)),
+            [same, _] => same.clone(),
+        };
+        exact::is_regular(&self.exact_matrix(&|_| Rational::ONE)) || exact::is_regular(&self.exact_matrix(&somewhere))
     }
 
     /// What is known about the number of solutions, before any load is given.
@@ -396,9 +415,15 @@ impl Equilibrium {
         Some(Certificate::Determinants)
     }
 
+    /// Whether it matters which end of a column's element drives.
+    fn is_moving(&self, j: usize) -> bool {
+        let [p_drives, q_drives] = &self.columns[j].rho;
+        p_drives != q_drives
+    }
+
     /// Elements whose sign matters.
     fn moving(&self) -> usize {
-        self.columns.iter().filter(|c| c.rho[0] != c.rho[1]).count()
+        (0..self.columns.len()).filter(|&j| self.is_moving(j)).count()
     }
 
     /// Every equilibrium under the torques `loads` (by node, exact, in any common unit).
@@ -410,7 +435,7 @@ impl Equilibrium {
                 let found = self.pivot(&t, &t_float);
                 // A search that ran out of steps has proved nothing.
                 let certificate = if found.is_some() { self.certificate } else { Certificate::Undecided };
-                Answer { solutions: found.into_iter().collect(), certificate, continuum: false }
+                Answer { solutions: found.into_iter().collect(), certificate, stretches: vec![] }
             }
             Certificate::Enumeration => self.enumerate(&t, &t_float),
         }
@@ -447,46 +472,8 @@ impl Equilibrium {
         (start..pattern.len()).find(|&j| {
             let c = &self.columns[j];
             let drives = trial.signs[j] * c.sigma;
-            c.rho[0] != c.rho[1] && if pattern[j] { drives < 0 } else { drives > 0 }
+            self.is_moving(j) && if pattern[j] { drives < 0 } else { drives > 0 }
         })
-    }
-
-    /// Tries every sign pattern.
-    fn enumerate(&self, t: &[Rational], t_float: &[f64]) -> Answer {
-        let n = self.columns.len();
-        let moving: Vec<usize> = (0..n).filter(|&j| self.columns[j].rho[0] != self.columns[j].rho[1]).collect();
-        let mut solutions: Vec<Solution> = Vec::new();
-        let mut continuum = false;
-        for mask in 0u32..1 << moving.len() {
-            let mut pattern = vec![true; n];
-            moving.iter().enumerate().for_each(|(bit, &j)| pattern[j] = mask >> bit & 1 == 0);
-            let choice: Vec<_> = pattern.iter().map(|p| Some(*p)).collect();
-            let Some(trial) = self.attempt(&choice, t, t_float) else {
-                continuum |= self.singular_but_solvable(&pattern, t);
-                continue;
-            };
-            // An idle element fits both signs; it is counted once, as if p drove.
-            let doubled = (0..n).any(|j| trial.signs[j] == 0 && !pattern[j]);
-            if !doubled && self.wrong(&trial, &pattern, 0).is_none() {
-                let mut exact_trial = trial;
-                if exact_trial.exact.is_none() {
-                    exact_trial.exact = self.exact_forces(&choice, t);
-                }
-                solutions.push(self.solution(exact_trial, pattern));
-            }
-        }
-        Answer { solutions, certificate: self.certificate, continuum }
-    }
-
-    /// Whether a singular pattern has a ray of solutions with consistent signs for this load: the
-    /// load lies exactly on a self-locking threshold.
-    fn singular_but_solvable(&self, pattern: &[bool], t: &[Rational]) -> bool {
-        let n = self.columns.len();
-        let m = self.exact_matrix(&|j| self.columns[j].rho[usize::from(!pattern[j])].clone());
-        let mut rows: Matrix = m.iter().zip(t).map(|(row, b)| row.iter().chain([b]).cloned().collect()).collect();
-        let pivots = exact::reduce(&mut rows, n);
-        // Solvable at all? Signs along a ray are a cone question; only solvability is decided here.
-        rows[pivots.len()..].iter().all(|row| row[n].is_zero()) && t.iter().any(|x| !x.is_zero())
     }
 
     fn exact_forces(&self, choice: &[Option<bool>], t: &[Rational]) -> Option<Vec<Rational>> {
@@ -536,7 +523,8 @@ impl Equilibrium {
         let exact = || -> Option<Trial> {
             let f = self.exact_forces(choice, t)?;
             let signs = f.iter().map(Rational::sign).collect();
-            Some(Trial { forces: f.iter().map(Rational::to_f64).collect(), signs, exact: Some(f) })
+            let forces: Vec<f64> = f.iter().map(Rational::to_f64).collect();
+            Some(Trial { bounds: rounding(&forces), forces, signs, exact: Some(f) })
         };
         let Some(inverse) = b.clone().try_inverse() else { return exact() };
         let t = DVector::from_column_slice(t_float);
@@ -553,12 +541,13 @@ impl Equilibrium {
             return exact();
         }
         let signs = f.iter().map(|x| if *x > 0.0 { 1 } else { -1 }).collect();
-        Some(Trial { forces: f.iter().copied().collect(), signs, exact: None })
+        Some(Trial { forces: f.iter().copied().collect(), bounds: bound.iter().copied().collect(), signs, exact: None })
     }
 
     fn solution(&self, trial: Trial, pattern: Vec<bool>) -> Solution {
         let mut s = Solution {
             forces: vec![0.0; self.elements],
+            errors: vec![0.0; self.elements],
             rho: vec![1.0; self.elements],
             exact: trial.exact.as_ref().map(|_| vec![Rational::ZERO; self.elements]),
             driver: vec![None; self.elements],
@@ -566,6 +555,7 @@ impl Equilibrium {
         };
         for (j, c) in self.columns.iter().enumerate() {
             s.forces[c.element] = trial.forces[j];
+            s.errors[c.element] = trial.bounds[j];
             s.rho[c.element] = c.rho_floats[usize::from(!pattern[j])];
             s.driver[c.element] = match trial.signs[j] * c.sigma {
                 0 => None,
@@ -579,19 +569,38 @@ impl Equilibrium {
     }
 }
 
-/// External torque on a node, from the forces of the elements.
+/// What one unit of force in an element asks of a node, with ρ as given.
+fn coefficient(c: &Configuration<'_>, element: usize, rho: &Rational, node: usize) -> Rational {
+    let e = &c.elements[element];
+    let b = &e.b * rho;
+    let carrier = -(&e.a + &b);
+    let at = |(member, x): (MemberId, Rational)| if c.node(member) == Some(node) { x } else { Rational::ZERO };
+    [(e.p, e.a.clone()), (e.q, b), (e.carrier, carrier)].into_iter().map(at).fold(Rational::ZERO, |sum, x| sum + x)
+}
+
+/// Torque that the elements ask of a node, from their forces.
 pub(crate) fn torque(c: &Configuration<'_>, s: &Solution, node: usize) -> f64 {
-    let mut sum = 0.0;
+    estimate(c, s, node).0
+}
+
+/// The same, and how far it may be from the exact one.
+fn estimate(c: &Configuration<'_>, s: &Solution, node: usize) -> (f64, f64) {
+    let (mut sum, mut error) = (0.0, 0.0);
     for (j, e) in c.elements.iter().enumerate() {
         let (a, b) = (e.a.to_f64(), e.b.to_f64() * s.rho[j]);
         for (member, coefficient) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
             if c.node(member) == Some(node) {
+                let size = if member == e.carrier { a.abs() + b.abs() } else { coefficient.abs() };
                 sum += s.forces[j] * coefficient;
+                error += s.errors[j] * coefficient.abs() + ROUNDING * s.forces[j].abs() * size;
             }
         }
     }
-    sum
+    (sum, error)
 }
+
+/// Relative rounding of the terms of a short sum of products.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
 /// The same in rationals.
 pub(crate) fn torque_exact(
@@ -601,17 +610,43 @@ pub(crate) fn torque_exact(
     forces: &[Rational],
     node: usize,
 ) -> Rational {
-    let mut sum = Rational::ZERO;
-    for (j, e) in c.elements.iter().enumerate() {
-        let b = &e.b * &equilibrium.rho_of(s, j);
-        let carrier = -(&e.a + &b);
-        for (member, coefficient) in [(e.p, &e.a), (e.q, &b), (e.carrier, &carrier)] {
-            if c.node(member) == Some(node) {
-                sum += &forces[j] * coefficient;
-            }
+    let of = |j: usize| &forces[j] * &coefficient(c, j, &equilibrium.rho_of(s, j), node);
+    (0..c.elements.len()).filter(|&j| !forces[j].is_zero()).fold(Rational::ZERO, |sum, j| sum + of(j))
+}
+
+impl Equilibrium {
+    /// External torque on a node in a solution under `loads`, with a sign that is certain: where rounding leaves it
+    /// open, the torque is worked out in rationals.
+    pub(crate) fn balancing_torque(
+        &self,
+        c: &Configuration<'_>,
+        s: &Solution,
+        loads: &[Rational],
+        node: usize,
+    ) -> (f64, i8) {
+        let given = loads[node].to_f64();
+        let (sum, error) = estimate(c, s, node);
+        let torque = sum - given;
+        if torque.abs() > error + ROUNDING * given.abs() {
+            return (torque, if torque > 0.0 { 1 } else { -1 });
         }
+        let exact = s.exact.clone().or_else(|| self.exact_of(s, loads));
+        // What was solved in floating point alone has no exact forces: those of elements at rest that were moved.
+        let Some(forces) = exact else { return (torque, if torque == 0.0 { 0 } else { torque.signum() as i8 }) };
+        let torque = &torque_exact(c, self, s, &forces, node) - &loads[node];
+        (torque.to_f64(), torque.sign())
     }
-    sum
+
+    /// Exact forces of a solution, by element.
+    fn exact_of(&self, s: &Solution, loads: &[Rational]) -> Option<Vec<Rational>> {
+        let t: Vec<Rational> = self.rows.iter().map(|&n| loads[n].clone()).collect();
+        let choice: Vec<_> = s.pattern.iter().map(|p| Some(*p)).collect();
+        let mut all = vec![Rational::ZERO; self.elements];
+        for (column, force) in self.columns.iter().zip(self.exact_forces(&choice, &t)?) {
+            all[column.element] = force;
+        }
+        Some(all)
+    }
 }
 
 /// Which nodes have an equation and which elements can carry a force at all.
@@ -658,24 +693,21 @@ pub(crate) fn carrying(c: &Configuration<'_>, open: &[usize], loaded: &[usize]) 
 /// Forces for one pattern.
 struct Trial {
     forces: Vec<f64>,
+    /// How far each may be from the exact one.
+    bounds: Vec<f64>,
     signs: Vec<i8>,
     exact: Option<Vec<Rational>>,
+}
+
+/// Rounding of exact numbers to floating point.
+fn rounding(rounded: &[f64]) -> Vec<f64> {
+    rounded.iter().map(|x| f64::EPSILON * x.abs()).collect()
 }
 
 /// Whether the coefficient of node `n` in element `j` is non-zero for every efficiency in the box.
 fn keeps_sign(c: &Configuration<'_>, j: usize, n: usize) -> bool {
     let e = &c.elements[j];
-    let at = |rho: &Rational| {
-        let b = &e.b * rho;
-        let mut sum = Rational::ZERO;
-        let carrier = -(&e.a + &b);
-        for (member, x) in [(e.p, &e.a), (e.q, &b), (e.carrier, &carrier)] {
-            if c.node(member) == Some(n) {
-                sum += x.clone();
-            }
-        }
-        sum.sign()
-    };
+    let at = |rho: &Rational| coefficient(c, j, rho, n).sign();
     let (low, high) = (at(&e.forward), at(&e.backward.recip()));
     low != 0 && low == high
 }
@@ -759,6 +791,7 @@ impl Equilibrium {
         let mut shifted = Solution { exact: None, ..s.clone() };
         for (j, c) in self.columns.iter().enumerate() {
             shifted.forces[c.element] = f[j];
+            shifted.errors[c.element] = 0.0;
             shifted.rho[c.element] = own(j);
         }
         Some(shifted)

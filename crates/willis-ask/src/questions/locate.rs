@@ -27,7 +27,10 @@ pub struct Locate {
     /// Torques of as many terminals as are independent: 'engine=100 N m'.
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "MEMBER=TORQUE"))]
     pub torques: Vec<String>,
-    /// Take speeds and torques from this operation of the file.
+    /// Powers into the train, in place of torques: 'engine=40 kW'.
+    #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "MEMBER=POWER"))]
+    pub powers: Vec<String>,
+    /// Take speeds, torques and powers from this operation of the file.
     #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
     pub operation: Option<String>,
     /// Members on which torque may act, with commas between; else the train's terminals.
@@ -50,6 +53,7 @@ impl Question for Locate {
             operation: self.operation.clone(),
             speeds: of_members("speeds", &self.speeds, Dimension::ANGULAR_SPEED)?,
             torques: of_members("torques", &self.torques, Dimension::TORQUE)?,
+            powers: of_members("powers", &self.powers, Dimension::POWER)?,
         };
         Ok(regimes::locate(of[0].model.train(), &request)?)
     }

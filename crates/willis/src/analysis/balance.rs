@@ -1,11 +1,13 @@
 //! Every equilibrium of an operating point; where laws compute losses, brought into agreement with its torques.
 
+use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion};
 use crate::operating_point::{Convergence, Physics, Step};
 use crate::power_flow::{Drag, Flow};
-use crate::statics::{Answer, Certificate, Equilibrium, Solution, Unsolvable};
-use crate::train::Operation;
+use crate::statics::{Answer, Certificate, Equilibrium, Solution, Stretch, Unsolvable};
+use crate::train::{MemberId, Operation};
 
+use super::TorqueRange;
 use super::loads::Loads;
 use super::words::Refusal;
 
@@ -32,6 +34,8 @@ pub(super) struct Balance<'a> {
     pub branches: Vec<Branch<'a>>,
     pub certificate: Certificate,
     pub continuum: bool,
+    /// Over which torques on the terminals that balance it goes, as far as that is known.
+    pub ranges: Vec<TorqueRange>,
     /// Where drags act: whether a load is driven without them.
     pub driven: Option<bool>,
 }
@@ -61,7 +65,8 @@ impl<'a> Setting<'a> {
     }
 
     fn flow(&self, s: &Solved<'_>, solution: &Solution, drags: &[Drag]) -> Flow {
-        Flow::new(&s.c, self.motion, solution, s.problem.scale(), &s.problem.externals, drags)
+        let acting = s.problem.acting(&s.c, self.motion, &s.equilibrium, solution);
+        Flow::new(&s.c, self.motion, solution, s.problem.scale(), &acting, drags)
     }
 
     /// Every equilibrium: with the efficiencies of the train, or with losses that laws compute.
@@ -75,6 +80,7 @@ impl<'a> Setting<'a> {
             return self.agreed(physics);
         }
         let answer = equilibrium.solve(&problem.torques);
+        let ranges = answer.stretches.iter().flat_map(|stretch| self.ranges(&problem, &equilibrium, stretch)).collect();
         let branch = |solution| Branch {
             c: self.c.clone(),
             problem: problem.clone(),
@@ -86,14 +92,28 @@ impl<'a> Setting<'a> {
         Ok(Balance {
             branches: answer.solutions.into_iter().map(branch).collect(),
             certificate: answer.certificate,
-            continuum: answer.continuum,
+            continuum: !answer.stretches.is_empty(),
+            ranges,
             driven: None,
         })
     }
 
+    /// The torques of the terminals that balance a load over a whole range of equilibria.
+    fn ranges(&self, problem: &Loads, equilibrium: &Equilibrium, stretch: &Stretch) -> Vec<TorqueRange> {
+        let range = |m: MemberId| {
+            let node = self.c.node(m)?;
+            let [low, high] = equilibrium.torque_range(self.c, stretch, node);
+            let n_m = |t: Option<Rational>| t.map(|t| (&t - &problem.torques[node]).to_f64() * problem.scale());
+            let (low_n_m, high_n_m) = (n_m(low), n_m(high));
+            let member = self.c.train.member_name(m).to_owned();
+            (low_n_m.is_none() || low_n_m != high_n_m).then_some(TorqueRange { member, low_n_m, high_n_m })
+        };
+        problem.balancing().filter_map(range).collect()
+    }
+
     /// Brings torques and computed losses into agreement, for every equilibrium.
     fn agreed(&self, physics: &Physics<'_>) -> Result<Balance<'a>, Vec<Refusal>> {
-        let nothing = |certificate| Balance { branches: vec![], certificate, continuum: false, driven: Some(false) };
+        let nothing = |certificate| Balance { branches: vec![], certificate, continuum: false, ranges: vec![], driven: Some(false) };
         // The forces of the train without computed losses are the start.
         let lossless = Step::lossless(self.c.train);
         let Some(first) = self.solve(&lossless, &[])? else { return Ok(nothing(Certificate::Undecided)) };
@@ -133,7 +153,7 @@ impl<'a> Setting<'a> {
             if answer.certificate != certificate && !answer.certificate.unique_for_every_load() {
                 certificate = answer.certificate;
             }
-            continuum |= answer.continuum;
+            continuum |= !answer.stretches.is_empty();
             let solution = answer.solutions[at].clone();
             if branches.iter().any(|b| b.solution.driver == solution.driver) {
                 continue;
@@ -155,6 +175,7 @@ impl<'a> Setting<'a> {
         if branches.is_empty() {
             return Ok(nothing(certificate));
         }
-        Ok(Balance { branches, certificate, continuum, driven })
+        // Along a range of torques the losses would change with them.
+        Ok(Balance { branches, certificate, continuum, ranges: vec![], driven })
     }
 }

@@ -3,6 +3,7 @@
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, common};
 use crate::power_flow::{Drag, External};
+use crate::statics::{Equilibrium, Solution};
 use crate::train::{Load, MemberId, Operation};
 use crate::units::{Dimension, Quantity};
 
@@ -20,7 +21,8 @@ pub(super) struct Loads {
     pub open: Vec<usize>,
     /// Nodes whose torque may differ from zero.
     pub loaded: Vec<usize>,
-    pub externals: Vec<External>,
+    /// Terminals that carry a torque, in order, with what is prescribed of it; none: whatever balances the train.
+    pub terminals: Vec<(MemberId, Option<Rational>)>,
 }
 
 impl Loads {
@@ -62,10 +64,10 @@ impl Loads {
 
         let si = std::f64::consts::PI.powi(pi_power.into());
         let mut torques = vec![Rational::ZERO; c.nodes];
-        let mut externals = Vec::new();
+        let mut terminals = Vec::new();
         let mut loaded = Vec::new();
         for (member, torque) in &given {
-            externals.push(External { member: *member, torque: Some(torque.to_f64() * si) });
+            terminals.push((*member, Some(torque.clone())));
             if let Some(n) = c.node(*member) {
                 torques[n] += torque.clone();
                 if !torque.is_zero() && !loaded.contains(&n) {
@@ -94,23 +96,44 @@ impl Loads {
                 continue;
             }
             if open.contains(&n) {
-                let same = |x: &&External| x.torque.is_none() && c.node(x.member) == Some(n);
-                let other = externals.iter().find(same).map_or(terminal, |x| x.member);
+                let same = |(m, torque): &&(MemberId, Option<Rational>)| torque.is_none() && c.node(*m) == Some(n);
+                let other = terminals.iter().find(same).map_or(terminal, |(m, _)| *m);
                 wrong.push(Refusal::Together([other, terminal]));
                 continue;
             }
             open.push(n);
-            externals.push(External { member: terminal, torque: None });
+            terminals.push((terminal, None));
         }
         if !wrong.is_empty() {
             return Err(wrong);
         }
-        Ok(Self { given, pi_power, torques, open, loaded, externals })
+        Ok(Self { given, pi_power, torques, open, loaded, terminals })
     }
 
     /// Terminals that were left to balance the train.
     pub fn balancing(&self) -> impl Iterator<Item = MemberId> {
-        self.externals.iter().filter(|x| x.torque.is_none()).map(|x| x.member)
+        self.terminals.iter().filter(|(_, torque)| torque.is_none()).map(|(m, _)| *m)
+    }
+
+    /// What acts on each terminal in a solution, SI.
+    pub fn acting(
+        &self,
+        c: &Configuration<'_>,
+        motion: &Motion,
+        equilibrium: &Equilibrium,
+        solution: &Solution,
+    ) -> Vec<External> {
+        let torque = |(member, prescribed): &(MemberId, Option<Rational>)| match (prescribed, c.node(*member)) {
+            (Some(torque), _) => (torque.to_f64(), torque.sign()),
+            (None, Some(n)) => equilibrium.balancing_torque(c, solution, &self.torques, n),
+            (None, None) => (0.0, 0),
+        };
+        let acts = |x: &(MemberId, Option<Rational>)| {
+            let (torque, sign) = torque(x);
+            let way = motion.speeds[x.0.0].as_ref().map_or(0, Rational::sign);
+            External { member: x.0, torque: torque * self.scale(), power: sign * way }
+        };
+        self.terminals.iter().map(acts).collect()
     }
 
     /// Whether all of those are at rest.

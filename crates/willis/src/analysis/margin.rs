@@ -104,14 +104,14 @@ impl Frame<'_> {
         if c.degrees_of_freedom() != 1 || flow.output_power <= 0.0 {
             return (None, None);
         }
-        let nodes = |sign: f64| -> Vec<usize> {
-            let externals = self.problem.externals.iter().map(|x| x.member);
-            externals
-                .filter(|m| flow.torques[m.0].is_some_and(|t| t * flow.speeds[m.0] * sign > 0.0))
+        let nodes = |role: i8| -> Vec<usize> {
+            let terminals = self.problem.terminals.iter().map(|(m, _)| *m);
+            terminals
+                .filter(|m| flow.roles[m.0] == role)
                 .filter_map(|m| c.node(m))
                 .collect()
         };
-        let (inputs, outputs) = (nodes(1.0), nodes(-1.0));
+        let (inputs, outputs) = (nodes(1), nodes(-1));
         let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, self.motion)).collect();
         let resisting = match inputs[..] {
             [input] if !outputs.contains(&input) => Equilibrium::new(c, &sigma, &[input], &outputs).ok(),
@@ -205,9 +205,9 @@ fn stuck_flow(frame: &Frame<'_>, s: &Solution) -> Vec<Option<f64>> {
     let scale = frame.problem.scale();
     let demand: Vec<f64> = crate::power_flow::demand(c, s).iter().map(|x| x * scale).collect();
     let mut external = vec![0.0; demand.len()];
-    for x in &frame.problem.externals {
-        external[x.member.0] = match (x.torque, c.node(x.member)) {
-            (Some(t), _) => t,
+    for (member, prescribed) in &frame.problem.terminals {
+        external[member.0] = match (prescribed, c.node(*member)) {
+            (Some(t), _) => t.to_f64() * scale,
             (None, Some(n)) => (torque(c, s, n) - frame.problem.torques[n].to_f64()) * scale,
             (None, None) => 0.0,
         };

@@ -9,7 +9,7 @@ use super::balance::{Balance, Branch, Setting};
 use super::loads::Loads;
 use super::solution::Frame;
 use super::words::{Finding, Refusal, names};
-use super::{Boundary, OperationReport, OutsideLaw, Role, SolutionReport, SpeedDeviation, Verdict, Why};
+use super::{Boundary, OperationReport, OutsideLaw, Role, SolutionReport, SpeedDeviation, TorqueRange, Verdict, Why};
 
 /// A unique equilibrium with what its numbers are computed from.
 #[derive(Clone, Debug)]
@@ -78,7 +78,7 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
     };
     let setting = Setting { c: &c, motion: &motion, operation, sigma: &sigma };
     let nothing_acts = problem.are_none();
-    let Balance { branches, certificate, continuum, driven } =
+    let Balance { branches, certificate, continuum, ranges, driven } =
         setting.balance(problem, equilibrium, physics.as_ref())?;
     let frames: Vec<Frame<'_>> = branches
         .iter()
@@ -110,7 +110,7 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
     let case = Case {
         unloaded: branches.first().map_or(nothing_acts, |b| b.problem.are_none()),
         undecided: certificate == Certificate::Undecided,
-        continuum,
+        threshold: continuum.then_some(ranges),
         computed: physics.is_some(),
         // Drag may eat a small load up; only tooth friction locks.
         locks: c.degrees_of_freedom() == 1 && !driven.unwrap_or_else(|| all.iter().any(|s| !s.all_dissipated)),
@@ -205,8 +205,8 @@ struct Case {
     unloaded: bool,
     /// The number of equilibria is not known.
     undecided: bool,
-    /// A whole range of torques balances the load.
-    continuum: bool,
+    /// The torques of which a whole range balances the load, if one does.
+    threshold: Option<Vec<TorqueRange>>,
     /// Laws compute the losses.
     computed: bool,
     /// No equilibrium of a train with one freedom drives a load.
@@ -226,6 +226,10 @@ impl Case {
             // Found or not, nothing is proved: neither "unique" nor "locked" may be said.
             return (Verdict::Undetermined, vec![if all.is_empty() { Why::NoneFound } else { Why::PerhapsMore }]);
         }
+        // What moves under a range of torques is not locked, whatever some of them dissipate.
+        if let Some(ranges) = &self.threshold {
+            return (Verdict::Multiple, vec![Why::Threshold { ranges: ranges.clone() }]);
+        }
         if all.is_empty() {
             return (Verdict::Locked, vec![Why::NoEquilibrium]);
         }
@@ -233,9 +237,7 @@ impl Case {
             return (Verdict::Locked, vec![Why::OnlyDissipates]);
         }
         let mut whys = Vec::new();
-        if self.continuum {
-            whys.push(Why::Threshold);
-        } else if all.len() > 1 {
+        if all.len() > 1 {
             let efficiency = |s: &SolutionReport| if s.all_dissipated { Some(0.0) } else { s.efficiency };
             whys.push(Why::Equilibria { efficiencies: all.iter().map(efficiency).collect() });
         }

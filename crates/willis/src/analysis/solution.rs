@@ -24,7 +24,8 @@ pub(super) struct Frame<'a> {
 
 impl Frame<'_> {
     pub fn flow(&self, s: &Solution) -> Flow {
-        Flow::new(self.c, self.motion, s, self.problem.scale(), &self.problem.externals, self.drags)
+        let acting = self.problem.acting(self.c, self.motion, self.equilibrium, s);
+        Flow::new(self.c, self.motion, s, self.problem.scale(), &acting, self.drags)
     }
 
     /// The equilibrium in SI, with its margins.
@@ -64,7 +65,7 @@ impl Frame<'_> {
             let members = e.members.map(|m| train.member_name(m).to_owned());
             (e.name.clone(), ShiftElementReport { kind: e.kind, members, torque_n_m: t.torque.map(|t| t + 0.0) })
         });
-        let all_dissipated = flow.input_power > 0.0 && flow.output_power <= 0.0;
+        let all_dissipated = flow.roles.contains(&1) && !flow.roles.contains(&-1);
         let exact = s.exact.as_ref().filter(|_| self.physics.is_none()).and_then(|f| self.exact_efficiency(s, f));
         let sources = self.physics.map(|(p, (step, _))| p.sources(step, &flow)).unwrap_or_default();
         let losses_w = match self.physics {
@@ -121,12 +122,11 @@ impl Frame<'_> {
             (None, Some(0.0)) | (Some(0.0), None) => Some(0.0),
             _ => None,
         };
-        let real = power.is_some_and(|p| p.abs() > 1e-12 * flow.input_power.max(flow.output_power));
         let at_rest = self.motion.speeds[id.0].as_ref().is_some_and(Rational::is_zero);
-        let role = match power {
+        let role = match flow.roles[id.0] {
             _ if held.contains(&id) => Role::Fixed,
-            Some(p) if real && p > 0.0 => Role::Input,
-            Some(p) if real && p < 0.0 => Role::Output,
+            1 => Role::Input,
+            -1 => Role::Output,
             _ if at_rest && torque.is_none_or(|t| t != 0.0) => Role::Fixed,
             _ => Role::Idle,
         };
@@ -164,10 +164,10 @@ impl Frame<'_> {
             -1 => power_out += -power,
             _ => {}
         };
-        for x in &self.problem.externals {
-            let speed = self.motion.speeds[x.member.0].as_ref()?;
-            let torque = match (self.problem.given.iter().find(|(m, _)| *m == x.member), self.c.node(x.member)) {
-                (Some((_, t)), _) => t.clone(),
+        for (member, prescribed) in &self.problem.terminals {
+            let speed = self.motion.speeds[member.0].as_ref()?;
+            let torque = match (prescribed, self.c.node(*member)) {
+                (Some(t), _) => t.clone(),
                 (None, Some(n)) => &torque_exact(self.c, self.equilibrium, s, forces, n) - &self.problem.torques[n],
                 (None, None) => continue,
             };

@@ -4,7 +4,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, Ratio};
 use crate::power_flow::{self, demand};
-use crate::statics::{Certificate, Equilibrium, Unsolvable, torque, torque_exact};
+use crate::statics::{Answer, Certificate, Equilibrium, Unsolvable, torque};
 use crate::train::{MemberId, ShiftElementId, ShiftElementKind, Train};
 
 use super::words::{element_names, names};
@@ -147,29 +147,68 @@ impl Direction {
     }
 }
 
-/// Power from `from` to a resisting load at `to`: the load is given, what drives it is found.
-/// The train's input turns forward.
+/// A load at one end of a train with one freedom, driven from the other.
+pub(super) struct Drive {
+    pub motion: Motion,
+    /// Speeds of the two ends.
+    pub speeds: [Rational; 2],
+    /// Where power enters and leaves, and the equilibria under a load of one; none where both ends turn as one.
+    pub balance: Option<DriveBalance>,
+}
+
+/// The equilibria of a drive.
+pub(super) struct DriveBalance {
+    pub node: usize,
+    pub equilibrium: Equilibrium,
+    pub loads: Vec<Rational>,
+    pub answer: Answer,
+}
+
+impl Drive {
+    /// Power from `from`, which turns forward, to a resisting load of one at `to`: the load is given, what drives it is
+    /// found.
+    pub fn new(c: &Configuration<'_>, from: MemberId, to: MemberId) -> Result<Self, (Verdict, Why)> {
+        let name = |m: MemberId| c.train.member_name(m).to_owned();
+        let transfer = c.transfer(&[from]);
+        let motion = Motion {
+            speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(),
+            pi_power: 0,
+            deviation: None,
+        };
+        let (Some(node), Some(node_to)) = (c.node(from), c.node(to)) else {
+            return Err((Verdict::Locked, Why::CannotTurn { member: name(from) }));
+        };
+        let (Some(w_from), Some(w_to)) = (&motion.speeds[from.0], &motion.speeds[to.0]) else {
+            return Err((Verdict::Undetermined, Why::SpeedsNotDetermined));
+        };
+        if !transfer.conflicts.is_empty() || w_to.is_zero() || w_from.is_zero() {
+            return Err((Verdict::Locked, Why::CannotDrive { from: name(from), to: name(to) }));
+        }
+        let speeds = [w_from.clone(), w_to.clone()];
+        if node == node_to {
+            return Ok(Self { motion, speeds, balance: None });
+        }
+        let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
+        let equilibrium = Equilibrium::new(c, &sigma, &[node], &[node_to])
+            .map_err(|why| (Verdict::Undetermined, unsolvable(&why)))?;
+        let mut loads = vec![Rational::ZERO; c.nodes];
+        loads[node_to] = Rational::from(-i64::from(w_to.sign()));
+        let answer = equilibrium.solve(&loads);
+        Ok(Self { motion, speeds, balance: Some(DriveBalance { node, equilibrium, loads, answer }) })
+    }
+}
+
+/// What can be said of power from `from` to a resisting load at `to`. The train's input turns forward.
 fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberId) -> Direction {
     let train = c.train;
     let name = |m: MemberId| train.member_name(m).to_owned();
-    let transfer = c.transfer(&[from]);
-    let motion = Motion {
-        speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(),
-        pi_power: 0,
-        deviation: None,
+    let Drive { speeds: [w_from, w_to], balance, .. } = match Drive::new(c, from, to) {
+        Ok(drive) => drive,
+        Err((verdict, why)) => return Direction::without(verdict, why),
     };
-    let (Some(node_from), Some(node_to)) = (c.node(from), c.node(to)) else {
-        return Direction::without(Verdict::Locked, Why::CannotTurn { member: name(from) });
-    };
-    let (Some(w_from), Some(w_to)) = (&motion.speeds[from.0], &motion.speeds[to.0]) else {
-        return Direction::without(Verdict::Undetermined, Why::SpeedsNotDetermined);
-    };
-    if !transfer.conflicts.is_empty() || w_to.is_zero() || w_from.is_zero() {
-        return Direction::without(Verdict::Locked, Why::CannotDrive { from: name(from), to: name(to) });
-    }
     let forward = if from == input { f64::from(w_from.sign()) } else { f64::from(w_to.sign()) };
     let load = -f64::from(w_to.sign());
-    if node_from == node_to {
+    let Some(DriveBalance { node: node_from, equilibrium, loads, answer }) = balance else {
         if let Some(clutch) = overrunning(c, &vec![0.0; train.members.len()], [(from, -load), (to, load)], forward) {
             return Direction::without(Verdict::Undetermined, Why::Overruns { clutch });
         }
@@ -181,15 +220,7 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
             reason: None,
             why: None,
         };
-    }
-    let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
-    let equilibrium = match Equilibrium::new(c, &sigma, &[node_from], &[node_to]) {
-        Ok(e) => e,
-        Err(why) => return Direction::without(Verdict::Undetermined, unsolvable(&why)),
     };
-    let mut loads = vec![Rational::ZERO; c.nodes];
-    loads[node_to] = Rational::from(-i64::from(w_to.sign()));
-    let answer = equilibrium.solve(&loads);
     let w_in = w_from.to_f64();
     for s in &answer.solutions {
         let ends = [(from, torque(c, s, node_from)), (to, load)];
@@ -201,12 +232,11 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
         .solutions
         .iter()
         .filter_map(|s| {
-            let exact = s.exact.as_ref().map(|f| torque_exact(c, &equilibrium, s, f, node_from));
-            let torque = exact.map_or_else(|| torque(c, s, node_from), |t| t.to_f64());
+            let (torque, sign) = equilibrium.balancing_torque(c, s, &loads, node_from);
             let power = torque * w_in;
             // Without a driver nothing is lost, whatever the round-off says.
             let lossless = s.driver.iter().all(Option::is_none);
-            (power > 0.0).then(|| if lossless { 1.0 } else { w_to.to_f64().abs() / power })
+            (sign * w_from.sign() > 0).then(|| if lossless { 1.0 } else { w_to.to_f64().abs() / power })
         })
         .collect();
     efficiencies.sort_by(f64::total_cmp);
@@ -214,7 +244,7 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
     let (v, why) = match efficiencies[..] {
         _ if undecided => (Verdict::Undetermined, Some(Why::TooManyMeshes)),
         [] => (Verdict::Locked, Some(Why::FrictionLocks { from: name(from), to: name(to) })),
-        _ if answer.continuum => (Verdict::Multiple, Some(Why::Threshold)),
+        _ if !answer.stretches.is_empty() => (Verdict::Multiple, Some(Why::Threshold { ranges: vec![] })),
         [_] => (Verdict::Unique, None),
         _ => (Verdict::Multiple, Some(Why::Several)),
     };

@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::diagnostic::Code;
 
+use super::words::short;
+
 /// What explains a verdict.
 ///
 /// In answers for machines `kind` names it, and the rest is its numbers and names; shown, it is the sentence that
@@ -121,7 +123,11 @@ pub enum Why {
     /// The train moves only when every loaded member is driven.
     OnlyDissipates,
     /// The load lies on a self-locking threshold, where a whole range of torques balances it.
-    Threshold,
+    Threshold {
+        /// The range on each terminal that balances the load, as far as it is known.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        ranges: Vec<TorqueRange>,
+    },
     /// Several equilibria carry one load through a state.
     Several,
     /// Several equilibria carry the load of an operating point.
@@ -136,6 +142,31 @@ pub enum Why {
         /// These members.
         inputs: Vec<String>,
     },
+}
+
+/// Torques on a terminal that all balance one load.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct TorqueRange {
+    /// The terminal.
+    pub member: String,
+    /// Least torque, N m; absent where there is none.
+    pub low_n_m: Option<f64>,
+    /// Greatest torque, N m; absent where there is none.
+    pub high_n_m: Option<f64>,
+}
+
+impl fmt::Display for TorqueRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let n_m = |t: f64| if t == 0.0 { "0 N m".to_owned() } else { format!("{} N m", short(t)) };
+        match (self.low_n_m, self.high_n_m) {
+            (Some(low), Some(high)) => write!(f, "{} from {} to {}", self.member, n_m(low), n_m(high)),
+            (Some(low), None) => write!(f, "{} from {} up without end", self.member, n_m(low)),
+            (None, Some(high)) => write!(f, "{} from {} down without end", self.member, n_m(high)),
+            (None, None) => write!(f, "{} any torque", self.member),
+        }
+    }
 }
 
 impl Why {
@@ -167,7 +198,7 @@ impl Why {
             Self::NoEquilibrium | Self::OnlyDissipates => {
                 (Code::SelfLocking, hint("higher mesh efficiency, or a basic ratio farther from 1, frees it"))
             }
-            Self::Threshold | Self::Equilibria { .. } => (
+            Self::Threshold { .. } | Self::Equilibria { .. } => (
                 Code::SeveralSolutions,
                 hint("a rigid quasi-static model cannot choose between them; better mesh efficiency makes it unique"),
             ),
@@ -246,8 +277,10 @@ impl fmt::Display for Why {
                 "friction locks the train: it moves this way only when every loaded member is driven, and all of that \
                  power is dissipated",
             ),
-            Self::Threshold => {
-                f.write_str("the load lies on a self-locking threshold: a whole range of torques balances it")
+            Self::Threshold { ranges } => {
+                f.write_str("the load lies on a self-locking threshold: a whole range of torques balances it")?;
+                let each: Vec<String> = ranges.iter().map(ToString::to_string).collect();
+                if each.is_empty() { Ok(()) } else { write!(f, ", {}", each.join("; ")) }
             }
             Self::Several => f.write_str("several equilibria carry the same load"),
             Self::Equilibria { efficiencies } => {

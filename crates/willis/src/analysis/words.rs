@@ -243,7 +243,7 @@ fn significant(x: f64) -> String {
     format!("{x:.decimals$}")
 }
 
-fn short(x: f64) -> String {
+pub(super) fn short(x: f64) -> String {
     let text = format!("{x:.4}");
     if text.parse::<f64>() == Ok(0.0) && x != 0.0 { format!("{x:.3e}") } else { text }
 }

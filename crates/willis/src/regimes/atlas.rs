@@ -292,7 +292,7 @@ impl<'s, 't> Formulas<'s, 't> {
             atlas.formulas.push(formula_report(shape, id, driven, regimes));
         }
         // Placeholders have no meaning, and teeth are in no basic formula.
-        let shown = shape.names.infos.iter().filter(|i| !i.meaning.is_empty() && i.kind != SymbolKind::Teeth);
+        let shown = shape.names.all().filter(|i| !i.meaning.is_empty() && i.kind != SymbolKind::Teeth);
         atlas.symbols = shown
             .map(|info| {
                 let report = SymbolReport {

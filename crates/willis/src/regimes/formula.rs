@@ -84,6 +84,9 @@ pub(crate) struct Names {
     terminals: usize,
     /// What a basic ratio or efficiency is made of.
     details: BTreeMap<Symbol, Function>,
+    /// By element whose two directions have efficiencies of their own: its symbol where end q drives. That where p drives
+    /// has the number of the element's efficiency.
+    backward: Vec<Option<SymbolInfo>>,
 }
 
 impl Names {
@@ -110,6 +113,15 @@ impl Names {
 
     pub fn info(&self, s: Symbol) -> &SymbolInfo {
         &self.infos[s.0]
+    }
+
+    /// All symbols, those of either direction beside each other.
+    pub fn all(&self) -> impl Iterator<Item = &SymbolInfo> {
+        let both = |(n, info)| {
+            let element = (n % 2 == 1).then_some(n / 2).filter(|j| *j < self.elements);
+            std::iter::once(info).chain(element.and_then(|j| self.backward[j].as_ref()))
+        };
+        self.infos.iter().enumerate().flat_map(both)
     }
 
     /// How a symbol is written.
@@ -139,6 +151,7 @@ impl Names {
             name
         };
         let mut infos: Vec<SymbolInfo> = Vec::new();
+        let mut backward: Vec<Option<SymbolInfo>> = Vec::new();
         for j in 0..k {
             let e = setup.element(j);
             let label = element_label(setup, j);
@@ -160,14 +173,36 @@ impl Names {
                 meaning: format!("basic ratio {seen}"),
                 meaning_latex: Some(format!("basic ratio \\({seen_latex}\\)")),
             });
-            infos.push(SymbolInfo {
-                name: unique(format!("eta{suffix}")),
-                latex: format!("\\eta{index}"),
-                value: Some(e.forward.clone()),
+            let efficiency = |name: String, latex: String, value: &Rational, meaning: String| SymbolInfo {
+                name,
+                latex,
+                value: Some(value.clone()),
                 kind: SymbolKind::Efficiency,
-                meaning: format!("efficiency between {p} and {q} seen from {c}"),
+                meaning,
                 meaning_latex: None,
+            };
+            if e.forward == e.backward {
+                let meaning = format!("efficiency between {p} and {q} seen from {c}");
+                infos.push(efficiency(
+                    unique(format!("eta{suffix}")),
+                    format!("\\eta{index}"),
+                    &e.forward,
+                    meaning,
+                ));
+                backward.push(None);
+                continue;
+            }
+            // One symbol would stand for two numbers.
+            let [of_p, of_q] = [(p, q, &e.forward), (q, p, &e.backward)].map(|(driver, driven, value)| {
+                efficiency(
+                    unique(format!("eta{suffix}_{}", identifier(driver))),
+                    format!("\\eta{},{}}}", index.strip_suffix('}').expect("in braces"), upright(driver)),
+                    value,
+                    format!("efficiency seen from {c}, {driver} driving {driven}"),
+                )
             });
+            infos.push(of_p);
+            backward.push(Some(of_q));
         }
         // Placeholders, so that positions and numbers agree.
         infos.extend((0..k).map(|j| SymbolInfo {
@@ -193,7 +228,7 @@ impl Names {
                 });
             }
         }
-        let mut names = Self { infos, elements: k, terminals: setup.terminals.len(), details: BTreeMap::new() };
+        let mut names = Self { infos, elements: k, terminals: setup.terminals.len(), details: BTreeMap::new(), backward };
         names.detail(setup, &mut unique);
         names
     }
@@ -540,8 +575,8 @@ impl<'s, 't> Shape<'s, 't> {
             let train = setup.c.train;
             let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
             let s = names.efficiency(j).0;
-            if pattern[j] == Some(false) {
-                names.infos[s].value = Some(e.backward.clone());
+            if let (Some(false), Some(info)) = (pattern[j], &names.backward[j]) {
+                names.infos[s] = info.clone();
             }
             let (from, to) = if pattern[j] == Some(false) { (q, p) } else { (p, q) };
             names.infos[s].meaning = match c {

@@ -8,14 +8,15 @@ mod surroundings;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Named, Role};
+use crate::analysis::{Named, Role, SolutionReport, StictionRange, operate_unnamed};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::Diagnostics;
 use crate::exact::Rational;
 use crate::symbolic::Notation;
-use crate::train::Train;
+use crate::train::{Load, MemberId, Operation, Train};
+use crate::units::Quantity;
 
-use super::atlas::{drivers, order, role};
+use super::atlas::{drivers, element_label, order, role};
 use super::cells::efficiency_at;
 use super::formula::{Efficiencies, Ratios, Shape};
 
@@ -25,6 +26,8 @@ use range::{speed_axes, speed_range, torque_range};
 use surroundings::Surroundings;
 
 pub use range::{Edge, Prescribes, Range};
+use request::Given;
+
 pub use request::LocateRequest;
 
 /// Where an operating point lies.
@@ -81,6 +84,13 @@ pub struct Located {
     pub formula: Option<String>,
     /// For each prescribed value the range within which the regime lasts, all others fixed.
     pub ranges: Vec<Range>,
+    /// Loaded meshes, or sets, without relative motion: their friction may be anything up to its limit.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub at_rest: Vec<String>,
+    /// What that leaves open, where [`analyze`](crate::analyze) tells it. The torques above are those in which these
+    /// meshes lose nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stiction: Vec<StictionRange>,
 }
 
 /// Finds the regime of an operating point.
@@ -119,7 +129,10 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
     let point = Point::new(train, choice, &given)?;
     let Equilibria { states, complete, reason } = equilibria(&point.setup, &point.base, &point.loads);
     let around = Surroundings::of(&point);
-    let regimes = located(&point, &around, &states);
+    let mut regimes = located(&point, &around, &states);
+    if regimes.iter().any(|r| !r.at_rest.is_empty()) {
+        friction_at_rest(train, &point, &given, &mut regimes);
+    }
     Ok(Location {
         format: Format::new(),
         train: train.name.clone(),
@@ -132,6 +145,31 @@ pub fn locate(train: &Train, request: &LocateRequest) -> Result<Location, Diagno
         reason: reason.or(around.cells.err()),
         regimes,
     })
+}
+
+/// What friction at rest leaves open in each equilibrium: as the analysis of the point says, where it makes one of it.
+fn friction_at_rest(train: &Train, point: &Point<'_>, given: &Given, regimes: &mut [Located]) {
+    let load = |(m, q): &(MemberId, Quantity), load: fn(Quantity) -> Load| (*m, load(q.clone()));
+    let torques = given.torques.iter().map(|x| load(x, Load::Torque));
+    let operation = Operation {
+        state: train.states().iter().position(|s| s.name == point.state),
+        speeds: given.speeds.clone(),
+        fixed: given.held.clone(),
+        loads: torques.chain(given.powers.iter().map(|x| load(x, Load::Power))).collect(),
+        ..Operation::new("here")
+    };
+    let Ok((report, _)) = operate_unnamed(train, &operation) else { return };
+    for regime in regimes {
+        let alike = |s: &&SolutionReport| {
+            regime.torques_n_m.iter().all(|(name, torque)| {
+                let there = s.members.get(name).and_then(|m| m.torque_n_m);
+                there.is_none_or(|t| (t - torque).abs() <= 1e-9 * (t.abs() + torque.abs()))
+            })
+        };
+        if let Some(s) = report.solutions.iter().find(alike) {
+            regime.stiction.clone_from(&s.stiction);
+        }
+    }
 }
 
 /// Each equilibrium: what every terminal does, its formula, and how far each prescribed value can change.
@@ -160,6 +198,8 @@ fn located(point: &Point<'_>, around: &Surroundings, states: &[State]) -> Vec<Lo
             efficiency_exact: efficiency,
             formula,
             ranges: speeds.chain(torques).collect(),
+            at_rest: s.at_rest.iter().map(|&j| element_label(setup, j)).collect(),
+            stiction: vec![],
         });
     }
     all

@@ -6,7 +6,7 @@ use crate::kinematics::{Configuration, Motion, common};
 use crate::train::{MemberId, MeshId};
 use crate::units::{AngularSpeed, Torque};
 
-use super::{Certificate, Equilibrium, Solution, Unsolvable, torque};
+use super::{Certificate, Equilibrium, Solution, Unsolvable};
 
 /// A train that moves in a certain way, before its load is known: the question of the statics, without losses that
 /// depend on load or speed, power flow or report. [`analyze`](crate::analyze) asks it for whole operating points.
@@ -184,26 +184,32 @@ impl<'t> Problem<'t> {
             }
         }
         let answer = self.equilibrium.solve(&loads);
+        let given: Vec<_> = given.into_iter().map(|(m, t)| (m, t, if t == 0.0 { 0 } else { t.signum() as i8 })).collect();
         let balanced = |s: &Solution| {
             let open = self.open.iter().filter_map(|m| {
-                let n = c.node(*m)?;
-                Some((*m, (torque(c, s, n) - loads[n].to_f64()) * scale + 0.0))
+                let (torque, sign) = self.equilibrium.balancing_torque(c, s, &loads, c.node(*m)?);
+                Some((*m, torque * scale + 0.0, sign))
             });
             self.balanced(s, given.iter().copied().chain(open).collect())
         };
         Ok(Equilibria {
             certificate: answer.certificate,
             solutions: answer.solutions.iter().map(balanced).collect(),
-            continuum: answer.continuum,
+            continuum: !answer.stretches.is_empty(),
         })
     }
 
-    fn balanced(&self, s: &Solution, torques_n_m: Vec<(MemberId, f64)>) -> Balanced {
+    /// From the torques of the terminals with their signs.
+    fn balanced(&self, s: &Solution, acting: Vec<(MemberId, f64, i8)>) -> Balanced {
         let c = &self.configuration;
-        let power = |(m, t): &(MemberId, f64)| (*m, t * self.motion.si(*m).unwrap_or(0.0));
-        let powers_w: Vec<_> = torques_n_m.iter().map(power).collect();
-        let input: f64 = powers_w.iter().map(|p| p.1.max(0.0)).sum();
-        let output: f64 = powers_w.iter().map(|p| (-p.1).max(0.0)).sum();
+        let way = |m: MemberId| self.motion.speeds[m.0].as_ref().map_or(0, Rational::sign);
+        let torques_n_m: Vec<_> = acting.iter().map(|&(m, t, _)| (m, t)).collect();
+        let powers_w: Vec<_> = acting.iter().map(|&(m, t, _)| (m, t * self.motion.si(m).unwrap_or(0.0))).collect();
+        let sum = |role: i8| -> f64 {
+            let of = acting.iter().zip(&powers_w).filter(|((m, _, sign), _)| sign * way(*m) == role);
+            of.map(|(_, (_, p))| p.abs()).sum()
+        };
+        let (input, output) = (sum(1), sum(-1));
         let mut drivers: Vec<(MeshId, Option<MemberId>)> = Vec::with_capacity(c.train.meshes.len());
         for (e, p_drives) in c.elements.iter().zip(&s.driver) {
             for link in &e.links {

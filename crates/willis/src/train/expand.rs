@@ -29,6 +29,13 @@ pub(super) fn planets(a: &mut Assembler<'_>, set: &GivenSet) -> Vec<MemberId> {
 pub(super) fn expand(a: &mut Assembler<'_>, set: &GivenSet, planets: &[MemberId], index: usize) -> Option<Set> {
     let place = format!("set[{index}]");
     let carrier = a.resolve(&set.carrier, &format!("{place}.carrier"));
+    if carrier.is_some_and(|carrier| planets.contains(&carrier)) {
+        let message = format!("`{}` is a planet of set `{}`, and cannot be its carrier", set.carrier, clip(&set.name));
+        a.report(
+            Diagnostic::new(Code::ImpossibleMesh, format!("{place}.carrier"), message)
+                .hint("the carrier is the member that carries the axes of the planets; name it in `members`"),
+        );
+    }
     let mut e = Expansion { a, set, place, carrier, planets };
     let SetPairs { count, pairs } = by_type(&mut e)?;
     let carrier = carrier?;

@@ -4,6 +4,7 @@
 mod common;
 
 mod compiled;
+mod degenerate;
 mod flow;
 mod operating_point;
 mod properties;

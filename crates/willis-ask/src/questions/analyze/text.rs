@@ -165,8 +165,11 @@ fn operation(o: &OperationReport) -> String {
         out += &format!("   {} degrees of freedom", o.degrees_of_freedom);
     }
     out.push('\n');
-    out += &format!("  verdict      {}", bold(o.verdict.words()));
+    out += &format!("  verdict      {}", bold(o.verdict_words()));
     match (&o.certificate, o.verdict) {
+        (Some(c), Verdict::Unique) if o.solutions.iter().any(|s| !s.stiction.is_empty()) => {
+            out += &format!(": {}, if meshes at rest lose nothing", certificate(c));
+        }
         (Some(c), Verdict::Unique | Verdict::Multiple) => out += &format!(": {}", certificate(c)),
         (Some(c), Verdict::Locked) if c.method != Certificate::Undecided => {
             out += ": proved, no equilibrium drives a load"

@@ -60,6 +60,19 @@ fn located(r: &Located) -> String {
     out += &wrap(&powers.join(", "), "  powers     ");
     out += "\n";
     out += &format!("  efficiency {}\n", percent(r.efficiency));
+    if !r.at_rest.is_empty() {
+        let mut open = format!(
+            "unique up to friction at rest: {} is loaded without relative motion; shown is the case in which it loses nothing",
+            r.at_rest.join(", ")
+        );
+        for range in &r.stiction {
+            if let (Some(low), Some(high)) = (range.low, range.high) {
+                open += &format!("; {} from {} to {}", range.what, significant(low, 6), significant(high, 6));
+            }
+        }
+        out += &wrap(&open, "  friction   ");
+        out += "\n";
+    }
     if let Some(formula) = r.formula.as_ref().filter(|f| f.len() < 400) {
         out += &wrap(&format!("η = {formula}"), "             ");
         out += "\n";

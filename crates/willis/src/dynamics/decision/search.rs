@@ -4,7 +4,7 @@
 //! branch; so does one in which all accelerations are those of the motion that is known. Otherwise a pair is
 //! divided. What remains at the end is a mode.
 
-use crate::exact::{Rational, reduce};
+use crate::exact::{Polyhedron, Rational, reduce};
 
 use super::Decision;
 use super::motion::{Amount, Motion, Verdict};
@@ -18,122 +18,6 @@ const MOST_PROOF: usize = 500;
 
 /// One over the part of the sizes of an acceleration's terms by which rounding of the loads may change it.
 const NOISE: i64 = 1 << 36;
-
-/// `x ≥ 0` over equations, at a vertex.
-#[derive(Clone)]
-struct Polyhedron {
-    /// Coefficients over all unknowns, and the right side, which is the value of the basic one.
-    rows: Vec<Vec<Rational>>,
-    basis: Vec<usize>,
-    /// Unknowns that are zero.
-    banned: Vec<bool>,
-}
-
-impl Polyhedron {
-    /// None if it is empty.
-    fn new(mut rows: Vec<Vec<Rational>>, unknowns: usize) -> Option<Self> {
-        let m = rows.len();
-        for (i, row) in rows.iter_mut().enumerate() {
-            let right = row.pop().expect("a right side");
-            if right.sign() < 0 {
-                row.iter_mut().for_each(|x| *x = -&*x);
-            }
-            row.extend((0..m).map(|k| if k == i { Rational::ONE } else { Rational::ZERO }));
-            row.push(right.abs());
-        }
-        let basis = (unknowns..unknowns + m).collect();
-        let mut start = Self { rows, basis, banned: vec![false; unknowns + m] };
-        if !(unknowns..unknowns + m).all(|artificial| start.ban(artificial)) {
-            return None;
-        }
-        for row in &mut start.rows {
-            row.drain(unknowns..unknowns + m);
-        }
-        Some(start)
-    }
-
-    fn value(&self, row: usize) -> &Rational {
-        self.rows[row].last().expect("a right side")
-    }
-
-    fn pivot(&mut self, at: usize, unknown: usize) {
-        let inverse = self.rows[at][unknown].recip();
-        self.rows[at].iter_mut().filter(|x| !x.is_zero()).for_each(|x| *x = &*x * &inverse);
-        let top = std::mem::take(&mut self.rows[at]);
-        for row in self.rows.iter_mut().filter(|row| !row.is_empty() && !row[unknown].is_zero()) {
-            let factor = row[unknown].clone();
-            for (x, t) in row.iter_mut().zip(&top).filter(|(_, t)| !t.is_zero()) {
-                *x = &*x - &(&factor * t);
-            }
-        }
-        self.rows[at] = top;
-        self.basis[at] = unknown;
-    }
-
-    /// The row that an unknown meets first; `preferred` if it is among several.
-    fn blocking(&self, unknown: usize, preferred: Option<usize>) -> Option<usize> {
-        let rows = (0..self.rows.len()).filter(|&i| self.rows[i][unknown].sign() > 0);
-        let ratio = |i: usize| self.value(i) / &self.rows[i][unknown];
-        rows.map(|i| (ratio(i), preferred != Some(i), self.basis[i], i)).min().map(|(.., i)| i)
-    }
-
-    /// Makes an unknown zero for good. False if it cannot be.
-    fn ban(&mut self, unknown: usize) -> bool {
-        self.banned[unknown] = true;
-        while let Some(at) = self.basis.iter().position(|&j| j == unknown) {
-            let open = |j: &usize| !self.banned[*j];
-            let columns = self.rows[at].len() - 1;
-            // Bland's rule: the first that helps. It ends.
-            match (0..columns).filter(open).find(|&j| self.rows[at][j].sign() > 0) {
-                Some(j) => {
-                    let leaving = self.blocking(j, Some(at)).expect("this row at least");
-                    self.pivot(leaving, j);
-                }
-                None if !self.value(at).is_zero() => return false,
-                None => match (0..columns).filter(open).find(|&j| !self.rows[at][j].is_zero()) {
-                    Some(j) => self.pivot(at, j),
-                    // Nothing moves it.
-                    None => return true,
-                },
-            }
-        }
-        true
-    }
-
-    /// Raises `constant + Σ of x` until it is beyond `limit`, or no more. Whether it went beyond.
-    fn exceeds(&mut self, of: &[Rational], limit: &Rational) -> bool {
-        loop {
-            let mut reduced = of.to_vec();
-            let mut value = Rational::ZERO;
-            for (i, &j) in self.basis.iter().enumerate().filter(|(_, j)| !of[**j].is_zero()) {
-                value += &of[j] * self.value(i);
-                for (r, x) in reduced.iter_mut().zip(&self.rows[i]).filter(|(_, x)| !x.is_zero()) {
-                    *r = &*r - &(&of[j] * x);
-                }
-            }
-            if value > *limit {
-                return true;
-            }
-            let rises = |j: &usize| !self.banned[*j] && reduced[*j].sign() > 0 && !self.basis.contains(j);
-            let Some(j) = (0..reduced.len()).find(rises) else { return false };
-            match self.blocking(j, None) {
-                Some(at) => self.pivot(at, j),
-                None => {
-                    // Without end: what it grows to is beyond.
-                    return true;
-                }
-            }
-        }
-    }
-
-    fn point(&self, unknowns: usize) -> Vec<Rational> {
-        let mut x = vec![Rational::ZERO; unknowns];
-        for (i, &j) in self.basis.iter().enumerate().filter(|(_, j)| **j < unknowns) {
-            x[j] = self.value(i).clone();
-        }
-        x
-    }
-}
 
 /// The search.
 struct Search<'d> {

@@ -10,6 +10,8 @@ pub(super) struct State {
     pub pattern: Pattern,
     /// By terminal.
     pub torques: Vec<Rational>,
+    /// Active elements that are loaded and lossy, and have no relative motion: friction leaves their torques open.
+    pub at_rest: Vec<usize>,
 }
 
 /// The equilibria under one load.
@@ -46,7 +48,7 @@ fn balanced(setup: &Setup<'_>, base: &[Rational], (t, load): &(usize, Rational))
         .filter(|c| c.signs[*t] == load.sign() && load.sign() != 0)
         .map(|c| {
             let factor = load / &c.torques[*t];
-            State { pattern: c.pattern, torques: c.torques.iter().map(|x| x * &factor).collect() }
+            State { pattern: c.pattern, torques: c.torques.iter().map(|x| x * &factor).collect(), at_rest: vec![] }
         })
         .collect();
     let reason = states.is_empty().then(|| "no equilibrium: friction locks the train here".to_owned());
@@ -64,16 +66,19 @@ fn loaded(setup: &Setup<'_>, base: &[Rational], loads: &[(usize, Rational)]) -> 
     loads.iter().for_each(|(t, x)| right[setup.terminals[*t].node] = x.clone());
     let answer = problem.solve(&right);
     let complete = answer.certificate != Certificate::Undecided;
+    let sigma = setup.sigma_signs(base);
     let states: Vec<State> = answer
         .solutions
         .iter()
         .filter_map(|s| {
             let pattern = setup.pattern_of(base, s);
             let torques = setup.torques_for(&pattern, loads)?;
-            Some(State { pattern, torques })
+            let loaded = |&j: &usize| sigma[j] == 0 && setup.lossy(j) && s.forces[setup.active[j]] != 0.0;
+            let at_rest = (0..setup.active.len()).filter(loaded).collect();
+            Some(State { pattern, torques, at_rest })
         })
         .collect();
-    let reason = verdict(!states.is_empty(), complete, answer.continuum).map(str::to_owned);
+    let reason = verdict(!states.is_empty(), complete, !answer.stretches.is_empty()).map(str::to_owned);
     Equilibria { states, complete, reason }
 }
 

@@ -7,7 +7,7 @@ use crate::regimes::Choice;
 use crate::regimes::arrangement::dot;
 use crate::regimes::setup::Setup;
 use crate::train::{MemberId, Train};
-use crate::units::Quantity;
+use crate::units::{Dimension, Quantity};
 
 use super::request::Given;
 
@@ -45,7 +45,8 @@ impl<'t> Point<'t> {
         let setup = Setup::new(c, &terminals, balance)
             .map_err(|why| refuse(Code::Unfit, format!("{state}: {why}"), "name other `terminals`"))?;
         let base = base_speeds(&setup, &state, &motion, given.speeds.len())?;
-        let (loads, torque_pi) = loads(&setup, &state, &given.torques)?;
+        let torques = given.torques.iter().cloned().map(Ok).chain(given.powers.iter().map(|p| torque_of(train, &motion, p)));
+        let (loads, torque_pi) = loads(&setup, &state, &torques.collect::<Result<Vec<_>, _>>()?)?;
         let speed = |m: MemberId| motion.speeds[m.0].clone().unwrap_or(Rational::ZERO);
         Ok(Self {
             state,
@@ -103,6 +104,27 @@ fn base_speeds(setup: &Setup<'_>, state: &str, motion: &Motion, given: usize) ->
         return Err(refuse(Code::Unfit, "everything stands still: no regime", "give a speed other than zero"));
     }
     Ok(base)
+}
+
+/// The torque with which a power enters at the speed that its member has.
+fn torque_of(
+    train: &Train,
+    motion: &Motion,
+    (member, power): &(MemberId, Quantity),
+) -> Result<(MemberId, Quantity), Diagnostics> {
+    let name = train.member_name(*member);
+    match &motion.speeds[member.0] {
+        Some(w) if !w.is_zero() => {
+            let (value, pi_power) = (&power.value / w, power.pi_power - motion.pi_power);
+            Ok((*member, Quantity { value, pi_power, dimension: Dimension::TORQUE }))
+        }
+        Some(_) if power.value.is_zero() => {
+            let (value, dimension) = (Rational::ZERO, Dimension::TORQUE);
+            Ok((*member, Quantity { value, dimension, ..power.clone() }))
+        }
+        Some(_) => Err(refuse(Code::Unfit, format!("{name} stands still and takes no power"), "give its torque")),
+        None => Err(refuse(Code::Unfit, format!("the speed of {name} is not settled"), "give its torque")),
+    }
 }
 
 /// Torques: as many as are independent, on terminals that determine the others. With them their power of π.

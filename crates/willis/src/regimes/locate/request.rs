@@ -20,6 +20,8 @@ pub struct LocateRequest {
     pub speeds: Vec<(String, Quantity)>,
     /// Torques by terminal, as many as are independent.
     pub torques: Vec<(String, Quantity)>,
+    /// Powers into the train by terminal, in place of torques.
+    pub powers: Vec<(String, Quantity)>,
 }
 
 /// What is prescribed, by members of the train.
@@ -27,6 +29,7 @@ pub struct LocateRequest {
 pub(super) struct Given {
     pub speeds: Vec<(MemberId, Quantity)>,
     pub torques: Vec<(MemberId, Quantity)>,
+    pub powers: Vec<(MemberId, Quantity)>,
     /// Members held from outside.
     pub held: Vec<MemberId>,
 }
@@ -41,7 +44,17 @@ pub(super) fn read<'t>(train: &'t Train, request: &LocateRequest) -> Result<(Giv
         state = state.or(own);
     }
     typed(train, &request.speeds, &mut given.speeds, &mut errors);
+    // A torque in place of a power that the operation prescribes, and the other way round.
+    let named = |list: &[(String, Quantity)]| list.iter().filter_map(|(name, _)| train.member(name)).collect::<Vec<_>>();
+    let (of_torques, of_powers) = (named(&request.torques), named(&request.powers));
+    given.powers.retain(|(m, _)| !of_torques.contains(m));
+    given.torques.retain(|(m, _)| !of_powers.contains(m));
     typed(train, &request.torques, &mut given.torques, &mut errors);
+    typed(train, &request.powers, &mut given.powers, &mut errors);
+    if let Some(m) = of_torques.iter().find(|m| of_powers.contains(m)) {
+        let text = format!("both a torque and a power are given for {}", train.member_name(*m));
+        errors.push(Diagnostic::new(Code::TooManyTorques, "", text).hint("at its speed one follows from the other"));
+    }
     let selection = RegimeSelection {
         state: Some(state.unwrap_or_else(|| AS_DRAWN.to_owned())),
         terminals: request.terminals.clone(),
@@ -74,13 +87,7 @@ fn operation(train: &Train, name: &str, given: &mut Given, errors: &mut Diagnost
     for (m, load) in &o.loads {
         match load {
             Load::Torque(q) => given.torques.push((*m, q.clone())),
-            Load::Power(_) => {
-                let text = format!(
-                    "operation `{name}` prescribes a power on {}; a place needs torques",
-                    train.member_name(*m)
-                );
-                errors.push(Diagnostic::new(Code::Unfit, "", text).hint("give the torque in `torques`"));
-            }
+            Load::Power(q) => given.powers.push((*m, q.clone())),
         }
     }
     o.state.map(|k| train.states[k].name.clone())

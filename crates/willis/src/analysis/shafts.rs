@@ -1,0 +1,300 @@
+//! What every shaft, planet and shift element does in every state, for one unit of speed and torque at the input.
+
+use serde::{Deserialize, Serialize};
+
+use crate::contract::{Contract, Format};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
+use crate::kinematics::{Configuration, Motion, Ratio};
+use crate::named::Named;
+use crate::power_flow::{External, Flow, ties};
+use crate::train::{AS_DRAWN, Efficiency, FRAME, MemberId, MemberKind, ShiftElementId, ShiftElementKind, Train};
+
+use super::table::Drive;
+use super::Why;
+
+/// Speeds and torques of a whole shift table: the results contract `willis-table-1`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct ShaftTable {
+    /// `willis-table-1`.
+    pub format: Format<Self>,
+    /// Name of the train.
+    pub train: String,
+    /// Where its numbers come from.
+    pub source: Option<String>,
+    /// Whether torques are those without losses.
+    pub lossless: bool,
+    /// Every state; the train as drawn where it has none.
+    pub states: Named<ShaftState>,
+    /// What to know beside it.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Contract for ShaftTable {
+    const FORMAT: &'static str = "willis-table-1";
+}
+
+/// One state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct ShaftState {
+    /// Where power enters.
+    pub input: String,
+    /// Where it leaves.
+    pub output: String,
+    /// Shift elements that are closed.
+    pub engaged: Vec<String>,
+    /// `ω_input/ω_output`, exactly.
+    pub ratio: Option<Rational>,
+    /// Output over input power, the input driving.
+    pub efficiency: Option<f64>,
+    /// Why speeds or torques are missing.
+    pub reason: Option<String>,
+    /// What `reason` says, as data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<Why>,
+    /// Every member, planets included.
+    pub members: Named<ShaftMember>,
+    /// Every shift element.
+    pub shift_elements: Named<ShaftElement>,
+    /// Torque that each member puts into each set, or mesh of no set, over the input torque.
+    pub sets: Named<Named<f64>>,
+}
+
+/// A member in a state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct ShaftMember {
+    /// Speed over that of the input; absent where the input does not settle it.
+    pub speed: Option<Rational>,
+    /// The carrier on which it turns, for a planet.
+    pub carrier: Option<String>,
+    /// Speed relative to that carrier, over the speed of the input.
+    pub relative_speed: Option<Rational>,
+    /// External torque over that of the input, reactions of brakes included; absent where it is not determined.
+    pub torque: Option<f64>,
+}
+
+/// A shift element in a state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct ShaftElement {
+    /// What it is.
+    pub kind: ShiftElementKind,
+    /// The members it joins.
+    pub members: [String; 2],
+    /// Whether it is closed.
+    pub engaged: bool,
+    /// Speed of the first member less that of the second, over the speed of the input: 0 while it is closed.
+    pub slip: Option<Rational>,
+    /// Torque that it exerts on the first member, over the input torque; 0 while it is open, absent where it is not
+    /// determined.
+    pub torque: Option<f64>,
+}
+
+/// Speeds and torques of every shaft, planet and shift element in every state, per unit of speed and torque at the input,
+/// which drives. `lossless` leaves the losses of the teeth out of the torques.
+///
+/// # Errors
+/// A state that the train does not have; a train without input and output.
+///
+/// # Example
+/// ```
+/// use willis::analysis::shaft_table;
+/// use willis::exact::Rational;
+/// use willis::train::{SetSpec, Train};
+///
+/// let train = Train::builder("reducer")
+///     .members(["sun", "carrier"])
+///     .terminals(["sun", "carrier"])
+///     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4).mesh_efficiency(0.98))
+///     .build()?;
+/// let table = shaft_table(&train, None, true)?;
+/// let only = &table.states.0[0].1;
+/// assert_eq!(only.members.get("carrier").unwrap().speed, Some(Rational::new(3, 10)));
+/// // The planet turns backwards on its carrier, 30/20 times as fast as the sun does seen from there.
+/// let planet = only.members.get("P1.planet").unwrap();
+/// assert_eq!(planet.relative_speed, Some(Rational::new(-21, 20)));
+/// assert!((only.members.get("carrier").unwrap().torque.unwrap() + 10.0 / 3.0).abs() < 1e-12);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn shaft_table(train: &Train, state: Option<&str>, lossless: bool) -> Result<ShaftTable, Diagnostics> {
+    let only = state.filter(|name| *name != AS_DRAWN).map(|name| train.find_state(name)).transpose();
+    let only = only.map_err(|d| Diagnostics::from(*d))?;
+    let mut states = Vec::new();
+    let mut diagnostics = Diagnostics::default();
+    for (k, s) in train.states.iter().enumerate() {
+        if state.is_some() && only != Some(k) {
+            continue;
+        }
+        let ends = (s.input.or(train.input), s.output.or(train.output));
+        match row(train, &s.engaged, ends, lossless) {
+            Some(row) => states.push((s.name.clone(), row)),
+            None => diagnostics.push(no_ends(&format!("state {}", s.name), &format!("state[{k}]"))),
+        }
+    }
+    if train.states.is_empty() || state == Some(AS_DRAWN) {
+        match row(train, &[], (train.input, train.output), lossless) {
+            Some(row) => states.push((AS_DRAWN.to_owned(), row)),
+            None => return Err(no_ends("the train", "").into()),
+        }
+    }
+    Ok(ShaftTable {
+        format: Format::new(),
+        train: train.name.clone(),
+        source: train.source.clone(),
+        lossless,
+        states: Named(states),
+        diagnostics: diagnostics.into_iter().collect(),
+    })
+}
+
+fn no_ends(what: &str, place: &str) -> Diagnostic {
+    let text = format!("{what} has no two different members as input and output, so nothing can be told per unit of them");
+    Diagnostic::new(Code::NothingAsked, place, text).hint("name two `terminals`, or `input` and `output`")
+}
+
+/// Torques over that of the input.
+struct Torques {
+    members: Vec<Option<f64>>,
+    elements: Vec<(ShiftElementId, Option<f64>)>,
+    sets: Vec<(String, Vec<(MemberId, f64)>)>,
+    efficiency: f64,
+}
+
+fn row(
+    train: &Train,
+    engaged: &[ShiftElementId],
+    ends: (Option<MemberId>, Option<MemberId>),
+    lossless: bool,
+) -> Option<ShaftState> {
+    let (Some(input), Some(output)) = ends else { return None };
+    if input == output {
+        return None;
+    }
+    let mut c = Configuration::new(train, engaged, &[], &[]);
+    if lossless {
+        c = c.with_efficiencies(vec![Efficiency::lossless(); train.meshes.len()]);
+    }
+    let name = |m: MemberId| train.member_name(m).to_owned();
+    let transfer = c.transfer(&[input]);
+    // Per unit of the input's speed; nothing where the input cannot turn.
+    let turns = c.node(input).is_some() && transfer.conflicts.is_empty();
+    let speed = |m: MemberId| transfer.speeds[m.0].as_ref().filter(|_| turns).map(|w| w[0].clone());
+    let (torques, why) = match drive(&c, input, output) {
+        Ok(torques) => (Some(torques), None),
+        Err(why) => (None, Some(why)),
+    };
+    let of_member = |m: MemberId| {
+        let carrier = (train.members[m.0].kind == MemberKind::Planet)
+            .then(|| train.meshes.iter().find(|x| x.gears.iter().any(|g| g.member == m)).map(|x| x.carrier))
+            .flatten()
+            .filter(|carrier| *carrier != FRAME);
+        ShaftMember {
+            speed: speed(m),
+            relative_speed: carrier.and_then(|carrier| Some(speed(m)? - speed(carrier)?)),
+            carrier: carrier.map(name),
+            torque: torques.as_ref().and_then(|t| t.members[m.0]),
+        }
+    };
+    let of_element = |k: usize| {
+        let e = &train.shift_elements[k];
+        let is_closed = engaged.contains(&ShiftElementId(k));
+        let [a, b] = e.members.map(speed);
+        ShaftElement {
+            kind: e.kind,
+            members: e.members.map(name),
+            engaged: is_closed,
+            slip: if is_closed { Some(Rational::ZERO) } else { a.zip(b).map(|(a, b)| a - b) },
+            torque: match &torques {
+                _ if !is_closed => Some(0.0),
+                Some(t) => t.elements.iter().find(|(id, _)| id.0 == k).and_then(|(_, torque)| *torque),
+                None => None,
+            },
+        }
+    };
+    let sets = torques.iter().flat_map(|t| &t.sets).map(|(set, members)| {
+        (set.clone(), Named(members.iter().map(|(m, torque)| (name(*m), *torque)).collect()))
+    });
+    Some(ShaftState {
+        input: name(input),
+        output: name(output),
+        engaged: engaged.iter().map(|e| train.shift_elements[e.0].name.clone()).collect(),
+        ratio: match c.ratio(input, output) {
+            Ratio::Exact(r) => Some(r),
+            _ => None,
+        },
+        efficiency: torques.as_ref().map(|t| t.efficiency),
+        reason: why.as_ref().map(ToString::to_string),
+        why,
+        members: (1..train.members.len()).map(MemberId).map(|m| (name(m), of_member(m))).collect(),
+        shift_elements: (0..train.shift_elements.len())
+            .map(|k| (train.shift_elements[k].name.clone(), of_element(k)))
+            .collect(),
+        sets: Named(sets.collect()),
+    })
+}
+
+/// Torques while the input drives the output; why there are none, or several.
+fn drive(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Result<Torques, Why> {
+    let train = c.train;
+    let redundant = c.redundant();
+    if !redundant.is_empty() {
+        let group = |g: &Vec<crate::train::MeshId>| g.iter().map(|m| train.meshes[m.0].name.clone()).collect();
+        return Err(Why::RedundantMeshes { groups: redundant.iter().map(group).collect() });
+    }
+    let drive = Drive::new(c, input, output).map_err(|(_, why)| why)?;
+    let [w_in, w_out] = drive.speeds.each_ref().map(Rational::to_f64);
+    let Some(balance) = drive.balance else {
+        let mut external = vec![0.0; train.members.len()];
+        (external[input.0], external[output.0]) = (1.0, -1.0);
+        let (elements, reactions) = ties(c, &vec![0.0; external.len()], &external);
+        let members = reactions.iter().zip(&external).map(|(r, x)| r.map(|r| r + x)).collect();
+        let elements = elements.iter().map(|t| (t.element, t.torque)).collect();
+        return Ok(Torques { members, elements, sets: vec![], efficiency: 1.0 });
+    };
+    let s = match (&balance.answer.solutions[..], balance.answer.stretches.is_empty()) {
+        ([], true) => return Err(Why::FrictionLocks { from: train.member_name(input).into(), to: train.member_name(output).into() }),
+        ([only], true) if balance.answer.certificate != crate::statics::Certificate::Undecided => only,
+        (_, false) => return Err(Why::Threshold { ranges: vec![] }),
+        (_, true) if balance.answer.certificate == crate::statics::Certificate::Undecided => return Err(Why::TooManyMeshes),
+        _ => return Err(Why::Several),
+    };
+    let (torque, sign) = balance.equilibrium.balancing_torque(c, s, &balance.loads, balance.node);
+    if sign == 0 || f64::from(sign) * w_in <= 0.0 {
+        return Err(Why::FrictionLocks { from: train.member_name(input).into(), to: train.member_name(output).into() });
+    }
+    let load = -w_out.signum();
+    let motion: &Motion = &drive.motion;
+    let acting = [External { member: input, torque: 1.0, power: 1 }, External { member: output, torque: load / torque, power: -1 }];
+    let flow = Flow::new(c, motion, s, 1.0 / torque, &acting, &[]);
+    let mut sets: Vec<(String, Vec<(MemberId, f64)>)> = Vec::new();
+    for m in &flow.meshes {
+        let mesh = &train.meshes[m.mesh.0];
+        let name = mesh.set.map_or(&mesh.name, |k| &train.sets[k].name);
+        let at = sets.iter().position(|(own, _)| own == name).unwrap_or_else(|| {
+            sets.push((name.clone(), vec![]));
+            sets.len() - 1
+        });
+        for (member, torque) in [mesh.gears[0].member, mesh.gears[1].member, mesh.carrier].into_iter().zip(m.torques) {
+            if train.members[member.0].kind == MemberKind::Planet {
+                continue;
+            }
+            match sets[at].1.iter_mut().find(|(own, _)| *own == member) {
+                Some((_, sum)) => *sum += torque,
+                None => sets[at].1.push((member, torque)),
+            }
+        }
+    }
+    Ok(Torques {
+        efficiency: w_out.abs() / (torque * w_in).abs(),
+        members: flow.torques,
+        elements: flow.ties.iter().map(|t| (t.element, t.torque)).collect(),
+        sets,
+    })
+}
