@@ -149,7 +149,19 @@ impl Flow {
         let loss = meshes.iter().map(|m| m.loss).chain(drag_losses.iter().copied()).sum::<f64>();
         let residual = powers.iter().sum::<f64>() - loss;
         let circulations = circulations(c, &meshes, &speeds, input_power);
-        Self { torques, speeds, roles, meshes, ties, input_power, output_power, loss, drag_losses, residual, circulations }
+        Self {
+            torques,
+            speeds,
+            roles,
+            meshes,
+            ties,
+            input_power,
+            output_power,
+            loss,
+            drag_losses,
+            residual,
+            circulations,
+        }
     }
 }
 

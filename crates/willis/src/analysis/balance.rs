@@ -113,7 +113,13 @@ impl<'a> Setting<'a> {
 
     /// Brings torques and computed losses into agreement, for every equilibrium.
     fn agreed(&self, physics: &Physics<'_>) -> Result<Balance<'a>, Vec<Refusal>> {
-        let nothing = |certificate| Balance { branches: vec![], certificate, continuum: false, ranges: vec![], driven: Some(false) };
+        let nothing = |certificate| Balance {
+            branches: vec![],
+            certificate,
+            continuum: false,
+            ranges: vec![],
+            driven: Some(false),
+        };
         // The forces of the train without computed losses are the start.
         let lossless = Step::lossless(self.c.train);
         let Some(first) = self.solve(&lossless, &[])? else { return Ok(nothing(Certificate::Undecided)) };

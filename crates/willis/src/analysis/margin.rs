@@ -106,10 +106,7 @@ impl Frame<'_> {
         }
         let nodes = |role: i8| -> Vec<usize> {
             let terminals = self.problem.terminals.iter().map(|(m, _)| *m);
-            terminals
-                .filter(|m| flow.roles[m.0] == role)
-                .filter_map(|m| c.node(m))
-                .collect()
+            terminals.filter(|m| flow.roles[m.0] == role).filter_map(|m| c.node(m)).collect()
         };
         let (inputs, outputs) = (nodes(1), nodes(-1));
         let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, self.motion)).collect();

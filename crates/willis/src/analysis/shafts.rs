@@ -10,8 +10,8 @@ use crate::named::Named;
 use crate::power_flow::{External, Flow, ties};
 use crate::train::{AS_DRAWN, Efficiency, FRAME, MemberId, MemberKind, ShiftElementId, ShiftElementKind, Train};
 
-use super::table::Drive;
 use super::Why;
+use super::table::Drive;
 
 /// Speeds and torques of a whole shift table: the results contract `willis-table-1`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -155,7 +155,8 @@ pub fn shaft_table(train: &Train, state: Option<&str>, lossless: bool) -> Result
 }
 
 fn no_ends(what: &str, place: &str) -> Diagnostic {
-    let text = format!("{what} has no two different members as input and output, so nothing can be told per unit of them");
+    let text =
+        format!("{what} has no two different members as input and output, so nothing can be told per unit of them");
     Diagnostic::new(Code::NothingAsked, place, text).hint("name two `terminals`, or `input` and `output`")
 }
 
@@ -218,9 +219,10 @@ fn row(
             },
         }
     };
-    let sets = torques.iter().flat_map(|t| &t.sets).map(|(set, members)| {
-        (set.clone(), Named(members.iter().map(|(m, torque)| (name(*m), *torque)).collect()))
-    });
+    let sets = torques
+        .iter()
+        .flat_map(|t| &t.sets)
+        .map(|(set, members)| (set.clone(), Named(members.iter().map(|(m, torque)| (name(*m), *torque)).collect())));
     Some(ShaftState {
         input: name(input),
         output: name(output),
@@ -259,10 +261,17 @@ fn drive(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Result<Tor
         return Ok(Torques { members, elements, sets: vec![], efficiency: 1.0 });
     };
     let s = match (&balance.answer.solutions[..], balance.answer.stretches.is_empty()) {
-        ([], true) => return Err(Why::FrictionLocks { from: train.member_name(input).into(), to: train.member_name(output).into() }),
+        ([], true) => {
+            return Err(Why::FrictionLocks {
+                from: train.member_name(input).into(),
+                to: train.member_name(output).into(),
+            });
+        }
         ([only], true) if balance.answer.certificate != crate::statics::Certificate::Undecided => only,
         (_, false) => return Err(Why::Threshold { ranges: vec![] }),
-        (_, true) if balance.answer.certificate == crate::statics::Certificate::Undecided => return Err(Why::TooManyMeshes),
+        (_, true) if balance.answer.certificate == crate::statics::Certificate::Undecided => {
+            return Err(Why::TooManyMeshes);
+        }
         _ => return Err(Why::Several),
     };
     let (torque, sign) = balance.equilibrium.balancing_torque(c, s, &balance.loads, balance.node);
@@ -271,7 +280,10 @@ fn drive(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Result<Tor
     }
     let load = -w_out.signum();
     let motion: &Motion = &drive.motion;
-    let acting = [External { member: input, torque: 1.0, power: 1 }, External { member: output, torque: load / torque, power: -1 }];
+    let acting = [
+        External { member: input, torque: 1.0, power: 1 },
+        External { member: output, torque: load / torque, power: -1 },
+    ];
     let flow = Flow::new(c, motion, s, 1.0 / torque, &acting, &[]);
     let mut sets: Vec<(String, Vec<(MemberId, f64)>)> = Vec::new();
     for m in &flow.meshes {

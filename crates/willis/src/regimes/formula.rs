@@ -117,11 +117,10 @@ impl Names {
 
     /// All symbols, those of either direction beside each other.
     pub fn all(&self) -> impl Iterator<Item = &SymbolInfo> {
-        let both = |(n, info)| {
+        self.infos.iter().enumerate().flat_map(|(n, info)| {
             let element = (n % 2 == 1).then_some(n / 2).filter(|j| *j < self.elements);
-            std::iter::once(info).chain(element.and_then(|j| self.backward[j].as_ref()))
-        };
-        self.infos.iter().enumerate().flat_map(both)
+            [Some(info), element.and_then(|j| self.backward[j].as_ref())].into_iter().flatten()
+        })
     }
 
     /// How a symbol is written.
@@ -183,12 +182,7 @@ impl Names {
             };
             if e.forward == e.backward {
                 let meaning = format!("efficiency between {p} and {q} seen from {c}");
-                infos.push(efficiency(
-                    unique(format!("eta{suffix}")),
-                    format!("\\eta{index}"),
-                    &e.forward,
-                    meaning,
-                ));
+                infos.push(efficiency(unique(format!("eta{suffix}")), format!("\\eta{index}"), &e.forward, meaning));
                 backward.push(None);
                 continue;
             }
@@ -228,7 +222,8 @@ impl Names {
                 });
             }
         }
-        let mut names = Self { infos, elements: k, terminals: setup.terminals.len(), details: BTreeMap::new(), backward };
+        let mut names =
+            Self { infos, elements: k, terminals: setup.terminals.len(), details: BTreeMap::new(), backward };
         names.detail(setup, &mut unique);
         names
     }

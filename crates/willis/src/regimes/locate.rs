@@ -16,9 +16,9 @@ use crate::symbolic::Notation;
 use crate::train::{Load, MemberId, Operation, Train};
 use crate::units::Quantity;
 
-use super::atlas::{drivers, element_label, order, role};
+use super::atlas::{drivers, order, role};
 use super::cells::efficiency_at;
-use super::formula::{Efficiencies, Ratios, Shape};
+use super::formula::{Efficiencies, Ratios, Shape, element_label};
 
 use equilibria::{Equilibria, State, equilibria};
 use point::Point;

@@ -184,7 +184,8 @@ impl<'t> Problem<'t> {
             }
         }
         let answer = self.equilibrium.solve(&loads);
-        let given: Vec<_> = given.into_iter().map(|(m, t)| (m, t, if t == 0.0 { 0 } else { t.signum() as i8 })).collect();
+        let given: Vec<_> =
+            given.into_iter().map(|(m, t)| (m, t, if t == 0.0 { 0 } else { t.signum() as i8 })).collect();
         let balanced = |s: &Solution| {
             let open = self.open.iter().filter_map(|m| {
                 let (torque, sign) = self.equilibrium.balancing_torque(c, s, &loads, c.node(*m)?);

@@ -67,7 +67,8 @@ fn case(dice: &mut Dice) -> Case {
         of.rotate_left(dice.below(3));
         let mut teeth = || dice.one_of(&[18, 19, 20, 20, 21, 22, 40]);
         let (first, planets, second) = (teeth(), [teeth(), teeth()], teeth());
-        let efficiency = |dice: &mut Dice| dice.one_of(&[[1, 1], [19, 20], [9, 10], [20, 21], [18, 19], [97, 100], [1, 2]]);
+        let efficiency =
+            |dice: &mut Dice| dice.one_of(&[[1, 1], [19, 20], [9, 10], [20, 21], [18, 19], [97, 100], [1, 2]]);
         let ring = dice.below(3) == 0;
         let planet = shafts + set;
         pairs.push(Pair { bodies: [of[0], planet, of[2]], teeth: [first, planets[0]], efficiency: efficiency(dice) });
@@ -89,7 +90,8 @@ fn case(dice: &mut Dice) -> Case {
 impl Case {
     fn text(&self) -> String {
         let name = |m: usize| if m < self.shafts { format!("s{m}") } else { format!("p{}", m - self.shafts) };
-        let list = |of: &mut dyn Iterator<Item = usize>| of.map(|m| format!("{:?}", name(m))).collect::<Vec<_>>().join(", ");
+        let list =
+            |of: &mut dyn Iterator<Item = usize>| of.map(|m| format!("{:?}", name(m))).collect::<Vec<_>>().join(", ");
         let sets = self.pairs.len() / 2;
         let mut text = format!(
             "format = 1\nname = \"degenerate\"\nmembers = [{}]\nterminals = [{}]\n",
@@ -110,7 +112,8 @@ impl Case {
             );
         }
         let speeds = self.speeds.map(|(m, w)| format!("{} = \"{w} rad/s\"", name(m))).join(", ");
-        let given = self.torques.iter().enumerate().filter_map(|(m, t)| t.map(|t| format!("{} = \"{t} N m\"", name(m))));
+        let given =
+            self.torques.iter().enumerate().filter_map(|(m, t)| t.map(|t| format!("{} = \"{t} N m\"", name(m))));
         let torques = given.collect::<Vec<_>>().join(", ");
         text + &format!("[[operation]]\nname = \"o\"\nspeeds = {{ {speeds} }}\ntorques = {{ {torques} }}\n")
     }
@@ -237,7 +240,8 @@ fn truth(case: &Case) -> Option<Truth> {
     let open: Vec<usize> = (0..case.shafts).filter(|&m| case.torques[m].is_none()).collect();
     let known: Vec<usize> = (0..n).filter(|m| !open.contains(m)).collect();
     assert_eq!(known.len(), k);
-    let sigma: Vec<Q> = case.pairs.iter().map(|p| (&speeds[p.bodies[0]] - &speeds[p.bodies[2]]) * q(p.teeth[0], 1)).collect();
+    let sigma: Vec<Q> =
+        case.pairs.iter().map(|p| (&speeds[p.bodies[0]] - &speeds[p.bodies[2]]) * q(p.teeth[0], 1)).collect();
     let mut truth = Truth { indeterminate: true, speeds, open, ..Truth::default() };
     for mask in 0..1usize << k {
         // Without motion or losses it does not matter which gear drives: one choice then.
@@ -336,10 +340,12 @@ fn near(a: f64, b: f64) -> bool {
 fn faults(case: &Case, truth: &Truth, o: &OperationReport) -> Option<String> {
     let acts = case.torques.iter().flatten().any(|t| *t != 0);
     if !acts {
-        return (o.verdict != Verdict::Unloaded && o.verdict != Verdict::Undetermined).then(|| format!("{:?}", o.verdict));
+        return (o.verdict != Verdict::Unloaded && o.verdict != Verdict::Undetermined)
+            .then(|| format!("{:?}", o.verdict));
     }
     if truth.indeterminate {
-        return (o.verdict != Verdict::Undetermined).then(|| format!("{:?}, though forces are not determined", o.verdict));
+        return (o.verdict != Verdict::Undetermined)
+            .then(|| format!("{:?}, though forces are not determined", o.verdict));
     }
     let names: Vec<String> = truth.open.iter().map(|m| format!("s{m}")).collect();
     let found: Vec<_> = o.solutions.iter().chain(&o.dissipative_solutions).collect();
@@ -353,7 +359,8 @@ fn faults(case: &Case, truth: &Truth, o: &OperationReport) -> Option<String> {
         }
     }
     let within = |t: f64, i: &Interval| {
-        i[0].as_ref().is_none_or(|l| t >= l.to_f64().unwrap() - 1e-9) && i[1].as_ref().is_none_or(|h| t <= h.to_f64().unwrap() + 1e-9)
+        i[0].as_ref().is_none_or(|l| t >= l.to_f64().unwrap() - 1e-9)
+            && i[1].as_ref().is_none_or(|h| t <= h.to_f64().unwrap() + 1e-9)
     };
     for t in &torques {
         let is_point = truth.points.iter().any(|p| same(t, p));
@@ -391,8 +398,11 @@ fn faults(case: &Case, truth: &Truth, o: &OperationReport) -> Option<String> {
             (Some(a), Some(b)) => near(a.to_f64().unwrap(), b.to_f64().unwrap()),
             (a, b) => a.is_none() && b.is_none(),
         };
-        if expected.len() != told.len() || !expected.iter().zip(&told).all(|(a, b)| (0..2).all(|e| close(&a[e], &b[e]))) {
-            let show = |all: &[Interval]| format!("{:?}", all.iter().map(|i| i.clone().map(|x| x.map(|x| x.to_f64()))).collect::<Vec<_>>());
+        if expected.len() != told.len() || !expected.iter().zip(&told).all(|(a, b)| (0..2).all(|e| close(&a[e], &b[e])))
+        {
+            let show = |all: &[Interval]| {
+                format!("{:?}", all.iter().map(|i| i.clone().map(|x| x.map(|x| x.to_f64()))).collect::<Vec<_>>())
+            };
             return Some(format!("{} has the ranges {}, told are {}", names[k], show(&expected), show(&told)));
         }
     }
@@ -403,7 +413,8 @@ fn faults(case: &Case, truth: &Truth, o: &OperationReport) -> Option<String> {
         1 => o.verdict == Verdict::Unique,
         _ => o.verdict == Verdict::Multiple,
     };
-    (!verdict).then(|| format!("{:?} with {} equilibria and {} ranges", o.verdict, truth.points.len(), truth.ranges.len()))
+    (!verdict)
+        .then(|| format!("{:?} with {} equilibria and {} ranges", o.verdict, truth.points.len(), truth.ranges.len()))
 }
 
 fn run(seeds: std::ops::Range<u64>) {
@@ -424,7 +435,9 @@ fn run(seeds: std::ops::Range<u64>) {
         }
     }
     let [indeterminate, ranges, several, none] = seen;
-    println!("{compared} compared: {indeterminate} indeterminate, {ranges} with ranges, {several} with several points, {none} locked");
+    println!(
+        "{compared} compared: {indeterminate} indeterminate, {ranges} with ranges, {several} with several points, {none} locked"
+    );
     assert!(ranges > 0 && several > 0 && none > 0, "the trains are not degenerate enough");
     assert!(bad.is_empty(), "{} are wrong:\n{}", bad.len(), bad[..bad.len().min(40)].join("\n"));
 }

@@ -48,7 +48,8 @@ pub fn tables(all: &ShaftTable, speed: Option<f64>) -> Vec<Table> {
             ("slip_rad_s", Number),
         ],
     );
-    let mut sets = Table::new("sets", [("state", Text), ("set", Text), ("member", Text), ("torque_over_input", Number)]);
+    let mut sets =
+        Table::new("sets", [("state", Text), ("set", Text), ("member", Text), ("torque_over_input", Number)]);
     let number = |x: &Option<Rational>| Cell::from(x.as_ref().map(Rational::to_f64));
     let exact = |x: &Option<Rational>| Cell::from(x.as_ref().map(ToString::to_string));
     let rad_s = |x: &Option<Rational>| Cell::from(x.as_ref().zip(speed).map(|(x, w)| x.to_f64() * w));

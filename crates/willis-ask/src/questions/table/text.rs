@@ -95,11 +95,13 @@ pub fn text(all: &ShaftTable, speed: Option<f64>) -> String {
     let losses = if all.lossless { "without losses" } else { "the input drives, with the losses of the teeth" };
     let ends = names(&|s| vec![s.input.clone(), s.output.clone()]);
     let external: Vec<String> = ends.iter().chain(&elements).cloned().collect();
-    out += &matrix(&format!("Torques, over that of the input: {losses}"), &external, &|s, name| {
-        match s.shift_elements.get(name).filter(|_| elements.iter().any(|e| e == name)) {
-            Some(e) => factor(e.torque),
-            None => factor(s.members.get(name).and_then(|m| m.torque)),
-        }
+    out += &matrix(&format!("Torques, over that of the input: {losses}"), &external, &|s, name| match s
+        .shift_elements
+        .get(name)
+        .filter(|_| elements.iter().any(|e| e == name))
+    {
+        Some(e) => factor(e.torque),
+        None => factor(s.members.get(name).and_then(|m| m.torque)),
     });
     let of_sets = names(&|s| {
         let of = s.sets.iter().flat_map(|(set, members)| members.iter().map(move |(m, _)| format!("{set}.{m}")));

@@ -5,7 +5,6 @@
 //! problem of [`Decision`](crate::dynamics::decision), in which a contact with the slip `s` prescribes `−s/h` where it
 //! holds. Shafts that look ahead resist as an inertia between their ends does.
 
-use crate::dynamics::bodies::Bodies;
 use crate::dynamics::contacts::{Contacts, Joint};
 use crate::dynamics::decide::{beside_load, kink};
 use crate::dynamics::decision::{Inertia, Verdict};

@@ -45,7 +45,8 @@ impl<'t> Point<'t> {
         let setup = Setup::new(c, &terminals, balance)
             .map_err(|why| refuse(Code::Unfit, format!("{state}: {why}"), "name other `terminals`"))?;
         let base = base_speeds(&setup, &state, &motion, given.speeds.len())?;
-        let torques = given.torques.iter().cloned().map(Ok).chain(given.powers.iter().map(|p| torque_of(train, &motion, p)));
+        let torques =
+            given.torques.iter().cloned().map(Ok).chain(given.powers.iter().map(|p| torque_of(train, &motion, p)));
         let (loads, torque_pi) = loads(&setup, &state, &torques.collect::<Result<Vec<_>, _>>()?)?;
         let speed = |m: MemberId| motion.speeds[m.0].clone().unwrap_or(Rational::ZERO);
         Ok(Self {

@@ -45,7 +45,8 @@ pub(super) fn read<'t>(train: &'t Train, request: &LocateRequest) -> Result<(Giv
     }
     typed(train, &request.speeds, &mut given.speeds, &mut errors);
     // A torque in place of a power that the operation prescribes, and the other way round.
-    let named = |list: &[(String, Quantity)]| list.iter().filter_map(|(name, _)| train.member(name)).collect::<Vec<_>>();
+    let named =
+        |list: &[(String, Quantity)]| list.iter().filter_map(|(name, _)| train.member(name)).collect::<Vec<_>>();
     let (of_torques, of_powers) = (named(&request.torques), named(&request.powers));
     given.powers.retain(|(m, _)| !of_torques.contains(m));
     given.torques.retain(|(m, _)| !of_powers.contains(m));
