@@ -38,18 +38,35 @@ impl Tracked {
         }
     }
 
-    /// `self − factor · other`
-    fn less(self, factor: Self, other: Self) -> Self {
-        if factor.residue == 0 || other.residue == 0 {
-            return self;
-        }
+    /// Value and bound of `self − factor · other`.
+    fn difference(self, factor: Self, other: Self) -> [f64; 2] {
         let product = factor.value * other.value;
         let value = self.value - product;
         let error = self.error
             + factor.error * (other.value.abs() + other.error)
             + other.error * factor.value.abs()
             + f64::EPSILON * (product.abs() + value.abs());
+        [value, error]
+    }
+
+    /// `self − factor · other`
+    fn less(self, factor: Self, other: Self) -> Self {
+        if factor.residue == 0 || other.residue == 0 {
+            return self;
+        }
+        let [value, error] = self.difference(factor, other);
         Self::new(value, error, add(self.residue, PRIME - times(factor.residue, other.residue)))
+    }
+
+    /// The same, but for a common factor of all residues, which are those times `pivot`: with it no inverse is needed to
+    /// tell what is zero. The residue of `factor` is not yet divided by that of the pivot.
+    fn less_times(self, factor: Self, other: Self, pivot: u64) -> Self {
+        let residue = times(self.residue, pivot);
+        if factor.residue == 0 || other.residue == 0 {
+            return Self { residue, ..self };
+        }
+        let [value, error] = self.difference(factor, other);
+        Self::new(value, error, add(residue, PRIME - times(factor.residue, other.residue)))
     }
 
     /// `self / pivot`, whose sign is known; `inverse` is the inverse of its residue.
@@ -319,12 +336,11 @@ impl Minors {
         }
         let (before, after) = self.levels.split_at_mut(depth + 1);
         let (from, to) = (&before[depth], &mut after[0]);
-        let inverse = pivot.inverse();
         let left = || open.iter().chain(forced);
         for &r in left() {
-            let factor = from[r * n + i].over(pivot, inverse);
+            let factor = from[r * n + i].over(pivot, 1);
             for &c in left() {
-                to[r * n + c] = from[r * n + c].less(factor, from[i * n + c]);
+                to[r * n + c] = from[r * n + c].less_times(factor, from[i * n + c], pivot.residue);
             }
         }
         self.are_positive(depth + 1, n, open, forced)
