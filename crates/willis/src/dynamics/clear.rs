@@ -91,7 +91,7 @@ impl Engine {
         }
         if least <= CLEAR {
             let (g, sign) = breaks;
-            if least >= -CLEAR || s.groups[g].frictions.is_empty() {
+            if least >= -CLEAR {
                 return Contradiction::Doubt;
             }
             mode.slip[g] = sign;
