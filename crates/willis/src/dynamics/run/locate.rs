@@ -4,11 +4,12 @@ use crate::dynamics::margins::{Margin, NOISE, Watch};
 
 use super::Simulation;
 
-/// The lowest point of the parabola through three points; none if it opens downward.
-fn vertex(t: [f64; 3], y: [f64; 3]) -> Option<f64> {
+/// The lowest point of the parabola through three points, and its value there; none if it opens downward.
+fn vertex(t: [f64; 3], y: [f64; 3]) -> Option<(f64, f64)> {
     let first = (y[1] - y[0]) / (t[1] - t[0]);
     let second = ((y[2] - y[1]) / (t[2] - t[1]) - first) / (t[2] - t[0]);
-    (second > 0.0).then(|| 0.5 * (t[0] + t[1]) - 0.5 * first / second)
+    let lowest = 0.5 * (t[0] + t[1]) - 0.5 * first / second;
+    (second > 0.0).then(|| (lowest, y[0] + (lowest - t[0]) * (first + second * (lowest - t[1]))))
 }
 
 impl Simulation {
@@ -93,7 +94,12 @@ impl Simulation {
             // rest.
             let unseen = NOISE * values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
             for _ in 0..4 {
-                let Some(lowest) = vertex(t, y).filter(|v| *v > t[0] && *v < t[2] && *v != t[1]) else { break };
+                let inside = |v: &f64| *v > t[0] && *v < t[2] && *v != t[1];
+                let Some((lowest, value)) = vertex(t, y).filter(|(v, _)| inside(v)) else { break };
+                // One that stays as far from its limit as those that do not reach it.
+                if value >= 8.0 * (y[0].min(y[1]).min(y[2]) - value) {
+                    break;
+                }
                 self.margins_at(lowest);
                 let Some(m) = self.margins.iter().find(|m| m.watch == watch) else { break };
                 if m.is_broken() && m.value < -unseen {
