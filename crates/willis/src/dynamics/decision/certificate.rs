@@ -273,10 +273,7 @@ impl Minors {
         levels[0] = matrix;
         let mut minors = Self { places, levels };
         let all: Vec<usize> = (0..n).collect();
-        match minors.are_positive(0, n, &all, &[]) {
-            Ok(positive) => Some(positive),
-            Err(Refused) => None,
-        }
+        minors.are_positive(0, n, &all, &[]).ok()
     }
 
     /// Whether no minor is negative that exchanges all of `forced`, whose own entries vanish so far, and any of `open`.
