@@ -38,34 +38,38 @@ fn close(task: &str, value: f64, exact: f64, tolerance: f64) {
     assert!(error.abs() <= tolerance, "{task}: ends at {value} rad/s, not at {exact} rad/s: {error:.1e}");
 }
 
-/// Keeps the last value of a column.
-struct Last(usize, f64);
+/// Keeps the last value of a column, whose name comes first.
+struct Last(&'static str, usize, f64);
 
 impl Recorder for Last {
     fn columns(&mut self, columns: &[willis::dynamics::Column]) -> ControlFlow<()> {
-        self.0 = columns.iter().position(|c| c.name == "speed.carrier").unwrap();
+        self.1 = columns.iter().position(|c| c.name == self.0).unwrap();
         ControlFlow::Continue(())
     }
     fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
-        self.1 = sample.values[self.0];
+        self.2 = sample.values[self.1];
         ControlFlow::Continue(())
     }
 }
 
 /// The whole call, preparation included; a point is a second of the scenario.
 fn adaptive(c: &mut Criterion) {
-    let train = trains::set();
     let options = Options { energies: false, tolerance: 1e-4, samples: Some(2), ..Options::default() };
-    let run = || {
-        let mut last = Last(0, f64::NAN);
-        simulate(black_box(&train), "pulses", &options, &mut last).unwrap();
-        last.1
-    };
-    let end = run();
-    close("set-adaptive", end, SET_END, 1e-5);
-    record("set-adaptive", 20.0, &[("carrier", end)]);
     let mut group = c.benchmark_group("motion");
-    group.sample_size(50).bench_function("set-adaptive", |b| b.iter(run));
+    let mut measure = |name: &str, train: &Train, scenario: &str, column: &'static str, duration: f64, exact: f64| {
+        let task = format!("{name}-adaptive");
+        let run = || {
+            let mut last = Last(column, 0, f64::NAN);
+            simulate(black_box(train), scenario, &options, &mut last).unwrap();
+            last.2
+        };
+        let end = run();
+        close(&task, end, exact, 1e-5);
+        record(&task, duration, &[(column.trim_start_matches("speed."), end)]);
+        group.sample_size(50).bench_function(&task, |b| b.iter(run));
+    };
+    measure("set", &trains::set(), "pulses", "speed.carrier", 20.0, SET_END);
+    measure("automatic", &trains::automatic(), "through the gears", "speed.output", 16.0, AUTOMATIC_END);
     group.finish();
 }
 

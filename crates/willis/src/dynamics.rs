@@ -8,6 +8,7 @@
 mod batch;
 mod bodies;
 mod choose;
+mod clear;
 mod contacts;
 mod decide;
 mod decision;

@@ -63,7 +63,11 @@ impl Rational {
             let class: BigInt = ((n % PRIME) + PRIME) % PRIME;
             class.to_u64().expect("below the prime")
         };
-        let small = |n: i128| n.rem_euclid(i128::from(PRIME)) as u64;
+        // A division of single words is much shorter than one of double words.
+        let small = |n: i128| match i64::try_from(n) {
+            Ok(n) => n.rem_euclid(PRIME as i64) as u64,
+            Err(_) => n.rem_euclid(i128::from(PRIME)) as u64,
+        };
         let [numerator, denominator] = match &self.0 {
             Repr::Small(r) => [small(*r.numer()), small(*r.denom())],
             Repr::Big(r) => [big(r.numer()), big(r.denom())],
@@ -226,6 +230,9 @@ impl FromStr for Rational {
     }
 }
 
+/// Digits that a word holds.
+const MOST_DIGITS: usize = 18;
+
 impl Rational {
     fn from_decimal(text: &str) -> Result<Self, NotANumber> {
         let (mantissa, exponent) = match text.split_once(['e', 'E']) {
@@ -238,14 +245,30 @@ impl Rational {
             _ => (false, mantissa),
         };
         let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+        let places = fraction.chars().filter(|c| *c != '_').count() as i32;
+        let power = exponent.checked_sub(places).ok_or(NotANumber)?;
+        // Nearly all are short: a word holds them.
+        if whole.len() + fraction.len() <= MOST_DIGITS && power.unsigned_abs() as usize <= MOST_DIGITS {
+            let mut value = 0;
+            for c in whole.bytes().chain(fraction.bytes()).filter(|c| *c != b'_') {
+                value = 10 * value + i64::from(char::from(c).to_digit(10).ok_or(NotANumber)?);
+            }
+            if whole.bytes().chain(fraction.bytes()).all(|c| c == b'_') {
+                return Err(NotANumber);
+            }
+            let (value, ten) = (if negative { -value } else { value }, 10i64.pow(power.unsigned_abs()));
+            return Ok(Self(Repr::Small(if power < 0 {
+                word::fraction(value, ten)
+            } else {
+                Ratio::from_integer(i128::from(value) * i128::from(ten))
+            })));
+        }
         let mut value = BigInt::zero();
         let mut count = 0;
         for c in whole.chars().chain(fraction.chars()).filter(|c| *c != '_') {
             value = value * 10 + c.to_digit(10).ok_or(NotANumber)?;
             count += 1;
         }
-        let places = fraction.chars().filter(|c| *c != '_').count() as i32;
-        let power = exponent.checked_sub(places).ok_or(NotANumber)?;
         if count == 0 || exponent.abs() > 60 {
             return Err(NotANumber);
         }
@@ -274,6 +297,12 @@ mod word {
     /// Both of the double words of a product.
     fn wide(a: i64, b: i64) -> i128 {
         i128::from(a) * i128::from(b)
+    }
+
+    /// `numerator / denominator`, reduced; the denominator is positive.
+    pub fn fraction(numerator: i64, denominator: i64) -> Ratio<i128> {
+        let g = numerator.gcd(&denominator);
+        Ratio::new_raw((numerator / g).into(), (denominator / g).into())
     }
 
     pub fn add((a, b): Word, (c, d): Word) -> Option<Ratio<i128>> {
@@ -359,14 +388,17 @@ impl SubAssign<Rational> for Rational {
 impl Neg for Rational {
     type Output = Rational;
     fn neg(self) -> Rational {
-        &Rational::ZERO - &self
+        -&self
     }
 }
 
 impl Neg for &Rational {
     type Output = Rational;
     fn neg(self) -> Rational {
-        &Rational::ZERO - self
+        match &self.0 {
+            Repr::Small(r) if *r.numer() != i128::MIN => Rational(Repr::Small(Ratio::new_raw(-r.numer(), *r.denom()))),
+            _ => &Rational::ZERO - self,
+        }
     }
 }
 
@@ -528,9 +560,12 @@ fn is_regular_modulo(matrix: &Matrix) -> bool {
 /// 2⁶¹ − 1, a Mersenne prime.
 pub(crate) const PRIME: u64 = (1 << 61) - 1;
 
-/// Product of two classes.
+/// Product of two classes. As 2⁶¹ is one there, the upper bits of the product are added to the lower: no division.
+#[inline]
 pub(crate) fn times(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+    let product = u128::from(a) * u128::from(b);
+    let sum = (product as u64 & PRIME) + (product >> 61) as u64;
+    if sum >= PRIME { sum - PRIME } else { sum }
 }
 
 /// Power of a class; that of exponent `PRIME - 2` is its inverse.

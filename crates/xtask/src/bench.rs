@@ -53,8 +53,10 @@ const MOTION_RATIOS: &[(&str, &str, Option<f64>)] = &[
     ("automatic-batch", "automatic-fixed-1e-3", None),
 ];
 
-/// Steps of motion in a second: task, fewest.
-const STEPS: &[(&str, f64)] = &[
+/// Seconds of a scenario, or steps of fixed length, in a second: task, fewest.
+const RATES: &[(&str, f64)] = &[
+    ("set-adaptive", 5e4),
+    ("automatic-adaptive", 5e4),
     ("set-fixed-1e-3", 1.3e7),
     ("set-fixed-1e-4", 1.3e7),
     ("automatic-fixed-1e-3", 7e6),
@@ -170,7 +172,7 @@ fn motion(root: &Path, own: &[Value], peers: &[Value]) -> Result<(), String> {
         let (ratio, goal) = (speed / theirs, verdict(speed / theirs, *goal));
         println!("{task:24} {peer:20} {theirs:12.3e} {speed:12.3e} {ratio:8.2} {goal:>8}");
     }
-    for (task, fewest) in STEPS {
+    for (task, fewest) in RATES {
         let speed = rate(task)?;
         println!("{task:24} {:20} {:>12} {speed:12.3e} {:>8} {:>8}", "", "", "", verdict(speed, Some(*fewest)));
     }

@@ -155,6 +155,9 @@ impl Engine {
                 start.slip[g] = 0;
             }
         }
+        if let Some(mode) = self.clear_mode(t, x, &start) {
+            return Ok(mode);
+        }
         let (verdict, mode) = self.decide(t, x, &start);
         match verdict {
             Verdict::One { proved } => {

@@ -6,7 +6,7 @@ use crate::operating_point::LEAST_SPEED;
 use crate::train::{Contact, MemberId, SourceKind};
 
 use super::contacts::Contacts;
-use super::element::Loss;
+use super::element::{Element, Loss};
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
 use super::shows::Shows;
 use super::source::{out_of_domain, source_torque};
@@ -75,6 +75,9 @@ pub(crate) struct Engine {
     pub certified: bool,
     /// The same; none if there were too many states to look at.
     pub certificate: Option<bool>,
+    /// Whether one motion is certain and all that is lost in meshes is a constant part of their load, so that modes can
+    /// be beyond doubt by their maps.
+    pub plain: bool,
     /// Whether forces and laws agreed at the state solved last.
     pub agrees: bool,
     /// Whether energies are counted.
@@ -103,6 +106,10 @@ impl Engine {
         let certificate = system.every_state_is_unique();
         let mut scales = vec![LEAST_SCALE; system.free + system.all() + system.integrals];
         system.followers.iter().for_each(|(k, _)| scales[*k] = FOLLOWS);
+        let plain = certificate == Some(true)
+            && system.laws.is_none()
+            && system.prescribed == 0
+            && system.elements.iter().all(Element::is_plain);
         Self {
             maps: Maps::default(),
             mode,
@@ -121,6 +128,7 @@ impl Engine {
             still: None,
             stills: vec![],
             shows: Shows::all(&system),
+            plain,
             agrees: true,
             slack: 1.0,
             counts: true,
@@ -329,8 +337,13 @@ impl Engine {
             let (_, factor) = self.system.frictions[f].group.expect("of this group");
             let w = factor * slip;
             let along = factor.signum() as i8;
-            c.forward += (factor * self.sliding(f, w, along, peak, t)).abs();
-            c.backward += (factor * self.sliding(f, w, -along, peak, t)).abs();
+            let forward = (factor * self.sliding(f, w, along, peak, t)).abs();
+            c.forward += forward;
+            // Only one-way clutches tell directions apart.
+            c.backward += match self.system.frictions[f].blocks {
+                None => forward,
+                Some(_) => (factor * self.sliding(f, w, -along, peak, t)).abs(),
+            };
         }
         c
     }
@@ -373,7 +386,8 @@ impl Engine {
         match mode.slip[g] * factor.signum() as i8 {
             0 => 0.0,
             sign => {
-                let torque = self.sliding(k, factor * self.group_slip(g), sign, peak, t);
+                let slip = if f.torque.points().len() == 1 { 0.0 } else { self.group_slip(g) };
+                let torque = self.sliding(k, factor * slip, sign, peak, t);
                 if torque.is_finite() { torque } else { 0.0 }
             }
         }
@@ -382,7 +396,7 @@ impl Engine {
     /// The part of an element's loss that does not depend on its load.
     pub fn constant_loss(&self, j: usize, mode: &Mode) -> f64 {
         let sign = mode.element_slip(&self.system, j);
-        if sign == 0 {
+        if sign == 0 || self.plain {
             return 0.0;
         }
         let loss = self.loss(j);
@@ -455,7 +469,9 @@ impl Engine {
 
     /// Loss of an element at the speeds looked at; where it follows a law, as the forces found last have it.
     pub fn loss(&self, j: usize) -> Loss {
-        self.loss_at(j, dot(&self.system.elements[j].row, &self.speed).abs())
+        let e = &self.system.elements[j];
+        let speed = if e.rows.len() == 1 { 0.0 } else { dot(&e.row, &self.speed).abs() };
+        self.loss_at(j, speed)
     }
 
     /// The same where only tables take another speed.

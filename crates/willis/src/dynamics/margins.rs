@@ -34,6 +34,11 @@ impl Margin {
     pub fn is_broken(&self) -> bool {
         self.value < -self.noise
     }
+
+    /// What changes its sign where it breaks.
+    pub fn spare(&self) -> f64 {
+        self.value + self.noise
+    }
 }
 
 /// Round-off of a sum, relative to the sum of amounts.
@@ -82,7 +87,6 @@ impl Engine {
         let with_teeth = (0..self.system.groups.len()).any(|g| rests(g) && !self.system.groups[g].elements.is_empty());
         let together = with_teeth || map.is_redundant();
         for g in 0..self.system.groups.len() {
-            let slip = self.group_slip(g);
             match self.mode.slip[g] {
                 0 if self.system.groups[g].driven || together => {}
                 0 => self.hold_margins(g, t, &map, out),
@@ -90,13 +94,13 @@ impl Engine {
                     let noise = NOISE
                         * 1e-3
                         * self.system.groups[g].row.iter().zip(&self.speed).map(|(a, b)| (a * b).abs()).sum::<f64>();
-                    out.push(Margin { watch: Watch::Slip(g), value: f64::from(sign) * slip, noise });
+                    out.push(Margin { watch: Watch::Slip(g), value: f64::from(sign) * self.group_slip(g), noise });
                 }
             }
         }
         if together {
             // What slips is as many times its bound of rounding as what slips elsewhere is of its own.
-            let value = self.spare(t);
+            let value = self.clear_spare(t).unwrap_or_else(|| self.spare(t));
             out.push(Margin { watch: Watch::Rest, value, noise: self.slack * NOISE / (16.0 * f64::EPSILON) });
         }
         for j in 0..self.system.elements.len() {

@@ -102,6 +102,9 @@ pub struct Simulation {
     /// The first of several solutions was taken: why the first time, and how often.
     ambiguous: Option<(String, usize)>,
     margins: Vec<Margin>,
+    /// Margins at the start, in the middle and at the end of the last step, and whether the first are known.
+    at_start: Vec<Margin>,
+    start_is_known: bool,
     at_middle: Vec<Margin>,
     at_end: Vec<Margin>,
     state: Vec<f64>,
@@ -170,6 +173,8 @@ impl Simulation {
             notes,
             ambiguous: None,
             margins: vec![],
+            at_start: vec![],
+            start_is_known: false,
             at_middle: vec![],
             at_end: vec![],
             state: vec![0.0; states + quadratures],
@@ -306,6 +311,7 @@ impl Simulation {
     /// Chooses the mode at the present state and tells of the change.
     pub(super) fn choose(&mut self, recorder: &mut dyn Recorder) -> Result<(), Outcome> {
         self.pace.choice();
+        self.start_is_known = false;
         let end = self.engine.system.scenario.end;
         let inside = self.engine.inside;
         let next = self.engine.system.signals().map(|s| s.next_break(self.t)).fold(f64::INFINITY, f64::min);

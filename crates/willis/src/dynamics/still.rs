@@ -45,14 +45,17 @@ impl Still {
             solved.push((k, row));
         }
         let floats = |row: &[Rational]| row.iter().map(Rational::to_f64).collect();
-        let member = |row: &Vec<Rational>| {
+        let member = |(row, speeds): (&Vec<Rational>, &Vec<f64>)| {
+            if solved.iter().all(|(k, _)| row[*k].is_zero()) {
+                return speeds.clone();
+            }
             let mut row = row.clone();
             solved.iter().for_each(|(k, of)| insert(&mut row, *k, of));
             floats(&row)
         };
         Self {
             held,
-            members: system.exact_speeds.iter().map(member).collect(),
+            members: system.exact_speeds.iter().zip(&system.speeds).map(member).collect(),
             follow: solved.iter().map(|(k, row)| (*k, floats(row))).collect(),
         }
     }

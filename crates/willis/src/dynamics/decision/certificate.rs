@@ -5,6 +5,10 @@
 //! tried had exactly one motion. (The determinants of all bases say nothing: half of them vanish. That equal signs
 //! suffice where some vanish is not proved, and redundant holds were not tried.) They are walked as a tree, the
 //! elimination of what several share done once. A sign that rounding leaves open counts against the certificate.
+//!
+//! Over the columns of the choice in which all slides forward, every other choice is a principal minor: it keeps the
+//! columns of some places and exchanges those of the others. What is kept then costs nothing, so these minors are looked
+//! at first, and the tree is walked where they leave a sign open.
 
 use std::ops::Neg;
 
@@ -34,26 +38,47 @@ impl Tracked {
         }
     }
 
-    /// `self − factor · other`
-    fn less(self, factor: Self, other: Self) -> Self {
-        if factor.residue == 0 || other.residue == 0 {
-            return self;
-        }
+    /// Value and bound of `self − factor · other`.
+    fn difference(self, factor: Self, other: Self) -> [f64; 2] {
         let product = factor.value * other.value;
         let value = self.value - product;
         let error = self.error
             + factor.error * (other.value.abs() + other.error)
             + other.error * factor.value.abs()
             + f64::EPSILON * (product.abs() + value.abs());
+        [value, error]
+    }
+
+    /// `self − factor · other`
+    fn less(self, factor: Self, other: Self) -> Self {
+        if factor.residue == 0 || other.residue == 0 {
+            return self;
+        }
+        let [value, error] = self.difference(factor, other);
         Self::new(value, error, add(self.residue, PRIME - times(factor.residue, other.residue)))
     }
 
-    /// `self / pivot`, whose sign is known.
-    fn over(self, pivot: Self) -> Self {
+    /// The same, but for a common factor of all residues, which are those times `pivot`: with it no inverse is needed to
+    /// tell what is zero. The residue of `factor` is not yet divided by that of the pivot.
+    fn less_times(self, factor: Self, other: Self, pivot: u64) -> Self {
+        let residue = times(self.residue, pivot);
+        if factor.residue == 0 || other.residue == 0 {
+            return Self { residue, ..self };
+        }
+        let [value, error] = self.difference(factor, other);
+        Self::new(value, error, add(residue, PRIME - times(factor.residue, other.residue)))
+    }
+
+    /// `self / pivot`, whose sign is known; `inverse` is the inverse of its residue.
+    fn over(self, pivot: Self, inverse: u64) -> Self {
         let value = self.value / pivot.value;
         let error =
             (self.error + value.abs() * pivot.error) / (pivot.value.abs() - pivot.error) + f64::EPSILON * value.abs();
-        Self::new(value, error, times(self.residue, power(pivot.residue, PRIME - 2)))
+        Self::new(value, error, times(self.residue, inverse))
+    }
+
+    fn inverse(self) -> u64 {
+        power(self.residue, PRIME - 2)
     }
 }
 
@@ -116,11 +141,32 @@ pub(super) fn is_unique(equations: &Equations, most: usize) -> Option<bool> {
     }
     let choices = open.iter().fold(1usize, |n, place| n.saturating_mul(place.len()));
     places.extend(open);
+    if choices > most {
+        return None;
+    }
+    let mut tree = Tree { places, sign: 1 };
+    if tree.eliminate_shared().is_err() {
+        return Some(false);
+    }
+    if let Some(minors) = Minors::of(&tree) {
+        return Some(minors);
+    }
     let mut seen = None;
-    (choices <= most).then(|| Tree { places, sign: 1 }.walk(&mut seen).is_ok() && seen.is_some())
+    Some(tree.walk(&mut seen).is_ok() && seen.is_some())
 }
 
 impl Tree {
+    /// Eliminates what all choices share. Refused where that leaves no determinant, or one that is open.
+    fn eliminate_shared(&mut self) -> Result<(), Refused> {
+        while self.places.first().is_some_and(|place| place.len() == 1) {
+            let mut columns = self.places.remove(0).remove(0);
+            if !self.eliminate(&mut columns)? {
+                return Err(Refused);
+            }
+        }
+        Ok(())
+    }
+
     /// Signs of all determinants from here. Refused at two of opposite sign, or one that is open.
     fn walk(mut self, seen: &mut Option<i8>) -> Result<(), Refused> {
         if self.places.is_empty() {
@@ -151,17 +197,149 @@ impl Tree {
             };
             let moved = if pivot % 2 == 0 { 1 } else { -1 };
             self.sign *= moved * column[pivot].sign().expect("known");
+            let inverse = column[pivot].inverse();
             let rest = self.places.iter_mut().flatten().flatten();
             for other in rest.chain(columns.iter_mut()) {
                 let top = other.remove(pivot);
                 if top.residue == 0 {
                     continue;
                 }
-                let top = top.over(column[pivot]);
+                let top = top.over(column[pivot], inverse);
                 let rows = column.iter().enumerate().filter(|(r, _)| *r != pivot).map(|(_, x)| x);
                 other.iter_mut().zip(rows).for_each(|(x, factor)| *x = x.less(*factor, top));
             }
         }
         Ok(true)
+    }
+}
+
+/// The choices as principal minors of one matrix.
+struct Minors {
+    /// For each column that may be exchanged, the place it belongs to: one of a place is exchanged at a time.
+    places: Vec<usize>,
+    /// Matrices by depth, by rows.
+    levels: Vec<Vec<Tracked>>,
+}
+
+impl Minors {
+    /// Whether none of them is negative; none where that is left open, or where not all can slide forward at once.
+    ///
+    /// The columns that all choices share are eliminated already.
+    fn of(tree: &Tree) -> Option<bool> {
+        let mut basis: Vec<Column> = vec![];
+        let mut exchanged: Vec<Column> = vec![];
+        let mut places = vec![];
+        for (place, alternatives) in tree.places.iter().enumerate() {
+            let first = alternatives.first()?;
+            for (k, column) in first.iter().enumerate() {
+                // The alternative that differs in this column and in no other of its place.
+                let other = match (first.len(), k, &alternatives[1..]) {
+                    (1, 0, [other]) | (2, 0, [other, _]) | (2, 1, [_, other]) => other,
+                    _ => return None,
+                };
+                basis.push(column.clone());
+                exchanged.push(other[k].clone());
+                places.push(place);
+            }
+        }
+        let n = basis.len();
+        if basis.iter().any(|column| column.len() != n) {
+            return None;
+        }
+        // The exchanged columns over the basis, by elimination of its columns one by one.
+        let mut rows: Vec<Option<usize>> = vec![None; n];
+        for at in 0..n {
+            let column = basis[at].clone();
+            let open = |r: &usize| rows[*r].is_none() && column[*r].sign().is_some_and(|s| s != 0);
+            let size = |r: usize| column[r].value.abs();
+            let pivot = (0..n).filter(open).max_by(|&p, &q| size(p).total_cmp(&size(q)))?;
+            rows[pivot] = Some(at);
+            let inverse = column[pivot].inverse();
+            for other in basis[at + 1..].iter_mut().chain(&mut exchanged).filter(|c| c[pivot].residue != 0) {
+                let top = other[pivot].over(column[pivot], inverse);
+                for (r, (x, factor)) in other.iter_mut().zip(&column).enumerate() {
+                    *x = if r == pivot { top } else { x.less(*factor, top) };
+                }
+            }
+        }
+        let mut matrix = vec![Tracked::default(); n * n];
+        for (r, at) in rows.into_iter().enumerate() {
+            let row = at.expect("as many as there are columns");
+            for (k, column) in exchanged.iter().enumerate() {
+                matrix[row * n + k] = column[r];
+            }
+        }
+        let mut levels = vec![vec![Tracked::default(); n * n]; n + 1];
+        levels[0] = matrix;
+        let mut minors = Self { places, levels };
+        let all: Vec<usize> = (0..n).collect();
+        minors.are_positive(0, n, &all, &[]).ok()
+    }
+
+    /// Whether no minor is negative that exchanges all of `forced`, whose own entries vanish so far, and any of `open`.
+    /// Both are positions in the matrix of a depth.
+    fn are_positive(&mut self, depth: usize, n: usize, open: &[usize], forced: &[usize]) -> Result<bool, Refused> {
+        // What was forced at a zero and no longer is zero comes first.
+        for (k, &i) in forced.iter().enumerate() {
+            if self.entry(depth, n, i, i).residue != 0 {
+                let others: Vec<usize> = forced.iter().copied().filter(|j| *j != forced[k]).collect();
+                return self.exchange(depth, n, i, open, &others);
+            }
+        }
+        let Some((&i, rest)) = open.split_first() else {
+            // Nothing but zeros on the diagonal: the minor is zero if a whole row is, as that of one alone.
+            let zero = |&i: &usize| forced.iter().all(|&j| self.entry(depth, n, i, j).residue == 0);
+            return if forced.is_empty() || forced.iter().any(zero) { Ok(true) } else { Err(Refused) };
+        };
+        let vanishes = |this: &Self, i: usize| {
+            let others = || rest.iter().chain(forced).chain([&i]);
+            others().all(|&j| this.entry(depth, n, i, j).residue == 0)
+                || others().all(|&j| this.entry(depth, n, j, i).residue == 0)
+        };
+        if !self.are_positive(depth, n, rest, forced)? {
+            return Ok(false);
+        }
+        if vanishes(self, i) {
+            return Ok(true);
+        }
+        // Of a place one column at a time.
+        let place = self.places[i];
+        let apart: Vec<usize> = rest.iter().copied().filter(|&j| self.places[j] != place).collect();
+        if self.entry(depth, n, i, i).residue == 0 {
+            let forced: Vec<usize> = forced.iter().copied().chain([i]).collect();
+            return self.are_positive(depth, n, &apart, &forced);
+        }
+        self.exchange(depth, n, i, &apart, forced)
+    }
+
+    fn entry(&self, depth: usize, n: usize, row: usize, column: usize) -> Tracked {
+        self.levels[depth][row * n + column]
+    }
+
+    /// The same with one that does not vanish exchanged.
+    fn exchange(
+        &mut self,
+        depth: usize,
+        n: usize,
+        i: usize,
+        open: &[usize],
+        forced: &[usize],
+    ) -> Result<bool, Refused> {
+        let pivot = self.entry(depth, n, i, i);
+        match pivot.sign() {
+            None => return Err(Refused),
+            Some(-1) => return Ok(false),
+            Some(_) => {}
+        }
+        let (before, after) = self.levels.split_at_mut(depth + 1);
+        let (from, to) = (&before[depth], &mut after[0]);
+        let left = || open.iter().chain(forced);
+        for &r in left() {
+            let factor = from[r * n + i].over(pivot, 1);
+            for &c in left() {
+                to[r * n + c] = from[r * n + c].less_times(factor, from[i * n + c], pivot.residue);
+            }
+        }
+        self.are_positive(depth + 1, n, open, forced)
     }
 }

@@ -219,6 +219,21 @@ impl Stepper for Dopri5 {
         x_old[k] + theta * (c1[k] + rest * (c2[k] + theta * (c3[k] + rest * c4[k])))
     }
 
+    fn interpolate(&self, t: f64, out: &mut [f64]) {
+        let Track { t_old, t: end, ref x_old, ref x, .. } = self.track;
+        if t <= t_old || t >= end {
+            out.copy_from_slice(if t <= t_old { x_old } else { x });
+            return;
+        }
+        let theta = (t - t_old) / self.span;
+        let rest = 1.0 - theta;
+        let all = out.len();
+        let [c1, c2, c3, c4] = self.dense.each_ref().map(|c| &c[..all]);
+        for (k, x_old) in x_old[..all].iter().enumerate() {
+            out[k] = x_old + theta * (c1[k] + rest * (c2[k] + theta * (c3[k] + rest * c4[k])));
+        }
+    }
+
     fn shorten<S: Smooth>(&mut self, sys: &mut S, t: f64) {
         if t >= self.track.t {
             return;

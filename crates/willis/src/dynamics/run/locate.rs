@@ -4,11 +4,12 @@ use crate::dynamics::margins::{Margin, NOISE, Watch};
 
 use super::Simulation;
 
-/// The lowest point of the parabola through three points; none if it opens downward.
-fn vertex(t: [f64; 3], y: [f64; 3]) -> Option<f64> {
+/// The lowest point of the parabola through three points, and its value there; none if it opens downward.
+fn vertex(t: [f64; 3], y: [f64; 3]) -> Option<(f64, f64)> {
     let first = (y[1] - y[0]) / (t[1] - t[0]);
     let second = ((y[2] - y[1]) / (t[2] - t[1]) - first) / (t[2] - t[0]);
-    (second > 0.0).then(|| 0.5 * (t[0] + t[1]) - 0.5 * first / second)
+    let lowest = 0.5 * (t[0] + t[1]) - 0.5 * first / second;
+    (second > 0.0).then(|| (lowest, y[0] + (lowest - t[0]) * (first + second * (lowest - t[1]))))
 }
 
 impl Simulation {
@@ -26,56 +27,79 @@ impl Simulation {
     /// The first event of the last step: just after it, and what it was.
     pub(super) fn find_event(&mut self, t_old: f64, t_new: f64) -> Option<(f64, Watch)> {
         let half = 0.5 * (t_old + t_new);
+        // Where no mode was chosen in between, the last step ended as this one starts.
+        let mut start = std::mem::take(&mut self.at_start);
+        if !std::mem::take(&mut self.start_is_known) {
+            start.clear();
+        }
         self.margins_at(half);
-        if self.margins.iter().any(Margin::is_broken) {
-            return Some(self.bracket(t_old, half));
-        }
-        let mut middle = std::mem::take(&mut self.at_middle);
-        middle.clone_from(&self.margins);
-        self.margins_at(t_new);
-        let broken = self.margins.iter().any(Margin::is_broken);
-        let mut at_end = std::mem::take(&mut self.at_end);
-        at_end.clone_from(&self.margins);
-        // What leaves its limit and comes back within the step: near the lowest point of a parabola.
-        let dip = match broken {
-            true => None,
-            false => self.dip(t_old, t_new, &middle, &at_end),
+        let found = if self.margins.iter().any(Margin::is_broken) {
+            Some(self.bracket(t_old, half, &start, None))
+        } else {
+            let mut middle = std::mem::take(&mut self.at_middle);
+            std::mem::swap(&mut middle, &mut self.margins);
+            self.margins_at(t_new);
+            let found = if self.margins.iter().any(Margin::is_broken) {
+                Some(self.bracket(half, t_new, &middle, Some((t_old, &start))))
+            } else {
+                let mut end = std::mem::take(&mut self.at_end);
+                end.clone_from(&self.margins);
+                // What leaves its limit and comes back within the step: near the lowest point of a parabola.
+                let dip = self.dip(t_old, t_new, &mut start, &middle, &end);
+                self.at_end = end;
+                match dip {
+                    Some(t) if t > half => Some(self.bracket(half, t, &middle, None)),
+                    Some(t) => Some(self.bracket(t_old, t, &start, None)),
+                    None => None,
+                }
+            };
+            self.at_middle = middle;
+            found
         };
-        (self.at_middle, self.at_end) = (middle, at_end);
-        match dip {
-            _ if broken => {
-                self.margins_at(t_new);
-                Some(self.bracket(half, t_new))
-            }
-            Some(t) if t > half => Some(self.bracket(half, t)),
-            Some(t) => Some(self.bracket(t_old, t)),
-            None => None,
+        self.at_start = start;
+        if found.is_none() {
+            std::mem::swap(&mut self.at_start, &mut self.at_end);
+            self.start_is_known = true;
         }
+        found
     }
 
     /// A time within the step at which some margin is broken, though none is in its middle nor at its end. The
     /// margins are then those of that time.
-    fn dip(&mut self, t_old: f64, t_new: f64, middle: &[Margin], end: &[Margin]) -> Option<f64> {
+    fn dip(
+        &mut self,
+        t_old: f64,
+        t_new: f64,
+        start: &mut Vec<Margin>,
+        middle: &[Margin],
+        end: &[Margin],
+    ) -> Option<f64> {
         let reaches =
             |m: &Margin, e: &Margin| m.watch == e.watch && m.value.min(e.value) < 8.0 * (m.value - e.value).abs();
         if !middle.iter().zip(end).any(|(m, e)| reaches(m, e)) {
             return None;
         }
-        self.margins_at(t_old);
-        let start = std::mem::take(&mut self.margins);
+        if start.is_empty() {
+            self.margins_at(t_old);
+            start.clone_from(&self.margins);
+        }
         let mut found = None;
-        let candidates: Vec<(Watch, [f64; 3])> = (start.iter().zip(middle).zip(end))
-            .filter(|((s, m), e)| s.watch == m.watch && m.watch == e.watch)
-            .map(|((s, m), e)| (s.watch, [s.value, m.value, e.value]))
-            .collect();
-        self.margins = start;
-        for (watch, values) in candidates {
+        for ((s, m), e) in start.iter().zip(middle).zip(end) {
+            if s.watch != m.watch || m.watch != e.watch {
+                continue;
+            }
+            let (watch, values) = (s.watch, [s.value, m.value, e.value]);
             let (mut t, mut y) = ([t_old, 0.5 * (t_old + t_new), t_new], values);
             // Below this a value within the step is round-off of the interpolation, as where a group has just left
             // rest.
             let unseen = NOISE * values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
             for _ in 0..4 {
-                let Some(lowest) = vertex(t, y).filter(|v| *v > t[0] && *v < t[2] && *v != t[1]) else { break };
+                let inside = |v: &f64| *v > t[0] && *v < t[2] && *v != t[1];
+                let Some((lowest, value)) = vertex(t, y).filter(|(v, _)| inside(v)) else { break };
+                // One that stays as far from its limit as those that do not reach it.
+                if value >= 8.0 * (y[0].min(y[1]).min(y[2]) - value) {
+                    break;
+                }
                 self.margins_at(lowest);
                 let Some(m) = self.margins.iter().find(|m| m.watch == watch) else { break };
                 if m.is_broken() && m.value < -unseen {
@@ -101,14 +125,21 @@ impl Simulation {
         found
     }
 
-    /// The first time at which a margin is broken, between one at which none is and one at which some is.
-    fn bracket(&mut self, mut low: f64, mut high: f64) -> (f64, Watch) {
-        let broken =
-            |margins: &[Margin]| -> Vec<Margin> { margins.iter().copied().filter(Margin::is_broken).collect() };
-        let mut at_high = broken(&self.margins);
-        let mut at_low: Vec<Margin> = vec![];
-        let mut halve = false;
-        let mut first = true;
+    /// The first time at which a margin is broken, between one at which none is and one at which some is, whose margins
+    /// are those found last. `at_low`: the margins of the first, empty where they are not known; `beyond`: those of a third
+    /// time, likewise.
+    fn bracket(
+        &mut self,
+        mut low: f64,
+        mut high: f64,
+        at_low: &[Margin],
+        beyond: Option<(f64, &[Margin])>,
+    ) -> (f64, Watch) {
+        let mut at_high = self.margins.clone();
+        let mut at_low = at_low.to_vec();
+        // The end that was replaced last: a parabola goes through it and both ends.
+        let mut third = beyond.map(|(t, margins)| (t, margins.to_vec()));
+        let mut slow = 0;
         let step = high - low;
         loop {
             let width = high - low;
@@ -117,40 +148,67 @@ impl Simulation {
             if width <= least {
                 break;
             }
-            if first {
+            if at_low.is_empty() {
                 self.margins_at(low);
                 at_low.clone_from(&self.margins);
-                first = false;
             }
-            // The earliest root by the secants of those broken at the end, a little past it; every other time
-            // that does not halve the interval, its middle.
-            let guess = if halve {
+            let guess = if slow > 1 {
+                slow = 0;
                 0.5 * (low + high)
             } else {
-                let mut t = high;
-                for m in &at_high {
-                    let before = at_low.iter().find(|l| l.watch == m.watch).map_or(0.0, |l| l.value.max(0.0));
-                    t = t.min(low + width * (before / (before - m.value)));
-                }
-                t + (1e-3 * width * ((t - low).min(high - t) / width)).max(least)
+                let [t, open] = earliest([low, high], [&at_low, &at_high], third.as_ref());
+                // A little past it, as seen from the nearer end: what is found there closes the interval from the other side.
+                let past = 0.5 * least + 0.1 * open;
+                if t - low < high - t { t + past } else { t - past }
             };
             let guess = guess.clamp(low + 0.5 * least, high - 0.5 * least);
             if guess <= low || guess >= high {
                 break;
             }
             self.margins_at(guess);
-            let found = broken(&self.margins);
-            if found.is_empty() {
-                low = guess;
-                at_low.clone_from(&self.margins);
+            let (t, end) = if self.margins.iter().any(Margin::is_broken) {
+                (&mut high, &mut at_high)
             } else {
-                high = guess;
-                at_high = found;
-            }
-            halve = !halve && high - low > 0.5 * width;
+                (&mut low, &mut at_low)
+            };
+            let before = std::mem::replace(t, guess);
+            let margins = third.get_or_insert_with(Default::default);
+            margins.0 = before;
+            std::mem::swap(&mut margins.1, end);
+            end.clone_from(&self.margins);
+            slow = if high - low > 0.5 * width { slow + 1 } else { 0 };
         }
-        let first =
-            at_high.iter().min_by(|a, b| (a.value / a.noise.max(1e-300)).total_cmp(&(b.value / b.noise.max(1e-300))));
+        let part = |m: &Margin| m.value / m.noise.max(1e-300);
+        let first = at_high.iter().filter(|m| m.is_broken()).min_by(|a, b| part(a).total_cmp(&part(b)));
         (high, first.expect("broken at the end").watch)
     }
+}
+
+/// Where the earliest of the margins that are broken at the end of an interval breaks: by a parabola through both ends and
+/// a third time, and how far the secant is from that.
+fn earliest([low, high]: [f64; 2], [at_low, at_high]: [&[Margin]; 2], third: Option<&(f64, Vec<Margin>)>) -> [f64; 2] {
+    let mut first = [high, 0.0];
+    for (k, m) in at_high.iter().enumerate().filter(|(_, m)| m.is_broken()) {
+        // Margins of a mode come in the same order at all times.
+        let of = |margins: &[Margin]| margins.get(k).filter(|other| other.watch == m.watch).map(Margin::spare);
+        let (a, b) = (of(at_low).unwrap_or(0.0).max(0.0), m.spare());
+        let secant = low + (high - low) * (a / (a - b));
+        let parabola = third.and_then(|(t, margins)| {
+            let slope = (b - a) / (high - low);
+            let bend = ((of(margins)? - a) / (t - low) - slope) / (t - high);
+            // Of the polynomial in Newton's form, a + (x − low)(slope + bend (x − high)), one step from the secant's root
+            // after another: near it is the only root in the interval.
+            let mut x = secant;
+            for _ in 0..4 {
+                let value = a + (x - low) * (slope + bend * (x - high));
+                x -= value / (slope + bend * (2.0 * x - low - high));
+            }
+            (x > low && x < high).then_some(x)
+        });
+        let t = parabola.unwrap_or(secant);
+        if t < first[0] {
+            first = [t, parabola.map_or(0.0, |t| (t - secant).abs())];
+        }
+    }
+    first
 }
