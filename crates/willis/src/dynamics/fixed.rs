@@ -17,6 +17,7 @@ pub(super) mod recorded;
 mod settle;
 pub(super) mod shafts;
 mod step;
+mod trail;
 mod verdict;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
@@ -37,6 +38,7 @@ use decide::Decided;
 use groups::{GroupStep, Rub};
 use map::{Key, StepMap};
 use shafts::{MOST_SHAFTS, ShaftStep};
+use trail::Trail;
 
 /// Groups and elements that fit the key of a mode.
 const MOST_GROUPS: usize = 48;
@@ -179,6 +181,11 @@ pub struct FixedStep {
     /// Energies as the engine counts them; empty unless asked for.
     pub(super) energies: Vec<f64>,
     pub(super) came_in: Vec<f64>,
+    /// Steps whose energies are not among them yet; room for torques and mean speeds of a step.
+    trail: Trail,
+    room: [Vec<f64>; 2],
+    /// Steps that did not go on in the mode of the one before.
+    settled: u64,
     /// Losses of the elements and torques behind prescribed speeds, when decided.
     losses: Vec<f64>,
     reactions: Vec<f64>,
@@ -331,6 +338,9 @@ impl FixedStep {
             arch: pulp::Arch::new(),
             energies: vec![],
             came_in: vec![],
+            trail: Trail::default(),
+            room: Default::default(),
+            settled: 0,
             losses: vec![0.0; e],
             reactions: vec![0.0; s.prescribed],
             is_decided: false,
@@ -437,11 +447,13 @@ impl FixedStep {
         }
     }
 
-    /// Begins to count where the energy goes: `lost_energy` can be read. Steps take several times as long.
+    /// Begins to count where the energy goes: `lost_energy` can be read. Steps take up to half as long again.
     pub fn with_energies(&mut self) {
         self.engine.counts = true;
         self.energies = vec![0.0; self.engine.energies()];
         self.came_in = vec![0.0; self.engine.system.drivers.len()];
+        self.trail = Trail::new(&self.engine.system);
+        self.room = [self.engine.system.ports, self.v.len()].map(Vec::with_capacity);
         (self.present, self.seen_at) = (None, None);
     }
 
@@ -454,6 +466,7 @@ impl FixedStep {
         self.side.fill(Side::Drive);
         self.energies.fill(0.0);
         self.came_in.fill(0.0);
+        self.trail.clear();
         self.shafts.iter_mut().zip(&self.at_start.3).for_each(|(shaft, touch)| shaft.touch = *touch);
         (self.count, self.impacts) = (0, 0);
         (self.verdict, self.bound, self.turns) = (None, 0.0, 0);

@@ -87,11 +87,12 @@ impl ShaftStep {
     }
 
     /// The part of that which turns the rate at the end into heat, as given: without what looking ahead adds.
-    pub fn damper_torque(&self, rate: f64) -> f64 {
+    pub fn damper(&self) -> OfTwist {
+        let k = self.stiffness;
         match self.touch {
-            Touch::Gap | Touch::Parting(_) => 0.0,
-            Touch::On(_) => self.damping * rate,
-            Touch::Limited(side) => self.stiffness * (self.twist + self.ahead * rate - f64::from(side) * self.half),
+            Touch::Gap | Touch::Parting(_) => [0.0; 3],
+            Touch::On(_) => [0.0, self.damping, 0.0],
+            Touch::Limited(side) => [k, k * self.ahead, -k * self.half * f64::from(side)],
         }
     }
 

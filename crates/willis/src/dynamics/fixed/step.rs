@@ -34,7 +34,7 @@ impl FixedStep {
         let Some((_, map)) = self.last else { return };
         let map = &self.maps[map as usize];
         let held_shares = self.groups.iter().zip(&self.sign).any(|(group, sign)| *sign == 0 && group.shares);
-        if self.is_decided || !self.energies.is_empty() || held_shares && !map.is_redundant {
+        if self.is_decided || held_shares && !map.is_redundant {
             return;
         }
         for (j, row) in &map.still {
@@ -121,13 +121,17 @@ impl FixedStep {
             return;
         }
         let middle = self.middle();
+        let counts = !self.energies.is_empty();
         if self.is_over(middle) {
+            self.end_trail();
             let ended = self.until;
             self.refresh(middle);
             self.count_jumps(ended, middle);
             self.present = None;
         }
         if !self.glide(middle) {
+            self.settled += 1;
+            self.end_trail();
             self.load(middle);
             if !self.enters_finite(middle) {
                 return;
@@ -144,12 +148,14 @@ impl FixedStep {
             if !self.stays_bounded() {
                 return;
             }
-            if !self.energies.is_empty() {
+            if counts {
                 self.count_energies();
             }
             self.fuse();
         } else if !self.stays_bounded() {
             return;
+        } else if counts {
+            self.leave();
         }
         // What is held is at rest exactly, not but for round-off.
         if self.keeps_angles {
