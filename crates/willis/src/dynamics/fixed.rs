@@ -9,16 +9,20 @@
 
 mod decide;
 mod energies;
+mod foresee;
 pub(super) mod groups;
 mod inputs;
 mod look;
 pub(super) mod map;
+mod prepare;
 pub(super) mod recorded;
 mod settle;
 pub(super) mod shafts;
 mod step;
 mod trail;
 mod verdict;
+
+use std::sync::Arc;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::Train;
@@ -148,14 +152,16 @@ pub struct FixedStep {
     pub(super) shafts: Vec<ShaftStep>,
     /// Torques of the shafts against their relative accelerations.
     resists: Vec<f64>,
-    maps: Vec<StepMap>,
+    /// What was learned about modes is shared with clones: it never changes.
+    maps: Vec<Arc<StepMap>>,
     by_key: ByKey<Key>,
     /// The map of the last step and its key.
     last: Option<(Key, u32)>,
     /// Decisions of contacts.
     decided: Vec<Decided>,
-    /// Values of signals that are level until `until`.
+    /// Values of signals that are level, until when each is, and all are.
     level: Vec<Option<f64>>,
+    level_ends: Vec<f64>,
     pub(super) until: f64,
     /// The first signal of each source.
     signal_of: Vec<usize>,
@@ -168,9 +174,12 @@ pub struct FixedStep {
     pub(super) varying: Vec<usize>,
     pub(super) factors: Vec<f64>,
     /// Steps of modes met before, and the present one with its part of level inputs and its round-off.
-    pub(super) fused: Vec<Fused>,
+    pub(super) fused: Vec<Arc<Fused>>,
     by_exact_key: ByKey<Exactly>,
     pub(super) present: Option<u32>,
+    /// By mode before a step that was searched for, the fused step of the mode found; whether those may be used.
+    followed: ByKey<Exactly>,
+    is_certain: bool,
     pub(super) base: Vec<f64>,
     pub(super) least: Vec<f64>,
     pub(super) ends: Vec<f64>,
@@ -321,6 +330,7 @@ impl FixedStep {
             last: None,
             decided: vec![],
             level: vec![None; signals],
+            level_ends: vec![f64::NEG_INFINITY; signals],
             until: f64::NEG_INFINITY,
             governors,
             signal_of,
@@ -331,6 +341,8 @@ impl FixedStep {
             fused: Vec::with_capacity(64),
             by_exact_key: ByKey::with_capacity_and_hasher(64, Default::default()),
             present: None,
+            followed: ByKey::with_capacity_and_hasher(256, Default::default()),
+            is_certain: Self::has_one_motion(&engine),
             base: vec![],
             least: vec![],
             ends: vec![],
@@ -478,6 +490,7 @@ impl FixedStep {
     ///
     /// A step that meets a mode for the first time prepares it, which takes many times as long as a step and
     /// memory. After a rehearsal the same run meets no new mode: its steps allocate nothing and take bounded time.
+    /// The modes next to those met are prepared as well, up to 16 MB of them, so that few are new under other inputs.
     pub fn rehearse(&mut self) {
         self.reset();
         for _ in 0..self.steps() {
@@ -486,6 +499,7 @@ impl FixedStep {
                 self.look_at_forces();
             }
         }
+        self.prepare_neighbours();
         self.reset();
     }
 

@@ -165,6 +165,17 @@ const BITS: usize = 3;
 /// Shafts that fit the key of a mode.
 pub(super) const MOST_SHAFTS: usize = 64 / BITS;
 
+/// Contacts by their number in a word.
+const TOUCHES: [Touch; 7] = [
+    Touch::Gap,
+    Touch::On(-1),
+    Touch::On(1),
+    Touch::Limited(-1),
+    Touch::Limited(1),
+    Touch::Parting(-1),
+    Touch::Parting(1),
+];
+
 /// The contacts as a word.
 pub(in crate::dynamics) fn word(shafts: &[ShaftStep]) -> u64 {
     let code = |touch: Touch| match touch {
@@ -174,4 +185,22 @@ pub(in crate::dynamics) fn word(shafts: &[ShaftStep]) -> u64 {
         Touch::Parting(side) => 5 + u64::from(side > 0),
     };
     shafts.iter().fold(0, |word, shaft| word << BITS | code(shaft.touch))
+}
+
+/// Contact of the shaft that is so far from the last.
+fn code(word: u64, from_last: usize) -> usize {
+    (word >> (BITS * from_last)) as usize & ((1 << BITS) - 1)
+}
+
+/// Takes the contacts from a word.
+pub(super) fn set_word(shafts: &mut [ShaftStep], word: u64) {
+    shafts.iter_mut().rev().enumerate().for_each(|(k, shaft)| shaft.touch = TOUCHES[code(word, k)]);
+}
+
+/// The words in which one of so many contacts is another.
+pub(super) fn others(word: u64, shafts: usize) -> impl Iterator<Item = u64> {
+    (0..shafts).flat_map(move |k| {
+        let without = word & !(((1 << BITS) - 1) << (BITS * k));
+        (0..TOUCHES.len() as u64).filter(move |c| *c != code(word, k) as u64).map(move |c| without | c << (BITS * k))
+    })
 }

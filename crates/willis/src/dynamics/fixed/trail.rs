@@ -135,7 +135,7 @@ impl Trail {
 
 impl FixedStep {
     /// Leaves what the step that goes on from the present speeds is made of.
-    #[inline]
+    #[inline(never)]
     pub(super) fn leave(&mut self) {
         let Trail { numbers, steps, .. } = &mut self.trail;
         let at = *steps % STEPS;
@@ -518,10 +518,15 @@ mod tests {
             (set(PULSES), "run", 1e-5, true),
             (set(DRIVEN), "run", 1e-3, true),
             (SHAFT.to_owned(), "run", 1e-3, false),
-            (include_str!("../../../../../examples/galvagno.toml").to_owned(), "two controllers and a load", 1e-4, true),
+            (
+                include_str!("../../../../../examples/galvagno.toml").to_owned(),
+                "two controllers and a load",
+                1e-4,
+                true,
+            ),
             (include_str!("../../../../../examples/galvagno.toml").to_owned(), "load taken off", 1e-3, true),
             (include_str!("../../../../../examples/shift-8hp70.toml").to_owned(), "", 1e-3, true),
-            (include_str!("../../../../../examples/launch.toml").to_owned(), "", 1e-3, true),
+            (include_str!("../../../../../examples/launch.toml").to_owned(), "", 1e-3, false),
             (lossy_gear, "", 1e-3, true),
         ];
         for (text, scenario, h, closes) in cases {
