@@ -173,11 +173,6 @@ fn longest(_: &mut Criterion) {
         x[x.len() / 2]
     };
     let worst = |x: &[f64]| x.iter().copied().fold(0.0, f64::max);
-    let mut order: Vec<usize> = (0..known.len()).collect();
-    order.sort_by(|a, b| known[*b].total_cmp(&known[*a]));
-    for k in &order[..24] {
-        println!("TMP {k} {:.0} first {:.0}", ns(known[*k]), ns(first[*k]));
-    }
     let at = |x: &[f64]| x.iter().position(|t| *t == worst(x)).unwrap_or(0);
     println!("the longest steps begin at {} ms, first {} ms", at(&known), at(&first));
     let sums = [

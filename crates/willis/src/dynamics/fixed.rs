@@ -7,6 +7,7 @@
 //! torques at the mean of both speeds. Sources: Moreau's time stepping, as in Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical
 //! Systems*, 2008, ch. 10.
 
+mod audit;
 mod decide;
 mod energies;
 mod foresee;
