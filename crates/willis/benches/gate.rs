@@ -32,8 +32,10 @@ const TASKS: &[Task] = &[
     ("automatic-load-gear-5", POINTS, |n| automatic("5", true, n)),
     ("automatic-load-one-point", POINTS, |n| one_point(true, n)),
     ("eight-speed-text-to-answer", 1, cold),
-    ("set-fixed-step", 20_000, |n| steps(&trains::set(), "pulses", 20_000, n)),
-    ("automatic-fixed-step", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, n)),
+    ("set-fixed-step", 20_000, |n| steps(&trains::set(), "pulses", 20_000, false, n)),
+    ("set-fixed-step-audited", 20_000, |n| steps(&trains::set(), "pulses", 20_000, true, n)),
+    ("automatic-fixed-step", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, false, n)),
+    ("automatic-fixed-step-audited", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, true, n)),
     ("set-batch", RUNS * BATCH_STEPS, |n| batch(&trains::set(), "pulses", n)),
     ("automatic-batch", RUNS * BATCH_STEPS, |n| batch(&trains::automatic(), "through the gears", n)),
 ];
@@ -128,10 +130,13 @@ fn cold(n: usize) {
     }
 }
 
-/// Whole runs in steps of 1 ms, modes known.
-fn steps(train: &Train, scenario: &str, steps: u64, n: usize) {
+/// Whole runs in steps of 1 ms, modes known; with the energies counted or without.
+fn steps(train: &Train, scenario: &str, steps: u64, audited: bool, n: usize) {
     let mut run = FixedStep::new(train, scenario, 1e-3).unwrap();
     run.without_angles();
+    if audited {
+        run.with_energies();
+    }
     run.rehearse();
     for _ in 0..n {
         run.reset();

@@ -76,7 +76,7 @@ fn adaptive(c: &mut Criterion) {
 /// Step length, name, and how near the end of the automatic and of the set is to the true one.
 const STEPS: [(f64, &str, [f64; 2]); 2] = [(1e-3, "1e-3", [1e-5, 1e-2]), (1e-4, "1e-4", [1e-6, 1e-3])];
 
-/// A run in steps, modes known; speeds only, as in a batch.
+/// A run in steps, modes known; speeds only, as in a batch, and with the energies counted.
 fn fixed(c: &mut Criterion) {
     let mut group = c.benchmark_group("motion");
     group.sample_size(20);
@@ -94,6 +94,13 @@ fn fixed(c: &mut Criterion) {
             record(&task, steps, &[(member, end)]);
             group.throughput(Throughput::Elements(steps as u64));
             group.bench_function(&task, |b| {
+                b.iter(|| {
+                    run.reset();
+                    run.run(black_box(steps as u64));
+                });
+            });
+            run.with_energies();
+            group.bench_function(format!("{task}-audited"), |b| {
                 b.iter(|| {
                     run.reset();
                     run.run(black_box(steps as u64));
@@ -170,6 +177,8 @@ fn longest(_: &mut Criterion) {
         x[x.len() / 2]
     };
     let worst = |x: &[f64]| x.iter().copied().fold(0.0, f64::max);
+    let at = |x: &[f64]| x.iter().position(|t| *t == worst(x)).unwrap_or(0);
+    println!("the longest steps begin at {} ms, first {} ms", at(&known), at(&first));
     let sums = [
         ("longest_ns", ns(worst(&known))),
         ("median_ns", ns(median(&known))),

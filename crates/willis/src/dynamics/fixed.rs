@@ -7,18 +7,24 @@
 //! torques at the mean of both speeds. Sources: Moreau's time stepping, as in Acary and Brogliato, *Numerical Methods for Nonsmooth Dynamical
 //! Systems*, 2008, ch. 10.
 
+mod audit;
 mod decide;
 mod decided;
 mod energies;
+mod foresee;
 pub(super) mod groups;
 mod inputs;
 mod look;
 pub(super) mod map;
+mod prepare;
 pub(super) mod recorded;
 mod settle;
 pub(super) mod shafts;
 mod step;
+mod trail;
 mod verdict;
+
+use std::sync::Arc;
 
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::Train;
@@ -38,6 +44,7 @@ use decided::Decided;
 use groups::{GroupStep, Rub};
 use map::{Key, StepMap};
 use shafts::{MOST_SHAFTS, ShaftStep};
+use trail::Trail;
 
 /// Groups and elements that fit the key of a mode.
 const MOST_GROUPS: usize = 48;
@@ -147,14 +154,16 @@ pub struct FixedStep {
     pub(super) shafts: Vec<ShaftStep>,
     /// Torques of the shafts against their relative accelerations.
     resists: Vec<f64>,
-    maps: Vec<StepMap>,
+    /// What was learned about modes is shared with clones: it never changes.
+    maps: Vec<Arc<StepMap>>,
     by_key: ByKey<Key>,
     /// The map of the last step and its key.
     last: Option<(Key, u32)>,
     /// Decisions of contacts.
     decided: Vec<Decided>,
-    /// Values of signals that are level until `until`.
+    /// Values of signals that are level, until when each is, and all are.
     level: Vec<Option<f64>>,
+    level_ends: Vec<f64>,
     pub(super) until: f64,
     /// The first signal of each source.
     signal_of: Vec<usize>,
@@ -167,9 +176,12 @@ pub struct FixedStep {
     pub(super) varying: Vec<usize>,
     pub(super) factors: Vec<f64>,
     /// Steps of modes met before, and the present one with its part of level inputs and its round-off.
-    pub(super) fused: Vec<Fused>,
+    pub(super) fused: Vec<Arc<Fused>>,
     by_exact_key: ByKey<Exactly>,
     pub(super) present: Option<u32>,
+    /// By mode before a step that was searched for, the fused step of the mode found; whether those may be used.
+    followed: ByKey<Exactly>,
+    is_certain: bool,
     pub(super) base: Vec<f64>,
     pub(super) least: Vec<f64>,
     pub(super) ends: Vec<f64>,
@@ -180,6 +192,11 @@ pub struct FixedStep {
     /// Energies as the engine counts them; empty unless asked for.
     pub(super) energies: Vec<f64>,
     pub(super) came_in: Vec<f64>,
+    /// Steps whose energies are not among them yet; room for torques and mean speeds of a step.
+    trail: Trail,
+    room: [Vec<f64>; 2],
+    /// Steps that did not go on in the mode of the one before.
+    settled: u64,
     /// Losses of the elements and torques behind prescribed speeds, when decided.
     losses: Vec<f64>,
     reactions: Vec<f64>,
@@ -315,6 +332,7 @@ impl FixedStep {
             last: None,
             decided: vec![],
             level: vec![None; signals],
+            level_ends: vec![f64::NEG_INFINITY; signals],
             until: f64::NEG_INFINITY,
             governors,
             signal_of,
@@ -325,6 +343,8 @@ impl FixedStep {
             fused: Vec::with_capacity(64),
             by_exact_key: ByKey::with_capacity_and_hasher(64, Default::default()),
             present: None,
+            followed: ByKey::with_capacity_and_hasher(256, Default::default()),
+            is_certain: Self::has_one_motion(&engine),
             base: vec![],
             least: vec![],
             ends: vec![],
@@ -332,6 +352,9 @@ impl FixedStep {
             arch: pulp::Arch::new(),
             energies: vec![],
             came_in: vec![],
+            trail: Trail::default(),
+            room: Default::default(),
+            settled: 0,
             losses: vec![0.0; e],
             reactions: vec![0.0; s.prescribed],
             is_decided: false,
@@ -438,11 +461,13 @@ impl FixedStep {
         }
     }
 
-    /// Begins to count where the energy goes: `lost_energy` can be read. Steps take several times as long.
+    /// Begins to count where the energy goes: `lost_energy` can be read. Steps take up to half as long again.
     pub fn with_energies(&mut self) {
         self.engine.counts = true;
         self.energies = vec![0.0; self.engine.energies()];
         self.came_in = vec![0.0; self.engine.system.drivers.len()];
+        self.trail = Trail::new(&self.engine.system);
+        self.room = [self.engine.system.ports, self.v.len()].map(Vec::with_capacity);
         (self.present, self.seen_at) = (None, None);
     }
 
@@ -455,6 +480,7 @@ impl FixedStep {
         self.side.fill(Side::Drive);
         self.energies.fill(0.0);
         self.came_in.fill(0.0);
+        self.trail.clear();
         self.shafts.iter_mut().zip(&self.at_start.3).for_each(|(shaft, touch)| shaft.touch = *touch);
         (self.count, self.impacts) = (0, 0);
         (self.verdict, self.bound, self.turns) = (None, 0.0, 0);
@@ -466,6 +492,7 @@ impl FixedStep {
     ///
     /// A step that meets a mode for the first time prepares it, which takes many times as long as a step and
     /// memory. After a rehearsal the same run meets no new mode: its steps allocate nothing and take bounded time.
+    /// The modes next to those met are prepared as well, up to 16 MB of them, so that few are new under other inputs.
     pub fn rehearse(&mut self) {
         self.reset();
         for _ in 0..self.steps() {
@@ -474,6 +501,7 @@ impl FixedStep {
                 self.look_at_forces();
             }
         }
+        self.prepare_neighbours();
         self.reset();
     }
 

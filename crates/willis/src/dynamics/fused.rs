@@ -21,13 +21,16 @@ pub(super) struct Fused {
     /// Speeds after the step, then margins, then zeros up to a whole number of blocks.
     pub rows: usize,
     pub free: usize,
+    /// The end of the margins.
+    checked: usize,
+    pub mode: Exactly,
     /// Columns of the speeds before the step, then of the inputs.
     columns: Vec<f64>,
 }
 
 /// What tells a mode from others: by group whether it is held, slides forward, or has nothing to hold it; by element
 /// its side, for teeth at rest the sign of the torque in them.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Default)]
 pub(super) struct Exactly {
     pub held: u64,
     pub forward: u64,
@@ -217,9 +220,15 @@ impl Fused {
             row[all + one] += along * (loss.drive_torque - loss.coast_torque);
             rows.push(row);
         }
-        rows.resize(rows.len().next_multiple_of(BLOCK), vec![0.0; width]);
+        let checked = rows.len();
+        rows.resize(checked.next_multiple_of(BLOCK), vec![0.0; width]);
         let columns = (0..width).flat_map(|c| rows.iter().map(move |row| row[c])).collect();
-        Self { rows: rows.len(), free, columns }
+        Self { rows: rows.len(), free, checked, mode: *mode, columns }
+    }
+
+    /// How many numbers it is made of.
+    pub fn size(&self) -> usize {
+        self.columns.len()
     }
 
     /// Column of a speed, or of an input behind them.
@@ -244,7 +253,7 @@ impl Fused {
         base.resize(self.rows, 0.0);
         least.clear();
         least.resize(self.rows, 0.0);
-        for (k, x) in v.iter().chain(inputs).enumerate() {
+        for (k, x) in v.iter().chain(inputs).enumerate().filter(|(_, x)| **x != 0.0) {
             let is_level = k >= v.len() && !varying.contains(&(k - v.len()));
             for ((b, l), w) in base.iter_mut().zip(least.iter_mut()).zip(self.column(k)) {
                 let part = w * x;
@@ -255,6 +264,35 @@ impl Fused {
             }
         }
         least[..self.free].fill(f64::NEG_INFINITY);
+    }
+}
+
+/// By how many times its round-off a margin is far from its edge.
+const FAR: f64 = 1e3;
+
+impl Fused {
+    /// Whether every margin is far from its edge at these speeds and inputs; what [`settle`](Self::settle) gave, and
+    /// room for the ends of the step.
+    pub fn holds_by_far(
+        &self,
+        [v, inputs]: [&[f64]; 2],
+        varying: &[usize],
+        [base, least]: [&[f64]; 2],
+        ends: &mut Vec<f64>,
+    ) -> bool {
+        ends.clear();
+        ends.extend_from_slice(base);
+        for (k, v) in v.iter().enumerate() {
+            add_column(ends, self.column(k), *v);
+        }
+        for &k in varying {
+            add_column(ends, self.column(v.len() + k), inputs[k]);
+        }
+        let margins = self.free..self.checked;
+        ends[margins.clone()]
+            .iter()
+            .zip(&least[margins])
+            .fold(true, |holds, (end, least)| holds & (*end > -FAR * least))
     }
 }
 

@@ -178,7 +178,7 @@ impl Pattern {
 /// The maps met so far.
 #[derive(Clone, Default)]
 pub(super) struct Maps {
-    patterns: HashMap<Vec<u8>, Option<Pattern>>,
+    patterns: HashMap<Vec<u8>, Option<Arc<Pattern>>>,
     by_mode: HashMap<Mode, usize>,
     maps: Vec<Option<Arc<Map>>>,
 }
@@ -209,9 +209,9 @@ impl Maps {
             .entry(key)
             .or_insert_with(|| {
                 let slopes: Vec<f64> = (0..system.elements.len()).map(|j| mode.slope(system, j)).collect();
-                Pattern::new(system, &slopes, resists)
+                Pattern::new(system, &slopes, resists).map(Arc::new)
             })
-            .as_ref()
+            .as_deref()
     }
 
     /// The map of a mode in which no element of varying slope moves; `None` if it has no unique solution.

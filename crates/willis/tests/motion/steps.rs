@@ -32,6 +32,41 @@ fn no_step_allocates_after_a_rehearsal() {
     assert_eq!(steps_that_allocate(&trains::automatic(), "through the gears", 16_000), [0usize; 0]);
 }
 
+/// Few of those under other inputs than the rehearsed ones do: they go through the modes beside.
+#[test]
+fn other_inputs_meet_modes_that_are_prepared() {
+    for (torque, most) in [(140.0, 0), (90.0, 3)] {
+        let mut run = FixedStep::new(&trains::automatic(), "through the gears", 1e-3).unwrap();
+        run.rehearse();
+        let engine = run.input("engine").unwrap();
+        // The first value takes the place of the signal that the file gives.
+        run.set(engine, torque).unwrap();
+        let allocates = |run: &mut FixedStep| measure(|| run.step()).count_total > 0;
+        let steps: Vec<usize> = (0..16_000).filter(|_| allocates(&mut run)).collect();
+        assert!(steps.len() <= most, "{torque} N m: {} steps allocate: {steps:?}", steps.len());
+    }
+}
+
+/// Counting energies takes no memory, and changes no step.
+#[test]
+fn energies_are_counted_beside_the_steps() {
+    for (train, scenario, steps) in
+        [(trains::set(), "pulses", 20_000), (trains::automatic(), "through the gears", 16_000)]
+    {
+        let mut plain = FixedStep::new(&train, scenario, 1e-3).unwrap();
+        plain.rehearse();
+        let mut counted = plain.clone();
+        counted.with_energies();
+        counted.rehearse();
+        let taken = measure(|| (0..steps).for_each(|_| counted.step()));
+        assert_eq!(taken.count_total, 0, "{scenario}");
+        plain.run(steps);
+        let speeds =
+            |run: &FixedStep| members(&train).iter().map(|m| run.speed(m).unwrap().to_bits()).collect::<Vec<_>>();
+        assert_eq!(speeds(&plain), speeds(&counted), "{scenario}");
+    }
+}
+
 /// Handles of everything that can be read, with their names.
 fn outputs(run: &mut FixedStep) -> Vec<(String, Output)> {
     let names: Vec<String> = run.outputs().into_iter().map(|c| c.name).collect();

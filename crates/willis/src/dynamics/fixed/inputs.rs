@@ -12,10 +12,15 @@ impl FixedStep {
     #[cold]
     pub(in crate::dynamics) fn refresh(&mut self, t: f64) {
         let s = &self.engine.system;
-        self.until = s.signals().map(|s| s.next_break(t)).fold(f64::INFINITY, f64::min);
-        for (level, signal) in self.level.iter_mut().zip(s.signals()) {
-            let moves = signal.moves(t);
-            *level = (!moves).then(|| signal.value(t, t, &|_| 0.0));
+        // A signal that has no break yet is as it was, unless another has taken its place.
+        let afresh = self.until == f64::NEG_INFINITY;
+        self.until = f64::INFINITY;
+        for ((level, ends), signal) in self.level.iter_mut().zip(&mut self.level_ends).zip(s.signals()) {
+            if afresh || t >= *ends {
+                *ends = signal.next_break(t);
+                *level = (!signal.moves(t)).then(|| signal.value(t, t, &|_| 0.0));
+            }
+            self.until = self.until.min(*ends);
         }
         self.varying.clear();
         let drivers = s.drivers.len();

@@ -8,6 +8,7 @@ impl FixedStep {
     /// Brings the engine to the state and mode reached.
     pub(super) fn copy_to_engine(&mut self, x: &mut Vec<f64>) {
         let free = self.engine.system.free;
+        self.audit();
         x.clear();
         x.extend_from_slice(&self.v[..free]);
         x.extend_from_slice(&self.rest);

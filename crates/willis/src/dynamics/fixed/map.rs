@@ -19,7 +19,7 @@ pub(in crate::dynamics) struct StepMap {
 }
 
 /// Key of a map: which groups are held, and the sides of what moves.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub(super) struct Key {
     pub held: u64,
     pub coast: u64,

@@ -35,7 +35,7 @@ pub(in crate::dynamics) fn fixed(
     stepper.engine.system.scenario.end = end;
     let recorder = &mut Window::new(run.from, recorder);
     let mut x = Vec::new();
-    let mut key = None;
+    let (mut key, mut settled) = (None, u64::MAX);
     let steps = stepper.steps();
     let nodes = stepper.engine.system.nodes as f64;
     let effort = Effort::new("steps", steps, FIXED_STEP * (1.0 + nodes * nodes / 100.0));
@@ -47,7 +47,9 @@ pub(in crate::dynamics) fn fixed(
         }
         let t = stepper.time();
         let sampled = run.is_row_due(t, h);
-        let changed = key != Some(stepper.state_of_modes());
+        // A step that goes on in its mode changes nothing that labels depend on.
+        let changed = settled != stepper.settled && key != Some(stepper.state_of_modes());
+        settled = stepper.settled;
         // No step has chosen the mode of the start yet.
         if step == 0 {
             if let Err(outcome) = run.choose(recorder) {

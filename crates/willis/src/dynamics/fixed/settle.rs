@@ -1,5 +1,7 @@
 //! The mode of a step: one that agrees with the speeds at its end.
 
+use std::sync::Arc;
+
 use crate::dynamics::engine::Touch;
 use crate::dynamics::mode::{Side, dot, dot_size};
 use crate::dynamics::rounding::NOISE;
@@ -12,7 +14,7 @@ use super::shafts::word;
 impl FixedStep {
     /// The map of a mode, made if it was not met before: the only place that takes more than bounded time.
     #[inline]
-    fn map(&mut self, key: Key) -> Option<u32> {
+    pub(super) fn map(&mut self, key: Key) -> Option<u32> {
         if let Some((k, map)) = self.last
             && k == key
         {
@@ -35,7 +37,7 @@ impl FixedStep {
         let made = self.engine.maps.pattern_with(s, &mode, resists).and_then(|pattern| step_map(s, &mode, pattern));
         let k = match made {
             Some(map) => {
-                self.maps.push(map);
+                self.maps.push(Arc::new(map));
                 self.maps.len() as u32 - 1
             }
             None => u32::MAX,
@@ -284,6 +286,30 @@ impl FixedStep {
             }
         }
         false
+    }
+}
+
+impl FixedStep {
+    /// Solves the step in a mode that is known to be that of it.
+    pub(super) fn solve_known(&mut self) {
+        let (free, cols) = (self.engine.system.free, self.tau.len());
+        self.arch.dispatch(Solve { step: self, free, cols });
+    }
+}
+
+/// [`FixedStep::solve`] likewise.
+struct Solve<'a> {
+    step: &'a mut FixedStep,
+    free: usize,
+    cols: usize,
+}
+
+impl pulp::WithSimd for Solve<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        self.step.solve(self.free, self.cols).expect("a mode with a fused step has a map");
     }
 }
 

@@ -87,11 +87,12 @@ impl ShaftStep {
     }
 
     /// The part of that which turns the rate at the end into heat, as given: without what looking ahead adds.
-    pub fn damper_torque(&self, rate: f64) -> f64 {
+    pub fn damper(&self) -> OfTwist {
+        let k = self.stiffness;
         match self.touch {
-            Touch::Gap | Touch::Parting(_) => 0.0,
-            Touch::On(_) => self.damping * rate,
-            Touch::Limited(side) => self.stiffness * (self.twist + self.ahead * rate - f64::from(side) * self.half),
+            Touch::Gap | Touch::Parting(_) => [0.0; 3],
+            Touch::On(_) => [0.0, self.damping, 0.0],
+            Touch::Limited(side) => [k, k * self.ahead, -k * self.half * f64::from(side)],
         }
     }
 
@@ -164,6 +165,17 @@ const BITS: usize = 3;
 /// Shafts that fit the key of a mode.
 pub(super) const MOST_SHAFTS: usize = 64 / BITS;
 
+/// Contacts by their number in a word.
+const TOUCHES: [Touch; 7] = [
+    Touch::Gap,
+    Touch::On(-1),
+    Touch::On(1),
+    Touch::Limited(-1),
+    Touch::Limited(1),
+    Touch::Parting(-1),
+    Touch::Parting(1),
+];
+
 /// The contacts as a word.
 pub(in crate::dynamics) fn word(shafts: &[ShaftStep]) -> u64 {
     let code = |touch: Touch| match touch {
@@ -173,4 +185,22 @@ pub(in crate::dynamics) fn word(shafts: &[ShaftStep]) -> u64 {
         Touch::Parting(side) => 5 + u64::from(side > 0),
     };
     shafts.iter().fold(0, |word, shaft| word << BITS | code(shaft.touch))
+}
+
+/// Contact of the shaft that is so far from the last.
+fn code(word: u64, from_last: usize) -> usize {
+    (word >> (BITS * from_last)) as usize & ((1 << BITS) - 1)
+}
+
+/// Takes the contacts from a word.
+pub(super) fn set_word(shafts: &mut [ShaftStep], word: u64) {
+    shafts.iter_mut().rev().enumerate().for_each(|(k, shaft)| shaft.touch = TOUCHES[code(word, k)]);
+}
+
+/// The words in which one of so many contacts is another.
+pub(super) fn others(word: u64, shafts: usize) -> impl Iterator<Item = u64> {
+    (0..shafts).flat_map(move |k| {
+        let without = word & !(((1 << BITS) - 1) << (BITS * k));
+        (0..TOUCHES.len() as u64).filter(move |c| *c != code(word, k) as u64).map(move |c| without | c << (BITS * k))
+    })
 }

@@ -1,5 +1,7 @@
 //! One step: on in the present mode if that still holds, else the mode is settled anew.
 
+use std::sync::Arc;
+
 use crate::dynamics::fused::{Exactly, Fused, add_column};
 use crate::dynamics::mode::{Side, dot};
 use crate::train::{MemberId, SourceKind};
@@ -28,13 +30,26 @@ impl FixedStep {
         key
     }
 
+    /// The fused step of a mode with this map, made if it was not met before.
+    pub(super) fn fused_of(&mut self, map: u32, mode: Exactly) -> u32 {
+        if let Some(&k) = self.by_exact_key.get(&mode) {
+            return k;
+        }
+        let (s, map) = (&self.engine.system, &self.maps[map as usize]);
+        let fused = Fused::new(s, &self.groups, &self.teeth, &self.shafts, map, &mode, self.h);
+        self.fused.push(Arc::new(fused));
+        let k = self.fused.len() as u32 - 1;
+        self.by_exact_key.insert(mode, k);
+        k
+    }
+
     /// Makes the fused step of the mode just settled the present one.
     fn fuse(&mut self) {
         self.present = None;
-        let Some((_, map)) = self.last else { return };
-        let map = &self.maps[map as usize];
+        let Some((_, map_of)) = self.last else { return };
+        let map = &self.maps[map_of as usize];
         let held_shares = self.groups.iter().zip(&self.sign).any(|(group, sign)| *sign == 0 && group.shares);
-        if self.is_decided || !self.energies.is_empty() || held_shares && !map.is_redundant {
+        if self.is_decided || held_shares && !map.is_redundant {
             return;
         }
         for (j, row) in &map.still {
@@ -42,16 +57,7 @@ impl FixedStep {
             self.side[usize::from(*j)] = if torque >= 0.0 { Side::Drive } else { Side::Coast };
         }
         let key = self.exactly();
-        let k = match self.by_exact_key.get(&key) {
-            Some(&k) => k,
-            None => {
-                let s = &self.engine.system;
-                self.fused.push(Fused::new(s, &self.groups, &self.teeth, &self.shafts, map, &key, self.h));
-                let k = self.fused.len() as u32 - 1;
-                self.by_exact_key.insert(key, k);
-                k
-            }
-        };
+        let k = self.fused_of(map_of, key);
         let fused = &self.fused[k as usize];
         fused.settle(&self.v, &self.inputs, &self.varying, &mut self.base, &mut self.least);
         self.ends.resize(fused.rows, 0.0);
@@ -115,6 +121,40 @@ impl FixedStep {
         square <= self.bound || self.may_grow(square)
     }
 
+    /// Finds the mode of the step and its end; false if the run ends before it.
+    #[cold]
+    #[inline(never)]
+    fn settle_anew(&mut self, middle: f64) -> bool {
+        self.settled += 1;
+        self.end_trail();
+        self.load(middle);
+        if !self.enters_finite(middle) {
+            return false;
+        }
+        let (free, cols) = (self.engine.system.free, self.tau.len());
+        (self.is_decided, self.present) = (false, None);
+        let before = self.exactly();
+        let foreseen = self.is_certain && self.foresee(&before);
+        if !foreseen
+            && !self.arch.dispatch(Settle { step: self, free, cols })
+            && let Err(verdict) = self.decide()
+        {
+            self.stop_without_motion(verdict);
+            return false;
+        }
+        if !self.stays_bounded() {
+            return false;
+        }
+        if !self.energies.is_empty() {
+            self.count_energies();
+        }
+        if !foreseen {
+            self.fuse();
+            self.remember(before);
+        }
+        true
+    }
+
     /// Takes one step; none after a [verdict](Self::verdict).
     pub fn step(&mut self) {
         if self.verdict.is_some() {
@@ -122,34 +162,20 @@ impl FixedStep {
         }
         let middle = self.middle();
         if self.is_over(middle) {
+            self.end_trail();
             let ended = self.until;
             self.refresh(middle);
             self.count_jumps(ended, middle);
             self.present = None;
         }
         if !self.glide(middle) {
-            self.load(middle);
-            if !self.enters_finite(middle) {
+            if !self.settle_anew(middle) {
                 return;
             }
-            let free = self.engine.system.free;
-            let cols = self.tau.len();
-            self.is_decided = false;
-            if !self.arch.dispatch(Settle { step: self, free, cols })
-                && let Err(verdict) = self.decide()
-            {
-                self.stop_without_motion(verdict);
-                return;
-            }
-            if !self.stays_bounded() {
-                return;
-            }
-            if !self.energies.is_empty() {
-                self.count_energies();
-            }
-            self.fuse();
         } else if !self.stays_bounded() {
             return;
+        } else if !self.energies.is_empty() {
+            self.leave();
         }
         // What is held is at rest exactly, not but for round-off.
         if self.keeps_angles {

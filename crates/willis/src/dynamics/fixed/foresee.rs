@@ -1,0 +1,66 @@
+//! Changes of mode that were met before are not searched for again.
+//!
+//! The mode that followed on one before is looked at first. Its fused step says by how much each of its conditions holds.
+//! Where all hold by far more than their round-off, and every state of the train has one motion, the search would find
+//! the same mode; the step is solved as the search solves it, so that it ends in the same bits whether or not it was
+//! foreseen. What is nearer to the edge, or has teeth that may hold, is searched for.
+
+use crate::dynamics::engine::Engine;
+use crate::dynamics::fused::Exactly;
+use crate::dynamics::mode::Side;
+
+use super::FixedStep;
+use super::groups::LEAST_UNBOUNDED;
+
+impl FixedStep {
+    /// Whether modes may be foreseen at all: what breaks away at a peak holds or slides by what it did before, and a
+    /// contact of a shaft by how it came there.
+    pub(super) fn has_one_motion(engine: &Engine) -> bool {
+        let s = &engine.system;
+        engine.certificate == Some(true) && s.elastic.is_empty() && s.frictions.iter().all(|f| f.peak == 1.0)
+    }
+
+    /// Takes the step in the mode that followed on this one before, if that is certainly the one to be found; else
+    /// nothing but the room for a fused step is touched.
+    pub(super) fn foresee(&mut self, before: &Exactly) -> bool {
+        let Some(&k) = self.followed.get(before) else { return false };
+        let fused = &self.fused[k as usize];
+        fused.settle(&self.v, &self.inputs, &self.varying, &mut self.base, &mut self.least);
+        let settled = [&self.base[..], &self.least];
+        if !fused.holds_by_far([&self.v, &self.inputs], &self.varying, settled, &mut self.ends) {
+            return false;
+        }
+        let Exactly { held, forward, idle, coast, .. } = fused.mode;
+        let sign = |g: usize| -> i8 {
+            let is = |word: u64| word >> g & 1 == 1;
+            if is(held) { 0 } else { 2 * i8::from(is(forward) || is(idle)) - 1 }
+        };
+        // What is open, or locked, is so now as it was then.
+        let differs = self.groups.iter().zip(&self.capacity).enumerate().any(|(g, (group, capacity))| {
+            let is_open = *capacity == [0.0; 2] && group.elements.is_empty();
+            let locks = |sign: i8| sign != 0 && capacity[usize::from(sign < 0)] >= LEAST_UNBOUNDED;
+            sign(g) != 0 && is_open != (idle >> g & 1 == 1) || !group.driven && locks(sign(g))
+        });
+        if differs {
+            return false;
+        }
+        for (g, _) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
+            self.sign[g] = sign(g);
+        }
+        for (j, side) in self.side.iter_mut().enumerate() {
+            *side = if coast >> j & 1 == 1 { Side::Coast } else { Side::Drive };
+        }
+        self.solve_known();
+        self.present = Some(k);
+        true
+    }
+
+    /// Remembers which mode followed on another.
+    pub(super) fn remember(&mut self, before: Exactly) {
+        let Some(k) = self.present.filter(|_| self.is_certain) else { return };
+        let has_still = self.last.is_some_and(|(_, map)| !self.maps[map as usize].still.is_empty());
+        if !has_still {
+            self.followed.insert(before, k);
+        }
+    }
+}
