@@ -315,6 +315,20 @@ impl Equilibrium {
         m
     }
 
+    /// The sizes of the terms that the entries of that matrix are sums of: what rounding is measured by. Where a basic ratio
+    /// is near one the terms of a carrier nearly cancel, and an entry may be all round-off.
+    fn sizes(&self, rho: &dyn Fn(usize) -> f64) -> DMatrix<f64> {
+        let n = self.columns.len();
+        let mut m = DMatrix::zeros(n, n);
+        for (j, column) in self.columns.iter().enumerate() {
+            let rho = rho(j);
+            for &(r, constant, slope) in &column.floats {
+                m[(r, j)] = constant.abs() + (slope * rho).abs();
+            }
+        }
+        m
+    }
+
     /// Whether `B(ρ)` is regular on the whole box given by a centre and a radius for each column.
     ///
     /// With any matrix `R ≈ B_c⁻¹`, `R B(ρ)` differs from the identity by at most
@@ -325,7 +339,7 @@ impl Equilibrium {
         let b = self.float_matrix(&|j| centre[j]);
         let Some(r) = b.clone().try_inverse() else { return false };
         let product = &r * &b;
-        let bound = r.abs() * b.abs();
+        let bound = r.abs() * self.sizes(&|j| centre[j]);
         let mut m = DMatrix::from_fn(n, n, |i, j| {
             let unit = if i == j { 1.0 } else { 0.0 };
             (unit - product[(i, j)]).abs() + 4.0 * (n as f64) * f64::EPSILON * bound[(i, j)]
@@ -530,11 +544,15 @@ impl Equilibrium {
         let t = DVector::from_column_slice(t_float);
         let mut f = &inverse * &t;
         f += &inverse * (&t - &b * &f);
-        // |f − f*| ≤ |R| |residual| / (1 − ‖I − R B‖), with rounding of the residual itself.
-        let residual = (&t - &b * &f).abs();
-        let rounding = (b.abs() * f.abs() + t.abs()) * (4.0 * (n as f64 + 2.0) * f64::EPSILON);
-        let defect = (DMatrix::identity(n, n) - &inverse * &b).abs().row_sum().max() + 1e-12;
-        let bound = inverse.abs() * (residual + rounding) * (2.0 / (1.0 - defect).max(1e-300));
+        // With D = I − R B and v = |R| |residual|: |f − f*| ≤ v + |D| v + |D|² v + …, rounding of the residual and of the
+        // entries of B included.
+        let sizes = self.sizes(&rho);
+        let unit = 4.0 * (n as f64 + 2.0) * f64::EPSILON;
+        let residual = (&t - &b * &f).abs() + (&sizes * f.abs() + t.abs()) * unit;
+        let off = (DMatrix::identity(n, n) - &inverse * &b).abs() + inverse.abs() * sizes * unit;
+        let defect = off.column_sum().max() + 1e-12;
+        let v = inverse.abs() * residual;
+        let bound = v.add_scalar(v.max() * defect / (1.0 - defect).max(1e-300)) * (1.0 + 1e-9);
         // NaN fails both comparisons and goes the exact way too.
         let certain = defect < 0.1 && (0..n).all(|j| f[j].abs() > bound[j]);
         if !certain {

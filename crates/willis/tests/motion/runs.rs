@@ -675,7 +675,10 @@ fn val_waves_of_formulas_are_not_stepped_over() {
     let quick = |formula: &str| {
         run(&rotor(&format!("{{ type = \"expression\", formula = \"{formula}\" }}")), &Options::default()).1.outcome
     };
+    // It breaks away in each of its waves.
     let outcome = quick("10*sin(PI*t*1e9)");
+    assert!(matches!(outcome, Outcome::TooManyEvents(_)), "{outcome:?}");
+    let outcome = quick("10+10*sin(PI*t*1e9)");
     assert!(matches!(outcome, Outcome::TooLong(_)), "{outcome:?}");
     // Its poles are not stepped over either.
     let outcome = quick("10*tan(PI*t*1e9)");

@@ -226,6 +226,8 @@ type Interval = [Option<Q>; 2];
 #[derive(Default)]
 struct Truth {
     points: Vec<[Q; 2]>,
+    /// The forces at each of them: two may differ in these alone.
+    forces: Vec<Vec<Q>>,
     ranges: Vec<[Interval; 2]>,
     /// No choice of drivers determines the forces.
     indeterminate: bool,
@@ -300,8 +302,11 @@ fn truth(case: &Case) -> Option<Truth> {
         let [a, b] = [truth.open[0], truth.open[1]].map(|m| interval(&torque(m), &signs).expect("not empty"));
         if single {
             let point = [a, b].map(|i| i[0].clone().expect("fixed"));
-            if !truth.points.contains(&point) {
+            let here =
+                forces.iter().map(|f| interval(f, &signs).expect("not empty")[0].clone().expect("fixed")).collect();
+            if !truth.forces.contains(&here) {
                 truth.points.push(point);
+                truth.forces.push(here);
             }
         } else {
             truth.ranges.push([a, b]);
