@@ -305,7 +305,9 @@ fn compare_thresholds(atlas: &Atlas, regime: &RegimeReport, p: &Point, set: &Set
     assert!(ratio.0 == i.to_f64() && near(ratio.1, low) && near(ratio.2, high), "{ratio:?} {low:?} {high:?}");
     let turn = if one_drives { set.r.clone() } else { i.clone() };
     let (low, high) = bounds(e, &[Rational::ZERO, turn, Rational::ONE]);
-    let efficiency = found("eta0").unwrap();
+    // Where the two directions differ, each has a symbol of its own.
+    let symbol = if set.eta[0] == set.eta[1] { "eta0".to_owned() } else { format!("eta0_{}", p.driver) };
+    let efficiency = found(&symbol).unwrap();
     assert!(
         efficiency.0 == e.to_f64() && near(efficiency.1, low) && near(efficiency.2, high),
         "{efficiency:?} {low:?} {high:?}"
@@ -702,7 +704,8 @@ fn compare_inversions(shape: &Shape, eta: [i64; 2], random: &mut Dice) -> usize 
         let number = |ratio: &Rational, eta: &Rational| {
             f.evaluate(&|name| match name {
                 "i0" => Some(ratio.recip()),
-                "eta0" => Some(eta.clone()),
+                "eta0" if set.eta[0] == set.eta[1] => Some(eta.clone()),
+                name if name == format!("eta0_{driver}") => Some(eta.clone()),
                 other => panic!("{other}"),
             })
         };

@@ -457,3 +457,71 @@ fn degenerate_trains_have_the_equilibria_of_an_exact_enumeration() {
 fn a_hundred_thousand_degenerate_trains_have_the_equilibria_of_an_exact_enumeration() {
     run(0..130_000);
 }
+
+/// Two suns on common planets, `first` and `second` teeth, or the second on the frame.
+fn suns(first: i64, second: i64, held: bool, efficiency: &str, rest: &str) -> Train {
+    let other = if held { "frame" } else { "b" };
+    let members = if held { "\"a\", \"c\"" } else { "\"a\", \"b\", \"c\"" };
+    Train::from_toml(&format!(
+        "format = 1\nname = \"suns\"\nmembers = [{members}]\nterminals = [{members}]\n\
+         [[set]]\nname = \"S\"\ntype = \"stepped\"\nsuns = [ {{ member = \"a\", teeth = {first}, planet_teeth = 20 }}, \
+         {{ member = \"{other}\", teeth = {second}, planet_teeth = 20 }} ]\ncarrier = \"c\"\n\
+         basic_efficiency = {efficiency}\n{rest}"
+    ))
+    .unwrap()
+}
+
+/// Basic ratio one: only friction balances the carrier, `T₂ = (ρ − 1) T₁` with ρ = η or 1/η.
+#[test]
+fn val_a_basic_ratio_of_one_has_two_equilibria() {
+    let operation =
+        "[[operation]]\nname = \"o\"\nspeeds = { a = \"1 rad/s\", c = \"2 rad/s\" }\ntorques = { c = \"1 N m\" }\n";
+    let train = suns(20, 20, false, "0.9409", operation);
+    let o = &analyze(&train, &Selection::default()).unwrap().operations[0];
+    assert_eq!(o.verdict, Verdict::Multiple, "{:?}", o.reason);
+    let eta = 0.9409;
+    // Of a: −T₂/(1 − ρ) with the signs that agree.
+    let mut expected = [1.0 / (eta - 1.0), 1.0 / (1.0 / eta - 1.0)];
+    let mut torques: Vec<f64> =
+        o.solutions.iter().map(|s| s.members.get("a").unwrap().torque_n_m.unwrap()).collect();
+    torques.sort_by(f64::total_cmp);
+    expected.sort_by(f64::total_cmp);
+    assert_eq!(torques.len(), 2, "{torques:?}");
+    assert!(torques.iter().zip(expected).all(|(t, e)| near(*t, e)), "{torques:?}, not {expected:?}");
+}
+
+/// Set A exactly on its threshold: an equilibrium with 10/19, and beside it every larger torque at the output.
+#[test]
+fn val_a_load_on_a_threshold_has_a_range() {
+    let train = Train::from_toml(
+        "format = 1\nname = \"threshold\"\nmembers = [\"input\", \"x\", \"output\"]\nterminals = [\"input\", \"output\"]\n\
+         [[set]]\nname = \"A\"\ntype = \"stepped\"\nsuns = [ { member = \"output\", teeth = 20, planet_teeth = 20 }, \
+         { member = \"input\", teeth = 19, planet_teeth = 20 } ]\ncarrier = \"x\"\nbasic_efficiency = 0.95\n\
+         [[set]]\nname = \"B\"\ntype = \"stepped\"\nsuns = [ { member = \"frame\", teeth = 18, planet_teeth = 20 }, \
+         { member = \"output\", teeth = 20, planet_teeth = 20 } ]\ncarrier = \"x\"\nbasic_efficiency = 0.9\n\
+         [[operation]]\nname = \"o\"\nspeeds = { output = \"1 rad/s\" }\ntorques = { input = \"-1 N m\" }\n",
+    )
+    .unwrap();
+    let o = &analyze(&train, &Selection::default()).unwrap().operations[0];
+    assert_eq!(o.verdict, Verdict::Multiple, "{:?}", o.reason);
+    let Some(Why::Threshold { ranges }) = &o.why else { panic!("{:?}", o.why) };
+    let [range] = &ranges[..] else { panic!("{ranges:?}") };
+    assert_eq!((range.member.as_str(), range.high_n_m), ("output", None));
+    assert!(near(range.low_n_m.unwrap(), 1.0), "{range:?}");
+    let first = o.solutions.iter().find(|s| near(s.members.get("output").unwrap().torque_n_m.unwrap(), 1.0));
+    assert!(near(first.expect("the end of the range").efficiency.unwrap(), 10.0 / 19.0));
+}
+
+/// `η = (η₀ − R)/(1 − R)` with R = 99/100 and η₀ a hair above it: it drives, with next to nothing.
+#[test]
+fn val_next_to_a_threshold_table_and_operation_agree() {
+    let operation = "[[operation]]\nname = \"o\"\nspeeds = { a = \"100 rad/s\" }\ntorques = { a = \"10 N m\" }\n";
+    let train = suns(99, 100, true, "0.99000000000001", operation);
+    let a = analyze(&train, &Selection::default()).unwrap();
+    let (drive, o) = (&a.ratios.0[0].1.drive, &a.operations[0]);
+    assert_eq!((drive.verdict, o.verdict), (Verdict::Unique, Verdict::Unique), "{:?}", o.reason);
+    for efficiency in [drive.efficiency.unwrap(), o.solutions[0].efficiency.unwrap()] {
+        assert!((efficiency - 1e-12).abs() < 1e-15, "{efficiency:e}");
+    }
+    assert_eq!(o.solutions[0].members.get("c").unwrap().role, Role::Output);
+}

@@ -364,6 +364,7 @@ cases! {
         with(&with(PAIR, "teeth = 20", "teeth = 20, internal = true"), "teeth = 40", "teeth = 40, internal = true");
     regress_e104_own_carrier: ImpossibleMesh, with(PAIR, "efficiency = 0.98", "carrier = \"a\"");
     regress_e104_sun_is_carrier: ImpossibleMesh, with(REDUCER, "member = \"sun\"", "member = \"carrier\"");
+    regress_e104_planet_is_carrier: ImpossibleMesh, with(REDUCER, "carrier = \"carrier\"", "carrier = \"P1.planet\"");
     regress_e104_own_planet: ImpossibleMesh, with(REDUCER, "member = \"sun\"", "member = \"P1.planet\"");
 
     // E105 IncompleteSet
