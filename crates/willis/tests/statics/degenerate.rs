@@ -482,8 +482,7 @@ fn val_a_basic_ratio_of_one_has_two_equilibria() {
     let eta = 0.9409;
     // Of a: −T₂/(1 − ρ) with the signs that agree.
     let mut expected = [1.0 / (eta - 1.0), 1.0 / (1.0 / eta - 1.0)];
-    let mut torques: Vec<f64> =
-        o.solutions.iter().map(|s| s.members.get("a").unwrap().torque_n_m.unwrap()).collect();
+    let mut torques: Vec<f64> = o.solutions.iter().map(|s| s.members.get("a").unwrap().torque_n_m.unwrap()).collect();
     torques.sort_by(f64::total_cmp);
     expected.sort_by(f64::total_cmp);
     assert_eq!(torques.len(), 2, "{torques:?}");
