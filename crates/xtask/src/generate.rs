@@ -25,13 +25,21 @@ const GENERATED: &[&str] = &[
     "validation/wang-2020/power.csv",
     "validation/wang-2020/temperature.csv",
     "validation/wang-2020/lubrication.csv",
+    "crates/willis/src/dynamics/fixed/examples/galvagno.toml",
+    "crates/willis/src/dynamics/fixed/examples/launch.toml",
+    "crates/willis/src/dynamics/fixed/examples/lossy-gear.toml",
+    "crates/willis/src/dynamics/fixed/examples/shift-8hp70.toml",
+    "crates/willis/src/dynamics/fixed/examples/simpson-ford-c4.toml",
+    "crates/willis/src/dynamics/fixed/examples/zf-6hp26.toml",
+    "crates/willis/src/dynamics/fixed/examples/zf-8hp70.toml",
     "crates/willis-casebook/data/examples/nrel-5mw-stage-1.toml",
     "crates/willis-casebook/data/examples/wang-herringbone.toml",
     "crates/willis-casebook/data/examples/wang-herringbone-physical.toml",
 ];
 
-/// A crate can only hold what lies inside it: the case book has copies of the examples that it needs.
-const COPIES: &str = "crates/willis-casebook/data/examples";
+/// A crate can only hold what lies inside it: the case book, and tests inside the library, have copies of the examples that
+/// they need.
+const COPIES: &[&str] = &["crates/willis-casebook/data/examples", "crates/willis/src/dynamics/fixed/examples"];
 
 /// Figures of README and book, and what draws them.
 const FIGURES: &[(&str, &[&str])] = &[
@@ -173,9 +181,10 @@ fn write_generated(context: &Context) -> Result<(), String> {
         fs::create_dir_all(path.parent().expect("a folder")).map_err(|e| format!("{file}: {e}"))?;
         context.output(context.willis().args(*arguments).arg(&path).arg("--force"))?;
     }
-    for copy in GENERATED.iter().filter_map(|file| file.strip_prefix(COPIES)) {
-        let from = context.root.join("examples").join(&copy[1..]);
-        fs::copy(&from, context.root.join(COPIES).join(&copy[1..])).map_err(|e| format!("{}: {e}", from.display()))?;
+    let is_copy = |file: &&&str| COPIES.iter().any(|folder| file.starts_with(folder));
+    for copy in GENERATED.iter().filter(is_copy) {
+        let from = context.root.join("examples").join(copy.rsplit('/').next().expect("a name"));
+        fs::copy(&from, context.root.join(copy)).map_err(|e| format!("{}: {e}", from.display()))?;
     }
     write_pages(context)
 }

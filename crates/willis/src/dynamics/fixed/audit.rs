@@ -315,7 +315,7 @@ mod tests {
     fn a_trail_books_what_its_steps_do() {
         let set = |more: &str| format!("{SET}{more}");
         // Teeth that hold, and losses beside the load; efficiencies that do not follow the speed.
-        let lossy_gear = include_str!("../../../../../examples/lossy-gear.toml")
+        let lossy_gear = include_str!("examples/lossy-gear.toml")
             .replace("forward = 0.95, backward = 0.94", "forward = 0.90, backward = 0.88")
             .replace("forward = 0.97, backward = 0.96", "forward = 0.90, backward = 0.88");
         let cases = [
@@ -323,15 +323,10 @@ mod tests {
             (set(PULSES), "run", 1e-5, true),
             (set(DRIVEN), "run", 1e-3, true),
             (SHAFT.to_owned(), "run", 1e-3, false),
-            (
-                include_str!("../../../../../examples/galvagno.toml").to_owned(),
-                "two controllers and a load",
-                1e-4,
-                true,
-            ),
-            (include_str!("../../../../../examples/galvagno.toml").to_owned(), "load taken off", 1e-3, true),
-            (include_str!("../../../../../examples/shift-8hp70.toml").to_owned(), "", 1e-3, true),
-            (include_str!("../../../../../examples/launch.toml").to_owned(), "", 1e-3, false),
+            (include_str!("examples/galvagno.toml").to_owned(), "two controllers and a load", 1e-4, true),
+            (include_str!("examples/galvagno.toml").to_owned(), "load taken off", 1e-3, true),
+            (include_str!("examples/shift-8hp70.toml").to_owned(), "", 1e-3, true),
+            (include_str!("examples/launch.toml").to_owned(), "", 1e-3, false),
             (lossy_gear, "", 1e-3, true),
         ];
         for (text, scenario, h, closes) in cases {

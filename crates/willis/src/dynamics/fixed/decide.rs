@@ -294,9 +294,9 @@ mod tests {
     #[test]
     fn a_step_that_settles_is_decided_alike() {
         let examples = [
-            include_str!("../../../../../examples/zf-8hp70.toml"),
-            include_str!("../../../../../examples/simpson-ford-c4.toml"),
-            include_str!("../../../../../examples/zf-6hp26.toml"),
+            include_str!("examples/zf-8hp70.toml"),
+            include_str!("examples/simpson-ford-c4.toml"),
+            include_str!("examples/zf-6hp26.toml"),
         ];
         let (mut steps, mut settled) = (0, 0);
         for train in examples.map(|text| through_the_gears(text, "capacity = \"900 N m\"")) {
