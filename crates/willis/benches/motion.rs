@@ -179,6 +179,10 @@ fn longest(_: &mut Criterion) {
     let worst = |x: &[f64]| x.iter().copied().fold(0.0, f64::max);
     let at = |x: &[f64]| x.iter().position(|t| *t == worst(x)).unwrap_or(0);
     println!("the longest steps begin at {} ms, first {} ms", at(&known), at(&first));
+    let mut order: Vec<usize> = (0..known.len()).collect();
+    order.sort_by(|a, b| known[*b].total_cmp(&known[*a]));
+    let longest: Vec<String> = order[..8].iter().map(|k| format!("{k} ms {:.0} ns", ns(known[*k]))).collect();
+    println!("the longest of known modes: {}", longest.join(", "));
     let sums = [
         ("longest_ns", ns(worst(&known))),
         ("median_ns", ns(median(&known))),
