@@ -620,7 +620,7 @@ fn estimate(c: &Configuration<'_>, s: &Solution, node: usize) -> (f64, f64) {
 /// Relative rounding of the terms of a short sum of products.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
-/// The same in rationals.
+/// Torque that the elements ask of a node, in rationals.
 pub(crate) fn torque_exact(
     c: &Configuration<'_>,
     equilibrium: &Equilibrium,
