@@ -335,7 +335,7 @@ fn pass_through(stops: &mut [Stop<'_>], arcs: &mut Vec<Arc>) {
         let s = &stops[k];
         // Only a planet, called after its set, has a dot in its name.
         let plain = match s.node.kind {
-            NodeKind::ShiftElement => true,
+            NodeKind::ShiftElement | NodeKind::Coupling => true,
             NodeKind::Member => s.node.name.contains('.'),
             _ => false,
         };

@@ -14,12 +14,14 @@ mod outside;
 mod shafts;
 mod solution;
 mod table;
+mod variators;
 mod why;
 mod words;
 
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 pub use outside::{OutsideAt, OutsideLaw};
 pub use shafts::{ShaftElement, ShaftMember, ShaftState, ShaftTable, shaft_table};
+pub use variators::{BeyondLimit, LimitedQuantity, MachineReport, VariatorReport};
 pub use why::{TorqueRange, Why};
 
 pub use crate::named::Named;
@@ -221,6 +223,13 @@ pub struct Losses {
     pub churning: f64,
     /// Shaft seals.
     pub seal: f64,
+    /// Variators.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub variator: f64,
+}
+
+fn is_zero(x: &f64) -> bool {
+    *x == 0.0
 }
 
 impl Losses {
@@ -233,6 +242,7 @@ impl Losses {
                 LossKind::Windage => &mut all.windage,
                 LossKind::Churning => &mut all.churning,
                 LossKind::Seal => &mut all.seal,
+                LossKind::Variator => &mut all.variator,
             } += s.loss_w;
         }
         all
@@ -374,6 +384,12 @@ pub struct SolutionReport {
     pub meshes: Named<MeshReport>,
     /// Every engaged shift element.
     pub shift_elements: Named<ShiftElementReport>,
+    /// Every variator.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub variators: Named<VariatorReport>,
+    /// Limits of variators that are exceeded.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub beyond_limits: Vec<BeyondLimit>,
     /// Losses by kind.
     pub losses_w: Losses,
     /// Losses by source, largest first, where they are computed.

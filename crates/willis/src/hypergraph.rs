@@ -68,6 +68,10 @@ pub enum NodeKind {
     Rotor,
     /// A closed clutch or brake, or several that share one load.
     ShiftElement,
+    /// A shaft that is for good coupled with a member: a terminal with a name of its own.
+    Coupling,
+    /// A variator: electric machines, pump and motor, belt.
+    Variator,
     /// Where external power enters.
     Input,
     /// Where external power leaves.
@@ -328,6 +332,8 @@ impl Sketch<'_> {
             NodeKind::Gear => "gear",
             NodeKind::Rotor => "rotor",
             NodeKind::ShiftElement => "shift-element",
+            NodeKind::Coupling => "coupling",
+            NodeKind::Variator => "variator",
             NodeKind::Input => "input",
             NodeKind::Output => "output",
         };
@@ -443,8 +449,23 @@ pub fn hypergraph(train: &Train, solution: &SolutionReport) -> Hypergraph {
             g.add(mesh, b, -d.torque_n_m);
         }
     }
+    for (name, v) in solution.variators.iter() {
+        let k = g.node(NodeKind::Variator, name, 1);
+        for (_, m) in v.machines.iter() {
+            let member = g.index(&m.member);
+            g.add(k, member, -m.torque_n_m);
+        }
+        g.nodes[k].loss_w = v.loss_w;
+    }
     let external = externals(&mut g, solution);
     shift_elements(&mut g, solution, &external);
+    for [own, on] in &train.joints {
+        let [own, on] = [own.index(), on.index()];
+        let torque = external[own].map(|x| x - g.given(own));
+        let k = g.node(NodeKind::Coupling, &train.members()[own].name, 1);
+        g.torques.insert((k, own), torque);
+        g.torques.insert((k, on), torque.map(|t| -t));
+    }
     finish(g, solution, &external)
 }
 
@@ -526,7 +547,20 @@ fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]
         let power = if to == FRAME.index() { 0.0 } else { power.abs() };
         lines.push(Line { from, to, member, torque, power });
     }
+    let stores = solution.variators.iter().filter_map(|(name, v)| Some((name, v.store_w.filter(|p| *p != 0.0)?)));
+    let mut stored = Vec::new();
+    for (name, power) in stores {
+        let variator = g.node(NodeKind::Variator, name, 1);
+        stored.push((variator, power));
+        let store = format!("store of {name}");
+        let (from, to) = match power > 0.0 {
+            true => (g.node(NodeKind::Input, &store, 1), variator),
+            false => (variator, g.node(NodeKind::Output, &store, 1)),
+        };
+        lines.push(Line { from, to, member: variator, torque: None, power: power.abs() });
+    }
     balance.resize(g.nodes.len(), 0.0);
+    stored.into_iter().for_each(|(variator, power)| balance[variator] += power);
     for (&(contact, member), &torque) in &g.torques {
         let power = torque.unwrap_or(0.0) * g.speeds[member];
         balance[member] -= power;

@@ -5,9 +5,13 @@
 //! makes two members one *node*. The rows are solved by exact elimination, so a ratio is a
 //! fraction and a zero is a zero. Source: Willis 1841; `R^v_{w,u}` relations in Esmail 2018.
 
+mod coupled;
+
 use crate::exact::{self, Matrix, Rational};
-use crate::train::{Efficiency, FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train};
+use crate::train::{Efficiency, FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train, Variator};
 use crate::units::Quantity;
+
+pub(crate) use coupled::{Coupled, Coupling};
 
 /// A chain of meshes that behaves as one: it ends at two members, and the rotors between them
 /// touch nothing else, so one power passes through all of it.
@@ -80,10 +84,15 @@ pub struct Configuration<'t> {
     pub(crate) train: &'t Train,
     pub(crate) engaged: Vec<ShiftElementId>,
     pub(crate) held: Vec<MemberId>,
+    /// Chains of meshes, then the [variators](Configuration::coupled) at a motion.
     pub(crate) elements: Vec<Element>,
+    /// What each element behind the meshes is.
+    pub(crate) couplings: Vec<Coupling>,
     /// Node of each member; meaningless for the inner rotors of chains.
     pub(crate) node_of: Vec<Node>,
     pub(crate) nodes: usize,
+    /// How many of the nodes, the last ones, are buses of variators.
+    pub(crate) buses: usize,
     /// Rotors inside a chain, that is, planets that touch nothing else.
     pub(crate) inner: Vec<bool>,
     /// Efficiency in force in each mesh: the given ones, unless the operating point computes them.
@@ -155,7 +164,7 @@ impl<'t> Configuration<'t> {
             }
             m
         }
-        let ties = engaged.iter().map(|e| train.shift_elements[e.0].members);
+        let ties = engaged.iter().map(|e| train.shift_elements[e.0].members).chain(train.joints.iter().copied());
         for [a, b] in ties.chain(held.iter().map(|m| [*m, FRAME])) {
             let (a, b) = (root(&mut group, a.0), root(&mut group, b.0));
             group[a.max(b)] = a.min(b);
@@ -165,6 +174,8 @@ impl<'t> Configuration<'t> {
         loaded[FRAME.0] = true;
         let touched = train.terminals.iter().chain(keep).chain(held).copied();
         let shifting = train.shift_elements.iter().flat_map(|e| e.members);
+        let shifting = shifting.chain(train.joints.iter().copied().flatten());
+        let shifting = shifting.chain(train.variators.iter().flat_map(Variator::members));
         let carriers = train.meshes.iter().map(|m| m.carrier);
         touched.chain(shifting).chain(carriers).for_each(|m| loaded[m.0] = true);
         let (elements, inner) = chains(train, &loaded);
@@ -186,7 +197,19 @@ impl<'t> Configuration<'t> {
         }
         let (engaged, held) = (engaged.to_vec(), held.to_vec());
         let efficiencies = train.meshes.iter().map(|m| m.efficiency.clone()).collect();
-        let mut c = Self { train, engaged, held, elements, node_of, nodes, inner, efficiencies, rank: 0 };
+        let mut c = Self {
+            train,
+            engaged,
+            held,
+            elements,
+            couplings: vec![],
+            node_of,
+            nodes,
+            buses: 0,
+            inner,
+            efficiencies,
+            rank: 0,
+        };
         let mut rows = c.rows(0);
         c.rank = exact::reduce(&mut rows, nodes).len();
         c
@@ -195,7 +218,7 @@ impl<'t> Configuration<'t> {
     /// The same configuration with other efficiencies of the meshes.
     pub(crate) fn with_efficiencies(&self, efficiencies: Vec<Efficiency>) -> Self {
         let mut c = Self { efficiencies, ..self.clone() };
-        for e in &mut c.elements {
+        for e in c.elements.iter_mut().filter(|e| !e.links.is_empty()) {
             (e.forward, e.backward) = (Rational::ONE, Rational::ONE);
             for link in &e.links {
                 let own = &c.efficiencies[link.mesh.0];
@@ -206,6 +229,11 @@ impl<'t> Configuration<'t> {
             }
         }
         c
+    }
+
+    /// The elements that are chains of meshes.
+    pub(crate) fn gears(&self) -> &[Element] {
+        &self.elements[..self.elements.len() - self.couplings.len()]
     }
 
     pub(crate) fn node(&self, member: MemberId) -> Node {
@@ -225,7 +253,7 @@ impl<'t> Configuration<'t> {
     }
 
     fn rows(&self, extra: usize) -> Matrix {
-        self.elements.iter().map(|e| self.row(e, extra)).collect()
+        self.gears().iter().map(|e| self.row(e, extra)).collect()
     }
 
     /// Number of speeds that can be chosen freely.
@@ -242,13 +270,13 @@ impl<'t> Configuration<'t> {
     /// # Ok::<(), willis::diagnostic::Diagnostics>(())
     /// ```
     pub fn degrees_of_freedom(&self) -> usize {
-        self.nodes - self.rank
+        self.nodes - self.buses - self.rank
     }
 
     /// Meshes that constrain what other meshes already constrain, one list for each independent
     /// self-stress (left null vector of the Willis equations).
     pub fn redundant(&self) -> Vec<Vec<MeshId>> {
-        let n = self.elements.len();
+        let n = self.gears().len();
         if self.rank == n {
             return vec![];
         }
@@ -304,7 +332,7 @@ impl<'t> Configuration<'t> {
                 (false, Some(n)) => of_node[n].clone(),
             })
             .collect();
-        for e in &self.elements {
+        for e in self.gears() {
             self.inner_speeds(e, &mut speeds);
         }
         Transfer { speeds, conflicts }

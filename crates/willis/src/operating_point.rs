@@ -31,11 +31,13 @@ use std::borrow::Cow;
 use serde::{Deserialize, Serialize};
 
 use crate::exact::Rational;
-use crate::kinematics::{Configuration, Motion};
+use crate::kinematics::{Configuration, Coupling, Motion};
 use crate::losses::{Outside, mesh_friction::MeshFriction, rolling::Rolling};
 use crate::power_flow::{Drag, Flow, MeshFlow};
 use crate::real::{self, Real};
-use crate::train::{Efficiency, Gear, Lubrication, MemberId, Operation, Train};
+use crate::train::{
+    Efficiency, FRAME, Gear, Lubrication, MachineEfficiency, MemberId, Operation, Train, VariatorPath,
+};
 
 pub use bearing::BearingReport;
 pub use contact::{ContactReport, Regime};
@@ -71,6 +73,8 @@ pub enum LossKind {
     Churning,
     /// Lip seals.
     Seal,
+    /// Variators: electric machines, pumps and motors, belts.
+    Variator,
 }
 
 impl LossKind {
@@ -83,6 +87,7 @@ impl LossKind {
             Self::Windage => "windage",
             Self::Churning => "churning",
             Self::Seal => "seal",
+            Self::Variator => "variator",
         }
     }
 }
@@ -182,6 +187,8 @@ enum Source {
     Seal(usize),
     Body(usize),
     Rotor(usize),
+    /// What a variator takes from its bus without load.
+    Standby(usize),
 }
 
 /// All losses of a train that an operating point can compute.
@@ -224,6 +231,8 @@ pub(crate) struct Step<R = f64> {
     sources: Vec<Source>,
     pub drags: Vec<Drag<R>>,
     bearings: Vec<BearingReport>,
+    /// Efficiency of machines that have a map: variator and machine.
+    machines: Vec<([usize; 2], f64)>,
 }
 
 impl Step {
@@ -243,13 +252,27 @@ impl Step {
             }
             given
         });
-        c.with_efficiencies(all.collect())
+        let mut c = c.with_efficiencies(all.collect());
+        let gears = c.gears().len();
+        for (at, eta) in &self.machines {
+            let own = |k: &Coupling| k.variator == at[0] && k.machine == Some(at[1]);
+            if let (Some(k), Some(eta)) = (c.couplings.iter().position(own), Rational::from_f64(*eta)) {
+                (c.elements[gears + k].forward, c.elements[gears + k].backward) = (eta.clone(), eta);
+            }
+        }
+        c
     }
 }
 
 impl<R: Real> Step<R> {
     fn blank(train: &Train) -> Self {
-        Self { meshes: vec![MeshLoss::none(); train.meshes.len()], sources: vec![], drags: vec![], bearings: vec![] }
+        Self {
+            meshes: vec![MeshLoss::none(); train.meshes.len()],
+            sources: vec![],
+            drags: vec![],
+            bearings: vec![],
+            machines: vec![],
+        }
     }
 
     /// The efficiency in force in each mesh, first gear driving and second gear driving.
@@ -441,6 +464,7 @@ impl<'t, R: Real> Physics<'t, R> {
                     };
                     add(&train.rotors[k].name, kind, train.laws.rotor_drag.meta().id, *loss);
                 }
+                Source::Standby(k) => add(&train.variators[k].name, LossKind::Variator, "given", *loss),
             }
         }
         all
@@ -450,7 +474,25 @@ impl<'t, R: Real> Physics<'t, R> {
 impl Physics<'_> {
     /// The losses that the laws give for the torques and speeds of a flow.
     pub fn step(&self, flow: &Flow, motion: &Motion) -> Step {
-        self.evaluate(&flow.speeds, &flow.meshes, &|m| motion.speeds[m.0].is_some())
+        let mut step = self.evaluate(&flow.speeds, &flow.meshes, &|m| motion.speeds[m.0].is_some());
+        let mut bus = self.train.members.len();
+        for v in &flow.variators {
+            let VariatorPath::Bus { machines, standby, .. } = &self.train.variators[v.variator].path else { continue };
+            for (k, (machine, side)) in machines.iter().zip(&v.sides).enumerate() {
+                if let MachineEfficiency::Map(map) = &machine.efficiency {
+                    let (eta, _) = map.at(side.speed.abs(), side.torque.abs() * side.power.signum());
+                    step.machines.push(([v.variator, k], eta));
+                }
+            }
+            // The bus turns, so a power is a torque on it.
+            if *standby > 0.0 {
+                let members = [MemberId(bus), FRAME];
+                step.sources.push(Source::Standby(v.variator));
+                step.drags.push(Drag { members, torque: -standby / flow.speeds[bus] });
+            }
+            bus += 1;
+        }
+        step
     }
 
     /// Where the laws were used outside their ranges.
@@ -478,6 +520,11 @@ impl Physics<'_> {
         for (m, (a, b)) in flow.meshes.iter().zip(old.meshes.iter().zip(&new.meshes)) {
             change += m.potential_power * (a.total() - b.total()).abs();
         }
+        for (at, eta) in &new.machines {
+            let before = old.machines.iter().find(|m| m.0 == *at).map_or(1.0, |m| m.1);
+            let sides = flow.variators.iter().find(|v| v.variator == at[0]).map(|v| &v.sides);
+            change += sides.map_or(0.0, |sides| sides[at[1]].power.abs()) * (eta - before).abs() / eta;
+        }
         let relative = |d: &Drag| flow.speeds[d.members[0].0] - flow.speeds[d.members[1].0];
         let mut theirs = new.drags.iter().zip(&new.sources).map(|(d, s)| (d, s, false)).collect::<Vec<_>>();
         for (d, s) in old.drags.iter().zip(&old.sources) {
@@ -489,7 +536,9 @@ impl Physics<'_> {
             change += ((d.torque - torque) * relative(d)).abs();
         }
         change += theirs.iter().filter(|t| !t.2).map(|t| (t.0.torque * relative(t.0)).abs()).sum::<f64>();
-        let computed: f64 = flow.meshes.iter().map(|m| m.loss).sum::<f64>() + flow.drag_losses.iter().sum::<f64>();
+        let passing = flow.variators.iter().map(|v| v.loss);
+        let computed: f64 =
+            flow.meshes.iter().map(|m| m.loss).chain(passing).chain(flow.drag_losses.iter().copied()).sum();
         (change, computed)
     }
 
@@ -541,7 +590,15 @@ impl Physics<'_> {
 
     /// Every loss of a solved step by its source, largest first; their sum is the flow's loss.
     pub fn sources(&self, step: &Step, flow: &Flow) -> Vec<LossSource> {
-        let parts = self.parts(step, &flow.meshes, &flow.drag_losses).into_iter();
+        let mut parts = self.parts(step, &flow.meshes, &flow.drag_losses);
+        for v in &flow.variators {
+            let name = &self.train.variators[v.variator].name;
+            match parts.iter_mut().find(|s| s.0 == *name && s.1 == LossKind::Variator) {
+                Some(standby) => standby.3 += v.loss,
+                None => parts.push((name.clone(), LossKind::Variator, "given", v.loss)),
+            }
+        }
+        let parts = parts.into_iter();
         let mut all: Vec<LossSource> = parts
             .map(|(name, kind, law, loss_w)| LossSource { name, kind, law: law.to_owned(), loss_w, share: 0.0 })
             .collect();
@@ -606,6 +663,8 @@ impl Physics<'_> {
                 Source::Seal(k) => (DragSource::Seal, &train.seals[k].name),
                 Source::Body(k) => (DragSource::Gear, &self.bodies[k].name),
                 Source::Rotor(k) => (DragSource::Rotor, &train.rotors[k].name),
+                // It acts on a bus, between no members.
+                Source::Standby(_) => continue,
             };
             all.push(DragReport {
                 name: name.clone(),

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use crate::kinematics::{Configuration, Element, Motion};
 use crate::real::{self, Real};
 use crate::statics::Solution;
-use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train};
+use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train, Variator};
 
 /// Torques and powers at one mesh (all `count` of them together).
 #[derive(Clone, Debug)]
@@ -25,6 +25,43 @@ pub struct MeshFlow<R = f64> {
     pub efficiency: R,
     /// Loss, W.
     pub loss: R,
+}
+
+/// What a variator does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VariatorFlow {
+    /// Position in [`Train::variators`](crate::train::Train::variators).
+    pub variator: usize,
+    /// Its two sides, or its machines.
+    pub sides: Vec<SideFlow>,
+    /// Power out of its store, W.
+    pub store: f64,
+    /// Loss on the way, W; standby losses are drags.
+    pub loss: f64,
+}
+
+/// What a side of a variator, or a machine, does to its member.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SideFlow {
+    /// The member.
+    pub member: MemberId,
+    /// Torque that it exerts on the member, N m.
+    pub torque: f64,
+    /// Speed of the member, rad/s.
+    pub speed: f64,
+    /// Power that it delivers to the member, W.
+    pub power: f64,
+}
+
+/// A machine whose torque is prescribed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Driven {
+    /// Variator and machine.
+    pub at: [usize; 2],
+    /// Torque on its member, N m.
+    pub torque: f64,
+    /// Power out of the bus, W.
+    pub draws: f64,
 }
 
 /// Torque in an engaged shift element.
@@ -52,14 +89,17 @@ pub struct Flow<R = f64> {
     /// External torque on each member, N m, reactions of brakes and holds included; `None` where
     /// brakes share a load indeterminately.
     pub torques: Vec<Option<R>>,
-    /// Speed of each member, rad/s.
+    /// Speed of each member, rad/s; then of each bus of a variator.
     pub speeds: Vec<R>,
-    /// Where external power enters (1) and leaves (−1) the train, by member; by exact signs of torque and speed.
+    /// Where external power enters (1) and leaves (−1) the train, by member, then by bus of a variator; by exact signs of
+    /// torque and speed.
     pub roles: Vec<i8>,
     /// Every mesh.
     pub meshes: Vec<MeshFlow<R>>,
     /// Every engaged shift element.
     pub ties: Vec<TieFlow>,
+    /// Every variator.
+    pub variators: Vec<VariatorFlow>,
     /// Power in at all inputs, W.
     pub input_power: R,
     /// Power out at all outputs, W, positive.
@@ -103,13 +143,15 @@ impl Flow {
         scale: f64,
         externals: &[External],
         drags: &[Drag],
+        driven: &[Driven],
     ) -> Self {
         let train = c.train;
         // Idle parts may have no determined speed; nothing flows there.
-        let speeds: Vec<f64> = (0..train.members.len()).map(|m| motion.si(MemberId(m)).unwrap_or(0.0)).collect();
+        let members = c.node_of.len();
+        let speeds: Vec<f64> = (0..members).map(|m| motion.si(MemberId(m)).unwrap_or(0.0)).collect();
         let mut meshes = Vec::with_capacity(train.meshes.len());
-        let mut demand = vec![0.0; train.members.len()];
-        for (j, e) in c.elements.iter().enumerate() {
+        let mut demand = vec![0.0; members];
+        for (j, e) in c.gears().iter().enumerate() {
             let own = |mesh: MeshId, forward: bool| {
                 let own = &c.efficiencies[mesh.0];
                 if forward { own.forward.to_f64() } else { own.backward.to_f64() }
@@ -126,35 +168,42 @@ impl Flow {
             }
         }
 
-        let mut dragged = vec![0.0; train.members.len()];
+        let variators = variators(c, solution, scale, &speeds, externals, driven);
+        for side in variators.iter().flat_map(|v| &v.sides) {
+            demand[side.member.0] -= side.torque;
+        }
+        let mut dragged = vec![0.0; members];
         for d in drags {
             dragged[d.members[0].0] += d.torque;
             dragged[d.members[1].0] -= d.torque;
         }
-        let mut external: Vec<f64> = vec![0.0; train.members.len()];
-        let mut roles: Vec<i8> = vec![0; train.members.len()];
+        let mut external: Vec<f64> = vec![0.0; members];
+        let mut roles: Vec<i8> = vec![0; members];
         for x in externals {
             external[x.member.0] = x.torque;
             roles[x.member.0] = x.power;
         }
         let applied: Vec<f64> = external.iter().zip(&dragged).map(|(x, d)| x + d).collect();
         let (ties, reactions) = self::ties(c, &demand, &applied);
-        let torques: Vec<Option<f64>> = (0..external.len()).map(|m| reactions[m].map(|r| external[m] + r)).collect();
+        let torques: Vec<Option<f64>> =
+            (0..train.members.len()).map(|m| reactions[m].map(|r| external[m] + r)).collect();
 
         let powers: Vec<f64> = (0..external.len()).map(|m| external[m] * speeds[m]).collect();
         let sum = |role: i8| powers.iter().zip(&roles).filter(|(_, r)| **r == role).map(|(p, _)| p.abs()).sum();
         let (input_power, output_power) = (sum(1), sum(-1));
         let drag_losses: Vec<f64> =
             drags.iter().map(|d| d.torque * (speeds[d.members[1].0] - speeds[d.members[0].0])).collect();
-        let loss = meshes.iter().map(|m| m.loss).chain(drag_losses.iter().copied()).sum::<f64>();
+        let passing = variators.iter().map(|v| v.loss);
+        let loss = meshes.iter().map(|m| m.loss).chain(drag_losses.iter().copied()).chain(passing).sum::<f64>();
         let residual = powers.iter().sum::<f64>() - loss;
-        let circulations = circulations(c, &meshes, &speeds, input_power);
+        let circulations = circulations(c, &meshes, &variators, &speeds, input_power);
         Self {
             torques,
             speeds,
             roles,
             meshes,
             ties,
+            variators,
             input_power,
             output_power,
             loss,
@@ -165,9 +214,48 @@ impl Flow {
     }
 }
 
+/// What each variator does in a solution.
+fn variators(
+    c: &Configuration<'_>,
+    solution: &Solution,
+    scale: f64,
+    speeds: &[f64],
+    externals: &[External],
+    driven: &[Driven],
+) -> Vec<VariatorFlow> {
+    let side = |member: MemberId, torque: f64| SideFlow {
+        member,
+        torque,
+        speed: speeds[member.0],
+        power: torque * speeds[member.0],
+    };
+    let flow = |(variator, v): (usize, &Variator)| {
+        let mut sides: Vec<SideFlow> = v.members().into_iter().map(|m| side(m, 0.0)).collect();
+        let mut loss = 0.0;
+        for (coupling, j) in c.couplings.iter().zip(c.gears().len()..).filter(|(own, _)| own.variator == variator) {
+            let e = &c.elements[j];
+            let [p, q] = [e.a.to_f64(), e.b.to_f64() * solution.rho[j]].map(|x| -solution.forces[j] * scale * x);
+            loss -= p * speeds[e.p.0] + q * speeds[e.q.0];
+            match coupling.machine {
+                Some(machine) => sides[machine] = side(e.p, p),
+                None => sides = vec![side(e.p, p), side(e.q, q)],
+            }
+        }
+        for d in driven.iter().filter(|d| d.at[0] == variator) {
+            sides[d.at[1]] = side(sides[d.at[1]].member, d.torque);
+            loss += d.draws - sides[d.at[1]].power;
+        }
+        let bus = v.has_bus().then(|| c.bus(variator));
+        let stores = externals.iter().filter(|x| Some(x.member) == bus);
+        let store = stores.map(|x| x.torque * speeds[x.member.0]).sum::<f64>();
+        VariatorFlow { variator, sides, store, loss }
+    };
+    c.train.variators.iter().enumerate().map(flow).collect()
+}
+
 /// Torque that the elements ask of each member, straight from their forces (chains as a whole).
 pub(crate) fn demand(c: &Configuration<'_>, s: &Solution) -> Vec<f64> {
-    let mut demand = vec![0.0; c.train.members.len()];
+    let mut demand = vec![0.0; c.node_of.len()];
     for (j, e) in c.elements.iter().enumerate() {
         let (a, b) = (e.a.to_f64(), e.b.to_f64() * s.rho[j]);
         for (member, x) in [(e.p, a), (e.q, b), (e.carrier, -(a + b))] {
@@ -225,6 +313,7 @@ pub(crate) fn ties(c: &Configuration<'_>, demand: &[f64], external: &[f64]) -> (
         .engaged
         .iter()
         .map(|e| (train.shift_elements[e.0].members, Some(*e), None))
+        .chain(train.joints.iter().map(|members| (*members, None, None)))
         .chain(c.held.iter().map(|m| ([*m, FRAME], None, None)))
         .collect();
     let mut need: Vec<f64> = demand.iter().zip(external).map(|(d, x)| d - x).collect();
@@ -301,12 +390,20 @@ pub(crate) fn families(train: &Train) -> Vec<usize> {
 
 /// Cycles in the directed graph of powers between shafts and sets, taken out one by one with the
 /// smallest power on them.
-fn circulations(c: &Configuration<'_>, meshes: &[MeshFlow], speeds: &[f64], input: f64) -> Vec<Circulation> {
+fn circulations(
+    c: &Configuration<'_>,
+    meshes: &[MeshFlow],
+    variators: &[VariatorFlow],
+    speeds: &[f64],
+    input: f64,
+) -> Vec<Circulation> {
     let train = c.train;
-    if meshes.len() < 2 || input <= 0.0 {
+    if meshes.len() + variators.len() < 2 || input <= 0.0 {
         return vec![];
     }
+    // A variator is a station of its own, behind those of the meshes.
     let family = families(train);
+    let station = |variator: usize| train.meshes.len() + variator;
     // Power from node n into family f.
     let mut power: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for m in meshes {
@@ -320,6 +417,13 @@ fn circulations(c: &Configuration<'_>, meshes: &[MeshFlow], speeds: &[f64], inpu
             }
         }
     }
+    for v in variators {
+        for side in &v.sides {
+            if let Some(n) = c.node(side.member) {
+                *power.entry((n, station(v.variator))).or_default() -= side.power;
+            }
+        }
+    }
     let smallest = 1e-9 * input;
     // Directed edges between vertices: nodes first, families after them.
     let mut edges: Vec<(usize, usize, f64)> = power
@@ -329,6 +433,9 @@ fn circulations(c: &Configuration<'_>, meshes: &[MeshFlow], speeds: &[f64], inpu
         .collect();
     edges.sort_by_key(|e| (e.0, e.1));
     let label = |v: usize| -> String {
+        if v >= c.nodes + train.meshes.len() {
+            return train.variators[v - c.nodes - train.meshes.len()].name.clone();
+        }
         if v >= c.nodes {
             let k = (0..train.meshes.len()).find(|&k| family[k] == v - c.nodes).expect("a family has a mesh");
             return match train.meshes[k].set {

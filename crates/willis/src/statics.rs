@@ -214,7 +214,8 @@ impl Equilibrium {
                 (e.q, Rational::ZERO, e.b.clone()),
                 (e.carrier, -e.a.clone(), -e.b.clone()),
             ];
-            for (member, constant, slope) in parts {
+            // A variator at a mechanical point has no lever on one side.
+            for (member, constant, slope) in parts.into_iter().filter(|(_, a, b)| !(a.is_zero() && b.is_zero())) {
                 let Some(r) = c.node(member).and_then(|n| row_of[n]) else { continue };
                 match entries.iter_mut().find(|x| x.0 == r) {
                     Some(x) => {

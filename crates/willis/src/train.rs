@@ -20,6 +20,7 @@ mod physical;
 mod reading;
 mod schema;
 mod specification;
+mod variator;
 mod words;
 
 use std::fmt;
@@ -48,11 +49,12 @@ pub(crate) use specification::kind_of;
 pub use specification::{
     BearingSpec, BevelSpec, CentralSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec, EfficiencySpec,
     EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec, LinearSpec,
-    LossRowSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec, OilSupply, OperationSpec, PairKind, PlanetBodySpec,
+    LossRowSpec, MachineEfficiencySpec, MachineSpec, RatioSpec, StoreSpec, VariatorSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec, OilSupply, OperationSpec, PairKind, PlanetBodySpec,
     PlanetSpec, QuadraticSpec, RavigneauxSpec, RotorSpec, ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts,
     SetSpec, ShaftSpec, ShiftElementSpec, Side, SideSpec, SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec,
-    StepSpec, SteppedPlanetSpec, SteppedSpec, StudySpec, ToothSpec, VehicleSpec,
+    StepSpec, SteppedPlanetSpec, SteppedSpec, StudySpec, TerminalSpec, ToothSpec, VehicleSpec,
 };
+pub use variator::{EfficiencyMap, Machine, MachineEfficiency, Store, Variator, VariatorKind, VariatorPath};
 
 /// A member's number within its train. The frame is number 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -247,6 +249,10 @@ pub struct Operation {
     pub fixed: Vec<MemberId>,
     /// Prescribed torques and powers.
     pub loads: Vec<(MemberId, Load)>,
+    /// Powers out of the stores of variators (positions in [`Train::variators`]), where they differ from the train's.
+    pub stores: Vec<(usize, Store)>,
+    /// Torques that machines exert on their members, or their mechanical powers: variator and machine by position.
+    pub machines: Vec<([usize; 2], Load)>,
     /// Oil temperature, K, where it differs from that of the oil.
     pub temperature: Option<f64>,
     pub(crate) place: String,
@@ -280,6 +286,8 @@ impl Operation {
             speeds: vec![],
             fixed: vec![],
             loads: vec![],
+            stores: vec![],
+            machines: vec![],
             temperature: None,
             place: String::new(),
         }
@@ -381,6 +389,9 @@ pub struct Train {
     pub(crate) shafts: Vec<Shaft>,
     pub(crate) loss_tables: Vec<LossTable>,
     pub(crate) scenarios: Vec<Scenario>,
+    pub(crate) variators: Vec<Variator>,
+    /// Named terminals and the members that they sit on: shafts of their own, for good coupled with those.
+    pub(crate) joints: Vec<[MemberId; 2]>,
     pub(crate) inputs: Vec<Input>,
 }
 
@@ -652,12 +663,23 @@ impl Train {
         self.scenarios.iter().find(|s| s.name == name)
     }
 
+    /// Second paths of power splits.
+    pub fn variators(&self) -> &[Variator] {
+        &self.variators
+    }
+
     /// Whether losses are computed at operating points, beside given mesh efficiencies.
     pub fn is_physical(&self) -> bool {
         self.meshes.iter().any(|m| m.computed)
             || !(self.bearings.is_empty() && self.seals.is_empty() && self.rotors.is_empty())
             || self.lubrication.as_ref().is_some_and(|l| l.supply.is_some())
                 && self.meshes.iter().any(|m| m.teeth.is_some())
+    }
+
+    /// Whether losses and torques of operating points must be brought into agreement: losses are computed, or those of a
+    /// variator depend on its load.
+    pub(crate) fn depends_on_load(&self) -> bool {
+        self.is_physical() || self.variators.iter().any(Variator::is_computed)
     }
 
     /// The same train with another law in one family.

@@ -62,7 +62,7 @@ pub fn operation(
     speeds: Vec<(MemberId, Quantity)>,
     loads: Vec<(MemberId, Load)>,
 ) -> Operation {
-    Operation { name, state, speeds, fixed: vec![], loads, temperature: None, place: String::new() }
+    Operation { state, speeds, loads, ..Operation::new(name) }
 }
 
 /// The path of contact of a mesh.

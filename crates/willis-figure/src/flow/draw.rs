@@ -157,6 +157,8 @@ fn legend(kinds: &[NodeKind], [round, within, ground_marks, rest]: [bool; 4], to
         NodeKind::Gear => "gear in oil or air",
         NodeKind::Rotor => "rotor in oil or air",
         NodeKind::ShiftElement => "clutch or brake",
+        NodeKind::Coupling => "coupled for good",
+        NodeKind::Variator => "variator",
         NodeKind::Input => "input, output",
         _ => "",
     };

@@ -315,6 +315,13 @@ fn bar(kind: NodeKind, x: f64, top: f64, height: f64) -> Group {
             .add(rectangle(x - BAR / 2.0, top, BAR, height, PAPER))
             .add(line((x - 3.0, top), (x - 3.0, top + height), INK, 3.0))
             .add(line((x + 3.0, top), (x + 3.0, top + height), INK, 3.0)),
+        // What is adjustable has a slanting stroke.
+        NodeKind::Variator => g.add(whole(PAPER)).add(line(
+            (x - BAR, top + height / 2.0 + BAR),
+            (x + BAR, top + height / 2.0 - BAR),
+            INK,
+            1.8,
+        )),
         _ => g.add(whole(PAPER)),
     }
 }
@@ -407,6 +414,7 @@ impl Legend {
                 NodeKind::Member => "component",
                 NodeKind::Teeth => "tooth contact",
                 NodeKind::ShiftElement => "clutch or brake",
+                NodeKind::Variator => "variator",
                 _ => continue,
             };
             entries.push((Some(bar(k, 12.0, -8.0, 16.0)), words));

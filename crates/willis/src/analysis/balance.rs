@@ -9,7 +9,7 @@ use crate::train::{MemberId, Operation};
 
 use super::TorqueRange;
 use super::loads::Loads;
-use super::words::Refusal;
+use super::words::{Refusal, name_of};
 
 /// What all rounds of an operating point have in common.
 pub(super) struct Setting<'a> {
@@ -66,7 +66,7 @@ impl<'a> Setting<'a> {
 
     fn flow(&self, s: &Solved<'_>, solution: &Solution, drags: &[Drag]) -> Flow {
         let acting = s.problem.acting(&s.c, self.motion, &s.equilibrium, solution);
-        Flow::new(&s.c, self.motion, solution, s.problem.scale(), &acting, drags)
+        Flow::new(&s.c, self.motion, solution, s.problem.scale(), &acting, drags, &s.problem.driven)
     }
 
     /// Every equilibrium: with the efficiencies of the train, or with losses that laws compute.
@@ -105,7 +105,7 @@ impl<'a> Setting<'a> {
             let [low, high] = equilibrium.torque_range(self.c, stretch, node);
             let n_m = |t: Option<Rational>| t.map(|t| (&t - &problem.torques[node]).to_f64() * problem.scale());
             let (low_n_m, high_n_m) = (n_m(low), n_m(high));
-            let member = self.c.train.member_name(m).to_owned();
+            let member = name_of(self.c.train, m);
             (low_n_m.is_none() || low_n_m != high_n_m).then_some(TorqueRange { member, low_n_m, high_n_m })
         };
         problem.balancing().filter_map(range).collect()

@@ -2,9 +2,9 @@
 
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, common};
-use crate::power_flow::{Drag, External};
+use crate::power_flow::{Drag, Driven, External};
 use crate::statics::{Equilibrium, Solution};
-use crate::train::{Load, MemberId, Operation};
+use crate::train::{Efficiency, Load, MachineEfficiency, MemberId, Operation, Store, VariatorPath};
 use crate::units::{Dimension, Quantity};
 
 use super::words::Refusal;
@@ -21,7 +21,10 @@ pub(super) struct Loads {
     pub open: Vec<usize>,
     /// Nodes whose torque may differ from zero.
     pub loaded: Vec<usize>,
-    /// Terminals that carry a torque, in order, with what is prescribed of it; none: whatever balances the train.
+    /// Machines whose torque is prescribed.
+    pub driven: Vec<Driven>,
+    /// Terminals that carry a torque, in order, with what is prescribed of it; none: whatever balances the train. A store
+    /// is a torque on the bus of its variator.
     pub terminals: Vec<(MemberId, Option<Rational>)>,
 }
 
@@ -35,32 +38,52 @@ impl Loads {
     ) -> Result<Self, Vec<Refusal>> {
         let train = c.train;
         let mut wrong = Vec::new();
-        let mut quantities: Vec<(MemberId, Quantity)> = Vec::new();
+        let torque = |member: MemberId, load: &Load| match load {
+            Load::Torque(q) => Ok(q.clone()),
+            Load::Power(p) => match &motion.speeds[member.0] {
+                Some(w) if w.is_zero() && !p.value.is_zero() => Err(Refusal::PowerAtRest(member, p.si())),
+                Some(w) if w.is_zero() => Ok(Quantity { dimension: Dimension::TORQUE, ..p.clone() }),
+                Some(w) => Ok(Quantity {
+                    value: &p.value / w,
+                    pi_power: p.pi_power - motion.pi_power,
+                    dimension: Dimension::TORQUE,
+                }),
+                None => Err(Refusal::PowerWithoutSpeed(member)),
+            },
+        };
+        // Terminals first, then the stores on their buses, then machines.
+        let (mut quantities, mut free): (Vec<(MemberId, Quantity)>, Vec<MemberId>) = (vec![], vec![]);
         for (member, load) in &operation.loads {
-            match load {
-                Load::Torque(q) => quantities.push((*member, q.clone())),
-                Load::Power(p) => match &motion.speeds[member.0] {
-                    Some(w) if w.is_zero() && !p.value.is_zero() => wrong.push(Refusal::PowerAtRest(*member, p.si())),
-                    Some(w) if w.is_zero() => {
-                        quantities.push((*member, Quantity { dimension: Dimension::TORQUE, ..p.clone() }));
-                    }
-                    Some(w) => quantities.push((
-                        *member,
-                        Quantity {
-                            value: &p.value / w,
-                            pi_power: p.pi_power - motion.pi_power,
-                            dimension: Dimension::TORQUE,
-                        },
-                    )),
-                    None => wrong.push(Refusal::PowerWithoutSpeed(*member)),
+            match torque(*member, load) {
+                Ok(q) => quantities.push((*member, q)),
+                Err(refusal) => wrong.push(refusal),
+            }
+        }
+        for (k, variator) in train.variators.iter().enumerate() {
+            let VariatorPath::Bus { store, .. } = &variator.path else { continue };
+            let own = operation.stores.iter().find(|(of, _)| *of == k).map_or(store, |(_, own)| own);
+            match own {
+                Store::Free => free.push(c.bus(k)),
+                Store::Power(p) => match torque(c.bus(k), &Load::Power(p.clone())) {
+                    Ok(q) => quantities.push((c.bus(k), q)),
+                    Err(refusal) => wrong.push(refusal),
                 },
+            }
+        }
+        let terminals_end = quantities.len();
+        for (at, load) in &operation.machines {
+            let member = train.variators[at[0]].machines()[at[1]].member;
+            match torque(member, load) {
+                Ok(q) => quantities.push((member, q)),
+                Err(refusal) => wrong.push(refusal),
             }
         }
         if !wrong.is_empty() {
             return Err(wrong);
         }
         let (values, pi_power) = common(quantities.iter().map(|(_, q)| q));
-        let given: Vec<(MemberId, Rational)> = quantities.iter().map(|(m, _)| *m).zip(values).collect();
+        let mut given: Vec<(MemberId, Rational)> = quantities.iter().map(|(m, _)| *m).zip(values).collect();
+        let machines = given.split_off(terminals_end);
 
         let si = std::f64::consts::PI.powi(pi_power.into());
         let mut torques = vec![Rational::ZERO; c.nodes];
@@ -74,6 +97,34 @@ impl Loads {
                     loaded.push(n);
                 }
             }
+        }
+        let mut driven = Vec::new();
+        for ((at, _), (member, torque)) in operation.machines.iter().zip(machines) {
+            let machine = &train.variators[at[0]].machines()[at[1]];
+            let bus = c.bus(at[0]);
+            let (w, bus_speed) = (&motion.speeds[member.0], &motion.speeds[bus.0]);
+            let (Some(w), Some(bus_speed)) = (w, bus_speed) else { continue };
+            let power = &torque * w;
+            let eta = match &machine.efficiency {
+                MachineEfficiency::Constant(e) => e.clone(),
+                MachineEfficiency::Map(map) => {
+                    let speed = motion.si(member).unwrap_or(0.0).abs();
+                    let amount = torque.to_f64().abs() * si;
+                    let (eta, _) = map.at(speed, if power.sign() < 0 { -amount } else { amount });
+                    let eta = Rational::from_f64(eta).unwrap_or(Rational::ONE);
+                    Efficiency { forward: eta.clone(), backward: eta }
+                }
+            };
+            let draws = if power.sign() > 0 { &power / &eta.forward } else { &power * &eta.backward };
+            for (member, torque) in [(member, torque.clone()), (bus, -(&draws / bus_speed))] {
+                let Some(n) = c.node(member) else { continue };
+                torques[n] += torque.clone();
+                if !torque.is_zero() && !loaded.contains(&n) {
+                    loaded.push(n);
+                }
+            }
+            let scale = si * std::f64::consts::PI.powi(motion.pi_power.into());
+            driven.push(Driven { at: *at, torque: torque.to_f64() * si, draws: draws.to_f64() * scale });
         }
         for drag in drags {
             for (member, torque) in [(drag.members[0], drag.torque), (drag.members[1], -drag.torque)] {
@@ -90,7 +141,7 @@ impl Loads {
         }
         // Terminals on the frame's node carry only the reaction of their brake or hold.
         let mut open = Vec::new();
-        for &terminal in &train.terminals {
+        for &terminal in train.terminals.iter().chain(&free) {
             let Some(n) = c.node(terminal) else { continue };
             if given.iter().any(|(m, _)| *m == terminal) || operation.fixed.contains(&terminal) {
                 continue;
@@ -107,7 +158,7 @@ impl Loads {
         if !wrong.is_empty() {
             return Err(wrong);
         }
-        Ok(Self { given, pi_power, torques, open, loaded, terminals })
+        Ok(Self { given, pi_power, torques, open, loaded, driven, terminals })
     }
 
     /// Terminals that were left to balance the train.
@@ -151,15 +202,28 @@ impl Loads {
         std::f64::consts::PI.powi(self.pi_power.into())
     }
 
+    /// Variators that couple nothing.
+    fn at_rest(&self, c: &Configuration<'_>) -> Vec<usize> {
+        let acts = |k: &usize| {
+            c.couplings.iter().any(|own| own.variator == *k) || self.driven.iter().any(|d| d.at[0] == *k)
+        };
+        (0..c.train.variators.len()).filter(|k| !acts(k)).collect()
+    }
+
     /// `n` loads are missing.
     pub fn missing(&self, c: &Configuration<'_>, n: usize) -> Vec<Refusal> {
         let open = self.balancing().collect();
-        vec![Refusal::MissingLoads { freedoms: c.degrees_of_freedom(), open, more: n }]
+        vec![Refusal::MissingLoads { freedoms: c.degrees_of_freedom(), coupled: coupled(c), at_rest: self.at_rest(c), open, more: n }]
     }
 
     /// There are `n` loads too many.
     pub fn too_many(&self, c: &Configuration<'_>, n: usize) -> Vec<Refusal> {
         let open = self.balancing().count();
-        vec![Refusal::TooManyLoads { freedoms: c.degrees_of_freedom(), open, more: n }]
+        vec![Refusal::TooManyLoads { freedoms: c.degrees_of_freedom(), coupled: coupled(c), at_rest: self.at_rest(c), open, more: n }]
     }
+}
+
+/// Torques of terminals that variators settle, beside those that the gears leave open.
+fn coupled(c: &Configuration<'_>) -> usize {
+    c.couplings.len().saturating_sub(c.buses)
 }

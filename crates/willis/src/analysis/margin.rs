@@ -6,6 +6,7 @@ use crate::statics::{Equilibrium, Solution, torque};
 use crate::train::MemberId;
 
 use super::solution::Frame;
+use super::words::name_of;
 use super::{Boundary, LockMargin, Margin, StictionQuantity, StictionRange};
 
 /// `a + b`, zero where they cancel up to round-off.
@@ -32,8 +33,11 @@ impl Frame<'_> {
         Margin { torque: self.unloading(s), speed: self.standstill(s, flow), lock, lock_loss_factor }
     }
 
-    /// The meshes of an element.
+    /// The meshes of an element, or the variator that it is.
     fn meshes_of(&self, element: usize) -> Vec<String> {
+        if let Some(k) = element.checked_sub(self.c.gears().len()) {
+            return vec![self.c.train.variators[self.c.couplings[k].variator].name.clone()];
+        }
         let links = self.c.elements[element].links.iter();
         links.map(|l| self.c.train.meshes[l.mesh.0].name.clone()).collect()
     }
@@ -57,7 +61,7 @@ impl Frame<'_> {
             for (k, &(member, _, value)) in given.iter().enumerate().filter(|(k, _)| row[*k] != 0.0) {
                 let change = -s.forces[e] / row[k];
                 nearest.offer(change, || Boundary {
-                    member: c.train.member_name(member).to_owned(),
+                    member: name_of(c.train, member),
                     value: value * scale,
                     boundary: sum(value, change) * scale,
                     mesh: self.meshes_of(e).join(", "),
@@ -77,7 +81,7 @@ impl Frame<'_> {
         }
         let transfer = c.transfer(&prescribed);
         let mut nearest = Nearest::default();
-        for (j, e) in c.elements.iter().enumerate().filter(|(j, _)| s.driver[*j].is_some()) {
+        for (j, e) in c.gears().iter().enumerate().filter(|(j, _)| s.driver[*j].is_some()) {
             let (Some(p), Some(q)) = (&transfer.speeds[e.p.0], &transfer.speeds[e.carrier.0]) else { continue };
             let relative = flow.speeds[e.p.0] - flow.speeds[e.carrier.0];
             for (k, &member) in prescribed.iter().enumerate() {
@@ -132,7 +136,7 @@ impl Frame<'_> {
     /// Ranges that friction in loaded meshes at rest leaves open: every vertex of their ρ-box.
     pub fn stiction(&self, s: &Solution, flow: &Flow) -> Vec<StictionRange> {
         let c = self.c;
-        let stuck: Vec<usize> = (0..c.elements.len())
+        let stuck: Vec<usize> = (0..c.gears().len())
             .filter(|&j| {
                 let e = &c.elements[j];
                 let lossy = e.forward != Rational::ONE || e.backward != Rational::ONE;
@@ -200,8 +204,12 @@ const MOST_STUCK: usize = 8;
 fn stuck_flow(frame: &Frame<'_>, s: &Solution) -> Vec<Option<f64>> {
     let c = frame.c;
     let scale = frame.problem.scale();
-    let demand: Vec<f64> = crate::power_flow::demand(c, s).iter().map(|x| x * scale).collect();
+    let mut demand: Vec<f64> = crate::power_flow::demand(c, s).iter().map(|x| x * scale).collect();
     let mut external = vec![0.0; demand.len()];
+    for d in &frame.problem.driven {
+        let machine = &c.train.variators[d.at[0]].machines()[d.at[1]];
+        demand[machine.member.0] -= d.torque;
+    }
     for (member, prescribed) in &frame.problem.terminals {
         external[member.0] = match (prescribed, c.node(*member)) {
             (Some(t), _) => t.to_f64() * scale,

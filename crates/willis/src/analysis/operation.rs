@@ -1,6 +1,6 @@
 //! One operating point, from what is prescribed to the answer: speeds, loads, equilibria, verdict.
 
-use crate::kinematics::{Configuration, Motion};
+use crate::kinematics::{Configuration, Coupled, Motion};
 use crate::operating_point::Physics;
 use crate::statics::{Certificate, Equilibrium, SolvedColumn, Unsolvable};
 use crate::train::{MemberId, MeshId, Operation, ShiftElementId, ShiftElementKind, Train};
@@ -9,7 +9,7 @@ use super::balance::{Balance, Branch, Setting};
 use super::loads::Loads;
 use super::solution::Frame;
 use super::words::{Finding, Refusal, names};
-use super::{Boundary, OperationReport, OutsideLaw, Role, SolutionReport, SpeedDeviation, TorqueRange, Verdict, Why};
+use super::{Boundary, variators, OperationReport, OutsideLaw, Role, SolutionReport, SpeedDeviation, TorqueRange, Verdict, Why};
 
 /// A unique equilibrium with what its numbers are computed from.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ pub(super) struct Settled<'t> {
 /// Analyses an operation; `Err` when what it prescribes makes no question.
 pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Settled<'t>, Vec<Refusal>> {
     let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
-    let physics = train.is_physical().then(|| Physics::new(train, operation));
+    let physics = train.depends_on_load().then(|| Physics::new(train, operation));
     let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
     let dragged = physics.as_ref().map(Physics::visible).unwrap_or_default();
     let keep: Vec<MemberId> = prescribed.iter().chain(&dragged).copied().collect();
@@ -60,10 +60,14 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
         return Ok(Settled::without(report, Verdict::Locked, Why::NoFreedom));
     }
 
+    let gears = c;
+    let driven: Vec<[usize; 2]> = operation.machines.iter().map(|(at, _)| *at).collect();
+    let Coupled { c, motion, at_rest } = gears.coupled(&motion, &driven);
     let problem = Loads::new(&c, operation, &motion, &[])?;
     let loose: Vec<_> =
         (1..train.members.len()).map(MemberId).filter(|m| motion.speeds[m.0].is_none() && !c.inner[m.0]).collect();
     let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
+    let resting = at_rest.into_iter().map(Finding::VariatorAtRest);
     // Shafts that push against each other in a clutch balance at any speed, and so at any power.
     let posed = match problem.given.iter().any(|(m, t)| !t.is_zero() && loose.contains(m)) {
         true => Err(Unsolvable::UndeterminedSpeed),
@@ -99,6 +103,7 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
     }
 
     let mut findings: Vec<Finding> = report.speed_deviation.clone().map(Finding::Yield).into_iter().collect();
+    findings.extend(resting);
     if !loose.is_empty() {
         findings.push(Finding::MaySpin(loose));
     }
@@ -131,6 +136,8 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
     for s in &report.solutions {
         findings.extend(held_back(train, s));
         findings.extend(near_boundary(s));
+        findings.extend(s.beyond_limits.iter().cloned().map(Finding::Beyond));
+        findings.extend(variators::outside_maps(train, s).into_iter().map(Finding::OutsideMap));
     }
     let point = match (verdict, &branches[..]) {
         (Verdict::Unique, [branch]) => Some(point(&c, &motion, branch)),

@@ -284,7 +284,7 @@ fn drive(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Result<Tor
         External { member: input, torque: 1.0, power: 1 },
         External { member: output, torque: load / torque, power: -1 },
     ];
-    let flow = Flow::new(c, motion, s, 1.0 / torque, &acting, &[]);
+    let flow = Flow::new(c, motion, s, 1.0 / torque, &acting, &[], &[]);
     let mut sets: Vec<(String, Vec<(MemberId, f64)>)> = Vec::new();
     for m in &flow.meshes {
         let mesh = &train.meshes[m.mesh.0];

@@ -8,7 +8,7 @@ use crate::statics::{Equilibrium, Solution, torque_exact};
 use crate::train::{FRAME, MemberId, MemberKind, Operation};
 
 use super::loads::Loads;
-use super::{CirculationReport, Losses, MemberReport, MeshReport, Named, Role, ShiftElementReport, SolutionReport};
+use super::{CirculationReport, variators, Losses, MemberReport, MeshReport, Named, Role, ShiftElementReport, SolutionReport};
 
 /// Everything a solution is seen against.
 pub(super) struct Frame<'a> {
@@ -25,7 +25,7 @@ pub(super) struct Frame<'a> {
 impl Frame<'_> {
     pub fn flow(&self, s: &Solution) -> Flow {
         let acting = self.problem.acting(self.c, self.motion, self.equilibrium, s);
-        Flow::new(self.c, self.motion, s, self.problem.scale(), &acting, self.drags)
+        Flow::new(self.c, self.motion, s, self.problem.scale(), &acting, self.drags, &self.problem.driven)
     }
 
     /// The equilibrium in SI, with its margins.
@@ -70,7 +70,10 @@ impl Frame<'_> {
         let sources = self.physics.map(|(p, (step, _))| p.sources(step, &flow)).unwrap_or_default();
         let losses_w = match self.physics {
             Some(_) => Losses::of(&sources),
-            None => Losses { mesh: flow.loss, ..Losses::default() },
+            None => {
+                let variator = flow.variators.iter().map(|v| v.loss).sum::<f64>() + 0.0;
+                Losses { mesh: flow.meshes.iter().map(|m| m.loss).sum::<f64>() + 0.0, variator, ..Losses::default() }
+            }
         };
         let efficiency = if flow.input_power <= 0.0 {
             None
@@ -92,6 +95,8 @@ impl Frame<'_> {
             members,
             meshes,
             shift_elements: Named(shift_elements.collect()),
+            variators: variators::reports(train, &flow),
+            beyond_limits: variators::beyond(train, &flow),
             losses_w,
             sources,
             contacts: Named(self.physics.map(|(p, (step, _))| p.contacts(step, &flow)).unwrap_or_default()),

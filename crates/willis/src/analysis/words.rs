@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, apart};
 use crate::train::{MemberId, Operation, ShiftElementId, Train};
 
-use super::{Boundary, OutsideLaw, SpeedDeviation, StictionRange, Why};
+use super::{BeyondLimit, Boundary, OutsideLaw, SpeedDeviation, StictionRange, Why};
 
 /// Why an operation makes no question.
 #[derive(Clone, Debug)]
@@ -23,9 +23,9 @@ pub(super) enum Refusal {
     /// Two terminals that turn as one, and neither has a torque.
     Together([MemberId; 2]),
     /// So many more terminals must carry a load than those that are not left open.
-    MissingLoads { freedoms: usize, open: Vec<MemberId>, more: usize },
+    MissingLoads { freedoms: usize, coupled: usize, at_rest: Vec<usize>, open: Vec<MemberId>, more: usize },
     /// So many loads too many; so many terminals are left open.
-    TooManyLoads { freedoms: usize, open: usize, more: usize },
+    TooManyLoads { freedoms: usize, coupled: usize, at_rest: Vec<usize>, open: usize, more: usize },
 }
 
 /// What a reader of the answer must know beside it.
@@ -35,6 +35,12 @@ pub(super) enum Finding {
     Why(Why),
     /// Members that nothing drives.
     MaySpin(Vec<MemberId>),
+    /// A variator of which all members stand still.
+    VariatorAtRest(usize),
+    /// A limit of a variator is exceeded.
+    Beyond(BeyondLimit),
+    /// A machine runs outside its map.
+    OutsideMap(String),
     /// Ranges that friction at rest leaves open.
     Stiction(Vec<StictionRange>),
     /// A law was used outside its range.
@@ -69,7 +75,7 @@ pub(crate) fn named(operation: &Operation, all: Diagnostics) -> Diagnostics {
 impl Refusal {
     fn tell(&self, train: &Train, operation: &Operation) -> Diagnostic {
         let place = operation.place.as_str();
-        let name = |m: MemberId| train.member_name(m);
+        let name = |m: MemberId| name_of(train, m);
         match self {
             Self::Contradiction { freedoms, members, follows_rpm, given_rpm } => {
                 let (last, others) = members.split_last().expect("a conflict names members");
@@ -127,28 +133,30 @@ impl Refusal {
                 Diagnostic::new(Code::MissingTorque, format!("{place}.torques"), message)
                     .hint("give the torque or power of one of them")
             }
-            Self::MissingLoads { freedoms, open, more } => {
+            Self::MissingLoads { freedoms, coupled, at_rest, open, more } => {
                 let message = format!(
-                    "with {} as many terminals can be left without a torque or power, but {} have none: {}",
+                    "with {} {} can be left without a torque or power, but {} have none: {}",
                     self::freedoms(*freedoms),
+                    balancing(*freedoms, *coupled),
                     open.len(),
                     names(train, open.iter().copied()).join(", ")
                 );
-                Diagnostic::new(Code::MissingTorque, format!("{place}.torques"), message)
-                    .hint(format!("give {more} more, \"0 N m\" where nothing acts"))
+                let d = Diagnostic::new(Code::MissingTorque, format!("{place}.torques"), message);
+                resting(train, at_rest, d.hint(format!("give {more} more, \"0 N m\" where nothing acts")))
             }
-            Self::TooManyLoads { freedoms, open, more } => {
+            Self::TooManyLoads { freedoms, coupled, at_rest, open, more } => {
                 let message = format!(
-                    "with {} as many terminals must be left without a prescribed torque to balance the train; here {} \
-                     left",
+                    "with {} {} must be left without a prescribed torque to balance the train; here {} left",
                     self::freedoms(*freedoms),
+                    balancing(*freedoms, *coupled),
                     if *open == 1 { "1 is".to_owned() } else { format!("{open} are") },
                 );
                 let hint = match train.terminals.is_empty() {
                     true => "name the members that take part in `terminals`".to_owned(),
                     false => format!("leave out {more} of the torques, or list another member in `terminals`"),
                 };
-                Diagnostic::new(Code::TooManyTorques, format!("{place}.torques"), message).hint(hint)
+                let d = Diagnostic::new(Code::TooManyTorques, format!("{place}.torques"), message).hint(hint);
+                resting(train, at_rest, d)
             }
         }
     }
@@ -167,6 +175,15 @@ impl Finding {
                 let members = names(train, members.iter().copied()).join(", ");
                 let message = format!("{members} may spin at any speed; nothing is transmitted there");
                 Diagnostic::new(Code::Undetermined, place, message)
+            }
+            Self::VariatorAtRest(k) => {
+                Diagnostic::new(Code::VariatorAtRest, place, at_rest(train, *k))
+                    .hint("give one more torque, of a machine or of a terminal, or a speed at which one side turns")
+            }
+            Self::Beyond(beyond) => Diagnostic::new(Code::BeyondLimit, place, beyond.to_string()),
+            Self::OutsideMap(machine) => {
+                let message = format!("{machine} runs outside the map of its efficiency; the value at its edge was taken");
+                Diagnostic::new(Code::OutsideMap, place, message)
             }
             Self::Stiction(ranges) => {
                 let range = |r: &StictionRange| match (r.low, r.high) {
@@ -223,12 +240,47 @@ impl Finding {
 
 /// Names of members.
 pub(super) fn names(train: &Train, members: impl IntoIterator<Item = MemberId>) -> Vec<String> {
-    members.into_iter().map(|m| train.member_name(m).to_owned()).collect()
+    members.into_iter().map(|m| name_of(train, m)).collect()
+}
+
+/// The name of a member, or what stands behind a [bus](crate::kinematics::Configuration::bus).
+pub(super) fn name_of(train: &Train, member: MemberId) -> String {
+    if let Some(own) = train.members.get(member.0) {
+        return own.name.clone();
+    }
+    let mut buses = train.variators.iter().filter(|v| v.has_bus());
+    let bus = member.0.checked_sub(train.members.len()).and_then(|k| buses.nth(k));
+    format!("the store of {}", bus.map_or("a variator", |v| &v.name))
 }
 
 /// Names of shift elements.
 pub(super) fn element_names(train: &Train, elements: &[ShiftElementId]) -> Vec<String> {
     elements.iter().map(|e| train.shift_elements[e.0].name.clone()).collect()
+}
+
+/// What it means that all members of a variator stand still.
+fn at_rest(train: &Train, variator: usize) -> String {
+    let v = &train.variators[variator];
+    format!(
+        "{} stand still, so {} passes no power and nothing couples the torques of its sides; it is left out",
+        names(train, v.members()).join(" and "),
+        v.name
+    )
+}
+
+/// A refusal with what variators at rest have to do with it.
+fn resting(train: &Train, variators: &[usize], refusal: Diagnostic) -> Diagnostic {
+    variators.iter().map(|k| at_rest(train, *k)).fold(refusal, Diagnostic::hint)
+}
+
+/// How many terminals balance a train, whose variators settle so many torques.
+fn balancing(freedoms: usize, coupled: usize) -> String {
+    match (coupled, freedoms.saturating_sub(coupled)) {
+        (0, _) => "as many terminals".into(),
+        (_, 0) => "and its variators no terminal".into(),
+        (_, 1) => "and its variators one terminal".into(),
+        (_, n) => format!("and its variators {n} terminals"),
+    }
 }
 
 /// `2 degrees of freedom`.

@@ -108,6 +108,10 @@ codes! {
     /// member, `w_sun`. Names with other characters than letters, digits and `_` stand in braces:
     /// `{w_P1.planet}`. Its value is in SI units: N m, rad/s.
     E113 BadFormula: "a formula cannot be used";
+    /// A variator joins two different members and has one efficiency (or one for each direction), or it has machines on a
+    /// bus, each with a member and an efficiency of its own, and perhaps a store. `ratio` belongs to the former, `store`
+    /// and `standby` to the latter. Limits are positive, and the least ratio is not above the greatest.
+    E114 Variator: "a variator cannot be built";
     /// The prescribed speeds cannot all hold: the gears already tie some of them together. Give
     /// as many independent speeds as the train has degrees of freedom.
     E201 ContradictorySpeeds: "the prescribed speeds contradict each other";
@@ -203,6 +207,14 @@ codes! {
     /// measured speeds do. The answer is that of speeds which the gears allow: those given first hold, the others
     /// follow. The deviation is the part of the largest of these speeds, as the gears tie them.
     W318 SpeedsYield: "prescribed speeds agree only within the tolerance";
+    /// A machine or belt of a variator would have to run beyond what the train file says it can: torque, power, speed or
+    /// ratio. The answer holds for a variator without that limit; the message has the limit and the excess.
+    W319 BeyondLimit: "a limit of a variator is exceeded";
+    /// A machine runs outside the map of its efficiency. The value at the edge of the map was taken.
+    W320 OutsideMap: "outside the map of a machine";
+    /// All members of a variator stand still. No power can pass it, and the torques of its machines have nothing to do
+    /// with each other: none of them is known, and the variator was left out.
+    W321 VariatorAtRest: "a variator stands still";
     /// A loaded mesh without relative motion: its friction may act in either direction, up to the
     /// sliding value, so torques behind it are known only within a range. Shown: the value
     /// without friction.

@@ -112,6 +112,7 @@ impl Place {
             LossKind::Windage => EnergyLossKind::Windage,
             LossKind::Churning => EnergyLossKind::Churning,
             LossKind::Seal => EnergyLossKind::Seal,
+            LossKind::Variator => EnergyLossKind::Variator,
         }
     }
 }

@@ -488,6 +488,8 @@ pub enum EnergyLossKind {
     Churning,
     /// A seal, by a law.
     Seal,
+    /// A variator.
+    Variator,
 }
 
 impl fmt::Display for EnergyLossKind {
@@ -500,6 +502,7 @@ impl fmt::Display for EnergyLossKind {
             Self::Shaft => "shaft",
             Self::Rolling => "rolling",
             Self::Bearing => "bearing",
+            Self::Variator => "variator",
             Self::Windage => "windage",
             Self::Churning => "churning",
             Self::Seal => "seal",

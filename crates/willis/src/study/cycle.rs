@@ -158,6 +158,8 @@ pub enum EnergyKind {
     Seal,
     /// Sliding of teeth.
     Sliding,
+    /// Variators.
+    Variator,
     /// Gears that move air.
     Windage,
 }
@@ -172,6 +174,7 @@ impl EnergyKind {
             Self::Rolling => "rolling",
             Self::Seal => "seal",
             Self::Sliding => "sliding",
+            Self::Variator => "variator",
             Self::Windage => "windage",
         }
     }
@@ -186,6 +189,7 @@ impl From<LossKind> for EnergyKind {
             LossKind::Windage => Self::Windage,
             LossKind::Churning => Self::Churning,
             LossKind::Seal => Self::Seal,
+            LossKind::Variator => Self::Variator,
         }
     }
 }
@@ -568,7 +572,10 @@ impl<'a> Cycle<'a> {
             own.1 += power * held.time_s;
         };
         match s.sources.is_empty() {
-            true => s.meshes.iter().for_each(|(name, m)| lose(name, EnergyKind::Mesh, "given", m.loss_w)),
+            true => {
+                s.meshes.iter().for_each(|(name, m)| lose(name, EnergyKind::Mesh, "given", m.loss_w));
+                s.variators.iter().for_each(|(name, v)| lose(name, EnergyKind::Variator, "given", v.loss_w));
+            }
             false => s.sources.iter().for_each(|x| lose(&x.name, x.kind.into(), &x.law, x.loss_w)),
         }
         for (name, m) in s.members.iter() {

@@ -105,6 +105,8 @@ impl<'s> Question<'s> {
             speeds: vec![],
             fixed: vec![],
             loads: vec![],
+            stores: vec![],
+            machines: vec![],
             temperature: None,
             place: String::new(),
         });

@@ -2,6 +2,7 @@
 
 mod dynamic;
 mod physical;
+mod variator;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -13,11 +14,11 @@ use super::described::{GivenFriction, GivenMesh, GivenSet, sign};
 use super::input::{Assembled, inputs};
 use super::physical::{BearingMount, Housing, Lubrication, Rotor, SealMount};
 use super::specification::field::{Field, Tabular};
-use super::specification::{OperationSpec, ShiftElementSpec, Specification, StateSpec};
+use super::specification::{OperationSpec, ShiftElementSpec, Specification, StateSpec, TerminalSpec};
 use super::words::clip;
 use super::{
     Efficiency, FRAME, Gear, Load as Prescribed, LossTable, Member, MemberId, MemberKind, Mesh, MeshId, Operation,
-    ShiftElement, ShiftElementId, ShiftElementKind, State, Train, expand,
+    ShiftElement, ShiftElementId, ShiftElementKind, State, Train, Variator, expand,
 };
 
 /// Largest train that is analysed; beyond it exact elimination is no longer bounded in time.
@@ -26,6 +27,7 @@ const MOST_MEMBERS: usize = 1024;
 const MOST_STATES: usize = 256;
 const MOST_OPERATIONS: usize = 4096;
 const MOST_SCENARIOS: usize = 256;
+const MOST_VARIATORS: usize = 16;
 
 impl Assembler<'_> {
     fn mesh(&mut self, spec: &GivenMesh, place: &str) {
@@ -200,7 +202,8 @@ impl Assembler<'_> {
         }
     }
 
-    fn operation(&mut self, spec: &OperationSpec, states: &[StateSpec], place: String) -> Operation {
+    fn operation(&mut self, spec: &OperationSpec, within: &Within<'_>, place: String) -> Operation {
+        let Within { states, variators, terminals } = within;
         let known: Vec<&str> = states.iter().map(|s| s.name.as_str()).collect();
         let of = |name: &String| self.position("state", "state", name, format!("{place}.state"), &known);
         let state = spec.state.as_ref().and_then(of);
@@ -211,6 +214,8 @@ impl Assembler<'_> {
             speeds: vec![],
             fixed: vec![],
             loads: vec![],
+            stores: self.stores(&spec.store, variators, &place),
+            machines: vec![],
             temperature: spec.temperature.plain(),
             place: place.clone(),
         };
@@ -244,6 +249,19 @@ impl Assembler<'_> {
         let powers = spec.powers.iter().map(|(m, p)| (m, "powers", Prescribed::Power(p.clone().into())));
         for (name, table, load) in torques.chain(powers) {
             let place = format!("{place}.{table}.{name}");
+            // The torque of a machine within the train, unless one from outside has its name.
+            let machine = variators.iter().enumerate().find_map(|(v, variator)| {
+                Some([v, variator.machines().iter().position(|m| m.name == *name)?])
+            });
+            if let Some(machine) = machine.filter(|_| !terminals.iter().any(|t| t.name == *name)) {
+                if operation.machines.iter().any(|(m, _)| *m == machine) {
+                    let message = format!("the load on `{name}` is given twice");
+                    self.report(Diagnostic::new(Code::Conflict, place, message).hint("give a torque or a power, once"));
+                } else {
+                    operation.machines.push((machine, load));
+                }
+                continue;
+            }
             let Some(id) = self.resolve(name, &place) else { continue };
             if operation.loads.iter().any(|(m, _)| *m == id) {
                 let message = format!("the load on `{name}` is given twice");
@@ -259,6 +277,13 @@ impl Assembler<'_> {
     }
 }
 
+/// What an operation may name.
+struct Within<'a> {
+    states: &'a [StateSpec],
+    variators: &'a [Variator],
+    terminals: &'a [TerminalSpec],
+}
+
 /// Reports what is too large to be analysed in bounded time.
 fn too_large(spec: &Specification, diagnostics: &mut Diagnostics) {
     for (what, is, most) in [
@@ -269,6 +294,8 @@ fn too_large(spec: &Specification, diagnostics: &mut Diagnostics) {
         ("operations", spec.operation.len(), MOST_OPERATIONS),
         ("bearings, seals and rotors", spec.bearing.len() + spec.seal.len() + spec.rotor.len(), MOST_MEMBERS),
         ("drags and shafts", spec.drag.len() + spec.shaft.len(), MOST_MEMBERS),
+        ("variators", spec.variator.len(), MOST_VARIATORS),
+        ("terminals", spec.terminals.len(), MOST_MEMBERS),
         ("scenarios", spec.scenario.len(), MOST_SCENARIOS),
         ("sources of a scenario", spec.scenario.iter().map(|s| s.source.len()).max().unwrap_or(0), MOST_MEMBERS),
     ] {
@@ -306,6 +333,7 @@ pub(super) fn assemble<'a>(
         files: BTreeMap::new(),
     };
     a.name_members(spec);
+    let joints = a.name_terminals(spec);
     a.choose_laws(spec.laws.as_ref());
     let lubrication = spec.oil.as_ref().and_then(|o| a.oil(&o.twin()));
 
@@ -321,7 +349,8 @@ pub(super) fn assemble<'a>(
         (sets.iter().enumerate()).map(|(k, (set, planets))| expand::expand(&mut a, set, planets, k)).collect();
     unique(&mut a, "mesh", "mesh", spec.mesh.iter().filter_map(|m| m.name.as_deref()));
 
-    let (shift_elements, states, operations) = a.shifting(spec);
+    let variators = a.variators(&spec.variator);
+    let (shift_elements, states, operations) = a.shifting(spec, &variators);
     let (mut bearings, seals, rotors) = a.machinery(spec, &lubrication);
     a.surroundings(spec, &lubrication);
     // An oil that is wrong was reported; it is not missing as well.
@@ -353,6 +382,8 @@ pub(super) fn assemble<'a>(
     a.is_a_train(spec, before);
     if a.diagnostics.len() == before || !a.diagnostics.has_errors() {
         let touched = (shift_elements.iter().flat_map(|e| e.members))
+            .chain(variators.iter().flat_map(Variator::members))
+            .chain(joints.iter().copied().flatten())
             .chain(inertias.iter().map(|i| i.member))
             .chain(drags.iter().flat_map(|d| d.members))
             .chain(shafts.iter().flat_map(|s| s.members))
@@ -402,6 +433,8 @@ pub(super) fn assemble<'a>(
         shafts,
         loss_tables,
         scenarios,
+        variators,
+        joints,
         studies: spec.study.clone(),
         inputs,
     })
@@ -426,7 +459,10 @@ pub(super) fn operating_point(train: &Train, spec: &OperationSpec) -> Result<Ope
         files: BTreeMap::new(),
     };
     let states: Vec<StateSpec> = train.states.iter().map(|s| StateSpec::new(s.name.as_str(), [])).collect();
-    let operation = a.operation(spec, &states, "operation".to_owned());
+    let named = |m: &MemberId| TerminalSpec { name: train.member_name(*m).to_owned(), member: None };
+    let terminals: Vec<TerminalSpec> = train.terminals.iter().map(named).collect();
+    let within = Within { states: &states, variators: &train.variators, terminals: &terminals };
+    let operation = a.operation(spec, &within, "operation".to_owned());
     a.loads_on_terminals(std::slice::from_ref(&operation), &train.terminals);
     match (operation.temperature, &train.lubrication) {
         (Some(t), Some(l)) => a.temperature(l, t, "operation.temperature"),
@@ -490,14 +526,37 @@ impl Assembler<'_> {
         (all.iter().enumerate()).filter_map(|(k, one)| check(self, one, &format!("{key}[{k}]"))).collect()
     }
 
-    fn shifting(&mut self, spec: &Specification) -> (Vec<ShiftElement>, Vec<State>, Vec<Operation>) {
+    /// A terminal with a name of its own is a shaft of its own, for good coupled with the member that it sits on.
+    fn name_terminals(&mut self, spec: &Specification) -> Vec<[MemberId; 2]> {
+        let mut joints = Vec::new();
+        for (k, terminal) in spec.terminals.iter().enumerate() {
+            let Some(on) = terminal.member.as_ref().filter(|on| **on != terminal.name) else { continue };
+            let place = format!("terminals[{k}].name");
+            check_name(self, &terminal.name, &place, true);
+            if self.by_name.contains_key(&terminal.name) {
+                let message = format!("a member is called `{}` already", clip(&terminal.name));
+                let d = Diagnostic::new(Code::DuplicateName, place, message);
+                self.report(d.hint("give the terminal a name of its own"));
+                continue;
+            }
+            let Some(on) = self.resolve(on, &format!("terminals[{k}].member")) else { continue };
+            let own = MemberId(self.members.len());
+            self.by_name.insert(terminal.name.clone(), own);
+            self.members.push(Member { name: terminal.name.clone(), kind: MemberKind::Shaft });
+            joints.push([own, on]);
+        }
+        joints
+    }
+
+    fn shifting(&mut self, spec: &Specification, variators: &[Variator]) -> (Vec<ShiftElement>, Vec<State>, Vec<Operation>) {
         unique(self, "shift element", "shift_element", spec.shift_element.iter().map(|e| e.name.as_str()));
         unique(self, "state", "state", spec.state.iter().map(|s| s.name.as_str()));
         unique(self, "operation", "operation", spec.operation.iter().map(|o| o.name.as_str()));
         let shift_elements = self.each(&spec.shift_element, "shift_element", |a, e, place| a.shift_element(e, place));
         let states = self.each(&spec.state, "state", |a, s, place| Some(a.state(s, &spec.shift_element, place)));
+        let within = Within { states: &spec.state, variators, terminals: &spec.terminals };
         let operations =
-            self.each(&spec.operation, "operation", |a, o, place| Some(a.operation(o, &spec.state, place.to_owned())));
+            self.each(&spec.operation, "operation", |a, o, place| Some(a.operation(o, &within, place.to_owned())));
         (shift_elements, states, operations)
     }
 
@@ -536,9 +595,12 @@ impl Assembler<'_> {
         states: &[State],
     ) -> (Vec<MemberId>, Option<MemberId>, Option<MemberId>) {
         let mut terminals: Vec<MemberId> = Vec::new();
-        for (k, name) in spec.terminals.iter().enumerate() {
+        for (k, TerminalSpec { name, member }) in spec.terminals.iter().enumerate() {
             let place = format!("terminals[{k}]");
-            let Some(id) = self.resolve(name, &place) else { continue };
+            // What is wrong with the name of one on another member was told.
+            let own = member.as_ref().is_some_and(|on| on != name);
+            let found = if own { self.by_name.get(name).copied() } else { self.resolve(name, &place) };
+            let Some(id) = found else { continue };
             if id == FRAME {
                 self.report(Diagnostic::new(Code::BadName, place, "the frame is no terminal").hint("leave it out"));
             } else if terminals.contains(&id) {

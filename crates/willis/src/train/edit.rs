@@ -99,7 +99,7 @@ enum Place<'a> {
 fn place<'a>(item: Option<&'a Item>, kind: &'static Kind) -> Place<'a> {
     let table = || item.and_then(Item::as_table_like);
     match kind {
-        Kind::Format | Kind::Names | Kind::Points(_) | Kind::Schedule | Kind::Product(_) | Kind::NumberOrPoints(_) => {
+        Kind::Format | Kind::Names | Kind::Terminals | Kind::Points(_) | Kind::Schedule | Kind::Product(_) | Kind::NumberOrPoints(_) => {
             Place::Other
         }
         Kind::Text | Kind::Name | Kind::Choice(_) => Place::Value(Measure::Text),
@@ -113,6 +113,14 @@ fn place<'a>(item: Option<&'a Item>, kind: &'static Kind) -> Place<'a> {
             (None, None) => Place::Value(Measure::Number),
         },
         Kind::Efficiency => Place::Efficiency(table(), &["forward", "backward"]),
+        Kind::MachineEfficiency => match table() {
+            Some(map) if map.get("map").is_some() => Place::Other,
+            directed => Place::Efficiency(directed, &["motoring", "generating"]),
+        },
+        Kind::Store => match table() {
+            None => Place::Value(Measure::Quantity(Dimension::POWER)),
+            named => Place::Named(named, Measure::Quantity(Dimension::POWER)),
+        },
         Kind::SetEfficiency => Place::Efficiency(table(), &["external", "internal", "forward", "backward"]),
         Kind::Quantities(dimension) => Place::Named(table(), Measure::Quantity(*dimension)),
         Kind::Table(of) => Place::Table(table(), of),

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use crate::units::{self, Dimension};
 
-use super::format::keys::{Key, Kind, Measure, SignalKind, Table, TypedTable, about};
+use super::format::keys::{FREE, Key, Kind, Measure, SignalKind, Table, TypedTable, about};
 use super::specification::FILE;
 
 /// Where the schema is known by, whatever place it is read from.
@@ -159,6 +159,23 @@ impl Definitions {
             Kind::Text => json!({ "type": "string" }),
             Kind::Name => json!({ "type": "string", "minLength": 1, "maxLength": 64 }),
             Kind::Names => json!({ "type": "array", "items": { "type": "string", "minLength": 1, "maxLength": 64 } }),
+            Kind::Terminals => {
+                let name = json!({ "type": "string", "minLength": 1, "maxLength": 64 });
+                json!({ "type": "array", "items": { "anyOf": [name.clone(), pair(["name", "member"], &name)] } })
+            }
+            Kind::MachineEfficiency => {
+                let map = json!({
+                    "type": "object",
+                    "properties": { "map": { "type": "string" } },
+                    "required": ["map"],
+                    "additionalProperties": false,
+                });
+                json!({ "anyOf": [number, pair(["motoring", "generating"], &number), map] })
+            }
+            Kind::Store => {
+                let one = json!({ "anyOf": [self.measure(Some(Dimension::POWER)), { "const": FREE }] });
+                json!({ "anyOf": [one, { "type": "object", "additionalProperties": one }] })
+            }
             Kind::Integer => json!({ "type": "integer", "minimum": 1, "maximum": 100_000 }),
             Kind::Flag => json!({ "type": "boolean" }),
             Kind::Choice(choices) => json!({ "enum": choices }),

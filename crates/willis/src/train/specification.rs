@@ -7,6 +7,7 @@ mod dynamic;
 pub(super) mod field;
 mod physical;
 mod set;
+mod variator;
 mod written;
 
 use crate::exact::Rational;
@@ -33,6 +34,7 @@ pub use set::{
     BevelSpec, CentralSpec, DoublePlanetSpec, PlanetSpec, RavigneauxSpec, SetParts, SetSpec, Side, SideSpec,
     SimpleSpec, StepSpec, SteppedPlanetSpec, SteppedSpec,
 };
+pub use variator::{MachineEfficiencySpec, MachineSpec, RatioSpec, StoreSpec, VariatorSpec};
 
 choice!(ShiftElementKind { Clutch = "clutch", Brake = "brake", OneWay = "one-way" });
 
@@ -247,6 +249,50 @@ impl Field for FrictionSpec {
     }
 }
 
+/// Where an external torque may act: on the member of its name, or on another, beside other torques perhaps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TerminalSpec {
+    /// What it is called.
+    pub name: String,
+    /// The member that it sits on, where that has another name.
+    pub member: Option<String>,
+}
+
+impl From<&str> for TerminalSpec {
+    fn from(name: &str) -> Self {
+        Self { name: name.into(), member: None }
+    }
+}
+
+impl Field for Vec<TerminalSpec> {
+    const KIND: Kind = Kind::Terminals;
+    type Plain = Self;
+    fn read(node: &Node) -> Self {
+        match node {
+            Node::Terminals(all) => {
+                all.iter().map(|(name, member)| TerminalSpec { name: name.clone(), member: member.clone() }).collect()
+            }
+            node => unreachable!("the reader keeps to the kind of a key, here is {node:?}"),
+        }
+    }
+    fn blank() -> Self {
+        vec![]
+    }
+    fn write(&self) -> Option<Datum> {
+        let one = |t: &TerminalSpec| match &t.member {
+            None => Datum::Text(t.name.clone()),
+            Some(member) => Datum::Table(vec![
+                ("name".into(), Datum::Text(t.name.clone())),
+                ("member".into(), Datum::Text(member.clone())),
+            ]),
+        };
+        (!self.is_empty()).then(|| Datum::List(self.iter().map(one).collect()))
+    }
+    fn plain(&self) -> Self {
+        self.clone()
+    }
+}
+
 /// The two gears of a mesh.
 impl Field for [GearSpec; 2] {
     const KIND: Kind = Kind::Tables(GearSpec::TABLE, 2);
@@ -353,6 +399,9 @@ specification! {
         may torques: Vec<(String, Torque)>,
         /// External powers INTO the train at terminals.
         may powers: Vec<(String, Power)>,
+        /// Power out of the store of a variator into its bus, or "free" for whatever balances it; of several variators by
+        /// their names. Default: that of the variator.
+        may store: StoreSpec,
         /// Oil temperature in this operating point. Default: that of the oil.
         may temperature: Option<Temperature>,
     }
@@ -402,9 +451,9 @@ specification! {
         may notes: Option<String>,
         /// Every rotor. `frame` always exists and is at rest; planets of sets need no entry.
         must members: Vec<String>,
-        /// Members on which an external torque may act. The first is the input and the last the output, unless `input`
-        /// and `output` or a state say otherwise.
-        may terminals: Vec<String>,
+        /// Members on which an external torque may act, or { name, member } for one of several torques on a member. The
+        /// first is the input and the last the output, unless `input` and `output` or a state say otherwise.
+        may terminals: Vec<TerminalSpec>,
         /// Where power enters when driving.
         may input: Option<String> as Kind::Name,
         /// Where power leaves when driving.
@@ -415,6 +464,8 @@ specification! {
         may set: Vec<SetSpec>,
         /// Clutches, brakes and one-way clutches.
         may shift_element: Vec<ShiftElementSpec>,
+        /// Second paths of power splits: machines on a bus, pumps and motors, belts.
+        may variator: Vec<VariatorSpec>,
         /// The shift table. Without it the train is as drawn.
         may state: Vec<StateSpec>,
         /// Operating points to analyse.
@@ -487,7 +538,14 @@ impl Specification {
     /// state says otherwise.
     #[must_use]
     pub fn terminals<'a>(mut self, names: impl IntoIterator<Item = &'a str>) -> Self {
-        self.terminals.extend(names.into_iter().map(String::from));
+        self.terminals.extend(names.into_iter().map(TerminalSpec::from));
+        self
+    }
+
+    /// Names an external torque that sits on a member, beside others perhaps: a machine on the shaft of the wheels.
+    #[must_use]
+    pub fn terminal_on(mut self, name: impl Into<String>, member: impl Into<String>) -> Self {
+        self.terminals.push(TerminalSpec { name: name.into(), member: Some(member.into()) });
         self
     }
 
@@ -516,6 +574,13 @@ impl Specification {
     #[must_use]
     pub fn shift_element(mut self, element: ShiftElementSpec) -> Self {
         self.shift_element.push(element);
+        self
+    }
+
+    /// Adds a way for power beside the gears.
+    #[must_use]
+    pub fn variator(mut self, variator: VariatorSpec) -> Self {
+        self.variator.push(variator);
         self
     }
 

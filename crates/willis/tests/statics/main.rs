@@ -10,3 +10,4 @@ mod operating_point;
 mod properties;
 mod speeds;
 mod theory;
+mod variators;

@@ -1,6 +1,6 @@
 //! An analysis as tables: SI units in the column names, one row a thing.
 
-use willis::analysis::{Analysis, Direction, SolutionReport};
+use willis::analysis::{Analysis, Direction, MachineReport, SolutionReport, VariatorReport};
 
 use crate::table::Kind::{Flag, Integer, Number, Text};
 use crate::table::{Cell, Table, word};
@@ -9,6 +9,9 @@ use crate::table::{Cell, Table, word};
 pub fn tables(a: &Analysis) -> Vec<Table> {
     let physical = a.operations.iter().any(|o| o.solutions.iter().any(|s| s.convergence.is_some()));
     let mut all = vec![states(a), operations(a), members(a), meshes(a), shift_elements(a)];
+    if a.operations.iter().any(|o| o.solutions.iter().any(|s| !s.variators.is_empty())) {
+        all.push(variators(a));
+    }
     if physical {
         all.extend([losses(a), contacts(a), bearings(a)]);
     }
@@ -140,6 +143,45 @@ fn members(a: &Analysis) -> Table {
             ]
         };
         s.members.iter().map(row).collect()
+    })
+}
+
+fn variators(a: &Analysis) -> Table {
+    let columns = [
+        ("variator", Text),
+        ("kind", Text),
+        ("variator_power_w", Number),
+        ("share", Number),
+        ("loss_w", Number),
+        ("store_w", Number),
+        ("ratio", Number),
+        ("machine", Text),
+        ("member", Text),
+        ("torque_n_m", Number),
+        ("speed_rad_s", Number),
+        ("power_w", Number),
+        ("efficiency", Number),
+    ];
+    of_solutions(a, "variators", &columns, |s| {
+        let machines = s.variators.iter().flat_map(|(name, v)| v.machines.iter().map(move |m| (name, v, m)));
+        let row = |(name, v, (machine, m)): (&String, &VariatorReport, &(String, MachineReport))| {
+            vec![
+                name.into(),
+                word(&v.kind).into(),
+                v.power_w.into(),
+                v.share.into(),
+                v.loss_w.into(),
+                v.store_w.into(),
+                v.ratio.into(),
+                machine.into(),
+                (&m.member).into(),
+                m.torque_n_m.into(),
+                m.speed_rad_s.into(),
+                m.power_w.into(),
+                m.efficiency.into(),
+            ]
+        };
+        machines.map(row).collect()
     })
 }
 

@@ -3,7 +3,7 @@
 use comfy_table::CellAlignment;
 use willis::analysis::{
     Analysis, CertificateReport, Direction, Margin, MemberReport, OperationReport, Role, SolutionReport, StateReport,
-    Verdict,
+    VariatorReport, Verdict,
 };
 use willis::statics::Certificate;
 use willis::train::Train;
@@ -19,6 +19,7 @@ pub fn analysis(train: &Train, a: &Analysis) -> String {
     facts.push(plural(train.meshes().len(), "mesh", "meshes"));
     for (n, one, many) in [
         (train.sets().len(), "set", "sets"),
+        (train.variators().len(), "variator", "variators"),
         (train.shift_elements().len(), "shift element", "shift elements"),
         (train.states().len(), "state", "states"),
         (train.operations().len(), "operation", "operations"),
@@ -295,6 +296,10 @@ fn solution(s: &SolutionReport) -> String {
     right(&mut t, 2..6);
     out += &show(&t);
 
+    for (name, v) in s.variators.iter() {
+        out += &variator(name, v, unit, scale);
+    }
+
     if !s.shift_elements.is_empty() {
         let mut t = table();
         set_header(&mut t, &["shift element", "joins", "torque N m"]);
@@ -309,6 +314,50 @@ fn solution(s: &SolutionReport) -> String {
         out += &show(&t);
     }
     out + &losses::of_solution(s)
+}
+
+/// What a variator does, side by side or machine by machine.
+fn variator(name: &str, v: &VariatorReport, unit: &str, scale: f64) -> String {
+    let power = |p: f64| significant(p / scale, 5);
+    let mut facts = vec![match (&v.machines.0[..], v.power_w) {
+        (_, 0.0) => "passes no power".to_owned(),
+        ([first, second], p) => {
+            let (from, to) = if v.share >= 0.0 { (&first.0, &second.0) } else { (&second.0, &first.0) };
+            format!("{} {unit} from {from} to {to}, {} of the input", power(p), percent(v.share))
+        }
+        (_, p) => format!("{} {unit} delivered, {} of the input", power(p), percent(v.share)),
+    }];
+    facts.extend(v.ratio.map(|r| format!("ratio {}", significant(r, 5))));
+    facts.push(format!("lost {} {unit}", power(v.loss_w)));
+    match v.store_w {
+        Some(p) if p > 0.0 => facts.push(format!("store gives {} {unit}", power(p))),
+        Some(p) if p < 0.0 => facts.push(format!("store takes {} {unit}", power(-p))),
+        _ => {}
+    }
+    let mut out = wrap(&format!("{name}, {}: {}", v.kind, facts.join("; ")), "  ");
+    out.push('\n');
+    let mut t = table();
+    let (side, power_in) = (if v.store_w.is_some() { "machine" } else { "side" }, format!("power into it {unit}"));
+    set_header(&mut t, &[side, "on member", "does", "speed rpm", "torque on it N m", &power_in, "η"]);
+    for (name, m) in v.machines.iter() {
+        let does = match (m.power_w, m.torque_n_m) {
+            (p, _) if p > 0.0 => "drives",
+            (p, _) if p < 0.0 => "is driven",
+            (_, 0.0) => "",
+            _ => "holds",
+        };
+        t.add_row([
+            name.clone(),
+            m.member.clone(),
+            does.into(),
+            significant(rpm(m.speed_rad_s), 6),
+            dash(m.torque_n_m, significant(m.torque_n_m, 6)),
+            dash(m.power_w, power(m.power_w)),
+            m.efficiency.map_or("-".into(), |e| significant(e, 5)),
+        ]);
+    }
+    right(&mut t, 3..7);
+    out + &show(&t)
 }
 
 /// How far a solution is from another driving end, and from locking.

@@ -188,6 +188,8 @@ fn kind(n: &Node) -> String {
         NodeKind::Seal => "seal",
         NodeKind::Gear => "gear in fluid",
         NodeKind::Rotor => "rotor in fluid",
+        NodeKind::Coupling => "coupled for good",
+        NodeKind::Variator => "variator",
         _ => "clutch or brake",
     };
     if n.count > 1 { format!("{word} × {}", n.count) } else { word.into() }

@@ -189,7 +189,7 @@ fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
             }
         }
         let l = &p.losses_w;
-        for x in [l.mesh, l.bearing, l.windage, l.churning, l.seal] {
+        for x in [l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator] {
             row.push(if x == 0.0 { "-".into() } else { significant(x, 4) });
         }
         row.push(significant(p.loss_w, 5));

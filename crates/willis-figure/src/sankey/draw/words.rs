@@ -25,6 +25,7 @@ pub fn losers(kind: NodeKind) -> &'static str {
         NodeKind::Gear => "gears in fluid",
         NodeKind::Rotor => "rotors in fluid",
         NodeKind::ShiftElement => "clutches and brakes",
+        NodeKind::Variator => "variators",
         _ => "others",
     }
 }

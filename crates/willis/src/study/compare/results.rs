@@ -254,15 +254,27 @@ fn solution_facts(s: &SolutionReport, all: &mut Vec<Fact>) {
             s.meshes.iter().map(|(name, m)| fact(format!("loss in {name}"), ComparedUnit::Watt, Some(m.loss_w))),
         );
     } else {
-        let Losses { mesh, bearing, windage, churning, seal } = s.losses_w;
+        let Losses { mesh, bearing, windage, churning, seal, variator } = s.losses_w;
         for (name, loss) in
             [("meshes", mesh), ("bearings", bearing), ("windage", windage), ("churning", churning), ("seals", seal)]
+                .into_iter()
+                .chain((!s.variators.is_empty()).then_some(("variators", variator)))
         {
             all.push(fact(format!("loss in all {name}"), ComparedUnit::Watt, Some(loss)));
         }
         for x in &s.sources {
             let kind = EnergyKind::from(x.kind).name();
             all.push(fact(format!("loss in {} ({kind})", x.name), ComparedUnit::Watt, Some(x.loss_w)));
+        }
+    }
+    for (name, v) in s.variators.iter() {
+        all.push(fact(format!("power through {name}"), ComparedUnit::Watt, Some(v.power_w)));
+        if s.sources.is_empty() {
+            all.push(fact(format!("loss in {name}"), ComparedUnit::Watt, Some(v.loss_w)));
+        }
+        for (side, m) in v.machines.iter() {
+            let torque = Some(m.torque_n_m);
+            all.push(fact(format!("torque of {name} at {side}"), ComparedUnit::NewtonMetre, torque));
         }
     }
     for (name, m) in s.members.iter() {

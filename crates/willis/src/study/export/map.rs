@@ -158,6 +158,8 @@ impl Gear {
             speeds: vec![(input, speed.clone())],
             fixed: vec![],
             loads: vec![(input, Load::Torque(torque.clone()))],
+            stores: vec![],
+            machines: vec![],
             temperature,
             place: String::new(),
         };

@@ -12,6 +12,8 @@ pub(crate) enum Kind {
     /// A member, shift element or state, by name.
     Name,
     Names,
+    /// A list of names, or of `{ name, member }`.
+    Terminals,
     Integer,
     /// A number of rows.
     Samples,
@@ -21,6 +23,10 @@ pub(crate) enum Kind {
     Efficiency,
     /// A number, `{ forward, backward }`, or `{ external, internal }` with either of those.
     SetEfficiency,
+    /// Of a machine: a number, `{ motoring, generating }`, or `{ map }` with the name of a file.
+    MachineEfficiency,
+    /// A power or the word "free", or these by the names of variators.
+    Store,
     /// A plain number.
     Number,
     /// A number with a unit.
@@ -43,6 +49,9 @@ pub(crate) enum Kind {
     /// Like `Tables`, the table depending on the entry's `type` (the first is the default).
     Variants(&'static [TypedTable]),
 }
+
+/// The word for a store that gives whatever balances its bus.
+pub(crate) const FREE: &str = "free";
 
 /// The dimension of a quantity; `None` for a plain number.
 pub(crate) type Measure = Option<Dimension>;

@@ -31,10 +31,14 @@ pub(crate) enum Node {
     Integer(i64),
     Flag(bool),
     Names(Vec<String>),
+    /// By name, and the member that each sits on where that is another.
+    Terminals(Vec<(String, Option<String>)>),
     Efficiency(Directed),
     /// Of all meshes, or of external and of internal ones.
     SetEfficiency(Directed, Option<Directed>),
     Quantities(Vec<(String, Quantity)>),
+    /// Of each variator, by name: a power, or none for whatever balances it.
+    Stores(Vec<(String, Option<Quantity>)>),
     Amount(Amount),
     Points(Vec<[Amount; 2]>),
     Schedule(Vec<(Quantity, String)>),

@@ -11,7 +11,7 @@ use crate::exact::Rational;
 use crate::train::words::clip;
 use crate::units::{self, Dimension, Quantity, QuantityFault};
 
-use super::keys::{Kind, Measure, SignalKind, Table, about};
+use super::keys::{FREE, Kind, Measure, SignalKind, Table, about};
 use super::node::{Amount, Datum, Directed, Fields, Node};
 use super::synonyms;
 
@@ -228,6 +228,33 @@ impl Reader<'_> {
                 }
                 Some(Node::Names(names))
             }
+            Kind::Terminals => {
+                let Some(array) = value.get_ref().as_array() else {
+                    self.wrong_type(place, value, "a list of names, [\"a\", { name = \"b\", member = \"c\" }]");
+                    return None;
+                };
+                let mut all = Vec::new();
+                for (k, item) in array.iter().enumerate() {
+                    let place = format!("{place}[{k}]");
+                    self.spans.0.insert(place.clone(), item.span());
+                    match item.get_ref() {
+                        DeValue::String(name) => all.push((name.to_string(), None)),
+                        DeValue::Table(table) => {
+                            let text = |reader: &mut Self, value: &Value<'_>, place: &str| {
+                                let text = value.get_ref().as_str().map(str::to_owned);
+                                if text.is_none() {
+                                    reader.wrong_type(place, value, "a name in quotes");
+                                }
+                                text
+                            };
+                            let read = self.two(table, &place, ["name", "member"], item.span(), text);
+                            all.extend(read.map(|[name, member]| (name, Some(member))));
+                        }
+                        _ => self.wrong_type(&place, item, "names in quotes, or { name = …, member = … }"),
+                    }
+                }
+                Some(Node::Terminals(all))
+            }
             Kind::Integer | Kind::Samples => {
                 let found = integer(value.get_ref());
                 if found.is_none() {
@@ -289,6 +316,19 @@ impl Reader<'_> {
                     self.two(table, place, ["external", "internal"], value.span(), Self::efficiency)?;
                 Some(Node::SetEfficiency(external, Some(internal)))
             }
+            Kind::MachineEfficiency => self.machine_efficiency(value, place),
+            Kind::Store => match value.get_ref().as_table() {
+                None => self.store(value, place).map(|power| Node::Stores(vec![(String::new(), power)])),
+                Some(table) => {
+                    let mut all = Vec::new();
+                    for (name, value) in table {
+                        let place = format!("{place}.{}", name.get_ref());
+                        self.spans.0.insert(place.clone(), name.span());
+                        all.extend(self.store(value, &place).map(|power| (name.get_ref().to_string(), power)));
+                    }
+                    Some(Node::Stores(all))
+                }
+            },
             Kind::Quantities(dimension) => {
                 let Some(table) = value.get_ref().as_table() else {
                     let (_, example) = dimension.describe();
@@ -522,6 +562,35 @@ impl Reader<'_> {
                 self.wrong_type(place, value, "a number such as 0.98, or { forward = 0.98, backward = 0.97 }");
                 None
             }
+        }
+    }
+
+    /// The efficiency of a machine: a value, one for each direction, or the file of a map.
+    fn machine_efficiency(&mut self, value: &Value<'_>, place: &str) -> Option<Node> {
+        let Some(table) = value.get_ref().as_table() else {
+            return self.efficiency(value, place).map(Node::Efficiency);
+        };
+        let Some(map) = table.get("map").filter(|_| table.len() == 1) else {
+            let [forward, backward] =
+                self.two(table, place, ["motoring", "generating"], value.span(), Self::fraction)?;
+            return Some(Node::Efficiency(Directed { forward, backward: Some(backward) }));
+        };
+        let place = join(place, "map");
+        self.spans.0.insert(place.clone(), map.span());
+        match map.get_ref().as_str() {
+            Some(file) => Some(Node::Text(file.to_owned())),
+            None => {
+                self.wrong_type(&place, map, "the name of a CSV file in quotes");
+                None
+            }
+        }
+    }
+
+    /// What a store gives: a power, or whatever balances its bus.
+    fn store(&mut self, value: &Value<'_>, place: &str) -> Option<Option<Quantity>> {
+        match value.get_ref().as_str() {
+            Some(FREE) => Some(None),
+            _ => self.quantity(value, Dimension::POWER, place).map(Some),
         }
     }
 

@@ -1,0 +1,212 @@
+//! What the second path of a power split does in an equilibrium, and which of its limits it exceeds.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::named::Named;
+use crate::power_flow::{Flow, SideFlow, VariatorFlow};
+use crate::train::{MachineEfficiency, Train, Variator, VariatorKind, VariatorPath};
+
+use super::SolutionReport;
+use super::words::short;
+
+/// A variator in an operating point.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct VariatorReport {
+    /// What it is made of.
+    pub kind: VariatorKind,
+    /// Power that reaches the receiving side, W; with more than two machines, all that motor together.
+    pub power_w: f64,
+    /// That power over the input power: positive from the first side to the second, negative the other way. With more
+    /// than two machines the first that generates or motors counts as the first side.
+    pub share: f64,
+    /// Power lost on the way, W; standby losses included.
+    pub loss_w: f64,
+    /// Power out of the store into the bus, W; absent where there is no bus.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub store_w: Option<f64>,
+    /// Speed of the first side over that of the second; absent with more than two, and where the second stands still.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ratio: Option<f64>,
+    /// Its sides by their members, or its machines.
+    pub machines: Named<MachineReport>,
+}
+
+/// A side of a variator, or a machine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct MachineReport {
+    /// The member that it turns with.
+    pub member: String,
+    /// Torque that it exerts on the member, N m.
+    pub torque_n_m: f64,
+    /// Speed of the member, rad/s.
+    pub speed_rad_s: f64,
+    /// Power that it delivers to the member, W: positive where it motors.
+    pub power_w: f64,
+    /// Efficiency in force, where it passes power.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency: Option<f64>,
+}
+
+/// A limit of a variator that an operating point exceeds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct BeyondLimit {
+    /// The variator.
+    pub variator: String,
+    /// Its machine; absent where the limit is that of the ratio.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub machine: Option<String>,
+    /// What is limited.
+    pub quantity: LimitedQuantity,
+    /// What it is, SI.
+    pub value: f64,
+    /// What it may be at most (or, of a ratio, at least), SI.
+    pub limit: f64,
+}
+
+/// What of a variator has a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum LimitedQuantity {
+    /// Torque of a machine, N m.
+    Torque,
+    /// Mechanical power of a machine, W.
+    Power,
+    /// Speed of a machine, rad/s.
+    Speed,
+    /// Speed of the first side over that of the second.
+    Ratio,
+}
+
+impl fmt::Display for BeyondLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (what, unit, factor) = match self.quantity {
+            LimitedQuantity::Torque => ("torque", " N m", 1.0),
+            LimitedQuantity::Power => ("power", " kW", 1e-3),
+            LimitedQuantity::Speed => ("speed", " rpm", 30.0 / std::f64::consts::PI),
+            LimitedQuantity::Ratio => ("ratio", "", 1.0),
+        };
+        let shown = |x: f64| format!("{}{unit}", short(x * factor));
+        let (value, limit) = (self.value.abs(), self.limit);
+        match (&self.machine, self.quantity) {
+            (Some(machine), _) => {
+                let excess = (value / limit - 1.0) * 100.0;
+                write!(f, "{machine}: a {what} of {}, {excess:.1} % above its limit of {}", shown(value), shown(limit))
+            }
+            (None, _) if self.value < limit => {
+                let (value, least) = (shown(self.value), shown(limit));
+                write!(f, "{}: a {what} of {value}, {} below its least of {least}", self.variator, shown(limit - self.value))
+            }
+            (None, _) => {
+                let (value, most) = (shown(self.value), shown(limit));
+                write!(f, "{}: a {what} of {value}, {} above its greatest of {most}", self.variator, shown(self.value - limit))
+            }
+        }
+    }
+}
+
+/// What the variators do in a flow.
+pub(super) fn reports(train: &Train, flow: &Flow) -> Named<VariatorReport> {
+    let named = |f: &VariatorFlow| {
+        let v = &train.variators[f.variator];
+        (v.name.clone(), report(train, v, f, flow.input_power))
+    };
+    Named(flow.variators.iter().map(named).collect())
+}
+
+fn report(train: &Train, v: &Variator, f: &VariatorFlow, input: f64) -> VariatorReport {
+    let motoring: f64 = f.sides.iter().map(|s| s.power.max(0.0)).sum();
+    // From the first side to the second: the first takes power from its member, or the second gives it.
+    let largest = |sides: &[SideFlow]| sides.iter().map(|s| s.power).fold(0.0, |a: f64, p| if p.abs() > a.abs() { p } else { a });
+    let forward = match &f.sides[..] {
+        [first, second] if second.power == 0.0 => first.power <= 0.0,
+        [_, second] => second.power > 0.0,
+        sides => largest(sides) <= 0.0,
+    };
+    let (standby, has_bus) = match &v.path {
+        VariatorPath::Bus { standby, .. } => (*standby, true),
+        VariatorPath::Direct { .. } => (0.0, false),
+    };
+    let ratio = match &f.sides[..] {
+        [a, b] if b.speed != 0.0 => Some(a.speed / b.speed),
+        _ => None,
+    };
+    let names: Vec<String> = match v.machines() {
+        [] => v.members().into_iter().map(|m| train.member_name(m).to_owned()).collect(),
+        machines => machines.iter().map(|m| m.name.clone()).collect(),
+    };
+    let side = |(k, s): (usize, &SideFlow)| MachineReport {
+        member: train.member_name(s.member).to_owned(),
+        torque_n_m: s.torque + 0.0,
+        speed_rad_s: s.speed + 0.0,
+        power_w: s.power + 0.0,
+        efficiency: v.machines().get(k).filter(|_| s.power != 0.0).map(|m| match &m.efficiency {
+            MachineEfficiency::Constant(e) if s.power > 0.0 => e.forward.to_f64(),
+            MachineEfficiency::Constant(e) => e.backward.to_f64(),
+            MachineEfficiency::Map(map) => map.at(s.speed.abs(), s.torque.abs() * s.power.signum()).0,
+        }),
+    };
+    VariatorReport {
+        kind: v.kind,
+        power_w: motoring + 0.0,
+        share: if input > 0.0 { motoring / input * if forward { 1.0 } else { -1.0 } + 0.0 } else { 0.0 },
+        loss_w: f.loss + standby + 0.0,
+        store_w: has_bus.then_some(f.store + 0.0),
+        ratio,
+        machines: Named(names.into_iter().zip(f.sides.iter().enumerate().map(side)).collect()),
+    }
+}
+
+/// Limits that a flow exceeds.
+pub(super) fn beyond(train: &Train, flow: &Flow) -> Vec<BeyondLimit> {
+    // A value that was computed to be a limit is not beyond it.
+    let above = |x: f64, limit: f64| x > limit * (1.0 + 1e-9);
+    let mut all = Vec::new();
+    for f in &flow.variators {
+        let v = &train.variators[f.variator];
+        let beyond = |machine: Option<&String>, quantity, value, limit| {
+            BeyondLimit { variator: v.name.clone(), machine: machine.cloned(), quantity, value, limit }
+        };
+        if let (VariatorPath::Direct { ratio: [least, most], .. }, [a, b]) = (&v.path, &f.sides[..]) {
+            let ratio = a.speed / b.speed;
+            let slack = 1e-9 * ratio.abs();
+            let low = least.filter(|least| ratio.is_finite() && ratio < least - slack);
+            let high = most.filter(|most| ratio > most + slack);
+            all.extend(low.or(high).map(|limit| beyond(None, LimitedQuantity::Ratio, ratio, limit)));
+        }
+        for (machine, side) in v.machines().iter().zip(&f.sides) {
+            for (quantity, value, limit) in [
+                (LimitedQuantity::Torque, side.torque, machine.torque),
+                (LimitedQuantity::Power, side.power, machine.power),
+                (LimitedQuantity::Speed, side.speed, machine.speed),
+            ] {
+                let limit = limit.filter(|limit| above(value.abs(), *limit));
+                all.extend(limit.map(|limit| beyond(Some(&machine.name), quantity, value, limit)));
+            }
+        }
+    }
+    all
+}
+
+/// Machines of an equilibrium that run outside their maps.
+pub(super) fn outside_maps(train: &Train, s: &SolutionReport) -> Vec<String> {
+    let outside = |name: &str, m: &MachineReport| {
+        let mut machines = train.variators.iter().flat_map(Variator::machines);
+        let machine = machines.find(|own| own.name == name);
+        machine.is_some_and(|own| match &own.efficiency {
+            MachineEfficiency::Map(map) => map.at(m.speed_rad_s.abs(), m.torque_n_m.abs() * m.power_w.signum()).1,
+            MachineEfficiency::Constant(_) => false,
+        })
+    };
+    let all = s.variators.iter().flat_map(|(_, v)| v.machines.iter());
+    all.filter(|(name, m)| outside(name, m)).map(|(name, _)| name.clone()).collect()
+}
