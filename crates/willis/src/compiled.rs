@@ -158,6 +158,10 @@ impl<'t> Compiler<'t> {
             let message = format!("`{}` is no terminal and takes no torque", train.member_name(*t));
             wrong.push(Diagnostic::new(Code::NotATerminal, "duty", message));
         }
+        if !train.variators.is_empty() {
+            let message = "the torques of a variator depend on the speeds, so a train that has one is not compiled";
+            wrong.push(Diagnostic::new(Code::Unfit, "duty", message).hint("ask its operating points one by one"));
+        }
         if wrong.has_errors() {
             return Err(wrong);
         }

@@ -42,7 +42,7 @@ use crate::train::{
 pub use bearing::BearingReport;
 pub use contact::{ContactReport, Regime};
 pub(crate) use motion::{LEAST_SPEED, Place};
-pub(crate) use numbers::{MountNumbers, Numbers, OilState, RotorNumbers};
+pub(crate) use numbers::{MountNumbers, Numbers, OilState, RotorNumbers, VariatorNumbers};
 
 /// The error that is left, over the loss.
 const ACCURACY: f64 = 1e-9;

@@ -1,6 +1,7 @@
 //! What a study varies: a quantity of the operating point, the state, a law, or any quantity of the train file.
 
 use crate::diagnostic::{Code, Diagnostic};
+use crate::exact::Rational;
 use crate::losses::{self, FAMILIES};
 use crate::train::{Document, Key, Measure, MemberId};
 use crate::units::{self, Dimension, Quantity};
@@ -28,6 +29,10 @@ pub enum Target {
     Torque(Who),
     /// A power, with the same signs.
     Power(Who),
+    /// Speed of the input over that of the output: the input turns as the operation says, and the output follows.
+    Ratio,
+    /// Power out of the store of the variator with that place in the train.
+    Store(usize),
     /// Temperature of the oil in the operating point.
     Temperature,
     /// The state of the shift table.
@@ -55,6 +60,23 @@ impl Target {
                     "`state` cannot be varied: the train has no shift table",
                 ))),
             };
+        }
+        if name == "ratio" {
+            return match (train.input, train.output) {
+                (Some(input), Some(output)) if input != output => Ok(Self::Ratio),
+                _ => Err(Box::new(
+                    Diagnostic::new(Code::NothingAsked, "", "`ratio` cannot be varied: the train has no input and output")
+                        .hint("name two `terminals`, or `input` and `output`"),
+                )),
+            };
+        }
+        let buses = || (0..train.variators.len()).filter(|&k| train.variators[k].has_bus());
+        let store = match name {
+            "store" => buses().next().filter(|_| buses().count() == 1),
+            _ => buses().find(|&k| name.strip_suffix(".store") == Some(train.variators[k].name.as_str())),
+        };
+        if let Some(k) = store {
+            return Ok(Self::Store(k));
         }
         if matches!(name, "oil.temperature" | "temperature") {
             return match &train.lubrication {
@@ -107,7 +129,8 @@ impl Target {
         match self {
             Self::Speed(_) => Measure::Quantity(Dimension::ANGULAR_SPEED),
             Self::Torque(_) => Measure::Quantity(Dimension::TORQUE),
-            Self::Power(_) => Measure::Quantity(Dimension::POWER),
+            Self::Power(_) | Self::Store(_) => Measure::Quantity(Dimension::POWER),
+            Self::Ratio => Measure::Number,
             Self::Temperature => Measure::Quantity(Dimension::TEMPERATURE),
             Self::State | Self::Law(_) => Measure::Text,
             Self::File(key) => key.measure,
@@ -153,6 +176,10 @@ impl Target {
                 Self::File(key) => {
                     let mut document: Document = model.document().clone();
                     document.set(key, value).map_err(fault)?;
+                }
+                Self::Ratio => {
+                    let zero = value.parse::<Rational>().ok().filter(|r| !r.is_zero());
+                    zero.ok_or_else(|| fault(format!("a ratio of {value}: it is the input's speed over the output's")))?;
                 }
                 _ => {
                     let Measure::Quantity(dimension) = self.measure(model) else { continue };

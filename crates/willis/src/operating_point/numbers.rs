@@ -4,7 +4,7 @@ use crate::catalogue::bearing::Data;
 use crate::catalogue::oil::Curves;
 use crate::losses::mesh_friction::{Constant, MeshFriction};
 use crate::real::Real;
-use crate::train::{BearingMount, Lubrication, Teeth, Train};
+use crate::train::{BearingMount, Efficiency, Lubrication, Store, Teeth, Train, Variator, VariatorPath};
 
 /// Viscosity of an oil at 40 °C where only the one at its temperature is known, m²/s.
 pub(super) const VG_100: f64 = 100e-6;
@@ -29,6 +29,38 @@ pub(crate) struct Numbers<R> {
     pub axial_gap: Option<R>,
     /// What the law `constant` gives.
     pub friction_coefficient: R,
+    pub variators: Vec<VariatorNumbers<R>>,
+}
+
+/// Numbers of a variator.
+#[derive(Clone, Debug)]
+pub(crate) struct VariatorNumbers<R> {
+    /// Efficiencies: forward and backward of a variator between two members; else motoring and generating of each
+    /// machine, those of a map at its best.
+    pub efficiencies: Vec<[R; 2]>,
+    /// Standby loss, W.
+    pub standby: R,
+    /// Power out of its store as the train has it, W; none: whatever balances the bus.
+    pub store: Option<R>,
+}
+
+impl VariatorNumbers<f64> {
+    fn of(v: &Variator) -> Self {
+        let both = |e: &Efficiency| [e.forward.to_f64(), e.backward.to_f64()];
+        match &v.path {
+            VariatorPath::Direct { efficiency, .. } => {
+                Self { efficiencies: vec![both(efficiency)], standby: 0.0, store: Some(0.0) }
+            }
+            VariatorPath::Bus { machines, store, standby } => Self {
+                efficiencies: machines.iter().map(|m| both(&m.efficiency.nominal())).collect(),
+                standby: *standby,
+                store: match store {
+                    Store::Power(q) => Some(q.si()),
+                    Store::Free => None,
+                },
+            },
+        }
+    }
 }
 
 /// Numbers of the bearings at one place.
@@ -136,6 +168,7 @@ impl Numbers<f64> {
                 MeshFriction::Constant(constant) => constant.mu,
                 _ => train.laws.friction_coefficient.unwrap_or(Constant::DEFAULT.mu),
             },
+            variators: train.variators.iter().map(VariatorNumbers::of).collect(),
         }
     }
 }

@@ -4,9 +4,10 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{self, SolutionReport, Verdict};
+use crate::analysis::{self, OperationReport, SolutionReport, Verdict};
 use crate::diagnostic::{Code, Diagnostics, Severity};
-use crate::train::{Operation, Train};
+use crate::kinematics::{Configuration, Ratio};
+use crate::train::{MemberId, Operation, Train};
 
 /// What can be said of a point of a study: the [verdict](Verdict) on its operating point, or that it makes none.
 ///
@@ -108,6 +109,8 @@ pub struct PointAnswer {
     pub solution: Option<SolutionReport>,
     /// Warnings of this point, those of a code side by side.
     pub warnings: Vec<PointWarning>,
+    /// Speed of the input over that of the output: as they turn here, else as the gears tie them.
+    pub ratio: Option<f64>,
 }
 
 impl PointAnswer {
@@ -124,6 +127,7 @@ impl PointAnswer {
             message: beyond.to_string(),
             deviation: None,
         });
+        let ratio = ratio(train, operation, &report);
         // The notes tell of the laws outside their ranges in the order of these.
         let mut outside = report.outside_laws.into_iter();
         let deviation = report.speed_deviation.map(|d| d.relative);
@@ -137,6 +141,7 @@ impl PointAnswer {
         let warnings = oil.chain(own).collect();
         let is_one = matches!(report.verdict, Verdict::Unique | Verdict::Unloaded);
         Self {
+            ratio,
             verdict: report.verdict.into(),
             reason: report.reason.unwrap_or_default(),
             solution: report.solutions.into_iter().next().filter(|_| is_one),
@@ -148,7 +153,21 @@ impl PointAnswer {
     pub fn refused(wrong: Diagnostics) -> Self {
         let errors: Vec<String> =
             wrong.into_iter().filter(|d| d.severity == Severity::Error).map(|d| d.message).collect();
-        Self { verdict: PointVerdict::Refused, reason: errors.join("; "), solution: None, warnings: vec![] }
+        Self { verdict: PointVerdict::Refused, reason: errors.join("; "), solution: None, warnings: vec![], ratio: None }
+    }
+
+    /// The same with the ratio of a train in which nothing but the gears says it.
+    pub(super) fn with_ratio(mut self, train: &Train, operation: &Operation) -> Self {
+        if self.ratio.is_none()
+            && let Some([input, output]) = ends(train, operation)
+        {
+            let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
+            let tied = Configuration::new(train, engaged, &operation.fixed, &[input, output]).ratio(input, output);
+            if let Ratio::Exact(ratio) = tied {
+                self.ratio = Some(ratio.to_f64());
+            }
+        }
+        self
     }
 
     /// Whether there is exactly one equilibrium.
@@ -165,4 +184,19 @@ impl PointAnswer {
     pub fn loss(&self) -> f64 {
         self.solution.as_ref().map_or(f64::NAN, |s| s.loss_w)
     }
+}
+
+/// Where power enters and leaves when driving.
+fn ends(train: &Train, operation: &Operation) -> Option<[MemberId; 2]> {
+    let own = operation.state.map(|k| &train.states[k]);
+    let input = own.and_then(|s| s.input).or(train.input)?;
+    let output = own.and_then(|s| s.output).or(train.output)?;
+    Some([input, output])
+}
+
+/// Speed of the input over that of the output, where both are known and the output turns.
+fn ratio(train: &Train, operation: &Operation, report: &OperationReport) -> Option<f64> {
+    let [input, output] = ends(train, operation)?.map(|m| train.member_name(m));
+    let [input, output] = [input, output].map(|name| report.speeds_rad_s.get(name).copied().flatten());
+    output.filter(|w| *w != 0.0).and_then(|w| Some(input? / w)).filter(|r| r.is_finite() && *r != 0.0)
 }

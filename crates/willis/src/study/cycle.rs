@@ -89,7 +89,7 @@ struct CyclePart {
     points: Vec<CyclePoint>,
     /// By name and kind: law, energy.
     sources: BTreeMap<(String, EnergyKind), (String, f64)>,
-    kinds: [f64; 5],
+    kinds: [f64; 6],
     /// By member: energy in, energy out.
     terminals: BTreeMap<String, [f64; 2]>,
     warnings: BTreeMap<Code, Vec<Told>>,
@@ -564,7 +564,7 @@ impl<'a> Cycle<'a> {
         point.loss_w = s.loss_w;
         point.residual_w = s.power_residual_w;
         let l = &s.losses_w;
-        for (sum, power) in part.kinds.iter_mut().zip([l.mesh, l.bearing, l.windage, l.churning, l.seal]) {
+        for (sum, power) in part.kinds.iter_mut().zip([l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator]) {
             *sum += power * held.time_s;
         }
         let mut lose = |name: &str, kind, law: &str, power: f64| {
@@ -673,7 +673,7 @@ impl<'a> Cycle<'a> {
         whole.close();
         let mut sources: BTreeMap<&(String, EnergyKind), (&String, f64)> = BTreeMap::new();
         let mut terminals: BTreeMap<&str, TerminalEnergy> = BTreeMap::new();
-        let mut kinds = [0.0; 5];
+        let mut kinds = [0.0; 6];
         let mut warnings: BTreeMap<Code, Vec<Told>> = BTreeMap::new();
         for part in parts {
             for (key, (law, energy)) in &part.sources {
@@ -737,7 +737,7 @@ impl<'a> Cycle<'a> {
             efficiency: whole.efficiency,
             time_mean_efficiency: (mean_time > 0.0).then(|| mean / mean_time),
             mean_loss_w: (whole.time_s > 0.0).then(|| whole.energy_lost_j / whole.time_s),
-            losses_j: ["mesh", "bearing", "windage", "churning", "seal"]
+            losses_j: ["mesh", "bearing", "windage", "churning", "seal", "variator"]
                 .map(str::to_owned)
                 .into_iter()
                 .zip(kinds)

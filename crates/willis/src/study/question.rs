@@ -10,7 +10,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::model::{Model, Target, Who, oil_temperature, quantity};
-use crate::train::{Document, Load, MemberId, Operation, Train};
+use crate::train::{Document, Load, MemberId, Operation, Store, Train};
 use crate::units::{Dimension, Quantity};
 use crate::work::Effort;
 
@@ -300,6 +300,20 @@ impl<'s> Question<'s> {
             }
         }
         operation.speeds = replaced(train, "speed", &operation.speeds, speeds)?;
+        for (target, value) in settings {
+            match target {
+                Target::Ratio => {
+                    let ratio = value.parse().map_err(|_| wrong(format!("a ratio of {value}")))?;
+                    self.at_ratio(train, &mut operation, &ratio)?;
+                }
+                Target::Store(k) => {
+                    let power = quantity(value, Dimension::POWER).map_err(wrong)?;
+                    operation.stores.retain(|(of, _)| of != k);
+                    operation.stores.push((*k, Store::Power(power)));
+                }
+                _ => {}
+            }
+        }
         let mut loads = vec![];
         for (target, value) in settings {
             let (who, load) = match target {
@@ -340,6 +354,44 @@ impl<'s> Question<'s> {
         });
         operation.loads = replaced(train, "load", &operation.loads, new.collect())?;
         Ok(operation)
+    }
+}
+
+impl Question<'_> {
+    /// Lets the output turn so that the input, which turns as it did, is `ratio` times as fast.
+    fn at_ratio(&self, train: &Train, operation: &mut Operation, ratio: &Rational) -> Result<(), Diagnostics> {
+        let [input, output] = [self.role(train, operation, Who::Input)?, self.role(train, operation, Who::Output)?];
+        let name = |m: MemberId| train.member_name(m);
+        let Some(speed) = self.speeds(train, operation)(input).filter(|w| !w.value.is_zero()) else {
+            let message = format!("`{}` has no speed, so a ratio says nothing of that of `{}`", name(input), name(output));
+            return Err(refuse(Code::Unfit, message, "prescribe the speed of the input in the operation"));
+        };
+        let follows = Quantity { value: &speed.value / ratio, ..speed.clone() };
+        let has = |m: MemberId| operation.speeds.iter().any(|(own, _)| *own == m);
+        if !has(input) {
+            // It followed from others; now it is what they follow from.
+            let others: Vec<MemberId> = operation.speeds.iter().map(|s| s.0).filter(|m| *m != output).collect();
+            let [other] = others[..] else {
+                let message = format!("which speed gives way to that of `{}` is open", name(input));
+                return Err(refuse(Code::BadAxis, message, "prescribe the speed of the input in the operation"));
+            };
+            operation.speeds.retain(|s| s.0 != other);
+            operation.speeds.push((input, speed));
+        }
+        let mut all = operation.speeds.clone();
+        match all.iter_mut().find(|s| s.0 == output) {
+            Some(own) => own.1 = follows,
+            None => {
+                // One freedom is left, and the ratio takes it; a speed that stood there gives way.
+                let others: Vec<MemberId> = all.iter().map(|s| s.0).filter(|m| *m != input).collect();
+                if let [other] = others[..] {
+                    all.retain(|s| s.0 != other);
+                }
+                all.push((output, follows));
+            }
+        }
+        operation.speeds = all;
+        Ok(())
     }
 }
 

@@ -367,8 +367,11 @@ fn starts_to_move(train: &Train, operation: &Operation, point: &Point<'_>, moved
     point.columns.iter().filter(|c| c.p_drives.is_none() && point.forces[c.element] != 0.0).find_map(|c| {
         let element = &point.c.elements[c.element];
         let (p, carrier) = (speeds[element.p.index()].as_ref()?, speeds[element.carrier.index()].as_ref()?);
-        let mesh = element.links.first().map(|l| &train.meshes[l.mesh.index()])?;
-        (p[k] != carrier[k]).then(|| mesh.name.clone())
+        let name = match point.c.couplings.get(c.element.wrapping_sub(point.c.gears().len())) {
+            Some(coupling) => &train.variators[coupling.variator].name,
+            None => &train.meshes[element.links.first()?.mesh.index()].name,
+        };
+        (p[k] != carrier[k]).then(|| name.clone())
     })
 }
 

@@ -195,6 +195,9 @@ impl<'s> Sweep<'s> {
         match self.ask(point, trains) {
             Ok((train, operation)) => {
                 let mut answer = PointAnswer::of(&train, &operation);
+                if self.columns.iter().any(|c| c.1 == What::Ratio) {
+                    answer = answer.with_ratio(&train, &operation);
+                }
                 let base = self.question.model().train().warnings();
                 // What is wrong with this train and not with that of the file: planets that touch, for one.
                 let own = train.warnings().iter().filter(|d| d.severity == Severity::Warning);

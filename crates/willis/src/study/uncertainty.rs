@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::Losses;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target, Who};
-use crate::train::{Load, Measure, Train};
+use crate::train::{Load, Measure, Store, Train, VariatorPath};
 use crate::units::{self, Quantity};
 use crate::work::{self, Cancelled, Effort, Work};
 
@@ -522,12 +522,15 @@ impl<'s> UncertaintyPlan<'s> {
             return vec![f64::NAN; self.outputs.len()];
         };
         let l: &Losses = &s.losses_w;
-        let mut values = vec![answer.efficiency(), s.loss_w, l.mesh, l.bearing, l.windage, l.churning, l.seal];
+        let mut values = vec![answer.efficiency(), s.loss_w, l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator];
         values.extend(sources(self.question.model().train()).map(|name| {
             let mut own = s.sources.iter().filter(|x| x.name == name).map(|x| x.loss_w).peekable();
             match own.peek() {
                 Some(_) => own.sum(),
-                None => s.meshes.get(name).map_or(0.0, |m| m.loss_w),
+                None => match s.meshes.get(name) {
+                    Some(mesh) => mesh.loss_w,
+                    None => s.variators.get(name).map_or(0.0, |v| v.loss_w),
+                },
             }
         }));
         values
@@ -535,7 +538,7 @@ impl<'s> UncertaintyPlan<'s> {
 }
 
 /// Losses by kind, in the order in which they are among the values.
-const KINDS: [&str; 5] = ["mesh", "bearing", "windage", "churning", "seal"];
+const KINDS: [&str; 6] = ["mesh", "bearing", "windage", "churning", "seal", "variator"];
 
 /// Names of what may lose power.
 fn sources(train: &Train) -> impl Iterator<Item = &str> {
@@ -543,6 +546,7 @@ fn sources(train: &Train) -> impl Iterator<Item = &str> {
         .chain(train.bearings.iter().map(|b| b.name.as_str()))
         .chain(train.seals.iter().map(|s| s.name.as_str()))
         .chain(train.rotors.iter().map(|r| r.name.as_str()))
+        .chain(train.variators.iter().map(|v| v.name.as_str()))
 }
 
 /// Reads `QUANTITY=DISTRIBUTION`.
@@ -645,6 +649,19 @@ fn nominal(target: &Target, question: &Question<'_>) -> Option<String> {
         Target::Temperature => {
             let t = base.temperature.or(train.lubrication.as_ref().map(|l| l.temperature))?;
             Some(format!("{} degC", plain(t - 273.15, 12)))
+        }
+        Target::Ratio => {
+            let [input, output] = [Who::Input, Who::Output].map(|who| question.role(train, base, who).ok());
+            let speeds = question.speeds(train, base);
+            let ratio = speeds(input?)?.si() / speeds(output?)?.si();
+            ratio.is_finite().then(|| plain(ratio, 12))
+        }
+        Target::Store(k) => {
+            let VariatorPath::Bus { store, .. } = &train.variators()[*k].path else { return None };
+            match base.stores.iter().find(|(of, _)| of == k).map_or(store, |(_, own)| own) {
+                Store::Power(q) => Some(said(q, "W", false)),
+                Store::Free => None,
+            }
         }
         Target::Speed(who) => {
             let member = question.role(train, base, *who).ok()?;

@@ -5,7 +5,7 @@ use crate::exact::Rational;
 
 use super::described::{GivenEfficiency, GivenGear, GivenMesh, GivenSet, Parts};
 use super::specification::field::Tabular;
-use super::specification::{EfficiencySpec, PlainGeometry, PlainTooth, SetEfficiencySpec, Specification, ToothSpec};
+use super::specification::{EfficiencySpec, MachineEfficiencySpec, PlainGeometry, PlainTooth, SetEfficiencySpec, Specification, ToothSpec};
 use super::{BearingMount, Lubrication, Mesh, PlanetBody};
 
 /// A continuous number of the train file, or one that stands in for it.
@@ -30,6 +30,14 @@ pub(crate) struct Input {
 pub(crate) enum Slot {
     /// First gear driving (`true`), or the second.
     Efficiency(usize, bool),
+    /// Of a variator between two members: the first delivering (`true`), or the second.
+    Variator(usize, bool),
+    /// Of a machine of a variator: motoring (`true`), or generating.
+    Machine(usize, usize, bool),
+    /// Standby loss of a variator.
+    Standby(usize),
+    /// Power out of the store of a variator, as the train has it.
+    Store(usize),
     Module(usize),
     Width(usize),
     PressureAngle(usize),
@@ -127,6 +135,7 @@ pub(super) fn inputs(
     }
     list.oil(spec);
     list.machinery(spec);
+    list.variators(spec);
     list.all
 }
 
@@ -218,6 +227,33 @@ impl List<'_> {
         let name = |direction: &str| if split { format!("{path}.{direction}") } else { path.to_owned() };
         add(name("forward"), given.forward(), true);
         add(name("backward"), given.backward(), false);
+    }
+
+    fn variators(&mut self, spec: &Specification) {
+        for (k, v) in spec.variator.iter().enumerate() {
+            let name = &v.name;
+            let mut both = |path: String, given: &EfficiencySpec, keys: [&str; 2], slot: &dyn Fn(bool) -> Slot| {
+                for (key, value, first) in [(keys[0], given.forward(), true), (keys[1], given.backward(), false)] {
+                    let path = if given.is_directed() { format!("{path}.{key}") } else { path.clone() };
+                    self.add(path, value.map_or(1.0, Rational::to_f64), "-", false, slot(first));
+                }
+            };
+            if let Some(e) = &v.efficiency {
+                both(format!("{name}.efficiency"), e, ["forward", "backward"], &|first| Slot::Variator(k, first));
+            }
+            for (j, machine) in v.machines.iter().enumerate() {
+                if let Some(MachineEfficiencySpec::Constant(e)) = &machine.efficiency {
+                    let path = format!("{name}.machines.{}.efficiency", machine.name);
+                    both(path, e, ["motoring", "generating"], &|first| Slot::Machine(k, j, first));
+                }
+            }
+            if let Some(standby) = &v.standby {
+                self.add(format!("{name}.standby"), standby.si(), "W", false, Slot::Standby(k));
+            }
+            if let [(_, Some(power))] = &v.store.0[..] {
+                self.add(format!("{name}.store"), power.si(), "W", false, Slot::Store(k));
+            }
+        }
     }
 
     fn set(&mut self, index: usize, set: &GivenSet) {

@@ -5,6 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::exact::Rational;
+use crate::real::{self, Real};
 use crate::units::Quantity;
 
 use super::{Efficiency, MemberId};
@@ -126,17 +127,17 @@ pub struct EfficiencyMap {
 impl EfficiencyMap {
     /// The efficiency at an amount of speed and a torque that is positive where the machine motors; and whether the
     /// point lies outside the map, where its edge is taken.
-    pub(crate) fn at(&self, speed: f64, torque: f64) -> (f64, bool) {
-        let torque = if self.torques[0] >= 0.0 { torque.abs() } else { torque };
+    pub(crate) fn at<R: Real>(&self, speed: R, torque: R) -> (R, bool) {
+        let torque = if self.torques[0] >= 0.0 { real::abs(torque) } else { torque };
         let ((i, u), (j, v)) = (place(&self.speeds, speed), place(&self.torques, torque));
         let at = |i: usize, j: usize| {
             self.values[i.min(self.speeds.len() - 1) * self.torques.len() + j.min(self.torques.len() - 1)]
         };
-        let along = |i: usize| at(i, j) * (1.0 - v) + at(i, j + 1) * v;
+        let along = |i: usize| v * (at(i, j + 1) - at(i, j)) + at(i, j);
         // Below the least torque or speed of a map little power is passed, and its edge is all that is known.
-        let outside = speed > self.speeds[self.speeds.len() - 1]
-            || torque.abs() > self.torques[0].abs().max(self.torques[self.torques.len() - 1].abs());
-        (along(i) * (1.0 - u) + along(i + 1) * u, outside)
+        let outside = speed.re() > self.speeds[self.speeds.len() - 1]
+            || torque.re().abs() > self.torques[0].abs().max(self.torques[self.torques.len() - 1].abs());
+        (along(i) + (along(i + 1) - along(i)) * u, outside)
     }
 
     /// The greatest efficiency of the map: where the search for the operating point begins.
@@ -146,16 +147,16 @@ impl EfficiencyMap {
 }
 
 /// The interval of rising points that holds `x`, and how far along it; the ends hold what lies beyond them.
-fn place(points: &[f64], x: f64) -> (usize, f64) {
-    let above = points.partition_point(|p| *p <= x);
+fn place<R: Real>(points: &[f64], x: R) -> (usize, R) {
+    let above = points.partition_point(|p| *p <= x.re());
     if above == 0 {
-        return (0, 0.0);
+        return (0, R::from(0.0));
     }
     if above == points.len() {
-        return (points.len() - 1, 0.0);
+        return (points.len() - 1, R::from(0.0));
     }
     let (a, b) = (points[above - 1], points[above]);
-    (above - 1, (x - a) / (b - a))
+    (above - 1, (x + -a) * (1.0 / (b - a)))
 }
 
 impl Variator {

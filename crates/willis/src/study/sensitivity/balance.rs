@@ -6,9 +6,11 @@ use std::borrow::Cow;
 use num_dual::{Dual64, DualNum};
 
 use crate::analysis::Point;
-use crate::operating_point::{LossKind, Numbers, Physics, Step};
+use crate::kinematics::Coupling;
+use crate::operating_point::{LossKind, Numbers, Physics, Step, VariatorNumbers};
 use crate::power_flow::{self, Drag, MeshFlow};
-use crate::train::{Load, MemberId, Operation, Train};
+use crate::real;
+use crate::train::{FRAME, Load, MachineEfficiency, MemberId, Operation, Store, Train, Variator};
 
 /// Most rounds of laws and statics.
 const MOST_ROUNDS: usize = 400;
@@ -54,7 +56,42 @@ impl Powers {
 /// A point in dual numbers.
 struct State {
     meshes: Vec<MeshFlow<Dual64>>,
+    /// Of each element behind the meshes: what it asks of its two ends.
+    passing: Vec<[Dual64; 2]>,
     drags: Vec<Drag<Dual64>>,
+}
+
+/// A machine whose torque is prescribed: torque on its member, power out of the bus.
+struct Driven {
+    at: [usize; 2],
+    torque: Dual64,
+    draws: Dual64,
+}
+
+/// What acts on a train from outside, and machines.
+struct Loads {
+    external: Vec<(MemberId, Dual64)>,
+    driven: Vec<Driven>,
+}
+
+impl Loads {
+    /// Torques on members and buses.
+    fn torques(&self, point: &Point<'_>, speeds: &[Dual64]) -> Vec<(MemberId, Dual64)> {
+        let mut all = self.external.clone();
+        for d in &self.driven {
+            let bus = point.c.bus(d.at[0]);
+            let member = point.c.train.variators[d.at[0]].machines()[d.at[1]].member;
+            all.extend([(member, d.torque), (bus, -d.draws / speeds[bus.0])]);
+        }
+        all
+    }
+}
+
+/// What is lost on the way.
+struct InForce<'a> {
+    meshes: &'a [[Dual64; 2]],
+    /// By element behind the meshes: its first end driving, its second end driving.
+    passing: Vec<[Dual64; 2]>,
 }
 
 /// Powers at a point with the derivative by what moves; `None` where the equations have no solution.
@@ -66,18 +103,21 @@ pub(super) fn powers(
     moved: Moved,
 ) -> Option<Powers> {
     let speeds = speeds(train, operation, point, moved);
-    let loads = loads(operation, &speeds, moved);
+    let loads = loads(operation, point, &speeds, &numbers, moved);
     let given = numbers.efficiencies.clone();
-    let physics = train.is_physical().then(|| Physics::with_numbers(Cow::Borrowed(train), numbers));
+    let variators = numbers.variators.clone();
+    let physics = train.depends_on_load().then(|| Physics::with_numbers(Cow::Borrowed(train), numbers));
     let known = |m: MemberId| point.motion.speeds[m.0].is_some();
 
     let Some(physics) = physics else {
-        let state = State { meshes: solve(point, &speeds, &loads, &[], &given)?, drags: vec![] };
+        let eta = InForce { meshes: &given, passing: passing(point, &speeds, &variators, &[]) };
+        let state = solve(point, &speeds, &loads, vec![], &eta)?;
         let total = totals(point, &speeds, &loads, &state);
         let sources = state
             .meshes
             .iter()
             .map(|m| (train.meshes[m.mesh.index()].name.clone(), LossKind::Sliding, "given", m.loss));
+        let sources = sources.chain(through_variators(point, &speeds, &loads, &state, &variators));
         return Some(Powers { sources: sources.collect(), rounds: 1, error: 0.0, ..total });
     };
     // The point itself is the start: what is missing are derivatives.
@@ -86,17 +126,26 @@ pub(super) fn powers(
         .collect();
     let forces: Vec<Dual64> = point.forces.iter().map(|f| Dual64::from(*f)).collect();
     let mut meshes = walk(point, &speeds, &forces, &in_force);
+    let eta = InForce { meshes: &in_force, passing: passing(point, &speeds, &variators, &[]) };
+    let mut asked = asked(point, &speeds, &forces, &eta);
     let (mut last, mut q) = (f64::INFINITY, 0.0f64);
     let mut old: Option<Vec<f64>> = None;
     for rounds in 1..=MOST_ROUNDS {
         let step: Step<Dual64> = physics.evaluate(&speeds, &meshes, &known);
         let efficiencies = step.efficiencies(train, &given);
-        let drags = step.drags.clone();
-        meshes = solve(point, &speeds, &loads, &drags, &efficiencies)?;
-        let state = State { meshes, drags };
+        let mut drags = step.drags.clone();
+        for (k, v) in train.variators.iter().enumerate().filter(|(_, v)| v.has_bus()) {
+            let bus = point.c.bus(k);
+            if v.is_computed() {
+                drags.push(Drag { members: [bus, FRAME], torque: -variators[k].standby / speeds[bus.0] });
+            }
+        }
+        let eta = InForce { meshes: &efficiencies, passing: passing(point, &speeds, &variators, &asked) };
+        let state = solve(point, &speeds, &loads, drags, &eta)?;
         let mut total = totals(point, &speeds, &loads, &state);
         let drag_losses: Vec<Dual64> = state.drags.iter().map(|d| drag_loss(d, &speeds)).collect();
         total.sources = physics.parts(&step, &state.meshes, &drag_losses);
+        total.sources.extend(through_variators(point, &speeds, &loads, &state, &variators));
         // Change of the derivatives since the last round, and the factor by which changes shrink.
         let new: Vec<f64> = total.sources.iter().map(|s| s.3.eps).collect();
         let size = new.iter().fold(total.loss.eps.abs(), |a, x| a.max(x.abs()));
@@ -114,27 +163,60 @@ pub(super) fn powers(
             return Some(Powers { rounds, error, ..total });
         }
         old = Some(new);
-        meshes = state.meshes;
+        (meshes, asked) = (state.meshes, state.passing);
     }
     None
 }
 
 /// Speeds of all members: linear in what is prescribed.
 fn speeds(train: &Train, operation: &Operation, point: &Point<'_>, moved: Moved) -> Vec<Dual64> {
-    let values = (0..train.members.len()).map(|m| point.motion.si(MemberId(m)).unwrap_or(0.0));
+    // A bus turns as it does: a power is a torque on it, whatever its speed.
+    let values = (0..point.c.node_of.len()).map(|m| point.motion.si(MemberId(m)).unwrap_or(0.0));
     let mut speeds: Vec<Dual64> = values.map(Dual64::from).collect();
     if let Moved::Speed(k) = moved {
         let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
-        for (speed, factors) in speeds.iter_mut().zip(point.c.transfer(&prescribed).speeds) {
+        for (speed, factors) in speeds.iter_mut().take(train.members.len()).zip(point.c.transfer(&prescribed).speeds) {
             speed.eps = factors.map_or(0.0, |f| f[k].to_f64());
         }
     }
     speeds
 }
 
-/// Prescribed torques.
-fn loads(operation: &Operation, speeds: &[Dual64], moved: Moved) -> Vec<(MemberId, Dual64)> {
-    let mut all = Vec::new();
+/// Prescribed torques, stores and machines.
+fn loads(
+    operation: &Operation,
+    point: &Point<'_>,
+    speeds: &[Dual64],
+    numbers: &Numbers<Dual64>,
+    moved: Moved,
+) -> Loads {
+    let (mut all, mut driven) = (Vec::new(), Vec::new());
+    let train = point.c.train;
+    for (k, v) in numbers.variators.iter().enumerate().filter(|(k, _)| train.variators[*k].has_bus()) {
+        let power = match operation.stores.iter().find(|(of, _)| *of == k) {
+            Some((_, Store::Power(own))) => Some(Dual64::from(own.si())),
+            Some((_, Store::Free)) => None,
+            None => v.store,
+        };
+        let bus = point.c.bus(k);
+        all.extend(power.map(|p| (bus, p / speeds[bus.0])));
+    }
+    for (at, load) in &operation.machines {
+        let machine = &train.variators[at[0]].machines()[at[1]];
+        let w = speeds[machine.member.0];
+        let torque = match load {
+            Load::Torque(q) => Dual64::from(q.si()),
+            Load::Power(_) if w.re == 0.0 => Dual64::from(0.0),
+            Load::Power(p) => Dual64::from(p.si()) / w,
+        };
+        let power = torque * w;
+        let [motoring, generating] = match &machine.efficiency {
+            MachineEfficiency::Map(map) => [map.at(real::abs(w), real::abs(torque) * power.re.signum()).0; 2],
+            MachineEfficiency::Constant(_) => numbers.variators[at[0]].efficiencies[at[1]],
+        };
+        let draws = if power.re > 0.0 { power / motoring } else { power * generating };
+        driven.push(Driven { at: *at, torque, draws });
+    }
     for (k, (member, load)) in operation.loads.iter().enumerate() {
         let own = |value: f64| Dual64::new(value, if moved == Moved::Load(k) { 1.0 } else { 0.0 });
         let torque = match load {
@@ -145,22 +227,118 @@ fn loads(operation: &Operation, speeds: &[Dual64], moved: Moved) -> Vec<(MemberI
         };
         all.push((*member, torque));
     }
-    all
+    Loads { external: all, driven }
+}
+
+/// Efficiencies of the elements behind the meshes, first end driving and second end driving; those of a map where the
+/// machine runs, by what the elements asked of their ends in the round before.
+fn passing(
+    point: &Point<'_>,
+    speeds: &[Dual64],
+    variators: &[VariatorNumbers<Dual64>],
+    asked: &[[Dual64; 2]],
+) -> Vec<[Dual64; 2]> {
+    let of = |(k, coupling): (usize, &Coupling)| {
+        let own = &variators[coupling.variator].efficiencies;
+        let Some(machine) = coupling.machine else { return own[0] };
+        // The member drives where the machine generates.
+        let [motoring, generating] = own[machine];
+        let described = &point.c.train.variators[coupling.variator].machines()[machine];
+        if let (MachineEfficiency::Map(map), Some([asks, _])) = (&described.efficiency, asked.get(k)) {
+            let w = speeds[described.member.0];
+            let generates = (*asks * w).re > 0.0;
+            let torque = real::abs(*asks) * if generates { -1.0 } else { 1.0 };
+            return [map.at(real::abs(w), torque).0; 2];
+        }
+        [generating, motoring]
+    };
+    point.c.couplings.iter().enumerate().map(of).collect()
+}
+
+/// The coefficients of the ends of an element behind the meshes, as the speeds make them.
+fn coefficients(point: &Point<'_>, speeds: &[Dual64], k: usize) -> [Dual64; 2] {
+    let element = &point.c.elements[point.c.gears().len() + k];
+    let [p, q] = [speeds[element.p.0], speeds[element.q.0]];
+    match point.c.couplings[k].machine {
+        Some(_) => [Dual64::from(1.0), -p / q],
+        None => {
+            let most = p.re.abs().max(q.re.abs());
+            [q / most, -p / most]
+        }
+    }
+}
+
+/// What elements behind the meshes ask of their ends.
+fn asked(point: &Point<'_>, speeds: &[Dual64], forces: &[Dual64], eta: &InForce<'_>) -> Vec<[Dual64; 2]> {
+    let gears = point.c.gears().len();
+    let of = |k: usize| {
+        let column = point.columns.iter().find(|c| c.element == gears + k);
+        let rho = rho(column.and_then(|c| c.p_drives), eta.passing[k]);
+        let [a, b] = coefficients(point, speeds, k);
+        [forces[gears + k] * a, forces[gears + k] * b * rho]
+    };
+    (0..point.c.couplings.len()).map(of).collect()
+}
+
+fn rho(p_drives: Option<bool>, [first, second]: [Dual64; 2]) -> Dual64 {
+    match p_drives {
+        None => Dual64::from(1.0),
+        Some(true) => first,
+        Some(false) => second.recip(),
+    }
+}
+
+/// What variators lose, standby losses included.
+fn through_variators(
+    point: &Point<'_>,
+    speeds: &[Dual64],
+    loads: &Loads,
+    state: &State,
+    numbers: &[VariatorNumbers<Dual64>],
+) -> Vec<(String, LossKind, &'static str, Dual64)> {
+    let gears = point.c.gears().len();
+    let of = |(k, v): (usize, &Variator)| {
+        let mut loss = numbers[k].standby;
+        for (j, coupling) in point.c.couplings.iter().enumerate().filter(|(_, c)| c.variator == k) {
+            let _ = coupling;
+            let element = &point.c.elements[gears + j];
+            let [p, q] = state.passing[j];
+            loss += p * speeds[element.p.0] + q * speeds[element.q.0];
+        }
+        for d in loads.driven.iter().filter(|d| d.at[0] == k) {
+            let member = v.machines()[d.at[1]].member;
+            loss += d.draws - d.torque * speeds[member.0];
+        }
+        (v.name.clone(), LossKind::Variator, "given", loss)
+    };
+    point.c.train.variators.iter().enumerate().map(of).collect()
 }
 
 /// Forces that balance loads and drags with these efficiencies, followed through the meshes.
 fn solve(
     point: &Point<'_>,
     speeds: &[Dual64],
-    loads: &[(MemberId, Dual64)],
-    drags: &[Drag<Dual64>],
-    efficiencies: &[[Dual64; 2]],
-) -> Option<Vec<MeshFlow<Dual64>>> {
+    loads: &Loads,
+    drags: Vec<Drag<Dual64>>,
+    eta: &InForce<'_>,
+) -> Option<State> {
+    let efficiencies = eta.meshes;
+    let gears = point.c.gears().len();
     let n = point.columns.len();
     let zero = Dual64::from(0.0);
     let mut matrix = vec![vec![zero; n + 1]; n];
     for (j, column) in point.columns.iter().enumerate() {
         let element = &point.c.elements[column.element];
+        if let Some(k) = column.element.checked_sub(gears) {
+            let [a, b] = coefficients(point, speeds, k);
+            for (member, x) in [(element.p, a), (element.q, b * rho(column.p_drives, eta.passing[k]))] {
+                let row = point.c.node(member).and_then(|n| point.rows.iter().position(|r| *r == n));
+                if let Some(row) = row {
+                    matrix[row][j] += x;
+                }
+            }
+            continue;
+        }
         let along = |p_drives: bool| {
             element.links.iter().fold(Dual64::from(1.0), |product, link| {
                 product * efficiencies[link.mesh.index()][usize::from(p_drives != link.along)]
@@ -175,8 +353,10 @@ fn solve(
             matrix[row][j] = rho * slope + constant;
         }
     }
-    let torques =
-        loads.iter().copied().chain(drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]));
+    let torques = loads
+        .torques(point, speeds)
+        .into_iter()
+        .chain(drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]));
     for (member, torque) in torques {
         let node = point.c.node(member);
         if let Some(row) = node.and_then(|n| point.rows.iter().position(|r| *r == n)) {
@@ -188,7 +368,8 @@ fn solve(
     for (column, force) in point.columns.iter().zip(found) {
         forces[column.element] = force;
     }
-    Some(walk(point, speeds, &forces, efficiencies))
+    let meshes = walk(point, speeds, &forces, efficiencies);
+    Some(State { meshes, passing: asked(point, speeds, &forces, eta), drags })
 }
 
 fn walk(
@@ -198,7 +379,7 @@ fn walk(
     efficiencies: &[[Dual64; 2]],
 ) -> Vec<MeshFlow<Dual64>> {
     let mut meshes = Vec::new();
-    for (e, element) in point.c.elements.iter().enumerate() {
+    for (e, element) in point.c.gears().iter().enumerate() {
         let drives = point.columns.iter().find(|c| c.element == e).and_then(|c| c.p_drives);
         // Idle elements have no driver.
         let drives = drives.filter(|_| forces[e].re != 0.0 || forces[e].eps != 0.0);
@@ -243,11 +424,24 @@ fn drag_loss(d: &Drag<Dual64>, speeds: &[Dual64]) -> Dual64 {
 }
 
 /// Input, output and loss.
-fn totals(point: &Point<'_>, speeds: &[Dual64], loads: &[(MemberId, Dual64)], state: &State) -> Powers {
+fn totals(point: &Point<'_>, speeds: &[Dual64], loads: &Loads, state: &State) -> Powers {
     let train = point.c.train;
     let zero = Dual64::from(0.0);
     // What the meshes ask of each member, less what drags exert on it.
-    let mut demand = vec![zero; train.members.len()];
+    let mut demand = vec![zero; speeds.len()];
+    let mut passed = zero;
+    for ([p, q], element) in state.passing.iter().zip(&point.c.elements[point.c.gears().len()..]) {
+        demand[element.p.0] += *p;
+        demand[element.q.0] += *q;
+        passed += *p * speeds[element.p.0] + *q * speeds[element.q.0];
+    }
+    for d in &loads.driven {
+        let member = train.variators[d.at[0]].machines()[d.at[1]].member;
+        let bus = point.c.bus(d.at[0]);
+        demand[member.0] -= d.torque;
+        demand[bus.0] += d.draws / speeds[bus.0];
+        passed += d.draws - d.torque * speeds[member.0];
+    }
     for m in &state.meshes {
         let mesh = &train.meshes[m.mesh.index()];
         let members = [mesh.gears[0].member, mesh.gears[1].member, mesh.carrier];
@@ -257,8 +451,8 @@ fn totals(point: &Point<'_>, speeds: &[Dual64], loads: &[(MemberId, Dual64)], st
         demand[d.members[0].0] -= d.torque;
         demand[d.members[1].0] += d.torque;
     }
-    let mut external = vec![zero; train.members.len()];
-    for (member, torque) in loads {
+    let mut external = vec![zero; speeds.len()];
+    for (member, torque) in &loads.external {
         external[member.0] = *torque;
     }
     for member in &point.open {
@@ -274,7 +468,7 @@ fn totals(point: &Point<'_>, speeds: &[Dual64], loads: &[(MemberId, Dual64)], st
         let wanted = powers.iter().filter(|p| side(p) * sign > 0.0);
         wanted.fold(zero, |sum, p| sum + *p * sign)
     };
-    let loss = state.meshes.iter().fold(zero, |sum, m| sum + m.loss);
+    let loss = state.meshes.iter().fold(passed, |sum, m| sum + m.loss);
     let loss = state.drags.iter().fold(loss, |sum, d| sum + drag_loss(d, speeds));
     Powers { input: sum(1.0), output: sum(-1.0), loss, sources: vec![], rounds: 0, error: 0.0 }
 }

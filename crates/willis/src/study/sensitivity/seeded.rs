@@ -4,7 +4,7 @@ use num_dual::Dual64;
 
 use crate::catalogue::oil::Viscosity;
 use crate::geometry::{Pair, PairData, Tip};
-use crate::operating_point::{MountNumbers, Numbers, OilState, RotorNumbers};
+use crate::operating_point::{MountNumbers, Numbers, OilState, RotorNumbers, VariatorNumbers};
 use crate::train::{BearingNumber, RotorNumber, Slot, Teeth, Train, steel_mass};
 
 /// A number that nothing depends on.
@@ -118,6 +118,21 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[Slot]) -
         enclosure: plain.enclosure.map(|x| seeded(Slot::Enclosure, x)),
         axial_gap: plain.axial_gap.map(|x| seeded(Slot::AxialGap, x)),
         friction_coefficient: seeded(Slot::FrictionCoefficient, plain.friction_coefficient),
+        variators: (plain.variators.iter().enumerate())
+            .map(|(k, v)| {
+                let direct = !train.variators[k].has_bus();
+                let slot = |j: usize, first: bool| match direct {
+                    true => Slot::Variator(k, first),
+                    false => Slot::Machine(k, j, first),
+                };
+                let both = |(j, [a, b]): (usize, &[f64; 2])| [seeded(slot(j, true), *a), seeded(slot(j, false), *b)];
+                VariatorNumbers {
+                    efficiencies: v.efficiencies.iter().enumerate().map(both).collect(),
+                    standby: seeded(Slot::Standby(k), v.standby),
+                    store: v.store.map(|p| seeded(Slot::Store(k), p)),
+                }
+            })
+            .collect(),
     })
 }
 

@@ -31,15 +31,45 @@ pub(in crate::study) enum What {
     MeshFriction(String),
     ElementTorque(String),
     SourceLoss(String),
+    /// Speed of the input over that of the output.
+    Ratio,
+    /// Speed of a member in rpm.
+    SpeedRpm(String),
+    /// Of a variator: power that reaches the receiving side, that over the input power, loss, power of the store, and
+    /// its own ratio.
+    Variator(String, OfVariator),
+    /// Of a machine, or a side, of a variator.
+    Machine([String; 2], OfMachine),
     Reason,
     Warnings,
 }
 
-const LOSS_KINDS: [&str; 5] = ["mesh", "bearing", "windage", "churning", "seal"];
+/// A number of a variator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::study) enum OfVariator {
+    Power,
+    Share,
+    Loss,
+    Store,
+    Ratio,
+}
+
+/// A number of a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::study) enum OfMachine {
+    Torque,
+    Speed,
+    Power,
+}
+
+const LOSS_KINDS: [&str; 6] = ["mesh", "bearing", "windage", "churning", "seal", "variator"];
 
 fn loss_of(l: &Losses, kind: usize) -> f64 {
-    [l.mesh, l.bearing, l.windage, l.churning, l.seal][kind]
+    [l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator][kind]
 }
+
+/// The group of columns that are only had by their own name.
+const SINGLY: &str = "";
 
 /// A column that may be asked for.
 struct Offer {
@@ -58,11 +88,13 @@ fn offers(train: &Train) -> Vec<Offer> {
     offer("all", "power_residual_w".into(), "W", What::Residual);
     offer("all", "circulating_power_w".into(), "W", What::Circulating);
     offer("all", "lock_loss_factor".into(), "", What::LockFactor);
+    offer("all", "ratio".into(), "", What::Ratio);
     // All but the frame, which is at rest.
     for m in train.members().iter().skip(1).map(|m| &m.name) {
         offer("members", format!("{m}.speed_rad_s"), "rad/s", What::Speed(m.clone()));
         offer("members", format!("{m}.torque_n_m"), "N m", What::Torque(m.clone()));
         offer("members", format!("{m}.power_w"), "W", What::Power(m.clone()));
+        offer(SINGLY, format!("{m}.speed_rpm"), "rpm", What::SpeedRpm(m.clone()));
     }
     for m in train.meshes().iter().map(|m| &m.name) {
         offer("meshes", format!("{m}.loss_w"), "W", What::MeshLoss(m.clone()));
@@ -77,9 +109,39 @@ fn offers(train: &Train) -> Vec<Offer> {
     let sources = (train.meshes().iter().map(|m| &m.name))
         .chain(train.bearings.iter().map(|b| &b.name))
         .chain(train.seals.iter().map(|b| &b.name))
-        .chain(train.rotors.iter().map(|b| &b.name));
+        .chain(train.rotors.iter().map(|b| &b.name))
+        .chain(train.variators.iter().map(|v| &v.name));
     for s in sources {
         offer("sources", format!("loss.{s}_w"), "W", What::SourceLoss(s.clone()));
+    }
+    for v in &train.variators {
+        let name = &v.name;
+        let mut own = |key: &str, unit, of| {
+            offer("variators", format!("{name}.{key}"), unit, What::Variator(name.clone(), of));
+        };
+        own("power_w", "W", OfVariator::Power);
+        own("share", "", OfVariator::Share);
+        own("loss_w", "W", OfVariator::Loss);
+        if v.has_bus() {
+            own("store_w", "W", OfVariator::Store);
+        }
+        if v.members().len() == 2 {
+            own("ratio", "", OfVariator::Ratio);
+        }
+        let sides: Vec<String> = match v.machines() {
+            [] => v.members().iter().map(|m| train.member_name(*m).to_owned()).collect(),
+            machines => machines.iter().map(|m| m.name.clone()).collect(),
+        };
+        for side in sides {
+            for (key, unit, of) in [
+                ("torque_n_m", "N m", OfMachine::Torque),
+                ("speed_rad_s", "rad/s", OfMachine::Speed),
+                ("power_w", "W", OfMachine::Power),
+            ] {
+                let what = What::Machine([name.clone(), side.clone()], of);
+                offer("variators", format!("{name}.{side}.{key}"), unit, what);
+            }
+        }
     }
     all
 }
@@ -88,7 +150,7 @@ impl Sweep<'_> {
     /// The columns that every sweep over these axes has, up to the reason and the warnings.
     fn usual(&self) -> Vec<(Column, What)> {
         let train = self.question.model().train();
-        let physical = train.is_physical() || self.axes.iter().any(|a| matches!(a.target, Target::File(_)));
+        let physical = train.is_physical() || !train.variators.is_empty() || self.axes.iter().any(|a| matches!(a.target, Target::File(_)));
         let axis = |(k, a): (usize, &super::Axis)| match a.is_text() {
             true => (Column::text(a.column()), What::Axis(k)),
             false => (Column::number(a.column(), a.unit.clone()), What::Axis(k)),
@@ -104,6 +166,7 @@ impl Sweep<'_> {
         all.push((Column::number("loss_w", "W"), What::Loss));
         if physical {
             let kinds = LOSS_KINDS.iter().enumerate();
+            let kinds = kinds.filter(|(_, n)| **n != "variator" || !train.variators.is_empty());
             all.extend(kinds.map(|(k, n)| (Column::number(format!("{n}_loss_w"), "W"), What::LossOf(k))));
         }
         all
@@ -117,13 +180,14 @@ impl Sweep<'_> {
         for name in asked {
             let name = name.trim();
             let known = all.iter().any(|c| c.0.name == name);
-            let is_meant = |o: &&Offer| name == "all" || o.group == name || o.column.name == name;
+            let in_group = |o: &Offer| o.group != SINGLY && (name == "all" || o.group == name);
+            let is_meant = |o: &&Offer| in_group(o) || o.column.name == name;
             let chosen: Vec<&Offer> = offers.iter().filter(is_meant).collect();
-            if chosen.is_empty() && !known && name != "elements" {
+            if chosen.is_empty() && !known && !matches!(name, "elements" | "variators") {
                 let d = Diagnostic::new(Code::UnknownName, "", format!("there is no column `{name}`"));
-                let groups = ["members", "meshes", "elements", "sources"];
+                let groups = ["members", "meshes", "elements", "sources", "variators"];
                 let d = d.suggest(name, offers.iter().map(|o| o.column.name.as_str()).chain(groups));
-                wrong.push(d.hint("`members`, `meshes`, `elements`, `sources` and `all` name several"));
+                wrong.push(d.hint("`members`, `meshes`, `elements`, `sources`, `variators` and `all` name several"));
             }
             for Offer { column, what, .. } in chosen {
                 // An axis of that name has its values.
@@ -171,6 +235,9 @@ impl Sweep<'_> {
         if let What::Axis(k) = what {
             return self.axes[*k].number(place[*k]);
         }
+        if *what == What::Ratio {
+            return answer.ratio.unwrap_or(f64::NAN);
+        }
         let Some(s) = &answer.solution else { return f64::NAN };
         let found = match what {
             What::Efficiency => s.efficiency,
@@ -192,7 +259,25 @@ impl Sweep<'_> {
                 let mut own = s.sources.iter().filter(|x| x.name == *name).map(|x| x.loss_w).peekable();
                 own.peek().is_some().then(|| own.sum())
             }
-            What::Axis(_) | What::Verdict | What::Best | What::Reason | What::Warnings => None,
+            What::SpeedRpm(name) => {
+                let speed = s.members.get(name).and_then(|m| m.speed_rad_s);
+                speed.map(|w| w * 30.0 / std::f64::consts::PI)
+            }
+            What::Variator(name, of) => s.variators.get(name).and_then(|v| match of {
+                OfVariator::Power => Some(v.power_w),
+                OfVariator::Share => Some(v.share),
+                OfVariator::Loss => Some(v.loss_w),
+                OfVariator::Store => v.store_w,
+                OfVariator::Ratio => v.ratio,
+            }),
+            What::Machine([name, side], of) => {
+                s.variators.get(name).and_then(|v| v.machines.get(side)).map(|m| match of {
+                    OfMachine::Torque => m.torque_n_m,
+                    OfMachine::Speed => m.speed_rad_s,
+                    OfMachine::Power => m.power_w,
+                })
+            }
+            What::Axis(_) | What::Verdict | What::Best | What::Ratio | What::Reason | What::Warnings => None,
         };
         found.unwrap_or(f64::NAN)
     }
