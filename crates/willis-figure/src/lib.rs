@@ -19,6 +19,7 @@ mod registry;
 pub mod report;
 mod sankey;
 mod shift;
+mod split;
 mod stick;
 mod time;
 mod tornado;
@@ -58,6 +59,8 @@ pub use sankey::draw::draw as draw_sankey;
 pub use sankey::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode, SankeyPanel, sankey};
 pub use shift::draw::draw as draw_shift;
 pub use shift::{ShiftChange, ShiftColumn, ShiftEfficiency, ShiftRow, ShiftSpread, ShiftTable, shift};
+pub use split::draw::draw as draw_split;
+pub use split::{MechanicalPoint, Split, SplitGear, SplitMode, SplitPoint, split};
 pub use stick::draw::draw as draw_stick;
 pub use stick::{
     GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickMember, StickMesh,

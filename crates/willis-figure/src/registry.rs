@@ -142,6 +142,8 @@ kinds! {
     "regimes": Regimes(RegimeMap) = regimes::KIND;
     /// Efficiency over two quantities; of an automatic the best gear.
     "map": Map(EfficiencyMap) = map::KIND;
+    /// A power split over its ratio: efficiency, share of the variator, powers of its machines.
+    "split": Split(Split) = split::KIND;
     /// Losses by source, stacked over a quantity and as bars.
     "losses": Losses(LossChart) = losses::KIND;
     /// Oil film over roughness along the path of contact of a mesh.

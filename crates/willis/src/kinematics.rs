@@ -55,6 +55,17 @@ impl Element {
         }
     }
 
+    /// Two members that turn as one.
+    fn rigid(p: MemberId, q: MemberId) -> Self {
+        let (a, b) = (Rational::ONE, -Rational::ONE);
+        Self { links: vec![], p, q, carrier: FRAME, a, b, forward: Rational::ONE, backward: Rational::ONE }
+    }
+
+    /// Whether it only joins its ends.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.links.is_empty()
+    }
+
     pub(crate) fn reversed(mut self) -> Self {
         std::mem::swap(&mut self.p, &mut self.q);
         std::mem::swap(&mut self.a, &mut self.b);
@@ -215,6 +226,75 @@ impl<'t> Configuration<'t> {
         c
     }
 
+    /// The same with terminals that turn as one, but not all of them, kept apart: what couples them for good or in this
+    /// state becomes a lossless element of its own, so that each has a torque of its own.
+    pub(crate) fn with_terminals_apart(self, terminals: &[MemberId], keep: &[MemberId]) -> Self {
+        let mut nodes: Vec<usize> = terminals.iter().filter_map(|m| self.node(*m)).collect();
+        let live = nodes.len();
+        nodes.sort_unstable();
+        nodes.dedup();
+        if nodes.len() < 2 || nodes.len() == live {
+            return self;
+        }
+        let train = self.train;
+        let ground = |m: MemberId| self.node(m).is_none();
+        // Couplings between members that turn; the rest stays as it is.
+        let pairs = self.engaged.iter().map(|e| train.shift_elements[e.0].members).chain(train.joints.iter().copied());
+        let mut group: Vec<usize> = (0..train.members.len()).collect();
+        let mut rigid: Vec<[MemberId; 2]> = Vec::new();
+        // What is tied by elements already needs no second one.
+        let mut tied: Vec<usize> = group.clone();
+        let find = |group: &[usize], mut m: usize| {
+            while group[m] != m {
+                m = group[m];
+            }
+            m
+        };
+        for [a, b] in pairs.filter(|p| !p.iter().any(|m| ground(*m))) {
+            let (x, y) = (find(&tied, a.0), find(&tied, b.0));
+            if x == y {
+                continue;
+            }
+            tied[x.max(y)] = x.min(y);
+            let (x, y) = (find(&group, a.0), find(&group, b.0));
+            let loaded = |root: usize| terminals.iter().any(|t| find(&group, t.0) == root);
+            if loaded(x) && loaded(y) {
+                rigid.push([a, b]);
+            } else {
+                group[x.max(y)] = x.min(y);
+            }
+        }
+        let touched: Vec<MemberId> = keep.iter().chain(terminals).chain(rigid.iter().flatten()).copied().collect();
+        let mut c = Self::new(train, &self.engaged, &self.held, &touched);
+        let roots: Vec<Option<usize>> =
+            (0..train.members.len()).map(|m| c.node_of[m].map(|_| find(&group, m))).collect();
+        let mut number: Vec<Option<usize>> = vec![None; train.members.len()];
+        c.nodes = 0;
+        for (m, root) in roots.into_iter().enumerate().filter(|(m, _)| !c.inner[*m]) {
+            c.node_of[m] = root.map(|root| {
+                *number[root].get_or_insert_with(|| {
+                    c.nodes += 1;
+                    c.nodes - 1
+                })
+            });
+        }
+        rigid.into_iter().for_each(|[a, b]| c.elements.push(Element::rigid(a, b)));
+        let mut rows = c.rows(0);
+        c.rank = exact::reduce(&mut rows, c.nodes).len();
+        c
+    }
+
+    /// A shaft of its own, coupled for good with a member: its number, behind those of the train's members.
+    pub(crate) fn add_shaft(&mut self, on: MemberId) -> MemberId {
+        let own = MemberId(self.node_of.len());
+        self.node_of.push(Some(self.nodes));
+        self.inner.push(false);
+        self.nodes += 1;
+        self.rank += 1;
+        self.elements.push(Element::rigid(own, on));
+        own
+    }
+
     /// The same configuration with other efficiencies of the meshes.
     pub(crate) fn with_efficiencies(&self, efficiencies: Vec<Efficiency>) -> Self {
         let mut c = Self { efficiencies, ..self.clone() };
@@ -325,7 +405,7 @@ impl<'t> Configuration<'t> {
         // Redundant meshes repeat a conflict; what is left are the independent ones.
         let rank = exact::reduce(&mut conflicts, extra).len();
         conflicts.truncate(rank);
-        let mut speeds: Vec<_> = (0..self.train.members.len())
+        let mut speeds: Vec<_> = (0..self.node_of.len())
             .map(|m| match (self.inner[m], self.node_of[m]) {
                 (true, _) => None,
                 (false, None) => Some(vec![Rational::ZERO; extra]),
@@ -342,7 +422,7 @@ impl<'t> Configuration<'t> {
     /// `ω_next − ω_c = −(z/z_next)(ω − ω_c)` for opposite senses.
     fn inner_speeds(&self, e: &Element, speeds: &mut [Option<Vec<Rational>>]) {
         let (Some(mut at), Some(carrier)) = (speeds[e.p.0].clone(), speeds[e.carrier.0].clone()) else { return };
-        for link in &e.links[..e.links.len() - 1] {
+        for link in e.links.iter().take(e.links.len().saturating_sub(1)) {
             let mesh = &self.train.meshes[link.mesh.0];
             let [first, second] = &mesh.gears;
             let (from, to) = if link.along { (first, second) } else { (second, first) };

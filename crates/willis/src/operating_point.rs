@@ -35,9 +35,7 @@ use crate::kinematics::{Configuration, Coupling, Motion};
 use crate::losses::{Outside, mesh_friction::MeshFriction, rolling::Rolling};
 use crate::power_flow::{Drag, Flow, MeshFlow};
 use crate::real::{self, Real};
-use crate::train::{
-    Efficiency, FRAME, Gear, Lubrication, MachineEfficiency, MemberId, Operation, Train, VariatorPath,
-};
+use crate::train::{Efficiency, FRAME, Gear, Lubrication, MachineEfficiency, MemberId, Operation, Train, VariatorPath};
 
 pub use bearing::BearingReport;
 pub use contact::{ContactReport, Regime};

@@ -27,7 +27,7 @@ use crate::kinematics::Configuration;
 use crate::train::{AS_DRAWN, FRAME, MemberId, State, Train};
 
 use atlas::atlas;
-use setup::Setup;
+use setup::{Linked, Setup};
 
 pub(crate) use atlas::arrow;
 pub(crate) use cells::efficiency_at;
@@ -48,7 +48,7 @@ pub struct RegimeSelection {
     /// Members on which torque may act; `None` for the train's terminals.
     pub terminals: Option<Vec<String>>,
     /// Two terminals whose powers add to zero, such as the two machines of a hybrid whose battery
-    /// neither gives nor takes.
+    /// neither gives nor takes: a link within the train, without loss, so they are neither inputs nor outputs.
     pub balance: Option<[String; 2]>,
 }
 
@@ -136,7 +136,10 @@ pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Res
         .map(|state| {
             let engaged = state.map_or(&[][..], |s| &s.engaged);
             let members = named.clone().unwrap_or_else(|| {
+                // What a machine of a variator drives is driven from within.
+                let within: Vec<MemberId> = train.variators.iter().flat_map(|v| v.members()).collect();
                 let own = state.map(|s| [s.input, s.output]).into_iter().flatten().flatten();
+                let own = own.filter(|m| !within.contains(m));
                 let mut all = train.terminals.clone();
                 all.extend(own.chain(train.input).chain(train.output));
                 let mut distinct: Vec<MemberId> = Vec::new();
@@ -147,7 +150,8 @@ pub(crate) fn selected<'t>(train: &'t Train, selection: &RegimeSelection) -> Res
                 });
                 distinct
             });
-            let configuration = Configuration::new(train, engaged, &[], &members);
+            let configuration =
+                Configuration::new(train, engaged, &[], &members).with_terminals_apart(&members, &members);
             let state = state.map_or(AS_DRAWN.to_owned(), |s| s.name.clone());
             Choice { state, configuration, terminals: members, balance }
         })
@@ -167,7 +171,7 @@ pub(crate) fn choice_of_two<'t>(
         match &own.reason {
             Some(why) => reason = reason.or(Some(format!("{label}: {why}"))),
             None if own.base_speeds.len() == 2 && own.independent_torques == 1 => {
-                let setup = Setup::new(configuration, &terminals, balance).map_err(Err)?;
+                let setup = Setup::new(configuration, &terminals, Linked::of(balance)).map_err(Err)?;
                 return Ok((own, setup));
             }
             None => {

@@ -49,10 +49,11 @@ pub(crate) use specification::kind_of;
 pub use specification::{
     BearingSpec, BevelSpec, CentralSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec, EfficiencySpec,
     EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec, LinearSpec,
-    LossRowSpec, MachineEfficiencySpec, MachineSpec, RatioSpec, StoreSpec, VariatorSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec, OilSupply, OperationSpec, PairKind, PlanetBodySpec,
-    PlanetSpec, QuadraticSpec, RavigneauxSpec, RotorSpec, ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts,
-    SetSpec, ShaftSpec, ShiftElementSpec, Side, SideSpec, SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec,
-    StepSpec, SteppedPlanetSpec, SteppedSpec, StudySpec, TerminalSpec, ToothSpec, VehicleSpec,
+    LossRowSpec, MachineEfficiencySpec, MachineSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec, OilSupply,
+    OperationSpec, PairKind, PlanetBodySpec, PlanetSpec, QuadraticSpec, RatioSpec, RavigneauxSpec, RotorSpec,
+    ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts, SetSpec, ShaftSpec, ShiftElementSpec, Side, SideSpec,
+    SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec, StepSpec, SteppedPlanetSpec, SteppedSpec, StoreSpec,
+    StudySpec, TerminalSpec, ToothSpec, VariatorSpec, VehicleSpec,
 };
 pub use variator::{EfficiencyMap, Machine, MachineEfficiency, Store, Variator, VariatorKind, VariatorPath};
 

@@ -204,22 +204,33 @@ impl Loads {
 
     /// Variators that couple nothing.
     fn at_rest(&self, c: &Configuration<'_>) -> Vec<usize> {
-        let acts = |k: &usize| {
-            c.couplings.iter().any(|own| own.variator == *k) || self.driven.iter().any(|d| d.at[0] == *k)
-        };
+        let acts =
+            |k: &usize| c.couplings.iter().any(|own| own.variator == *k) || self.driven.iter().any(|d| d.at[0] == *k);
         (0..c.train.variators.len()).filter(|k| !acts(k)).collect()
     }
 
     /// `n` loads are missing.
     pub fn missing(&self, c: &Configuration<'_>, n: usize) -> Vec<Refusal> {
         let open = self.balancing().collect();
-        vec![Refusal::MissingLoads { freedoms: c.degrees_of_freedom(), coupled: coupled(c), at_rest: self.at_rest(c), open, more: n }]
+        vec![Refusal::MissingLoads {
+            freedoms: c.degrees_of_freedom(),
+            coupled: coupled(c),
+            at_rest: self.at_rest(c),
+            open,
+            more: n,
+        }]
     }
 
     /// There are `n` loads too many.
     pub fn too_many(&self, c: &Configuration<'_>, n: usize) -> Vec<Refusal> {
         let open = self.balancing().count();
-        vec![Refusal::TooManyLoads { freedoms: c.degrees_of_freedom(), coupled: coupled(c), at_rest: self.at_rest(c), open, more: n }]
+        vec![Refusal::TooManyLoads {
+            freedoms: c.degrees_of_freedom(),
+            coupled: coupled(c),
+            at_rest: self.at_rest(c),
+            open,
+            more: n,
+        }]
     }
 }
 

@@ -46,8 +46,10 @@ impl Frame<'_> {
     /// two or more have a boundary.
     fn unloading(&self, s: &Solution) -> Option<Boundary> {
         let (c, scale) = (self.c, self.problem.scale());
+        let members = c.train.members.len();
+        let torques = self.problem.given.iter().filter(|(m, _)| m.0 < members);
         let given: Vec<(MemberId, usize, f64)> =
-            self.problem.given.iter().filter_map(|(m, t)| c.node(*m).map(|n| (*m, n, t.to_f64()))).collect();
+            torques.filter_map(|(m, t)| c.node(*m).map(|n| (*m, n, t.to_f64()))).collect();
         let largest = given.iter().fold(0.0f64, |a, g| a.max(g.2.abs()));
         if given.len() < 2 || largest == 0.0 {
             return None;

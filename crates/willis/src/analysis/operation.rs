@@ -9,7 +9,9 @@ use super::balance::{Balance, Branch, Setting};
 use super::loads::Loads;
 use super::solution::Frame;
 use super::words::{Finding, Refusal, names};
-use super::{Boundary, variators, OperationReport, OutsideLaw, Role, SolutionReport, SpeedDeviation, TorqueRange, Verdict, Why};
+use super::{
+    Boundary, OperationReport, OutsideLaw, Role, SolutionReport, SpeedDeviation, TorqueRange, Verdict, Why, variators,
+};
 
 /// A unique equilibrium with what its numbers are computed from.
 #[derive(Clone, Debug)]

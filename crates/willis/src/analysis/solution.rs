@@ -8,7 +8,9 @@ use crate::statics::{Equilibrium, Solution, torque_exact};
 use crate::train::{FRAME, MemberId, MemberKind, Operation};
 
 use super::loads::Loads;
-use super::{CirculationReport, variators, Losses, MemberReport, MeshReport, Named, Role, ShiftElementReport, SolutionReport};
+use super::{
+    CirculationReport, Losses, MemberReport, MeshReport, Named, Role, ShiftElementReport, SolutionReport, variators,
+};
 
 /// Everything a solution is seen against.
 pub(super) struct Frame<'a> {

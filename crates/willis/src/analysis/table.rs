@@ -44,7 +44,9 @@ pub(super) fn row(
         Ratio::InputLocked => (None, Some(locked(&c, input))),
         Ratio::Undetermined => (None, Some(free(&c, input, output))),
     };
-    if let (Some(text), Some(_)) = (&no_ratio, state) {
+    // A variator sets what the gears leave open.
+    let varied = ratio == Ratio::Undetermined && !train.variators.is_empty();
+    if let (Some(text), Some(_), false) = (&no_ratio, state, varied) {
         let code = if ratio == Ratio::Undetermined { Code::Undetermined } else { Code::KinematicallyLocked };
         diagnostics.push(Diagnostic::new(code, &place, format!("state {name}: {text}")));
     }

@@ -104,11 +104,21 @@ impl fmt::Display for BeyondLimit {
             }
             (None, _) if self.value < limit => {
                 let (value, least) = (shown(self.value), shown(limit));
-                write!(f, "{}: a {what} of {value}, {} below its least of {least}", self.variator, shown(limit - self.value))
+                write!(
+                    f,
+                    "{}: a {what} of {value}, {} below its least of {least}",
+                    self.variator,
+                    shown(limit - self.value)
+                )
             }
             (None, _) => {
                 let (value, most) = (shown(self.value), shown(limit));
-                write!(f, "{}: a {what} of {value}, {} above its greatest of {most}", self.variator, shown(self.value - limit))
+                write!(
+                    f,
+                    "{}: a {what} of {value}, {} above its greatest of {most}",
+                    self.variator,
+                    shown(self.value - limit)
+                )
             }
         }
     }
@@ -126,7 +136,8 @@ pub(super) fn reports(train: &Train, flow: &Flow) -> Named<VariatorReport> {
 fn report(train: &Train, v: &Variator, f: &VariatorFlow, input: f64) -> VariatorReport {
     let motoring: f64 = f.sides.iter().map(|s| s.power.max(0.0)).sum();
     // From the first side to the second: the first takes power from its member, or the second gives it.
-    let largest = |sides: &[SideFlow]| sides.iter().map(|s| s.power).fold(0.0, |a: f64, p| if p.abs() > a.abs() { p } else { a });
+    let largest =
+        |sides: &[SideFlow]| sides.iter().map(|s| s.power).fold(0.0, |a: f64, p| if p.abs() > a.abs() { p } else { a });
     let forward = match &f.sides[..] {
         [first, second] if second.power == 0.0 => first.power <= 0.0,
         [_, second] => second.power > 0.0,
@@ -173,8 +184,12 @@ pub(super) fn beyond(train: &Train, flow: &Flow) -> Vec<BeyondLimit> {
     let mut all = Vec::new();
     for f in &flow.variators {
         let v = &train.variators[f.variator];
-        let beyond = |machine: Option<&String>, quantity, value, limit| {
-            BeyondLimit { variator: v.name.clone(), machine: machine.cloned(), quantity, value, limit }
+        let beyond = |machine: Option<&String>, quantity, value, limit| BeyondLimit {
+            variator: v.name.clone(),
+            machine: machine.cloned(),
+            quantity,
+            value,
+            limit,
         };
         if let (VariatorPath::Direct { ratio: [least, most], .. }, [a, b]) = (&v.path, &f.sides[..]) {
             let ratio = a.speed / b.speed;

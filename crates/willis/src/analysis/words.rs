@@ -176,13 +176,12 @@ impl Finding {
                 let message = format!("{members} may spin at any speed; nothing is transmitted there");
                 Diagnostic::new(Code::Undetermined, place, message)
             }
-            Self::VariatorAtRest(k) => {
-                Diagnostic::new(Code::VariatorAtRest, place, at_rest(train, *k))
-                    .hint("give one more torque, of a machine or of a terminal, or a speed at which one side turns")
-            }
+            Self::VariatorAtRest(k) => Diagnostic::new(Code::VariatorAtRest, place, at_rest(train, *k))
+                .hint("give one more torque, of a machine or of a terminal, or a speed at which one side turns"),
             Self::Beyond(beyond) => Diagnostic::new(Code::BeyondLimit, place, beyond.to_string()),
             Self::OutsideMap(machine) => {
-                let message = format!("{machine} runs outside the map of its efficiency; the value at its edge was taken");
+                let message =
+                    format!("{machine} runs outside the map of its efficiency; the value at its edge was taken");
                 Diagnostic::new(Code::OutsideMap, place, message)
             }
             Self::Stiction(ranges) => {

@@ -45,6 +45,11 @@ impl<'t> Configuration<'t> {
                 at_rest.push(variator);
             }
             let add = |c: &mut Self, machine, [p, q]: [MemberId; 2], [a, b]: [Rational; 2], eta: [&Rational; 2]| {
+                // What acts on a held member alone leans on what holds it.
+                let lever = |m: MemberId, x: &Rational| c.node(m).is_some() && !x.is_zero();
+                if !lever(p, &a) && !lever(q, &b) {
+                    return;
+                }
                 let [forward, backward] = eta.map(Clone::clone);
                 c.elements.push(Element { links: vec![], p, q, carrier: FRAME, a, b, forward, backward });
                 c.couplings.push(Coupling { variator, machine });

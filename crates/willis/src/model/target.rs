@@ -65,8 +65,12 @@ impl Target {
             return match (train.input, train.output) {
                 (Some(input), Some(output)) if input != output => Ok(Self::Ratio),
                 _ => Err(Box::new(
-                    Diagnostic::new(Code::NothingAsked, "", "`ratio` cannot be varied: the train has no input and output")
-                        .hint("name two `terminals`, or `input` and `output`"),
+                    Diagnostic::new(
+                        Code::NothingAsked,
+                        "",
+                        "`ratio` cannot be varied: the train has no input and output",
+                    )
+                    .hint("name two `terminals`, or `input` and `output`"),
                 )),
             };
         }
@@ -179,7 +183,9 @@ impl Target {
                 }
                 Self::Ratio => {
                     let zero = value.parse::<Rational>().ok().filter(|r| !r.is_zero());
-                    zero.ok_or_else(|| fault(format!("a ratio of {value}: it is the input's speed over the output's")))?;
+                    zero.ok_or_else(|| {
+                        fault(format!("a ratio of {value}: it is the input's speed over the output's"))
+                    })?;
                 }
                 _ => {
                     let Measure::Quantity(dimension) = self.measure(model) else { continue };

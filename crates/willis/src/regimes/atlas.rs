@@ -9,13 +9,15 @@ use crate::symbolic::{Function, Notation, Symbol};
 use crate::train::{FRAME, MemberId};
 
 use super::arrangement::{self, dot};
-use super::cells::{Cells, efficiency_at, efficiency_towards, enumerate, power_signs, without_friction};
+use super::cells::{
+    Cells, efficiency_at, efficiency_between, efficiency_towards, enumerate, power_signs, without_friction,
+};
 use super::formula::{Efficiencies, Formula, Ratios, Shape, SymbolKind, element_label};
 use super::report::{
     AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, Neighbour,
     PlaneReport, Prescribed, RatioRange, Reach, RegimeReport, RegionReport, SymbolReport, Threshold,
 };
-use super::setup::{Pattern, Setup, TorqueCell};
+use super::setup::{Linked, Pattern, Setup, TorqueCell};
 
 /// Most closed formulas that are worked out for one state.
 const MOST_FORMULAS: usize = 128;
@@ -56,7 +58,7 @@ pub(crate) fn atlas(
             Some("direct drive: the terminals turn as one, no mesh is loaded and the efficiency is 1".into());
         return atlas;
     }
-    let setup = match Setup::new(c, members, balance) {
+    let setup = match Setup::new(c, members, Linked::of(balance)) {
         Ok(setup) => setup,
         Err(why) => {
             atlas.reason = Some(why);
@@ -117,17 +119,19 @@ fn note_peculiarities(atlas: &mut Atlas, setup: &Setup<'_>, cells: &Cells) {
                 .into(),
         );
     }
-    for j in (0..setup.active.len()).filter(|&j| setup.ratio(j) == Rational::ONE) {
+    for j in (0..setup.active.len()).filter(|&j| setup.ratio(j) == Rational::ONE && !setup.element(j).is_rigid()) {
         let e = setup.element(j);
-        let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.c.train.member_name(m));
+        let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.member_name(m));
         atlas.notes.push(format!(
             "the basic ratio of {} is 1: {p} and {q} turn alike whatever {c} does, and the torque of the teeth on {c} \
              is friction alone, (rho - 1) times that on {p}",
             element_label(setup, j)
         ));
     }
-    let lossless: Vec<String> =
-        (0..setup.active.len()).filter(|&j| !setup.lossy(j)).map(|j| element_label(setup, j)).collect();
+    let lossless: Vec<String> = (0..setup.active.len())
+        .filter(|&j| !setup.lossy(j) && !setup.element(j).is_rigid())
+        .map(|j| element_label(setup, j))
+        .collect();
     if !lossless.is_empty() {
         atlas.notes.push(without_loss(&lossless));
     }
@@ -331,7 +335,7 @@ pub(crate) fn plane(setup: &Setup<'_>, form: &[Rational]) -> PlaneReport {
     let same = |other: &[Rational]| arrangement::normal(other).is_some_and(|(f, _)| f == form);
     let at_rest: Vec<String> = (0..setup.terminals.len())
         .filter(|&t| same(setup.terminal_speed(t)))
-        .map(|t| train.member_name(setup.terminals[t].member).to_owned())
+        .map(|t| setup.terminal_name(t).to_owned())
         .collect();
     let meshes: Vec<usize> = (0..setup.active.len()).filter(|&j| setup.lossy(j) && same(&setup.sigma[j])).collect();
     let mut parts: Vec<String> = Vec::new();
@@ -470,7 +474,7 @@ pub(crate) fn order(setup: &Setup<'_>, point: &[Rational]) -> Vec<String> {
     for t in &setup.terminals {
         if !told.iter().any(|m| setup.c.node(*m) == Some(t.node)) {
             let w = dot(setup.node_speed[t.node].as_ref().expect("known"), point);
-            let name = train.member_name(t.member);
+            let name = &t.name;
             chains.push(if w.sign() > 0 { format!("w_{name} > 0") } else { format!("0 > w_{name}") });
         }
     }
@@ -492,13 +496,16 @@ pub(crate) fn regime_name(setup: &Setup<'_>, region: usize, list: &[TorqueCell],
 }
 
 pub(crate) fn drivers(setup: &Setup<'_>, pattern: &Pattern) -> Vec<(String, Option<String>)> {
-    (0..setup.active.len())
-        .map(|j| {
-            let e = setup.element(j);
-            let driver = pattern[j].map(|p| setup.c.train.member_name(if p { e.p } else { e.q }).to_owned());
-            (element_label(setup, j), driver)
-        })
-        .collect()
+    let elements = (0..setup.active.len()).filter(|&j| !setup.element(j).is_rigid()).map(|j| {
+        let e = setup.element(j);
+        let driver = pattern[j].map(|p| setup.member_name(if p { e.p } else { e.q }).to_owned());
+        (element_label(setup, j), driver)
+    });
+    let link = setup.link.iter().filter(|link| link.variator.is_some()).map(|link| {
+        let from = pattern[setup.active.len()].map(|forward| link.ends[usize::from(!forward)]);
+        (setup.link_name(), from.map(|t| setup.terminal_name(t).to_owned()))
+    });
+    elements.chain(link).collect()
 }
 
 /// Efficiency on the two directions that bound a region.
@@ -509,7 +516,10 @@ fn limits(setup: &Setup<'_>, region: &RegionReport, pattern: &Pattern, torques: 
     match &region.rays {
         Some([from, to]) => {
             let ends = [from, to].map(|r| efficiency_towards(setup, r, &region.point, pattern, torques).to_f64());
-            Some([ends[0].min(ends[1]), ends[0].max(ends[1])])
+            let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+            // Through a link it may be better or worse in between.
+            let between = setup.link.is_some().then(|| efficiency_between(setup, pattern, [from, to]));
+            Some(between.map_or([low, high], |[least, most]| [low.min(least), high.max(most)]))
         }
         None if setup.base.len() == 1 => Some([efficiency_at(setup, &region.point, torques).to_f64(); 2]),
         None => None,
@@ -557,7 +567,7 @@ fn continues(setup: &Setup<'_>, atlas: &Atlas, a: &RegimeReport, b: &RegimeRepor
     let signs = |r: &RegimeReport| r.torque_signs.0.iter().map(|x| x.1).collect::<Vec<i8>>();
     let slips = !atlas.planes[plane].without_relative_motion.is_empty();
     let (own, other) = (&atlas.regions[a.region - 1], &atlas.regions[b.region - 1]);
-    if !slips && setup.balance.is_some() {
+    if !slips && setup.link.is_some() {
         // Without friction's jump the torques on the plane itself agree.
         if let Some(ray) = ray_between(own, other) {
             let at = |r: &RegimeReport, region: &RegionReport| {
@@ -697,7 +707,7 @@ fn formula_report(shape: &Shape<'_, '_>, id: String, driven: &Driven, regimes: V
         .into_iter()
         .filter_map(|(e, d)| d.map(|d| if setup.active.len() > 1 { format!("{d} in {e}") } else { d }))
         .collect();
-    let loss: Vec<String> = own.losses.iter().map(|(_, f)| show(f)).collect();
+    let loss: Vec<String> = own.losses.iter().map(show).collect();
     FormulaReport {
         id,
         roles: arrow(&of(1), &of(-1)),
@@ -721,7 +731,7 @@ fn formula_report(shape: &Shape<'_, '_>, id: String, driven: &Driven, regimes: V
 /// its sign over the reference torque (for one independent torque).
 fn thresholds(shape: &Shape<'_, '_>, own: &Formula) -> Vec<Threshold> {
     let setup = shape.setup;
-    if setup.torques != 1 || setup.balance.is_some() {
+    if setup.torques != 1 || setup.link.is_some() {
         return vec![];
     }
     let value = |s: Symbol| own.names.info(s).value.clone().unwrap_or(Rational::ONE);

@@ -111,15 +111,16 @@ pub(crate) fn enumerate(setup: &Setup<'_>) -> Result<Cells, String> {
     Ok(Cells { planes, regions, torques: torques.into_iter().flatten().collect(), singular, by_signs })
 }
 
-/// Signs of the terminals' powers.
+/// Signs of the powers from outside, by terminal.
 pub(crate) fn power_signs(setup: &Setup<'_>, base: &[Rational], torques: &[i8]) -> Vec<i8> {
-    (0..setup.terminals.len()).map(|t| dot(setup.terminal_speed(t), base).sign() * torques[t]).collect()
+    let power = |t: usize| dot(setup.terminal_speed(t), base).sign() * torques[t];
+    (0..setup.terminals.len()).map(|t| if setup.is_end(t) { 0 } else { power(t) }).collect()
 }
 
 /// Output over input power; zero when all is dissipated, one when nothing flows.
 pub(crate) fn efficiency_at(setup: &Setup<'_>, base: &[Rational], torques: &[Rational]) -> Rational {
     let (mut input, mut output) = (Rational::ZERO, Rational::ZERO);
-    for t in 0..setup.terminals.len() {
+    for t in (0..setup.terminals.len()).filter(|&t| !setup.is_end(t)) {
         let p = &dot(setup.terminal_speed(t), base) * &torques[t];
         match p.sign() {
             1 => input += p,
@@ -139,8 +140,47 @@ pub(crate) fn efficiency_towards(
 ) -> Rational {
     let there = setup.torques_at(pattern, inside, torques, ray);
     // With everything at rest that is loaded, all powers vanish alike.
-    let still = (0..there.len()).all(|t| there[t].is_zero() || dot(setup.terminal_speed(t), ray).is_zero());
+    let outside = (0..there.len()).filter(|&t| !setup.is_end(t));
+    let still = outside.into_iter().all(|t| there[t].is_zero() || dot(setup.terminal_speed(t), ray).is_zero());
     if still { efficiency_at(setup, inside, torques) } else { efficiency_at(setup, ray, &there) }
+}
+
+/// The least and the greatest efficiency between two directions that bound a region, where there is a link: torques that
+/// are linear in the speeds make it a quotient with an extremum perhaps, which is looked for.
+pub(crate) fn efficiency_between(setup: &Setup<'_>, pattern: &Pattern, rays: [&Vec<Rational>; 2]) -> [f64; 2] {
+    const PARTS: usize = 128;
+    // Torques and speeds at the two directions; between them both are linear.
+    let ends = rays.map(|ray| {
+        let size = ray.iter().map(Rational::abs).max().filter(|s| !s.is_zero()).unwrap_or(Rational::ONE);
+        let unit: Vec<Rational> = ray.iter().map(|x| x / &size).collect();
+        let torques = setup.torques_through(pattern, &unit);
+        let speeds = (0..setup.terminals.len()).map(|t| dot(setup.terminal_speed(t), &unit));
+        let both: Vec<[f64; 2]> = speeds.zip(torques).map(|(w, t)| [w.to_f64(), t.to_f64()]).collect();
+        both
+    });
+    let at = |part: f64| {
+        let (mut input, mut output) = (0.0, 0.0);
+        for t in (0..setup.terminals.len()).filter(|&t| !setup.is_end(t)) {
+            let [w, torque] = [0, 1].map(|k| (1.0 - part) * ends[0][t][k] + part * ends[1][t][k]);
+            let p = w * torque;
+            if p > 0.0 { input += p } else { output -= p }
+        }
+        // The torques may all have the other sign.
+        if input > 0.0 && output > 0.0 { (output / input).min(input / output) } else { 0.0 }
+    };
+    let of = |k: usize| k as f64 / PARTS as f64;
+    let extremum = |better: &dyn Fn(f64, f64) -> bool| {
+        let inside = 1..PARTS;
+        let best = inside.reduce(|a, b| if better(at(of(b)), at(of(a))) { b } else { a }).unwrap_or(1);
+        let (mut low, mut high) = (of(best - 1), of(best + 1));
+        for _ in 0..80 {
+            let third = (high - low) / 3.0;
+            if better(at(low + third), at(high - third)) { high -= third } else { low += third }
+        }
+        let found = at((low + high) / 2.0);
+        if better(found, at(of(best))) { found } else { at(of(best)) }
+    };
+    [extremum(&|a, b| a < b), extremum(&|a, b| a > b)]
 }
 
 /// Region and torque signs of every regime of the same train without losses.
@@ -150,6 +190,9 @@ pub(crate) fn without_friction(setup: &Setup<'_>) -> BTreeSet<(usize, Vec<i8>)> 
     let mut ideal = setup.clone();
     for e in &mut ideal.c.elements {
         (e.forward, e.backward) = (Rational::ONE, Rational::ONE);
+    }
+    if let Some(link) = &mut ideal.link {
+        link.efficiency = [Rational::ONE, Rational::ONE];
     }
     (0..regions.len())
         .flat_map(|k| {

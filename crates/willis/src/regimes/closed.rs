@@ -12,7 +12,7 @@ use super::atlas::{arrow, atlas, drivers};
 use super::cells::{enumerate, power_signs};
 use super::formula::{Efficiencies, Formula, Names, Ratios, Shape, SymbolKind, identifier};
 use super::report::RegimeReport;
-use super::setup::{Pattern, Setup};
+use super::setup::{Linked, Pattern, Setup};
 use super::{RegimeSelection, selected};
 
 /// Which formulas.
@@ -424,7 +424,7 @@ fn one_freedom(
             return Err(format!("{name} is held"));
         }
     }
-    let setup = Setup::new(c, &[from, to], None)?;
+    let setup = Setup::new(c, &[from, to], Linked::Nothing)?;
     if setup.terminals.len() < 2 {
         return Err(format!("no load passes from {a} to {b}"));
     }
@@ -476,7 +476,7 @@ fn several_freedoms(
     if let Some(why) = atlas.reason {
         return Err(why);
     }
-    let setup = Setup::new(c, members, balance)?;
+    let setup = Setup::new(c, members, Linked::of(balance))?;
     let shape = Shape::new(&setup, &[])?;
     let names = |ids: &[MemberId]| ids.iter().map(|m| train.member_name(*m).to_owned()).collect::<Vec<_>>();
     let (from, to) = (names(from), names(to));
@@ -530,7 +530,7 @@ fn closed(
 ) -> ClosedFormula {
     let of = |sign: i8| -> Vec<String> {
         let chosen = (0..powers.len()).filter(|&t| powers[t] == sign);
-        chosen.map(|t| train.member_name(setup.terminals[t].member).to_owned()).collect()
+        chosen.map(|t| setup.terminal_name(t).to_owned()).collect()
     };
     let label = if state == AS_DRAWN { String::new() } else { format!("_state_{}", short(state)) };
     let arguments = (0..own.names.infos.len())
@@ -553,7 +553,7 @@ fn closed(
                 efficiency: info.kind == SymbolKind::Efficiency,
                 fixed: info.value.is_some(),
                 kind: info.kind,
-                terminal: terminal.map(|t| train.member_name(setup.terminals[t].member).to_owned()),
+                terminal: terminal.map(|t| setup.terminal_name(t).to_owned()),
                 symbol: s,
             }
         })

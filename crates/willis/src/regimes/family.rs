@@ -15,7 +15,7 @@ use crate::exact::Rational;
 use crate::train::Train;
 
 use super::atlas::{assignment_order, atlas};
-use super::setup::Setup;
+use super::setup::{Linked, Setup};
 use super::{Choice, RegimeSelection, selected};
 
 /// Every regime of a set with three terminals, over all basic ratios.
@@ -144,7 +144,7 @@ pub fn family(train: &Train, selection: &RegimeSelection) -> Result<Family, Diag
     let choices = selected(train, selection)?;
     let mut reason = "the train has no state with two degrees of freedom".to_owned();
     for Choice { state, configuration, terminals, .. } in choices {
-        let setup = match Setup::new(configuration.clone(), &terminals, None) {
+        let setup = match Setup::new(configuration.clone(), &terminals, Linked::Nothing) {
             Ok(setup) => setup,
             Err(why) => {
                 reason = why;

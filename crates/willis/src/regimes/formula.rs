@@ -87,6 +87,8 @@ pub(crate) struct Names {
     /// By element whose two directions have efficiencies of their own: its symbol where end q drives. That where p drives
     /// has the number of the element's efficiency.
     backward: Vec<Option<SymbolInfo>>,
+    /// Efficiency of the link, from its first end to its second and back; one symbol where they are the same.
+    link: Option<[Symbol; 2]>,
 }
 
 impl Names {
@@ -154,11 +156,26 @@ impl Names {
         for j in 0..k {
             let e = setup.element(j);
             let label = element_label(setup, j);
-            let (suffix, index) = match train.sets.len().max(setup.c.elements.len()) {
+            if e.is_rigid() {
+                // It joins its ends, and stands in no formula.
+                let blank = |kind| SymbolInfo {
+                    name: String::new(),
+                    latex: String::new(),
+                    value: Some(Rational::ONE),
+                    kind,
+                    meaning: String::new(),
+                    meaning_latex: None,
+                };
+                infos.extend([blank(SymbolKind::Ratio), blank(SymbolKind::Efficiency)]);
+                backward.push(None);
+                continue;
+            }
+            let toothed = setup.c.elements.iter().filter(|e| !e.is_rigid()).count();
+            let (suffix, index) = match train.sets.len().max(toothed) {
                 1 => ("0".to_owned(), "_{0}".to_owned()),
                 _ => (format!("_{}", identifier(&label)), format!("_{{{}}}", upright(&label))),
             };
-            let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
+            let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.member_name(m));
             let [wp, wq, wc] = [p, q, c].map(|m| format!("\\omega_{{{}}}", upright(m)));
             let (seen, seen_latex) = match c {
                 "frame" => (format!("w_{p} / w_{q}"), format!("{wp}/{wq}")),
@@ -211,7 +228,7 @@ impl Names {
             [("T", "T", SymbolKind::Torque, "torque on"), ("w", "\\omega", SymbolKind::Speed, "speed of")]
         {
             for t in &setup.terminals {
-                let member = train.member_name(t.member);
+                let member = t.name.as_str();
                 infos.push(SymbolInfo {
                     name: unique(format!("{letter}_{}", identifier(member))),
                     latex: format!("{tex}_{{{}}}", upright(member)),
@@ -222,8 +239,31 @@ impl Names {
                 });
             }
         }
+        let link = setup.link.as_ref().filter(|link| link.variator.is_some()).map(|link| {
+            let ends = link.ends.map(|t| setup.terminal_name(t));
+            let variator = setup.link_name();
+            let directed = link.efficiency[0] != link.efficiency[1];
+            let mut of = |from: &str, to: &str, value: &Rational| {
+                let (suffix, index) = match directed {
+                    true => (format!("_{}", identifier(from)), format!(",{}", upright(from))),
+                    false => (String::new(), String::new()),
+                };
+                let way = if directed { format!(", {from} to {to}") } else { String::new() };
+                infos.push(SymbolInfo {
+                    name: unique(format!("eta_v{suffix}")),
+                    latex: format!("\\eta_{{v{index}}}"),
+                    value: Some(value.clone()),
+                    kind: SymbolKind::Efficiency,
+                    meaning: format!("efficiency of {variator}{way}"),
+                    meaning_latex: None,
+                });
+                Symbol(infos.len() - 1)
+            };
+            let forward = of(ends[0], ends[1], &link.efficiency[0]);
+            [forward, if directed { of(ends[1], ends[0], &link.efficiency[1]) } else { forward }]
+        });
         let mut names =
-            Self { infos, elements: k, terminals: setup.terminals.len(), details: BTreeMap::new(), backward };
+            Self { infos, elements: k, terminals: setup.terminals.len(), details: BTreeMap::new(), backward, link };
         names.detail(setup, &mut unique);
         names
     }
@@ -334,7 +374,7 @@ pub(crate) fn element_label(setup: &Setup<'_>, j: usize) -> String {
         Some(s) if alone => train.sets[s].name.clone(),
         _ if e.links.len() == 1 => train.meshes[e.links[0].mesh.0].name.clone(),
         Some(s) => format!("{}.{}-{}", train.sets[s].name, train.member_name(e.p), train.member_name(e.q)),
-        None => format!("{}-{}", train.member_name(e.p), train.member_name(e.q)),
+        None => format!("{}-{}", setup.member_name(e.p), setup.member_name(e.q)),
     }
 }
 
@@ -415,15 +455,21 @@ impl<'s, 't> Shape<'s, 't> {
             return Err(too_long());
         }
         let names = Names::new(setup);
-        let x: Vec<Polynomial> = (0..k).map(|j| Polynomial::symbol(names.x(j))).collect();
-        let i: Vec<Polynomial> = (0..k).map(|j| Polynomial::symbol(names.ratio(j))).collect();
+        // What only joins its ends has the ratio one.
+        let over = |symbol: &dyn Fn(usize) -> Symbol| -> Vec<Polynomial> {
+            let of = |j: usize| {
+                if setup.element(j).is_rigid() { Polynomial::from(1) } else { Polynomial::symbol(symbol(j)) }
+            };
+            (0..k).map(of).collect()
+        };
+        let (x, i) = (over(&|j| names.x(j)), over(&|j| names.ratio(j)));
         let row = |node: usize, x: &[Polynomial]| -> Vec<Polynomial> {
             (0..k).map(|j| coefficient(setup, j, node, &x[j])).collect()
         };
 
         // Torques: the free rows and one row for each reference torque make a square matrix.
-        // Balanced torques last: their quotient has a pole where one of the two stands still.
-        let balanced = |t: usize| setup.balance.is_some_and(|pair| pair.contains(&t));
+        // Those of a link last: their quotient has a pole where one of the two stands still.
+        let balanced = |t: usize| setup.is_end(t);
         let mut order: Vec<usize> = (0..setup.terminals.len()).collect();
         order.sort_by_key(|&t| (!prefer.contains(&t), balanced(t)));
         let mut rows: Vec<Vec<Polynomial>> = setup.free.iter().map(|&n| row(n, &x)).collect();
@@ -567,8 +613,10 @@ impl<'s, 't> Shape<'s, 't> {
         let mut names = self.names.clone();
         for j in 0..k {
             let e = setup.element(j);
-            let train = setup.c.train;
-            let [p, q, c] = [e.p, e.q, e.carrier].map(|m| train.member_name(m));
+            if e.is_rigid() {
+                continue;
+            }
+            let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.member_name(m));
             let s = names.efficiency(j).0;
             if let (Some(false), Some(info)) = (pattern[j], &names.backward[j]) {
                 names.infos[s] = info.clone();
@@ -601,11 +649,17 @@ impl<'s, 't> Shape<'s, 't> {
         let driven = self.driven(pattern);
         let torque = &driven.torque;
         let mut references: Vec<Function> = self.reference.iter().map(|&t| Function::symbol(names.torque(t))).collect();
-        if let Some([a, b]) = setup.balance {
-            // T_a ω_a + T_b ω_b = 0 ties the second reference torque to the first.
+        let through = setup.link.as_ref().map(|link| (link.ends, pattern[k]));
+        if let Some(([a, b], forward)) = through {
+            let rho = match (names.link, forward) {
+                (Some([eta, _]), Some(true)) => Function::symbol(eta),
+                (Some([_, eta]), Some(false)) => Function::symbol(eta).recip(),
+                _ => Function::ONE,
+            };
+            // ρ T_a ω_a + T_b ω_b = 0 ties the second reference torque to the first.
             let factor = |r: usize| {
                 let part = |t: usize| torque[t][r].times(&Function::symbol(names.speed(t)));
-                part(a).plus(&part(b))
+                part(a).times(&rho).plus(&part(b))
             };
             references[1] = references[0].times(&factor(0)).over(&factor(1)).negated();
         }
@@ -636,12 +690,17 @@ impl<'s, 't> Shape<'s, 't> {
         let efficiency =
             if output.is_zero() || input.is_zero() { Function::ZERO } else { unit(&output.negated().over(&input)) };
 
+        // What the link takes at one end and does not give at the other.
+        let lost_on_the_way = through.and_then(|([a, b], forward)| {
+            let (from, way) = if forward? { (a, 0) } else { (b, 1) };
+            let eta = Function::symbol(names.link?[way]);
+            Some(power(from).times(&Function::ONE.minus(&eta)).negated())
+        });
         let mut conditions: Vec<Condition> = Vec::new();
         let sign = |f: Function, sign: i8| if sign > 0 { f } else { f.negated() };
         // The powers of the reference are positive by the roles.
         let reference_sign = roles[self.reference[0]];
         let normalised = |f: Function| if one { sign(unit(&f), reference_sign) } else { f };
-        let train = setup.c.train;
         let mut losses: Vec<(usize, Function, Function)> = Vec::new();
         for j in 0..k {
             let Some(p_drives) = pattern[j] else { continue };
@@ -663,7 +722,7 @@ impl<'s, 't> Shape<'s, 't> {
                 self.by_driver(&names, j, p_drives).filter(|_| !one && d == 1).unwrap_or(loss.clone()),
                 loss,
             ));
-            let driver = train.member_name(if p_drives { e.p } else { e.q });
+            let driver = setup.member_name(if p_drives { e.p } else { e.q });
             conditions.push(Condition {
                 function: normalised(sign(potential, if p_drives { 1 } else { -1 })),
                 meaning: format!("{driver} drives in {}", element_label(setup, j)),
@@ -676,7 +735,19 @@ impl<'s, 't> Shape<'s, 't> {
             let word = if roles[t] > 0 { "input" } else { "output" };
             conditions.push(Condition {
                 function: normalised(sign(power(t), roles[t])),
-                meaning: format!("{} is {word}", train.member_name(setup.terminals[t].member)),
+                meaning: format!("{} is {word}", setup.terminal_name(t)),
+            });
+        }
+        if let Some(([a, b], Some(forward))) = through {
+            let [from, to] = if forward { [a, b] } else { [b, a] };
+            conditions.push(Condition {
+                function: sign(power(from), -1),
+                meaning: format!(
+                    "power runs through {} from {} to {}",
+                    setup.link_name(),
+                    setup.terminal_name(from),
+                    setup.terminal_name(to)
+                ),
             });
         }
         for c in &mut conditions {
@@ -701,7 +772,7 @@ impl<'s, 't> Shape<'s, 't> {
             losses.iter().map(|(_, _, f)| spelt(&unit(&f.over(&p)))).collect()
         };
         let by_loss = match (lone(1), lone(-1)) {
-            _ if one || setup.balance.is_some() || losses.is_empty() || output.is_zero() => None,
+            _ if one || setup.link.is_some() || losses.is_empty() || output.is_zero() => None,
             (Some(t), _) => Some((true, shares(t))),
             (None, Some(t)) => Some((false, shares(t).iter().map(Function::negated).collect())),
             _ => None,
@@ -718,7 +789,7 @@ impl<'s, 't> Shape<'s, 't> {
                     spelt(&own)
                 })
                 .collect(),
-            losses: losses.iter().map(|(j, f, _)| (*j, spelt(f))).collect(),
+            losses: (losses.iter().map(|(_, f, _)| f)).chain(&lost_on_the_way).map(spelt).collect(),
             conditions: distinct,
             names,
         }
@@ -855,8 +926,8 @@ pub(crate) struct Formula {
     pub torques: Vec<Function>,
     /// Terminal speeds over the base speeds.
     pub speeds: Vec<Function>,
-    /// Loss of each active element with a driver.
-    pub losses: Vec<(usize, Function)>,
+    /// Loss of each active element with a driver, and of the link.
+    pub losses: Vec<Function>,
     /// Positive throughout the regime, and only there.
     pub conditions: Vec<Condition>,
     pub names: Names,

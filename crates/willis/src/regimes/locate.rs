@@ -180,7 +180,8 @@ fn located(point: &Point<'_>, around: &Surroundings, states: &[State]) -> Vec<Lo
     let mut all = Vec::new();
     for s in states {
         let powers: Vec<Rational> = (0..setup.terminals.len()).map(|t| &s.torques[t] * &point.speed(t)).collect();
-        let signs: Vec<i8> = powers.iter().map(Rational::sign).collect();
+        let sign = |t: usize| if setup.is_end(t) { 0 } else { powers[t].sign() };
+        let signs: Vec<i8> = (0..powers.len()).map(sign).collect();
         let efficiency = efficiency_at(setup, &point.base, &s.torques);
         let formula = shape.as_ref().map(|shape| {
             let f = shape.formula(&s.pattern, &signs, Ratios::Basic, Efficiencies::Basic);

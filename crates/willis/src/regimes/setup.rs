@@ -5,15 +5,46 @@ use crate::exact::{self, Matrix, Rational, null_space};
 use crate::kinematics::{Configuration, Element};
 use crate::named::Named;
 use crate::statics::{self, Equilibrium, Unsolvable};
-use crate::train::MemberId;
+use crate::train::{MachineEfficiency, MemberId, Store, VariatorPath};
 
 use super::arrangement::{self, Cell};
 
 /// A member on which an external torque may act.
 #[derive(Clone, Debug)]
 pub(crate) struct Terminal {
+    /// Of a side of a variator perhaps a shaft that only the setup has.
     pub member: MemberId,
     pub node: usize,
+    pub name: String,
+}
+
+/// Two terminals through which power runs beside the gears: what enters the gears at one has left them at the other, less
+/// what is lost on the way. They are no inputs or outputs.
+#[derive(Clone, Debug)]
+pub(crate) struct Link {
+    pub ends: [usize; 2],
+    /// From the first to the second, and back.
+    pub efficiency: [Rational; 2],
+    /// The variator that it is; none of powers that balance each other.
+    pub variator: Option<usize>,
+}
+
+/// Which terminals are linked beside the gears.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Linked {
+    /// None.
+    Nothing,
+    /// These two, without loss.
+    Balance([MemberId; 2]),
+    /// The sides of the train's variator, if it has one.
+    Variator,
+}
+
+impl Linked {
+    /// Two terminals that were asked to balance, else the train's variator.
+    pub fn of(balance: Option<[MemberId; 2]>) -> Self {
+        balance.map_or(Self::Variator, Self::Balance)
+    }
 }
 
 /// A configuration with its terminals, in the exact form in which regimes are enumerated.
@@ -30,10 +61,10 @@ pub(crate) struct Setup<'t> {
     pub active: Vec<usize>,
     /// Nodes without external torque that these elements touch.
     pub free: Vec<usize>,
-    /// Independent terminal torques, were it not for `balance`.
+    /// Independent terminal torques, were it not for the link.
     pub torques: usize,
-    /// Two terminals whose powers add to zero: motors on one electric bus.
-    pub balance: Option<[usize; 2]>,
+    /// A way for power beside the gears.
+    pub link: Option<Link>,
     /// Speed of each node over the base speeds; `None` where it is not determined.
     pub node_speed: Vec<Option<Vec<Rational>>>,
     /// By active element: `ω_p − ω_c` over the base speeds.
@@ -41,7 +72,8 @@ pub(crate) struct Setup<'t> {
 }
 
 /// The signs of the drivers, for one direction of motion: `true` when end p drives, `None` without
-/// relative motion, without loss, or without load.
+/// relative motion, without loss, or without load. With a link it has one entry more: `true` when power runs through it
+/// from its first end to its second.
 pub(crate) type Pattern = Vec<Option<bool>>;
 
 /// An open cone of terminal torques in which the same members drive and every torque keeps its
@@ -57,8 +89,9 @@ pub(crate) struct TorqueCell {
 
 impl<'t> Setup<'t> {
     /// `Err` says in words why nothing can be enumerated.
-    pub fn new(c: Configuration<'t>, members: &[MemberId], balance: Option<[MemberId; 2]>) -> Result<Self, String> {
-        let name = |m: MemberId| c.train.member_name(m).to_owned();
+    pub fn new(mut c: Configuration<'t>, members: &[MemberId], linked: Linked) -> Result<Self, String> {
+        let train = c.train;
+        let name = |m: MemberId| train.member_name(m).to_owned();
         if c.degrees_of_freedom() == 0 {
             return Err("nothing can turn".to_owned());
         }
@@ -71,8 +104,23 @@ impl<'t> Setup<'t> {
             if let Some(node) = c.node(member)
                 && terminals.iter().all(|t| t.node != node)
             {
-                terminals.push(Terminal { member, node });
+                terminals.push(Terminal { member, node, name: name(member) });
             }
+        }
+        let sides = match linked {
+            Linked::Variator => sides(&c)?,
+            _ => None,
+        };
+        let mut ports: Vec<usize> = Vec::new();
+        for side in sides.iter().flat_map(|s| &s.ports) {
+            // A torque that is no terminal's stays apart from those that are.
+            let node = c.node(side.member).expect("a side turns");
+            let taken = terminals.iter().any(|t| t.node == node);
+            let member = if taken { c.add_shaft(side.member) } else { side.member };
+            let unique = |wanted: &String| terminals.iter().all(|t| t.name != *wanted);
+            let name = [&side.name, &side.apart].into_iter().find(|n| unique(n)).unwrap_or(&side.apart).clone();
+            ports.push(terminals.len());
+            terminals.push(Terminal { member, node: c.node(member).expect("it turns"), name });
         }
         let nodes: Vec<usize> = terminals.iter().map(|t| t.node).collect();
         let (row_alive, alive) = statics::carrying(&c, &nodes, &[]);
@@ -81,7 +129,16 @@ impl<'t> Setup<'t> {
         let touches = |n: usize| {
             active.iter().map(|&j| &c.elements[j]).any(|e| [e.p, e.q, e.carrier].iter().any(|m| c.node(*m) == Some(n)))
         };
-        terminals.retain(|t| touches(t.node));
+        let kept: Vec<bool> = terminals.iter().map(|t| touches(t.node)).collect();
+        let link = match (&sides, &ports[..]) {
+            (Some(s), &[a, b]) if kept[a] && kept[b] => {
+                let at = |port: usize| kept[..port].iter().filter(|k| **k).count();
+                Some(Link { ends: [at(a), at(b)], efficiency: s.efficiency.clone(), variator: Some(s.variator) })
+            }
+            _ => None,
+        };
+        let mut keep = kept.iter();
+        terminals.retain(|_| *keep.next().expect("one for each"));
         let free: Vec<usize> = (0..c.nodes).filter(|&n| row_alive[n]).collect();
 
         let mut base: Vec<usize> = Vec::new();
@@ -97,12 +154,12 @@ impl<'t> Setup<'t> {
         let known: Vec<MemberId> = base.iter().map(|&b| terminals[b].member).collect();
         let transfer = c.transfer(&known);
         let mut node_speed = vec![None; c.nodes];
-        for m in 0..c.train.members.len() {
+        for m in 0..c.node_of.len() {
             if let (Some(n), Some(w)) = (c.node(MemberId(m)), &transfer.speeds[m]) {
                 node_speed[n] = Some(w.clone());
             }
         }
-        let mut setup = Self { c, terminals, base, active, free, torques: 0, balance: None, node_speed, sigma: vec![] };
+        let mut setup = Self { c, terminals, base, active, free, torques: 0, link, node_speed, sigma: vec![] };
         for &j in &setup.active {
             let e = &setup.c.elements[j];
             let (Some(p), Some(carrier)) = (setup.speed(e.p), setup.speed(e.carrier)) else {
@@ -134,7 +191,7 @@ impl<'t> Setup<'t> {
                  the gears"
             ));
         }
-        if let Some(pair) = balance {
+        if let Linked::Balance(pair) = linked {
             let at = pair.map(|m| setup.terminals.iter().position(|t| setup.c.node(m) == Some(t.node)));
             let [Some(a), Some(b)] = at else {
                 return Err(format!(
@@ -151,7 +208,22 @@ impl<'t> Setup<'t> {
                     if setup.torques == 1 { "one" } else { "none" }
                 ));
             }
-            setup.balance = Some([a, b]);
+            setup.link = Some(Link { ends: [a, b], efficiency: [Rational::ONE, Rational::ONE], variator: None });
+        }
+        if let Some(Link { variator: Some(v), .. }) = setup.link
+            && setup.torques < 2
+        {
+            return Err(format!(
+                "{} leaves no torque free: no terminal torques other than zero are in equilibrium with it",
+                train.variators[v].name
+            ));
+        }
+        if setup.link.is_some() && setup.torques > 2 {
+            return Err(format!(
+                "beside {} there are {} independent torques, and regimes are enumerated with one; name fewer terminals",
+                setup.link_name(),
+                setup.torques - 1
+            ));
         }
         Ok(setup)
     }
@@ -175,8 +247,35 @@ impl<'t> Setup<'t> {
         }
     }
 
-    pub fn terminal_name(&self, t: usize) -> &'t str {
-        self.c.train.member_name(self.terminals[t].member)
+    pub fn terminal_name(&self, t: usize) -> &str {
+        &self.terminals[t].name
+    }
+
+    /// The name of an end of an element.
+    pub fn member_name(&self, member: MemberId) -> &str {
+        match self.c.train.members.get(member.0) {
+            Some(own) => &own.name,
+            None => self.terminals.iter().find(|t| t.member == member).map_or("", |t| &t.name),
+        }
+    }
+
+    /// Whether a terminal is an end of the link.
+    pub fn is_end(&self, t: usize) -> bool {
+        self.link.as_ref().is_some_and(|link| link.ends.contains(&t))
+    }
+
+    /// What the link is called.
+    pub fn link_name(&self) -> String {
+        let Some(Link { ends, variator, .. }) = &self.link else { return String::new() };
+        match variator {
+            Some(v) => self.c.train.variators[*v].name.clone(),
+            None => ends.map(|t| self.terminal_name(t)).join(" and "),
+        }
+    }
+
+    /// How a pattern is as long as there are drivers, of the link too.
+    fn no_drivers(&self) -> Pattern {
+        vec![None; self.active.len() + usize::from(self.link.is_some())]
     }
 
     /// A value for each terminal, by its name.
@@ -234,7 +333,7 @@ impl<'t> Setup<'t> {
 
     /// Independent terminal torques.
     pub fn independent_torques(&self) -> usize {
-        self.torques - usize::from(self.balance.is_some())
+        self.torques - usize::from(self.link.is_some())
     }
 
     /// The planes of the speed space, no two alike: see [`super::PlaneReport`].
@@ -249,7 +348,7 @@ impl<'t> Setup<'t> {
                 all.push(form);
             }
         }
-        if self.balance.is_some() && self.torques == 2 {
+        if self.link.is_some() && self.torques == 2 {
             for line in self.unloading(&all) {
                 if !all.contains(&line) {
                     all.push(line);
@@ -259,7 +358,7 @@ impl<'t> Setup<'t> {
         all
     }
 
-    /// With two powers balanced the ratio of the torques follows the speeds, and a force or torque
+    /// With power through a link the ratio of the torques follows the speeds, and a force or torque
     /// can vanish within a region. All of them are linear in the speeds: the planes on which one
     /// does, as far as they bound an equilibrium.
     fn unloading(&self, planes: &[Vec<Rational>]) -> Vec<Vec<Rational>> {
@@ -269,9 +368,10 @@ impl<'t> Setup<'t> {
         for region in arrangement::cells(planes, d) {
             let sigma = self.sigma_signs(&region.point);
             let moving: Vec<usize> = (0..k).filter(|&j| sigma[j] != 0 && self.lossy(j)).collect();
-            for mask in 0u64..1 << moving.len() {
-                let mut pattern: Pattern = vec![None; k];
+            for mask in 0u64..2 << moving.len() {
+                let mut pattern = self.no_drivers();
                 moving.iter().enumerate().for_each(|(bit, &j)| pattern[j] = Some(mask >> bit & 1 == 0));
+                pattern[k] = Some(mask >> moving.len() & 1 == 0);
                 let basis = null_space(self.rows(&pattern), k);
                 if basis.len() != self.torques {
                     continue;
@@ -281,7 +381,7 @@ impl<'t> Setup<'t> {
                 let axes: Vec<Vec<Rational>> = (0..d)
                     .map(|b| {
                         let axis: Vec<Rational> = (0..d).map(|x| Rational::from(i64::from(x == b))).collect();
-                        self.balanced(&torque_forms, &axis)
+                        self.balanced(&pattern, &torque_forms, &axis)
                     })
                     .collect();
                 let over_speeds = |form: &[Rational]| -> Option<Vec<Rational>> {
@@ -302,13 +402,13 @@ impl<'t> Setup<'t> {
                     .filter(|c| c.signs[..planes.len()] == region.signs[..])
                     .collect();
                 for part in &parts {
-                    let c = self.balanced(&torque_forms, &part.point);
+                    let c = self.balanced(&pattern, &torque_forms, &part.point);
                     // Either direction of the load may fit; a force that vanishes fits both.
                     let fits = |way: i8| {
                         moving.iter().all(|&j| {
                             let drives = arrangement::dot(&force(j), &c).sign() * sigma[j] * way;
                             drives == 0 || (drives > 0) == (pattern[j] == Some(true))
-                        })
+                        }) && self.runs(&part.point, &torque_forms, &c) * way * runs(pattern[k]) >= 0
                     };
                     if !fits(1) && !fits(-1) {
                         continue;
@@ -336,16 +436,40 @@ impl<'t> Setup<'t> {
             .collect()
     }
 
-    /// The combination of two basis vectors for which the balanced powers add to zero; linear in
-    /// the speeds.
-    fn balanced(&self, torque_forms: &[Vec<Rational>], base: &[Rational]) -> Vec<Rational> {
-        let [a, b] = self.balance.expect("a balance was asked for");
-        let [wa, wb] = [a, b].map(|t| arrangement::dot(self.terminal_speed(t), base));
-        let factor = |r: usize| &(&torque_forms[a][r] * &wa) + &(&torque_forms[b][r] * &wb);
+    /// The combination of two basis vectors for which what the link takes and gives agree; linear in the speeds.
+    ///
+    /// With ρ = η where power runs from a to b and 1/η where it runs back, `ρ T_a ω_a + T_b ω_b = 0`.
+    fn balanced(&self, pattern: &Pattern, torque_forms: &[Vec<Rational>], base: &[Rational]) -> Vec<Rational> {
+        let Link { ends: [a, b], efficiency: [forward, backward], .. } = self.link.as_ref().expect("there is a link");
+        let [wa, wb] = [*a, *b].map(|t| arrangement::dot(self.terminal_speed(t), base));
+        let wa = match pattern[self.active.len()] {
+            None => wa,
+            Some(true) => wa * forward.clone(),
+            Some(false) => wa / backward.clone(),
+        };
+        let factor = |r: usize| &(&torque_forms[*a][r] * &wa) + &(&torque_forms[*b][r] * &wb);
         vec![-factor(1), factor(0)]
     }
 
-    /// Terminal torques of a regime at other speeds: the same, unless two powers balance.
+    /// Which way power runs through the link: 1 from its first end to its second.
+    fn runs(&self, base: &[Rational], torque_forms: &[Vec<Rational>], c: &[Rational]) -> i8 {
+        let [a, b] = self.link.as_ref().expect("there is a link").ends;
+        let power = |t: usize| {
+            arrangement::dot(&torque_forms[t], c).sign() * arrangement::dot(self.terminal_speed(t), base).sign()
+        };
+        // What enters the gears at one end has left them at the other.
+        if power(a) == 0 { power(b) } else { -power(a) }
+    }
+
+    /// Terminal torques with power through the link, of some size; linear in the speeds.
+    pub fn torques_through(&self, pattern: &Pattern, base: &[Rational]) -> Vec<Rational> {
+        let basis = null_space(self.rows(pattern), self.active.len());
+        let forms = self.torque_forms(pattern, &basis);
+        let c = self.balanced(pattern, &forms, base);
+        forms.iter().map(|f| arrangement::dot(f, &c)).collect()
+    }
+
+    /// Terminal torques of a regime at other speeds: the same, unless there is a link.
     pub fn torques_at(
         &self,
         pattern: &Pattern,
@@ -353,13 +477,13 @@ impl<'t> Setup<'t> {
         torques: &[Rational],
         to: &[Rational],
     ) -> Vec<Rational> {
-        if self.balance.is_none() {
+        if self.link.is_none() {
             return torques.to_vec();
         }
         let basis = null_space(self.rows(pattern), self.active.len());
         let forms = self.torque_forms(pattern, &basis);
         let at = |base: &[Rational]| -> Vec<Rational> {
-            let c = self.balanced(&forms, base);
+            let c = self.balanced(pattern, &forms, base);
             forms.iter().map(|f| arrangement::dot(f, &c)).collect()
         };
         let here = at(from);
@@ -468,16 +592,18 @@ impl<'t> Setup<'t> {
         }
         let mut all = Vec::new();
         let mut singular = false;
-        for mask in 0u64..1 << moving.len() {
-            let mut pattern: Pattern = vec![None; k];
+        let linked = usize::from(self.link.is_some());
+        for mask in 0u64..1 << (moving.len() + linked) {
+            let mut pattern = self.no_drivers();
             moving.iter().enumerate().for_each(|(bit, &j)| pattern[j] = Some(mask >> bit & 1 == 0));
             let mut basis = null_space(self.rows(&pattern), k);
             if basis.len() != self.torques {
                 singular = true;
                 continue;
             }
-            if self.balance.is_some() {
-                let c = self.balanced(&self.torque_forms(&pattern, &basis), base);
+            if self.link.is_some() {
+                pattern[k] = Some(mask >> moving.len() & 1 == 0);
+                let c = self.balanced(&pattern, &self.torque_forms(&pattern, &basis), base);
                 let force = |j: usize| arrangement::dot(&basis.iter().map(|b| b[j].clone()).collect::<Vec<_>>(), &c);
                 basis = vec![(0..k).map(force).collect()];
                 if basis[0].iter().all(Rational::is_zero) {
@@ -485,7 +611,7 @@ impl<'t> Setup<'t> {
                     continue;
                 }
             }
-            self.cones(&pattern, &moving, &sigma, &basis, &mut all);
+            self.cones((&pattern, base), &moving, &sigma, &basis, &mut all);
         }
         Ok((all, singular))
     }
@@ -493,7 +619,7 @@ impl<'t> Setup<'t> {
     /// The cones within one pattern's space of equilibria.
     fn cones(
         &self,
-        pattern: &Pattern,
+        (pattern, base): (&Pattern, &[Rational]),
         moving: &[usize],
         sigma: &[i8],
         basis: &[Vec<Rational>],
@@ -526,10 +652,91 @@ impl<'t> Setup<'t> {
             let forces: Vec<Rational> = (0..k).map(|j| arrangement::dot(&force(j), &cell.point)).collect();
             let torques: Vec<Rational> = torque_forms.iter().map(|t| arrangement::dot(t, &cell.point)).collect();
             let mut own = pattern.clone();
+            if self.link.is_some() {
+                match self.runs(base, &torque_forms, &cell.point) * runs(pattern[k]) {
+                    -1 => continue,
+                    // Without power either way fits; it is counted once.
+                    0 if pattern[k] == Some(false) => continue,
+                    0 => own[k] = None,
+                    _ => {}
+                }
+            }
             moving.iter().filter(|&&j| forces[j].is_zero()).for_each(|&j| own[j] = None);
             all.push(TorqueCell { pattern: own, signs: torques.iter().map(Rational::sign).collect(), torques });
         }
     }
+}
+
+/// Which way that is: 1 from the first end to the second.
+fn runs(forward: Option<bool>) -> i8 {
+    if forward == Some(false) { -1 } else { 1 }
+}
+
+/// The two sides of a variator.
+struct Sides {
+    variator: usize,
+    ports: [Port; 2],
+    efficiency: [Rational; 2],
+}
+
+struct Port {
+    member: MemberId,
+    name: String,
+    /// What it is called where that is another's name.
+    apart: String,
+}
+
+/// The sides of the train's variator in a state; none where it passes nothing on. `Err` says why its regimes are not
+/// enumerated.
+fn sides(c: &Configuration<'_>) -> Result<Option<Sides>, String> {
+    let train = c.train;
+    // With one freedom its ratio is fixed; machines may push against each other, and that is no regime.
+    if train.variators.is_empty() || c.degrees_of_freedom() < 2 {
+        return Ok(None);
+    }
+    let [v] = &train.variators[..] else {
+        let names: Vec<&str> = train.variators.iter().map(|v| v.name.as_str()).collect();
+        return Err(format!(
+            "regimes are enumerated with one variator, and this train has {}: {}; a sweep over `ratio` answers",
+            names.len(),
+            names.join(", ")
+        ));
+    };
+    let unfit =
+        |why: &str| Err(format!("regimes are not enumerated for {}: {why}; a sweep over `ratio` answers", v.name));
+    let (names, efficiency) = match &v.path {
+        VariatorPath::Direct { members, efficiency, .. } => (
+            members.map(|m| train.member_name(m).to_owned()),
+            [efficiency.forward.clone(), efficiency.backward.clone()],
+        ),
+        VariatorPath::Bus { machines, store, standby } => {
+            let [a, b] = &machines[..] else { return unfit("its bus has more or fewer than two machines") };
+            if !matches!(store, Store::Power(p) if p.value.is_zero()) {
+                return unfit("its store gives power of its own");
+            }
+            if *standby > 0.0 {
+                return unfit("it has standby losses");
+            }
+            let (MachineEfficiency::Constant(x), MachineEfficiency::Constant(y)) = (&a.efficiency, &b.efficiency)
+            else {
+                return unfit("the efficiency of its machines depends on speed and torque");
+            };
+            let both = [&x.backward * &y.forward, &y.backward * &x.forward];
+            ([a.name.clone(), b.name.clone()], both)
+        }
+    };
+    let members = v.members();
+    let nodes = [members[0], members[1]].map(|m| c.node(m));
+    // A side that is held takes no power, and then neither does the other.
+    if nodes[0] == nodes[1] || nodes.contains(&None) {
+        return Ok(None);
+    }
+    let [first, second] = names;
+    let port = |member: MemberId, name: String| {
+        let apart = format!("{} at {}", v.name, train.member_name(member));
+        Port { member, name, apart }
+    };
+    Ok(Some(Sides { variator: 0, ports: [port(members[0], first), port(members[1], second)], efficiency }))
 }
 
 /// Most elements with relative motion and loss for which every pattern of drivers is tried.

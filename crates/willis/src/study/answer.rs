@@ -153,7 +153,13 @@ impl PointAnswer {
     pub fn refused(wrong: Diagnostics) -> Self {
         let errors: Vec<String> =
             wrong.into_iter().filter(|d| d.severity == Severity::Error).map(|d| d.message).collect();
-        Self { verdict: PointVerdict::Refused, reason: errors.join("; "), solution: None, warnings: vec![], ratio: None }
+        Self {
+            verdict: PointVerdict::Refused,
+            reason: errors.join("; "),
+            solution: None,
+            warnings: vec![],
+            ratio: None,
+        }
     }
 
     /// The same with the ratio of a train in which nothing but the gears says it.

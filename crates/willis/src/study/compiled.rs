@@ -269,11 +269,17 @@ impl<'s> CompiledSweep<'s> {
             ));
         }
         if !sweep.question.model().train().variators.is_empty() {
-            return Err(refuse("this train has a variator, whose torques depend on the speeds; it cannot be compiled", with_hold));
+            return Err(refuse(
+                "this train has a variator, whose torques depend on the speeds; it cannot be compiled",
+                with_hold,
+            ));
         }
-        if let Some(a) =
-            axes.iter().find(|a| matches!(a.target, Target::Ratio | Target::Store(_) | Target::Power(_) | Target::Temperature | Target::Law(_)))
-        {
+        if let Some(a) = axes.iter().find(|a| {
+            matches!(
+                a.target,
+                Target::Ratio | Target::Store(_) | Target::Power(_) | Target::Temperature | Target::Law(_)
+            )
+        }) {
             let message = format!("`{}` cannot vary in a compiled sweep", a.name);
             return Err(refuse(
                 &message,

@@ -363,7 +363,8 @@ impl Question<'_> {
         let [input, output] = [self.role(train, operation, Who::Input)?, self.role(train, operation, Who::Output)?];
         let name = |m: MemberId| train.member_name(m);
         let Some(speed) = self.speeds(train, operation)(input).filter(|w| !w.value.is_zero()) else {
-            let message = format!("`{}` has no speed, so a ratio says nothing of that of `{}`", name(input), name(output));
+            let message =
+                format!("`{}` has no speed, so a ratio says nothing of that of `{}`", name(input), name(output));
             return Err(refuse(Code::Unfit, message, "prescribe the speed of the input in the operation"));
         };
         let follows = Quantity { value: &speed.value / ratio, ..speed.clone() };

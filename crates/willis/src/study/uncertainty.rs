@@ -522,7 +522,8 @@ impl<'s> UncertaintyPlan<'s> {
             return vec![f64::NAN; self.outputs.len()];
         };
         let l: &Losses = &s.losses_w;
-        let mut values = vec![answer.efficiency(), s.loss_w, l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator];
+        let mut values =
+            vec![answer.efficiency(), s.loss_w, l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator];
         values.extend(sources(self.question.model().train()).map(|name| {
             let mut own = s.sources.iter().filter(|x| x.name == name).map(|x| x.loss_w).peekable();
             match own.peek() {

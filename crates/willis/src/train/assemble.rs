@@ -250,9 +250,10 @@ impl Assembler<'_> {
         for (name, table, load) in torques.chain(powers) {
             let place = format!("{place}.{table}.{name}");
             // The torque of a machine within the train, unless one from outside has its name.
-            let machine = variators.iter().enumerate().find_map(|(v, variator)| {
-                Some([v, variator.machines().iter().position(|m| m.name == *name)?])
-            });
+            let machine = variators
+                .iter()
+                .enumerate()
+                .find_map(|(v, variator)| Some([v, variator.machines().iter().position(|m| m.name == *name)?]));
             if let Some(machine) = machine.filter(|_| !terminals.iter().any(|t| t.name == *name)) {
                 if operation.machines.iter().any(|(m, _)| *m == machine) {
                     let message = format!("the load on `{name}` is given twice");
@@ -357,7 +358,7 @@ pub(super) fn assemble<'a>(
     if lubrication.is_some() || spec.oil.is_none() {
         a.missing_for_losses(&lubrication, &bearings, &rotors);
     }
-    let (terminals, input, output) = a.terminals(spec, &states);
+    let (terminals, input, output) = a.terminals(spec, &states, &variators);
     let masses: Vec<(MemberId, f64)> = (sets.iter())
         .flat_map(|(set, planets)| planets.iter().copied().zip(set.planets().into_iter().map(|(_, p)| p.body.mass)))
         .filter_map(|(planet, mass)| Some((planet, mass?)))
@@ -548,7 +549,11 @@ impl Assembler<'_> {
         joints
     }
 
-    fn shifting(&mut self, spec: &Specification, variators: &[Variator]) -> (Vec<ShiftElement>, Vec<State>, Vec<Operation>) {
+    fn shifting(
+        &mut self,
+        spec: &Specification,
+        variators: &[Variator],
+    ) -> (Vec<ShiftElement>, Vec<State>, Vec<Operation>) {
         unique(self, "shift element", "shift_element", spec.shift_element.iter().map(|e| e.name.as_str()));
         unique(self, "state", "state", spec.state.iter().map(|s| s.name.as_str()));
         unique(self, "operation", "operation", spec.operation.iter().map(|o| o.name.as_str()));
@@ -593,6 +598,7 @@ impl Assembler<'_> {
         &mut self,
         spec: &Specification,
         states: &[State],
+        variators: &[Variator],
     ) -> (Vec<MemberId>, Option<MemberId>, Option<MemberId>) {
         let mut terminals: Vec<MemberId> = Vec::new();
         for (k, TerminalSpec { name, member }) in spec.terminals.iter().enumerate() {
@@ -612,7 +618,9 @@ impl Assembler<'_> {
         }
         let input = spec.input.as_ref().and_then(|n| self.resolve(n, "input")).or(terminals.first().copied());
         let output = spec.output.as_ref().and_then(|n| self.resolve(n, "output")).or(terminals.last().copied());
-        // Inputs and outputs are terminals without being listed a second time.
+        // Inputs and outputs are terminals without being listed a second time; but what a machine of a variator drives is
+        // driven from within.
+        let within: Vec<MemberId> = variators.iter().flat_map(Variator::members).collect();
         let named = [(input, "input".to_owned()), (output, "output".to_owned())].into_iter();
         let in_states = states
             .iter()
@@ -622,7 +630,7 @@ impl Assembler<'_> {
             if end == FRAME {
                 let d = Diagnostic::new(Code::BadName, place, "the frame is at rest: it is neither input nor output");
                 self.report(d.hint("name a member that turns"));
-            } else if !terminals.contains(&end) {
+            } else if !terminals.contains(&end) && !within.contains(&end) {
                 terminals.push(end);
             }
         }

@@ -99,9 +99,13 @@ enum Place<'a> {
 fn place<'a>(item: Option<&'a Item>, kind: &'static Kind) -> Place<'a> {
     let table = || item.and_then(Item::as_table_like);
     match kind {
-        Kind::Format | Kind::Names | Kind::Terminals | Kind::Points(_) | Kind::Schedule | Kind::Product(_) | Kind::NumberOrPoints(_) => {
-            Place::Other
-        }
+        Kind::Format
+        | Kind::Names
+        | Kind::Terminals
+        | Kind::Points(_)
+        | Kind::Schedule
+        | Kind::Product(_)
+        | Kind::NumberOrPoints(_) => Place::Other,
         Kind::Text | Kind::Name | Kind::Choice(_) => Place::Value(Measure::Text),
         Kind::Integer | Kind::Samples => Place::Value(Measure::Integer),
         Kind::Flag => Place::Value(Measure::Flag),

@@ -5,7 +5,9 @@ use crate::exact::Rational;
 
 use super::described::{GivenEfficiency, GivenGear, GivenMesh, GivenSet, Parts};
 use super::specification::field::Tabular;
-use super::specification::{EfficiencySpec, MachineEfficiencySpec, PlainGeometry, PlainTooth, SetEfficiencySpec, Specification, ToothSpec};
+use super::specification::{
+    EfficiencySpec, MachineEfficiencySpec, PlainGeometry, PlainTooth, SetEfficiencySpec, Specification, ToothSpec,
+};
 use super::{BearingMount, Lubrication, Mesh, PlanetBody};
 
 /// A continuous number of the train file, or one that stands in for it.

@@ -1099,7 +1099,8 @@ fn compare_one_freedom(name: &str, train: &Train, atlas: &Atlas, random: &mut Di
 fn val_every_formula_of_every_example_equals_the_solver() {
     let mut random = Dice(5);
     let (mut one, mut two, mut locked) = (0, 0, 0);
-    for (name, _, train) in examples() {
+    // A train with a variator is not compiled; its formulas are compared with the analysis.
+    for (name, _, train) in examples().into_iter().filter(|e| e.2.variators().is_empty()) {
         for atlas in atlases(&train) {
             match atlas.base_speeds.len() {
                 1 => one += compare_one_freedom(&name, &train, &atlas, &mut random),
@@ -1195,7 +1196,18 @@ fn val_every_formula_of_every_example_equals_the_analysis_exactly() {
                 .solutions
                 .iter()
                 .filter(|s| {
-                    let torque = |m: &str| s.members.get(m).unwrap().torque_n_m.unwrap_or(0.0);
+                    // A side of a variator has its own torque beside that of its member.
+                    let side = |m: &str| {
+                        let of = |name: &String| {
+                            m == name || m.strip_suffix(name.as_str()).is_some_and(|r| r.ends_with(" at "))
+                        };
+                        s.variators.iter().flat_map(|(_, v)| v.machines.iter()).find(|(n, x)| of(n) || of(&x.member))
+                    };
+                    let outside = |m: &str| train.member(m).is_some_and(|id| train.terminals().contains(&id));
+                    let torque = |m: &str| match side(m).filter(|_| !outside(m)) {
+                        Some((_, machine)) => machine.torque_n_m,
+                        None => s.members.get(m).unwrap().torque_n_m.unwrap_or(0.0),
+                    };
                     signs.iter().all(|(m, x)| sign(torque(m)) == *x)
                         && (s.efficiency.unwrap() - value.to_f64()).abs() <= 1e-12 * value.to_f64()
                 })
@@ -1839,13 +1851,19 @@ fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
                 let [x, y] = [-1, 1].map(|way| {
                     let title = format!("beside {k} {torque} {way}");
                     let o = analysis.operations.iter().find(|o| o.name == title).unwrap();
-                    assert_eq!(o.solutions.len(), 1, "{name}, {title}");
-                    &o.solutions[0]
+                    // Through a lossy path several equilibria may carry one load.
+                    assert!(o.solutions.len() == 1 || !train.variators().is_empty(), "{name}, {title}");
+                    (o.solutions.len() == 1).then(|| &o.solutions[0])
                 });
+                let (Some(x), Some(y)) = (x, y) else { continue };
                 let boundary = &atlas.boundaries[k];
                 let plane = atlas.planes.iter().find(|p| p.label == boundary.label).unwrap();
                 let size = x.input_power_w.max(y.input_power_w);
-                // A single set loses nothing where its members turn as one, so this goes on as well.
+                // A single set loses nothing where its members turn as one, so this goes on as well; but its torques jump
+                // there, and with them the power through a variator.
+                if !plane.without_relative_motion.is_empty() && !train.variators().is_empty() {
+                    continue;
+                }
                 assert!((x.loss_w - y.loss_w).abs() < 1e-7 * size, "{name}, {}: {x:?}", boundary.label);
                 let region = |n: usize| boundary.between[n];
                 let own = |s: &willis::analysis::SolutionReport, region: usize| {
@@ -1981,12 +1999,12 @@ fn regress_states_without_regimes_say_why() {
     assert!(state(&train, "locked").reason.unwrap().contains("nothing can turn"));
     // The teeth carry the load and do not slide.
     let one = state(&train, "as one");
-    assert!(one.regimes.len() == 4 && one.regimes.iter().all(|r| r.example.efficiency == 1.0), "{one:?}");
-    // Two terminals on one shaft are one terminal.
+    assert!(one.regimes.len() == 12 && one.regimes.iter().all(|r| r.example.efficiency == 1.0), "{one:?}");
+    // Two terminals on one shaft keep a torque each.
     let joined = state(&train, "joined");
-    assert_eq!((joined.terminals.len(), joined.regimes.len()), (3, 16));
+    assert_eq!((joined.terminals.len(), joined.independent_torques), (4, 2));
     let low = state(&train, "low");
-    assert_eq!((low.terminals.len(), low.held.len(), low.regimes.len()), (2, 1, 4));
+    assert_eq!((low.terminals.len(), low.held.len(), low.independent_torques), (3, 1, 2));
     // Either name will do for the drive.
     for input in ["s", "x"] {
         let sheet = formulas(&train, &from_to("low", input, "c")).unwrap();

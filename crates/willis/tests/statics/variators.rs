@@ -56,14 +56,7 @@ fn prius(ring: &str, variator: &str) -> Train {
 fn val_input_split_with_one_efficiency() {
     let path = |eta: &str| format!("members = [\"mg1\", \"ring\"]\nefficiency = {eta}");
     for (ring, eta, efficiency, external, mg1, on_ring) in [
-        (
-            "ring = \"500 rpm\"",
-            "0.85",
-            "16441809/19041200",
-            "-16441809/47603",
-            "-3880900/142809",
-            "38925427/142809",
-        ),
+        ("ring = \"500 rpm\"", "0.85", "16441809/19041200", "-16441809/47603", "-3880900/142809", "38925427/142809"),
         ("ring = \"1500 rpm\"", "1", "946899/952060", "-6312660/47603", "-3880900/142809", "8537980/142809"),
         // The mechanical point: ring at 36000/13 rpm.
         ("mg1 = \"0 rpm\"", "0.85", "232854/234839", "-50451700/704517", "-20000000/704517", "0"),
@@ -85,14 +78,7 @@ fn val_input_split_with_one_efficiency() {
 fn val_input_split_with_two_machines_and_a_store() {
     let rpm = std::f64::consts::PI / 30.0;
     for (ring, store, efficiency, external, mg1, on_ring) in [
-        (
-            "1500 rpm",
-            0.0,
-            "1111477819/1190075000",
-            "-2222955638/17851125",
-            "-3880900/142809",
-            "922955638/17851125",
-        ),
+        ("1500 rpm", 0.0, "1111477819/1190075000", "-2222955638/17851125", "-3880900/142809", "922955638/17851125"),
         (
             "4000 rpm",
             20_000.0 * rpm,
@@ -255,7 +241,8 @@ fn a_machine_on_a_store_is_a_terminal() {
 /// The store gives what balances the bus; and given that power, the load follows.
 #[test]
 fn a_free_store_and_a_given_one_agree() {
-    let machines = "machines = [{ name = \"mg1\", efficiency = 0.92 }, { name = \"mg2\", member = \"ring\", efficiency = 0.94 }]";
+    let machines =
+        "machines = [{ name = \"mg1\", efficiency = 0.92 }, { name = \"mg2\", member = \"ring\", efficiency = 0.94 }]";
     let text = |store: &str, torques: &str| {
         format!(
             "{PRIUS}[[variator]]\nname = \"path\"\n{machines}\n[[operation]]\nname = \"o\"\n\
@@ -309,7 +296,9 @@ fn a_map_is_read_where_the_machine_runs() {
     assert!((s.losses_w.mesh + s.losses_w.variator - s.loss_w).abs() < 1e-9 * s.loss_w);
     balances(s);
     // Beyond the map its edge is taken, and that is said.
-    let a = answer(&with_map("speed [rpm],torque [N m],efficiency\n0,0,0.8\n0,10,0.9\n6000,0,0.8\n6000,10,0.9\n", "").unwrap());
+    let a = answer(
+        &with_map("speed [rpm],torque [N m],efficiency\n0,0,0.8\n0,10,0.9\n6000,0,0.8\n6000,10,0.9\n", "").unwrap(),
+    );
     assert!(a.diagnostics.iter().any(|d| d.code == Code::OutsideMap), "{:?}", a.diagnostics);
 }
 
@@ -384,7 +373,10 @@ fn what_cannot_be_built_is_refused() {
         ("members = [\"mg1\", \"ring\"]\nstore = \"5 kW\"", "`store` belongs to a bus"),
         ("machines = [{ name = \"a\", member = \"mg1\" }]", "one machine on a bus without a store"),
         ("machines = [{ name = \"a\", member = \"mg1\" }, { name = \"a\", member = \"ring\" }]", "a second machine"),
-        ("members = [\"mg1\", \"ring\"]\nmachines = [{ name = \"mg1\" }, { name = \"ring\" }]", "describes a variator as a whole"),
+        (
+            "members = [\"mg1\", \"ring\"]\nmachines = [{ name = \"mg1\" }, { name = \"ring\" }]",
+            "describes a variator as a whole",
+        ),
         ("machines = [{ name = \"mg1\", torque = \"-5 N m\" }, { name = \"ring\" }]", "a limit of -5"),
         ("kind = \"magic\"\nmembers = [\"mg1\", \"ring\"]", "not a known `kind`"),
     ] {
@@ -399,7 +391,10 @@ fn several_machines_on_one_shaft_stay_apart() {
     let train = read(&format!(
         "{}[[operation]]\nname = \"o\"\nspeeds = {{ engine = \"2000 rpm\", ring = \"1500 rpm\" }}\n\
          torques = {{ engine = \"100 N m\", mg2 = \"50 N m\" }}\n",
-        PRIUS.replace("terminals = [\"engine\", \"ring\"]", "terminals = [\"mg1\", \"engine\", { name = \"mg2\", member = \"ring\" }, \"ring\"]")
+        PRIUS.replace(
+            "terminals = [\"engine\", \"ring\"]",
+            "terminals = [\"mg1\", \"engine\", { name = \"mg2\", member = \"ring\" }, \"ring\"]"
+        )
     ));
     let a = answer(&train);
     let s = only(&a.operations[0]);

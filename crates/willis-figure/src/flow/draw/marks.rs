@@ -174,9 +174,12 @@ pub fn shape(kind: NodeKind, x: f64, y: f64) -> Group {
             .add(line((x - R, y - 2.5), (x + R, y - 2.5), INK, 2.0))
             .add(line((x - R, y + 2.5), (x + R, y + 2.5), INK, 2.0)),
         // A box with a slanting stroke: what is adjustable.
-        NodeKind::Variator => g
-            .add(polygon(&[(-s, -s), (s, -s), (s, s), (-s, s)]))
-            .add(line((x - R - 2.0, y + R + 2.0), (x + R + 2.0, y - R - 2.0), INK, 1.8)),
+        NodeKind::Variator => g.add(polygon(&[(-s, -s), (s, -s), (s, s), (-s, s)])).add(line(
+            (x - R - 2.0, y + R + 2.0),
+            (x + R + 2.0, y - R - 2.0),
+            INK,
+            1.8,
+        )),
         _ => g.add(
             rectangle(x - 7.0, y - R, 14.0, 2.0 * R, &colour(Some(0), 0.25))
                 .set("rx", 4)

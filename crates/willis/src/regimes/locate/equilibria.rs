@@ -28,7 +28,7 @@ pub(super) fn equilibria(setup: &Setup<'_>, base: &[Rational], loads: &[(usize, 
     if loads.iter().all(|(_, x)| x.is_zero()) {
         return no_equilibrium(true, "no torque acts: nothing is loaded");
     }
-    match setup.balance {
+    match setup.link {
         Some(_) => balanced(setup, base, &loads[0]),
         None => loaded(setup, base, loads),
     }

@@ -5,7 +5,7 @@ use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, common};
 use crate::regimes::Choice;
 use crate::regimes::arrangement::dot;
-use crate::regimes::setup::Setup;
+use crate::regimes::setup::{Linked, Setup};
 use crate::train::{MemberId, Train};
 use crate::units::{Dimension, Quantity};
 
@@ -40,9 +40,10 @@ impl<'t> Point<'t> {
         let Choice { state, configuration, terminals, balance } = choice;
         // Planets whose speed is given stay visible.
         let keep: Vec<MemberId> = terminals.iter().copied().chain(given.speeds.iter().map(|(m, _)| *m)).collect();
-        let c = Configuration::new(train, &configuration.engaged, &given.held, &keep);
+        let c = Configuration::new(train, &configuration.engaged, &given.held, &keep)
+            .with_terminals_apart(&terminals, &keep);
         let motion = c.motion(&given.speeds).map_err(|broken| contradictory(&c, &broken))?;
-        let setup = Setup::new(c, &terminals, balance)
+        let setup = Setup::new(c, &terminals, Linked::of(balance))
             .map_err(|why| refuse(Code::Unfit, format!("{state}: {why}"), "name other `terminals`"))?;
         let base = base_speeds(&setup, &state, &motion, given.speeds.len())?;
         let torques =

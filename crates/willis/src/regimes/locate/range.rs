@@ -184,7 +184,7 @@ pub(super) fn torque_range(point: &Point<'_>, here: &State, n: usize) -> Range {
         loads[n].1 = value + step;
         loads
     };
-    let lines = match setup.balance {
+    let lines = match setup.link {
         // Everything is linear in the load: two solutions give the lines.
         None => lines(setup, &here.pattern, &point.loads).zip(lines(setup, &here.pattern, &load_at(&Rational::ONE))),
         // All torques are proportional to the only one that is given.
@@ -204,7 +204,7 @@ pub(super) fn torque_range(point: &Point<'_>, here: &State, n: usize) -> Range {
         let after = equilibria(setup, base, &load_at(&behind)).states;
         let loads = load_at(step);
         let none = loads.iter().all(|(_, x)| x.is_zero());
-        let before = match none || setup.balance.is_some() {
+        let before = match none || setup.link.is_some() {
             true => here.torques.clone(),
             false => setup.torques_for(&here.pattern, &loads).unwrap_or_else(|| here.torques.clone()),
         };
@@ -244,9 +244,9 @@ fn changes(
     (base, here): (&[Rational], &State),
     (behind, after): (&[Rational], &[State]),
 ) -> Vec<String> {
-    let train = setup.c.train;
     let roles = |base: &[Rational], s: &State| -> Vec<i8> {
-        (0..setup.terminals.len()).map(|t| s.torques[t].sign() * dot(setup.terminal_speed(t), base).sign()).collect()
+        let power = |t: usize| s.torques[t].sign() * dot(setup.terminal_speed(t), base).sign();
+        (0..setup.terminals.len()).map(|t| if setup.is_end(t) { 0 } else { power(t) }).collect()
     };
     let names = |roles: &[i8], sign: i8| -> Vec<String> {
         (0..roles.len()).filter(|&t| roles[t] == sign).map(|t| setup.terminal_name(t).to_owned()).collect()
@@ -267,9 +267,16 @@ fn changes(
                 && here.pattern[j] != Some(b)
             {
                 let e = setup.element(j);
-                let driver = train.member_name(if b { e.p } else { e.q });
+                let driver = setup.member_name(if b { e.p } else { e.q });
                 own.push(format!("{driver} drives in {}", element_label(setup, j)));
             }
+        }
+        let through = setup.active.len();
+        if let (Some(link), Some(Some(forward))) = (&setup.link, s.pattern.get(through))
+            && here.pattern[through] != Some(*forward)
+        {
+            let from = setup.terminal_name(link.ends[usize::from(!forward)]);
+            own.push(format!("power runs through {} from {from}", setup.link_name()));
         }
         if !own.is_empty() {
             all.push(own.join(", "));

@@ -150,7 +150,9 @@ impl Sweep<'_> {
     /// The columns that every sweep over these axes has, up to the reason and the warnings.
     fn usual(&self) -> Vec<(Column, What)> {
         let train = self.question.model().train();
-        let physical = train.is_physical() || !train.variators.is_empty() || self.axes.iter().any(|a| matches!(a.target, Target::File(_)));
+        let physical = train.is_physical()
+            || !train.variators.is_empty()
+            || self.axes.iter().any(|a| matches!(a.target, Target::File(_)));
         let axis = |(k, a): (usize, &super::Axis)| match a.is_text() {
             true => (Column::text(a.column()), What::Axis(k)),
             false => (Column::number(a.column(), a.unit.clone()), What::Axis(k)),

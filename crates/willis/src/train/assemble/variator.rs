@@ -309,7 +309,9 @@ fn read_map(file: &str, text: &str) -> Result<EfficiencyMap, Vec<String>> {
         let read = [speed, torque, efficiency].map(|(k, factor)| row.value(row.cells[k].text).map(|x| x * factor));
         match read {
             [Ok(w), Ok(_), Ok(_)] if w < 0.0 => {
-                wrong.push(format!("line {line}: a speed is an amount, 0 or more; the sign of the torque tells motoring"));
+                wrong.push(format!(
+                    "line {line}: a speed is an amount, 0 or more; the sign of the torque tells motoring"
+                ));
             }
             [Ok(_), Ok(_), Ok(e)] if !(e > 0.0 && e <= 1.0) => {
                 wrong.push(format!("line {line}: an efficiency is above 0 and at most 1"));
