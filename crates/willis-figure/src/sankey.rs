@@ -367,7 +367,7 @@ fn join_ends(stops: &mut [Stop<'_>], arcs: &mut Vec<Arc>) {
         let Some(j) = arcs.iter().position(|a| ends(a).0 == k) else { continue };
         let (member, power) = (ends(&arcs[j]).1, arcs[j].power);
         let alone = arcs.iter().filter(|a| ends(a).1 == member).count() == 1;
-        let target = if alone && stops[member].input == 0.0 {
+        let target = if alone && stops[member].input == 0.0 && stops[member].node.kind == NodeKind::Member {
             arcs.remove(j);
             stops[k].gone = true;
             member

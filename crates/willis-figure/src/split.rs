@@ -9,11 +9,12 @@ use willis::exact::Rational;
 use willis::kinematics::Configuration;
 use willis::model::Model;
 use willis::study::{Axis, Hold, Question, Sweep};
-use willis::train::{MemberId, Operation, Train};
+use willis::train::{Load, MemberId, Operation, Train};
 use willis::work::Effort;
 
 use crate::kind::{Ask, FigureRequest, Kind};
 use crate::parts::axes::{self, ChartAxis};
+use crate::parts::style::digits;
 
 pub(crate) const KIND: Kind<Split> = Kind {
     title: "Power split",
@@ -156,13 +157,17 @@ pub fn split(model: &Model, r: &FigureRequest) -> Result<Split, Diagnostics> {
         (None, []) => vec![None],
         (None, all) => all.iter().map(|s| Some(s.name.clone())).collect(),
     };
+    // What a machine drives alone is no split.
+    let within: Vec<MemberId> = train.variators().iter().flat_map(|v| v.members()).collect();
+    let split = |state: &Option<String>| ends(train, state).is_some_and(|[input, _]| !within.contains(&input));
+    let states: Vec<Option<String>> = states.into_iter().filter(split).collect();
     let (free, fixed): (Vec<_>, Vec<_>) = states.into_iter().partition(|state| freedoms(train, &base, state) > 1);
     if free.is_empty() {
         return Err(refuse("no power split: the gears fix the ratio in every state asked for", "name another `state`"));
     }
     let mechanical: Vec<Vec<MechanicalPoint>> = free.iter().map(|s| mechanical_points(train, &base, s)).collect();
     let over = match &r.over[..] {
-        [] => usual(&mechanical),
+        [] => usual(&mechanical, own_ratio(train, &base)),
         [one] if one.trim_start().starts_with("ratio") => one.clone(),
         _ => {
             let message = "a power split is drawn over the ratio alone";
@@ -189,8 +194,14 @@ pub fn split(model: &Model, r: &FigureRequest) -> Result<Split, Diagnostics> {
         })
         .collect();
     let gears = fixed.iter().flatten().filter_map(|state| gear(model, r, state)).collect();
-    let given = base.loads.iter().map(|(m, _)| train.member_name(*m)).collect::<Vec<_>>().join(", ");
-    let basis = format!("{}: load of {given} as given", base.name);
+    let given = base.loads.iter().map(|(m, load)| {
+        let name = train.member_name(*m);
+        match load {
+            Load::Torque(q) => format!("{name} {} N m", digits(q.si())),
+            Load::Power(q) => format!("{name} {} kW", digits(q.si() / 1e3)),
+        }
+    });
+    let basis = format!("{}: {}", base.name, given.collect::<Vec<_>>().join(", "));
     Ok(Split { title: train.name().to_owned(), basis, x: ChartAxis::of(&x), modes, gears, best })
 }
 
@@ -233,13 +244,26 @@ fn mechanical_points(train: &Train, base: &Operation, state: &Option<String>) ->
     all
 }
 
-/// An axis around the mechanical points.
-fn usual(mechanical: &[Vec<MechanicalPoint>]) -> String {
-    let forward = mechanical.iter().flatten().map(|m| m.ratio).filter(|r| *r > 0.0);
-    let (low, high) = forward.fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r), h.max(r)));
-    let (low, high) = if high > 0.0 { (0.5 * low, 2.5 * high) } else { (0.3, 3.0) };
-    let short = |x: f64| format!("{x:.2}");
-    format!("ratio={}..{}:{POINTS}", short(low), short(high))
+/// Speed of the input over that of the output in the operation.
+fn own_ratio(train: &Train, base: &Operation) -> Option<f64> {
+    let state = base.state.map(|k| train.states()[k].name.clone());
+    let [input, output] = ends(train, &state)?;
+    let motion = engaged(train, base, &state).motion(&base.speeds).ok()?;
+    Some(motion.si(input)? / motion.si(output)?).filter(|r| r.is_finite() && *r != 0.0)
+}
+
+/// An axis around the mechanical points on the side of zero on which the operation runs.
+fn usual(mechanical: &[Vec<MechanicalPoint>], own: Option<f64>) -> String {
+    let side = own.map_or(1.0, f64::signum);
+    let points = mechanical.iter().flatten().map(|m| side * m.ratio).filter(|r| *r > 0.0);
+    let (low, high) = points.fold((f64::INFINITY, 0.0f64), |(l, h), r| (l.min(r), h.max(r)));
+    let (low, high) = match own {
+        _ if high > 0.0 => (0.5 * low, 2.5 * high),
+        Some(own) => (0.4 * own.abs(), 2.5 * own.abs()),
+        None => (0.3, 3.0),
+    };
+    let [from, to] = if side < 0.0 { [-high, -low] } else { [low, high] };
+    format!("ratio={from:.3}..{to:.3}:{POINTS}")
 }
 
 fn point(train: &Train, operation: &Operation) -> SplitPoint {

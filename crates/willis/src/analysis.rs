@@ -36,7 +36,7 @@ use crate::exact::Rational;
 use crate::kinematics::Configuration;
 use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource};
 use crate::statics::Certificate;
-use crate::train::{AS_DRAWN, Efficiency, Operation, ShiftElementKind, Train};
+use crate::train::{AS_DRAWN, Efficiency, MachineEfficiency, Operation, ShiftElementKind, Train};
 
 /// What can be said of a load case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -699,6 +699,15 @@ pub fn assumptions(train: &Train) -> Vec<String> {
         physical_assumptions(train, &mut all);
     } else {
         all.push("no bearing, windage, churning or seal losses, no drag of open shift elements".into());
+    }
+    for v in &train.variators {
+        let constant = !v.machines().iter().any(|m| matches!(m.efficiency, MachineEfficiency::Map(_)));
+        if constant {
+            all.push(format!("{}: its efficiency is the same at any speed, torque and ratio", v.name));
+        }
+    }
+    if !train.variators.is_empty() {
+        all.push("the table of ratios is that of the gears alone, without variators".into());
     }
     if train.meshes.iter().any(|m| m.count > 1) {
         all.push("parallel planets share the load equally".into());

@@ -39,6 +39,9 @@ use crate::operating_point::DragSource;
 use crate::power_flow::{families, take_out_cycles};
 use crate::train::{FRAME, MemberId, MemberKind, Train};
 
+/// How the name of an end begins that is the store of a variator.
+pub const STORE: &str = "store";
+
 /// Most paths that are listed, those that deliver most first.
 pub const MOST_PATHS: usize = 32;
 /// Powers below this part of the largest are round-off.
@@ -552,7 +555,10 @@ fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]
     for (name, power) in stores {
         let variator = g.node(NodeKind::Variator, name, 1);
         stored.push((variator, power));
-        let store = format!("store of {name}");
+        let store = match solution.variators.iter().filter(|(_, v)| v.store_w.is_some()).count() {
+            1 => STORE.to_owned(),
+            _ => format!("{STORE} of {name}"),
+        };
         let (from, to) = match power > 0.0 {
             true => (g.node(NodeKind::Input, &store, 1), variator),
             false => (variator, g.node(NodeKind::Output, &store, 1)),

@@ -121,6 +121,18 @@ const FIGURES: &[(&str, &[&str])] = &[
     ),
     ("book/src/figures/nrel-front.svg", &["draw", "front", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
     (
+        "book/src/figures/two-mode-split.svg",
+        &["draw", "split", "examples/two-mode-split.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/tractor-split.svg",
+        &["draw", "split", "examples/tractor-hydrostat.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/belt-sankey.svg",
+        &["draw", "sankey", "examples/belt-ivt.toml", "--operation", "forward", "--theme", "auto", "-o"],
+    ),
+    (
         "book/src/figures/nrel-tornado.svg",
         &["draw", "tornado", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"],
     ),

@@ -58,7 +58,7 @@ pub fn draw(split: &Split) -> String {
         body = body.add(chart.frame()).add(names(&curves, &chart));
         top += height + GAP;
     }
-    let (notes, bottom) = notes(split, top + 6.0);
+    let (notes, bottom) = notes(split, top + 20.0);
     let describe = describe(split);
     page(WIDTH, bottom, &format!("Power split of {}", split.title), &describe)
         .add(text(28.0, 38.0, 20.0, Anchor::Start, &fit(&split.title, 920.0 / BOLD, 20.0)).set("font-weight", "bold"))
@@ -213,7 +213,8 @@ fn gears(split: &Split, chart: &Chart) -> Group {
         let dot = Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", 4);
         g.add(dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", 1.6)).add(text(
             x + 8.0,
-            y + 4.0,
+            // Clear of the curves, which are beside and above it.
+            y + 18.0,
             11.0,
             Anchor::Start,
             &gear.state,

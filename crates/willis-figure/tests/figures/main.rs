@@ -17,4 +17,5 @@ mod sankey;
 mod shift;
 mod stick;
 mod time_drawn;
+mod split;
 mod tornado;

@@ -115,6 +115,7 @@ impl System {
     /// `step`: the length of the steps, s, it is made for; 0 where that is adapted.
     pub fn new(train: &Train, name: &str, step: f64) -> Result<Self, Diagnostics> {
         let scenario = train.find_scenario(name)?;
+        checks::no_variator(train)?;
         let laws = Laws::of(train);
         let c = Configuration::new(train, &[], &scenario.fixed, &visible(train, scenario, laws.as_ref()));
         checks::forces_and_freedom(&c, scenario)?;

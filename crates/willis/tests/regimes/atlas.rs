@@ -1121,6 +1121,17 @@ fn val_every_formula_of_every_example_equals_the_solver() {
 }
 
 /// A few points of every regime by the exact path of the analysis, as fractions.
+/// Torque at a terminal of an atlas: a side of a variator has one of its own, beside that of its member.
+fn torque_at(train: &Train, s: &willis::analysis::SolutionReport, terminal: &str) -> f64 {
+    let outside = train.member(terminal).is_some_and(|id| train.terminals().contains(&id));
+    let named = |name: &str| terminal == name || terminal.strip_suffix(name).is_some_and(|r| r.ends_with(" at "));
+    let mut sides = s.variators.iter().flat_map(|(_, v)| v.machines.iter());
+    match sides.find(|(name, m)| !outside && (named(name) || named(&m.member))) {
+        Some((_, machine)) => machine.torque_n_m,
+        None => s.members.get(terminal).unwrap().torque_n_m.unwrap_or(0.0),
+    }
+}
+
 #[test]
 fn val_every_formula_of_every_example_equals_the_analysis_exactly() {
     let mut random = Dice(6);
@@ -1196,19 +1207,7 @@ fn val_every_formula_of_every_example_equals_the_analysis_exactly() {
                 .solutions
                 .iter()
                 .filter(|s| {
-                    // A side of a variator has its own torque beside that of its member.
-                    let side = |m: &str| {
-                        let of = |name: &String| {
-                            m == name || m.strip_suffix(name.as_str()).is_some_and(|r| r.ends_with(" at "))
-                        };
-                        s.variators.iter().flat_map(|(_, v)| v.machines.iter()).find(|(n, x)| of(n) || of(&x.member))
-                    };
-                    let outside = |m: &str| train.member(m).is_some_and(|id| train.terminals().contains(&id));
-                    let torque = |m: &str| match side(m).filter(|_| !outside(m)) {
-                        Some((_, machine)) => machine.torque_n_m,
-                        None => s.members.get(m).unwrap().torque_n_m.unwrap_or(0.0),
-                    };
-                    signs.iter().all(|(m, x)| sign(torque(m)) == *x)
+                    signs.iter().all(|(m, x)| sign(torque_at(&train, s, m)) == *x)
                         && (s.efficiency.unwrap() - value.to_f64()).abs() <= 1e-12 * value.to_f64()
                 })
                 .collect();
@@ -1830,6 +1829,10 @@ fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
             }
             let [a, b] = &atlas.base_speeds[..] else { panic!() };
             let lead = &atlas.terminals[0];
+            let own = match atlas.state.as_str() {
+                "as drawn" => String::new(),
+                state => format!("state = \"{state}\"\n"),
+            };
             let mut pairs = Vec::new();
             for (k, boundary) in atlas.boundaries.iter().enumerate() {
                 let size = boundary.direction[0].abs().max(boundary.direction[1].abs());
@@ -1839,8 +1842,9 @@ fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
                         let step = q(way, 1_000_000_000);
                         let (x, y) = (&d[0] - &(&step * &d[1]), &d[1] + &(&step * &d[0]));
                         text += &format!(
-                            "\n[[operation]]\nname = \"beside {k} {torque} {way}\"\nspeeds = {{ \"{a}\" = \"{x} rad/s\", \
-                             \"{b}\" = \"{y} rad/s\" }}\ntorques = {{ \"{lead}\" = \"{torque} N m\" }}\n"
+                            "\n[[operation]]\nname = \"{} beside {k} {torque} {way}\"\n{own}speeds = {{ \"{a}\" = \"{x} rad/s\", \
+                             \"{b}\" = \"{y} rad/s\" }}\ntorques = {{ \"{lead}\" = \"{torque} N m\" }}\n",
+                            atlas.state
                         );
                     }
                     pairs.push((k, torque));
@@ -1849,7 +1853,7 @@ fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
             let analysis = analyze(&Train::from_toml(&text).unwrap(), &Selection::default()).unwrap();
             for (k, torque) in pairs {
                 let [x, y] = [-1, 1].map(|way| {
-                    let title = format!("beside {k} {torque} {way}");
+                    let title = format!("{} beside {k} {torque} {way}", atlas.state);
                     let o = analysis.operations.iter().find(|o| o.name == title).unwrap();
                     // Through a lossy path several equilibria may carry one load.
                     assert!(o.solutions.len() == 1 || !train.variators().is_empty(), "{name}, {title}");
@@ -1867,7 +1871,7 @@ fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
                 assert!((x.loss_w - y.loss_w).abs() < 1e-7 * size, "{name}, {}: {x:?}", boundary.label);
                 let region = |n: usize| boundary.between[n];
                 let own = |s: &willis::analysis::SolutionReport, region: usize| {
-                    let torque = |m: &str| sign(s.members.get(m).unwrap().torque_n_m.unwrap());
+                    let torque = |m: &str| sign(torque_at(&train, s, m));
                     atlas
                         .regimes
                         .iter()

@@ -2,8 +2,11 @@
 //! sign pattern tried; each figure is that fraction as it was printed there).
 
 use willis::analysis::{Analysis, LimitedQuantity, OperationReport, Role, Selection, SolutionReport, Verdict, analyze};
+use willis::compiled::{Duty, Output};
 use willis::diagnostic::{Code, Diagnostics};
-use willis::train::Train;
+use willis::model::Model;
+use willis::study::{Axis, Hold, Question, Sweep, sensitivity};
+use willis::train::{Document, Train};
 
 fn read(text: &str) -> Train {
     Train::from_toml(text).unwrap_or_else(|e| panic!("{e}\n{text}"))
@@ -383,6 +386,110 @@ fn what_cannot_be_built_is_refused() {
         let wrong = Train::from_toml(&format!("{PRIUS}[[variator]]\nname = \"path\"\n{variator}\n")).unwrap_err();
         assert!(wrong.to_string().contains(told), "{variator}: {wrong}");
     }
+}
+
+/// Derivatives by every quantity of train and operation are difference quotients.
+#[test]
+fn derivatives_with_a_variator_are_difference_quotients() {
+    let bus = "machines = [{ name = \"MG1\", member = \"mg1\", efficiency = { motoring = 0.9, generating = 0.93 } }, \
+               { name = \"MG2\", member = \"ring\", efficiency = 0.95 }]\nstore = \"3 kW\"";
+    let path = "members = [\"mg1\", \"ring\"]\nefficiency = { forward = 0.85, backward = 0.8 }";
+    let map = "machines = [{ name = \"MG1\", member = \"mg1\", efficiency = { map = \"m.csv\" } }, \
+               { name = \"MG2\", member = \"ring\", efficiency = 0.94 }]\nstandby = \"200 W\"";
+    let table = "speed [rpm],torque [N m],efficiency\n0,0,0.8\n0,100,0.9\n6000,0,0.85\n6000,100,0.93\n";
+    let mut compared = 0;
+    for (variator, ring) in [(bus, 1500), (bus, 3500), (path, 1500), (path, 3500), (map, 1500)] {
+        let text = format!(
+            "{PRIUS}[[variator]]\nname = \"path\"\n{variator}\n[[operation]]\nname = \"o\"\n\
+             speeds = {{ engine = \"2000 rpm\", ring = \"{ring} rpm\" }}\ntorques = {{ engine = \"100 N m\" }}\n"
+        );
+        let read = |text: &str| Train::read_toml_with(text, &mut |_| Ok(table.to_owned())).train.expect("a train");
+        let all = sensitivity(&read(&text), &Selection::default()).unwrap();
+        let o = &all.operations[0];
+        assert!(o.reason.is_none() && o.without_derivative.is_empty(), "{:?} {:?}", o.reason, o.without_derivative);
+        let document = Document::parse(&text).unwrap();
+        let loss = |path: &str, value: f64, unit: &str| {
+            let mut document = document.clone();
+            let path = match path.rsplit_once('.') {
+                Some((member, what @ ("speed" | "torque"))) => format!("operation.o.{what}s.{member}"),
+                _ => path.to_owned(),
+            };
+            let key = document.find(&path).unwrap_or_else(|d| panic!("{path}: {}", d.message));
+            let value = if unit == "-" { format!("{value}") } else { format!("{value} {unit}") };
+            document.set(&key, &value).unwrap();
+            answer(&read(&document.text())).operations[0].solutions[0].loss_w
+        };
+        for q in &o.quantities {
+            // Once in each direction, so that a curve leaves little.
+            let step = 1e-5 * q.value.abs();
+            let unit = q.unit.as_str();
+            let quotient = (loss(&q.name, q.value + step, unit) - loss(&q.name, q.value - step, unit)) / (2.0 * step);
+            let size = quotient.abs().max(1e-6 * o.loss_w / q.value.abs());
+            assert!(
+                (q.loss_derivative_w - quotient).abs() < 1e-5 * size,
+                "{}: {} {quotient}",
+                q.name,
+                q.loss_derivative_w
+            );
+            compared += 1;
+        }
+        let sum: f64 = o.checks.map_or(0.0, |c| c.balance_residual);
+        assert!(sum < 1e-9, "{sum}");
+    }
+    assert!(compared >= 25, "{compared}");
+}
+
+/// The ratio is an axis: the output follows the input, and what is held is the power of the engine.
+#[test]
+fn the_ratio_is_an_axis() {
+    let train = format!(
+        "{PRIUS}[[variator]]\nname = \"path\"\nmembers = [\"mg1\", \"ring\"]\nefficiency = 0.85\n[[operation]]\n\
+         name = \"o\"\nspeeds = {{ engine = \"2000 rpm\", ring = \"1500 rpm\" }}\ntorques = {{ engine = \"100 N m\" }}\n"
+    );
+    let model = Model::from_toml(&train).unwrap();
+    let question = Question::new(&model, None, None, Hold::Power).unwrap();
+    let axis = Axis::parse("ratio=0.5,1,4", &model).unwrap();
+    let sweep =
+        Sweep::new(question, vec![axis], &["variators".into(), "ratio".into(), "ring.speed_rpm".into()]).unwrap();
+    let names: Vec<&str> = sweep.columns().map(|c| c.name.as_str()).collect();
+    for name in ["path.share", "path.power_w", "path.mg1.torque_n_m", "variator_loss_w", "ring.speed_rpm"] {
+        assert!(names.contains(&name), "{name} in {names:?}");
+    }
+    let mut trains = Default::default();
+    for (k, ratio) in [0.5, 1.0, 4.0].into_iter().enumerate() {
+        let answer = sweep.answer(k as u64, &mut trains);
+        assert_eq!(answer.ratio, Some(ratio));
+        let s = answer.solution.unwrap();
+        let speed = |m: &str| s.members.get(m).unwrap().speed_rad_s.unwrap();
+        near("engine", speed("engine"), 2000.0 * std::f64::consts::PI / 30.0);
+        near("ring", speed("ring"), speed("engine") / ratio);
+        balances(&s);
+    }
+    // What the gears tie needs no operating point.
+    let plain = Model::from_toml(
+        "format = 1\nname = \"r\"\nmembers = [\"s\", \"c\"]\nterminals = [\"s\", \"c\"]\n[[set]]\nname = \"P1\"\n\
+         sun = { member = \"s\", teeth = 30 }\nring = { member = \"frame\", teeth = 70 }\ncarrier = \"c\"\n",
+    )
+    .unwrap();
+    let axis = Axis::parse("P1.ring.teeth=60,70,90", &plain).unwrap();
+    let question = Question::new(&plain, None, None, Hold::AsGiven).unwrap();
+    let sweep = Sweep::new(question, vec![axis], &["ratio".into()]).unwrap();
+    let found: Vec<f64> = (0..3).map(|k| sweep.answer(k, &mut Default::default()).ratio.unwrap()).collect();
+    found.iter().zip([3.0, 10.0 / 3.0, 4.0]).for_each(|(a, b)| near("teeth", *a, b));
+}
+
+/// A variator is left out of nothing without a word.
+#[test]
+fn what_does_not_know_variators_says_so() {
+    let train = prius("ring = \"1500 rpm\"", "members = [\"mg1\", \"ring\"]\nefficiency = 0.9");
+    let wrong = train.compile(&Duty::new(["engine", "ring"], ["engine"]).output(Output::Efficiency)).unwrap_err();
+    assert!(wrong.to_string().contains("variator"), "{wrong}");
+    let moving = read(&format!(
+        "{PRIUS}[inertias]\nmg1 = \"1 kg m^2\"\nring = \"1 kg m^2\"\nengine = \"1 kg m^2\"\n[[variator]]\n\
+         name = \"path\"\nmembers = [\"mg1\", \"ring\"]\nefficiency = 0.9\n[[scenario]]\nname = \"go\"\nduration = \"1 s\"\n"
+    ));
+    let wrong = willis::dynamics::Simulation::new(&moving, "go", &Default::default()).err().unwrap();
+    assert!(wrong.to_string().contains("is a variator"), "{wrong}");
 }
 
 /// A terminal on a member that has another name, and terminals that a clutch joins, stay torques of their own.

@@ -63,6 +63,9 @@ impl Words {
         let bold = |text: &str| fit(text, self.most(), SMALL * BOLD);
         let whole = n.name.clone() + &times;
         let mut all = match (n.kind, whole.split_once('.')) {
+            (NodeKind::Input | NodeKind::Output, _) if n.name.starts_with(willis::hypergraph::STORE) => {
+                vec![bold(&n.name)]
+            }
             (NodeKind::Input, _) => vec![bold(&format!("into {}", n.name))],
             (NodeKind::Output, _) => vec![bold(&format!("out of {}", n.name))],
             // The set, and below it which of its contacts.

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::dynamics::source::{MOST_PULSES, shortest_pulse, signals_of};
 use crate::kinematics::Configuration;
-use crate::train::{Scenario, Signal, SourceKind};
+use crate::train::{Scenario, Signal, SourceKind, Train};
 
 /// An error if meshes constrain each other, or if nothing can move.
 pub(super) fn forces_and_freedom(c: &Configuration<'_>, scenario: &Scenario) -> Result<(), Diagnostics> {
@@ -89,4 +89,13 @@ pub(super) fn rates(scenario: &Scenario) -> Result<(), Diagnostics> {
 
 fn unfit(scenario: &Scenario, message: String, hint: &str) -> Diagnostics {
     Diagnostic::new(Code::Unfit, scenario.place.clone(), message).hint(hint).into()
+}
+
+/// A variator in motion is not computed: neither is its torque left out without a word.
+pub(super) fn no_variator(train: &Train) -> Result<(), Diagnostics> {
+    let Some(v) = train.variators.first() else { return Ok(()) };
+    let message = format!("`{}` is a variator, and no motion is computed with one", v.name);
+    let hint =
+        "leave it out of the file and let its machines be sources of the scenario, with a torque on their members";
+    Err(Diagnostic::new(Code::Unfit, "variator[0]", message).hint(hint).into())
 }
