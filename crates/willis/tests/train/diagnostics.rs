@@ -29,6 +29,32 @@ speeds = { sun = "1000 rpm" }
 torques = { sun = "10 N m" }
 "#;
 
+/// A power split with its second path.
+const SPLIT: &str = r#"format = 1
+name = "split"
+members = ["mg1", "engine", "ring"]
+terminals = ["engine", "ring"]
+
+[[set]]
+name = "P1"
+sun = { member = "mg1", teeth = 30 }
+planet = { teeth = 24, count = 4 }
+ring = { member = "ring", teeth = 78 }
+carrier = "engine"
+mesh_efficiency = 0.99
+
+[[variator]]
+name = "path"
+members = ["mg1", "ring"]
+efficiency = 0.9
+ratio = { min = 0.1, max = 3 }
+
+[[operation]]
+name = "cruise"
+speeds = { engine = "2000 rpm", ring = "1500 rpm" }
+torques = { engine = "100 N m" }
+"#;
+
 /// A set with teeth and an oil.
 const TOOTHED: &str = r#"format = 1
 name = "toothed"
@@ -178,6 +204,7 @@ fn regress_every_code_has_a_case() {
     // E208 to E210 are about questions other than `analyze`: `regress_e208` and `regress_e209` below; axes of studies
     // have `what_is_wrong_with_an_axis_is_told` in study.rs, E211 has `a_sweep_that_is_stopped_says_so` there, E212
     // `what_would_take_long_is_refused_before_it_begins` in tests/study.
+    // W320 needs a table: `a_map_is_read_where_the_machine_runs` in tests/statics/variators.rs.
     // W318 needs a tolerance: `measured_speeds_are_taken_within_a_tolerance` in tests/statics.
     let elsewhere = [
         Code::Unreadable,
@@ -187,6 +214,7 @@ fn regress_every_code_has_a_case() {
         Code::Cancelled,
         Code::TooLong,
         Code::SpeedsYield,
+        Code::OutsideMap,
     ];
     let missing: Vec<_> =
         Code::ALL.iter().filter(|c| !elsewhere.contains(c) && !COVERED.contains(c)).map(|c| c.as_str()).collect();
@@ -554,6 +582,14 @@ cases! {
     regress_e109_oil_twice: Conflict, with(TOOTHED, "temperature =", "viscosity_40 = \"220 mm^2/s\"\ntemperature =");
 
     // W314 DoubtfulGeometry
+    regress_e114_itself: Variator, with(SPLIT, "[\"mg1\", \"ring\"]", "[\"mg1\", \"mg1\"]");
+    regress_e114_three: Variator, with(SPLIT, "[\"mg1\", \"ring\"]", "[\"mg1\", \"ring\", \"engine\"]");
+    regress_e114_store_without_bus: Variator, with(SPLIT, "efficiency = 0.9\n", "efficiency = 0.9\nstore = \"5 kW\"\n");
+    regress_e114_ratio: Variator, with(SPLIT, "min = 0.1, max = 3", "min = 3, max = 0.1");
+    regress_e202_beside_a_variator: MissingTorque, with(SPLIT, "torques = { engine = \"100 N m\" }", "");
+    regress_w319_ratio: BeyondLimit, with(SPLIT, "max = 3", "max = 2");
+    regress_w321_standing: VariatorAtRest,
+        with(&with(SPLIT, "engine = \"2000 rpm\", ring = \"1500 rpm\"", "mg1 = \"0 rpm\", ring = \"0 rpm\""), "terminals = [", "terminals = [\"mg1\", ");
     regress_w314_undercut: DoubtfulGeometry,
         with(&with(&with(TOOTHED, "teeth = 30", "teeth = 12"), "teeth = 20", "teeth = 29"), "teeth = 70", "teeth = 70");
 
