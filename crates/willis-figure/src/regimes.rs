@@ -257,7 +257,7 @@ pub fn regime_map(train: &Train, selection: &RegimeSelection) -> Result<RegimeMa
         .filter(|r| !r.all_dissipated)
         .filter_map(|r| r.efficiency_range.map(|e| e[0]))
         .fold(1.0, f64::min);
-    let boundaries = boundaries(atlas, &rays, &from, selection.balance.as_ref());
+    let boundaries = boundaries(atlas, &rays, &from, atlas.link.as_ref().map(|link| &link.ends));
     Ok(RegimeMap {
         title: match atlas.state == willis::train::AS_DRAWN {
             true => train.name().to_owned(),
@@ -307,7 +307,7 @@ fn spread(widths: &[f64]) -> (Vec<f64>, bool) {
     }
 }
 
-fn boundaries(atlas: &Atlas, rays: &[[[f64; 2]; 2]], from: &[f64], balance: Option<&[String; 2]>) -> Vec<MapBoundary> {
+fn boundaries(atlas: &Atlas, rays: &[[[f64; 2]; 2]], from: &[f64], link: Option<&[String; 2]>) -> Vec<MapBoundary> {
     let n = from.len();
     let mut all: Vec<MapBoundary> = Vec::new();
     for k in 0..n {
@@ -315,8 +315,8 @@ fn boundaries(atlas: &Atlas, rays: &[[[f64; 2]; 2]], from: &[f64], balance: Opti
         let after = &atlas.regions[k];
         let Some(p) = (0..before.signs.len()).find(|&p| before.signs[p] != after.signs[p]) else { continue };
         let plane = &atlas.planes[p];
-        // Where one of two balanced machines stands still, no power passes the electric path.
-        let mechanical = balance.is_some_and(|pair| pair.iter().any(|name| plane.at_rest.contains(name)));
+        // Where one end of a variator, or of two balanced machines, stands still, no power passes beside the gears.
+        let mechanical = link.is_some_and(|pair| pair.iter().any(|name| plane.at_rest.contains(name)));
         let label = if mechanical { format!("{}: mechanical point", plane.label) } else { plane.label.clone() };
         if let Some(b) = all.iter_mut().find(|b| b.label == label && (b.angles[0] + 180.0 - from[k]).abs() < 1e-6) {
             b.angles[1] = from[k];

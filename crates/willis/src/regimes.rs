@@ -36,8 +36,9 @@ pub use family::{Case, Family, FamilyRange, Group, Row, family};
 pub use formula::{Efficiencies, Ratios, SymbolKind};
 pub use locate::{Edge, LocateRequest, Located, Location, Prescribes, Range, locate};
 pub use report::{
-    AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, Neighbour,
-    PlaneReport, Prescribed, RatioRange, Reach, RegimeReport, Regimes, RegionReport, SymbolReport, Threshold,
+    AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, LinkReport,
+    Neighbour, PlaneReport, Prescribed, RatioRange, Reach, RegimeReport, Regimes, RegionReport, SymbolReport,
+    Threshold,
 };
 
 /// Which part of a train, and from which terminals.

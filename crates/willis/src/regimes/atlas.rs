@@ -14,8 +14,8 @@ use super::cells::{
 };
 use super::formula::{Efficiencies, Formula, Ratios, Shape, SymbolKind, element_label};
 use super::report::{
-    AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, Neighbour,
-    PlaneReport, Prescribed, RatioRange, Reach, RegimeReport, RegionReport, SymbolReport, Threshold,
+    AssignmentReport, Atlas, BoundaryReport, ConditionReport, Crossing, ExamplePoint, FormulaReport, LinkReport,
+    Neighbour, PlaneReport, Prescribed, RatioRange, Reach, RegimeReport, RegionReport, SymbolReport, Threshold,
 };
 use super::setup::{Linked, Pattern, Setup, TorqueCell};
 
@@ -49,6 +49,7 @@ pub(crate) fn atlas(
         boundaries: vec![],
         assignments: vec![],
         lossless: vec![],
+        link: None,
         notes: vec![],
     };
     // Input and output clutched together: no gear carries the load.
@@ -77,6 +78,11 @@ fn fill(atlas: &mut Atlas, setup: &Setup<'_>) {
     atlas.terminals = names(setup, 0..setup.terminals.len());
     atlas.independent_torques = setup.independent_torques();
     atlas.base_speeds = names(setup, setup.base.iter().copied());
+    atlas.link = setup.link.as_ref().map(|link| LinkReport {
+        variator: link.variator.map(|_| setup.link_name()),
+        ends: link.ends.map(|t| setup.terminal_name(t).to_owned()),
+        efficiency: link.efficiency.each_ref().map(Rational::to_f64),
+    });
     let cells = match enumerate(setup) {
         Ok(cells) => cells,
         Err(why) => {

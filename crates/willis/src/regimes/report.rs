@@ -61,8 +61,25 @@ pub struct Atlas {
     /// Elements without loss: it does not matter who drives them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub lossless: Vec<String>,
+    /// Terminals through which power runs beside the gears: the sides of a variator, or two that were asked to balance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub link: Option<LinkReport>,
     /// What else a reader must know.
     pub notes: Vec<String>,
+}
+
+/// A way for power beside the gears.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct LinkReport {
+    /// The variator; absent where two terminals were asked to balance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub variator: Option<String>,
+    /// Its two ends, among the terminals; they are no inputs or outputs.
+    pub ends: [String; 2],
+    /// From the first end to the second, and back.
+    pub efficiency: [f64; 2],
 }
 
 /// A symbol of the formulas.

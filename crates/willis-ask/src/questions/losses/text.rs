@@ -166,7 +166,10 @@ fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
             header.push("µ");
         }
     }
-    header.extend(["mesh W", "bearing W", "windage W", "churning W", "seal W", "loss W", "η", "verdict"]);
+    let split = group.iter().any(|p| p.losses_w.variator != 0.0);
+    header.extend(["mesh W", "bearing W", "windage W", "churning W", "seal W"]);
+    header.extend(split.then_some("variator W"));
+    header.extend(["loss W", "η", "verdict"]);
     set_header(&mut t, &header);
     for p in group {
         let mut row = vec![significant(rpm(p.speed_rad_s), 6)];
@@ -189,7 +192,8 @@ fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
             }
         }
         let l = &p.losses_w;
-        for x in [l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator] {
+        let kinds = [l.mesh, l.bearing, l.windage, l.churning, l.seal].into_iter();
+        for x in kinds.chain(split.then_some(l.variator)) {
             row.push(if x == 0.0 { "-".into() } else { significant(x, 4) });
         }
         row.push(significant(p.loss_w, 5));
@@ -263,6 +267,7 @@ pub fn table_of(all: &LossTable) -> Table {
             ("windage_loss_w", Number),
             ("churning_loss_w", Number),
             ("seal_loss_w", Number),
+            ("variator_loss_w", Number),
             ("converged", Flag),
             ("warnings", Text),
         ],
@@ -287,6 +292,7 @@ pub fn table_of(all: &LossTable) -> Table {
             l.windage.into(),
             l.churning.into(),
             l.seal.into(),
+            l.variator.into(),
             p.convergence.is_none_or(|c| c.converged).into(),
             warnings.join("; ").into(),
         ]);
