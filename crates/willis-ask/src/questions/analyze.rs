@@ -40,6 +40,7 @@ impl Question for Analyze {
         "meshes",
         "shift-elements",
         "losses",
+        "variators",
         "contacts",
         "bearings",
         "diagnostics",

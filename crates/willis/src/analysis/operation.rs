@@ -64,14 +64,14 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
 
     let gears = c;
     let driven: Vec<[usize; 2]> = operation.machines.iter().map(|(at, _)| *at).collect();
-    let Coupled { c, motion, at_rest } = gears.coupled(&motion, &driven);
+    let Coupled { c, motion, at_rest, open } = gears.coupled(&motion, &driven);
     let problem = Loads::new(&c, operation, &motion, &[])?;
     let loose: Vec<_> =
         (1..train.members.len()).map(MemberId).filter(|m| motion.speeds[m.0].is_none() && !c.inner[m.0]).collect();
     let sigma: Vec<_> = c.elements.iter().map(|e| c.sigma(e, &motion)).collect();
     let resting = at_rest.into_iter().map(Finding::VariatorAtRest);
     // Shafts that push against each other in a clutch balance at any speed, and so at any power.
-    let posed = match problem.given.iter().any(|(m, t)| !t.is_zero() && loose.contains(m)) {
+    let posed = match open || problem.given.iter().any(|(m, t)| !t.is_zero() && loose.contains(m)) {
         true => Err(Unsolvable::UndeterminedSpeed),
         false => Equilibrium::new(&c, &sigma, &problem.open, &problem.loaded),
     };

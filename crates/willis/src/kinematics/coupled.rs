@@ -28,22 +28,25 @@ pub(crate) struct Coupling {
 pub(crate) struct Coupled<'t> {
     pub c: Configuration<'t>,
     pub motion: Motion,
-    /// Variators of which all members stand still, or turn at speeds that are not known.
+    /// Variators of which all members stand still.
     pub at_rest: Vec<usize>,
+    /// Whether some variator has a member whose speed is not known.
+    pub open: bool,
 }
 
 impl<'t> Configuration<'t> {
     /// The configuration with its variators in a motion. Machines whose torque is prescribed, `driven`, are left to the
     /// loads.
     pub(crate) fn coupled(&self, motion: &Motion, driven: &[[usize; 2]]) -> Coupled<'t> {
-        let (mut c, mut at_rest, mut buses) = (self.clone(), vec![], vec![]);
+        let (mut c, mut at_rest, mut open, mut buses) = (self.clone(), vec![], false, vec![]);
         for (variator, v) in self.train.variators.iter().enumerate() {
             let speeds: Option<Vec<Rational>> = v.members().iter().map(|m| motion.speeds[m.0].clone()).collect();
             let most = speeds.iter().flatten().map(Rational::abs).max().filter(|most| !most.is_zero());
-            let turning = speeds.zip(most);
-            if turning.is_none() {
+            open |= speeds.is_none();
+            if speeds.is_some() && most.is_none() {
                 at_rest.push(variator);
             }
+            let turning = speeds.zip(most);
             let add = |c: &mut Self, machine, [p, q]: [MemberId; 2], [a, b]: [Rational; 2], eta: [&Rational; 2]| {
                 // What acts on a held member alone leans on what holds it.
                 let lever = |m: MemberId, x: &Rational| c.node(m).is_some() && !x.is_zero();
@@ -78,7 +81,7 @@ impl<'t> Configuration<'t> {
         }
         let mut motion = motion.clone();
         motion.speeds.extend(buses);
-        Coupled { c, motion, at_rest }
+        Coupled { c, motion, at_rest, open }
     }
 
     /// The bus of a variator, as a member behind those of the train.

@@ -6,7 +6,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
 use crate::units::{self, Dimension};
 
-use super::format::keys::{Kind, Table};
+use super::format::keys::{FREE, Kind, Table};
 use super::specification::FILE;
 use super::words::clip;
 
@@ -122,6 +122,7 @@ fn place<'a>(item: Option<&'a Item>, kind: &'static Kind) -> Place<'a> {
             directed => Place::Efficiency(directed, &["motoring", "generating"]),
         },
         Kind::Store => match table() {
+            None if item.and_then(Item::as_str) == Some(FREE) => Place::Value(Measure::Text),
             None => Place::Value(Measure::Quantity(Dimension::POWER)),
             named => Place::Named(named, Measure::Quantity(Dimension::POWER)),
         },
