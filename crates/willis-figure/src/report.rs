@@ -247,6 +247,7 @@ fn wanted(model: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(F
         ),
         plain(Shift),
         plain(Regimes),
+        (Split, only.clone()),
         (Film, only.clone()),
         (Path, only.clone()),
     ];

@@ -1,6 +1,8 @@
 //! What came out: the shift table, the operating points, losses, maps, motion, formulas.
 
-use willis::analysis::{CertificateReport, OperationReport, Role, SolutionReport, StateReport, Verdict};
+use willis::analysis::{
+    CertificateReport, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport, Verdict,
+};
 use willis::exact::Rational;
 use willis::hypergraph::watts;
 use willis::operating_point::Regime;
@@ -141,6 +143,7 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
             blocks.push(members(&format!("Members{which}"), s));
             blocks.push(Block::Text { text: balance(s) });
             blocks.extend(elements(s));
+            blocks.extend(variators(s));
             blocks.extend(stiction(s));
         }
         for s in &o.dissipative_solutions {
@@ -156,6 +159,7 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
     if all.analysis.operations.is_empty() {
         blocks.extend(all.figures.block(FigureKind::Lever, None, "Speeds on levers"));
     }
+    blocks.extend(all.figures.block(FigureKind::Split, None, "The power split over its ratio"));
     let title = if all.analysis.operations.is_empty() { "Levers" } else { "Operating points" };
     (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
 }
@@ -244,6 +248,29 @@ fn elements(s: &SolutionReport) -> Option<Block> {
         })
         .collect();
     (!rows.is_empty()).then(|| Block::Table { caption: "Torques of engaged elements".into(), columns, rows })
+}
+
+/// What each variator does, side by side or machine by machine.
+fn variators(s: &SolutionReport) -> Vec<Block> {
+    let one = |(name, v): &(String, VariatorReport)| {
+        let columns = ["Side", "On member"].map(Column::words).into_iter();
+        let columns = columns.chain(["Speed rpm", "Torque on it N m", "Power into it"].map(Column::numbers)).collect();
+        let row = |(side, m): &(String, MachineReport)| {
+            let power = watts(m.power_w).replace('-', "−");
+            let [speed, torque] = [m.speed_rad_s * RPM, m.torque_n_m].map(|x| significant(x, 6));
+            vec![side.clone(), m.member.clone(), speed, torque, power]
+        };
+        let store = match v.store_w {
+            Some(p) if p > 0.0 => format!("; its store gives {}", watts(p)),
+            Some(p) if p < 0.0 => format!("; its store takes {}", watts(-p)),
+            _ => String::new(),
+        };
+        let share = exact_percent(v.share).replace('-', "−");
+        let caption =
+            format!("{name}: {share} of the input power arrives through it, {} is lost{store}", watts(v.loss_w));
+        Block::Table { caption, columns, rows: v.machines.iter().map(row).collect() }
+    };
+    s.variators.iter().map(one).collect()
 }
 
 pub fn losses(all: &Findings<'_>) -> Option<Section> {
