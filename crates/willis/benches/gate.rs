@@ -12,7 +12,7 @@ use std::process::Command;
 
 use willis::analysis::{Selection, analyze};
 use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
-use willis::dynamics::{Batch, FixedStep};
+use willis::dynamics::{Batch, FixedStep, Options, simulate};
 use willis::train::{SetSpec, Train};
 
 /// More than this above the recorded count fails.
@@ -36,6 +36,8 @@ const TASKS: &[Task] = &[
     ("set-fixed-step-audited", 20_000, |n| steps(&trains::set(), "pulses", 20_000, true, n)),
     ("automatic-fixed-step", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, false, n)),
     ("automatic-fixed-step-audited", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, true, n)),
+    ("set-adaptive", 1, |n| adaptive(&trains::set(), "pulses", n)),
+    ("automatic-adaptive", 1, |n| adaptive(&trains::automatic(), "through the gears", n)),
     ("set-batch", RUNS * BATCH_STEPS, |n| batch(&trains::set(), "pulses", n)),
     ("automatic-batch", RUNS * BATCH_STEPS, |n| batch(&trains::automatic(), "through the gears", n)),
 ];
@@ -141,6 +143,14 @@ fn steps(train: &Train, scenario: &str, steps: u64, audited: bool, n: usize) {
     for _ in 0..n {
         run.reset();
         run.run(black_box(steps));
+    }
+}
+
+/// Whole runs by error control, from the train to its end.
+fn adaptive(train: &Train, scenario: &str, n: usize) {
+    let options = Options { energies: false, tolerance: 1e-4, samples: Some(2), ..Options::default() };
+    for _ in 0..n {
+        black_box(simulate(black_box(train), scenario, &options, &mut ()).unwrap());
     }
 }
 

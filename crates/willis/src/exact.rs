@@ -299,6 +299,11 @@ mod word {
         i128::from(a) * i128::from(b)
     }
 
+    /// The largest common divisor of a number and a denominator, which is mostly one.
+    fn common(a: i64, denominator: i64) -> i64 {
+        if denominator == 1 { 1 } else { a.gcd(&denominator) }
+    }
+
     /// `numerator / denominator`, reduced; the denominator is positive.
     pub fn fraction(numerator: i64, denominator: i64) -> Ratio<i128> {
         let g = numerator.gcd(&denominator);
@@ -309,7 +314,7 @@ mod word {
         if b == 1 && d == 1 {
             return Some(Ratio::new_raw(i128::from(a) + i128::from(c), 1));
         }
-        let g = b.gcd(&d);
+        let g = if b == 1 { 1 } else { common(b, d) };
         let sum = wide(a, d / g) + wide(c, b / g);
         // What is common to the sum and the denominator is a part of `g`.
         let common = if g == 1 { 1 } else { ((sum % i128::from(g)) as i64).gcd(&g) };
@@ -328,7 +333,10 @@ mod word {
         if a == i64::MIN || c == i64::MIN {
             return None;
         }
-        let (g, h) = (a.gcd(&d), c.gcd(&b));
+        let (g, h) = (common(a, d), common(c, b));
+        if g == 1 && h == 1 {
+            return Some(Ratio::new_raw(wide(a, c), wide(b, d)));
+        }
         Some(Ratio::new_raw(wide(a / g, c / h), wide(b / h, d / g)))
     }
 

@@ -4,13 +4,14 @@
 //! forces may turn round; what happens is [decided](super::decision) for all of them at once, and several solutions,
 //! or none, are found and said (the gear form of Painlevé's paradox).
 
-use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 use crate::train::SourceKind;
 
 use super::decision::Verdict;
 use super::engine::Engine;
 use super::event::short;
+use super::halt::Halt;
 use super::mode::{Mode, dot, dot_size};
 
 /// Why there is no one mode.
@@ -27,41 +28,17 @@ pub(super) enum Trouble {
 }
 
 impl Engine {
-    /// Speeds in the state made exactly those of groups at rest, with the least change in kinetic energy.
-    pub fn bring_to_rest(&mut self, x: &mut [f64], at_rest: &[bool]) {
-        let free = self.system.free;
-        let groups: Vec<usize> = (0..at_rest.len()).filter(|&g| at_rest[g] && !self.system.groups[g].driven).collect();
-        if groups.is_empty() {
-            return;
-        }
-        let d = DMatrix::from_fn(groups.len(), free, |i, k| self.system.groups[groups[i]].row[k]);
-        let Some(mass) = self.system.mass.clone().cholesky() else { return };
-        let minv_dt = mass.solve(&d.transpose());
-        let w = &d * &minv_dt;
-        let Ok(inverse) = w.pseudo_inverse(1e-12 * d.norm().max(1e-300).powi(2) / self.system.mass.norm()) else {
-            return;
-        };
-        for _ in 0..2 {
-            let mut slip =
-                DVector::from_fn(groups.len(), |i, _| dot(&self.system.groups[groups[i]].row[..free], &x[..free]));
-            for (i, &g) in groups.iter().enumerate() {
-                slip[i] += dot(&self.system.groups[g].row[free..], &self.speed[free..]);
-            }
-            let change = &minv_dt * (&inverse * slip);
-            for k in 0..free {
-                x[k] -= change[k];
-            }
-        }
-        // What is left is round-off of a coordinate at rest.
-        for k in 0..free {
-            let exactly = groups.iter().any(|&g| {
-                let row = &self.system.groups[g].row;
-                row.iter().enumerate().all(|(i, r)| (i == k) == (*r != 0.0))
-            });
-            if exactly {
-                x[k] = 0.0;
-            }
-        }
+    /// Speeds in the state made exactly those of groups at rest, with the least change in kinetic energy. Groups whose slip
+    /// is then zero because that of others is are added to them.
+    pub fn bring_to_rest(&mut self, x: &mut [f64], at_rest: &mut [bool]) {
+        let known = self.halts.iter().find(|halt| halt.given == *at_rest).cloned();
+        let halt = known.unwrap_or_else(|| {
+            let halt = Arc::new(Halt::of(&self.system, at_rest));
+            self.halts.push(halt.clone());
+            halt
+        });
+        halt.apply(&self.system, &self.speed, x);
+        at_rest.copy_from_slice(&halt.at_rest);
     }
 
     /// Groups whose slip is zero but for a part of their speeds.
@@ -99,30 +76,6 @@ impl Engine {
         self.engage(t);
         for (g, alike) in self.at_rest(within).into_iter().enumerate() {
             at_rest[g] |= alike && self.stops(g, t);
-        }
-    }
-
-    /// Adds the groups whose slip is zero because that of others is: the last of several that stop together.
-    pub fn rest_with_others(&self, at_rest: &mut [bool]) {
-        let groups = &self.system.groups;
-        let mut basis: Vec<Vec<f64>> = Vec::new();
-        // What is left of a row beside those at rest; none if it is made of them.
-        let beyond = |g: usize, basis: &[Vec<f64>]| -> Option<Vec<f64>> {
-            let mut row = groups[g].row.clone();
-            let size = dot(&row, &row).sqrt();
-            for b in basis.iter().chain(basis) {
-                let along = dot(&row, b);
-                row.iter_mut().zip(b).for_each(|(x, y)| *x -= along * y);
-            }
-            let left = dot(&row, &row).sqrt();
-            row.iter_mut().for_each(|x| *x /= left);
-            (left > 1e-10 * size).then_some(row)
-        };
-        for g in (0..at_rest.len()).filter(|&g| at_rest[g]) {
-            basis.extend(beyond(g, &basis));
-        }
-        for g in 0..at_rest.len() {
-            at_rest[g] = at_rest[g] || beyond(g, &basis).is_none();
         }
     }
 

@@ -7,9 +7,11 @@ use crate::train::{Contact, MemberId, SourceKind};
 
 use super::contacts::Contacts;
 use super::element::{Element, Loss};
+use super::halt::Halt;
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
-use super::shows::Shows;
+use super::shows::{Moves, Shows};
 use super::source::{out_of_domain, source_torque};
+use super::steady::Steady;
 use super::still::Still;
 use super::system::{Rubs, System};
 
@@ -90,13 +92,18 @@ pub(crate) struct Engine {
     pub energy_scale: f64,
     /// What can be read, in the order of the columns.
     pub shows: Vec<Shows>,
+    /// The names of what has a mode, in that order.
+    pub names: Vec<String>,
     /// What stands still exactly; none while that is not known.
     pub still: Option<Arc<Still>>,
-    /// Those met so far.
+    /// Those met so far, and how groups came to rest.
     pub stills: Vec<Arc<Still>>,
+    pub halts: Vec<Arc<Halt>>,
     /// By how many times its round-off a force has to be beyond its limit before that counts as an event: what
     /// the integrator leaves open.
     pub slack: f64,
+    /// What all states of the present stretch have in common; none where that was not asked for.
+    pub steady: Option<Steady>,
 }
 
 impl Engine {
@@ -127,10 +134,13 @@ impl Engine {
             contacts: Contacts::default(),
             still: None,
             stills: vec![],
+            halts: vec![],
+            names: Moves::all(&system).into_iter().map(|moves| moves.name(&system)).collect(),
             shows: Shows::all(&system),
             plain,
             agrees: true,
             slack: 1.0,
+            steady: None,
             counts: true,
             certified: certificate == Some(true),
             certificate,
@@ -198,7 +208,8 @@ impl Engine {
     pub fn look(&mut self, t: f64, x: &[f64]) {
         let free = self.system.free;
         self.speed[..free].copy_from_slice(&x[..free]);
-        for (k, driver) in self.system.drivers.iter().enumerate() {
+        let prescribes = if self.system.prescribed > 0 { &self.system.drivers[..] } else { &[] };
+        for (k, driver) in prescribes.iter().enumerate() {
             if let (Some(i), SourceKind::Speed(signal)) = (driver.prescribed, &self.system.scenario.sources[k].kind) {
                 self.speed[free + i] = signal.value(t, self.inside, &|_| 0.0);
                 self.acceleration[free + i] = signal.rate(t, self.inside, &|_| 0.0);
@@ -214,6 +225,9 @@ impl Engine {
     pub fn source_torque(&self, k: usize, t: f64, x: &[f64]) -> f64 {
         let driver = &self.system.drivers[k];
         let speed = |m: MemberId| self.member_speed(m);
+        if let SourceKind::Torque(signal) = &self.system.scenario.sources[k].kind {
+            return signal.value(t, self.inside, &speed);
+        }
         let sum = driver.integral.map_or(0.0, |i| x[self.integrals() + i]);
         source_torque(
             &self.system.scenario.sources[k].kind,
@@ -313,6 +327,9 @@ impl Engine {
 
     /// How far a friction element is engaged.
     pub fn engagement(&self, f: usize, t: f64) -> f64 {
+        if let Some(level) = self.steadily_engaged(f) {
+            return level;
+        }
         let speed = |m: MemberId| self.member_speed(m);
         self.system.engaged(&self.system.frictions[f], |signal| signal.value(t, self.inside, &speed))
     }
@@ -351,6 +368,11 @@ impl Engine {
     /// Torques of the ports at a state in the present mode, those that hold groups excluded.
     pub fn load(&mut self, t: f64, x: &[f64]) {
         self.look(t, x);
+        self.load_looked(t, x);
+    }
+
+    /// The same at the state looked at.
+    fn load_looked(&mut self, t: f64, x: &[f64]) {
         let mut tau = std::mem::take(&mut self.tau);
         tau.iter_mut().for_each(|x| *x = 0.0);
         for (k, driver) in self.system.drivers.iter().enumerate() {
@@ -364,7 +386,7 @@ impl Engine {
         for k in 0..self.system.frictions.len() {
             let f = &self.system.frictions[k];
             if f.viscous != 0.0 {
-                tau[f.port] -= f.viscous * dot(&f.row, &self.speed);
+                tau[f.port] += self.viscous_torque(k);
             }
             if f.group.is_some() {
                 tau[f.port] += self.friction_torque(k, &self.mode, false, t);
@@ -377,6 +399,12 @@ impl Engine {
             tau[self.system.elements[j].port] = self.constant_loss(j, &self.mode);
         }
         self.tau = tau;
+    }
+
+    /// Torque of a friction element in proportion to its speed.
+    pub fn viscous_torque(&self, k: usize) -> f64 {
+        let f = &self.system.frictions[k];
+        -(f.viscous * dot(&f.row, &self.speed))
     }
 
     /// Torque of a sliding friction element on its first member, its viscous part excluded; 0 while it holds.
@@ -425,6 +453,7 @@ impl Engine {
         // Field by field: a derived `clone_from` would take new memory.
         self.mode.slip.clone_from(&mode.slip);
         self.mode.side.clone_from(&mode.side);
+        self.steady = None;
         self.varying = (0..self.system.elements.len())
             .any(|j| self.system.elements[j].varies() && mode.element_slip(&self.system, j) != 0);
         self.map = self.map_of(mode);
@@ -433,7 +462,10 @@ impl Engine {
 
     /// Accelerations at a state in the present mode.
     pub fn solve(&mut self, t: f64, x: &[f64]) {
-        self.load(t, x);
+        self.look(t, x);
+        if !self.load_steadily(t, x) {
+            self.load_looked(t, x);
+        }
         if self.varying {
             let mode = self.mode.clone();
             self.map = self.map_of(&mode);

@@ -8,9 +8,6 @@ use super::engine::{Engine, Touch};
 use super::margins::Watch;
 use super::report::{Event, Happening, HappeningKind, ModeLabel};
 
-/// Modes by element.
-pub(super) type Labels = [(String, ModeLabel)];
-
 /// Why the mode is chosen anew.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Why {
@@ -22,13 +19,20 @@ pub(super) enum Why {
 
 /// The event that leads to modes; none where nothing happened but the choice itself: at a break of the inputs
 /// everything may stay, and at its limit by round-off only, a held element stays held and breaks away next time.
-pub(super) fn event(engine: &Engine, t: f64, why: Option<Why>, before: &Labels, now: &Labels) -> Option<Event> {
-    let modes: Named<ModeLabel> =
-        now.iter().enumerate().filter(|(k, l)| before.get(*k) != Some(l)).map(|(_, l)| l.clone()).collect();
+pub(super) fn event(
+    engine: &Engine,
+    t: f64,
+    why: Option<Why>,
+    before: &[ModeLabel],
+    now: &[ModeLabel],
+) -> Option<Event> {
+    let changed = |(k, l): &(usize, &ModeLabel)| before.get(*k) != Some(l);
+    let named = |(k, l): (usize, &ModeLabel)| (engine.names[k].clone(), *l);
+    let modes: Named<ModeLabel> = now.iter().enumerate().filter(changed).map(named).collect();
     let happenings = if why == Some(Why::Start) {
         vec![Happening { kind: HappeningKind::Start, of: vec![] }]
     } else if !modes.is_empty() {
-        changes(&engine.system.train, before, now)
+        changes(engine, before, now)
     } else {
         vec![unseen(engine, why)?]
     };
@@ -61,10 +65,10 @@ fn unseen(engine: &Engine, why: Option<Why>) -> Option<Happening> {
 }
 
 /// What changed, those together that did the same.
-fn changes(train: &Train, before: &Labels, now: &Labels) -> Vec<Happening> {
+fn changes(engine: &Engine, before: &[ModeLabel], now: &[ModeLabel]) -> Vec<Happening> {
     let mut all: Vec<Happening> = Vec::new();
-    for ((name, a), (_, b)) in before.iter().zip(now).filter(|(a, b)| a.1 != b.1) {
-        let kind = kind(train, name, *a, *b);
+    for (name, (a, b)) in engine.names.iter().zip(before.iter().zip(now)).filter(|(_, (a, b))| a != b) {
+        let kind = kind(&engine.system.train, name, *a, *b);
         match all.iter_mut().find(|h| h.kind == kind) {
             Some(known) => known.of.push(name.clone()),
             None => all.push(Happening { kind, of: vec![name.clone()] }),

@@ -31,9 +31,9 @@ use crate::train::Train;
 
 use super::element::{Loss, element_name};
 use super::engine::{Engine, Touch};
-use super::fused::{ByKey, Exactly, Fused};
+use super::fused::{Exactly, Fused};
 use super::handles::{Input, InputInfo, InputRefused, Output};
-use super::mode::{Mode, Side, dot};
+use super::mode::{ByKey, Mode, Side, dot};
 use super::report::{Column, Outcome};
 use super::shows::Shows;
 use super::source::signals_of;

@@ -40,25 +40,6 @@ pub(super) struct Exactly {
     pub touch: u64,
 }
 
-/// Mixes the words of a key: the few modes of a train need no defence against chosen keys.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Mix(u64);
-
-impl std::hash::Hasher for Mix {
-    fn finish(&self) -> u64 {
-        self.0 ^ self.0 >> 32
-    }
-    fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|b| self.write_u64(u64::from(*b)));
-    }
-    fn write_u64(&mut self, word: u64) {
-        self.0 = (self.0.rotate_left(25) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    }
-}
-
-/// By key of a mode.
-pub(super) type ByKey<K> = std::collections::HashMap<K, u32, std::hash::BuildHasherDefault<Mix>>;
-
 impl Exactly {
     fn has(word: u64, k: usize) -> bool {
         word >> k & 1 == 1

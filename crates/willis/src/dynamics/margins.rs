@@ -3,14 +3,14 @@
 use crate::train::Contact;
 
 use super::engine::{Engine, Touch};
-use super::mode::{Map, Mode, Side};
+use super::mode::{Map, Mode, Side, dot_size};
 
 /// What is watched within a mode: it changes where a margin becomes negative.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Watch {
     /// A sliding group comes to rest.
     Slip(usize),
-    /// A held group breaks away, forward or backward.
+    /// A held group breaks away, forward or backward; 0: either way.
     Hold(usize, i8),
     /// Something of what is held breaks away, decided for all of it together.
     Rest,
@@ -78,55 +78,67 @@ impl Engine {
         }
     }
 
+    /// What is watched in the present mode, in the order of its margins. What holds a group alone is what would be lost if it
+    /// slid; teeth, and what shares, are looked at together.
+    pub fn watched(&self) -> Vec<Watch> {
+        let s = &self.system;
+        let rests = |g: usize| self.mode.slip[g] == 0 && !s.groups[g].driven;
+        let with_teeth = (0..s.groups.len()).any(|g| rests(g) && !s.groups[g].elements.is_empty());
+        let together = with_teeth || self.map.as_ref().is_some_and(|map| map.is_redundant());
+        let group = |g: usize| match self.mode.slip[g] {
+            0 => (rests(g) && !together).then_some(Watch::Hold(g, 0)),
+            _ => Some(Watch::Slip(g)),
+        };
+        let engages = |k: &usize| {
+            let f = &s.frictions[*k];
+            f.group.is_some()
+                && f.engagement.is_some_and(|e| s.scenario.engagements[e].signal.crosses_unannounced())
+        };
+        let watches = (0..s.groups.len())
+            .filter_map(group)
+            .chain(together.then_some(Watch::Rest))
+            .chain((0..s.elements.len()).filter(|&j| self.mode.element_slip(s, j) != 0).map(Watch::Side))
+            .chain((0..s.elastic.len()).filter(|&k| s.train.shafts()[k].backlash > 0.0).map(Watch::Touch))
+            .chain((0..s.frictions.len()).filter(engages).map(Watch::Engage));
+        watches.collect()
+    }
+
     /// Margins of the present mode at a state, after [`Engine::solve`] there.
     pub fn margins(&mut self, t: f64, x: &[f64], out: &mut Vec<Margin>) {
         out.clear();
         let Some(map) = self.map.clone() else { return };
-        // Alone, what holds a group is what would be lost if it slid; teeth, and what shares, are looked at together.
-        let rests = |g: usize| self.mode.slip[g] == 0 && !self.system.groups[g].driven;
-        let with_teeth = (0..self.system.groups.len()).any(|g| rests(g) && !self.system.groups[g].elements.is_empty());
-        let together = with_teeth || map.is_redundant();
-        for g in 0..self.system.groups.len() {
-            match self.mode.slip[g] {
-                0 if self.system.groups[g].driven || together => {}
-                0 => self.hold_margins(g, t, &map, out),
-                sign => {
-                    let noise = NOISE
-                        * 1e-3
-                        * self.system.groups[g].row.iter().zip(&self.speed).map(|(a, b)| (a * b).abs()).sum::<f64>();
-                    out.push(Margin { watch: Watch::Slip(g), value: f64::from(sign) * self.group_slip(g), noise });
+        let watches = match self.steady.as_mut().map(|steady| std::mem::take(&mut steady.watches)) {
+            Some(watches) => watches,
+            None => self.watched(),
+        };
+        for &watch in &watches {
+            match watch {
+                Watch::Slip(g) => {
+                    let noise = NOISE * 1e-3 * dot_size(&self.system.groups[g].row, &self.speed);
+                    let value = f64::from(self.mode.slip[g]) * self.group_slip(g);
+                    out.push(Margin { watch, value, noise });
+                }
+                Watch::Hold(g, _) => self.hold_margins(g, t, &map, out),
+                Watch::Rest => {
+                    // What slips is as many times its bound of rounding as what slips elsewhere is of its own.
+                    let value = self.clear_spare(t).unwrap_or_else(|| self.spare(t));
+                    out.push(Margin { watch, value, noise: self.slack * NOISE / (16.0 * f64::EPSILON) });
+                }
+                Watch::Side(j) => {
+                    let (torque, size) = self.element_torque(j);
+                    let (value, noise) = self.side_margin(j, &self.mode, torque, size);
+                    out.push(Margin { watch, value, noise: self.slack * noise });
+                }
+                Watch::Touch(k) => out.push(Margin { watch, value: self.touch_margin(k, x), noise: 0.0 }),
+                Watch::Engage(k) => {
+                    let threshold = if self.system.frictions[k].rigid { 0.5 } else { 0.0 };
+                    let value = self.engagement(k, t) - threshold;
+                    out.push(Margin { watch, value: if self.engaged[k] { value } else { -value }, noise: NOISE });
                 }
             }
         }
-        if together {
-            // What slips is as many times its bound of rounding as what slips elsewhere is of its own.
-            let value = self.clear_spare(t).unwrap_or_else(|| self.spare(t));
-            out.push(Margin { watch: Watch::Rest, value, noise: self.slack * NOISE / (16.0 * f64::EPSILON) });
-        }
-        for j in 0..self.system.elements.len() {
-            if self.mode.element_slip(&self.system, j) != 0 {
-                let (torque, size) = self.element_torque(j);
-                let (value, noise) = self.side_margin(j, &self.mode, torque, size);
-                out.push(Margin { watch: Watch::Side(j), value, noise: self.slack * noise });
-            }
-        }
-        for k in 0..self.system.elastic.len() {
-            let shaft = &self.system.train.shafts()[k];
-            if shaft.backlash > 0.0 {
-                out.push(Margin { watch: Watch::Touch(k), value: self.touch_margin(k, x), noise: 0.0 });
-            }
-        }
-        for k in 0..self.system.frictions.len() {
-            let f = &self.system.frictions[k];
-            if let Some(e) = f.engagement
-                && f.group.is_some()
-                && self.system.scenario.engagements[e].signal.crosses_unannounced()
-            {
-                let threshold = if f.rigid { 0.5 } else { 0.0 };
-                let value = self.engagement(k, t) - threshold;
-                let value = if self.engaged[k] { value } else { -value };
-                out.push(Margin { watch: Watch::Engage(k), value, noise: NOISE });
-            }
+        if let Some(steady) = &mut self.steady {
+            steady.watches = watches;
         }
     }
 

@@ -1,6 +1,7 @@
 //! Modes of motion, and the linear map that each of them is.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
 
 use super::element::Loss;
@@ -25,8 +26,29 @@ impl Side {
     }
 }
 
+/// Mixes the words of a key: the few modes of a train need no defence against chosen keys.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Mix(u64);
+
+impl Hasher for Mix {
+    fn finish(&self) -> u64 {
+        self.0 ^ self.0 >> 32
+    }
+    fn write(&mut self, bytes: &[u8]) {
+        for eight in bytes.chunks(8) {
+            self.write_u64(eight.iter().fold(0, |word, b| word << 8 | u64::from(*b)));
+        }
+    }
+    fn write_u64(&mut self, word: u64) {
+        self.0 = (self.0.rotate_left(25) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+}
+
+/// By key of a mode.
+pub(super) type ByKey<K, V = u32> = HashMap<K, V, BuildHasherDefault<Mix>>;
+
 /// What every group and every mesh does.
-#[derive(Clone, PartialEq, Eq, Debug, Hash)]
+#[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Mode {
     /// By group: the sign of its slip, 0 where it is held.
     pub slip: Vec<i8>,
@@ -136,22 +158,19 @@ pub(super) struct Pattern {
 
 impl Pattern {
     pub fn new(system: &System, slopes: &[f64], resists: &[f64]) -> Option<Self> {
-        let x = system.response(slopes, resists)?;
-        let (n, p) = (system.unknowns(), system.ports);
-        let mut response = vec![0.0; n * p];
-        for i in 0..n {
-            for k in 0..p {
-                response[i * p + k] = x[(i, k)];
-            }
-        }
+        let response = system.response(slopes, resists)?;
+        let p = system.ports;
         let mut slip = vec![0.0; system.groups.len() * p];
-        for (g, group) in system.groups.iter().enumerate() {
-            let row = &mut slip[g * p..(g + 1) * p];
-            for (k, entry) in row.iter_mut().enumerate() {
-                let parts = group.row[..system.free].iter().enumerate().map(|(i, d)| d * response[i * p + k]);
-                let (sum, amounts) = parts.fold((0.0, 0.0), |(sum, amounts), x: f64| (sum + x, amounts + x.abs()));
-                *entry = unless_rounding(sum, amounts);
+        let mut amounts = vec![0.0; p];
+        for (row, group) in slip.chunks_exact_mut(p).zip(&system.groups) {
+            amounts.fill(0.0);
+            for (d, line) in group.row[..system.free].iter().zip(response.chunks_exact(p)).filter(|(d, _)| **d != 0.0) {
+                for ((sum, amount), x) in row.iter_mut().zip(&mut amounts).zip(line) {
+                    *sum += d * x;
+                    *amount += (d * x).abs();
+                }
             }
+            row.iter_mut().zip(&amounts).for_each(|(sum, amounts)| *sum = unless_rounding(*sum, *amounts));
             for i in 0..system.prescribed {
                 row[system.port_of_prescribed + i] += group.row[system.free + i];
             }
@@ -178,23 +197,23 @@ impl Pattern {
 /// The maps met so far.
 #[derive(Clone, Default)]
 pub(super) struct Maps {
-    patterns: HashMap<Vec<u8>, Option<Arc<Pattern>>>,
-    by_mode: HashMap<Mode, usize>,
-    maps: Vec<Option<Arc<Map>>>,
+    patterns: ByKey<Vec<u8>, Option<Arc<Pattern>>>,
+    maps: ByKey<Vec<u8>, Option<Arc<Map>>>,
+    /// Room for a key.
+    key: Vec<u8>,
 }
 
 impl Maps {
-    fn pattern_key(system: &System, mode: &Mode) -> Vec<u8> {
-        (0..system.elements.len())
-            .map(|j| {
-                let e = &system.elements[j];
-                if e.group.is_none() || e.varies() || mode.element_slip(system, j) == 0 {
-                    0
-                } else {
-                    1 + u8::from(mode.side[j] == Side::Coast)
-                }
-            })
-            .collect()
+    /// What a pattern depends on: by element whether it loses, and which gear drives.
+    fn pattern_key<'a>(system: &'a System, mode: &'a Mode) -> impl Iterator<Item = u8> + 'a {
+        (0..system.elements.len()).map(|j| {
+            let e = &system.elements[j];
+            if e.group.is_none() || e.varies() || mode.element_slip(system, j) == 0 {
+                0
+            } else {
+                1 + u8::from(mode.side[j] == Side::Coast)
+            }
+        })
     }
 
     pub fn pattern(&mut self, system: &System, mode: &Mode) -> Option<&Pattern> {
@@ -203,7 +222,7 @@ impl Maps {
 
     /// The same where each shaft resists its relative acceleration.
     pub fn pattern_with(&mut self, system: &System, mode: &Mode, resists: &[f64]) -> Option<&Pattern> {
-        let mut key = Self::pattern_key(system, mode);
+        let mut key: Vec<u8> = Self::pattern_key(system, mode).collect();
         key.extend(resists.iter().flat_map(|d| d.to_bits().to_le_bytes()));
         self.patterns
             .entry(key)
@@ -214,15 +233,19 @@ impl Maps {
             .as_deref()
     }
 
-    /// The map of a mode in which no element of varying slope moves; `None` if it has no unique solution.
+    /// The map of a mode in which no element of varying slope moves; `None` if it has no unique solution. Which way
+    /// things slide does not matter to it.
     pub fn find(&mut self, system: &System, mode: &Mode) -> Option<Arc<Map>> {
-        if let Some(&k) = self.by_mode.get(mode) {
-            return self.maps[k].clone();
+        self.key.clear();
+        self.key.extend(Self::pattern_key(system, mode));
+        self.key.extend(system.groups.iter().zip(&mode.slip).map(|(g, slip)| u8::from(*slip == 0 && !g.driven)));
+        if let Some(map) = self.maps.get(&self.key) {
+            return map.clone();
         }
-        let map = self.pattern(system, mode).and_then(|pattern| compose(system, mode, pattern, &[]));
-        self.maps.push(map.map(Arc::new));
-        self.by_mode.insert(mode.clone(), self.maps.len() - 1);
-        self.maps[self.maps.len() - 1].clone()
+        let key = self.key.clone();
+        let map = self.pattern(system, mode).and_then(|pattern| compose(system, mode, pattern, &[])).map(Arc::new);
+        self.maps.insert(key, map.clone());
+        map
     }
 }
 
@@ -234,47 +257,44 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
     let (n, p, all) = (system.unknowns(), pattern.ports, system.all());
     let held: Vec<usize> =
         (0..system.groups.len()).filter(|&g| mode.slip[g] == 0 && !system.groups[g].driven).collect();
-    // Rows of conditions `row · τ = 0` over all ports, each solved for one port.
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    let mut unknown: Vec<usize> = Vec::new();
-    let mut scales: Vec<f64> = Vec::new();
-    for &(j, slope) in varying {
-        // L − α a f(τ) = β, the given torque of the port being β.
-        let a = system.elements[j].factors[0];
-        let mut row: Vec<f64> =
-            pattern.response[(all + j) * p..(all + j + 1) * p].iter().map(|x| -slope * a * x).collect();
-        let port = system.elements[j].port;
-        row[port] += 1.0;
-        rows.push(row);
-        unknown.push(port);
-        scales.push(1.0);
-    }
-    for &g in &held {
-        rows.push(pattern.slip[g * p..(g + 1) * p].to_vec());
-        unknown.push(system.groups[g].lead.0);
-        scales.push(pattern.slip[g * p + system.groups[g].lead.0].abs());
-    }
+    // Conditions `row · τ = 0` over all ports, each solved for one port.
+    let slopes = varying.iter().map(|&(j, _)| system.elements[j].port);
+    let unknown: Vec<usize> = slopes.chain(held.iter().map(|&g| system.groups[g].lead.0)).collect();
     let count = unknown.len();
+    let mut matrix = vec![0.0; count * count];
     // Right sides: over all ports, the unknown ones excluded, but for β.
-    let mut rights: Vec<Vec<f64>> = (rows.iter().enumerate())
-        .map(|(i, row)| {
-            let mut right: Vec<f64> = row.iter().map(|x| -x).collect();
-            for (k, &port) in unknown.iter().enumerate() {
-                right[port] = if k == i && i < varying.len() { 1.0 } else { 0.0 };
+    let mut rights = vec![0.0; count * p];
+    for (i, right) in rights.chunks_exact_mut(p).enumerate() {
+        match varying.get(i) {
+            // L − α a f(τ) = β, the given torque of the port being β.
+            Some(&(j, slope)) => {
+                let (a, force) = (system.elements[j].factors[0], &pattern.response[(all + j) * p..(all + j + 1) * p]);
+                right.iter_mut().zip(force).for_each(|(x, f)| *x = slope * a * f);
+                right[system.elements[j].port] -= 1.0;
             }
-            right
-        })
-        .collect();
-    let mut matrix: Vec<Vec<f64>> = rows.iter().map(|row| unknown.iter().map(|&port| row[port]).collect()).collect();
+            None => {
+                let slip = &pattern.slip[held[i - varying.len()] * p..][..p];
+                right.iter_mut().zip(slip).for_each(|(x, slip)| *x = -slip);
+            }
+        }
+        for (k, &port) in unknown.iter().enumerate() {
+            matrix[i * count + k] = -std::mem::take(&mut right[port]);
+        }
+        if i < varying.len() {
+            right[unknown[i]] = 1.0;
+        }
+    }
+    let original: Vec<f64> =
+        (0..count).map(|i| if i < varying.len() { 1.0 } else { matrix[i * count + i].abs() }).collect();
     // What the conditions add up to in amounts, by which their solution may be wrong in its last places.
-    let mut amounts: Vec<Vec<f64>> = rights.iter().map(|right| right.iter().map(|x| x.abs()).collect()).collect();
+    let mut amounts: Vec<f64> = rights.iter().map(|x| x.abs()).collect();
     // Gauss–Jordan; a condition that others fulfil already has nothing left to be solved for.
     let mut carried = vec![false; system.groups.len()];
     let mut solved = vec![false; count];
+    let (mut line, mut right, mut sizes) = (vec![0.0; count], vec![0.0; p], vec![0.0; p]);
     for i in 0..count {
-        let pivot = matrix[i][i];
-        let original = if i < varying.len() { 1.0 } else { scales[i] };
-        if pivot.abs() <= 1e-9 * original || pivot == 0.0 {
+        let pivot = matrix[i * count + i];
+        if pivot.abs() <= 1e-9 * original[i] || pivot == 0.0 {
             if i < varying.len() {
                 return None;
             }
@@ -282,21 +302,16 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
             continue;
         }
         solved[i] = true;
-        for r in 0..count {
-            if r == i {
-                continue;
-            }
-            let factor = matrix[r][i] / pivot;
+        line.copy_from_slice(&matrix[i * count..(i + 1) * count]);
+        right.copy_from_slice(&rights[i * p..(i + 1) * p]);
+        sizes.copy_from_slice(&amounts[i * p..(i + 1) * p]);
+        for r in (0..count).filter(|&r| r != i) {
+            let factor = matrix[r * count + i] / pivot;
             if factor != 0.0 {
-                for c in 0..count {
-                    let x = matrix[i][c];
-                    matrix[r][c] -= factor * x;
-                }
-                for c in 0..p {
-                    let (x, size) = (rights[i][c], amounts[i][c]);
-                    rights[r][c] -= factor * x;
-                    amounts[r][c] += (factor * size).abs();
-                }
+                let of = |rows: usize| r * rows..(r + 1) * rows;
+                matrix[of(count)].iter_mut().zip(&line).for_each(|(x, y)| *x -= factor * y);
+                rights[of(p)].iter_mut().zip(&right).for_each(|(x, y)| *x -= factor * y);
+                amounts[of(p)].iter_mut().zip(&sizes).for_each(|(x, y)| *x += (factor * y).abs());
             }
         }
     }
@@ -305,7 +320,9 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
     let mut open_unknowns = vec![false; n];
     for c in (0..count).filter(|&c| !solved[c]) {
         let taken: Vec<f64> = (0..count)
-            .map(|i| if solved[i] { -matrix[i][c] / matrix[i][i] } else { f64::from(u8::from(i == c)) })
+            .map(|i| {
+                if solved[i] { -matrix[i * count + c] / matrix[i * count + i] } else { f64::from(u8::from(i == c)) }
+            })
             .collect();
         let most = taken.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         for (i, share) in taken.iter().enumerate().skip(varying.len()) {
@@ -320,17 +337,17 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
     let mut holding = vec![0.0; system.groups.len() * p];
     let mut response = pattern.response.clone();
     let mut size = vec![0.0; p];
+    let mut weights = vec![0.0; count];
     // Columns of unknown ports act through their solution only.
     for row in 0..n {
         let line = &mut response[row * p..(row + 1) * p];
-        let weights: Vec<f64> = unknown.iter().map(|&port| std::mem::take(&mut line[port])).collect();
+        weights.iter_mut().zip(&unknown).for_each(|(w, &port)| *w = std::mem::take(&mut line[port]));
         size.iter_mut().zip(&*line).for_each(|(size, x)| *size = x.abs());
         for i in (0..count).filter(|&i| solved[i] && weights[i] != 0.0) {
-            let w = weights[i] / matrix[i][i];
-            for c in 0..p {
-                line[c] += w * rights[i][c];
-                size[c] += w.abs() * amounts[i][c];
-            }
+            let w = weights[i] / matrix[i * count + i];
+            let of = i * p..(i + 1) * p;
+            line.iter_mut().zip(&rights[of.clone()]).for_each(|(x, y)| *x += w * y);
+            size.iter_mut().zip(&amounts[of]).for_each(|(x, y)| *x += w.abs() * y);
         }
         line.iter_mut().zip(&size).for_each(|(x, size)| *x = unless_rounding(*x, *size));
     }
@@ -338,7 +355,8 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
         let i = varying.len() + k;
         if solved[i] {
             for c in 0..p {
-                holding[g * p + c] = unless_rounding(rights[i][c], amounts[i][c]) / matrix[i][i];
+                let sum = unless_rounding(rights[i * p + c], amounts[i * p + c]);
+                holding[g * p + c] = sum / matrix[i * count + i];
             }
         }
     }

@@ -17,13 +17,13 @@ fn label(slip: i8) -> ModeLabel {
 }
 
 impl Engine {
-    /// Everything that has a mode, and the mode.
-    pub fn labels(&self) -> Vec<(String, ModeLabel)> {
-        let moves = self.shows.iter().filter_map(|shows| match shows {
-            Shows::Mode(moves) => Some((moves.name(&self.system), self.label(*moves))),
+    /// The modes of everything that has one, in the order of its [names](Engine::names).
+    pub fn labels(&self) -> Vec<ModeLabel> {
+        let label = |shows: &Shows| match shows {
+            Shows::Mode(moves) => Some(self.label(*moves)),
             _ => None,
-        });
-        moves.collect()
+        };
+        self.shows.iter().filter_map(label).collect()
     }
 
     fn label(&self, moves: Moves) -> ModeLabel {

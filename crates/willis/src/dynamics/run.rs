@@ -80,7 +80,7 @@ pub struct Simulation {
     /// The longest step that sees what the signals do.
     longest: f64,
     at_rest: Vec<bool>,
-    pub(super) labels: Vec<(String, ModeLabel)>,
+    pub(super) labels: Vec<ModeLabel>,
     /// Why the mode is chosen anew.
     why: Option<Why>,
     /// The last event.
@@ -232,6 +232,7 @@ impl Simulation {
             }
         }
         self.engine.system.set(input, value)?;
+        self.engine.steady = None;
         (self.rolling, self.row_is_present) = (false, false);
         Ok(())
     }
@@ -312,6 +313,7 @@ impl Simulation {
     pub(super) fn choose(&mut self, recorder: &mut dyn Recorder) -> Result<(), Outcome> {
         self.pace.choice();
         self.start_is_known = false;
+        self.engine.steady = None;
         let end = self.engine.system.scenario.end;
         let inside = self.engine.inside;
         let next = self.engine.system.signals().map(|s| s.next_break(self.t)).fold(f64::INFINITY, f64::min);
@@ -346,8 +348,7 @@ impl Simulation {
         }
         let known = AS_WRITTEN.max(10.0 * self.options.tolerance);
         self.engine.rest_where_joined(self.t, known, &mut self.at_rest);
-        self.engine.rest_with_others(&mut self.at_rest);
-        self.engine.bring_to_rest(&mut x, &self.at_rest);
+        self.engine.bring_to_rest(&mut x, &mut self.at_rest);
         self.engine.look(self.t, &x);
         if let Some(why) = self.engine.out_of_domain(self.t) {
             self.x = x;
@@ -402,6 +403,7 @@ impl Simulation {
         self.at_rest = mode.slip.iter().map(|s| *s == 0).collect();
         self.engine.enter(&mode);
         self.engine.stand_still(&mode, &mut x);
+        self.engine.settle_down();
         let labels = self.engine.labels();
         if let Some(event) = event(&self.engine, self.t, self.why.take(), &self.labels, &labels) {
             self.labels = labels;
@@ -677,10 +679,15 @@ impl Simulation {
     /// Whether a row is due at the end of a step of length `h`, at `t`; rows of the grid up to there count as one.
     pub(super) fn is_row_due(&mut self, t: f64, h: f64) -> bool {
         let before = self.next_sample;
-        while self.next_sample < self.samples && t >= self.sample_time(self.next_sample) - 0.5 * h {
+        while t >= self.next_row(h) {
             self.next_sample += 1;
         }
         self.next_sample > before
+    }
+
+    /// From when on a row is due in steps of length `h`.
+    pub(super) fn next_row(&self, h: f64) -> f64 {
+        if self.next_sample < self.samples { self.sample_time(self.next_sample) - 0.5 * h } else { f64::INFINITY }
     }
 
     /// What there is to say about the run so far.

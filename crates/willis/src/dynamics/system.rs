@@ -40,6 +40,7 @@ use crate::train::{MemberId, Scenario, Signal, SourceKind, Train};
 
 use super::bodies::Bodies;
 use super::decision::Body;
+use super::dense;
 use super::element::Element;
 use super::laws::Laws;
 use super::report::EnergyLossKind;
@@ -234,41 +235,56 @@ impl System {
     }
 
     /// The equations with loss slopes `slopes`, one for each element, and with a torque against the relative
-    /// acceleration of each shaft.
-    fn matrix(&self, slopes: &[f64], resists: &[f64]) -> DMatrix<f64> {
-        let mut k = DMatrix::zeros(self.nodes, self.nodes);
-        k.columns_mut(0, self.all()).copy_from(&self.left);
-        for (j, e) in self.elements.iter().enumerate() {
-            let column = self.gear.column(j) + self.loss.column(j) * (slopes[j] * e.factors[0]);
-            k.set_column(self.all() + j, &column);
-        }
-        for (e, d) in self.elastic.iter().zip(resists) {
-            for i in 0..self.free {
-                k.column_mut(i).axpy(d * e.row[i], &self.port_columns.column(e.port), 1.0);
+    /// acceleration of each shaft; by rows.
+    fn matrix(&self, slopes: &[f64], resists: &[f64]) -> Vec<f64> {
+        let (n, all) = (self.nodes, self.all());
+        let mut k = vec![0.0; n * n];
+        for (i, row) in k.chunks_exact_mut(n).enumerate() {
+            let (accelerations, forces) = row.split_at_mut(all);
+            accelerations.iter_mut().enumerate().for_each(|(c, x)| *x = self.left[(i, c)]);
+            for (j, (x, e)) in forces.iter_mut().zip(&self.elements).enumerate() {
+                *x = self.gear[(i, j)] + self.loss[(i, j)] * (slopes[j] * e.factors[0]);
+            }
+            for (e, d) in self.elastic.iter().zip(resists) {
+                let port = self.port_columns[(i, e.port)];
+                accelerations[..self.free].iter_mut().zip(&e.row).for_each(|(x, row)| *x += d * row * port);
             }
         }
         k
     }
 
-    /// Accelerations and forces for a unit torque in each port: unknowns × ports. `None` if the equations
+    /// Accelerations and forces for a unit torque in each port: unknowns × ports, by rows. `None` if the equations
     /// have no unique solution with these slopes. `resists`: the torque of each shaft against its relative
     /// acceleration, which steps of fixed length add; empty where there is none.
-    pub fn response(&self, slopes: &[f64], resists: &[f64]) -> Option<DMatrix<f64>> {
+    pub fn response(&self, slopes: &[f64], resists: &[f64]) -> Option<Vec<f64>> {
+        let (n, p) = (self.nodes, self.ports);
+        if n == 0 {
+            return Some(vec![]);
+        }
         let matrix = self.matrix(slopes, resists);
-        let mut right = self.port_columns.clone();
+        let mut right: Vec<f64> = (0..n * p).map(|k| self.port_columns[(k / p, k % p)]).collect();
         for (e, d) in self.elastic.iter().zip(resists) {
-            for i in 0..self.prescribed {
-                let mut column = right.column_mut(self.port_of_prescribed + i);
-                column.axpy(-d * e.row[self.free + i], &self.port_columns.column(e.port), 1.0);
+            for (i, row) in right.chunks_exact_mut(p).enumerate() {
+                let port = self.port_columns[(i, e.port)];
+                let behind = &mut row[self.port_of_prescribed..][..self.prescribed];
+                behind.iter_mut().zip(&e.row[self.free..]).for_each(|(x, row)| *x -= d * row * port);
             }
         }
-        let inverse = matrix.clone().lu().try_inverse()?;
-        let mut x = &inverse * &right;
-        x += &inverse * (&right - &matrix * &x);
+        let inverse = dense::inverse(&matrix, n)?;
+        let mut x = vec![0.0; n * p];
+        dense::add_product(&mut x, &inverse, &right, [n, p]);
+        let minus: Vec<f64> = matrix.iter().map(|k| -k).collect();
+        let mut left_over = right.clone();
+        dense::add_product(&mut left_over, &minus, &x, [n, p]);
+        dense::add_product(&mut x, &inverse, &left_over, [n, p]);
         // Bound of the error that rounding of the equations makes (Skeel 1979): what is within it is zero, as the force
         // in an idle mesh.
-        let bound = inverse.abs() * (matrix.abs() * x.abs() + right.abs());
-        x.zip_apply(&bound, |x, bound| *x = unless_rounding(*x, bound));
+        let amounts = |of: &[f64]| -> Vec<f64> { of.iter().map(|x| x.abs()).collect() };
+        let mut sums = amounts(&right);
+        dense::add_product(&mut sums, &amounts(&matrix), &amounts(&x), [n, p]);
+        let mut bound = vec![0.0; n * p];
+        dense::add_product(&mut bound, &amounts(&inverse), &sums, [n, p]);
+        x.iter_mut().zip(&bound).for_each(|(x, bound)| *x = unless_rounding(*x, *bound));
         x.iter().all(|v| v.is_finite()).then_some(x)
     }
 

@@ -213,12 +213,24 @@ impl Tree {
     }
 }
 
-/// The choices as principal minors of one matrix.
+/// The choices as principal minors of one matrix. Positions in it are bits of a word.
 struct Minors {
-    /// For each column that may be exchanged, the place it belongs to: one of a place is exchanged at a time.
-    places: Vec<usize>,
+    /// For each column that may be exchanged, those that may not be exchanged with it: of a place one at a time.
+    beside: Vec<u64>,
+    n: usize,
     /// Matrices by depth, by rows.
     levels: Vec<Vec<Tracked>>,
+}
+
+/// The positions of a word.
+fn positions(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let k = word.trailing_zeros() as usize;
+        (word != 0).then(|| {
+            word &= word - 1;
+            k
+        })
+    })
 }
 
 impl Minors {
@@ -243,7 +255,7 @@ impl Minors {
             }
         }
         let n = basis.len();
-        if basis.iter().any(|column| column.len() != n) {
+        if n >= u64::BITS as usize || basis.iter().any(|column| column.len() != n) {
             return None;
         }
         // The exchanged columns over the basis, by elimination of its columns one by one.
@@ -269,77 +281,68 @@ impl Minors {
                 matrix[row * n + k] = column[r];
             }
         }
+        let of = |place: usize| places.iter().enumerate().filter(move |(_, p)| **p == place);
+        let beside = places.iter().map(|&place| of(place).fold(0, |word, (k, _)| word | 1 << k)).collect();
         let mut levels = vec![vec![Tracked::default(); n * n]; n + 1];
         levels[0] = matrix;
-        let mut minors = Self { places, levels };
-        let all: Vec<usize> = (0..n).collect();
-        minors.are_positive(0, n, &all, &[]).ok()
+        let mut minors = Self { beside, n, levels };
+        minors.are_positive(0, (1 << n) - 1, 0).ok()
     }
 
     /// Whether no minor is negative that exchanges all of `forced`, whose own entries vanish so far, and any of `open`.
-    /// Both are positions in the matrix of a depth.
-    fn are_positive(&mut self, depth: usize, n: usize, open: &[usize], forced: &[usize]) -> Result<bool, Refused> {
+    fn are_positive(&mut self, depth: usize, open: u64, forced: u64) -> Result<bool, Refused> {
         // What was forced at a zero and no longer is zero comes first.
-        for (k, &i) in forced.iter().enumerate() {
-            if self.entry(depth, n, i, i).residue != 0 {
-                let others: Vec<usize> = forced.iter().copied().filter(|j| *j != forced[k]).collect();
-                return self.exchange(depth, n, i, open, &others);
-            }
+        if let Some(i) = positions(forced).find(|&i| !self.is_zero(depth, i, i)) {
+            return self.exchange(depth, i, open, forced & !(1 << i));
         }
-        let Some((&i, rest)) = open.split_first() else {
+        if open == 0 {
             // Nothing but zeros on the diagonal: the minor is zero if a whole row is, as that of one alone.
-            let zero = |&i: &usize| forced.iter().all(|&j| self.entry(depth, n, i, j).residue == 0);
-            return if forced.is_empty() || forced.iter().any(zero) { Ok(true) } else { Err(Refused) };
-        };
-        let vanishes = |this: &Self, i: usize| {
-            let others = || rest.iter().chain(forced).chain([&i]);
-            others().all(|&j| this.entry(depth, n, i, j).residue == 0)
-                || others().all(|&j| this.entry(depth, n, j, i).residue == 0)
-        };
-        if !self.are_positive(depth, n, rest, forced)? {
+            let zero = |i: usize| positions(forced).all(|j| self.is_zero(depth, i, j));
+            return if forced == 0 || positions(forced).any(zero) { Ok(true) } else { Err(Refused) };
+        }
+        let i = open.trailing_zeros() as usize;
+        let rest = open & !(1 << i);
+        if !self.are_positive(depth, rest, forced)? {
             return Ok(false);
         }
-        if vanishes(self, i) {
-            return Ok(true);
+        let apart = rest & !self.beside[i];
+        let others = apart | forced;
+        let alone =
+            positions(others).all(|j| self.is_zero(depth, i, j)) || positions(others).all(|j| self.is_zero(depth, j, i));
+        let own = self.levels[depth][i * self.n + i];
+        // Its row or column has nothing but its own entry, which is then a factor of every minor.
+        if alone && (own.residue == 0 || forced == 0) {
+            return own.sign().map(|sign| sign >= 0).ok_or(Refused);
         }
-        // Of a place one column at a time.
-        let place = self.places[i];
-        let apart: Vec<usize> = rest.iter().copied().filter(|&j| self.places[j] != place).collect();
-        if self.entry(depth, n, i, i).residue == 0 {
-            let forced: Vec<usize> = forced.iter().copied().chain([i]).collect();
-            return self.are_positive(depth, n, &apart, &forced);
+        if own.residue == 0 {
+            return self.are_positive(depth, apart, forced | 1 << i);
         }
-        self.exchange(depth, n, i, &apart, forced)
+        self.exchange(depth, i, apart, forced)
     }
 
-    fn entry(&self, depth: usize, n: usize, row: usize, column: usize) -> Tracked {
-        self.levels[depth][row * n + column]
+    #[inline]
+    fn is_zero(&self, depth: usize, row: usize, column: usize) -> bool {
+        self.levels[depth][row * self.n + column].residue == 0
     }
 
     /// The same with one that does not vanish exchanged.
-    fn exchange(
-        &mut self,
-        depth: usize,
-        n: usize,
-        i: usize,
-        open: &[usize],
-        forced: &[usize],
-    ) -> Result<bool, Refused> {
-        let pivot = self.entry(depth, n, i, i);
+    fn exchange(&mut self, depth: usize, i: usize, open: u64, forced: u64) -> Result<bool, Refused> {
+        let n = self.n;
+        let (before, after) = self.levels.split_at_mut(depth + 1);
+        let (from, to) = (&before[depth], &mut after[0]);
+        let pivot = from[i * n + i];
         match pivot.sign() {
             None => return Err(Refused),
             Some(-1) => return Ok(false),
             Some(_) => {}
         }
-        let (before, after) = self.levels.split_at_mut(depth + 1);
-        let (from, to) = (&before[depth], &mut after[0]);
-        let left = || open.iter().chain(forced);
-        for &r in left() {
+        let left = open | forced;
+        for r in positions(left) {
             let factor = from[r * n + i].over(pivot, 1);
-            for &c in left() {
+            for c in positions(left) {
                 to[r * n + c] = from[r * n + c].less_times(factor, from[i * n + c], pivot.residue);
             }
         }
-        self.are_positive(depth + 1, n, open, forced)
+        self.are_positive(depth + 1, open, forced)
     }
 }

@@ -285,6 +285,7 @@ impl Equations {
     /// Multiplies rows and columns by powers of two until their entries are about one.
     fn scale(&mut self) {
         self.column_scale = vec![1.0; self.columns.len()];
+        let given: Vec<f64> = self.columns.iter().flatten().map(|e| e.value).collect();
         for _ in 0..4 {
             let mut range = vec![[f64::INFINITY, 0.0f64]; self.rows];
             let widen = |r: &mut [f64; 2], x: f64| *r = [r[0].min(x.abs()), r[1].max(x.abs())];
@@ -295,10 +296,11 @@ impl Equations {
             for (row, range) in range.into_iter().enumerate() {
                 self.row_scale[row] *= factor(range);
             }
+            let mut given = given.iter();
             for (j, column) in self.columns.iter_mut().enumerate() {
                 let mut range = [f64::INFINITY, 0.0];
-                for e in column.iter_mut() {
-                    e.value = e.exact.to_f64() * self.row_scale[e.row] * self.column_scale[j];
+                for (e, given) in column.iter_mut().zip(&mut given) {
+                    e.value = given * self.row_scale[e.row] * self.column_scale[j];
                     widen(&mut range, e.value);
                 }
                 let factor = factor(range);

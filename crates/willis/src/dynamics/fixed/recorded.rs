@@ -14,6 +14,9 @@ use super::shafts::word;
 /// Work of a step of a small train, s.
 const FIXED_STEP: f64 = 2e-7;
 
+/// Steps after which progress is told.
+const TOLD: u64 = 256;
+
 /// A run in steps of fixed length.
 pub(in crate::dynamics) fn fixed(
     train: &Train,
@@ -41,11 +44,8 @@ pub(in crate::dynamics) fn fixed(
     let effort = Effort::new("steps", steps, FIXED_STEP * (1.0 + nodes * nodes / 100.0));
     let affordable = effort.seconds <= options.patience_s;
     run.outcome = Some(if affordable { Outcome::Finished } else { Outcome::TooLong(effort.to_string()) });
-    for step in 0..=steps {
-        if !affordable {
-            break;
-        }
-        let t = stepper.time();
+    while affordable {
+        let (step, t) = (stepper.count, stepper.time());
         let sampled = run.is_row_due(t, h);
         // A step that goes on in its mode changes nothing that labels depend on.
         let changed = settled != stepper.settled && key != Some(stepper.state_of_modes());
@@ -89,18 +89,19 @@ pub(in crate::dynamics) fn fixed(
                 run.outcome = Some(Outcome::Interrupted);
             }
         }
-        if step % 256 == 0 && recorder.progress(t).is_break() {
+        if step % TOLD == 0 && recorder.progress(t).is_break() {
             run.outcome = Some(Outcome::Interrupted);
         }
         if step == steps || run.outcome != Some(Outcome::Finished) {
             break;
         }
-        stepper.step();
+        let next = stepper.first_step_at(run.next_row(h)).min((step / TOLD + 1) * TOLD).min(steps);
+        stepper.run_on(next - step);
+        run.steps += (stepper.count - step) as usize;
         if let Some(verdict) = stepper.verdict() {
             run.outcome = Some(verdict.clone());
             break;
         }
-        run.steps += 1;
     }
     stepper.copy_to_engine(&mut x);
     run.t = stepper.time();
@@ -123,6 +124,24 @@ pub(in crate::dynamics) fn fixed(
 }
 
 impl FixedStep {
+    /// Takes steps up to so many, until one does not go on in the mode of the one before or the run ends.
+    fn run_on(&mut self, steps: u64) {
+        let (settled, end) = (self.settled, self.count + steps);
+        while self.count < end && self.settled == settled && self.verdict.is_none() {
+            self.step();
+        }
+    }
+
+    /// The first of the steps to come that begins at a time or later.
+    fn first_step_at(&self, t: f64) -> u64 {
+        let about = ((t - self.start) / self.h).floor() - 1.0;
+        let mut step = (self.count + 1).max(about as u64);
+        while step < u64::MAX && self.start + step as f64 * self.h < t {
+            step += 1;
+        }
+        step
+    }
+
     /// What labels depend on.
     fn state_of_modes(&self) -> (u64, u64, u64, f64) {
         let held = self.sign.iter().enumerate().map(|(g, s)| u64::from(*s == 0) << g).sum();
