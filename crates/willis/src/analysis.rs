@@ -21,7 +21,9 @@ mod words;
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 pub use outside::{OutsideAt, OutsideLaw};
 pub use shafts::{ShaftElement, ShaftMember, ShaftState, ShaftTable, shaft_table};
-pub use variators::{BeyondLimit, LimitedQuantity, MachineReport, VariatorReport};
+pub use variators::{MachineReport, VariatorReport};
+
+pub use crate::power_flow::{BeyondLimit, LimitedQuantity};
 pub use why::{TorqueRange, Why};
 
 pub use crate::named::Named;

@@ -1,12 +1,16 @@
 //! Where the power runs: torque and power of every member, mesh and shift element for one
 //! equilibrium, the balance, and the power that goes round in circles.
 
+mod limits;
+
 use std::collections::BTreeMap;
 
 use crate::kinematics::{Configuration, Element, Motion};
 use crate::real::{self, Real};
 use crate::statics::Solution;
 use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train, Variator};
+
+pub use limits::{BeyondLimit, LimitedQuantity};
 
 /// Torques and powers at one mesh (all `count` of them together).
 #[derive(Clone, Debug)]

@@ -33,8 +33,8 @@ use crate::losses::Laws;
 use crate::units::{AngularSpeed, Power, Quantity, Temperature, Torque};
 
 pub use dynamic::{
-    Contact, Curve, DragMount, Engagement, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal, Source,
-    SourceKind,
+    Contact, Control, ControlKind, Curve, DragMount, Engagement, Friction, Inertia, LossRow, LossTable, Scenario,
+    Shaft, Signal, Source, SourceKind,
 };
 pub use edit::{Document, Key, Measure};
 pub use find::AS_DRAWN;
@@ -47,13 +47,13 @@ pub use reading::Reading;
 pub use schema::schema;
 pub(crate) use specification::kind_of;
 pub use specification::{
-    BearingSpec, BevelSpec, CentralSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec, EfficiencySpec,
-    EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec, LinearSpec,
-    LossRowSpec, MachineEfficiencySpec, MachineSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec, OilSupply,
-    OperationSpec, PairKind, PlanetBodySpec, PlanetSpec, QuadraticSpec, RatioSpec, RavigneauxSpec, RotorSpec,
-    ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts, SetSpec, ShaftSpec, ShiftElementSpec, Side, SideSpec,
-    SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec, StepSpec, SteppedPlanetSpec, SteppedSpec, StoreSpec,
-    StudySpec, TerminalSpec, ToothSpec, VariatorSpec, VehicleSpec,
+    BearingSpec, BevelSpec, CentralSpec, ControlSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec,
+    EfficiencySpec, EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec,
+    LinearSpec, LossRowSpec, MachineEfficiencySpec, MachineSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec,
+    OilSupply, OperationSpec, PairKind, PlanetBodySpec, PlanetSpec, QuadraticSpec, RatioSpec, RavigneauxSpec,
+    RotorSpec, ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts, SetSpec, ShaftSpec, ShiftElementSpec, Side,
+    SideSpec, SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec, StepSpec, SteppedPlanetSpec, SteppedSpec,
+    StoreSpec, StudySpec, TerminalSpec, ToothSpec, VariatorSpec, VehicleSpec,
 };
 pub use variator::{EfficiencyMap, Machine, MachineEfficiency, Store, Variator, VariatorKind, VariatorPath};
 
