@@ -237,6 +237,16 @@ pub enum Load {
     Power(Quantity),
 }
 
+impl Load {
+    /// The power, where that is what is prescribed.
+    pub(crate) fn power(&self) -> Option<&Quantity> {
+        match self {
+            Self::Power(power) => Some(power),
+            Self::Torque(_) => None,
+        }
+    }
+}
+
 /// An operating point to analyse.
 #[derive(Clone, Debug)]
 pub struct Operation {
@@ -681,6 +691,17 @@ impl Train {
     /// variator depend on its load.
     pub(crate) fn depends_on_load(&self) -> bool {
         self.is_physical() || self.variators.iter().any(Variator::is_computed)
+    }
+
+    /// The train with its nominal efficiencies only.
+    pub(crate) fn without_laws(&self) -> Self {
+        let mut plain = self.clone();
+        plain.meshes.iter_mut().for_each(|m| m.computed = false);
+        plain.bearings.clear();
+        plain.seals.clear();
+        plain.rotors.clear();
+        plain.lubrication = None;
+        plain
     }
 
     /// The same train with another law in one family.
