@@ -693,7 +693,8 @@ pub fn operate(train: &Train, operation: &Operation) -> Result<(OperationReport,
 /// # Errors
 /// As [`operate`].
 pub fn operate_unnamed(train: &Train, operation: &Operation) -> Result<(OperationReport, Diagnostics), Diagnostics> {
-    let settled = operation::settle(train, operation, false).map_err(|wrong| words::refused(train, operation, &wrong))?;
+    let settled =
+        operation::settle(train, operation, false).map_err(|wrong| words::refused(train, operation, &wrong))?;
     Ok((settled.report, words::found(train, operation, &settled.findings)))
 }
 

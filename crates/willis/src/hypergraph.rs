@@ -35,8 +35,8 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::{OperationReport, Role, Selection, SolutionReport, UnitPoint, Verdict, analyze, assumptions};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::operating_point::DragSource;
 use crate::exact::Rational;
+use crate::operating_point::DragSource;
 use crate::power_flow::{families, take_out_cycles};
 use crate::train::{FRAME, MemberId, MemberKind, Train};
 

@@ -39,11 +39,7 @@ pub(super) struct Settled<'t> {
 
 /// Analyses an operation; `Err` when what it prescribes makes no question. `exactly` also works efficiencies out as
 /// fractions.
-pub(super) fn settle<'t>(
-    train: &'t Train,
-    operation: &Operation,
-    exactly: bool,
-) -> Result<Settled<'t>, Vec<Refusal>> {
+pub(super) fn settle<'t>(train: &'t Train, operation: &Operation, exactly: bool) -> Result<Settled<'t>, Vec<Refusal>> {
     let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
     let physics = train.depends_on_load().then(|| Physics::new(train, operation));
     let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();

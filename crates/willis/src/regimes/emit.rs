@@ -301,7 +301,8 @@ struct Code<'f> {
 }
 
 /// What emitted code returns beside the results of a formula.
-const COUNTED: &str = "number of equilibria at these speeds and torques: above 1 friction leaves a choice, and this is one of them";
+const COUNTED: &str =
+    "number of equilibria at these speeds and torques: above 1 friction leaves a choice, and this is one of them";
 
 impl<'f> Code<'f> {
     fn new(f: &'f ClosedFormula, notation: Notation, derivatives: bool) -> Self {
@@ -562,8 +563,7 @@ impl<'f> Count<'f> {
         let mut arguments: Vec<&Argument> = together.arguments.iter().collect();
         arguments.sort_by_key(|a| a.fixed);
         let conditions = |h: &Holds| h.conditions.iter().map(|c| h.names.show(notation, c)).collect();
-        let speed =
-            |(s, f, names): &(Symbol, Function, Names)| (names.info(*s).name.clone(), names.show(notation, f));
+        let speed = |(s, f, names): &(Symbol, Function, Names)| (names.info(*s).name.clone(), names.show(notation, f));
         Self {
             notation,
             numbers: arguments.iter().filter(|a| !a.efficiency).map(|a| a.name.as_str()).collect(),
@@ -620,7 +620,11 @@ impl<'f> Count<'f> {
     fn python(&self, out: &mut String, heading: &str) {
         let arguments = self.arguments(|a| a.name.clone() + &self.value(a, "=@"));
         let _ = writeln!(out, "\n\ndef {}({arguments}):", self.together.name);
-        let _ = writeln!(out, "    \"\"\"{}: the formulas that hold at these speeds and torques, by name.\n", comment(heading));
+        let _ = writeln!(
+            out,
+            "    \"\"\"{}: the formulas that hold at these speeds and torques, by name.\n",
+            comment(heading)
+        );
         let _ = writeln!(out, "    Each is an equilibrium: {SEVERAL}.\n");
         for k in 0..self.holds.len() {
             let _ = writeln!(out, "    {}", self.what(k));
@@ -647,7 +651,11 @@ impl<'f> Count<'f> {
 
     fn c(&self, out: &mut String, heading: &str) {
         let (name, n) = (&self.together.name, self.holds.len());
-        let _ = writeln!(out, "\n/* {}: how many formulas hold at these speeds and torques, and in holds which.", comment(heading));
+        let _ = writeln!(
+            out,
+            "\n/* {}: how many formulas hold at these speeds and torques, and in holds which.",
+            comment(heading)
+        );
         let _ = writeln!(out, "   Each is an equilibrium: {SEVERAL}.");
         let _ = writeln!(out, "   Returns -1 if an argument can have no such value.");
         for k in 0..n {

@@ -292,8 +292,7 @@ impl Names {
             [forward, if directed { of(ends[1], ends[0], &link.efficiency[1]) } else { forward }]
         });
         let terminals = setup.terminals.len();
-        let mut names =
-            Self { infos, elements: k, terminals, details: BTreeMap::new(), backward, shared, hubs, link };
+        let mut names = Self { infos, elements: k, terminals, details: BTreeMap::new(), backward, shared, hubs, link };
         names.detail(setup, &mut unique);
         names
     }
@@ -397,7 +396,9 @@ impl Names {
         // What stands for both is made of the meshes of both.
         let own = self.details.clone();
         for j in 0..self.elements {
-            let Some(arm) = self.hubs.arm(j).filter(|arm| self.hubs.is_shared(setup, pattern, arm.hub)) else { continue };
+            let Some(arm) = self.hubs.arm(j).filter(|arm| self.hubs.is_shared(setup, pattern, arm.hub)) else {
+                continue;
+            };
             let both = own[&self.efficiency(j)].times(&own[&self.efficiency(arm.hub)]);
             self.details.insert(self.efficiency(j), both);
         }
@@ -994,7 +995,11 @@ fn independent(rows: &[Vec<Polynomial>], setup: &Setup<'_>, names: &Names, actua
     let value = |s: Symbol| {
         let k = setup.active.len();
         let j = s.0 - names.x(0).0;
-        if actual { names.hubs.ratio(setup, j) } else { Rational::from(PRIMES[j % PRIMES.len()] + (j / k.max(1)) as i64) }
+        if actual {
+            names.hubs.ratio(setup, j)
+        } else {
+            Rational::from(PRIMES[j % PRIMES.len()] + (j / k.max(1)) as i64)
+        }
     };
     let mut numbers: Vec<Vec<Rational>> = rows.iter().map(|r| r.iter().map(|p| p.evaluate(&value)).collect()).collect();
     crate::exact::reduce(&mut numbers, setup.active.len()).len() == rows.len()

@@ -116,7 +116,9 @@ impl Hubs {
         let one = |j: usize| setup.element(j).forward == setup.element(j).backward;
         let Some(own) = self.arms[j] else { return false };
         let beside = (0..self.arms.len()).filter(|other| self.arms[*other].is_some_and(|a| a.hub == own.hub));
-        setup.lossy(own.hub) && one(own.hub) && beside.into_iter().all(|a| self.arms[a].expect("an arm").multiplies() && one(a))
+        setup.lossy(own.hub)
+            && one(own.hub)
+            && beside.into_iter().all(|a| self.arms[a].expect("an arm").multiplies() && one(a))
     }
 
     /// Whether they do for these drivers: power passes the hub the same way as every arm.

@@ -315,7 +315,7 @@ fn wrong_questions_are_answered_with_a_hint() {
 /// proportion.
 #[test]
 fn a_state_without_an_operation_is_shown_per_unit_of_its_input() {
-    let text = example("zf-8hp70");
+    let text = common::example("zf-8hp70");
     let bare = text.split("[[operation]]").next().unwrap();
     let train = Train::from_toml(bare).unwrap();
     let of_state = |state: &str| Selection { operation: None, state: Some(state.into()) };
@@ -343,7 +343,7 @@ fn a_state_without_an_operation_is_shown_per_unit_of_its_input() {
 /// With two freedoms one speed settles nothing, and the refusal says what would.
 #[test]
 fn a_state_with_two_freedoms_needs_an_operation() {
-    let text = example("prius-p112");
+    let text = common::example("prius-p112");
     let bare = text.split("[[operation]]").next().unwrap();
     let wrong = flows(&Train::from_toml(bare).unwrap(), &Selection::default()).unwrap_err().to_string();
     assert!(wrong.contains("2 degrees of freedom"), "{wrong}");
