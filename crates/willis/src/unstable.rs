@@ -59,6 +59,13 @@ pub fn operation(
     Operation { state, speeds, loads, ..Operation::new(name) }
 }
 
+/// The train with one operation more.
+pub fn with_operation(train: &Train, operation: Operation) -> Train {
+    let mut more = train.clone();
+    more.operations.push(operation);
+    more
+}
+
 /// The path of contact of a mesh.
 #[derive(Clone, Debug)]
 pub struct Along {
