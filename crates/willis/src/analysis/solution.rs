@@ -71,6 +71,8 @@ impl Frame<'_> {
         });
         let all_dissipated = flow.roles.contains(&1) && !flow.roles.contains(&-1);
         let rational = self.exact_efficiency(s).filter(|_| self.physics.is_none());
+        // The same bits whether or not it is asked for.
+        let decided = rational.as_ref().filter(|_| s.exact.is_some());
         let sources = self.physics.map(|(p, (step, _))| p.sources(step, &flow)).unwrap_or_default();
         let losses_w = match self.physics {
             Some(_) => Losses::of(&sources),
@@ -81,7 +83,7 @@ impl Frame<'_> {
         };
         let efficiency = if flow.input_power <= 0.0 {
             None
-        } else if let Some(e) = &rational {
+        } else if let Some(e) = decided {
             Some(e.to_f64())
         } else if flow.loss == 0.0 {
             Some(1.0)

@@ -343,8 +343,8 @@ fn a_state_without_an_operation_is_shown_per_unit_of_its_input() {
 /// With two freedoms one speed settles nothing, and the refusal says what would.
 #[test]
 fn a_state_with_two_freedoms_needs_an_operation() {
-    let text = common::example("prius-p112");
-    let bare = text.split("[[operation]]").next().unwrap();
+    let text = common::example("esmail-fig1");
+    let bare = text.split("[[shift_element]]").next().unwrap();
     let wrong = flows(&Train::from_toml(bare).unwrap(), &Selection::default()).unwrap_err().to_string();
     assert!(wrong.contains("2 degrees of freedom"), "{wrong}");
     assert!(wrong.contains("2 independent speeds and 1 torque or power"), "{wrong}");
