@@ -8,6 +8,7 @@ use willis::hypergraph::{FlowReport, flows};
 use willis::model::Model;
 
 use crate::kind::{self, Ask, FigureRequest, Kind};
+use crate::parts::point::pointed;
 
 pub(crate) const KIND: Kind<FlowReport> = Kind {
     title: "Power flow",
@@ -17,12 +18,12 @@ pub(crate) const KIND: Kind<FlowReport> = Kind {
     draw: |data, _| draw::draw(data),
 };
 
-/// The powers of the operations asked for, one at least.
+/// The powers of the operations asked for, one at least: of a state without any its [default](pointed).
 ///
 /// # Errors
 /// What [`flows`] says; there is no operation.
 pub(crate) fn powers(model: &Model, r: &FigureRequest) -> Result<FlowReport, Diagnostics> {
-    let report = flows(model.train(), &r.selection())?;
+    let report = flows(&pointed(model.train(), &r.selection()), &r.selection())?;
     if report.operations.is_empty() {
         let d = Diagnostic::new(Code::Unfit, "", "power flows in operations, and there is none");
         return Err(d

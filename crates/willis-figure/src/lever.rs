@@ -25,6 +25,7 @@ use willis::units::{Dimension, Quantity};
 use willis::unstable;
 
 use crate::kind::{self, Ask, FigureRequest, Kind};
+use crate::parts::point::ends;
 use family::{Family, families};
 
 pub use role::LeverRole;
@@ -90,7 +91,7 @@ pub struct Lever {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct LeverCase {
-    /// A small letter.
+    /// What it is called in the picture: its own name where all names are short, else a small letter.
     pub letter: String,
     /// The operation, or the state.
     pub name: String,
@@ -238,6 +239,9 @@ fn unfit(why: &str, hint: &str) -> Diagnostics {
     [Diagnostic::new(Code::Unfit, "", format!("no levers of this train: {why}")).hint(hint)].into_iter().collect()
 }
 
+/// Letters of a name that stands above a line.
+const SHORT: usize = 3;
+
 /// What is shown: motions, and torques where there is one.
 struct Shown {
     title: String,
@@ -336,7 +340,11 @@ impl Shown {
             [input] => train.member_name(input).to_owned(),
             _ => "the input".to_owned(),
         };
-        let (cases, speeds): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+        let (mut cases, speeds): (Vec<LeverCase>, Vec<_>) = all.into_iter().unzip();
+        // Names of gears are what everybody knows them by.
+        if cases.iter().all(|c| c.name.chars().count() <= SHORT) {
+            cases.iter_mut().for_each(|c| c.letter.clone_from(&c.name));
+        }
         let none = vec![None; train.members().len()];
         Ok(Self {
             title: format!("{}, every state", train.name()),
@@ -379,13 +387,6 @@ fn note(report: &OperationReport) -> Option<String> {
 fn chosen(mut all: Vec<SolutionReport>) -> Option<SolutionReport> {
     let at = all.iter().position(|s| !s.all_dissipated).unwrap_or(0);
     (at < all.len()).then(|| all.swap_remove(at))
-}
-
-fn ends(train: &Train, state: Option<usize>) -> Option<(MemberId, MemberId)> {
-    let own = state.map(|k| &train.states()[k]);
-    let input = own.and_then(|s| s.input).or(train.input())?;
-    let output = own.and_then(|s| s.output).or(train.output())?;
-    (input != output).then_some((input, output))
 }
 
 /// A state as a case, and its speeds where the input's settles them.

@@ -21,6 +21,7 @@ mod sankey;
 mod shift;
 mod split;
 mod stick;
+mod table;
 mod time;
 mod tornado;
 
@@ -66,6 +67,7 @@ pub use stick::{
     GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickMember, StickMesh,
     StickPiece, StickTerminal, Way, stick,
 };
+pub use table::draw::draw as draw_table;
 pub use time::draw::draw as draw_time;
 pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder};
 pub use tornado::draw::draw as draw_tornado;

@@ -42,7 +42,7 @@ pub struct LossChart {
     pub basis: String,
     /// The quantity that varies.
     pub x: ChartAxis,
-    /// The sources, the largest (by its greatest loss) first; the last may be all others together.
+    /// The sources, the largest at the operating point first; the last may be all others together.
     pub series: Vec<LossSeries>,
     /// What can be said at each value: one of [`PointVerdict`](willis::study::PointVerdict).
     pub verdicts: Vec<PointVerdict>,
@@ -176,7 +176,9 @@ pub fn loss_chart(
     }
     let most = |s: &LossSeries| s.loss_w.iter().chain([&s.at_operation_w]).flatten().fold(0.0f64, |a, w| a.max(*w));
     all.retain(|s| most(s) > 0.0);
-    all.sort_by(|a, b| most(b).total_cmp(&most(a)));
+    // As the bars of the operating point stand below each other; without one, by the greatest loss anywhere.
+    let rank = |s: &LossSeries| s.at_operation_w.unwrap_or_else(|| most(s));
+    all.sort_by(|a, b| rank(b).total_cmp(&rank(a)).then(most(b).total_cmp(&most(a))));
     if all.len() > NAMED {
         let rest = all.split_off(NAMED - 1);
         let sum = |own: &dyn Fn(&LossSeries) -> Option<f64>| rest.iter().map(own).sum::<Option<f64>>();

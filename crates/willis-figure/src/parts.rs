@@ -5,5 +5,6 @@ pub mod chart;
 pub mod markup;
 #[cfg(feature = "png")]
 pub mod png;
+pub mod point;
 pub mod style;
 pub mod theme;

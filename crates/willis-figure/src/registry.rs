@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use willis::analysis::ShaftTable;
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::hypergraph::FlowReport;
 use willis::model::Model;
@@ -154,6 +155,8 @@ kinds! {
     "time": Time(TimePlot) = time::KIND;
     /// The table of states with its steps.
     "shift": Shift(ShiftTable) = shift::KIND;
+    /// Speed of every shaft, slip of every open shift element and all torques, in every state.
+    "table": Table(ShaftTable) = table::KIND;
     /// What a step of each quantity does to efficiency and losses.
     "tornado": Tornado(Tornado) = tornado::KIND;
     /// How sure efficiency and loss are, over a quantity.

@@ -12,12 +12,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use willis::Diagnostics;
 use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
-use willis::diagnostic::{Code, Severity};
-use willis::hypergraph::watts;
+use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::model::Model;
-use willis::study::{Sensitivity, sensitivity};
+use willis::study::{PointAnswer, Sensitivity, UncertaintyPlan, UncertaintyRequest, sensitivity};
+use willis::unstable;
 use willis::work::{self, Cancelled, Effort, Work};
 
+use crate::parts::style::watts;
 use crate::report::document::{Block, Column, Document, Level, Section};
 use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
@@ -48,7 +49,66 @@ struct Findings<'a> {
     analysis: Analysis,
     /// Where there is an operating point.
     sensitivity: Option<Result<Sensitivity, Diagnostics>>,
+    /// How sure the first operating points are, by name.
+    sure: Vec<(String, Option<Sure>)>,
     figures: Figures,
+}
+
+impl Findings<'_> {
+    fn sure(&self, operation: &str) -> Option<&Sure> {
+        self.sure.iter().find(|(name, _)| name == operation)?.1.as_ref()
+    }
+
+    fn warnings(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.analysis.diagnostics.iter().filter(|d| d.severity == Severity::Warning)
+    }
+}
+
+/// Between which efficiencies most samples of an operating point lie.
+struct Sure {
+    low: f64,
+    high: f64,
+    samples: usize,
+    /// What was uncertain, with its distribution.
+    varied: Vec<String>,
+}
+
+impl Sure {
+    /// Samples of an operating point: enough for its band, too few for the tails.
+    const SAMPLES: usize = 128;
+
+    /// Nothing where nothing is uncertain, or where most samples have no answer.
+    fn of(model: &Model, operation: &str) -> Option<Self> {
+        let operation = Some(operation.to_owned());
+        let request = UncertaintyRequest { operation, samples: Self::SAMPLES, ..Default::default() };
+        let plan = UncertaintyPlan::new(model, &request).ok()?;
+        let samples: Vec<usize> = (0..plan.len()).filter(|k| plan.design().is_sample(*k)).collect();
+        let mut trains = Default::default();
+        let answers = samples.iter().map(|k| plan.answer(*k, &mut trains)).filter(PointAnswer::is_unique);
+        let mut found: Vec<f64> = answers.map(|a| a.efficiency()).filter(|e| e.is_finite()).collect();
+        if 2 * found.len() < samples.len() || found.is_empty() {
+            return None;
+        }
+        found.sort_by(f64::total_cmp);
+        let [low, high] = [0.05, 0.95].map(|p| unstable::quantile(&found, p));
+        let varied = plan.quantities().iter().map(|q| format!("{} {}", q.name, q.describe())).collect();
+        (high > low).then_some(Self { low, high, samples: samples.len(), varied })
+    }
+
+    fn range(&self) -> String {
+        format!("{} to {}", results::exact_percent(self.low).replace(" %", ""), results::exact_percent(self.high))
+    }
+
+    fn words(&self) -> String {
+        /// Quantities that are named.
+        const NAMED: usize = 4;
+        let more = match self.varied.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            n => format!("; and {n} more"),
+        };
+        let named: Vec<&str> = self.varied.iter().take(NAMED).map(String::as_str).collect();
+        format!("90 % of {} samples lie from {}, because of: {}{more}.", self.samples, self.range(), named.join("; "))
+    }
 }
 
 /// A picture that was asked for: its kind, and what it is of where there are several.
@@ -184,9 +244,11 @@ pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result
     // Only the first operation's is shown.
     let first = analysis.operations.first().map(|o| Selection { operation: Some(o.name.clone()), ..selection });
     let sensitivity = first.map(|first| sensitivity(train, &first));
+    let shown: Vec<&str> = analysis.operations.iter().take(PICTURED).map(|o| o.name.as_str()).collect();
+    let sure = work::map(work, shown.len(), |k| (shown[k].to_owned(), Sure::of(model, shown[k])))?;
     let wanted = wanted(model, request, &analysis);
     let figures = Figures::make(work, &wanted, |kind, request| kind.make_among_many(model, request, work))?;
-    let all = Findings { model, request, analysis, sensitivity, figures };
+    let all = Findings { model, request, analysis, sensitivity, sure, figures };
     let sections = [
         Some(summary(&all)),
         Some(scheme::section(&all)),
@@ -276,8 +338,7 @@ fn facts(all: &Findings<'_>) -> Vec<[String; 2]> {
         (_, 0) => fact("Operating points", format!("{count}, each with a single answer")),
         _ => fact("Operating points", format!("{count}, {without} of them without a single answer")),
     }
-    let warnings = all.analysis.diagnostics.iter().filter(|d| d.severity == Severity::Warning).count();
-    fact("Warnings", warnings.to_string());
+    fact("Warnings", all.warnings().count().to_string());
     if !all.request.version.is_empty() {
         fact("Made with", all.request.version.clone());
     }
@@ -311,7 +372,7 @@ fn summary(all: &Findings<'_>) -> Section {
     };
     blocks.push(Block::Text { text: question });
     let columns = ["Operating point", "Verdict"].map(Column::words).into_iter();
-    let columns = columns.chain(["Efficiency", "Power in", "Lost"].map(Column::numbers)).collect();
+    let columns = columns.chain(["Efficiency", "90 % band", "Power in", "Lost"].map(Column::numbers)).collect();
     let rows: Vec<Vec<String>> = (all.analysis.operations.iter())
         .map(|o| {
             let one = results::single(o);
@@ -320,23 +381,33 @@ fn summary(all: &Findings<'_>) -> Section {
                 format!("{}{state}", o.name),
                 o.verdict_words().to_owned(),
                 one.map_or("–".into(), results::efficiency),
+                all.sure(&o.name).filter(|_| one.is_some()).map_or("–".into(), Sure::range),
                 one.map_or("–".into(), |s| watts(s.input_power_w)),
                 one.map_or("–".into(), |s| watts(s.loss_w)),
             ]
         })
         .collect();
     if !rows.is_empty() {
-        blocks.push(Block::Table { caption: "Operating points".into(), columns, rows });
+        let mut caption = "Operating points".to_owned();
+        if let Some(s) = all.analysis.operations.iter().find_map(results::single) {
+            caption += &format!("; efficiency {}", results::basis(s));
+            if !train.states().is_empty() {
+                caption += ", not the nominal one of the shift table";
+            }
+        }
+        blocks.push(Block::Table { caption, columns, rows });
     }
+    blocks.extend(warnings(all));
     let open = || all.analysis.operations.iter().filter(|o| o.verdict != Verdict::Unique);
     blocks.extend(open().take(TOLD).map(notice));
     blocks.extend(and_more(open().count(), "operating points without a single answer"));
     let all_proved =
         |o: &OperationReport| o.verdict == Verdict::Unique && o.certificate.is_some_and(|c| c.unique_for_every_load);
     if !all.analysis.operations.is_empty() && all.analysis.operations.iter().all(all_proved) {
-        let text = "Every answer is the only one, for every load in the same direction of motion: this is proved, not \
-                    found by trying."
-            .to_owned();
+        let text =
+            "Every solution is the only one, for every load in the same direction of motion: this is proved, not \
+                    found by trying. How exact its values are is another matter."
+                .to_owned();
         blocks.push(Block::Notice { level: Level::Good, text });
     }
     if let Some(first) = all.sensitivity.as_ref().and_then(|s| s.as_ref().ok()?.operations.first())
@@ -352,6 +423,23 @@ fn summary(all: &Findings<'_>) -> Section {
         blocks.push(Block::Text { text });
     }
     Section { title: "Question and answer".into(), blocks }
+}
+
+/// Warnings belong where nobody overlooks them; of many the first, and where the others are.
+fn warnings(all: &Findings<'_>) -> Vec<Block> {
+    const FIRST: usize = 6;
+    let count = all.warnings().count();
+    let notice = |text: String| Block::Notice { level: Level::Warning, text };
+    let mut blocks: Vec<Block> = (all.warnings().take(FIRST))
+        .map(|d| {
+            let place = if d.place.is_empty() { String::new() } else { format!(" ({})", d.place) };
+            notice(format!("{}: {}{place}", d.code.as_str(), d.message))
+        })
+        .collect();
+    if count > FIRST {
+        blocks.push(notice(format!("{} more stand under Assumptions and warnings.", count - FIRST)));
+    }
+    blocks
 }
 
 /// The verdict of an operating point in words.
@@ -373,7 +461,6 @@ fn notice(o: &OperationReport) -> Block {
 
 #[cfg(test)]
 mod tests {
-    use willis::diagnostic::Diagnostic;
     use willis::work::Serial;
 
     use super::*;

@@ -117,6 +117,13 @@ pub struct StickPiece {
     pub points: Vec<Place>,
     /// The power of the state passes it.
     pub loaded: bool,
+    /// Power from its first corner to its last, over that of the input, lossless; negative where it runs the other way,
+    /// absent where statics does not settle it or no state is shown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub power: Option<f64>,
+    /// That power is part of a circle from set to set.
+    #[serde(default)]
+    pub circulates: bool,
 }
 
 /// What a gear is in its block.
@@ -146,7 +153,7 @@ pub struct StickGear {
     pub member: Option<usize>,
     /// Position in [`Stick::blocks`].
     pub block: usize,
-    /// Number of teeth; a fraction where a planet is nominal.
+    /// Number of teeth; empty where the file does not give it and no whole number follows from the others.
     pub teeth: String,
     /// What it is.
     pub role: GearRole,

@@ -8,6 +8,7 @@ use willis::model::Model;
 use willis::study::{Sensitivity, StepKind, sensitivity};
 
 use crate::kind::{self, Ask, FigureRequest, Kind};
+use crate::parts::point::pointed;
 
 pub(crate) const KIND: Kind<Tornado> = Kind {
     title: "What matters most",
@@ -20,9 +21,9 @@ pub(crate) const KIND: Kind<Tornado> = Kind {
 /// Bars of a ranking.
 const BARS: usize = 14;
 
-/// The ranking of the operation that is named, or of the first that has derivatives.
+/// The ranking of the operation that is named, or of the first that has derivatives; of a state without any its default.
 fn ranking(model: &Model, r: &FigureRequest) -> Result<Tornado, Diagnostics> {
-    let all = sensitivity(model.train(), &r.selection())?;
+    let all = sensitivity(&pointed(model.train(), &r.selection()), &r.selection())?;
     let first = all.operations.iter().find(|o| !o.quantities.is_empty()).map(|o| o.name.clone());
     tornado(&all, r.operation.clone().or(first).as_deref(), BARS)
 }

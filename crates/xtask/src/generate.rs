@@ -119,6 +119,7 @@ const FIGURES: &[(&str, &[&str])] = &[
         "book/src/figures/herringbone-losses.svg",
         &["draw", "losses", "examples/wang-herringbone-physical.toml", "--theme", "auto", "-o"],
     ),
+    ("book/src/figures/ivt-drive-away.svg", &["draw", "time", "examples/ivt-drive-away.toml", "--theme", "auto", "-o"]),
     ("book/src/figures/nrel-front.svg", &["draw", "front", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
     (
         "book/src/figures/two-mode-split.svg",
@@ -132,6 +133,7 @@ const FIGURES: &[(&str, &[&str])] = &[
         "book/src/figures/belt-sankey.svg",
         &["draw", "sankey", "examples/belt-ivt.toml", "--operation", "forward", "--theme", "auto", "-o"],
     ),
+    ("book/src/figures/8hp70-table.svg", &["draw", "table", "examples/zf-8hp70.toml", "--theme", "auto", "-o"]),
     (
         "book/src/figures/nrel-tornado.svg",
         &["draw", "tornado", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"],

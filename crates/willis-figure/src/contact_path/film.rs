@@ -5,7 +5,8 @@ use svg::node::element::{Circle, Group, Path};
 use super::{ContactPath, MeshPath, contact_path};
 use crate::kind::{self, Ask, Kind};
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
+    ticks, wide,
 };
 
 pub(crate) const KIND: Kind<ContactPath> = Kind {
@@ -100,7 +101,7 @@ pub fn draw(path: &ContactPath) -> String {
         } else {
             y(b) + 16.0
         };
-        g = g.add(halo(text(LEFT + 8.0, at, 12.0, Anchor::Start, words)).set("fill", FAINT));
+        g = g.add(halo(text(LEFT + 8.0, at, 12.0, Anchor::Start, words).set("fill", FAINT), PAPER, 3.0));
     }
     g = g
         .add(rectangle(LEFT, TOP, RIGHT - LEFT, bottom - TOP, "none").set("stroke", LINE).set("stroke-width", 1))
@@ -159,10 +160,6 @@ fn description(path: &ContactPath) -> String {
         path.operation,
         all.join("; ")
     )
-}
-
-fn halo(t: svg::node::element::Text) -> svg::node::element::Text {
-    t.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3).set("stroke-linejoin", "round")
 }
 
 fn curve(m: &MeshPath, k: usize, x: &dyn Fn(f64) -> f64, y: &dyn Fn(f64) -> f64) -> Group {

@@ -6,7 +6,7 @@ use super::film::heading;
 use super::{ContactPath, MeshPath, PathPoint, contact_path};
 use crate::kind::{self, Ask, Kind};
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks,
+    Anchor, BOLD, FAINT, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text, ticks,
 };
 
 pub(crate) const KIND: Kind<ContactPath> = Kind {
@@ -277,24 +277,13 @@ fn panel(
     }
     if !drawn {
         let words = "not computed: the efficiency is given";
-        g = g.add(
-            text((left + right) / 2.0, top + PANEL / 2.0 + 4.0, 11.0, Anchor::Middle, words)
-                .set("fill", FAINT)
-                .set("paint-order", "stroke")
-                .set("stroke", PAPER)
-                .set("stroke-width", 4),
-        );
+        let t = text((left + right) / 2.0, top + PANEL / 2.0 + 4.0, 11.0, Anchor::Middle, words);
+        g = g.add(halo(t.set("fill", FAINT), PAPER, 4.0));
     }
     g = g.add(rectangle(left, top, right - left, PANEL, "none").set("stroke", LINE).set("stroke-width", 1));
     if k == 0 {
-        g = g.add(
-            text(left, top - 5.0, 12.0, Anchor::Start, &fit(row.title, right - left, 12.0))
-                .set("fill", INK)
-                .set("paint-order", "stroke")
-                .set("stroke", PAPER)
-                .set("stroke-width", 4)
-                .set("stroke-linejoin", "round"),
-        );
+        let title = text(left, top - 5.0, 12.0, Anchor::Start, &fit(row.title, right - left, 12.0));
+        g = g.add(halo(title, PAPER, 4.0));
     }
     g
 }

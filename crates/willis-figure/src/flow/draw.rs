@@ -9,9 +9,9 @@ mod words;
 
 use svg::node::element::Group;
 use willis::analysis::Verdict;
-use willis::hypergraph::{FlowReport, Hypergraph, NodeKind, watts};
+use willis::hypergraph::{FlowReport, Hypergraph, NodeKind};
 
-use crate::parts::style::{Anchor, BOLD, FAINT, LINE, fit, line, lines, number, page, text, wide};
+use crate::parts::style::{Anchor, BOLD, FAINT, LINE, fit, line, lines, number, page, text, watts, wide};
 use layout::Drawing;
 use marks::{Round, ground, shape, stroke};
 use words::{SMALL, percent};

@@ -6,11 +6,10 @@ mod view;
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-use svg::Node;
-use svg::node::element::{Element, Group, Path, Polygon};
+use svg::node::element::{Group, Path, Polygon, Style};
 
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, badge, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
+    Anchor, BOLD, FAINT, INK, LINE, badge, colour, digits, fit, halo, line, lines, number, page, rectangle, text, wide,
 };
 use crate::{Front, FrontMesh, FrontPlane, FrontWheel};
 use enlarged::{ENLARGED, enlarged, window};
@@ -43,7 +42,7 @@ const ACCURACY: f64 = 0.06;
 ///     .build()?;
 /// let view = front(&train, None, true)?;
 /// let svg = willis_figure::draw_front(&view, false);
-/// assert!(svg.contains("z = 30") && !svg.contains("animateTransform"));
+/// assert!(svg.contains("z = 30") && !svg.contains("animation"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(view: &Front, animated: bool) -> String {
@@ -107,7 +106,7 @@ pub fn draw(view: &Front, animated: bool) -> String {
         )
         .add(text(EDGE, 60.0, 13.0, Anchor::Start, &fit(&caption, width - 2.0 * EDGE, 13.0)).set("fill", FAINT))
         .add(page_body);
-    document.to_string()
+    if animated { document.add(Style::new(TURNING)).to_string() } else { document.to_string() }
 }
 
 /// Middle of all wheels, and half of the larger side of their box.
@@ -162,7 +161,7 @@ fn panel(view: &Front, plane: &FrontPlane, at: &View, first: bool, animated: boo
                 .set("stroke-width", number(weight))
                 .set("stroke-linejoin", "round");
             if animated && w.turns != 0.0 {
-                path.append(turning(view, w, at.at(w.bodies[body].centre_mm)));
+                path = turning(path, view, w, at.at(w.bodies[body].centre_mm));
             }
             g = g.add(path);
         }
@@ -192,24 +191,21 @@ fn root(view: &Front) -> usize {
     view.wheels.iter().position(|w| w.turns == 1.0).unwrap_or(0)
 }
 
+/// What wheels that turn refer to. Style sheets, unlike animations in the picture itself, know readers who want none.
+const TURNING: &str = "@keyframes turn { to { transform: rotate(360deg) } }\n\
+                       @media (prefers-reduced-motion: reduce) { .turns { animation: none !important } }";
+
 /// Turns a wheel about its axis for ever.
-fn turning(view: &Front, w: &FrontWheel, centre: (f64, f64)) -> Element {
+fn turning(path: Path, view: &Front, w: &FrontWheel, centre: (f64, f64)) -> Path {
     let once = PASSING * f64::from(view.wheels[root(view)].teeth) / w.turns.abs();
-    // The page's second axis points downward: counterclockwise is negative.
-    let full = if w.turns > 0.0 { -360 } else { 360 };
-    let place = format!("{} {}", number(centre.0), number(centre.1));
-    let mut e = Element::new("animateTransform");
-    for (key, value) in [
-        ("attributeName", "transform".to_owned()),
-        ("type", "rotate".to_owned()),
-        ("from", format!("0 {place}")),
-        ("to", format!("{full} {place}")),
-        ("dur", format!("{once:.6}s")),
-        ("repeatCount", "indefinite".to_owned()),
-    ] {
-        e.assign(key, value);
-    }
-    e
+    // The page's second axis points downward: counterclockwise is backwards.
+    let way = if w.turns > 0.0 { " reverse" } else { "" };
+    let style = format!(
+        "transform-origin: {}px {}px; animation: turn {once:.6}s linear infinite{way}",
+        number(centre.0),
+        number(centre.1)
+    );
+    path.set("class", "turns").set("style", style)
 }
 
 /// The whole wheel as one path; a ring with its rim.
@@ -336,9 +332,7 @@ fn marks(view: &Front, k: usize, at: &View) -> Group {
         let r = w.root_radius_mm * at.scale;
         g = g.add(badge(c.0, c.1, &key));
         if body == 0 && r > 46.0 {
-            let over = |t: svg::node::element::Text| {
-                t.set("paint-order", "stroke").set("stroke", colour(Some(k), 0.24)).set("stroke-width", 3)
-            };
+            let over = |t| halo(t, &colour(Some(k), 0.24), 3.0);
             g = g
                 .add(over(text(c.0, c.1 - 28.0, 12.0, Anchor::Middle, &fit(own(view, &w.name), 1.5 * r, 12.0))))
                 .add(over(text(c.0, c.1 - 14.0, 12.0, Anchor::Middle, &format!("z = {}", w.teeth))));

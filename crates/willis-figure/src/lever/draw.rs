@@ -3,7 +3,8 @@
 use svg::node::element::{Circle, Group, Path};
 
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, figures, fit, halo, line, lines, number, page, rectangle,
+    text, ticks, wide,
 };
 use crate::{Lever, LeverBar, LeverCase, LeverNode, LeverPull, LeverRole, LeverSet};
 
@@ -11,7 +12,7 @@ const MARGIN: f64 = 28.0;
 const WIDEST: f64 = 1400.0;
 /// Column of names and speeds.
 const NAMES: f64 = 100.0;
-/// Column of forces, one for each set.
+/// Least width of the column of forces, one for each set.
 const FORCES: f64 = 106.0;
 const GAP: f64 = 10.0;
 /// Room beside the speeds: signs of held members, dots.
@@ -41,6 +42,12 @@ struct View<'a> {
     speeds: f64,
     height: f64,
     largest: f64,
+    /// The unit of all torques: how many of it are one of the data, and its name.
+    torque: (f64, &'static str),
+    /// Width of a column of forces.
+    forces: f64,
+    /// Room for the name of a case above its line.
+    letters: f64,
 }
 
 /// The levers of a train: height by tooth numbers, speeds as displacements, torques as arrows at the
@@ -87,6 +94,7 @@ pub fn draw(lever: &Lever) -> String {
         y = 60.0 + 18.0 * (k + 1) as f64;
     }
     let mut top = y + 2.0;
+    g = g.add(across(&v, &rows, top, content));
     for row in &rows {
         g = g.add(levers(&v, row, top));
         top += ABOVE + v.height + BELOW;
@@ -111,11 +119,17 @@ impl<'a> View<'a> {
         let most = lever.bars.iter().map(|b| shown(b).count()).max().unwrap_or(0);
         // Few levers have wide scales, many have narrow ones.
         let columns: usize = lever.bars.iter().map(|b| if lever.torques { b.sets.len() } else { 0 }).sum();
-        let fixed = lever.bars.len() as f64 * (NAMES + 2.0 * PAD + GAP) + columns as f64 * FORCES;
-        let least = if cases > 1 { f64::max(14.0 * cases as f64, 150.0) } else { 80.0 };
+        let pulls = || lever.bars.iter().flat_map(|b| &b.sets).flat_map(|s| &s.pulls);
+        let largest = pulls().fold(0.0f64, |a, p| a.max(p.torque.abs()));
+        let torque = if lever.unit.is_some() { (1.0, "") } else { unit_of_torques(largest) };
+        // Values stand on both sides of the lever.
+        let values = pulls().map(|p| wide(&figures(p.torque * torque.0, 4), 10.0) + 9.0);
+        let forces = values.fold(FORCES / 2.0, f64::max) * 2.0;
+        let fixed = lever.bars.len() as f64 * (NAMES + 2.0 * PAD + GAP) + columns as f64 * forces;
+        let letters = lever.cases[..cases].iter().map(|c| wide(&c.letter, 12.0) * BOLD + 4.0).fold(14.0, f64::max);
+        let least = if cases > 1 { f64::max(letters * cases as f64, 150.0) } else { 80.0 };
         let room = (WIDEST - 2.0 * MARGIN - fixed) / lever.bars.len() as f64;
         let speeds = room.clamp(least, f64::max(least, if cases > 1 { 340.0 } else { 260.0 }));
-        let pulls = lever.bars.iter().flat_map(|b| &b.sets).flat_map(|s| &s.pulls);
         Self {
             lever,
             cases,
@@ -124,12 +138,15 @@ impl<'a> View<'a> {
             high,
             speeds,
             height: (BLOCK * most as f64).max(360.0),
-            largest: pulls.fold(0.0, |a, p| a.max(p.torque.abs())),
+            largest,
+            torque,
+            forces,
+            letters,
         }
     }
 
     fn width(&self, bar: &LeverBar) -> f64 {
-        NAMES + 2.0 * PAD + self.speeds + if self.lever.torques { FORCES * bar.sets.len() as f64 } else { 0.0 }
+        NAMES + 2.0 * PAD + self.speeds + if self.lever.torques { self.forces * bar.sets.len() as f64 } else { 0.0 }
     }
 
     /// From the left edge of a lever's panel.
@@ -148,8 +165,23 @@ impl<'a> View<'a> {
         }
     }
 
+    /// A torque in the unit of the picture; round-off is none.
+    fn pull(&self, p: &LeverPull) -> String {
+        if p.torque.abs() > 1e-9 * self.largest { figures(p.torque * self.torque.0, 4) } else { "0".to_owned() }
+    }
+
     fn speed(&self, node: &LeverNode, case: usize) -> Option<f64> {
         node.speeds[case].map(|w| w * self.factor)
+    }
+}
+
+/// One unit for all torques of a picture, by the largest of them in N m.
+fn unit_of_torques(largest: f64) -> (f64, &'static str) {
+    match largest {
+        x if x >= 1e7 => (1e-6, "MN m"),
+        x if x >= 1e4 => (1e-3, "kN m"),
+        x if x > 0.0 && x < 0.1 => (1e3, "mN m"),
+        _ => (1.0, "N m"),
     }
 }
 
@@ -195,10 +227,6 @@ fn spread(wished: &[f64], gap: f64, limits: (f64, f64)) -> Vec<f64> {
     found
 }
 
-fn halo(t: svg::node::element::Text) -> svg::node::element::Text {
-    t.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3).set("stroke-linejoin", "round")
-}
-
 fn case_colour(k: usize) -> String {
     colour(Some(k), 1.0)
 }
@@ -209,12 +237,9 @@ fn dashed(l: svg::node::element::Line, k: usize) -> svg::node::element::Line {
 
 /// A row of levers and the links between them.
 fn levers(v: &View<'_>, row: &[usize], top: f64) -> Group {
-    let mut at = MARGIN;
-    let mut lefts = vec![None; v.lever.bars.len()];
-    for &k in row {
-        lefts[k] = Some(at);
-        at += v.width(&v.lever.bars[k]) + GAP;
-    }
+    let mut at = vec![None; v.lever.bars.len()];
+    lefts(v, row).into_iter().for_each(|(k, left)| at[k] = Some(left));
+    let lefts = at;
     let mut under = Group::new();
     for &k in row {
         let bar = &v.lever.bars[k];
@@ -238,6 +263,54 @@ fn levers(v: &View<'_>, row: &[usize], top: f64) -> Group {
         let left = lefts[k].expect("just placed");
         g.add(panel(v, &v.lever.bars[k]).set("transform", format!("translate({} {})", number(left), number(top))))
     })
+}
+
+/// The left edge of each lever of a row.
+fn lefts(v: &View<'_>, row: &[usize]) -> Vec<(usize, f64)> {
+    let mut at = MARGIN;
+    let mut all = Vec::with_capacity(row.len());
+    for &k in row {
+        all.push((k, at));
+        at += v.width(&v.lever.bars[k]) + GAP;
+    }
+    all
+}
+
+/// Links from a row of levers to the next: round their ends, each on a way of its own.
+fn across(v: &View<'_>, rows: &[Vec<usize>], top: f64, content: f64) -> Group {
+    let mut g = Group::new();
+    let tall = ABOVE + v.height + BELOW;
+    let places: Vec<Vec<(usize, f64)>> = rows.iter().map(|row| lefts(v, row)).collect();
+    let place = |[b, n]: [usize; 2]| {
+        let (row, left) = places.iter().enumerate().find_map(|(r, all)| Some((r, all.iter().find(|p| p.0 == b)?.1)))?;
+        Some((row, left + v.x(0.0), top + tall * row as f64 + v.y(v.lever.bars[b].nodes[n].position)))
+    };
+    let mut used = 0;
+    for link in &v.lever.links {
+        let all: Vec<(usize, f64, f64)> = link.points.iter().filter_map(|p| place(*p)).collect();
+        for pair in all.windows(2).filter(|w| w[0].0 != w[1].0) {
+            let [(row, x, y), (_, x_end, y_end)] = [pair[0], pair[1]];
+            // Beside the rows and between them nothing stands.
+            let aside = 4.0 + 4.0 * f64::from(used % 5);
+            let right = MARGIN + content - GAP + aside;
+            let between = top + tall * (row + 1) as f64 - 2.0 - aside / 2.0;
+            let left = MARGIN - aside;
+            let n = |x: f64, y: f64| format!("{} {}", number(x), number(y));
+            let d = format!(
+                "M{} L{} L{} L{} L{} L{}",
+                n(x, y),
+                n(right, y),
+                n(right, between),
+                n(left, between),
+                n(left, y_end),
+                n(x_end, y_end)
+            );
+            let way = Path::new().set("d", d).set("fill", "none").set("stroke", FAINT).set("stroke-width", 1.2);
+            g = g.add(way.set("stroke-dasharray", "6 4").set("data-member", link.member.as_str()));
+            used += 1;
+        }
+    }
+    g
 }
 
 fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
@@ -284,7 +357,7 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
     g = g.add(names(v, bar));
     if v.lever.torques {
         for (k, set) in bar.sets.iter().enumerate() {
-            let centre = NAMES + 2.0 * PAD + v.speeds + FORCES * (k as f64 + 0.5);
+            let centre = NAMES + 2.0 * PAD + v.speeds + v.forces * (k as f64 + 0.5);
             g = g.add(forces(v, bar, set, centre, bar.sets.len() > 1));
         }
     }
@@ -352,15 +425,17 @@ fn ground(x: f64, y: f64) -> Group {
 fn letters(v: &View<'_>, first: &LeverNode) -> Group {
     let drawn: Vec<(usize, f64)> = (0..v.cases).filter_map(|c| Some((c, v.x(v.speed(first, c)?)))).collect();
     let wished: Vec<f64> = drawn.iter().map(|d| d.1).collect();
-    let at = spread(&wished, 14.0, (NAMES + 8.0, NAMES + 2.0 * PAD + v.speeds - 8.0));
+    let at = spread(&wished, v.letters, (NAMES + 8.0, NAMES + 2.0 * PAD + v.speeds - 8.0));
     let end = v.y(first.position);
     let y = end - 17.0;
     let mut g = Group::new();
     for ((case, x), place) in drawn.into_iter().zip(at) {
         let letter = text(place, y, 12.0, Anchor::Middle, &v.lever.cases[case].letter).set("font-weight", "bold");
-        g = g
-            .add(line((place, y + 3.0), (x, end - 4.0), &case_colour(case), 0.8))
-            .add(halo(letter.set("fill", case_colour(case))));
+        g = g.add(line((place, y + 3.0), (x, end - 4.0), &case_colour(case), 0.8)).add(halo(
+            letter.set("fill", case_colour(case)),
+            PAPER,
+            3.0,
+        ));
     }
     g
 }
@@ -377,13 +452,14 @@ fn names(v: &View<'_>, bar: &LeverBar) -> Group {
         let name = fit(&n.member, (right - 2.0) / weight, size);
         let mut label = text(right, y - 5.0, size, Anchor::End, &name);
         label = if planet(n) { label.set("fill", FAINT) } else { label.set("font-weight", "bold") };
-        g = g.add(line((right + 2.0, *y), (NAMES + 4.0, *wished), LINE, 0.8)).add(halo(label));
+        g = g.add(line((right + 2.0, *y), (NAMES + 4.0, *wished), LINE, 0.8)).add(halo(label, PAPER, 3.0));
         let speed = match (v.cases, n.speeds[0].map(|w| w * v.factor)) {
             (1, Some(w)) => v.readable(w),
             (1, None) => "not settled".to_owned(),
             _ => continue,
         };
-        g = g.add(halo(text(right, y + 11.0, 11.0, Anchor::End, &fit(&speed, right - 2.0, 11.0)).set("fill", FAINT)));
+        let speed = text(right, y + 11.0, 11.0, Anchor::End, &fit(&speed, right - 2.0, 11.0)).set("fill", FAINT);
+        g = g.add(halo(speed, PAPER, 3.0));
     }
     g
 }
@@ -393,19 +469,21 @@ fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool
     let mut g = Group::new();
     let y = v.y(-BEYOND) + 8.0;
     let caption = match &v.lever.unit {
-        None => "T, N m".to_owned(),
-        Some(input) => format!("T / T {}", fit(input, FORCES - 42.0, 11.0)),
+        None => format!("T, {}", v.torque.1),
+        Some(input) => format!("T / T {}", fit(input, v.forces - 42.0, 11.0)),
     };
     g = g.add(text(centre, y + 30.0, 11.0, Anchor::Middle, &caption).set("fill", FAINT));
     if named {
-        let name = fit(&set.name, FORCES - 12.0, 11.0);
+        let name = fit(&set.name, v.forces - 12.0, 11.0);
         g = g.add(text(centre, y + 14.0, 11.0, Anchor::Middle, &name));
     }
     let (low, high) = ends(bar);
     let range = low.position - 2.0 * BEYOND..=high.position + 2.0 * BEYOND;
     let (near, far): (Vec<&LeverPull>, Vec<&LeverPull>) = set.pulls.iter().partition(|p| range.contains(&p.point));
     for (k, p) in far.iter().enumerate() {
-        let label = fit(&format!("{}: {}", bar.nodes[p.node].member, digits(p.torque)), FORCES - 6.0, 10.0);
+        let value = format!(": {}", v.pull(p));
+        let name = fit(&bar.nodes[p.node].member, v.forces - 6.0 - wide(&value, 10.0), 10.0);
+        let label = format!("{name}{value}");
         g = g.add(text(centre, y + 44.0 + 13.0 * k as f64, 10.0, Anchor::Middle, &label).set("fill", FAINT));
     }
     if set.pulls.is_empty() || v.largest == 0.0 {
@@ -437,8 +515,7 @@ fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool
         if (at - y).abs() > 3.0 {
             g = g.add(line((centre - side * 3.0, y), (x + side, at), LINE, 0.8));
         }
-        let value = if part(p) > 1e-9 { digits(p.torque) } else { "0".to_owned() };
-        g = g.add(halo(text(x, at + 3.5, 10.0, anchor, &fit(&value, FORCES / 2.0 - 7.0, 10.0))));
+        g = g.add(halo(text(x, at + 3.5, 10.0, anchor, &v.pull(p)), PAPER, 3.0));
     }
     for p in &near {
         let n = &bar.nodes[p.node];
@@ -532,13 +609,14 @@ fn key(v: &View<'_>, top: f64, width: f64) -> (Group, f64) {
                 (None, Some(ratio)) => format!("ratio {}", exactly(ratio)),
                 (None, None) => "output at rest".to_owned(),
             };
+            let name = if case.letter == case.name { String::new() } else { format!("{}: ", case.name) };
             match case.engaged.is_empty() {
-                true => format!("{}: {what}", case.name),
-                false => format!("{}: {what}; closed {}", case.name, case.engaged.join(", ")),
+                true => format!("{name}{what}"),
+                false => format!("{name}{what}; closed {}", case.engaged.join(", ")),
             }
         };
         let drawn = &v.lever.cases[..v.cases];
-        let broadest = drawn.iter().map(|c| wide(&entry(c), 12.0) + 86.0).fold(220.0, f64::max);
+        let broadest = drawn.iter().map(|c| wide(&entry(c), 12.0) + 74.0 + v.letters).fold(220.0, f64::max);
         let columns = ((width / broadest).floor() as usize).clamp(1, 4);
         let column = width / columns as f64;
         let rows = v.cases.div_ceil(columns);
@@ -549,12 +627,13 @@ fn key(v: &View<'_>, top: f64, width: f64) -> (Group, f64) {
             if case.note.is_none() {
                 g = g.add(dashed(sample, k));
             }
-            g = g.add(text(x + 50.0, y, 12.0, Anchor::Middle, &case.letter).set("font-weight", "bold")).add(text(
-                x + 62.0,
+            let after = x + 48.0 + v.letters;
+            g = g.add(text(x + 46.0, y, 12.0, Anchor::Start, &case.letter).set("font-weight", "bold")).add(text(
+                after,
                 y,
                 12.0,
                 Anchor::Start,
-                &fit(&entry(case), column - 74.0, 12.0),
+                &fit(&entry(case), column - (after - x) - 12.0, 12.0),
             ));
         }
         y += 26.0 + 20.0 * (rows - 1) as f64;

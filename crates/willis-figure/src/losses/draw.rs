@@ -1,13 +1,14 @@
 //! Losses by source: stacked over a quantity, and as bars at the operating point.
 
 use svg::node::element::Group;
-use willis::hypergraph::watts;
+use willis::losses::entries;
 use willis::operating_point::LossKind;
 use willis::study::PointVerdict;
 
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, line, lines, page, rectangle, text, wide,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, page, rectangle, text,
+    titled, watts, wide,
 };
 use crate::{LossChart, LossSeries};
 
@@ -86,9 +87,23 @@ fn fill(k: usize, s: &LossSeries) -> String {
     }
 }
 
-/// Watts, or kilowatts where they are many.
-fn unit(most: f64) -> (f64, &'static str) {
-    if most >= 5000.0 { (1e3, "kW") } else { (1.0, "W") }
+/// One unit for all losses of the picture, by the largest of them: its watts, and its name.
+fn unit(chart: &LossChart) -> (f64, &'static str) {
+    let totals = (0..chart.x.values.len()).map(|k| chart.series.iter().filter_map(|s| s.loss_w[k]).sum());
+    let most = totals.chain(chart.loss_w).fold(0.0f64, f64::max);
+    match most {
+        w if w >= 5e6 => (1e6, "MW"),
+        w if w >= 5e3 => (1e3, "kW"),
+        w if w > 0.0 && w < 0.05 => (1e-3, "mW"),
+        _ => (1.0, "W"),
+    }
+}
+
+/// A law by its title rather than its name in files.
+fn law(s: &LossSeries) -> Option<String> {
+    let id = s.law.as_ref().filter(|_| s.kind.is_some())?;
+    let title = entries().iter().find(|e| e.id == id).map(|e| e.title.to_owned());
+    Some(title.unwrap_or_else(|| if id == "given" { "efficiency given".to_owned() } else { id.clone() }))
 }
 
 fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
@@ -105,7 +120,7 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
     // Where nothing is known, nothing is stacked.
     let known = |k: usize| chart.verdicts[k] == PointVerdict::Unique;
     let most = (0..count).filter(|k| known(*k)).filter_map(|k| total[k]).fold(0.0f64, f64::max);
-    let (size, unit) = unit(most);
+    let (size, unit) = unit(chart);
     let values = [0.0, if most > 0.0 { most * 1.06 / size } else { 1.0 }];
     let axes = Chart {
         left: LEFT,
@@ -151,7 +166,7 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
         g = g.add(line((x, axes.top), (x, axes.bottom), INK, 1.0).set("stroke-dasharray", "5 4"));
         let (place, anchor) = if x > (LEFT + RIGHT) / 2.0 { (x - 5.0, Anchor::End) } else { (x + 5.0, Anchor::Start) };
         let label = text(place, axes.top + 14.0, 11.0, anchor, "operating point");
-        g = g.add(label.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3));
+        g = g.add(halo(label, PAPER, 3.0));
     }
     if let Some(k) = (0..count).find(|k| !known(*k)) {
         let run = (k..count).take_while(|j| !known(*j)).count();
@@ -199,11 +214,13 @@ fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
         let told = format!("The operating point itself is {}: it has no losses to show.", chart.verdict);
         return (g.add(text(28.0, top + 10.0, 13.0, Anchor::Start, &told)), top + 14.0);
     };
+    let (size, unit) = unit(chart);
+    let power = |w: f64| format!("{} {unit}", digits(w / size));
     let head = match chart.input_power_w {
         Some(p) if p > 0.0 => {
-            format!("At the operating point: {} of {} lost, {} %", watts(loss), watts(p), digits(100.0 * loss / p))
+            format!("At the operating point: {} of {} lost, {} %", power(loss), watts(p), digits(100.0 * loss / p))
         }
-        _ => format!("At the operating point: {} lost", watts(loss)),
+        _ => format!("At the operating point: {} lost", power(loss)),
     };
     g = g.add(text(28.0, top + 10.0, 13.0, Anchor::Start, &head).set("font-weight", "bold"));
     let mut y = top + 24.0;
@@ -212,19 +229,19 @@ fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
         let Some(w) = s.at_operation_w else { continue };
         let length = if most > 0.0 { (WIDTH - start - 290.0) * w / most } else { 0.0 };
         let said = match loss > 0.0 {
-            true => format!("{}, {} %", watts(w), digits(100.0 * w / loss)),
-            false => watts(w),
+            true => format!("{}, {} %", power(w), digits(100.0 * w / loss)),
+            false => power(w),
         };
-        let law = s.law.as_ref().map(|l| format!("  {l}")).unwrap_or_default();
         g = g
             .add(badge(37.0, y + 9.0, &letter(k)))
             .add(text(54.0, y + 13.0, 12.0, Anchor::Start, &fit(&name(s), start - 66.0, 12.0)))
             .add(rectangle(start, y + 1.0, length.max(0.8), 16.0, &fill(k, s)))
             .add(text(start + length + 8.0, y + 13.0, 12.0, Anchor::Start, &said));
         let from = start + length + 8.0 + wide(&said, 12.0);
-        if !law.is_empty() && s.kind.is_some() {
-            let room = WIDTH - 28.0 - from - 8.0;
-            g = g.add(text(from + 8.0, y + 13.0, 10.0, Anchor::Start, &fit(law.trim(), room, 10.0)).set("fill", FAINT));
+        if let Some(law) = law(s) {
+            let shown = fit(&law, WIDTH - 28.0 - from - 8.0, 10.0);
+            let label = text(from + 8.0, y + 13.0, 10.0, Anchor::Start, &shown).set("fill", FAINT);
+            g = g.add(titled(label, &law));
         }
         y += 22.0;
     }

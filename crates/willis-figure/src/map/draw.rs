@@ -5,12 +5,12 @@ use std::fmt::Write;
 use contour::ContourBuilder;
 use svg::Node as _;
 use svg::node::element::{ClipPath, Definitions, Group, Path};
-use willis::hypergraph::watts;
 use willis::study::PointVerdict;
 
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, number, page, rectangle,
+    text, watts, wide,
 };
 use crate::{EfficiencyMap, MapVerdict};
 
@@ -326,13 +326,7 @@ fn powers(values: &[f64]) -> Vec<f64> {
 }
 
 /// Words on a line, where there is room.
-fn label(
-    points: &[(f64, f64)],
-    name: &str,
-    chart: &Chart,
-    taken: &mut Vec<[f64; 4]>,
-    ink: &str,
-) -> Option<svg::node::element::Text> {
+fn label(points: &[(f64, f64)], name: &str, chart: &Chart, taken: &mut Vec<[f64; 4]>, ink: &str) -> Option<Group> {
     if points.len() < 4 {
         return None;
     }
@@ -346,14 +340,10 @@ fn label(
             && own[3] < chart.bottom - 4.0;
         if inside && taken.iter().all(|t| own[0] > t[2] || own[2] < t[0] || own[1] > t[3] || own[3] < t[1]) {
             taken.push(own);
-            return Some(halo(text(x, y + 3.5, 10.5, Anchor::Middle, name).set("fill", ink)));
+            return Some(halo(text(x, y + 3.5, 10.5, Anchor::Middle, name).set("fill", ink), PAPER, 3.0));
         }
     }
     None
-}
-
-fn halo(t: svg::node::element::Text) -> svg::node::element::Text {
-    t.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3).set("stroke-linejoin", "round")
 }
 
 /// Rectangles around neighbours in a row that share a value, row by row.
@@ -540,7 +530,7 @@ fn states(map: &EfficiencyMap, chart: &Chart) -> Group {
         let own = [x - half, y - 8.0, x + half, y + 8.0];
         if taken.iter().all(|t| own[0] > t[2] || own[2] < t[0] || own[1] > t[3] || own[3] < t[1]) {
             taken.push(own);
-            g = g.add(halo(text(x, y + 4.5, 13.0, Anchor::Middle, &name).set("font-weight", "bold")));
+            g = g.add(halo(text(x, y + 4.5, 13.0, Anchor::Middle, &name).set("font-weight", "bold"), PAPER, 3.0));
         }
     }
     let mut y = chart.top + 10.0;

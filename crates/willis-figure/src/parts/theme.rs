@@ -1,14 +1,17 @@
 //! Figures on dark paper.
 //!
-//! A figure is drawn for light paper, with every colour as `#rrggbb` in an attribute. Lightness is
-//! turned round in OKLab (Ottosson 2020), where equal steps look equal; hue and chroma stay, so that
-//! a category keeps its name. Vivid colours are kept lighter than greys of their lightness: they
-//! must be seen on black, where a deep tint of them is as faint as it was on white.
+//! A figure is drawn for light paper, with every colour as `#rrggbb` in an attribute. Colours of categories have a dark
+//! counterpart that was chosen with them, since the same hues are not the best ones on black; tints mix it with the dark
+//! paper. Of all others lightness is turned round in OKLab (Ottosson 2020), where equal steps look equal; hue and chroma
+//! stay.
 
 use std::collections::BTreeSet;
 
 use crate::parts::markup::{is_colour, rewrite};
-use crate::parts::style::INK;
+use crate::parts::style::{COLOURS, INK, category, mixed};
+
+/// The counterpart of white.
+const NIGHT: [u8; 3] = [0x0d, 0x0d, 0x0d];
 
 /// On which paper a figure stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,6 +69,10 @@ pub(crate) fn rules(colours: &BTreeSet<(String, String)>, below: &str) -> String
 
 /// The counterpart of a light colour on dark paper.
 pub(crate) fn dark(light: &str) -> String {
+    if let Some((k, strength)) = category(light) {
+        // A tint is as faint on black as on white only if it covers a little more.
+        return mixed(NIGHT, COLOURS[k][1], strength.powf(0.85));
+    }
     let [lightness, a, b] = oklab(rgb(light));
     let ink = oklab(rgb(INK))[0];
     let chroma = a.hypot(b);
@@ -147,9 +154,12 @@ mod tests {
         assert!(contrast(&dark(INK), &paper) >= 12.0);
         assert!(contrast(&dark(FAINT), &paper) >= 4.5);
         assert!(contrast(&dark(LINE), &paper) >= 2.5);
+        assert!(contrast(LINE, PAPER) >= 3.0);
         for category in (0..14).map(Some).chain([None]) {
             let full = dark(&colour(category, 1.0));
             assert!(contrast(&full, &paper) >= 3.0, "{category:?}: {full}");
+            let light = colour(category, 1.0);
+            assert!(contrast(&light, PAPER) >= 3.0, "{category:?}: {light}");
             let tint = dark(&colour(category, 0.25));
             assert!(contrast(&dark(INK), &tint) >= 7.0, "{category:?}: {tint}");
         }
@@ -163,14 +173,43 @@ mod tests {
         }
     }
 
+    /// What eyes without one kind of cone see of linear red, green and blue (Machado, Oliveira, Fernandes 2009).
+    const VISION: [[[f64; 3]; 3]; 4] = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
+        [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]],
+        [[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]],
+    ];
+
     #[test]
-    fn a_colour_keeps_its_hue() {
-        for category in 0..14 {
-            let light = colour(Some(category), 1.0);
-            let [[_, a, b], [_, c, d]] = [&light, &dark(&light)].map(|hex| oklab(rgb(hex)));
-            let turn = (a * d - b * c).atan2(a * c + b * d).to_degrees();
-            assert!(turn.abs() < 3.0, "{light}: {turn}");
+    fn no_two_categories_look_alike_to_anybody_on_either_paper() {
+        let seen = |hex: &str, eye: usize| oklab(times(VISION[eye], rgb(hex)).map(|x| x.clamp(0.0, 1.0)));
+        for paper in [Theme::Light, Theme::Dark] {
+            let all: Vec<String> = (0..14)
+                .map(|k| colour(Some(k), 1.0))
+                .map(|c| if paper == Theme::Dark { dark(&c) } else { c })
+                .collect();
+            for (k, one) in all.iter().enumerate() {
+                for other in &all[..k] {
+                    for eye in 0..VISION.len() {
+                        let [a, b] = [one, other].map(|c| seen(c, eye));
+                        let apart = (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt();
+                        assert!(apart >= 0.06, "{paper:?} {one} and {other}, eye {eye}: {apart}");
+                    }
+                }
+            }
         }
+    }
+
+    #[test]
+    fn a_colour_is_known_by_its_category_and_strength() {
+        for k in 0..14 {
+            for strength in [0.3, 0.42, 0.62, 0.8, 1.0] {
+                let (found, part) = category(&colour(Some(k), strength)).expect("one of them");
+                assert!(found == k && (part - strength).abs() < 0.01, "{k} {strength}: {found} {part}");
+            }
+        }
+        assert_eq!([PAPER, INK, FAINT, LINE].map(category), [None; 4]);
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use svg::node::element::{Group, Path};
 
-use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, badge, colour, line, number, page, rectangle, text, ticks};
+use crate::parts::style::{
+    Anchor, FAINT, INK, LINE, PAPER, badge, colour, digits, halo, line, number, page, rectangle, text, ticks,
+};
 use crate::{MapCell, MapSector, RegimeMap};
 
 const WIDTH: f64 = 1180.0;
@@ -185,14 +187,11 @@ fn label(map: &RegimeMap, s: &MapSector, c: &MapCell) -> Group {
     let (inner, outer) = band(c);
     // Towards the rim, where a sector is wider.
     let (x, y) = at(inner + (outer - inner) * 0.58, (s.from + s.to) / 2.0);
-    let halo = |t: svg::node::element::Text| {
-        t.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3).set("stroke-linejoin", "round")
-    };
     let thin = c.slot[1] > 1;
     let (size, gap) = if thin { (13.0, 5.0) } else { (16.0, 1.0) };
-    let g = Group::new()
-        .add(halo(text(x, y + gap, size, Anchor::Middle, &map.patterns[c.pattern].letter).set("font-weight", "bold")));
-    if thin { g } else { g.add(halo(text(x, y + 14.0, 10.0, Anchor::Middle, &c.regime))) }
+    let letter = text(x, y + gap, size, Anchor::Middle, &map.patterns[c.pattern].letter).set("font-weight", "bold");
+    let g = Group::new().add(halo(letter, PAPER, 3.0));
+    if thin { g } else { g.add(halo(text(x, y + 14.0, 10.0, Anchor::Middle, &c.regime), PAPER, 3.0)) }
 }
 
 fn legend(map: &RegimeMap) -> Group {
@@ -202,13 +201,11 @@ fn legend(map: &RegimeMap) -> Group {
     for (k, p) in map.patterns.iter().enumerate() {
         g = g
             .add(rectangle(LEGEND, y - 12.0, 26.0, 16.0, &colour(category(map, k), 0.75)))
-            .add(
-                text(LEGEND + 13.0, y + 1.0, 13.0, Anchor::Middle, &p.letter)
-                    .set("font-weight", "bold")
-                    .set("paint-order", "stroke")
-                    .set("stroke", PAPER)
-                    .set("stroke-width", 3),
-            )
+            .add(halo(
+                text(LEGEND + 13.0, y + 1.0, 13.0, Anchor::Middle, &p.letter).set("font-weight", "bold"),
+                PAPER,
+                3.0,
+            ))
             .add(text(LEGEND + 36.0, y, 13.0, Anchor::Start, &short(&p.label.replace("->", "→"), 44)));
         let range = match (p.dissipated, p.efficiency) {
             (false, Some([least, most])) => format!("{} … {} %", percent(least), percent(most)),
@@ -222,7 +219,7 @@ fn legend(map: &RegimeMap) -> Group {
     g = g.add(text(LEGEND, y, 13.0, Anchor::Start, &head).set("font-weight", "bold"));
     y += 24.0;
     for b in &map.boundaries {
-        let ratio = b.ratio.map_or("∞".to_owned(), short_number);
+        let ratio = b.ratio.map_or("∞".to_owned(), digits);
         g = g
             .add(badge(LEGEND + 13.0, y - 4.0, &b.letter))
             .add(text(LEGEND + 36.0, y, 13.0, Anchor::Start, &short(&b.label, 54)))
@@ -262,7 +259,7 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
             if !b.at_rest && !b.locked_up {
                 l = l.set("stroke-dasharray", "4 3");
             }
-            let ratio = b.ratio.map_or(if a > map.half[0] + 90.0 { "∞" } else { "−∞" }.to_owned(), short_number);
+            let ratio = b.ratio.map_or(if a > map.half[0] + 90.0 { "∞" } else { "−∞" }.to_owned(), digits);
             g = g.add(l).add(text(x(a), bottom + 16.0, 10.0, Anchor::Middle, &ratio).set("fill", FAINT)).add(badge(
                 x(a),
                 bottom + 32.0,
@@ -299,13 +296,8 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
         let tries = [own, own - 0.15, own + 0.15, own - 0.3, own + 0.3].map(|p| place(p.clamp(0.05, 0.95)));
         let Some((a, label_y)) = tries.into_iter().find(free) else { continue };
         taken.push((x(a), label_y));
-        g = g.add(
-            text(x(a), label_y, 12.0, Anchor::Middle, &map.patterns[c.pattern].letter)
-                .set("font-weight", "bold")
-                .set("paint-order", "stroke")
-                .set("stroke", PAPER)
-                .set("stroke-width", 3),
-        );
+        let letter = text(x(a), label_y, 12.0, Anchor::Middle, &map.patterns[c.pattern].letter);
+        g = g.add(halo(letter.set("font-weight", "bold"), PAPER, 3.0));
     }
     let axis = format!(
         "ω {} / ω {}, boundaries only, not to scale",
@@ -319,21 +311,6 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
 fn percent(x: f64) -> String {
     let text = format!("{:.2}", 100.0 * x);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
-}
-
-fn short_number(x: f64) -> String {
-    let size = x.abs();
-    let text = if size == 0.0 {
-        "0".to_owned()
-    } else if !(1e-3..1e4).contains(&size) {
-        format!("{x:.1e}")
-    } else {
-        // Three digits.
-        let decimals = (2 - size.log10().floor() as i32).clamp(0, 5) as usize;
-        let text = format!("{x:.decimals$}");
-        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
-    };
-    text.replace('-', "−")
 }
 
 /// A name that fits.

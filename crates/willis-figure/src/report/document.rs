@@ -98,7 +98,7 @@ pub enum Block {
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Level {
-    /// The answer is certain.
+    /// The solution is the only one. Nothing is said of how exact its values are.
     Good,
     /// Worth knowing.
     Note,

@@ -95,7 +95,7 @@ impl Page {
             Block::List { items } => context! { kind => "list", items },
             Block::Notice { level, text } => {
                 let (level, sign, word) = match level {
-                    Level::Good => ("good", "✓", "Certain"),
+                    Level::Good => ("good", "✓", "Only solution"),
                     Level::Note => ("note", "i", "Note"),
                     Level::Warning => ("warning", "!", "Warning"),
                     Level::Stop => ("stop", "×", "Stop"),

@@ -4,7 +4,6 @@ use willis::analysis::{
     CertificateReport, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport, Verdict,
 };
 use willis::exact::Rational;
-use willis::hypergraph::watts;
 use willis::operating_point::Regime;
 use willis::regimes::{FormulaRequest, formulas as closed};
 use willis::statics::Certificate;
@@ -12,6 +11,7 @@ use willis::symbolic::Notation;
 
 use super::{Findings, TOLD, and_more, notice};
 use crate::FigureKind;
+use crate::parts::style::watts;
 use crate::report::document::{Block, Column, Level, Section};
 
 /// Formulas that are printed.
@@ -86,12 +86,14 @@ pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
     let columns = ["State", "From – to", "Ratio exactly"].map(Column::words).into_iter();
     let columns = columns
         .chain(["Ratio", "Step"].map(Column::numbers))
-        .chain(["η driving", "η coasting"].map(Column::numbers))
-        .chain([Column::words("Certain")]);
+        .chain(["Nominal η driving", "Nominal η coasting"].map(Column::numbers))
+        .chain([Column::words("Only solution")]);
     let rows: Vec<Vec<String>> = all.analysis.ratios.iter().map(|(name, s)| state(name, s)).collect();
     if !rows.is_empty() {
         let caption =
-            "Ratio is the input's over the output's speed; efficiencies where the meshes' are given".to_owned();
+            "Ratio is the input's over the output's speed. Efficiencies are nominal: from those of the meshes as given or \
+             assumed, whatever the operating point"
+                .to_owned();
         blocks.push(Block::Table { caption, columns: columns.collect(), rows });
     }
     for (name, s) in all.analysis.ratios.iter() {
@@ -137,6 +139,7 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
         let state = o.state.as_ref().map(|s| format!(", state {s}")).unwrap_or_default();
         blocks.push(Block::Heading { text: format!("{}{state}", o.name) });
         blocks.push(notice(o));
+        blocks.extend(value(all, o));
         let count = o.solutions.len();
         for (k, s) in o.solutions.iter().enumerate() {
             let which = if count > 1 { format!(", solution {} of {count}", k + 1) } else { String::new() };
@@ -164,6 +167,29 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
     (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
 }
 
+/// What is known of the value of an efficiency, as another matter than whether the solution is the only one: its band, what
+/// that comes from, and laws that are used outside their ranges.
+fn value(all: &Findings<'_>, o: &OperationReport) -> Option<Block> {
+    let s = single(o)?;
+    let mut text = format!("Value: efficiency {}, {}.", efficiency(s), basis(s));
+    if let Some(sure) = all.sure(&o.name) {
+        text += &format!(" {}", sure.words());
+    }
+    for law in &o.outside_laws {
+        text += &format!(" Outside the range of a law: {law}.");
+    }
+    let level = if o.outside_laws.is_empty() { Level::Note } else { Level::Warning };
+    Some(Block::Notice { level, text })
+}
+
+/// What an efficiency of an operating point rests on.
+pub fn basis(s: &SolutionReport) -> &'static str {
+    match s.sources.iter().any(|x| x.law != "given") {
+        true => "computed at this operating point from the laws of loss",
+        false => "from the mesh efficiencies of the file",
+    }
+}
+
 fn members(caption: &str, s: &SolutionReport) -> Block {
     let columns = ["Member", "Role"].map(Column::words).into_iter();
     let columns = columns.chain(["Speed rpm", "Torque N m", "Power"].map(Column::numbers)).collect();
@@ -176,7 +202,7 @@ fn members(caption: &str, s: &SolutionReport) -> Block {
                 Role::Fixed => "held",
                 _ => "",
             };
-            let power = m.power_w.filter(|p| *p != 0.0).map_or("–".into(), |p| watts(p).replace('-', "−"));
+            let power = m.power_w.filter(|p| *p != 0.0).map_or("–".into(), |p| watts(p));
             vec![name.clone(), role.to_owned(), number(m.speed_rad_s, RPM), number(m.torque_n_m, 1.0), power]
         })
         .collect();
@@ -256,7 +282,7 @@ fn variators(s: &SolutionReport) -> Vec<Block> {
         let columns = ["Side", "On member"].map(Column::words).into_iter();
         let columns = columns.chain(["Speed rpm", "Torque on it N m", "Power into it"].map(Column::numbers)).collect();
         let row = |(side, m): &(String, MachineReport)| {
-            let power = watts(m.power_w).replace('-', "−");
+            let power = watts(m.power_w);
             let [speed, torque] = [m.speed_rad_s * RPM, m.torque_n_m].map(|x| significant(x, 6));
             vec![side.clone(), m.member.clone(), speed, torque, power]
         };

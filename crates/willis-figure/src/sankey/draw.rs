@@ -6,10 +6,10 @@ mod words;
 
 use svg::Node as _;
 use svg::node::element::{Element, Group, Path, Polygon};
-use willis::hypergraph::{NodeKind, watts};
+use willis::hypergraph::NodeKind;
 
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, PAPER, colour, fit, line, lines, number, page, rectangle, text, wide,
+    Anchor, BOLD, FAINT, INK, PAPER, colour, fit, halo, line, lines, number, page, rectangle, text, watts, wide,
 };
 use crate::{Sankey, SankeyFlow, SankeyLink, SankeyNode};
 use layout::{BAR, LINE_HEIGHT, Layout};
@@ -152,10 +152,6 @@ fn scale_mark(y: f64, scale: f64) -> Group {
         .add(text(x + long + 7.0, y, SMALL, Anchor::Start, &watts(power)).set("fill", FAINT))
 }
 
-fn halo(t: svg::node::element::Text) -> svg::node::element::Text {
-    t.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3).set("stroke-linejoin", "round")
-}
-
 fn picture(d: &Layout<'_>) -> Group {
     let mut g = Group::new();
     // What is led back lies above what it crosses; its paper rim shows that nothing mixes there.
@@ -172,7 +168,7 @@ fn picture(d: &Layout<'_>) -> Group {
         for (row, words) in Words::of(d.flow).link(power).iter().enumerate() {
             let y = label.y[0] + LINE_HEIGHT * row as f64 + 0.82 * SMALL;
             let t = text(label.middle(), y, SMALL, Anchor::Middle, words);
-            g = g.add(if label.clear { t } else { halo(t) });
+            g = g.add(if label.clear { Group::new().add(t) } else { halo(t, PAPER, 3.0) });
         }
     }
     g

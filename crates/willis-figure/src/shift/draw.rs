@@ -1,9 +1,10 @@
 //! The shift table with its ratios as steps.
 
-use svg::node::element::{Circle, Group, Rectangle, Text};
+use svg::node::element::{Circle, Group, Path, Rectangle};
+use willis::train::ShiftElementKind;
 
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text, wide,
 };
 use crate::{ShiftChange, ShiftEfficiency, ShiftRow, ShiftTable};
 
@@ -57,7 +58,7 @@ pub fn draw(table: &ShiftTable) -> String {
     let bottom = c.top + ROW * table.rows.len() as f64;
     let foot = foot(table);
     let foot: Vec<String> = foot.iter().flat_map(|f| lines(f, c.width - 2.0 * MARGIN, 13.0)).collect();
-    let height = bottom + 34.0 + 19.0 * foot.len() as f64 + 8.0;
+    let height = bottom + 34.0 + 19.0 * (foot.len() + 1) as f64 + 8.0;
     let mut g = Group::new().add(head(table, &c));
     for k in 0..table.rows.len() {
         let y = c.top + ROW * k as f64;
@@ -69,9 +70,10 @@ pub fn draw(table: &ShiftTable) -> String {
     for (k, row) in table.rows.iter().enumerate() {
         g = g.add(cells(table, &c, row, c.top + ROW * (k as f64 + 0.5)));
     }
-    for (k, change) in table.changes.iter().enumerate() {
+    for (k, change) in table.changes.iter().enumerate().filter(|(k, _)| !turns(table, *k)) {
         g = g.add(changes(&c, change, c.top + ROW * (k + 1) as f64));
     }
+    g = g.add(key(table, bottom + 34.0 + 19.0 * foot.len() as f64));
     for (k, row) in foot.iter().enumerate() {
         g = g.add(text(MARGIN, bottom + 34.0 + 19.0 * k as f64, 13.0, Anchor::Start, row));
     }
@@ -128,8 +130,59 @@ fn arrow([from, to]: &[String; 2]) -> String {
     format!("{from} → {to}")
 }
 
-fn halo(t: Text, paper: &str) -> Text {
-    t.set("paint-order", "stroke").set("stroke", paper).set("stroke-width", 3).set("stroke-linejoin", "round")
+/// Half the height of a symbol.
+const PLATE: f64 = 5.0;
+
+/// A shift element as schematics draw it: a clutch joins two shafts, a brake a shaft and the hatched frame, a one-way clutch
+/// is a triangle against a bar.
+fn symbol(kind: ShiftElementKind, x: f64, y: f64) -> Group {
+    let upright = |x: f64, width: f64| line((x, y - PLATE), (x, y + PLATE), INK, width);
+    let level = |from: f64, to: f64| line((from, y), (to, y), INK, 1.2);
+    let g = Group::new();
+    match kind {
+        ShiftElementKind::OneWay => {
+            let n = |x: f64, y: f64| format!("{} {}", number(x), number(y));
+            let body = format!("M{} L{} L{} Z", n(x - 5.0, y - PLATE), n(x - 5.0, y + PLATE), n(x + 3.0, y));
+            g.add(level(x - 9.0, x - 5.0))
+                .add(Path::new().set("d", body).set("fill", PAPER).set("stroke", INK).set("stroke-width", 1.2))
+                .add(upright(x + 4.0, 1.8))
+                .add(level(x + 4.0, x + 9.0))
+        }
+        ShiftElementKind::Brake => {
+            let g = g.add(level(x - 8.0, x - 2.0)).add(upright(x - 2.0, 1.8)).add(upright(x + 2.0, 1.8));
+            (0..3).fold(g, |g, k| {
+                let at = y - PLATE + 1.0 + 4.0 * f64::from(k);
+                g.add(line((x + 2.6, at), (x + 6.6, at - 3.0), INK, 0.9))
+            })
+        }
+        ShiftElementKind::Clutch => g
+            .add(level(x - 8.0, x - 2.0))
+            .add(upright(x - 2.0, 1.8))
+            .add(upright(x + 2.0, 1.8))
+            .add(level(x + 2.0, x + 8.0)),
+    }
+}
+
+/// The symbols that occur, with their names.
+fn key(table: &ShiftTable, y: f64) -> Group {
+    let kinds = [
+        (ShiftElementKind::Clutch, "clutch"),
+        (ShiftElementKind::Brake, "brake"),
+        (ShiftElementKind::OneWay, "one-way clutch"),
+    ];
+    let mut x = MARGIN + 10.0;
+    let mut g = Group::new();
+    for (kind, name) in kinds.into_iter().filter(|(kind, _)| table.elements.iter().any(|e| e.kind == *kind)) {
+        g = g.add(symbol(kind, x, y - 4.0)).add(text(x + 16.0, y, 13.0, Anchor::Start, name));
+        x += 16.0 + wide(name, 13.0) + 30.0;
+    }
+    g
+}
+
+/// Whether the output turns the other way in the next row: nobody shifts there, so that nothing is said of it.
+fn turns(table: &ShiftTable, k: usize) -> bool {
+    let ratio = |k: usize| table.rows.get(k).and_then(|r| r.ratio);
+    ratio(k).zip(ratio(k + 1)).is_some_and(|(a, b)| a * b < 0.0)
 }
 
 fn head(table: &ShiftTable, c: &Columns) -> Group {
@@ -141,12 +194,7 @@ fn head(table: &ShiftTable, c: &Columns) -> Group {
     }
     for (k, e) in table.elements.iter().enumerate() {
         let x = c.element(k);
-        let short = match e.kind {
-            willis::train::ShiftElementKind::Brake => "B",
-            willis::train::ShiftElementKind::Clutch => "C",
-            _ => "F",
-        };
-        g = g.add(text(x, y, 10.0, Anchor::Middle, short).set("fill", FAINT));
+        g = g.add(symbol(e.kind, x, y - 4.0));
         g = g.add(if c.upright {
             let name = fit(&e.name, TALLEST / BOLD, 12.0);
             text(x + 4.0, y - 14.0, 12.0, Anchor::Start, &name)
@@ -162,7 +210,7 @@ fn head(table: &ShiftTable, c: &Columns) -> Group {
         .add(bold(c.drive + 8.0, Anchor::Start, "driving"))
         .add(bold(c.coast + 8.0, Anchor::Start, "coasting"))
         .add(bold(c.changes + 22.0, Anchor::Start, "change"))
-        .add(text(c.drive + 8.0, y - 15.0, 11.0, Anchor::Start, "efficiency; bars: loss").set("fill", FAINT));
+        .add(text(c.drive + 8.0, y - 15.0, 11.0, Anchor::Start, "nominal efficiency; bars: loss").set("fill", FAINT));
     g.add(line((MARGIN - 8.0, c.top), (c.changes - 8.0, c.top), INK, 1.2))
 }
 
@@ -203,7 +251,7 @@ fn cells(table: &ShiftTable, c: &Columns, row: &ShiftRow, y: f64) -> Group {
         };
         for (k, words) in shown.iter().enumerate() {
             let y = y + 4.0 + 14.0 * k as f64 - 7.0 * (shown.len() - 1) as f64;
-            g = g.add(halo(text(c.ratio + 6.0, y, 11.0, Anchor::Start, words), PAPER));
+            g = g.add(halo(text(c.ratio + 6.0, y, 11.0, Anchor::Start, words), PAPER, 3.0));
         }
         return g;
     };
@@ -322,13 +370,9 @@ fn foot(table: &ShiftTable) -> Vec<String> {
     if let Some(s) = &table.spread {
         all.push(format!("Total spread {}, from {} to {}.", decimals(s.value), s.largest, s.smallest));
     }
-    let mut kinds = vec!["B brake", "C clutch"];
-    if table.elements.iter().any(|e| e.kind == willis::train::ShiftElementKind::OneWay) {
-        kinds.push("F one-way clutch");
-    }
-    let mut key = format!("{}. Change X → Y: X opens, Y closes.", kinds.join(", "));
-    let several = table.changes.iter().filter(|c| c.several).count();
-    if several > 0 {
+    let mut key = "Change X → Y: X opens, Y closes.".to_owned();
+    let mut several = table.changes.iter().enumerate().filter(|(k, c)| c.several && !turns(table, *k));
+    if several.next().is_some() {
         key.push_str(" Bold: more than one element opens or closes.");
     }
     if table.rows.iter().any(|r| r.ratio.is_some_and(|i| i < 0.0)) {

@@ -1,6 +1,6 @@
 //! The train as blocks on axes, and what joins them.
 
-use willis::train::{FRAME, MemberId, MeshId, ShiftElementKind, Train};
+use willis::train::{FRAME, MemberId, MeshId, ShiftElementKind, State, Train};
 
 use super::members::{Members, Net};
 use super::shapes::{self, Shape};
@@ -102,13 +102,7 @@ impl Plan {
             blocks.push(Block { name: mesh.name.clone(), axis, pair: true, shapes });
         }
 
-        let own = state.map(|k| &train.states()[k]);
-        let input = own.and_then(|s| s.input).or(train.input());
-        let output = own.and_then(|s| s.output).or(train.output());
-        // The first and the last of many terminals are input and output by nothing but their place.
-        let ends = [train.terminals().first().copied(), train.terminals().last().copied()];
-        let by_place = train.terminals().len() > 2 && [input, output] == ends;
-        let (input, output) = if by_place { (None, None) } else { (input, output) };
+        let [input, output] = ends(train, state);
         let mut exits: Vec<Exit> = Vec::new();
         for &m in train.terminals().iter().filter(|m| **m != FRAME) {
             let way = if Some(m) == input {
@@ -135,6 +129,25 @@ impl Plan {
             }
         }
         Self { nets: members.order.len(), blocks, joints, exits, axes, axis_of }
+    }
+}
+
+/// Where power enters and leaves, driving: as the state says, or as all states say where none is chosen. States that
+/// disagree leave it open, because an arrow would be wrong in one of them.
+fn ends(train: &Train, state: Option<usize>) -> [Option<MemberId>; 2] {
+    let all = train.terminals();
+    let of_train = [train.input(), train.output()];
+    // The first and the last of many terminals are input and output by nothing but their place.
+    let by_place = all.len() > 2 && of_train == [all.first().copied(), all.last().copied()];
+    let of_train = if by_place { [None, None] } else { of_train };
+    let of_state = |s: &State| [s.input.or(of_train[0]), s.output.or(of_train[1])];
+    match state {
+        Some(k) => of_state(&train.states()[k]),
+        None => {
+            let mut own = train.states().iter().map(of_state);
+            let first = own.next().unwrap_or(of_train);
+            if own.all(|e| e == first) { first } else { [None, None] }
+        }
     }
 }
 
@@ -218,7 +231,8 @@ fn axes(train: &Train, members: &Members, joints: &[Joint], state: Option<usize>
             links.push([of[a], of[b]]);
         }
     }
-    let input = state.and_then(|k| train.states()[k].input).or(train.input());
+    let [input, _] = ends(train, state);
+    let input = input.or(train.input());
     let start = input.and_then(|m| members.net(m)).map_or(0, |n| of[n]);
     let mut level: Vec<Option<usize>> = vec![None; count];
     let mut next = 0;

@@ -10,7 +10,7 @@ use self::sheet::{LIST, MARGIN, PLATE, ROW, Sheet};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{GearRole, JointKind, Place, Stick, StickGear, StickJoint, Way};
+use crate::{GearRole, JointKind, Place, Stick, StickGear, StickJoint, StickPiece, Way};
 
 /// Length of a terminal's arrow.
 const ARROW: f64 = 40.0;
@@ -64,7 +64,12 @@ pub fn draw(data: &Stick) -> String {
 
 fn subtitle(data: &Stick) -> String {
     let shown = data.members.iter().any(|m| m.loaded == Some(true));
-    let path = if shown { " Thick: the way of the power, driving, without losses." } else { "" };
+    let circle = data.members.iter().flat_map(|m| &m.pieces).any(|p| p.circulates);
+    let path = match (shown, circle) {
+        (true, true) => " Thick: the power path, driving, without losses; broken: power that circulates between sets.",
+        (true, false) => " Thick: the power path, driving, without losses.",
+        _ => "",
+    };
     let closed: Vec<&str> =
         data.joints.iter().filter(|j| j.engaged && j.kind != JointKind::Shaft).map(|j| j.name.as_str()).collect();
     match &data.state {
@@ -83,7 +88,7 @@ fn words(data: &Stick) -> String {
     });
     let blocks = data.blocks.iter().enumerate().map(|(b, block)| {
         let gears = data.gears.iter().filter(|g| g.block == b);
-        let all: Vec<String> = gears.map(|g| format!("{} {}", role(g), g.teeth)).collect();
+        let all: Vec<String> = gears.map(|g| format!("{} {}", role(g), g.teeth).trim_end().to_owned()).collect();
         format!("{}: {}", block.name, all.join(", "))
     });
     let mut all: Vec<String> = blocks.chain(joints).collect();
@@ -134,6 +139,11 @@ impl Sheet<'_> {
                 let ink = self.ink(Some(k));
                 for p in m.pieces.iter().filter(|p| p.loaded == loaded) {
                     g = g.add(self.polyline(&p.points, &ink, if loaded { THICK } else { THIN }, labels));
+                    if p.circulates {
+                        let broken = self.polyline(&p.points, PAPER, 2.0, &mut Labels::default());
+                        g = g.add(broken.set("stroke-dasharray", "7 5").set("stroke-linecap", "butt"));
+                    }
+                    g = g.add(self.direction(p, &ink));
                 }
                 for d in m.dots.iter().filter(|_| loaded) {
                     let (x, y) = self.at(*d);
@@ -144,6 +154,29 @@ impl Sheet<'_> {
             }
         }
         g
+    }
+
+    /// An arrowhead where the power of a line runs level or upright for the longest time.
+    fn direction(&self, piece: &StickPiece, ink: &str) -> Group {
+        const LONG: f64 = 13.0;
+        const HALF: f64 = 7.5;
+        let g = Group::new();
+        let Some(power) = piece.power.filter(|p| piece.loaded && p.abs() > 1e-9) else { return g };
+        let all: Vec<(f64, f64)> = piece.points.iter().map(|p| self.at(*p)).collect();
+        let length = |w: &[(f64, f64)]| (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1);
+        let Some(longest) = all.windows(2).max_by(|a, b| length(a).total_cmp(&length(b))) else { return g };
+        if length(longest) < 1.6 * LONG {
+            return g;
+        }
+        let [from, to] = if power > 0.0 { [longest[0], longest[1]] } else { [longest[1], longest[0]] };
+        let (ux, uy) = ((to.0 - from.0) / length(longest), (to.1 - from.1) / length(longest));
+        let middle = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
+        let point = |along: f64, aside: f64| {
+            let (x, y) = (middle.0 + ux * along - uy * aside, middle.1 + uy * along + ux * aside);
+            format!("{} {}", number(x), number(y))
+        };
+        let d = format!("M{} L{} L{} Z", point(LONG / 2.0, 0.0), point(-LONG / 2.0, HALF), point(-LONG / 2.0, -HALF));
+        g.add(Path::new().set("d", d).set("fill", ink))
     }
 
     fn polyline(&self, points: &[Place], ink: &str, width: f64, labels: &mut Labels) -> Polyline {

@@ -25,12 +25,34 @@ pub(super) struct Drawing<'a> {
     rows: Vec<f64>,
     /// Ends of pins to which nothing is joined: drawn half as long.
     stubs: Vec<(Point, Point)>,
+    /// Where a member and what it passes power to or from are part of a circle.
+    circling: Vec<(Knot, usize)>,
 }
+
+/// What passes power from member to member: a block of gears, or a joint.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Knot {
+    Block(usize),
+    Joint(usize),
+}
+
+/// Power that comes into the lines of a member.
+struct Source {
+    at: Point,
+    /// Over that of the input; negative where it leaves.
+    power: f64,
+    circles: bool,
+}
+
+/// Power below this part of the input's is round-off.
+const ROUND_OFF: f64 = 1e-9;
 
 impl<'a> Drawing<'a> {
     pub fn new(train: &'a Train, members: &'a Members, plan: &'a Plan, layout: Layout, load: &'a Load) -> Self {
-        let mut d = Self { train, members, plan, layout, load, columns: vec![], rows: vec![], stubs: vec![] };
+        let mut d =
+            Self { train, members, plan, layout, load, columns: vec![], rows: vec![], stubs: vec![], circling: vec![] };
         d.stubs = d.find_stubs();
+        d.circling = d.circles();
         d.compact();
         d
     }
@@ -46,6 +68,54 @@ impl<'a> Drawing<'a> {
     fn to_grid(&self, b: usize, p: Point) -> Point {
         let stand = self.layout.stands[b];
         (p.0 + stand.x, p.1 + stand.y)
+    }
+
+    /// Where power runs in circles from block to block: links between a member and a knot that a way in the direction of the
+    /// power leads back to. What goes round within one set depends on the frame in which it is counted, and is left out.
+    fn circles(&self) -> Vec<(Knot, usize)> {
+        let mut links: Vec<(Knot, usize, f64)> = Vec::new();
+        let mut add = |knot: Knot, member: MemberId, power: Option<f64>| {
+            let (Some(n), Some(power)) = (self.members.net(member), power) else { return };
+            match links.iter_mut().find(|l| l.0 == knot && l.1 == n) {
+                Some(link) => link.2 += power,
+                None => links.push((knot, n, power)),
+            }
+        };
+        for b in 0..self.plan.blocks.len() {
+            for c in &self.shape(b).contacts {
+                let mesh = &self.train.meshes()[c.mesh.index()];
+                let power = &self.load.from_meshes[c.mesh.index()];
+                add(Knot::Block(b), mesh.gears[0].member, power[0]);
+                add(Knot::Block(b), mesh.gears[1].member, power[1]);
+                add(Knot::Block(b), mesh.carrier, power[2]);
+            }
+        }
+        for j in &self.plan.joints {
+            for (net, power) in j.members.iter().zip(&self.load.from_joints[j.number]) {
+                if let Some(n) = net {
+                    add(Knot::Joint(j.number), self.members.order[*n], *power);
+                }
+            }
+        }
+        links.retain(|l| l.2.abs() > ROUND_OFF);
+        // From each link to those that its power reaches next.
+        let leads = |from: &(Knot, usize, f64), to: &(Knot, usize, f64)| match from.2 > 0.0 {
+            true => to.1 == from.1 && to.2 < 0.0,
+            false => to.0 == from.0 && to.2 > 0.0,
+        };
+        let returns = |start: usize| {
+            let mut reached = vec![false; links.len()];
+            let mut queue = vec![start];
+            while let Some(k) = queue.pop() {
+                for (next, link) in links.iter().enumerate() {
+                    if leads(&links[k], link) && !std::mem::replace(&mut reached[next], true) {
+                        queue.push(next);
+                    }
+                }
+            }
+            reached[start]
+        };
+        (0..links.len()).filter(|&k| returns(k)).map(|k| (links[k].0, links[k].1)).collect()
     }
 
     /// Ends of a carrier's wires that lead nowhere, each with the point before it.
@@ -181,7 +251,7 @@ impl<'a> Drawing<'a> {
             joints,
             grounds: self.grounds(),
             terminals,
-            frame: self.pieces(GROUND, &[]).0.into_iter().map(|p| p.points).collect(),
+            frame: self.pieces(GROUND, &[], None).0.into_iter().map(|p| p.points).collect(),
             crossings,
         }
     }
@@ -211,7 +281,8 @@ impl<'a> Drawing<'a> {
                 gears.push(StickGear {
                     member: self.members.net(g.member),
                     block: b,
-                    teeth: g.teeth.clone(),
+                    // A planet of 45/4 teeth is a number of the calculation, none of a wheel.
+                    teeth: if g.teeth.contains('/') { String::new() } else { g.teeth.clone() },
                     role: g.role,
                     stems: g.stems.iter().map(lines).collect(),
                     faces: g.faces.iter().map(lines).collect(),
@@ -259,7 +330,7 @@ impl<'a> Drawing<'a> {
 
     fn member(&self, n: usize) -> StickMember {
         let id = self.members.order[n];
-        let (mut pieces, dots) = self.pieces(n as u16, &self.loaded_points(n));
+        let (mut pieces, dots) = self.pieces(n as u16, &self.loaded_points(n), self.sources(n).as_deref());
         pieces.extend(self.sleeve(id));
         let speed = self.load.speeds[id.index()].as_ref();
         StickMember {
@@ -284,7 +355,7 @@ impl<'a> Drawing<'a> {
         hubs.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         let (first, last) = (*hubs.first()?, *hubs.last()?);
         let loaded = self.load.members[id.index()] == Some(true);
-        (first != last).then(|| StickPiece { points: vec![first, last], loaded })
+        (first != last).then(|| StickPiece { points: vec![first, last], loaded, power: None, circulates: false })
     }
 
     fn carries(&self, b: usize, id: MemberId) -> bool {
@@ -329,8 +400,61 @@ impl<'a> Drawing<'a> {
         all
     }
 
+    /// Where power comes into the lines of a member and how much, negative where it leaves, and whether it is part of a
+    /// circle; nothing where statics leaves one of them open.
+    fn sources(&self, n: usize) -> Option<Vec<Source>> {
+        if !self.load.shown {
+            return None;
+        }
+        let id = self.members.order[n];
+        let mut all = Vec::new();
+        for b in 0..self.plan.blocks.len() {
+            let shape = self.shape(b);
+            let circles = self.circling.contains(&(Knot::Block(b), n));
+            let hub = |k: usize, at: [f64; 2]| {
+                let stem = shape.gears[k].stems.iter().find(|s| s[1] == at)?;
+                Some(self.to_grid(b, (stem[0][0].round() as i32, stem[0][1].round() as i32)))
+            };
+            for c in &shape.contacts {
+                let mesh = &self.train.meshes()[c.mesh.index()];
+                let power = &self.load.from_meshes[c.mesh.index()];
+                let planets = (0..2).filter(|&end| shape.gears[c.gears[end]].role == GearRole::Planet).count();
+                for end in 0..2 {
+                    let planet = shape.gears[c.gears[end]].role == GearRole::Planet;
+                    let mut own = 0.0;
+                    if mesh.gears[end].member == id {
+                        own += power[end]?;
+                    }
+                    if planet && mesh.carrier == id {
+                        // Pins of two planets that mesh share what their carrier gets.
+                        own += power[2]? / planets as f64;
+                    }
+                    if let (true, Some(at)) = (own != 0.0, hub(c.gears[end], c.at)) {
+                        all.push(Source { at, power: own, circles });
+                    }
+                }
+            }
+        }
+        for (j, ends) in self.plan.joints.iter().zip(&self.layout.joints) {
+            for k in (0..2).filter(|&k| j.members[k] == Some(n)) {
+                let own = self.load.from_joints[j.number][k].unwrap_or(0.0);
+                if let (true, Some(ends)) = (own != 0.0, ends) {
+                    let circles = self.circling.contains(&(Knot::Joint(j.number), n));
+                    all.push(Source { at: ends[k], power: own, circles });
+                }
+            }
+        }
+        let outside = self.load.from_outside[id.index()]?;
+        if outside != 0.0 {
+            // A machine within the train has no end in the picture.
+            let (_, at) = self.plan.exits.iter().zip(&self.layout.exits).find(|(e, _)| e.net == n)?;
+            all.push(Source { at: (*at)?, power: outside, circles: false });
+        }
+        Some(all)
+    }
+
     /// The lines of an owner from branch to branch, and where they branch.
-    fn pieces(&self, owner: u16, loaded: &[Point]) -> (Vec<StickPiece>, Vec<Place>) {
+    fn pieces(&self, owner: u16, loaded: &[Point], sources: Option<&[Source]>) -> (Vec<StickPiece>, Vec<Place>) {
         let g = self.grid();
         let ways = |p: Point| (0..4).filter(move |w| g.step(p, *w) == owner);
         let to = |p: Point, w: usize| (p.0 + WAYS[w].0, p.1 + WAYS[w].1);
@@ -355,6 +479,7 @@ impl<'a> Drawing<'a> {
         let joint_end = |p: Point| self.layout.joints.iter().flatten().flatten().any(|e| *e == p);
         let stop = |p: Point| ways(p).count() != 2 || g.point[g.at(p)] != FREE || joint_end(p) || loaded.contains(&p);
         let (mut pieces, mut dots) = (Vec::new(), Vec::new());
+        let mut ends: Vec<[Point; 2]> = Vec::new();
         for k in 0..g.point.len() {
             let start = g.place(k);
             if !stop(start) {
@@ -377,9 +502,14 @@ impl<'a> Drawing<'a> {
                 }
                 // Each line is met from both ends.
                 if (points[0], points[1]) < (p, points[points.len() - 2]) {
-                    pieces.push(StickPiece { points: self.corners(&points), loaded: on });
+                    let points = self.corners(&points);
+                    pieces.push(StickPiece { points, loaded: on, power: None, circulates: false });
+                    ends.push([start, p]);
                 }
             }
+        }
+        if let Some(sources) = sources {
+            direct(&mut pieces, &ends, sources);
         }
         (pieces, dots)
     }
@@ -407,5 +537,36 @@ impl<'a> Drawing<'a> {
             }
         }
         all
+    }
+}
+
+/// Gives the lines of a member their powers: each passes on what comes in behind its first end. Lines that close a ring are
+/// left alone, for statics does not say how they share.
+fn direct(pieces: &mut [StickPiece], ends: &[[Point; 2]], sources: &[Source]) {
+    // Everything on the side of an end when that piece is cut; nothing where the cut parts nothing.
+    let behind = |cut: usize, end: usize| -> Option<Vec<Point>> {
+        let (from, to) = (ends[cut][end], ends[cut][1 - end]);
+        let mut reached = vec![from];
+        let mut next = 0;
+        while next < reached.len() {
+            let p = reached[next];
+            next += 1;
+            for (_, [a, b]) in ends.iter().enumerate().filter(|(k, _)| *k != cut) {
+                for q in [(p == *a).then_some(*b), (p == *b).then_some(*a)].into_iter().flatten() {
+                    if !reached.contains(&q) {
+                        reached.push(q);
+                    }
+                }
+            }
+        }
+        (!reached.contains(&to)).then_some(reached)
+    };
+    for k in 0..pieces.len() {
+        let (Some(before), Some(after)) = (behind(k, 0), behind(k, 1)) else { continue };
+        let on = |side: &[Point], s: &&Source| side.contains(&s.at);
+        let power: f64 = sources.iter().filter(|s| on(&before, s)).map(|s| s.power).sum();
+        pieces[k].power = Some(if power.abs() < ROUND_OFF { 0.0 } else { power });
+        let circles = |side: &[Point]| sources.iter().filter(|s| on(side, s)).any(|s| s.circles);
+        pieces[k].circulates = power.abs() >= ROUND_OFF && circles(&before) && circles(&after);
     }
 }

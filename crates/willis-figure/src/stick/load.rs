@@ -25,6 +25,12 @@ pub(super) struct Load {
     pub members: Vec<Option<bool>>,
     /// Of each member: power from outside.
     pub outside: Vec<bool>,
+    /// How much power, over that of the input, comes into first gear, second gear and carrier of each mesh from that mesh.
+    pub from_meshes: Vec<[Option<f64>; 3]>,
+    /// The same of each shift element, then each shaft.
+    pub from_joints: Vec<[Option<f64>; 2]>,
+    /// The same of each member, from outside.
+    pub from_outside: Vec<Option<f64>>,
 }
 
 impl Load {
@@ -38,6 +44,9 @@ impl Load {
             joints: vec![[None; 2]; joint_count],
             members: vec![None; count],
             outside: vec![false; count],
+            from_meshes: vec![[None; 3]; train.meshes().len()],
+            from_joints: vec![[None; 2]; joint_count],
+            from_outside: vec![None; count],
         };
         if state.is_none() && !train.states().is_empty() {
             return load;
@@ -116,8 +125,30 @@ impl Load {
         for (k, (joint, members)) in joints.iter().enumerate() {
             self.joints[*joint] = members.map(|m| power(m, found[meshes.len() + k].as_ref(), &Rational::ONE));
         }
+        // What a mesh takes from a member does not come into it.
+        let amount = |member: MemberId, torque: Option<&Rational>, factor: &Rational| -> Option<f64> {
+            if member == FRAME || factor.is_zero() {
+                return Some(0.0);
+            }
+            Some((torque?.clone() * factor.clone() * self.speeds[member.index()].clone()?).to_f64())
+        };
+        let meshes_found: Vec<[Option<f64>; 3]> = (parts.iter().enumerate())
+            .map(|(k, part)| part.each_ref().map(|(m, z)| amount(*m, found[k].as_ref(), &-z.clone())))
+            .collect();
+        let joints_found: Vec<[Option<f64>; 2]> = (joints.iter().enumerate())
+            .map(|(k, (_, [a, b]))| {
+                let torque = found[meshes.len() + k].as_ref();
+                [amount(*a, torque, &-Rational::ONE), amount(*b, torque, &Rational::ONE)]
+            })
+            .collect();
+        let leaving = amount(output, found[columns - 1].as_ref(), &Rational::ONE);
+        let entering = amount(input, Some(&Rational::ONE), &Rational::ONE);
         self.outside[input.index()] = power(input, Some(&Rational::ONE), &Rational::ONE) == Some(true);
         self.outside[output.index()] = power(output, found[columns - 1].as_ref(), &Rational::ONE) == Some(true);
+        self.from_meshes = meshes_found;
+        joints.iter().zip(joints_found).for_each(|((joint, _), found)| self.from_joints[*joint] = found);
+        self.from_outside = vec![Some(0.0); count];
+        (self.from_outside[input.index()], self.from_outside[output.index()]) = (entering, leaving);
         for m in 1..count {
             let mut all = vec![Some(self.outside[m])];
             for (k, part) in parts.iter().enumerate() {

@@ -496,7 +496,11 @@ pub(super) fn pair(train: &Train, members: &Members, id: MeshId, lower: usize) -
     let (y_low, y_high, at) = match (low.internal, high.internal) {
         (true, _) => (1, 0, 0.5),
         (_, true) => (-2, -3, -2.5),
-        _ => (-2, 0, -1.3),
+        // Radii as the teeth are; a very small gear keeps room for its number.
+        _ => {
+            let [low, high] = [low, high].map(|g| g.teeth.to_f64());
+            (-2, 0, -2.0 + 2.0 * (low / (low + high)).clamp(0.22, 0.78))
+        }
     };
     let mut s = Shape { width: 1, top: y_low.max(y_high), ..Shape::default() };
     let touch = [0.0, at];

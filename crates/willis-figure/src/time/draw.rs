@@ -3,7 +3,9 @@
 use svg::node::element::{Circle, Group, Path};
 use willis::dynamics::{ColumnUnit, ModeLabel, Outcome};
 
-use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, colour, line, number, page, rectangle, text, ticks};
+use crate::parts::style::{
+    Anchor, FAINT, INK, LINE, PAPER, colour, figures, halo, line, number, page, rectangle, text, ticks,
+};
 use crate::{ModeRow, TimeLine, TimePanel, TimePlot};
 
 const WIDTH: f64 = 1060.0;
@@ -390,7 +392,7 @@ fn look(mode: Option<ModeLabel>) -> (String, &'static str) {
     match mode {
         Some(ModeLabel::Forward) => (colour(Some(0), 0.4), "forward"),
         Some(ModeLabel::Backward) => (colour(Some(1), 0.4), "backward"),
-        Some(ModeLabel::Stuck) => (colour(None, 0.85), "stuck"),
+        Some(ModeLabel::Stuck) => (colour(None, 0.85), "locked"),
         Some(ModeLabel::Free) => (PAPER.to_owned(), "free"),
         None => (colour(Some(3), 0.5), "changing"),
     }
@@ -432,7 +434,7 @@ fn modes(plot: &TimePlot, time: &TimeAxis, top: f64) -> Group {
     let mut x = LEFT;
     for m in order.into_iter().filter(|m| plot.modes.iter().any(|r| r.segments.iter().any(|s| s.mode == *m))) {
         let word = match m {
-            Some(ModeLabel::Stuck) => "stuck: held by friction",
+            Some(ModeLabel::Stuck) => "locked: held by friction",
             None => "changing fast",
             _ => look(m).1,
         };
@@ -460,13 +462,11 @@ fn mode_row(r: &ModeRow, time: &TimeAxis, y: f64) -> Group {
                 Some(ModeLabel::Backward) => 2.5,
                 _ => 4.0,
             };
-            let mut label =
-                text(from + width / 2.0, y + ROW / 2.0 + shift, 11.0, Anchor::Middle, word).set("fill", ink);
-            if s.mode == Some(ModeLabel::Free) {
-                label =
-                    label.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 5).set("fill", FAINT);
-            }
-            g = g.add(label);
+            let label = text(from + width / 2.0, y + ROW / 2.0 + shift, 11.0, Anchor::Middle, word);
+            g = g.add(match s.mode == Some(ModeLabel::Free) {
+                true => halo(label.set("fill", FAINT), PAPER, 5.0),
+                false => Group::new().add(label.set("fill", ink)),
+            });
         }
     }
     g.add(text(RIGHT + 8.0, y + ROW / 2.0 + 4.0, 12.0, Anchor::Start, &short(&r.element, 29)))
@@ -547,8 +547,7 @@ fn tick_labels(ticks: &[f64]) -> Vec<String> {
     let most = ticks.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     let one = |t: &f64| {
         let t = if t.abs() < 1e-9 * step { 0.0 } else { *t };
-        let text =
-            if most >= 1e7 || (most < 1e-6 && most > 0.0) { format!("{t:.2e}") } else { format!("{t:.decimals$}") };
+        let text = if most >= 1e7 || (most < 1e-6 && most > 0.0) { figures(t, 3) } else { format!("{t:.decimals$}") };
         text.replace('-', "−")
     };
     ticks.iter().map(one).collect()
@@ -560,7 +559,7 @@ fn short_number(x: f64) -> String {
     }
     let size = x.abs();
     if size != 0.0 && !(1e-3..1e6).contains(&size) {
-        return format!("{x:.2e}");
+        return figures(x, 3);
     }
     let decimals = if size == 0.0 { 0 } else { (3 - size.log10().floor() as i32).clamp(0, 6) as usize };
     format!("{x:.decimals$}")

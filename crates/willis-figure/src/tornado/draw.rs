@@ -1,11 +1,11 @@
 //! What moves the losses of an operating point most, as bars about a middle line.
 
 use svg::node::element::Group;
-use willis::hypergraph::watts;
 use willis::units;
 
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, ticks, wide,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
+    ticks, watts, wide,
 };
 use crate::{Tornado, TornadoBar};
 
@@ -87,7 +87,7 @@ pub fn draw(t: &Tornado) -> String {
         let (at, anchor) =
             if up { (x(b.loss_change_w) + 6.0, Anchor::Start) } else { (x(b.loss_change_w) - 6.0, Anchor::End) };
         let change = text(at, y + 4.0, 11.0, anchor, &signed(b.loss_change_w));
-        g = g.add(change.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3));
+        g = g.add(halo(change, PAPER, 3.0));
         if let Some(eta) = b.efficiency_change {
             // Round-off is no effect.
             let points = if eta.abs() < 1e-10 { 0.0 } else { 100.0 * eta };

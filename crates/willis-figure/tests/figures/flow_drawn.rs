@@ -46,6 +46,8 @@ fn labels(svg: &str) -> (Vec<Label>, [f64; 2]) {
             shifts.push(shift.unwrap_or((0.0, 0.0)));
         } else if tag == "/g" {
             shifts.pop();
+        } else if tag.starts_with("text ") && attribute_text(tag, "aria-hidden").is_some() {
+            // The rim of the text that follows.
         } else if tag.starts_with("text ") {
             let get = |n: &str| attribute(tag, n).expect("an attribute");
             let (dx, dy) = shifts.iter().fold((0.0, 0.0), |a, s| (a.0 + s.0, a.1 + s.1));

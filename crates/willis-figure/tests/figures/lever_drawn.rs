@@ -70,3 +70,26 @@ fn each_state_has_its_letter_and_the_neutral_one_its_reason() {
     assert!(all[2].contains("degrees of freedom"));
     assert!(all[3].contains("degrees of freedom"));
 }
+
+/// Five sets do not fit beside each other: what joins the last lever of a row to the first of the next is drawn too.
+#[test]
+fn levers_in_two_rows_are_linked() {
+    let (_, model) = crate::trains::hard().into_iter().find(|(name, _)| *name == "five sets").unwrap();
+    let data = willis_figure::lever(model.train(), &willis_figure::LeverRequest::State("1".into())).unwrap();
+    let svg = willis_figure::draw_lever(&data);
+    let document = resvg::usvg::roxmltree::Document::parse(&svg).unwrap();
+    let ways = document.descendants().filter(|n| n.has_tag_name("path") && n.attribute("data-member").is_some());
+    let level =
+        document.descendants().filter(|n| n.has_tag_name("line") && n.attribute("stroke-dasharray") == Some("6 4"));
+    let pairs: usize = data.links.iter().map(|l| l.points.len() - 1).sum();
+    // The key has one dashed line of its own.
+    assert_eq!(ways.count() + level.count(), pairs + 1);
+}
+
+#[test]
+fn gears_stand_under_their_own_names() {
+    let train = crate::common::train("zf-8hp70");
+    let data = willis_figure::lever(&train, &willis_figure::LeverRequest::EveryState).unwrap();
+    let names: Vec<&str> = data.cases.iter().map(|c| c.letter.as_str()).collect();
+    assert_eq!(names, ["1", "2", "3", "4", "5", "6", "7", "8", "R"]);
+}

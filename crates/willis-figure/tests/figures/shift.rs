@@ -95,3 +95,26 @@ fn efficiencies_lie_between_nothing_and_one() {
     }
     assert!(!shift(&example("prius-p112.toml")).unwrap().one_path);
 }
+
+/// Nobody shifts from eighth to reverse: the picture says nothing of a change between gears of opposite sign.
+#[test]
+fn no_change_is_drawn_across_a_sign() {
+    let mut across = 0;
+    for (name, train) in crate::trains::examples() {
+        let Ok(table) = shift(&train) else { continue };
+        let svg = willis_figure::draw_shift(&table);
+        let drawn = svg.matches('→').count();
+        let mut expected = usize::from(table.changes.iter().any(|c| !c.opens.is_empty() || !c.closes.is_empty()));
+        for (k, c) in table.changes.iter().enumerate() {
+            let ratios = [k, k + 1].map(|r| table.rows[r].ratio);
+            let turns = matches!(ratios, [Some(a), Some(b)] if a * b < 0.0);
+            across += usize::from(turns);
+            expected += usize::from(!turns && !c.opens.is_empty() && !c.closes.is_empty());
+        }
+        // The key has one arrow of its own.
+        if table.one_path {
+            assert_eq!(drawn, expected.max(1), "{name}");
+        }
+    }
+    assert!(across >= 5, "{across}");
+}

@@ -1,9 +1,9 @@
 //! Stick diagrams: their lines join what the train joins, and nothing else.
 
 use willis::train::{FRAME, GearSpec, MeshSpec, SetSpec, ShiftElementSpec, Specification, Train};
-use willis_figure::{JointKind, Place, Stick, stick};
+use willis_figure::{JointKind, Place, Stick, Way, stick};
 
-use crate::trains::examples;
+use crate::trains::{examples, hard};
 
 const NEAR: f64 = 1e-6;
 
@@ -305,4 +305,141 @@ fn other_names_give_the_same_picture() {
         }
         assert_eq!(s, t);
     }
+}
+
+/// Ends of the picture without a state: those on which all states agree, else none.
+#[test]
+fn arrows_of_a_train_with_states_are_those_of_its_states() {
+    let all = examples().into_iter().chain(hard().into_iter().map(|(name, m)| (name.to_owned(), m.train().clone())));
+    let (mut agreed, mut open) = (0, 0);
+    for (name, train) in all.filter(|(_, t)| !t.states().is_empty()) {
+        let ways = |state: Option<&str>| {
+            let picture = stick(&train, state).unwrap();
+            let own = picture.terminals.iter().filter_map(|t| Some((picture.members[t.member].name.clone(), t.way?)));
+            let mut own: Vec<_> = own.collect();
+            own.sort_by(|a, b| a.0.cmp(&b.0));
+            own
+        };
+        let own: Vec<_> = train.states().iter().map(|s| ways(Some(&s.name))).collect();
+        let plain = ways(None);
+        if own.iter().all(|o| *o == own[0]) {
+            assert_eq!(plain, own[0], "{name}");
+            agreed += usize::from(!plain.is_empty());
+        } else {
+            assert_eq!(plain, [], "{name}: its states disagree");
+            open += 1;
+        }
+        // A state that names its ends shows them.
+        for (s, shown) in train.states().iter().zip(&own) {
+            for (end, way) in [(s.input, Way::In), (s.output, Way::Out)] {
+                let Some(end) = end.filter(|m| train.terminals().contains(m)) else { continue };
+                assert!(shown.contains(&(train.member_name(end).to_owned(), way)), "{name} {}: {shown:?}", s.name);
+            }
+        }
+    }
+    assert!(agreed >= 8 && open >= 1, "{agreed} agree, {open} do not");
+}
+
+/// Powers of lines: what enters a branch leaves it, the input brings in one, and the output takes one.
+#[test]
+fn powers_of_lines_balance_at_every_branch() {
+    let (mut branches, mut circles) = (0, 0);
+    let all = examples().into_iter().chain(hard().into_iter().map(|(name, m)| (name.to_owned(), m.train().clone())));
+    for (name, train) in all {
+        let states: Vec<Option<&str>> = match train.states().is_empty() {
+            true => vec![None],
+            false => train.states().iter().map(|s| Some(s.name.as_str())).collect(),
+        };
+        for state in states {
+            let picture = stick(&train, state).unwrap();
+            circles += usize::from(picture.members.iter().flat_map(|m| &m.pieces).any(|p| p.circulates));
+            for m in &picture.members {
+                for p in m.pieces.iter().filter(|p| p.power.is_some()) {
+                    let power = p.power.unwrap();
+                    assert!(!p.circulates || power != 0.0, "{name} {state:?} {}", m.name);
+                    assert!(
+                        p.loaded || power.abs() < 1e-6,
+                        "{name} {state:?} {}: {power} where nothing is loaded",
+                        m.name
+                    );
+                }
+                // At a dot that is no gear, joint or terminal the powers of the lines add to zero.
+                for dot in &m.dots {
+                    let gear = picture.gears.iter().any(|g| g.stems.iter().any(|s| near(s[0], *dot)));
+                    let joint = picture.joints.iter().any(|j| j.ends.iter().any(|e| near(*e, *dot)));
+                    let end = picture.terminals.iter().any(|t| near(t.at, *dot));
+                    let lines = m.pieces.iter().filter_map(|p| {
+                        let power = p.power?;
+                        let (first, last) = (p.points[0], *p.points.last().unwrap());
+                        Some(if near(last, *dot) {
+                            power
+                        } else if near(first, *dot) {
+                            -power
+                        } else {
+                            0.0
+                        })
+                    });
+                    if !gear && !joint && !end && m.pieces.iter().all(|p| p.power.is_some()) {
+                        let sum: f64 = lines.sum();
+                        assert!(sum.abs() < 1e-6, "{name} {state:?} {}: {sum} is left at a branch", m.name);
+                        branches += 1;
+                    }
+                }
+            }
+            for t in picture.terminals.iter().filter(|t| t.way.is_some()) {
+                let m = &picture.members[t.member];
+                let own: Vec<f64> = m
+                    .pieces
+                    .iter()
+                    .filter_map(|p| match near(p.points[0], t.at) {
+                        true => p.power,
+                        false => near(*p.points.last().unwrap(), t.at).then(|| p.power.map(|x| -x)).flatten(),
+                    })
+                    .collect();
+                if let [one] = own[..]
+                    && one != 0.0
+                {
+                    let expected = if t.way == Some(Way::In) { 1.0 } else { -1.0 };
+                    assert!((one - expected).abs() < 1e-6, "{name} {state:?} {}: {one}", m.name);
+                }
+            }
+        }
+    }
+    assert!(branches > 50 && circles > 10, "{branches} branches, {circles} with circles");
+}
+
+fn near(a: Place, b: Place) -> bool {
+    (a[0] - b[0]).abs() < NEAR && (a[1] - b[1]).abs() < NEAR
+}
+
+/// Of an ordinary pair the gear with more teeth is the larger one, by its ratio but for room for numbers.
+#[test]
+fn radii_of_ordinary_pairs_are_as_their_teeth() {
+    let (_, model) = hard().into_iter().find(|(name, _)| *name == "pairs").unwrap();
+    let picture = stick(model.train(), None).unwrap();
+    let mut compared = 0;
+    for m in &picture.meshes {
+        let [a, b] = m.gears.map(|g| &picture.gears[g]);
+        let radius = |g: &willis_figure::StickGear| (g.stems[0][0][1] - g.stems[0][1][1]).abs();
+        let teeth = |g: &willis_figure::StickGear| g.teeth.parse::<f64>().unwrap();
+        let drawn = radius(a) / (radius(a) + radius(b));
+        let expected = (teeth(a) / (teeth(a) + teeth(b))).clamp(0.22, 0.78);
+        assert!((drawn - expected).abs() < 1e-6, "{}: {drawn}, not {expected}", m.name);
+        compared += 1;
+    }
+    assert_eq!(compared, 3);
+}
+
+/// 33 and 72 teeth leave 19.5 for the planet: no such wheel exists, so that none is named.
+#[test]
+fn teeth_that_no_wheel_has_are_left_out() {
+    for (name, train) in examples() {
+        let picture = stick(&train, None).unwrap();
+        for g in &picture.gears {
+            assert!(g.teeth.is_empty() || g.teeth.parse::<u64>().is_ok(), "{name}: `{}` teeth", g.teeth);
+        }
+    }
+    let simpson = stick(&examples().into_iter().find(|(n, _)| n == "simpson-ford-c4").unwrap().1, None).unwrap();
+    let planets = simpson.gears.iter().filter(|g| g.role == willis_figure::GearRole::Planet);
+    assert!(planets.clone().count() == 2 && planets.clone().all(|g| g.teeth.is_empty()));
 }

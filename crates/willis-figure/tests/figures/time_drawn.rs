@@ -179,7 +179,8 @@ fn a_run_has_its_panels_names_and_events() {
     assert_eq!(names, ["sun", "ring", "carrier=out"]);
     assert_eq!(plot.panels[1].lines.len(), 3);
     let svg = check("launch", &plot);
-    for word in ["Speed, rpm", "Torque, N m", "Power, kW", "Time, s", "carrier = out", "brake B comes to rest", "stuck"]
+    for word in
+        ["Speed, rpm", "Torque, N m", "Power, kW", "Time, s", "carrier = out", "brake B comes to rest", "locked"]
     {
         assert!(svg.contains(word), "{word}");
     }

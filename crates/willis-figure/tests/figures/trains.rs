@@ -36,3 +36,266 @@ pub fn stepped(seed: u64) -> Option<Train> {
     let load = OperationSpec::new("load").speed(&all[0], AngularSpeed::rpm(1000.0)).torque(&all[0], Torque::n_m(100.0));
     b.operation(load.fixed(&all[k + 1])).build().ok()
 }
+
+/// Trains that the examples lack and that have spoilt pictures: many levers, many states, large and small numbers, ordinary
+/// pairs, states that disagree about the input.
+pub fn hard() -> Vec<(&'static str, Model)> {
+    let all = [
+        ("five sets", five_sets()),
+        ("wind gearbox", WIND.to_owned()),
+        ("twelve planets", TWELVE.to_owned()),
+        ("wilson", WILSON.to_owned()),
+        ("heavy", heavy("12345678 N m")),
+        ("tiny", heavy("0.00001234 N m")),
+        ("pairs", PAIRS.to_owned()),
+        ("two inputs", TWO_INPUTS.to_owned()),
+    ];
+    all.map(|(name, text)| (name, Model::from_toml(&text).unwrap_or_else(|wrong| panic!("{name}: {wrong}")))).into()
+}
+
+/// Two sets under a load that no gearbox has.
+fn heavy(torque: &str) -> String {
+    format!(
+        r#"
+        format = 1
+        name = "Two sets under {torque}"
+        members = ["in", "mid", "out"]
+        terminals = ["in", "out"]
+        [[set]]
+        name = "P1"
+        sun = {{ member = "in", teeth = 19 }}
+        planet = {{ teeth = 31, count = 3 }}
+        ring = {{ member = "frame", teeth = 83 }}
+        carrier = "mid"
+        mesh_efficiency = 0.987
+        [[set]]
+        name = "P2"
+        sun = {{ member = "mid", teeth = 23 }}
+        planet = {{ teeth = 31, count = 3 }}
+        ring = {{ member = "frame", teeth = 85 }}
+        carrier = "out"
+        mesh_efficiency = 0.987
+        [[operation]]
+        name = "load"
+        speeds = {{ in = "98765 rpm" }}
+        torques = {{ in = "{torque}" }}
+        "#
+    )
+}
+
+/// Five sets in a row, each with a brake on its ring, and a clutch that bridges each: ten states of fifteen members.
+fn five_sets() -> String {
+    let mut text = String::from("format = 1\nname = \"Five sets, ten gears\"\nmembers = [\"n0\"");
+    for k in 1..=5 {
+        text += &format!(", \"n{k}\", \"r{k}\"");
+    }
+    text += "]\nterminals = [\"n0\", \"n5\"]\n";
+    for k in 1..=5 {
+        let (sun, ring) = (28 + k, 70 + k);
+        let before = k - 1;
+        text += &format!(
+            "[[set]]\nname = \"P{k}\"\nsun = {{ member = \"n{before}\", teeth = {sun} }}\nplanet = {{ teeth = 21, count = 4 }}\n\
+             ring = {{ member = \"r{k}\", teeth = {ring} }}\ncarrier = \"n{k}\"\nmesh_efficiency = 0.985\n\
+             [[shift_element]]\nname = \"B{k}\"\nkind = \"brake\"\nmembers = [\"r{k}\"]\n\
+             [[shift_element]]\nname = \"K{k}\"\nkind = \"clutch\"\nmembers = [\"r{k}\", \"n{k}\"]\n"
+        );
+    }
+    for (k, held) in [31, 30, 28, 24, 16, 27, 9, 5, 1, 0].into_iter().enumerate() {
+        let engaged: Vec<String> =
+            (1..=5).map(|s| format!("\"{}{s}\"", if held >> (s - 1) & 1 == 1 { "B" } else { "K" })).collect();
+        text += &format!("[[state]]\nname = \"{}\"\nengaged = [{}]\n", k + 1, engaged.join(", "));
+    }
+    text
+}
+
+/// Two planetary stages and a pair, megawatts.
+const WIND: &str = r#"
+format = 1
+name = "Wind turbine gearbox, two planetary stages and a pair"
+members = ["rotor", "shaft-1", "shaft-2", "generator"]
+terminals = ["rotor", "generator"]
+[[set]]
+name = "stage 1"
+sun = { member = "shaft-1", teeth = 21 }
+planet = { teeth = 39, count = 3 }
+ring = { member = "frame", teeth = 99 }
+carrier = "rotor"
+mesh_efficiency = 0.995
+[[set]]
+name = "stage 2"
+sun = { member = "shaft-2", teeth = 23 }
+planet = { teeth = 46, count = 3 }
+ring = { member = "frame", teeth = 115 }
+carrier = "shaft-1"
+mesh_efficiency = 0.995
+[[mesh]]
+name = "stage 3"
+gears = [{ member = "shaft-2", teeth = 103 }, { member = "generator", teeth = 29 }]
+efficiency = 0.99
+[[operation]]
+name = "rated"
+speeds = { rotor = "10 rpm" }
+powers = { rotor = "6 MW" }
+"#;
+
+const TWELVE: &str = r#"
+format = 1
+name = "Twelve planets"
+members = ["sun", "ring", "carrier"]
+terminals = ["sun", "carrier"]
+[[set]]
+name = "P1"
+sun = { member = "sun", teeth = 96 }
+planet = { teeth = 20, count = 12 }
+ring = { member = "ring", teeth = 136 }
+carrier = "carrier"
+mesh_efficiency = 0.99
+geometry = { module = "2 mm", width = "30 mm" }
+[[shift_element]]
+name = "hold"
+kind = "brake"
+members = ["ring"]
+[[state]]
+name = "held"
+engaged = ["hold"]
+[[operation]]
+name = "load"
+state = "held"
+speeds = { sun = "2000 rpm" }
+torques = { sun = "100 N m" }
+"#;
+
+/// A preselector: every brake holds what drives the set before.
+const WILSON: &str = r#"
+format = 1
+name = "Wilson preselector, three gears of it"
+members = ["input", "r1", "r2", "s3", "output"]
+terminals = ["input", "output"]
+[[set]]
+name = "first"
+sun = { member = "input", teeth = 24 }
+planet = { teeth = 24, count = 3 }
+ring = { member = "r1", teeth = 72 }
+carrier = "output"
+mesh_efficiency = 0.985
+[[set]]
+name = "second"
+sun = { member = "input", teeth = 30 }
+planet = { teeth = 21, count = 3 }
+ring = { member = "r2", teeth = 72 }
+carrier = "r1"
+mesh_efficiency = 0.985
+[[set]]
+name = "third"
+sun = { member = "s3", teeth = 26 }
+planet = { teeth = 22, count = 3 }
+ring = { member = "r1", teeth = 70 }
+carrier = "r2"
+mesh_efficiency = 0.985
+[[shift_element]]
+name = "B1"
+kind = "brake"
+members = ["r1"]
+[[shift_element]]
+name = "B2"
+kind = "brake"
+members = ["r2"]
+[[shift_element]]
+name = "B3"
+kind = "brake"
+members = ["s3"]
+[[shift_element]]
+name = "K"
+kind = "clutch"
+members = ["s3", "input"]
+[[state]]
+name = "1"
+engaged = ["B1"]
+[[state]]
+name = "2"
+engaged = ["B2"]
+[[state]]
+name = "3"
+engaged = ["B3"]
+[[state]]
+name = "direct"
+engaged = ["K"]
+"#;
+
+/// Ordinary pairs of very different sizes, in a row and side by side.
+const PAIRS: &str = r#"
+format = 1
+name = "Countershaft"
+members = ["input", "counter", "g1", "g2", "output"]
+terminals = ["input", "output"]
+[[mesh]]
+name = "constant"
+gears = [{ member = "input", teeth = 17 }, { member = "counter", teeth = 41 }]
+efficiency = 0.99
+[[mesh]]
+name = "low"
+gears = [{ member = "counter", teeth = 11 }, { member = "g1", teeth = 38 }]
+efficiency = 0.99
+[[mesh]]
+name = "high"
+gears = [{ member = "counter", teeth = 33 }, { member = "g2", teeth = 16 }]
+efficiency = 0.99
+[[shift_element]]
+name = "L"
+kind = "clutch"
+members = ["g1", "output"]
+[[shift_element]]
+name = "H"
+kind = "clutch"
+members = ["g2", "output"]
+[[state]]
+name = "low"
+engaged = ["L"]
+[[state]]
+name = "high"
+engaged = ["H"]
+[[operation]]
+name = "load"
+state = "low"
+speeds = { input = "1500 rpm" }
+torques = { input = "80 N m" }
+"#;
+
+/// The second state is driven from the other end.
+const TWO_INPUTS: &str = r#"
+format = 1
+name = "Engine or starter drives"
+members = ["engine", "starter", "wheels", "ring"]
+terminals = ["starter", "engine", "wheels"]
+input = "engine"
+output = "wheels"
+[[set]]
+name = "P1"
+sun = { member = "starter", teeth = 30 }
+planet = { teeth = 20, count = 4 }
+ring = { member = "ring", teeth = 70 }
+carrier = "wheels"
+mesh_efficiency = 0.985
+[[shift_element]]
+name = "B"
+kind = "brake"
+members = ["ring"]
+[[shift_element]]
+name = "E"
+kind = "clutch"
+members = ["engine", "ring"]
+[[shift_element]]
+name = "S"
+kind = "brake"
+members = ["starter"]
+[[state]]
+name = "start"
+engaged = ["B"]
+input = "starter"
+output = "wheels"
+[[state]]
+name = "drive"
+engaged = ["E", "S"]
+input = "engine"
+output = "wheels"
+"#;

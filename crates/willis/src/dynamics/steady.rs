@@ -39,7 +39,8 @@ impl Engine {
     /// From now on the present mode and piece are those of all states, until a mode is entered.
     pub fn settle_down(&mut self) {
         self.steady = None;
-        if self.map.is_none() || self.system.laws.is_some() {
+        // Laws and variators move with everything.
+        if self.map.is_none() || self.system.laws.is_some() || !self.system.paths.is_empty() {
             return;
         }
         let s = &self.system;

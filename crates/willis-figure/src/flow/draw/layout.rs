@@ -5,11 +5,11 @@ use std::collections::HashMap;
 use rust_sugiyama::configure::Config;
 use rust_sugiyama::from_vertices_and_edges;
 use svg::node::element::Group;
-use willis::hypergraph::{Hypergraph, Loop, Node, NodeKind, watts};
+use willis::hypergraph::{Hypergraph, Loop, Node, NodeKind};
 
-use super::marks::{Line, draw, halo, symbol};
+use super::marks::{Line, draw, symbol};
 use super::words::{GROUND, R, ROW, SMALL, name, values};
-use crate::parts::style::{Anchor, BOLD, text, wide};
+use crate::parts::style::{Anchor, BOLD, PAPER, halo, text, watts, wide};
 
 /// Width of the line of the largest power.
 const WIDEST: f64 = 11.0;
@@ -270,7 +270,7 @@ impl Drawing {
         }
         for (b, words) in &labels {
             let (x, y) = ((b.x[0] + b.x[1]) / 2.0, (b.y[0] + b.y[1]) / 2.0 + shift + 0.36 * SMALL);
-            group = group.add(halo(text(x, y, SMALL, Anchor::Middle, words)).set("class", "power"));
+            group = group.add(halo(text(x, y, SMALL, Anchor::Middle, words).set("class", "power"), PAPER, 3.0));
         }
         Self {
             group,

@@ -2,10 +2,10 @@
 
 use svg::Node as _;
 use svg::node::element::{Circle, Element, Group, Path, Polygon};
-use willis::hypergraph::{Hypergraph, Node, NodeKind, watts};
+use willis::hypergraph::{Hypergraph, Node, NodeKind};
 
 use super::words::{GROUND, R, ROW, SMALL, name, values};
-use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, colour, line, number, rectangle, text};
+use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, colour, halo, line, number, rectangle, text, watts};
 
 /// Whether power runs in a circle.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -44,10 +44,6 @@ pub fn stroke(path: &str, round: Round, width: f64) -> Group {
     }
     let centre = one(PAPER, (0.3 * width).clamp(0.9, 2.0)).set("stroke-dasharray", dashes);
     Group::new().add(main).add(centre)
-}
-
-pub fn halo(t: svg::node::element::Text) -> svg::node::element::Text {
-    t.set("paint-order", "stroke").set("stroke", PAPER).set("stroke-width", 3).set("stroke-linejoin", "round")
 }
 
 /// A line of the picture, from column to column.
@@ -213,13 +209,14 @@ pub fn symbol(n: &Node, x: f64, y: f64, leans: bool, more: f64) -> Group {
     let below = y + R + 12.0 + if leans { (GROUND - 2.0).max(more) } else { more };
     g = g.add(shape(n.kind, x, y));
     let bold = matches!(n.kind, NodeKind::Member | NodeKind::Input | NodeKind::Output);
-    let mut title = halo(text(x, y - R - 6.0 - more, SMALL, Anchor::Middle, &name(n)));
+    let mut title = text(x, y - R - 6.0 - more, SMALL, Anchor::Middle, &name(n));
     if bold {
         title = title.set("font-weight", "bold");
     }
-    g = g.add(title);
+    g = g.add(halo(title, PAPER, 3.0));
     for (row, words) in values(n).iter().enumerate() {
-        g = g.add(halo(text(x, below + ROW * row as f64, SMALL, Anchor::Middle, words).set("fill", FAINT)));
+        let t = text(x, below + ROW * row as f64, SMALL, Anchor::Middle, words).set("fill", FAINT);
+        g = g.add(halo(t, PAPER, 3.0));
     }
     g
 }

@@ -1,8 +1,8 @@
 //! What stands above and below a symbol of a power flow, and the sizes that its picture keeps.
 
-use willis::hypergraph::{Node, NodeKind, watts};
+use willis::hypergraph::{Node, NodeKind};
 
-use crate::parts::style::fit;
+use crate::parts::style::{fit, watts};
 
 /// Radius of a symbol.
 pub const R: f64 = 8.0;

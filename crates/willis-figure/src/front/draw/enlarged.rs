@@ -6,7 +6,7 @@ use svg::node::element::{Group, Path};
 
 use super::clip::Frame;
 use super::view::{DASH_DOT, View, circle, own};
-use crate::parts::style::{Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, fit, line, number, rectangle, text};
+use crate::parts::style::{Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, fit, halo, line, number, rectangle, text};
 use crate::{Front, FrontMesh, FrontWheel};
 
 /// Edge of the enlarged mesh.
@@ -115,14 +115,8 @@ fn points(mesh: &FrontMesh, at: &View, frame: &Frame) -> Group {
         if let Some(q) = free {
             taken.push(q);
             let letter = ["A", "B", "C", "D", "E"][k];
-            g = g.add(
-                text(q.0, q.1 + 4.5, 13.0, Anchor::Middle, letter)
-                    .set("font-weight", "bold")
-                    .set("paint-order", "stroke")
-                    .set("stroke", PAPER)
-                    .set("stroke-width", 3)
-                    .set("stroke-linejoin", "round"),
-            );
+            let t = text(q.0, q.1 + 4.5, 13.0, Anchor::Middle, letter).set("font-weight", "bold");
+            g = g.add(halo(t, PAPER, 3.0));
         }
     }
     g

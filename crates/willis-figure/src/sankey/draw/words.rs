@@ -1,8 +1,8 @@
 //! The words at the nodes and links of a Sankey diagram, and how wide they may be.
 
-use willis::hypergraph::{NodeKind, watts};
+use willis::hypergraph::NodeKind;
 
-use crate::parts::style::{BOLD, digits, fit, wide};
+use crate::parts::style::{BOLD, digits, fit, watts, wide};
 use crate::{SankeyFlow, SankeyLink, SankeyLoss, SankeyNode};
 
 /// Size of words.
@@ -91,7 +91,7 @@ impl Words {
     /// Below a node: its losses.
     pub fn foot(self, n: &SankeyNode) -> Vec<String> {
         let one = |l: &SankeyLoss| {
-            let amount = self.amount(format!("−{}", watts(l.power_w)), percent(l.power_w, self.input));
+            let amount = self.amount(format!("lost {}", watts(l.power_w)), percent(l.power_w, self.input));
             let what = match l.names.as_slice() {
                 [own] if *own == n.name && l.kind == n.kind => None,
                 [other] if matches!(l.kind, NodeKind::Gear | NodeKind::Rotor) => Some(format!("{other} in fluid")),

@@ -4,7 +4,7 @@ use svg::node::element::Group;
 
 use super::sheet::{PLATE, Sheet};
 use crate::JointKind;
-use crate::parts::style::{Anchor, BOLD, FAINT, INK, PAPER, fit, text, wide};
+use crate::parts::style::{Anchor, BOLD, FAINT, INK, PAPER, fit, halo, text, wide};
 
 /// A box: least and greatest x, least and greatest y.
 type Bounds = [f64; 4];
@@ -70,7 +70,7 @@ impl Sheet<'_> {
     pub fn teeth(&self, labels: &mut Labels) -> Group {
         let mut g = Group::new();
         for gear in &self.data.gears {
-            let Some([hub, tip]) = gear.stems.first() else { continue };
+            let Some([hub, tip]) = gear.stems.first().filter(|_| !gear.teeth.is_empty()) else { continue };
             let (h, t) = (self.at(*hub), self.at(*tip));
             let mut spots = Spots::new();
             if hub[1] == tip[1] {
@@ -181,14 +181,7 @@ impl Sheet<'_> {
                     "italic" => t = t.set("font-style", "italic"),
                     _ => {}
                 }
-                if !marks {
-                    t = t
-                        .set("paint-order", "stroke")
-                        .set("stroke", PAPER)
-                        .set("stroke-width", 3)
-                        .set("stroke-linejoin", "round");
-                }
-                return Group::new().add(t);
+                return if marks { Group::new().add(t) } else { halo(t, PAPER, 3.0) };
             }
         }
         Group::new()

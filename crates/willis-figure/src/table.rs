@@ -1,0 +1,16 @@
+//! Speeds and torques of every shaft, planet and shift element in every state, as one picture. The data are the answer of
+//! `willis table`, so that picture and numbers cannot differ.
+
+pub mod draw;
+
+use willis::analysis::{ShaftTable, shaft_table};
+
+use crate::kind::{self, Ask, Kind};
+
+pub(crate) const KIND: Kind<ShaftTable> = Kind {
+    title: "Speeds and torques",
+    takes: &[Ask::State],
+    effort: kind::of_file,
+    make: |s, r| shaft_table(s.train(), r.state.as_deref(), false),
+    draw: |data, _| draw::draw(data),
+};
