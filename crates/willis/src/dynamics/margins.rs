@@ -91,8 +91,7 @@ impl Engine {
         };
         let engages = |k: &usize| {
             let f = &s.frictions[*k];
-            f.group.is_some()
-                && f.engagement.is_some_and(|e| s.scenario.engagements[e].signal.crosses_unannounced())
+            f.group.is_some() && f.engagement.is_some_and(|e| s.scenario.engagements[e].signal.crosses_unannounced())
         };
         let watches = (0..s.groups.len())
             .filter_map(group)

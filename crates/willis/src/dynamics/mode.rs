@@ -319,11 +319,12 @@ pub(super) fn compose(system: &System, mode: &Mode, pattern: &Pattern, varying: 
     let mut open_groups = carried.clone();
     let mut open_unknowns = vec![false; n];
     for c in (0..count).filter(|&c| !solved[c]) {
-        let taken: Vec<f64> = (0..count)
-            .map(|i| {
-                if solved[i] { -matrix[i * count + c] / matrix[i * count + i] } else { f64::from(u8::from(i == c)) }
-            })
-            .collect();
+        let taken: Vec<f64> =
+            (0..count)
+                .map(|i| {
+                    if solved[i] { -matrix[i * count + c] / matrix[i * count + i] } else { f64::from(u8::from(i == c)) }
+                })
+                .collect();
         let most = taken.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         for (i, share) in taken.iter().enumerate().skip(varying.len()) {
             open_groups[held[i - varying.len()]] |= share.abs() > 1e-9 * most;

@@ -50,7 +50,9 @@ impl Engine {
         for (k, driver) in s.drivers.iter().enumerate() {
             let Some(port) = driver.port else { continue };
             match &s.scenario.sources[k].kind {
-                SourceKind::Torque(signal) if !signal.moves(inside) => tau[port] = signal.value(inside, inside, &|_| 0.0),
+                SourceKind::Torque(signal) if !signal.moves(inside) => {
+                    tau[port] = signal.value(inside, inside, &|_| 0.0)
+                }
                 _ => sources.push((port, k)),
             }
         }
@@ -76,7 +78,8 @@ impl Engine {
             }
         }
         let level = |f| s.governor(f).is_none_or(|(_, signal)| !signal.moves(inside));
-        let engaged = s.frictions.iter().enumerate().map(|(k, f)| level(f).then(|| self.engagement(k, inside))).collect();
+        let engaged =
+            s.frictions.iter().enumerate().map(|(k, f)| level(f).then(|| self.engagement(k, inside))).collect();
         let watches = self.watched();
         self.steady = Some(Steady { inside, tau, sources, viscous, sliding, elements, engaged, watches });
     }

@@ -307,8 +307,8 @@ impl Minors {
         }
         let apart = rest & !self.beside[i];
         let others = apart | forced;
-        let alone =
-            positions(others).all(|j| self.is_zero(depth, i, j)) || positions(others).all(|j| self.is_zero(depth, j, i));
+        let alone = positions(others).all(|j| self.is_zero(depth, i, j))
+            || positions(others).all(|j| self.is_zero(depth, j, i));
         let own = self.levels[depth][i * self.n + i];
         // Its row or column has nothing but its own entry, which is then a factor of every minor.
         if alone && (own.residue == 0 || forced == 0) {

@@ -44,7 +44,10 @@ pub(in crate::dynamics) fn fixed(
     let effort = Effort::new("steps", steps, FIXED_STEP * (1.0 + nodes * nodes / 100.0));
     let affordable = effort.seconds <= options.patience_s;
     run.outcome = Some(if affordable { Outcome::Finished } else { Outcome::TooLong(effort.to_string()) });
-    while affordable {
+    loop {
+        if !affordable {
+            break;
+        }
         let (step, t) = (stepper.count, stepper.time());
         let sampled = run.is_row_due(t, h);
         // A step that goes on in its mode changes nothing that labels depend on.

@@ -269,8 +269,22 @@ impl FixedStep {
                 }
             }
             if std::env::var_os("WILLIS_FLIPS").is_some() {
-                let what = match &flip { None => "none".to_string(), Some(Flip::Group(g, sign)) => format!("group {g} {:?} -> {sign}", self.engine.system.groups[*g].names), Some(Flip::Side(j)) => format!("side {j}"), Some(Flip::Stuck) => "stuck".into(), Some(Flip::Shaft(k, _)) => format!("shaft {k}") };
-                eprintln!("FLIP step {} sign {:?} cap {:?} redundant {} kept {kept:b}: {what}", self.count, self.sign, self.capacity.iter().map(|c| c[0]).collect::<Vec<_>>(), self.maps[map as usize].is_redundant);
+                let what = match &flip {
+                    None => "none".to_string(),
+                    Some(Flip::Group(g, sign)) => {
+                        format!("group {g} {:?} -> {sign}", self.engine.system.groups[*g].names)
+                    }
+                    Some(Flip::Side(j)) => format!("side {j}"),
+                    Some(Flip::Stuck) => "stuck".into(),
+                    Some(Flip::Shaft(k, _)) => format!("shaft {k}"),
+                };
+                eprintln!(
+                    "FLIP step {} sign {:?} cap {:?} redundant {} kept {kept:b}: {what}",
+                    self.count,
+                    self.sign,
+                    self.capacity.iter().map(|c| c[0]).collect::<Vec<_>>(),
+                    self.maps[map as usize].is_redundant
+                );
             }
             match flip {
                 None => return true,
@@ -289,7 +303,9 @@ impl FixedStep {
                 Some(Flip::Stuck) => return false,
             }
         }
-        if std::env::var_os("WILLIS_FLIPS").is_some() { eprintln!("FLIP step {} exhausted", self.count); }
+        if std::env::var_os("WILLIS_FLIPS").is_some() {
+            eprintln!("FLIP step {} exhausted", self.count);
+        }
         false
     }
 }
