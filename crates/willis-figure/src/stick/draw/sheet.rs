@@ -31,7 +31,6 @@ impl<'a> Sheet<'a> {
         let drawn = unit * data.width;
         let width = (drawn + 2.0 * MARGIN).clamp(640.0, 4000.0).max(0.0);
         let left = (width - drawn) / 2.0;
-        let mut next = 0;
         let led_out = |k: usize| {
             let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
             joined || data.terminals.iter().any(|t| t.member == k) || !data.members[k].carries.is_empty()
@@ -41,10 +40,7 @@ impl<'a> Sheet<'a> {
             .iter()
             .enumerate()
             .map(|(k, m)| {
-                (!m.planet || led_out(k)).then(|| {
-                    next += 1;
-                    next - 1
-                })
+                (!m.planet || led_out(k)).then_some(m.colour)
             })
             .collect();
         let mut s = Self { data, width, height: 0.0, left, unit, rise, category };
