@@ -1081,7 +1081,7 @@ fn flow_as_dot_is_well_formed() {
 #[test]
 fn regress_flow_wrong_questions() {
     let mut all = refused(&run(&["flow", "examples/prius-p112.toml", "--operation", "acceleration"]), 1);
-    all += &refused(&run(&["flow", "examples/zf-6hp26.toml"]), 1);
+    all += &refused(&run(&["flow", "examples/hybrid-drive-away.toml"]), 1);
     snapshot!(all);
 }
 

@@ -130,20 +130,21 @@ pub struct TimeMark {
     pub cause: String,
 }
 
-/// Kinds of columns that make panels, with their quantity; the first five wherever they are, the
+/// Kinds of columns that make panels, with their quantity; the first six wherever they are, the
 /// others where none of the first is.
-const KINDS: [(ColumnKind, &str); 9] = [
+const KINDS: [(ColumnKind, &str); 10] = [
     (ColumnKind::Speed, "Speed"),
     (ColumnKind::Torque, "Torque"),
     (ColumnKind::Power, "Power"),
     (ColumnKind::Energy, "Energy"),
+    (ColumnKind::Ratio, "Ratio"),
     (ColumnKind::Twist, "Twist"),
     (ColumnKind::Reaction, "Reaction"),
     (ColumnKind::Acceleration, "Acceleration"),
     (ColumnKind::Angle, "Angle"),
     (ColumnKind::Efficiency, "Efficiency"),
 ];
-const USUAL: usize = 5;
+const USUAL: usize = 6;
 /// Curves in a panel; a label beside each has to find room.
 const MOST_LINES: usize = 8;
 /// Rows of modes.

@@ -14,6 +14,7 @@ mod outside;
 mod shafts;
 mod solution;
 mod table;
+mod unit;
 mod variators;
 mod why;
 mod words;
@@ -21,11 +22,14 @@ mod words;
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 pub use outside::{OutsideAt, OutsideLaw};
 pub use shafts::{ShaftElement, ShaftMember, ShaftState, ShaftTable, shaft_table};
-pub use variators::{BeyondLimit, LimitedQuantity, MachineReport, VariatorReport};
+pub use variators::{MachineReport, VariatorReport};
+
+pub use crate::power_flow::{BeyondLimit, LimitedQuantity};
 pub use why::{TorqueRange, Why};
 
 pub use crate::named::Named;
 pub(crate) use operation::Point;
+pub(crate) use unit::UnitPoint;
 pub(crate) use words::named;
 
 use serde::{Deserialize, Serialize};
@@ -96,6 +100,9 @@ pub struct Direction {
     pub verdict: Verdict,
     /// Output over input power; absent unless the verdict is `unique`.
     pub efficiency: Option<f64>,
+    /// The efficiency exactly, where the efficiencies of the meshes are given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_exact: Option<Rational>,
     /// The efficiency of every equilibrium.
     pub efficiencies: Vec<f64>,
     /// Certificate, where a problem could be set up.
@@ -366,7 +373,8 @@ impl std::fmt::Display for StictionQuantity {
 pub struct SolutionReport {
     /// Output over input power; 0 when everything is dissipated, absent when nothing is loaded.
     pub efficiency: Option<f64>,
-    /// The efficiency exactly, where it was computed so.
+    /// The efficiency exactly, where efficiencies, speeds and loads are known so: given efficiencies, speeds in one unit and
+    /// torques or powers in one unit. Points of studies have it only where a sign hung on it.
     pub efficiency_exact: Option<Rational>,
     /// Whether every loaded member is an input.
     pub all_dissipated: bool,
@@ -664,7 +672,7 @@ pub(crate) fn settle<'t>(
     train: &'t Train,
     operation: &Operation,
 ) -> Result<(OperationReport, Option<Point<'t>>, Diagnostics), Diagnostics> {
-    let settled = operation::settle(train, operation);
+    let settled = operation::settle(train, operation, true);
     let settled = settled.map_err(|wrong| words::named(operation, words::refused(train, operation, &wrong)))?;
     let notes = words::named(operation, words::found(train, operation, &settled.findings));
     Ok((settled.report, settled.point, notes))
@@ -685,7 +693,8 @@ pub fn operate(train: &Train, operation: &Operation) -> Result<(OperationReport,
 /// # Errors
 /// As [`operate`].
 pub fn operate_unnamed(train: &Train, operation: &Operation) -> Result<(OperationReport, Diagnostics), Diagnostics> {
-    let settled = operation::settle(train, operation).map_err(|wrong| words::refused(train, operation, &wrong))?;
+    let settled =
+        operation::settle(train, operation, false).map_err(|wrong| words::refused(train, operation, &wrong))?;
     Ok((settled.report, words::found(train, operation, &settled.findings)))
 }
 

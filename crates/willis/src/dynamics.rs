@@ -27,6 +27,7 @@ mod mode;
 mod modes;
 pub mod offset;
 mod output;
+mod paths;
 mod rate;
 mod report;
 mod rounding;
@@ -45,8 +46,8 @@ pub use fixed::FixedStep;
 pub use handles::{Input, InputInfo, InputKind, InputRefused, Output};
 pub use modes::{Mode, ModesReport, Part, PlanetMode, RigidMode, modes};
 pub use report::{
-    Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind, Method,
-    ModeLabel, Options, Outcome, Recorder, RunReport, Sample, SourceEnergy,
+    Column, ColumnKind, ColumnUnit, EnergyLoss, EnergyLossKind, EnergyReport, Event, Happening, HappeningKind,
+    LimitExceeded, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, SourceEnergy,
 };
 pub use run::Simulation;
 pub use simulate::simulate;

@@ -32,9 +32,10 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Role, Selection, SolutionReport, Verdict, analyze};
+use crate::analysis::{OperationReport, Role, Selection, SolutionReport, UnitPoint, Verdict, analyze, assumptions};
 use crate::contract::{Contract, Format};
-use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::exact::Rational;
 use crate::operating_point::DragSource;
 use crate::power_flow::{families, take_out_cycles};
 use crate::train::{FRAME, MemberId, MemberKind, Train};
@@ -183,6 +184,9 @@ pub struct Path {
 pub struct Hypergraph {
     /// Output over input power; 0 when everything is dissipated, absent when nothing is loaded.
     pub efficiency: Option<f64>,
+    /// The efficiency exactly, where [`SolutionReport::efficiency_exact`] is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_exact: Option<Rational>,
     /// Power in, W.
     pub input_power_w: f64,
     /// Power out, W.
@@ -216,6 +220,9 @@ pub struct OperationFlow {
     pub name: String,
     /// The state of the shift table.
     pub state: Option<String>,
+    /// Where no operation describes the state: the member whose speed and torque are the units, 1 rad/s and 1 N m.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
     /// What can be said of it.
     pub verdict: Verdict,
     /// One sentence that explains the verdict.
@@ -249,10 +256,11 @@ impl Contract for FlowReport {
     const FORMAT: &'static str = "willis-flow-1";
 }
 
-/// The power flow of every operating point, or of one.
+/// The power flow of every operating point, or of one. A state that no operation describes is shown with the speed and the
+/// torque of its input as units; so is every state of a train without operations.
 ///
 /// # Errors
-/// What [`analyze`] refuses, and a train without an operating point.
+/// What [`analyze`] refuses; a state without an operation that the speed of its input does not settle.
 ///
 /// # Example
 /// ```
@@ -283,34 +291,76 @@ impl Contract for FlowReport {
 /// ```
 pub fn flows(train: &Train, selection: &Selection) -> Result<FlowReport, Diagnostics> {
     let analysis = analyze(train, selection)?;
-    if analysis.operations.is_empty() {
-        let text = "a power flow needs an operating point, and this train has no `[[operation]]`";
-        let text = if train.operations().is_empty() { text } else { "no operation is in that state" };
-        let example = train.terminals().first().map_or("sun", |m| train.member_name(*m));
-        let state = train.states().first().map(|s| format!("state = \"{}\", ", s.name)).unwrap_or_default();
-        let hint = format!(
-            "add one, such as: [[operation]] with name = \"full load\", {state}speeds = {{ {example} = \"1000 rpm\" }}, \
-             torques = {{ {example} = \"100 N m\" }}"
-        );
-        return Err([Diagnostic::new(Code::Unfit, "", text).hint(hint)].into_iter().collect());
+    let mut report = FlowReport {
+        format: Format::new(),
+        train: analysis.train,
+        source: analysis.source,
+        operations: analysis.operations.iter().map(|o| flow_of(train, o)).collect(),
+        assumptions: analysis.assumptions,
+        diagnostics: analysis.diagnostics,
+    };
+    if report.operations.is_empty() {
+        report.operations = per_unit(train, selection)?;
+        if train.is_physical() {
+            report.assumptions = assumptions(&train.without_laws());
+            let nominal = "without an operating point teeth lose what a nominal coefficient of friction says, and bearings, \
+                           oil and seals nothing";
+            report.assumptions.push(nominal.to_owned());
+        }
     }
+    Ok(report)
+}
+
+fn flow_of(train: &Train, o: &OperationReport) -> OperationFlow {
     let graphs = |all: &[SolutionReport]| all.iter().map(|s| hypergraph(train, s)).collect();
-    let operations = analysis.operations.iter().map(|o| OperationFlow {
+    OperationFlow {
         name: o.name.clone(),
         state: o.state.clone(),
+        unit: None,
         verdict: o.verdict,
         reason: o.reason.clone(),
         solutions: graphs(&o.solutions),
         dissipative_solutions: graphs(&o.dissipative_solutions),
-    });
-    Ok(FlowReport {
-        format: Format::new(),
-        train: analysis.train.clone(),
-        source: analysis.source.clone(),
-        operations: operations.collect(),
-        assumptions: analysis.assumptions.clone(),
-        diagnostics: analysis.diagnostics,
-    })
+    }
+}
+
+/// The state that is selected, else every one, per unit of speed and torque at its input.
+fn per_unit(train: &Train, selection: &Selection) -> Result<Vec<OperationFlow>, Diagnostics> {
+    let of = |state: Option<usize>| -> Result<OperationFlow, Diagnostics> {
+        let point = UnitPoint::new(train, state)?;
+        let mut flow = flow_of(&point.train, &point.report);
+        flow.unit = Some(train.member_name(point.input).to_owned());
+        // Nominal efficiencies are rounded.
+        if train.meshes.iter().any(|m| m.computed) {
+            flow.solutions.iter_mut().for_each(|g| g.efficiency_exact = None);
+        }
+        Ok(flow)
+    };
+    if let Some(name) = &selection.state {
+        return Ok(vec![of(Some(train.find_state(name)?))?]);
+    }
+    if train.states.is_empty() {
+        return Ok(vec![of(None)?]);
+    }
+    // Of all states those that make no question say why; if none does, that is the answer.
+    let (mut all, mut first) = (Vec::new(), None);
+    for (k, state) in train.states.iter().enumerate() {
+        match of(Some(k)) {
+            Ok(flow) => all.push(flow),
+            Err(why) => {
+                let reason = why.iter().next().map(|d| d.message.clone());
+                let (name, state) = (state.name.clone(), Some(state.name.clone()));
+                let verdict = Verdict::Undetermined;
+                let (solutions, dissipative_solutions) = (vec![], vec![]);
+                all.push(OperationFlow { name, state, unit: None, verdict, reason, solutions, dissipative_solutions });
+                first.get_or_insert(why);
+            }
+        }
+    }
+    match first {
+        Some(why) if all.iter().all(|flow| flow.unit.is_none()) => Err(why),
+        _ => Ok(all),
+    }
 }
 
 /// A graph while it is built: torques of components in contacts.
@@ -645,6 +695,7 @@ fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]
     let (paths, path_count, share_on_paths) = ways.list(&g.nodes, input);
     Hypergraph {
         efficiency: solution.efficiency,
+        efficiency_exact: solution.efficiency_exact.clone(),
         input_power_w: input,
         output_power_w: solution.output_power_w,
         loss_w: solution.loss_w,

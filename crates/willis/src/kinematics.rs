@@ -141,6 +141,8 @@ pub struct Motion {
     pub speeds: Vec<Option<Rational>>,
     /// Power of π that all speeds share.
     pub pi_power: i8,
+    /// Whether they follow exactly from what is prescribed: rpm and rad/s side by side share no exact form.
+    pub is_exact: bool,
     /// Where prescribed speeds that the gears tie together contradict them the most, within the
     /// [tolerance](Train::speed_tolerance) and beyond what makes no difference.
     pub deviation: Option<Deviation>,
@@ -309,6 +311,11 @@ impl<'t> Configuration<'t> {
             }
         }
         c
+    }
+
+    /// Whether the efficiencies in force are those that are given, and not made of coefficients of friction.
+    pub(crate) fn is_exact(&self) -> bool {
+        !self.train.meshes.iter().any(|m| m.computed)
     }
 
     /// The elements that are chains of meshes.
@@ -486,7 +493,8 @@ impl<'t> Configuration<'t> {
             return Ok(Motion { deviation, ..others });
         }
         let speeds = transfer.speeds.iter().map(|s| s.as_ref().map(|f| dot(f))).collect();
-        Ok(Motion { speeds, pi_power, deviation: None })
+        let is_exact = share_a_form(prescribed.iter().map(|(_, q)| q));
+        Ok(Motion { speeds, pi_power, is_exact, deviation: None })
     }
 
     /// Rotors that cannot turn although no shift element or hold grips them directly.
@@ -511,12 +519,17 @@ impl<'t> Configuration<'t> {
 /// Exact values of several quantities of one kind with one common power of π. Where units mix
 /// (rpm with rad/s) no common exact form exists, and all go through floating point.
 pub(crate) fn common<'q>(quantities: impl Iterator<Item = &'q Quantity> + Clone) -> (Vec<Rational>, i8) {
-    let mut powers = quantities.clone().filter(|q| !q.value.is_zero()).map(|q| q.pi_power);
-    let first = powers.next().unwrap_or(0);
-    if powers.all(|p| p == first) {
+    if share_a_form(quantities.clone()) {
+        let first = quantities.clone().find(|q| !q.value.is_zero()).map_or(0, |q| q.pi_power);
         return (quantities.map(|q| q.value.clone()).collect(), first);
     }
     (quantities.map(|q| Rational::from_f64(q.si()).unwrap_or(Rational::ZERO)).collect(), 0)
+}
+
+/// Whether quantities have a common exact form: the same power of π.
+pub(crate) fn share_a_form<'q>(quantities: impl Iterator<Item = &'q Quantity>) -> bool {
+    let mut powers = quantities.filter(|q| !q.value.is_zero()).map(|q| q.pi_power);
+    powers.next().is_none_or(|first| powers.all(|p| p == first))
 }
 
 /// Joins meshes through rotors that carry nothing but those two meshes.

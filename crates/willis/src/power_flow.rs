@@ -1,12 +1,16 @@
 //! Where the power runs: torque and power of every member, mesh and shift element for one
 //! equilibrium, the balance, and the power that goes round in circles.
 
+mod limits;
+
 use std::collections::BTreeMap;
 
 use crate::kinematics::{Configuration, Element, Motion};
 use crate::real::{self, Real};
 use crate::statics::Solution;
 use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train, Variator};
+
+pub use limits::{BeyondLimit, LimitedQuantity};
 
 /// Torques and powers at one mesh (all `count` of them together).
 #[derive(Clone, Debug)]
@@ -60,6 +64,8 @@ pub(crate) struct Driven {
     pub at: [usize; 2],
     /// Torque on its member, N m.
     pub torque: f64,
+    /// Power that it delivers to its member, W, where that is what is prescribed.
+    pub power: Option<f64>,
     /// Power out of the bus, W.
     pub draws: f64,
 }
@@ -94,6 +100,9 @@ pub struct Flow<R = f64> {
     /// Where external power enters (1) and leaves (−1) the train, by member, then by bus of a variator; by exact signs of
     /// torque and speed.
     pub roles: Vec<i8>,
+    /// External power into each member, W, then into the bus of each variator; what is prescribed as a power is that number,
+    /// to the last bit.
+    pub powers: Vec<R>,
     /// Every mesh.
     pub meshes: Vec<MeshFlow<R>>,
     /// Every engaged shift element.
@@ -120,6 +129,8 @@ pub(crate) struct External {
     pub member: MemberId,
     /// N m.
     pub torque: f64,
+    /// W, where that is what is prescribed: torque times speed would round it.
+    pub prescribed_power: Option<f64>,
     /// The sign of its power, exactly.
     pub power: i8,
 }
@@ -179,16 +190,17 @@ impl Flow {
         }
         let mut external: Vec<f64> = vec![0.0; members];
         let mut roles: Vec<i8> = vec![0; members];
+        let mut powers: Vec<f64> = vec![0.0; members];
         for x in externals {
             external[x.member.0] = x.torque;
             roles[x.member.0] = x.power;
+            powers[x.member.0] = x.prescribed_power.unwrap_or(x.torque * speeds[x.member.0]);
         }
         let applied: Vec<f64> = external.iter().zip(&dragged).map(|(x, d)| x + d).collect();
         let (ties, reactions) = self::ties(c, &demand, &applied);
         let torques: Vec<Option<f64>> =
             (0..train.members.len()).map(|m| reactions[m].map(|r| external[m] + r)).collect();
 
-        let powers: Vec<f64> = (0..external.len()).map(|m| external[m] * speeds[m]).collect();
         let sum = |role: i8| powers.iter().zip(&roles).filter(|(_, r)| **r == role).map(|(p, _)| p.abs()).sum();
         let (input_power, output_power) = (sum(1), sum(-1));
         let drag_losses: Vec<f64> =
@@ -201,6 +213,7 @@ impl Flow {
             torques,
             speeds,
             roles,
+            powers,
             meshes,
             ties,
             variators,
@@ -242,12 +255,13 @@ fn variators(
             }
         }
         for d in driven.iter().filter(|d| d.at[0] == variator) {
-            sides[d.at[1]] = side(sides[d.at[1]].member, d.torque);
+            let own = side(sides[d.at[1]].member, d.torque);
+            sides[d.at[1]] = SideFlow { power: d.power.unwrap_or(own.power), ..own };
             loss += d.draws - sides[d.at[1]].power;
         }
         let bus = v.has_bus().then(|| c.bus(variator));
         let stores = externals.iter().filter(|x| Some(x.member) == bus);
-        let store = stores.map(|x| x.torque * speeds[x.member.0]).sum::<f64>();
+        let store = stores.map(|x| x.prescribed_power.unwrap_or(x.torque * speeds[x.member.0])).sum::<f64>();
         VariatorFlow { variator, sides, store, loss }
     };
     c.train.variators.iter().enumerate().map(flow).collect()

@@ -16,6 +16,7 @@ mod cells;
 mod closed;
 mod emit;
 mod family;
+mod hub;
 mod locate;
 mod report;
 pub(crate) mod formula;

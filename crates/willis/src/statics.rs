@@ -618,6 +618,9 @@ fn estimate(c: &Configuration<'_>, s: &Solution, node: usize) -> (f64, f64) {
     (sum, error)
 }
 
+/// Most forces that are solved together in rationals where no sign hangs on it.
+const MOST_TOGETHER: usize = 16;
+
 /// Relative rounding of the terms of a short sum of products.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -654,6 +657,24 @@ impl Equilibrium {
         let Some(forces) = exact else { return (torque, if torque == 0.0 { 0 } else { torque.signum() as i8 }) };
         let torque = &torque_exact(c, self, s, &forces, node) - &loads[node];
         (torque.to_f64(), torque.sign())
+    }
+
+    /// External torque on a node in a solution under `loads`, exactly; `None` where that takes long.
+    pub(crate) fn exact_torque(
+        &self,
+        c: &Configuration<'_>,
+        s: &Solution,
+        loads: &[Rational],
+        node: usize,
+    ) -> Option<Rational> {
+        let forces = s.exact.clone().or_else(|| self.exact_forces_of(s, loads))?;
+        Some(&torque_exact(c, self, s, &forces, node) - &loads[node])
+    }
+
+    /// Exact forces of a solution, by element; `None` where so many are solved together that they take long.
+    pub(crate) fn exact_forces_of(&self, s: &Solution, loads: &[Rational]) -> Option<Vec<Rational>> {
+        let together = self.blocks.iter().map(|b| b.columns.len()).max().unwrap_or(0);
+        (together <= MOST_TOGETHER).then(|| self.exact_of(s, loads)).flatten()
     }
 
     /// Exact forces of a solution, by element.

@@ -33,8 +33,8 @@ use crate::losses::Laws;
 use crate::units::{AngularSpeed, Power, Quantity, Temperature, Torque};
 
 pub use dynamic::{
-    Contact, Curve, DragMount, Engagement, Friction, Inertia, LossRow, LossTable, Scenario, Shaft, Signal, Source,
-    SourceKind,
+    Contact, Control, ControlKind, Curve, DragMount, Engagement, Friction, Inertia, LossRow, LossTable, Scenario,
+    Shaft, Signal, Source, SourceKind,
 };
 pub use edit::{Document, Key, Measure};
 pub use find::AS_DRAWN;
@@ -47,13 +47,13 @@ pub use reading::Reading;
 pub use schema::schema;
 pub(crate) use specification::kind_of;
 pub use specification::{
-    BearingSpec, BevelSpec, CentralSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec, EfficiencySpec,
-    EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec, LinearSpec,
-    LossRowSpec, MachineEfficiencySpec, MachineSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec, OilSupply,
-    OperationSpec, PairKind, PlanetBodySpec, PlanetSpec, QuadraticSpec, RatioSpec, RavigneauxSpec, RotorSpec,
-    ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts, SetSpec, ShaftSpec, ShiftElementSpec, Side, SideSpec,
-    SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec, StepSpec, SteppedPlanetSpec, SteppedSpec, StoreSpec,
-    StudySpec, TerminalSpec, ToothSpec, VariatorSpec, VehicleSpec,
+    BearingSpec, BevelSpec, CentralSpec, ControlSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec,
+    EfficiencySpec, EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec,
+    LinearSpec, LossRowSpec, MachineEfficiencySpec, MachineSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec,
+    OilSupply, OperationSpec, PairKind, PlanetBodySpec, PlanetSpec, QuadraticSpec, RatioSpec, RavigneauxSpec,
+    RotorSpec, ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts, SetSpec, ShaftSpec, ShiftElementSpec, Side,
+    SideSpec, SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec, StepSpec, SteppedPlanetSpec, SteppedSpec,
+    StoreSpec, StudySpec, TerminalSpec, ToothSpec, VariatorSpec, VehicleSpec,
 };
 pub use variator::{EfficiencyMap, Machine, MachineEfficiency, Store, Variator, VariatorKind, VariatorPath};
 
@@ -235,6 +235,16 @@ pub enum Load {
     Torque(Quantity),
     /// External power into the train.
     Power(Quantity),
+}
+
+impl Load {
+    /// The power, where that is what is prescribed.
+    pub(crate) fn power(&self) -> Option<&Quantity> {
+        match self {
+            Self::Power(power) => Some(power),
+            Self::Torque(_) => None,
+        }
+    }
 }
 
 /// An operating point to analyse.
@@ -681,6 +691,17 @@ impl Train {
     /// variator depend on its load.
     pub(crate) fn depends_on_load(&self) -> bool {
         self.is_physical() || self.variators.iter().any(Variator::is_computed)
+    }
+
+    /// The train with its nominal efficiencies only.
+    pub(crate) fn without_laws(&self) -> Self {
+        let mut plain = self.clone();
+        plain.meshes.iter_mut().for_each(|m| m.computed = false);
+        plain.bearings.clear();
+        plain.seals.clear();
+        plain.rotors.clear();
+        plain.lubrication = None;
+        plain
     }
 
     /// The same train with another law in one family.

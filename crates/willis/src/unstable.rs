@@ -39,13 +39,7 @@ pub fn held(c: &Configuration<'_>) -> Vec<MemberId> {
 
 /// The train with its nominal efficiencies only.
 pub fn without_laws(train: &Train) -> Train {
-    let mut plain = train.clone();
-    plain.meshes.iter_mut().for_each(|m| m.computed = false);
-    plain.bearings.clear();
-    plain.seals.clear();
-    plain.rotors.clear();
-    plain.lubrication = None;
-    plain
+    train.without_laws()
 }
 
 /// The train alone.

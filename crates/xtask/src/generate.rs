@@ -119,6 +119,7 @@ const FIGURES: &[(&str, &[&str])] = &[
         "book/src/figures/herringbone-losses.svg",
         &["draw", "losses", "examples/wang-herringbone-physical.toml", "--theme", "auto", "-o"],
     ),
+    ("book/src/figures/ivt-drive-away.svg", &["draw", "time", "examples/ivt-drive-away.toml", "--theme", "auto", "-o"]),
     ("book/src/figures/nrel-front.svg", &["draw", "front", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
     (
         "book/src/figures/two-mode-split.svg",

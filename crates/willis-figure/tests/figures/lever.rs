@@ -170,7 +170,15 @@ fn a_train_with_two_freedoms_is_shown_in_its_first_operation_or_asks_for_one() {
 #[test]
 fn every_example_has_levers() {
     for (name, train) in examples() {
-        let l = lever(&train, &LeverRequest::First).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let l = match lever(&train, &LeverRequest::First) {
+            Ok(l) => l,
+            // Speeds that only a run settles.
+            Err(e) if train.operations().is_empty() => {
+                assert!(e.to_string().contains("2 degrees of freedom"), "{name}: {e}");
+                continue;
+            }
+            Err(e) => panic!("{name}: {e}"),
+        };
         for n in l.bars.iter().flat_map(|b| &b.nodes) {
             assert!(n.position.is_finite() && n.number.is_finite(), "{name}: {}", n.member);
             if n.roles != [LeverRole::Planet] {

@@ -1,10 +1,10 @@
 //! The torques and powers of an operation, as the statics takes them.
 
 use crate::exact::Rational;
-use crate::kinematics::{Configuration, Motion, common};
+use crate::kinematics::{Configuration, Motion, common, share_a_form};
 use crate::power_flow::{Drag, Driven, External};
 use crate::statics::{Equilibrium, Solution};
-use crate::train::{Efficiency, Load, MachineEfficiency, MemberId, Operation, Store, VariatorPath};
+use crate::train::{Efficiency, Load, Machine, MachineEfficiency, MemberId, Operation, Store, Variator, VariatorPath};
 use crate::units::{Dimension, Quantity};
 
 use super::words::Refusal;
@@ -26,6 +26,11 @@ pub(super) struct Loads {
     /// Terminals that carry a torque, in order, with what is prescribed of it; none: whatever balances the train. A store
     /// is a torque on the bus of its variator.
     pub terminals: Vec<(MemberId, Option<Rational>)>,
+    /// What is prescribed as a power, W: of terminals and of the buses of stores.
+    pub powers: Vec<(MemberId, f64)>,
+    /// Whether the torques are those that are prescribed, exactly: units that share no power of π, drags and maps make
+    /// floating point of them.
+    pub is_exact: bool,
 }
 
 impl Loads {
@@ -53,7 +58,9 @@ impl Loads {
         };
         // Terminals first, then the stores on their buses, then machines.
         let (mut quantities, mut free): (Vec<(MemberId, Quantity)>, Vec<MemberId>) = (vec![], vec![]);
+        let mut powers = Vec::new();
         for (member, load) in &operation.loads {
+            powers.extend(load.power().map(|p| (*member, p.si())));
             match torque(*member, load) {
                 Ok(q) => quantities.push((*member, q)),
                 Err(refusal) => wrong.push(refusal),
@@ -65,7 +72,10 @@ impl Loads {
             match own {
                 Store::Free => free.push(c.bus(k)),
                 Store::Power(p) => match torque(c.bus(k), &Load::Power(p.clone())) {
-                    Ok(q) => quantities.push((c.bus(k), q)),
+                    Ok(q) => {
+                        powers.push((c.bus(k), p.si()));
+                        quantities.push((c.bus(k), q));
+                    }
                     Err(refusal) => wrong.push(refusal),
                 },
             }
@@ -82,6 +92,11 @@ impl Loads {
             return Err(wrong);
         }
         let (values, pi_power) = common(quantities.iter().map(|(_, q)| q));
+        let mapped = |m: &Machine| matches!(m.efficiency, MachineEfficiency::Map(_));
+        let is_exact = motion.is_exact
+            && share_a_form(quantities.iter().map(|(_, q)| q))
+            && drags.is_empty()
+            && !train.variators.iter().flat_map(Variator::machines).any(mapped);
         let mut given: Vec<(MemberId, Rational)> = quantities.iter().map(|(m, _)| *m).zip(values).collect();
         let machines = given.split_off(terminals_end);
 
@@ -99,7 +114,7 @@ impl Loads {
             }
         }
         let mut driven = Vec::new();
-        for ((at, _), (member, torque)) in operation.machines.iter().zip(machines) {
+        for ((at, load), (member, torque)) in operation.machines.iter().zip(machines) {
             let machine = &train.variators[at[0]].machines()[at[1]];
             let bus = c.bus(at[0]);
             let (w, bus_speed) = (&motion.speeds[member.0], &motion.speeds[bus.0]);
@@ -124,7 +139,8 @@ impl Loads {
                 }
             }
             let scale = si * std::f64::consts::PI.powi(motion.pi_power.into());
-            driven.push(Driven { at: *at, torque: torque.to_f64() * si, draws: draws.to_f64() * scale });
+            let power = load.power().map(Quantity::si);
+            driven.push(Driven { at: *at, torque: torque.to_f64() * si, power, draws: draws.to_f64() * scale });
         }
         for drag in drags {
             for (member, torque) in [(drag.members[0], drag.torque), (drag.members[1], -drag.torque)] {
@@ -158,7 +174,7 @@ impl Loads {
         if !wrong.is_empty() {
             return Err(wrong);
         }
-        Ok(Self { given, pi_power, torques, open, loaded, driven, terminals })
+        Ok(Self { given, pi_power, torques, open, loaded, driven, terminals, powers, is_exact })
     }
 
     /// Terminals that were left to balance the train.
@@ -182,7 +198,8 @@ impl Loads {
         let acts = |x: &(MemberId, Option<Rational>)| {
             let (torque, sign) = torque(x);
             let way = motion.speeds[x.0.0].as_ref().map_or(0, Rational::sign);
-            External { member: x.0, torque: torque * self.scale(), power: sign * way }
+            let prescribed_power = self.powers.iter().find(|(m, _)| *m == x.0).map(|(_, p)| *p);
+            External { member: x.0, torque: torque * self.scale(), prescribed_power, power: sign * way }
         };
         self.terminals.iter().map(acts).collect()
     }

@@ -37,8 +37,9 @@ pub(super) struct Settled<'t> {
     pub findings: Vec<Finding>,
 }
 
-/// Analyses an operation; `Err` when what it prescribes makes no question.
-pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Settled<'t>, Vec<Refusal>> {
+/// Analyses an operation; `Err` when what it prescribes makes no question. `exactly` also works efficiencies out as
+/// fractions.
+pub(super) fn settle<'t>(train: &'t Train, operation: &Operation, exactly: bool) -> Result<Settled<'t>, Vec<Refusal>> {
     let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
     let physics = train.depends_on_load().then(|| Physics::new(train, operation));
     let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
@@ -95,6 +96,7 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation) -> Result<Sett
             equilibrium: &branch.equilibrium,
             operation,
             drags: &branch.drags,
+            exactly,
             physics: physics.as_ref().zip(branch.computed.as_ref()),
         })
         .collect();

@@ -51,6 +51,9 @@ pub struct ShaftState {
     pub ratio: Option<Rational>,
     /// Output over input power, the input driving.
     pub efficiency: Option<f64>,
+    /// The efficiency exactly, where the efficiencies of the meshes are given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_exact: Option<Rational>,
     /// Why speeds or torques are missing.
     pub reason: Option<String>,
     /// What `reason` says, as data.
@@ -166,6 +169,7 @@ struct Torques {
     elements: Vec<(ShiftElementId, Option<f64>)>,
     sets: Vec<(String, Vec<(MemberId, f64)>)>,
     efficiency: f64,
+    exact: Option<Rational>,
 }
 
 fn row(
@@ -232,6 +236,7 @@ fn row(
             _ => None,
         },
         efficiency: torques.as_ref().map(|t| t.efficiency),
+        efficiency_exact: torques.as_ref().and_then(|t| t.exact.clone()).filter(|_| lossless || c.is_exact()),
         reason: why.as_ref().map(ToString::to_string),
         why,
         members: (1..train.members.len()).map(MemberId).map(|m| (name(m), of_member(m))).collect(),
@@ -258,7 +263,7 @@ fn drive(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Result<Tor
         let (elements, reactions) = ties(c, &vec![0.0; external.len()], &external);
         let members = reactions.iter().zip(&external).map(|(r, x)| r.map(|r| r + x)).collect();
         let elements = elements.iter().map(|t| (t.element, t.torque)).collect();
-        return Ok(Torques { members, elements, sets: vec![], efficiency: 1.0 });
+        return Ok(Torques { members, elements, sets: vec![], efficiency: 1.0, exact: Some(Rational::ONE) });
     };
     let s = match (&balance.answer.solutions[..], balance.answer.stretches.is_empty()) {
         ([], true) => {
@@ -281,8 +286,8 @@ fn drive(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Result<Tor
     let load = -w_out.signum();
     let motion: &Motion = &drive.motion;
     let acting = [
-        External { member: input, torque: 1.0, power: 1 },
-        External { member: output, torque: load / torque, power: -1 },
+        External { member: input, torque: 1.0, prescribed_power: None, power: 1 },
+        External { member: output, torque: load / torque, prescribed_power: None, power: -1 },
     ];
     let flow = Flow::new(c, motion, s, 1.0 / torque, &acting, &[], &[]);
     let mut sets: Vec<(String, Vec<(MemberId, f64)>)> = Vec::new();
@@ -303,8 +308,11 @@ fn drive(c: &Configuration<'_>, input: MemberId, output: MemberId) -> Result<Tor
             }
         }
     }
+    let exact_in = balance.equilibrium.exact_torque(c, s, &balance.loads, balance.node);
+    let exact = exact_in.map(|t| drive.speeds[1].abs() / (t * drive.speeds[0].clone()).abs());
     Ok(Torques {
         efficiency: w_out.abs() / (torque * w_in).abs(),
+        exact,
         members: flow.torques,
         elements: flow.ties.iter().map(|t| (t.element, t.torque)).collect(),
         sets,

@@ -20,6 +20,8 @@ pub(super) struct Frame<'a> {
     pub equilibrium: &'a Equilibrium,
     pub operation: &'a Operation,
     pub drags: &'a [Drag],
+    /// Whether efficiencies are wanted as fractions, beside what decides a sign.
+    pub exactly: bool,
     /// Where losses are computed: the laws, and the step in force.
     pub physics: Option<(&'a Physics<'a>, &'a (Step, Convergence))>,
 }
@@ -68,7 +70,9 @@ impl Frame<'_> {
             (e.name.clone(), ShiftElementReport { kind: e.kind, members, torque_n_m: t.torque.map(|t| t + 0.0) })
         });
         let all_dissipated = flow.roles.contains(&1) && !flow.roles.contains(&-1);
-        let exact = s.exact.as_ref().filter(|_| self.physics.is_none()).and_then(|f| self.exact_efficiency(s, f));
+        let rational = self.exact_efficiency(s).filter(|_| self.physics.is_none());
+        // The same bits whether or not it is asked for.
+        let decided = rational.as_ref().filter(|_| s.exact.is_some());
         let sources = self.physics.map(|(p, (step, _))| p.sources(step, &flow)).unwrap_or_default();
         let losses_w = match self.physics {
             Some(_) => Losses::of(&sources),
@@ -79,7 +83,7 @@ impl Frame<'_> {
         };
         let efficiency = if flow.input_power <= 0.0 {
             None
-        } else if let Some(e) = &exact {
+        } else if let Some(e) = decided {
             Some(e.to_f64())
         } else if flow.loss == 0.0 {
             Some(1.0)
@@ -88,7 +92,7 @@ impl Frame<'_> {
         };
         SolutionReport {
             efficiency,
-            efficiency_exact: exact,
+            efficiency_exact: rational.filter(|_| self.problem.is_exact),
             all_dissipated,
             input_power_w: flow.input_power,
             output_power_w: flow.output_power,
@@ -125,6 +129,8 @@ impl Frame<'_> {
         let speed = self.motion.si(id);
         let torque = flow.torques[id.0];
         let power = match (torque, speed) {
+            // What acts beside it holds a shaft at rest, and has no power.
+            (Some(_), Some(_)) if flow.powers[id.0] != 0.0 => Some(flow.powers[id.0]),
             (Some(t), Some(w)) => Some(t * w),
             (None, Some(0.0)) | (Some(0.0), None) => Some(0.0),
             _ => None,
@@ -163,8 +169,10 @@ impl Frame<'_> {
         brakes.chain(self.operation.fixed.iter().copied()).filter(|m| *m != FRAME).collect()
     }
 
-    /// Output over input power in rationals.
-    fn exact_efficiency(&self, s: &Solution, forces: &[Rational]) -> Option<Rational> {
+    /// Output over input power in rationals; `None` where that is not asked for.
+    fn exact_efficiency(&self, s: &Solution) -> Option<Rational> {
+        let worked_out = || self.equilibrium.exact_forces_of(s, &self.problem.torques);
+        let forces = s.exact.clone().or_else(|| if self.exactly { worked_out() } else { None })?;
         let (mut power_in, mut power_out) = (Rational::ZERO, Rational::ZERO);
         let mut add = |power: Rational| match power.sign() {
             1 => power_in += power,
@@ -175,7 +183,7 @@ impl Frame<'_> {
             let speed = self.motion.speeds[member.0].as_ref()?;
             let torque = match (prescribed, self.c.node(*member)) {
                 (Some(t), _) => t.clone(),
-                (None, Some(n)) => &torque_exact(self.c, self.equilibrium, s, forces, n) - &self.problem.torques[n],
+                (None, Some(n)) => &torque_exact(self.c, self.equilibrium, s, &forces, n) - &self.problem.torques[n],
                 (None, None) => continue,
             };
             add(speed * &torque);

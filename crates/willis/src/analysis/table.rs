@@ -4,7 +4,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion, Ratio};
 use crate::power_flow::{self, demand};
-use crate::statics::{Answer, Certificate, Equilibrium, Unsolvable, torque};
+use crate::statics::{Answer, Certificate, Equilibrium, Solution, Unsolvable, torque};
 use crate::train::{MemberId, ShiftElementId, ShiftElementKind, Train};
 
 use super::words::{element_names, names};
@@ -141,6 +141,7 @@ impl Direction {
         Self {
             verdict,
             efficiency: None,
+            efficiency_exact: None,
             efficiencies: vec![],
             certificate: None,
             reason: Some(why.to_string()),
@@ -175,6 +176,7 @@ impl Drive {
         let motion = Motion {
             speeds: transfer.speeds.iter().map(|s| s.as_ref().map(|w| w[0].clone())).collect(),
             pi_power: 0,
+            is_exact: true,
             deviation: None,
         };
         let (Some(node), Some(node_to)) = (c.node(from), c.node(to)) else {
@@ -217,6 +219,7 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
         return Direction {
             verdict: Verdict::Unique,
             efficiency: Some(1.0),
+            efficiency_exact: Some(Rational::ONE),
             efficiencies: vec![1.0],
             certificate: Some(Certificate::SpectralRadius.into()),
             reason: None,
@@ -250,12 +253,16 @@ fn direction(c: &Configuration<'_>, from: MemberId, to: MemberId, input: MemberI
         [_] => (Verdict::Unique, None),
         _ => (Verdict::Multiple, Some(Why::Several)),
     };
+    let is_unique = v == Verdict::Unique;
+    let power_in = |s: &Solution| equilibrium.exact_torque(c, s, &loads, node_from).map(|t| t * w_from.clone());
+    let exact = |s: &Solution| Some(w_to.abs() / power_in(s).filter(|p| p.sign() > 0)?);
     Direction {
         verdict: v,
         efficiency: match efficiencies[..] {
-            [e] if v == Verdict::Unique => Some(e),
+            [e] if is_unique => Some(e),
             _ => None,
         },
+        efficiency_exact: answer.solutions.iter().find_map(exact).filter(|_| is_unique && c.is_exact()),
         efficiencies,
         certificate: Some(answer.certificate.into()),
         reason: why.as_ref().map(ToString::to_string),

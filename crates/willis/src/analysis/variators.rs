@@ -1,15 +1,12 @@
 //! What the second path of a power split does in an equilibrium, and which of its limits it exceeds.
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
 
 use crate::named::Named;
-use crate::power_flow::{Flow, SideFlow, VariatorFlow};
+use crate::power_flow::{BeyondLimit, Flow, LimitedQuantity, SideFlow, VariatorFlow};
 use crate::train::{MachineEfficiency, Train, Variator, VariatorKind, VariatorPath};
 
 use super::SolutionReport;
-use super::words::short;
 
 /// A variator in an operating point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,77 +48,6 @@ pub struct MachineReport {
     /// Efficiency in force, where it passes power.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub efficiency: Option<f64>,
-}
-
-/// A limit of a variator that an operating point exceeds.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[non_exhaustive]
-pub struct BeyondLimit {
-    /// The variator.
-    pub variator: String,
-    /// Its machine; absent where the limit is that of the ratio.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub machine: Option<String>,
-    /// What is limited.
-    pub quantity: LimitedQuantity,
-    /// What it is, SI.
-    pub value: f64,
-    /// What it may be at most (or, of a ratio, at least), SI.
-    pub limit: f64,
-}
-
-/// What of a variator has a limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "lowercase")]
-#[non_exhaustive]
-pub enum LimitedQuantity {
-    /// Torque of a machine, N m.
-    Torque,
-    /// Mechanical power of a machine, W.
-    Power,
-    /// Speed of a machine, rad/s.
-    Speed,
-    /// Speed of the first side over that of the second.
-    Ratio,
-}
-
-impl fmt::Display for BeyondLimit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (what, unit, factor) = match self.quantity {
-            LimitedQuantity::Torque => ("torque", " N m", 1.0),
-            LimitedQuantity::Power => ("power", " kW", 1e-3),
-            LimitedQuantity::Speed => ("speed", " rpm", 30.0 / std::f64::consts::PI),
-            LimitedQuantity::Ratio => ("ratio", "", 1.0),
-        };
-        let shown = |x: f64| format!("{}{unit}", short(x * factor));
-        let (value, limit) = (self.value.abs(), self.limit);
-        match (&self.machine, self.quantity) {
-            (Some(machine), _) => {
-                let excess = (value / limit - 1.0) * 100.0;
-                write!(f, "{machine}: a {what} of {}, {excess:.1} % above its limit of {}", shown(value), shown(limit))
-            }
-            (None, _) if self.value < limit => {
-                let (value, least) = (shown(self.value), shown(limit));
-                write!(
-                    f,
-                    "{}: a {what} of {value}, {} below its least of {least}",
-                    self.variator,
-                    shown(limit - self.value)
-                )
-            }
-            (None, _) => {
-                let (value, most) = (shown(self.value), shown(limit));
-                write!(
-                    f,
-                    "{}: a {what} of {value}, {} above its greatest of {most}",
-                    self.variator,
-                    shown(self.value - limit)
-                )
-            }
-        }
-    }
 }
 
 /// What the variators do in a flow.

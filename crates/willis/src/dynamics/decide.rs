@@ -134,9 +134,10 @@ impl Engine {
         let now = std::mem::take(&mut contacts.load);
         let set = contacts.set.clone();
         let (tau, speed, acceleration) = (self.tau.clone(), self.speed.clone(), self.acceleration.clone());
+        let paths = self.path_states.clone();
         self.load(later, x);
         self.gather(contacts, later);
-        (self.tau, self.speed, self.acceleration) = (tau, speed, acceleration);
+        (self.tau, self.speed, self.acceleration, self.path_states) = (tau, speed, acceleration, paths);
         let then = std::mem::replace(&mut contacts.load, now);
         if contacts.set.meshes.len() == set.meshes.len() && contacts.set.joints == set.joints {
             let rate = |a: f64, b: f64| {

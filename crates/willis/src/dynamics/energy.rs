@@ -5,7 +5,7 @@ use crate::train::SourceKind;
 use super::engine::Engine;
 use super::mode::{Side, dot, slope};
 use super::report::{EnergyLoss, EnergyLossKind, EnergyReport, SourceEnergy};
-use super::system::Rubs;
+use super::system::{PathKind, Rubs};
 
 /// What a friction element does to its first member, and what it costs.
 #[derive(Clone, Copy)]
@@ -28,13 +28,13 @@ pub(super) struct Meshing {
 }
 
 impl Engine {
-    /// Number of energies that are integrated: of sources, frictions, shafts, meshes.
+    /// Number of energies that are integrated: of sources and stores, frictions, shafts, meshes, variators.
     pub fn energies(&self) -> usize {
         if !self.counts {
             return 0;
         }
         let s = &self.system;
-        s.drivers.len() + s.frictions.len() + s.elastic.len() + s.train.meshes().len()
+        s.accounts() + s.frictions.len() + s.elastic.len() + s.train.meshes().len() + s.paths.len()
     }
 
     /// The whole torque of a source, at the state solved last.
@@ -142,8 +142,10 @@ impl Engine {
             let rolls = driver.rolling.is_some_and(|f| self.rubbing(f, t).torque.is_nan());
             if behind_speed || rolls { f64::NAN } else { -self.applied_torque(k, t) }
         });
+        let variators = of.variators.iter().map(|&port| -self.tau[port]);
         // Idle elements give a negative zero, which a sum that begins with zero does not show.
-        let others: f64 = elements.chain(frictions).chain(shafts).chain(sources).fold(0.0, |sum, x| sum + x);
+        let others: f64 =
+            elements.chain(frictions).chain(shafts).chain(sources).chain(variators).fold(0.0, |sum, x| sum + x);
         dot(&of.momentum, &self.acceleration) + others
     }
 
@@ -159,14 +161,19 @@ impl Engine {
         }
         out.iter_mut().for_each(|p| *p = 0.0);
         let s = &self.system;
-        let sources = s.drivers.len();
-        for k in 0..sources {
+        let (sources, variators) = (s.accounts(), out.len() - s.paths.len());
+        for k in 0..s.paths.len() {
+            [out[s.drivers.len() + k], out[variators + k]] = self.path_powers(k, t);
+        }
+        for k in 0..s.drivers.len() {
             out[k] = self.applied_torque(k, t) * self.member_speed(s.drivers[k].member);
         }
         let mut at = sources;
         for k in 0..s.frictions.len() {
-            if !matches!(s.frictions[k].what, Rubs::Rolling(_)) {
-                out[at + k] = self.rubbing(k, t).loss;
+            match s.frictions[k].what {
+                Rubs::Rolling(_) => {}
+                Rubs::Variator(path) => out[variators + path] += self.rubbing(k, t).loss,
+                _ => out[at + k] = self.rubbing(k, t).loss,
             }
         }
         at += s.frictions.len();
@@ -199,7 +206,7 @@ impl Engine {
         let w = nalgebra::DVector::from_column_slice(&self.speed);
         let kinetic = 0.5 * (w.transpose() * &self.system.energy * &w)[(0, 0)];
         let twisted: f64 = (0..self.system.elastic.len()).map(|k| self.spring_energy(k, x)).sum();
-        kinetic + twisted
+        kinetic + twisted + self.path_energy(x)
     }
 
     /// The same up to round-off, without room of its own.
@@ -209,7 +216,8 @@ impl Engine {
             w_i * w.iter().enumerate().map(|(j, w_j)| self.system.energy[(i, j)] * w_j).sum::<f64>()
         };
         let kinetic: f64 = w.iter().enumerate().map(of_row).sum();
-        0.5 * kinetic + (0..self.system.elastic.len()).map(|k| self.spring_energy(k, x)).sum::<f64>()
+        let twisted: f64 = (0..self.system.elastic.len()).map(|k| self.spring_energy(k, x)).sum();
+        0.5 * kinetic + twisted + self.path_energy(x)
     }
 
     /// The report at the end of a run: `stored` at the start and at the end, the energies, and of those of the
@@ -219,16 +227,23 @@ impl Engine {
             return None;
         }
         let s = &self.system;
-        let n = s.drivers.len();
-        let sources: Vec<SourceEnergy> = (0..n)
-            .map(|k| SourceEnergy {
-                name: s.scenario.sources[k].name.clone(),
-                member: s.train.member_name(s.drivers[k].member).to_owned(),
-                energy_j: energies[k],
-                in_j: came_in[k],
-                out_j: (came_in[k] - energies[k]).max(0.0),
-            })
-            .collect();
+        let n = s.accounts();
+        let account = |k: usize, name: &str, of: &str| SourceEnergy {
+            name: name.to_owned(),
+            member: of.to_owned(),
+            energy_j: energies[k],
+            in_j: came_in[k],
+            out_j: (came_in[k] - energies[k]).max(0.0),
+        };
+        let of_source = |k: usize| account(k, &s.scenario.sources[k].name, s.train.member_name(s.drivers[k].member));
+        let is_machine = |k: &usize| s.scenario.sources[*k].machine.is_some();
+        let (machines, outer): (Vec<usize>, Vec<usize>) = (0..s.drivers.len()).partition(is_machine);
+        let machines: Vec<SourceEnergy> = machines.into_iter().map(of_source).collect();
+        let mut sources: Vec<SourceEnergy> = outer.into_iter().map(of_source).collect();
+        for (k, path) in s.paths.iter().enumerate().filter(|(_, p)| matches!(p.kind, PathKind::Bus { .. })) {
+            let name = &s.train.variators[path.variator].name;
+            sources.push(account(s.drivers.len() + k, &format!("store of {name}"), name));
+        }
         let mut losses = Vec::new();
         let mut at = n;
         for (k, f) in s.frictions.iter().enumerate() {
@@ -253,6 +268,11 @@ impl Engine {
         for (k, mesh) in s.train.meshes().iter().enumerate() {
             losses.push(EnergyLoss { name: mesh.name.clone(), kind: EnergyLossKind::Mesh, energy_j: energies[at + k] });
         }
+        at += s.train.meshes().len();
+        for (k, path) in s.paths.iter().enumerate() {
+            let name = s.train.variators[path.variator].name.clone();
+            losses.push(EnergyLoss { name, kind: EnergyLossKind::Variator, energy_j: energies[at + k] });
+        }
         losses.sort_by(|a, b| b.energy_j.total_cmp(&a.energy_j));
         let stored_j = stored[1] - stored[0];
         let lost: f64 = losses.iter().map(|l| l.energy_j).sum();
@@ -266,6 +286,7 @@ impl Engine {
             turned_over_j,
             efficiency: (came_in > 0.0 && stored_j.abs() <= 1e-9 * came_in).then(|| went_out / came_in),
             sources,
+            machines,
             losses,
         })
     }

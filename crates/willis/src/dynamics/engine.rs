@@ -8,6 +8,7 @@ use crate::train::{Contact, MemberId, SourceKind};
 use super::contacts::Contacts;
 use super::element::{Element, Loss};
 use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
+use super::report::LimitExceeded;
 use super::shows::Shows;
 use super::source::{out_of_domain, source_torque};
 use super::still::Still;
@@ -31,6 +32,15 @@ pub(super) enum Touch {
 pub(super) struct Capacity {
     pub forward: f64,
     pub backward: f64,
+}
+
+/// A variator at the state looked at.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PathState {
+    /// r of `ω_p = r ω_q`.
+    pub ratio: f64,
+    /// T, which it takes from p, N m.
+    pub torque: f64,
 }
 
 /// Change in a round that counts as none, over the sum of the losses as torques.
@@ -69,6 +79,10 @@ pub(crate) struct Engine {
     pub speed: Vec<f64>,
     pub acceleration: Vec<f64>,
     pub tau: Vec<f64>,
+    /// Variators at the state looked at last.
+    pub path_states: Vec<PathState>,
+    /// Limits of variators that were exceeded, where they were by most.
+    pub beyond: Vec<LimitExceeded>,
     /// What is in contact, and the decisions of what it does.
     pub contacts: Contacts,
     /// Whether one motion is certain in every state.
@@ -121,6 +135,8 @@ impl Engine {
             speed: vec![0.0; system.all()],
             acceleration: vec![0.0; system.all()],
             tau: vec![0.0; system.ports],
+            path_states: vec![PathState::default(); system.paths.len()],
+            beyond: vec![],
             scales,
             energy_scale: LEAST_ENERGY,
             unproved: 0,
@@ -162,10 +178,12 @@ impl Engine {
         dot(self.row_of(m.index()), &self.speed)
     }
 
-    /// A formula that has no finite value at a time, at the speeds looked at last, in words.
+    /// A formula that has no finite value at a time, at the speeds looked at last, or a variator that has no torque
+    /// there, in words.
     pub fn out_of_domain(&self, t: f64) -> Option<String> {
         let s = &self.system;
         out_of_domain(&s.train, &s.scenario, t, self.inside, &|m| self.member_speed(m))
+            .or_else(|| self.path_without_lever(t))
     }
 
     /// From now on what this mode holds stands still exactly, in the state too; the engine looks at it.
@@ -206,6 +224,9 @@ impl Engine {
         }
         if let Some(still) = &self.still {
             still.settle(&mut self.speed);
+        }
+        if !self.path_states.is_empty() {
+            self.look_at_paths(t, x);
         }
     }
 
@@ -307,6 +328,9 @@ impl Engine {
         if let (Rubs::Law(place), Some(laws)) = (friction.what, &self.system.laws) {
             return -f64::from(sign) * laws.torque(place);
         }
+        if let Rubs::Variator(path) = friction.what {
+            return self.path_friction(path, sign);
+        }
         let factor = engaged.clamp(0.0, 1.0) * if peak { friction.peak } else { 1.0 };
         -f64::from(sign) * friction.torque.at(w.abs()) * factor
     }
@@ -339,10 +363,11 @@ impl Engine {
             let along = factor.signum() as i8;
             let forward = (factor * self.sliding(f, w, along, peak, t)).abs();
             c.forward += forward;
-            // Only one-way clutches tell directions apart.
-            c.backward += match self.system.frictions[f].blocks {
-                None => forward,
-                Some(_) => (factor * self.sliding(f, w, -along, peak, t)).abs(),
+            let friction = &self.system.frictions[f];
+            let tells_directions_apart = friction.blocks.is_some() || matches!(friction.what, Rubs::Variator(_));
+            c.backward += match tells_directions_apart {
+                false => forward,
+                true => (factor * self.sliding(f, w, -along, peak, t)).abs(),
             };
         }
         c
@@ -360,6 +385,9 @@ impl Engine {
             if let Some(i) = driver.prescribed {
                 tau[self.system.port_of_prescribed + i] = self.acceleration[self.system.free + i];
             }
+        }
+        if !self.path_states.is_empty() {
+            self.load_paths(t, &mut tau);
         }
         for k in 0..self.system.frictions.len() {
             let f = &self.system.frictions[k];

@@ -221,7 +221,8 @@ impl FixedStep {
     ///
     /// # Errors
     /// As [`Simulation::new`](super::Simulation::new); a step that is not longer than zero; trains with more than 48
-    /// friction groups or 64 mesh elements, with losses that follow laws, or with efficiencies that depend on speed.
+    /// friction groups or 64 mesh elements, with variators, with losses that follow laws, or with efficiencies that depend
+    /// on speed.
     pub fn new(train: &Train, scenario: &str, h: f64) -> Result<Self, Diagnostics> {
         let fail =
             |message: String, hint: &str| Diagnostics::from(Diagnostic::new(Code::Unfit, "", message).hint(hint));
@@ -241,6 +242,10 @@ impl FixedStep {
             let message =
                 format!("{} elastic shafts: steps of fixed length take at most {MOST_SHAFTS}", system.elastic.len());
             return Err(fail(message, "use the adaptive method"));
+        }
+        if let Some(path) = system.paths.first() {
+            let message = format!("`{}` is a variator", train.variators()[path.variator].name);
+            return Err(fail(message, "steps of fixed length do not take one yet; use the adaptive method"));
         }
         if system.laws.is_some() {
             let message = "the losses of this train follow laws of speed and load".to_owned();

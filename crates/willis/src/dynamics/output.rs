@@ -97,6 +97,9 @@ impl Engine {
         for k in 0..s.elastic.len() {
             loss += self.damper_power(k, x);
         }
+        for k in 0..s.paths.len() {
+            loss += self.path_powers(k, t)[1];
+        }
         for j in 0..s.elements.len() {
             loss += self.meshing(j).loss;
         }
@@ -118,14 +121,23 @@ impl Engine {
             Shows::Twist(k) => self.twist(k, x),
             Shows::MeshTorque(k) => self.mesh_torque(k, t),
             Shows::Reaction(k) => self.reaction(k, t),
+            Shows::Ratio(k) => self.path_states[k].ratio,
+            Shows::SideTorque(k, side) => self.path_side(k, side, t).torque,
+            Shows::SidePower(k, side) => {
+                let of = self.path_side(k, side, t);
+                of.torque * of.speed
+            }
+            Shows::Store(k) => self.path_powers(k, t)[0],
             Shows::Loss => self.lost_power(t, x),
             Shows::Stored => self.stored(x),
             Shows::Lost => {
-                let sources = self.integrals() + s.integrals + s.drivers.len();
+                let sources = self.integrals() + s.integrals + s.accounts();
                 x.get(sources..).filter(|_| self.counts).map_or(f64::NAN, |e| e.iter().sum())
             }
             Shows::Efficiency => {
-                let powers = || (0..s.drivers.len()).map(|k| self.source_power(k, t));
+                let outer = || (0..s.drivers.len()).filter(|&k| s.scenario.sources[k].machine.is_none());
+                let stores = || (0..s.paths.len()).map(|k| self.path_powers(k, t)[0]);
+                let powers = || outer().map(|k| self.source_power(k, t)).chain(stores());
                 let came_in: f64 = powers().filter(|p| *p > 0.0).sum();
                 let went_out: f64 = -powers().filter(|p| *p < 0.0).sum::<f64>();
                 if came_in > 0.0 { went_out / came_in } else { f64::NAN }

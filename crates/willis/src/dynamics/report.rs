@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::named::Named;
+use crate::power_flow::{BeyondLimit, LimitedQuantity};
 use crate::train::Scenario;
 use crate::work::{Serial, Work as _};
 
@@ -154,12 +155,13 @@ pub enum ColumnKind {
     Angle,
     /// Acceleration of a member.
     Acceleration,
-    /// Torque of a source on its member, of friction or a shaft on its first member, of a mesh at its first gear.
+    /// Torque of a source on its member, of friction or a shaft on its first member, of a mesh at its first gear, of a
+    /// variator on a member.
     Torque,
     /// Torque with which the frame holds a member of `fixed`; that of `frame` is all that the frame gives, through
     /// such members and whatever else is borne by it.
     Reaction,
-    /// Power of a source, or lost in all.
+    /// Power of a source, out of the store of a variator, through a variator into its second member, or lost in all.
     Power,
     /// State of motion of an element: -1 backward, 0 stuck, 1 forward, 2 free ([`ModeLabel`]).
     Mode,
@@ -169,6 +171,8 @@ pub enum ColumnKind {
     Efficiency,
     /// Energy stored or lost.
     Energy,
+    /// Ratio of a variator.
+    Ratio,
 }
 
 impl ColumnKind {
@@ -186,6 +190,7 @@ impl ColumnKind {
             Self::Twist => "twist",
             Self::Efficiency => "efficiency",
             Self::Energy => "energy",
+            Self::Ratio => "ratio",
         }
     }
 
@@ -199,7 +204,7 @@ impl ColumnKind {
             Self::Torque | Self::Reaction => ColumnUnit::NewtonMetre,
             Self::Power => ColumnUnit::Watt,
             Self::Energy => ColumnUnit::Joule,
-            Self::Mode | Self::Efficiency => ColumnUnit::None,
+            Self::Mode | Self::Efficiency | Self::Ratio => ColumnUnit::None,
         }
     }
 }
@@ -515,9 +520,9 @@ impl fmt::Display for EnergyLossKind {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SourceEnergy {
-    /// The source.
+    /// The source; `store of` a variator.
     pub name: String,
-    /// The member.
+    /// The member, or the variator.
     pub member: String,
     /// Net, J.
     pub energy_j: f64,
@@ -532,8 +537,11 @@ pub struct SourceEnergy {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct EnergyReport {
-    /// By source.
+    /// By source from outside, stores of variators among them.
     pub sources: Vec<SourceEnergy>,
+    /// What sources that are machines of variators gave to their members; it came from the buses.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub machines: Vec<SourceEnergy>,
     /// Kinetic energy and that of twisted shafts, end less start, J.
     pub stored_j: f64,
     /// By cause, largest first.
@@ -544,6 +552,27 @@ pub struct EnergyReport {
     pub residual_j: f64,
     /// Out over in, where anything came in and nothing is stored beside it; else `None`.
     pub efficiency: Option<f64>,
+}
+
+/// A limit of a variator that a run exceeds, where it does so by most among the ends of its steps.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct LimitExceeded {
+    /// The limit, and what exceeds it. A ratio does not: the variator stays at its limit, and the value is the one wanted.
+    #[serde(flatten)]
+    pub limit: BeyondLimit,
+    /// When, s.
+    pub time_s: f64,
+    /// By what part of the limit.
+    pub excess: f64,
+}
+
+impl fmt::Display for LimitExceeded {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let most = if self.limit.quantity == LimitedQuantity::Ratio { "stays at its limit, the most" } else { "most" };
+        write!(f, "{}; {most} at t = {} s", self.limit, (self.time_s * 1e6).round() / 1e6)
+    }
 }
 
 /// A run: the results contract `willis-simulation-1`. Fields are added, never renamed; units are SI and stand in the
@@ -582,6 +611,9 @@ pub struct RunReport {
     pub final_speeds_rad_s: Named<f64>,
     /// Where the energy went; nothing where it was not counted, or is no longer finite.
     pub energy: Option<EnergyReport>,
+    /// Limits of variators that the run exceeds.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub beyond_limits: Vec<LimitExceeded>,
     /// What stands in for data that were not given.
     pub assumptions: Vec<String>,
     /// What the reader must know.

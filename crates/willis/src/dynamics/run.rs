@@ -140,7 +140,7 @@ impl Simulation {
         let columns = engine.columns();
         let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
         let (states, quadratures) = (engine.states(), engine.quadratures());
-        let (groups, drivers) = (engine.system.groups.len(), engine.system.drivers.len());
+        let (groups, accounts) = (engine.system.groups.len(), engine.system.accounts());
         let notes = uniqueness(&engine, options.method).into_iter().collect();
         Ok(Self {
             options: options.clone(),
@@ -150,7 +150,7 @@ impl Simulation {
             rolling: false,
             t: start,
             x,
-            came_in: vec![0.0; if options.energies { drivers } else { 0 }],
+            came_in: vec![0.0; if options.energies { accounts } else { 0 }],
             segment: start,
             from,
             longest: f64::INFINITY,
@@ -322,6 +322,7 @@ impl Simulation {
         let ahead = std::mem::replace(&mut self.engine.inside, inside);
         self.engine.look(self.t, &x);
         let before: Vec<f64> = self.engine.speed[free..].to_vec();
+        let ratios: Vec<f64> = self.engine.path_states.iter().map(|p| p.ratio).collect();
         self.engine.inside = ahead;
         self.engine.look(self.t, &x);
         let jump = (before.iter().zip(&self.engine.speed[free..]).enumerate())
@@ -336,6 +337,11 @@ impl Simulation {
                 short(*to)
             );
             // What is told is the state before.
+            self.engine.inside = inside;
+            self.x = x;
+            return Err(Outcome::Impact(why));
+        }
+        if let Some(why) = self.engine.ratio_that_jumps(&ratios).filter(|_| self.events > 0) {
             self.engine.inside = inside;
             self.x = x;
             return Err(Outcome::Impact(why));
@@ -360,6 +366,9 @@ impl Simulation {
             if *rest {
                 *slip = 0;
             }
+        }
+        if matches!(self.why, Some(Why::Start)) {
+            self.engine.settle_paths(self.t, &mut x, &at_rest);
         }
         let touch = self.engine.touch.clone();
         let mode = match self.engine.choose(self.t, &x, &at_rest, &guess) {
@@ -605,6 +614,12 @@ impl Simulation {
         }
         self.engine.rescale(&self.x);
         self.t = t;
+        if !self.engine.system.paths.is_empty() {
+            let x = std::mem::take(&mut self.x);
+            self.engine.solve(t, &x);
+            self.engine.note_limits(t, &x);
+            self.x = x;
+        }
     }
 
     fn interpolate(&mut self, t: f64) {
@@ -723,6 +738,7 @@ impl Simulation {
                 &self.x[states..],
                 &self.came_in,
             ),
+            beyond_limits: self.engine.beyond.clone(),
             assumptions: s.assumptions.clone(),
             notes,
             scenario_end_s: s.scenario.end,

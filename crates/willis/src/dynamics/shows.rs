@@ -2,7 +2,7 @@
 
 use super::element::element_name;
 use super::report::{Column, ColumnKind, EnergyLossKind};
-use super::system::{Rubs, System};
+use super::system::{MachineDoes, PathKind, Rubs, System};
 
 /// What a column shows; positions are those in the system.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +18,13 @@ pub(super) enum Shows {
     Twist(usize),
     MeshTorque(usize),
     Reaction(usize),
+    /// Ratio of a variator.
+    Ratio(usize),
+    /// Torque of a side of a variator, and power into its member.
+    SideTorque(usize, usize),
+    SidePower(usize, usize),
+    /// Power out of the store of a variator.
+    Store(usize),
     Loss,
     Stored,
     Lost,
@@ -42,8 +49,9 @@ impl Shows {
     /// Everything that can be read of a system, in the order of the columns.
     pub fn all(s: &System) -> Vec<Self> {
         let (members, sources, shafts) = (1..s.speeds.len(), 0..s.drivers.len(), 0..s.elastic.len());
-        let rubs = (0..s.frictions.len())
-            .filter(|&k| !s.frictions[k].open && !matches!(s.frictions[k].what, Rubs::Rolling(_) | Rubs::Trace));
+        let rubs = (0..s.frictions.len()).filter(|&k| {
+            !s.frictions[k].open && !matches!(s.frictions[k].what, Rubs::Rolling(_) | Rubs::Variator(_) | Rubs::Trace)
+        });
         std::iter::once(Self::Time)
             .chain(members.clone().map(Self::Speed))
             .chain(members.clone().map(Self::Angle))
@@ -52,6 +60,7 @@ impl Shows {
             .chain(sources.map(Self::SourcePower))
             .chain(rubs.map(Self::FrictionTorque))
             .chain(shafts.flat_map(|k| [Self::ShaftTorque(k), Self::Twist(k)]))
+            .chain((0..s.paths.len()).flat_map(|k| Self::of_path(s, k)))
             .chain((0..s.train.meshes().len()).map(Self::MeshTorque))
             .chain((0..s.reactions.len()).map(Self::Reaction))
             .chain([Self::Loss, Self::Stored, Self::Lost, Self::Efficiency])
@@ -59,10 +68,31 @@ impl Shows {
             .collect()
     }
 
+    /// What there is to read of a variator: machines that are sources are read there.
+    fn of_path(s: &System, k: usize) -> Vec<Self> {
+        match &s.paths[k].kind {
+            PathKind::Geared(_) => {
+                vec![Self::Ratio(k), Self::SideTorque(k, 0), Self::SideTorque(k, 1), Self::SidePower(k, 1)]
+            }
+            PathKind::Pushed { .. } => vec![Self::SideTorque(k, 0), Self::SideTorque(k, 1), Self::SidePower(k, 1)],
+            PathKind::Bus { machines, .. } => {
+                let balances =
+                    (machines.iter().enumerate()).filter(|(_, m)| matches!(m.does, MachineDoes::Balances(_)));
+                let of = balances.flat_map(|(side, _)| [Self::SideTorque(k, side), Self::SidePower(k, side)]);
+                of.chain([Self::Store(k)]).collect()
+            }
+        }
+    }
+
     /// Its column.
     pub fn column(self, s: &System) -> Column {
         let member = |m: usize| s.train.members()[m].name.clone();
         let source = |k: usize| s.scenario.sources[k].name.clone();
+        let variator = |k: usize| &s.train.variators[s.paths[k].variator];
+        let side = |k: usize, side: usize| match variator(k).machines().get(side) {
+            Some(machine) => machine.name.clone(),
+            None => format!("{}.{}", variator(k).name, s.train.member_name(variator(k).members()[side])),
+        };
         let (kind, of) = match self {
             Self::Time => (ColumnKind::Time, String::new()),
             Self::Speed(m) => (ColumnKind::Speed, member(m)),
@@ -75,6 +105,10 @@ impl Shows {
             Self::Twist(k) => (ColumnKind::Twist, s.train.shafts()[k].name.clone()),
             Self::MeshTorque(k) => (ColumnKind::Torque, s.train.meshes()[k].name.clone()),
             Self::Reaction(k) => (ColumnKind::Reaction, member(s.reactions[k].member.index())),
+            Self::Ratio(k) => (ColumnKind::Ratio, variator(k).name.clone()),
+            Self::SideTorque(k, at) => (ColumnKind::Torque, side(k, at)),
+            Self::SidePower(k, at) => (ColumnKind::Power, side(k, at)),
+            Self::Store(k) => (ColumnKind::Power, format!("store of {}", variator(k).name)),
             Self::Loss => (ColumnKind::Power, String::new()),
             Self::Stored | Self::Lost => (ColumnKind::Energy, String::new()),
             Self::Efficiency => (ColumnKind::Efficiency, String::new()),
@@ -105,6 +139,7 @@ impl Moves {
                         && group.is_some_and(|g| g.elements.is_empty() && g.frictions[0] == k)
                 }
                 Rubs::Shift(_) => true,
+                Rubs::Variator(_) => false,
                 Rubs::Drag(_) | Rubs::Rolling(_) | Rubs::Trace => f.group.is_some(),
             }
         };

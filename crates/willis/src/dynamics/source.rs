@@ -27,7 +27,8 @@ pub(super) fn out_of_domain(
     let of_sources = scenario.sources.iter().flat_map(|s| signals_of(&s.kind).map(|signal| (s.name.as_str(), signal)));
     let of_elements =
         (scenario.engagements.iter()).map(|e| (train.shift_elements()[e.element.index()].name.as_str(), &e.signal));
-    of_sources.chain(of_elements).find_map(|(name, signal)| {
+    let of_variators = (scenario.controls.iter()).map(|c| (train.variators[c.variator].name.as_str(), c.kind.signal()));
+    of_sources.chain(of_elements).chain(of_variators).find_map(|(name, signal)| {
         let (text, value) = signal.not_finite(t, inside, speed)?;
         let value = if value.is_nan() { "not a number".to_owned() } else { value.to_string() };
         Some(format!("`{name}`: the formula \"{text}\" is {value} at t = {t} s"))

@@ -23,6 +23,7 @@ mod frictions;
 mod groups;
 mod inertia;
 mod meshes;
+mod paths;
 mod ports;
 mod reactions;
 mod shafts;
@@ -36,7 +37,7 @@ use nalgebra::DMatrix;
 use crate::diagnostic::Diagnostics;
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::train::{MemberId, Scenario, Signal, SourceKind, Train};
+use crate::train::{MemberId, Scenario, Signal, SourceKind, Train, Variator};
 
 use super::bodies::Bodies;
 use super::decision::Body;
@@ -52,12 +53,14 @@ use frictions::{Friction, drags, law_places, shift_elements};
 use groups::{Group, slip_together};
 use inertia::{Accelerations, NodeInertia, massless};
 use meshes::Meshes;
+use paths::Paths;
 use ports::Ports;
 use reactions::{Reaction, reactions};
 use shafts::{Elastic, shafts};
 use traces::Traces;
 
 pub(super) use frictions::Rubs;
+pub(super) use paths::{BusMachine, Geared, GivenStore, MachineDoes, Path, PathKind};
 
 /// A train in a scenario.
 #[derive(Clone)]
@@ -86,7 +89,9 @@ pub(crate) struct System {
     /// What holds it from outside.
     pub reactions: Vec<Reaction>,
     pub drivers: Vec<Driver>,
-    /// Number of controller integrals.
+    /// Variators.
+    pub paths: Vec<Path>,
+    /// Number of integrals of controllers and variators.
     pub integrals: usize,
     /// Laws that losses follow.
     pub laws: Option<Box<Laws>>,
@@ -115,7 +120,6 @@ impl System {
     /// `step`: the length of the steps, s, it is made for; 0 where that is adapted.
     pub fn new(train: &Train, name: &str, step: f64) -> Result<Self, Diagnostics> {
         let scenario = train.find_scenario(name)?;
-        checks::no_variator(train)?;
         let laws = Laws::of(train);
         let c = Configuration::new(train, &[], &scenario.fixed, &visible(train, scenario, laws.as_ref()));
         checks::forces_and_freedom(&c, scenario)?;
@@ -149,6 +153,8 @@ impl System {
             frictions.extend(law_places(laws, &mut ports));
             assumptions.extend(laws.assumptions(train));
         }
+        let mut paths = Paths::of(train, scenario, integrals, frictions.len(), &mut ports)?;
+        frictions.append(&mut paths.rubbing);
         let elastic = shafts(c, scenario, &mut ports);
         let traces = Traces::of(scenario, step, &coordinates, train, &frictions, &elastic, &inertia);
         assumptions.extend(traces.assumption(train));
@@ -159,7 +165,7 @@ impl System {
         }
         let Meshes { mut elements, gear, loss } = Meshes::of(c, &coordinates, laws.is_some(), &mut ports);
         let groups = slip_together(c, &coordinates, &mut frictions, &mut elements);
-        let reactions = reactions(c, scenario, &coordinates, &frictions, &traces.given);
+        let reactions = reactions(c, scenario, &coordinates, &frictions, &paths.all, &traces.given);
 
         let node = |m: &MemberId| c.node(*m);
         let coordinate_bodies: Vec<Body> = coordinates.chosen.iter().map(node).collect();
@@ -180,6 +186,8 @@ impl System {
         ports.at_least_one();
         let (ports, port_columns) = (ports.count(), ports.matrix());
         massless(&mass, &coordinates.speeds, train, scenario)?;
+        paths.stiffen(train, scenario, &coordinates, &mass)?;
+        assumptions.extend(paths.assumptions(train, scenario));
 
         for source in scenario.sources.iter().filter(|s| matches!(s.kind, SourceKind::Vehicle { .. })) {
             assumptions.push(format!(
@@ -209,7 +217,8 @@ impl System {
             elastic,
             reactions,
             drivers,
-            integrals,
+            integrals: paths.integrals,
+            paths: paths.all,
             laws: laws.map(Box::new),
             ports,
             port_of_prescribed,
@@ -221,6 +230,11 @@ impl System {
             port_columns,
             assumptions,
         })
+    }
+
+    /// Accounts of what comes in from outside: one for each source, then one for each variator, of its store.
+    pub fn accounts(&self) -> usize {
+        self.drivers.len() + self.paths.len()
     }
 
     /// Coordinates of both kinds.
@@ -316,7 +330,8 @@ impl System {
         match self.frictions[f].what {
             Rubs::Drag(_) => Some(EnergyLossKind::Drag),
             Rubs::Shift(_) => Some(EnergyLossKind::ShiftElement),
-            Rubs::Rolling(_) => None,
+            // Counted with the source, and with the variator.
+            Rubs::Rolling(_) | Rubs::Variator(_) => None,
             Rubs::Trace => Some(EnergyLossKind::Shaft),
             Rubs::Law(place) => self.laws.as_ref().map(|laws| laws.places[place].loss_kind()),
         }
@@ -325,7 +340,8 @@ impl System {
     /// The signals of the scenario.
     pub fn signals(&self) -> impl Iterator<Item = &Signal> {
         let sources = self.scenario.sources.iter().flat_map(|s| signals_of(&s.kind));
-        sources.chain(self.scenario.engagements.iter().map(|e| &e.signal))
+        let engagements = self.scenario.engagements.iter().map(|e| &e.signal);
+        sources.chain(engagements).chain(self.scenario.controls.iter().map(|c| c.kind.signal()))
     }
 }
 
@@ -336,6 +352,7 @@ fn visible(train: &Train, scenario: &Scenario, laws: Option<&Laws>) -> Vec<Membe
         .chain(train.drags().iter().flat_map(|d| d.members))
         .chain(train.shafts().iter().flat_map(|s| s.members))
         .chain(scenario.sources.iter().map(|s| s.member))
+        .chain(train.variators.iter().flat_map(Variator::members))
         .chain(train.loss_tables().iter().flat_map(|t| {
             let mesh = &train.meshes()[t.mesh.index()];
             [mesh.gears[0].member, mesh.gears[1].member]

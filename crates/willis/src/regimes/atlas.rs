@@ -644,13 +644,16 @@ fn boundaries(atlas: &mut Atlas, setup: &Setup<'_>) {
                 for b in of(next + 1).filter(|b| continues(setup, atlas, a, b, p)) {
                     let limit = |r: &RegimeReport| {
                         let inside = &atlas.regions[r.region - 1].point;
-                        Some(efficiency_towards(setup, ray, inside, &r.pattern, &r.torques).to_f64())
+                        efficiency_towards(setup, ray, inside, &r.pattern, &r.torques)
                     };
+                    let (before, after) = (limit(a), limit(b));
                     crossings.push(Crossing {
                         from: a.id.clone(),
                         to: b.id.clone(),
-                        efficiency_before: limit(a),
-                        efficiency_after: limit(b),
+                        efficiency_before: Some(before.to_f64()),
+                        efficiency_before_exact: Some(before),
+                        efficiency_after: Some(after.to_f64()),
+                        efficiency_after_exact: Some(after),
                         changes: changes(a, b),
                     });
                 }

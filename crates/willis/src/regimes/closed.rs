@@ -1,6 +1,8 @@
 //! Closed formulas to take away: in words, typeset, or as code that refuses to answer outside its
 //! regime.
 
+use std::sync::Arc;
+
 use crate::analysis::Named;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, through_diagnostic};
 use crate::exact::Rational;
@@ -123,6 +125,36 @@ pub struct ClosedFormula {
     pub(crate) terminals: Vec<TerminalFormula>,
     pub(crate) conditions: Vec<(Function, String)>,
     pub(crate) names: Names,
+    /// More freedoms: all formulas of the state, this one among them.
+    pub(crate) together: Option<Arc<Together>>,
+    /// More freedoms and one independent torque: regimes that hold at the same speeds and under the same torque as some
+    /// regime of this formula, in this train. There the equilibrium of this formula is not the only one.
+    pub beside: Vec<String>,
+}
+
+/// All formulas of a state with several freedoms: at any speeds and torques as many equilibria exist as of them hold.
+#[derive(Clone, Debug)]
+pub(crate) struct Together {
+    /// An identifier.
+    pub name: String,
+    /// What their conditions take.
+    pub arguments: Vec<Argument>,
+    /// Speeds that follow from those: name and, by notation, expression.
+    pub speeds: Vec<(Symbol, Function, Names)>,
+    pub all: Vec<Holds>,
+}
+
+/// Where a formula of a state holds.
+#[derive(Clone, Debug)]
+pub(crate) struct Holds {
+    /// Name of the formula as regimes list it, `f1`.
+    pub id: String,
+    /// The regimes in which it holds.
+    pub regimes: Vec<String>,
+    /// Inputs and outputs, in words.
+    pub title: String,
+    pub conditions: Vec<Function>,
+    pub names: Names,
 }
 
 #[derive(Clone, Debug)]
@@ -485,14 +517,8 @@ fn several_freedoms(
             && to.iter().all(|t| r.outputs.contains(t))
             && request.regime.as_ref().is_none_or(|id| *id == r.id)
     };
-    let mut all: Vec<ClosedFormula> = Vec::new();
-    let mut done: Vec<&str> = Vec::new();
-    for r in atlas.regimes.iter().filter(wanted) {
-        if done.contains(&r.formula.as_str()) {
-            continue;
-        }
-        done.push(&r.formula);
-        let own = shape.formula(&r.pattern, &r.power_signs, request.ratios, request.efficiencies);
+    let made = |r: &RegimeReport, efficiencies: Efficiencies| {
+        let own = shape.formula(&r.pattern, &r.power_signs, request.ratios, efficiencies);
         let region = &atlas.regions[r.region - 1];
         let mut f = closed(train, &setup, state, &own, &r.power_signs, &r.pattern, &region.point, &r.torques);
         f.title = arrow(&f.inputs, &f.outputs);
@@ -509,12 +535,75 @@ fn several_freedoms(
             })
             .collect();
         f.keep_used();
-        all.push(f);
+        f.beside = beside(&atlas.regimes, &setup, shape.reference[0], &f.regimes);
+        Made { id: r.formula.to_lowercase(), own, formula: f }
+    };
+    let mut distinct: Vec<&RegimeReport> = Vec::new();
+    for r in &atlas.regimes {
+        if distinct.iter().all(|own| own.formula != r.formula) {
+            distinct.push(r);
+        }
     }
+    let every = |efficiencies| distinct.iter().map(|r| made(r, efficiencies)).collect::<Vec<Made>>();
+    let own = every(request.efficiencies);
+    let asked = |m: &&Made| m.formula.regimes.iter().any(|id| atlas.regimes.iter().any(|r| r.id == *id && wanted(&r)));
+    let mut all: Vec<ClosedFormula> = own.iter().filter(asked).map(|m| m.formula.clone()).collect();
     if all.is_empty() {
         return Err(format!("no regime has the roles {}; `willis regimes` lists those there are", arrow(&from, &to)));
     }
+    let name = format!("{}_equilibria", closed_name(train, state));
+    // A symbol that stands for one number here and another there makes way for the numbers.
+    let together = together(&name, &own).or_else(|| self::together(&name, &every(Efficiencies::Numbers)));
+    let together = together.map(Arc::new);
+    all.iter_mut().for_each(|f| f.together.clone_from(&together));
     Ok(all)
+}
+
+/// A formula of a state with several freedoms, as it is made and as it is shown.
+struct Made {
+    id: String,
+    own: Formula,
+    formula: ClosedFormula,
+}
+
+/// Regimes, other than those of a formula, in which the same speeds and the same torque on a terminal are answered.
+fn beside(regimes: &[RegimeReport], setup: &Setup<'_>, reference: usize, own: &[String]) -> Vec<String> {
+    if setup.independent_torques() != 1 {
+        return vec![];
+    }
+    let place = |r: &RegimeReport| (r.region, r.torque_signs.0[reference].1);
+    let places: Vec<_> = regimes.iter().filter(|r| own.contains(&r.id)).map(place).collect();
+    let others = regimes.iter().filter(|r| !own.contains(&r.id) && places.contains(&place(r)));
+    others.map(|r| r.id.clone()).collect()
+}
+
+/// All formulas of a state; `None` where one name stands for different numbers.
+fn together(name: &str, all: &[Made]) -> Option<Together> {
+    let mut arguments: Vec<Argument> = Vec::new();
+    for a in all.iter().flat_map(|m| &m.formula.arguments) {
+        match arguments.iter().find(|own| own.name == a.name) {
+            // Speeds and torques are those of a point of each regime.
+            Some(own) if own.fixed && own.exact != a.exact => return None,
+            Some(_) => {}
+            None => arguments.push(a.clone()),
+        }
+    }
+    let first = &all.first()?.formula;
+    let speeds = first.terminals.iter().filter(|t| !t.given_speed);
+    Some(Together {
+        name: name.to_owned(),
+        speeds: speeds.map(|t| (t.speed_symbol, t.speed.clone(), first.names.clone())).collect(),
+        all: (all.iter())
+            .map(|Made { id, own, formula }| Holds {
+                id: id.clone(),
+                regimes: formula.regimes.clone(),
+                title: formula.title.clone(),
+                conditions: own.conditions.iter().map(|c| c.function.clone()).collect(),
+                names: own.names.clone(),
+            })
+            .collect(),
+        arguments,
+    })
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -532,7 +621,6 @@ fn closed(
         let chosen = (0..powers.len()).filter(|&t| powers[t] == sign);
         chosen.map(|t| setup.terminal_name(t).to_owned()).collect()
     };
-    let label = if state == AS_DRAWN { String::new() } else { format!("_state_{}", short(state)) };
     let arguments = (0..own.names.infos.len())
         .map(|k| {
             let info = &own.names.infos[k];
@@ -559,7 +647,7 @@ fn closed(
         })
         .collect();
     ClosedFormula {
-        name: short(&train.name) + &label,
+        name: closed_name(train, state),
         title: String::new(),
         state: state.to_owned(),
         regimes: vec![],
@@ -572,7 +660,17 @@ fn closed(
         terminals: vec![],
         conditions: own.conditions.iter().map(|c| (c.function.clone(), c.meaning.clone())).collect(),
         names: own.names.clone(),
+        together: None,
+        beside: vec![],
     }
+}
+
+/// What the names of all formulas of a state begin with.
+fn closed_name(train: &Train, state: &str) -> String {
+    let label = if state == AS_DRAWN { String::new() } else { format!("_state_{}", short(state)) };
+    let name = short(&train.name) + &label;
+    // Something compilers accept.
+    if name.starts_with(|c: char| c.is_ascii_digit()) { format!("train_{name}") } else { name }
 }
 
 impl ClosedFormula {
@@ -589,11 +687,11 @@ impl ClosedFormula {
             // Dependent quantities are results, not arguments.
             used.retain(|s| (t.given_speed || *s != t.speed_symbol) && (t.given_torque || *s != t.torque_symbol));
         }
-        self.arguments.retain(|a| used.contains(&a.symbol));
-        // Something compilers accept.
-        if self.name.starts_with(|c: char| c.is_ascii_digit()) {
-            self.name.insert_str(0, "train_");
+        for t in &self.terminals {
+            used.extend(t.given_speed.then_some(t.speed_symbol));
+            used.extend(t.given_torque.then_some(t.torque_symbol));
         }
+        self.arguments.retain(|a| used.contains(&a.symbol));
     }
 }
 
@@ -616,7 +714,7 @@ fn short(name: &str) -> String {
 /// Numbers the names that would be the same in a language, be it without underlines.
 fn number_names(formulas: &mut [ClosedFormula]) {
     let mut used: Vec<String> = Vec::new();
-    for f in formulas {
+    for f in formulas.iter_mut() {
         let plain = f.name.clone();
         let mut n = 2;
         while used.contains(&f.name.replace('_', "")) {
@@ -624,5 +722,23 @@ fn number_names(formulas: &mut [ClosedFormula]) {
             n += 1;
         }
         used.push(f.name.replace('_', ""));
+    }
+    let mut renamed: Vec<(String, Arc<Together>)> = Vec::new();
+    for f in formulas {
+        let Some(together) = &f.together else { continue };
+        let known = renamed.iter().find(|(state, _)| *state == f.state).map(|(_, own)| own.clone());
+        f.together = Some(known.unwrap_or_else(|| {
+            let mut own = Together::clone(together);
+            let plain = own.name.clone();
+            let mut n = 2;
+            while used.contains(&own.name.replace('_', "")) {
+                own.name = format!("{plain}_{n}");
+                n += 1;
+            }
+            used.push(own.name.replace('_', ""));
+            let own = Arc::new(own);
+            renamed.push((f.state.clone(), own.clone()));
+            own
+        }));
     }
 }

@@ -1,15 +1,17 @@
 //! Closed formulas as text, LaTeX and source code.
 //!
 //! Emitted code checks the conditions of the regime first. Called outside, it says so (an
-//! exception, an error, a status, a failed assertion) instead of returning a number.
+//! exception, an error, a status, a failed assertion) instead of returning a number. With two or more freedoms it also
+//! counts the equilibria: a function for each state says which of all its formulas hold at a point, none or several, and
+//! each formula returns how many.
 
 use std::fmt::Write;
 
 use crate::diagnostic::is_printable;
-use crate::symbolic::{Function, Notation};
+use crate::symbolic::{Function, Notation, Symbol};
 
-use super::closed::{Argument, ClosedFormula, FormulaSheet};
-use super::formula::{SymbolKind, escape, upright};
+use super::closed::{Argument, ClosedFormula, FormulaSheet, Holds, Together};
+use super::formula::{Names, SymbolKind, escape, upright};
 
 impl FormulaSheet {
     /// All formulas in a notation: a page of text, a piece of LaTeX, or a source file. With
@@ -24,8 +26,13 @@ impl FormulaSheet {
         if !self.formulas.is_empty() {
             out += prelude(notation);
         }
+        let mut counted: Vec<&str> = Vec::new();
         for f in &self.formulas {
             let heading = self.heading(&f.state);
+            if let Some(together) = f.together.as_deref().filter(|own| !counted.contains(&own.name.as_str())) {
+                Count::new(together, notation).write(&mut out, &heading);
+                counted.push(&together.name);
+            }
             match notation {
                 Notation::Text => text(&mut out, f, &heading, derivatives),
                 Notation::Latex => latex(&mut out, f, &heading, derivatives),
@@ -200,6 +207,10 @@ fn text(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
     }
     let conditions = f.conditions(Notation::Text).into_iter().map(|(c, text)| vec![format!("{c} > 0"), text]).collect();
     rows(out, "holds where", columns(conditions));
+    if !f.beside.is_empty() {
+        let text = format!("in this train regimes {} are further equilibria where this one holds", f.beside.join(", "));
+        rows(out, "not alone", [text]);
+    }
     let arguments = f.arguments.iter().map(|a| {
         let value = if a.exact.is_integer() { number(a.value) } else { format!("{} = {}", a.exact, number(a.value)) };
         let value = if a.fixed { format!("= {value}") } else { "given".to_owned() };
@@ -285,7 +296,13 @@ struct Code<'f> {
     others: Vec<(String, String)>,
     /// Name and meaning of all results.
     results: Vec<(String, String)>,
+    /// More freedoms: the call that counts the equilibria.
+    count: Option<String>,
 }
+
+/// What emitted code returns beside the results of a formula.
+const COUNTED: &str =
+    "number of equilibria at these speeds and torques: above 1 friction leaves a choice, and this is one of them";
 
 impl<'f> Code<'f> {
     fn new(f: &'f ClosedFormula, notation: Notation, derivatives: bool) -> Self {
@@ -300,7 +317,9 @@ impl<'f> Code<'f> {
             let list = if before.contains(&name.as_str()) { &mut dependent } else { &mut others };
             list.push((name, expression));
         }
-        Self { notation, arguments, numbers, ranges, dependent, conditions: f.conditions(notation), others, results }
+        let conditions = f.conditions(notation);
+        let count = f.together.as_deref().map(|own| Count::new(own, notation).call(f));
+        Self { notation, arguments, numbers, ranges, dependent, conditions, others, results, count }
     }
 
     /// The value that the train gives an argument, where it does, within a pattern such as `=@`.
@@ -358,6 +377,9 @@ fn python(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool)
     for a in &code.arguments {
         let _ = writeln!(out, "    {}: {}", a.name, comment(&a.meaning));
     }
+    if code.count.is_some() {
+        let _ = writeln!(out, "\n    Returns as `equilibria` the {COUNTED}.");
+    }
     let _ = writeln!(out, "\n    Raises OutsideRegime where the formula does not hold.\n    \"\"\"\n    try:");
     let refuse =
         |condition: &str, why: &str| format!("        if not {condition}:\n            raise OutsideRegime({why})\n");
@@ -381,7 +403,8 @@ fn python(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool)
     *out += &refuse(&condition, "\"a result is not finite\"");
     let _ = writeln!(out, "    except ArithmeticError:");
     let _ = writeln!(out, "        raise OutsideRegime(\"a denominator is zero or a number too large\") from None");
-    let _ = writeln!(out, "    return {{\n        {},\n    }}", code.each("\"@\": @", ",\n        "));
+    let count = code.count.as_ref().map_or(String::new(), |count| format!(",\n        \"equilibria\": len({count})"));
+    let _ = writeln!(out, "    return {{\n        {}{count},\n    }}", code.each("\"@\": @", ",\n        "));
 }
 
 /// The name of a Rust type.
@@ -397,6 +420,9 @@ fn rust(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
     let _ = writeln!(out, "#[allow(non_snake_case)]\n#[derive(Clone, Copy, Debug, PartialEq)]\npub struct {kind} {{");
     for (name, meaning) in &code.results {
         let _ = writeln!(out, "    /// {}\n    pub {name}: f64,", comment(meaning));
+    }
+    if code.count.is_some() {
+        let _ = writeln!(out, "    /// {COUNTED}\n    pub equilibria: usize,");
     }
     let _ = writeln!(out, "}}\n\n/// {}: {}.\n///", comment(heading), comment(&f.title));
     for a in &code.arguments {
@@ -424,7 +450,12 @@ fn rust(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
         let _ = writeln!(out, "    let {name}: f64 = {expression};");
     }
     *out += &refuse(&code.each("@.is_finite()", " && "), "a result is not finite");
-    let _ = writeln!(out, "    Ok({kind} {{ {} }})\n}}", code.each("@", ", "));
+    let mut fields = code.each("@", ", ");
+    if let Some(count) = &code.count {
+        let _ = writeln!(out, "    let equilibria = {count}?.iter().filter(|holds| **holds).count();");
+        fields += ", equilibria";
+    }
+    let _ = writeln!(out, "    Ok({kind} {{ {fields} }})\n}}");
 }
 
 fn c(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
@@ -432,6 +463,9 @@ fn c(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
     let _ = writeln!(out, "\nstruct {} {{", f.name);
     for (name, meaning) in &code.results {
         let _ = writeln!(out, "    double {name}; /* {} */", comment(meaning));
+    }
+    if code.count.is_some() {
+        let _ = writeln!(out, "    int equilibria; /* {COUNTED} */");
     }
     let _ = writeln!(out, "}};\n\n/* {}: {}.", comment(heading), comment(&f.title));
     for a in &code.arguments {
@@ -461,7 +495,16 @@ fn c(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) {
         let _ = writeln!(out, "    const double {name} = {expression};");
     }
     let _ = writeln!(out, "    if (!({})) return 1;", code.each("isfinite(@)", " && "));
+    let counted = f.together.as_deref().zip(code.count.as_deref());
+    if let Some((together, count)) = counted {
+        let _ = writeln!(out, "    unsigned char holds[{}];", together.all.len());
+        let count = count.strip_suffix(')').expect("a call");
+        let _ = writeln!(out, "    const int equilibria = {count}, holds);\n    if (equilibria < 1) return 1;");
+    }
     let _ = writeln!(out, "    {}", code.each("result->@ = @;", "\n    "));
+    if counted.is_some() {
+        let _ = writeln!(out, "    result->equilibria = equilibria;");
+    }
     let _ = writeln!(out, "    return 0;\n}}");
 }
 
@@ -473,6 +516,9 @@ fn modelica(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: boo
     }
     for (name, meaning) in &code.results {
         let _ = writeln!(out, "  output Real {name} \"{}\";", quoted(meaning));
+    }
+    if code.count.is_some() {
+        let _ = writeln!(out, "  output Real equilibria \"{COUNTED}\";");
     }
     let _ = writeln!(out, "algorithm");
     for name in &code.numbers {
@@ -490,5 +536,210 @@ fn modelica(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: boo
     for (name, expression) in &code.others {
         let _ = writeln!(out, "  {name} := {expression};");
     }
+    if let Some(count) = &code.count {
+        let _ = writeln!(out, "  equilibria := {count};");
+    }
     let _ = writeln!(out, "end {};", f.name);
+}
+
+/// The function that says which formulas of a state hold, in the order of code.
+struct Count<'f> {
+    notation: Notation,
+    together: &'f Together,
+    arguments: Vec<&'f Argument>,
+    numbers: Vec<&'f str>,
+    ranges: Vec<(String, String)>,
+    /// Name and expression of the speeds that follow.
+    speeds: Vec<(String, String)>,
+    /// By formula: the conditions under which it holds.
+    holds: Vec<Vec<String>>,
+}
+
+/// What it is for, on every language's first line.
+const SEVERAL: &str = "several where friction leaves a choice, none where it locks the train (or on a boundary)";
+
+impl<'f> Count<'f> {
+    fn new(together: &'f Together, notation: Notation) -> Self {
+        let mut arguments: Vec<&Argument> = together.arguments.iter().collect();
+        arguments.sort_by_key(|a| a.fixed);
+        let conditions = |h: &Holds| h.conditions.iter().map(|c| h.names.show(notation, c)).collect();
+        let speed = |(s, f, names): &(Symbol, Function, Names)| (names.info(*s).name.clone(), names.show(notation, f));
+        Self {
+            notation,
+            numbers: arguments.iter().filter(|a| !a.efficiency).map(|a| a.name.as_str()).collect(),
+            ranges: arguments.iter().filter_map(|a| range(notation, a)).collect(),
+            speeds: together.speeds.iter().map(speed).collect(),
+            holds: together.all.iter().map(conditions).collect(),
+            arguments,
+            together,
+        }
+    }
+
+    fn arguments(&self, entry: impl Fn(&Argument) -> String) -> String {
+        self.arguments.iter().map(|a| entry(a)).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The conditions of a formula, each within a pattern such as `@ > 0`.
+    fn condition(&self, k: usize, pattern: &str, and: &str, always: &str) -> String {
+        match &self.holds[k][..] {
+            [] => always.to_owned(),
+            all => each(all.iter().map(String::as_str), pattern, and),
+        }
+    }
+
+    fn value(&self, a: &Argument, pattern: &str) -> String {
+        let value = || self.notation.function(&Function::from(a.exact.clone()), &|_| String::new());
+        if a.fixed { pattern.replace('@', &value()) } else { String::new() }
+    }
+
+    /// What formula `k` is.
+    fn what(&self, k: usize) -> String {
+        let own = &self.together.all[k];
+        comment(&format!("{}, {}, regimes {}", own.id, own.title, own.regimes.join(", ")))
+    }
+
+    /// The call from a formula, which passes what it has and what the train fixes of the rest.
+    fn call(&self, f: &ClosedFormula) -> String {
+        let pass = |a: &Argument| match f.arguments.iter().any(|own| own.name == a.name) {
+            true => a.name.clone(),
+            false => self.value(a, "@"),
+        };
+        format!("{}({})", self.together.name, self.arguments(pass))
+    }
+
+    fn write(&self, out: &mut String, heading: &str) {
+        match self.notation {
+            Notation::Python => self.python(out, heading),
+            Notation::C => self.c(out, heading),
+            Notation::Rust => self.rust(out, heading),
+            Notation::Modelica => self.modelica(out, heading),
+            Notation::Text | Notation::Latex => {}
+        }
+    }
+
+    fn python(&self, out: &mut String, heading: &str) {
+        let arguments = self.arguments(|a| a.name.clone() + &self.value(a, "=@"));
+        let _ = writeln!(out, "\n\ndef {}({arguments}):", self.together.name);
+        let _ = writeln!(
+            out,
+            "    \"\"\"{}: the formulas that hold at these speeds and torques, by name.\n",
+            comment(heading)
+        );
+        let _ = writeln!(out, "    Each is an equilibrium: {SEVERAL}.\n");
+        for k in 0..self.holds.len() {
+            let _ = writeln!(out, "    {}", self.what(k));
+        }
+        let _ = writeln!(out, "    \"\"\"\n    try:");
+        if !self.numbers.is_empty() {
+            let _ = writeln!(out, "        if not all(map(math.isfinite, [{}])):", self.numbers.join(", "));
+            let _ = writeln!(out, "            raise OutsideRegime(\"an argument is not finite\")");
+        }
+        for (condition, why) in &self.ranges {
+            let _ = writeln!(out, "        if not {condition}:\n            raise OutsideRegime(\"{why}\")");
+        }
+        for (name, expression) in &self.speeds {
+            let _ = writeln!(out, "        {name} = {expression}");
+        }
+        let _ = writeln!(out, "        holds = {{");
+        for (k, own) in self.together.all.iter().enumerate() {
+            let _ = writeln!(out, "            \"{}\": {},", own.id, self.condition(k, "@ > 0", " and ", "True"));
+        }
+        let _ = writeln!(out, "        }}\n    except ArithmeticError:");
+        let _ = writeln!(out, "        raise OutsideRegime(\"a denominator is zero or a number too large\") from None");
+        let _ = writeln!(out, "    return [name for name, does in holds.items() if does]");
+    }
+
+    fn c(&self, out: &mut String, heading: &str) {
+        let (name, n) = (&self.together.name, self.holds.len());
+        let _ = writeln!(
+            out,
+            "\n/* {}: how many formulas hold at these speeds and torques, and in holds which.",
+            comment(heading)
+        );
+        let _ = writeln!(out, "   Each is an equilibrium: {SEVERAL}.");
+        let _ = writeln!(out, "   Returns -1 if an argument can have no such value.");
+        for k in 0..n {
+            let _ = writeln!(out, "   holds[{k}]: {}", self.what(k));
+        }
+        let arguments: String = self.arguments.iter().map(|a| format!("double {}, ", a.name)).collect();
+        let _ = writeln!(out, "*/\nstatic inline int {name}({arguments}unsigned char holds[{n}])\n{{");
+        if !self.numbers.is_empty() {
+            let finite = each(self.numbers.iter().copied(), "isfinite(@)", " && ");
+            let _ = writeln!(out, "    if (!({finite})) return -1;");
+        }
+        for (condition, _) in &self.ranges {
+            let _ = writeln!(out, "    if (!({condition})) return -1;");
+        }
+        for (name, expression) in &self.speeds {
+            let _ = writeln!(out, "    const double {name} = {expression};");
+        }
+        for k in 0..n {
+            let _ = writeln!(out, "    holds[{k}] = {};", self.condition(k, "@ > 0.0", " && ", "1"));
+        }
+        let sum = (0..n).map(|k| format!("holds[{k}]")).collect::<Vec<_>>().join(" + ");
+        let _ = writeln!(out, "    return {sum};\n}}");
+    }
+
+    fn rust(&self, out: &mut String, heading: &str) {
+        let n = self.holds.len();
+        let _ = writeln!(out, "\n/// {}: which formulas hold at these speeds and torques.\n///", comment(heading));
+        let _ = writeln!(out, "/// Each is an equilibrium: {SEVERAL}.\n///");
+        for k in 0..n {
+            let _ = writeln!(out, "/// * {k}: {}", self.what(k));
+        }
+        let arguments = self.arguments(|a| format!("{}: f64", a.name));
+        let _ = writeln!(out, "#[allow(non_snake_case, unused_variables, clippy::all)]");
+        let _ = writeln!(out, "pub fn {}({arguments}) -> Result<[bool; {n}], OutsideRegime> {{", self.together.name);
+        let refuse = |condition: &str, why: &str| {
+            format!("    if !({condition}) {{\n        return Err(OutsideRegime(\"{why}\"));\n    }}\n")
+        };
+        if !self.numbers.is_empty() {
+            *out += &refuse(&each(self.numbers.iter().copied(), "@.is_finite()", " && "), "an argument is not finite");
+        }
+        for (condition, why) in &self.ranges {
+            *out += &refuse(condition, why);
+        }
+        for (name, expression) in &self.speeds {
+            let _ = writeln!(out, "    let {name}: f64 = {expression};");
+        }
+        let _ = writeln!(out, "    Ok([");
+        for k in 0..n {
+            let _ = writeln!(out, "        {},", self.condition(k, "@ > 0.0", " && ", "true"));
+        }
+        let _ = writeln!(out, "    ])\n}}");
+    }
+
+    fn modelica(&self, out: &mut String, heading: &str) {
+        let what = format!("{}: how many formulas hold at these speeds and torques", quoted(heading));
+        let _ = writeln!(out, "\nfunction {} \"{what}; {SEVERAL}\"", self.together.name);
+        for a in &self.arguments {
+            let _ = writeln!(out, "  input Real {}{} \"{}\";", a.name, self.value(a, " = @"), quoted(&a.meaning));
+        }
+        let _ = writeln!(out, "  output Real equilibria \"their number\";");
+        for (k, own) in self.together.all.iter().enumerate() {
+            let _ = writeln!(out, "  output Real holds_{} \"1 where it does: {}\";", own.id, quoted(&self.what(k)));
+        }
+        if !self.speeds.is_empty() {
+            let _ = writeln!(out, "protected");
+        }
+        for (name, _) in &self.speeds {
+            let _ = writeln!(out, "  Real {name};");
+        }
+        let _ = writeln!(out, "algorithm");
+        for name in &self.numbers {
+            let _ = writeln!(out, "  assert(abs({name}) < 1e300, \"{name} is not finite\");");
+        }
+        for (condition, why) in &self.ranges {
+            let _ = writeln!(out, "  assert({condition}, \"{why}\");");
+        }
+        for (name, expression) in &self.speeds {
+            let _ = writeln!(out, "  {name} := {expression};");
+        }
+        for (k, own) in self.together.all.iter().enumerate() {
+            let condition = self.condition(k, "@ > 0", " and ", "true");
+            let _ = writeln!(out, "  holds_{} := if {condition} then 1 else 0;", own.id);
+        }
+        let sum = self.together.all.iter().map(|own| format!("holds_{}", own.id)).collect::<Vec<_>>().join(" + ");
+        let _ = writeln!(out, "  equilibria := {sum};\nend {};", self.together.name);
+    }
 }

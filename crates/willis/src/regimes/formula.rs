@@ -14,6 +14,7 @@ use crate::exact::Rational;
 use crate::symbolic::{self, Function, Notation, Polynomial, Symbol};
 use crate::train::MeshId;
 
+use super::hub::Hubs;
 use super::setup::{Pattern, Setup};
 
 /// What a symbol stands for.
@@ -87,6 +88,9 @@ pub(crate) struct Names {
     /// By element whose two directions have efficiencies of their own: its symbol where end q drives. That where p drives
     /// has the number of the element's efficiency.
     backward: Vec<Option<SymbolInfo>>,
+    /// By arm of a planet whose hub is lossy: one efficiency for both, where the drivers allow it.
+    shared: Vec<Option<SymbolInfo>>,
+    hubs: Hubs,
     /// Efficiency of the link, from its first end to its second and back; one symbol where they are the same.
     link: Option<[Symbol; 2]>,
 }
@@ -121,7 +125,9 @@ impl Names {
     pub fn all(&self) -> impl Iterator<Item = &SymbolInfo> {
         self.infos.iter().enumerate().flat_map(|(n, info)| {
             let element = (n % 2 == 1).then_some(n / 2).filter(|j| *j < self.elements);
-            [Some(info), element.and_then(|j| self.backward[j].as_ref())].into_iter().flatten()
+            let backward = element.and_then(|j| self.backward[j].as_ref());
+            let shared = element.and_then(|j| self.shared[j].as_ref());
+            [Some(info), backward, shared].into_iter().flatten()
         })
     }
 
@@ -153,42 +159,55 @@ impl Names {
         };
         let mut infos: Vec<SymbolInfo> = Vec::new();
         let mut backward: Vec<Option<SymbolInfo>> = Vec::new();
+        let mut shared: Vec<Option<SymbolInfo>> = vec![None; k];
+        let hubs = Hubs::of(setup);
+        let blank = |kind| SymbolInfo {
+            name: String::new(),
+            latex: String::new(),
+            value: Some(Rational::ONE),
+            kind,
+            meaning: String::new(),
+            meaning_latex: None,
+        };
         for j in 0..k {
             let e = setup.element(j);
-            let label = element_label(setup, j);
-            if e.is_rigid() {
-                // It joins its ends, and stands in no formula.
-                let blank = |kind| SymbolInfo {
-                    name: String::new(),
-                    latex: String::new(),
-                    value: Some(Rational::ONE),
-                    kind,
-                    meaning: String::new(),
-                    meaning_latex: None,
-                };
+            if e.is_rigid() || hubs.is_hub(j) && !setup.lossy(j) {
+                // It joins its ends, or what it measures has the ratio one, and stands in no formula.
                 infos.extend([blank(SymbolKind::Ratio), blank(SymbolKind::Efficiency)]);
                 backward.push(None);
                 continue;
             }
+            let label = symbol_label(setup, &hubs, j, true);
             let toothed = setup.c.elements.iter().filter(|e| !e.is_rigid()).count();
             let (suffix, index) = match train.sets.len().max(toothed) {
                 1 => ("0".to_owned(), "_{0}".to_owned()),
                 _ => (format!("_{}", identifier(&label)), format!("_{{{}}}", upright(&label))),
             };
-            let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.member_name(m));
+            let [p, q, c] = ends(setup, &hubs, j, true);
             let [wp, wq, wc] = [p, q, c].map(|m| format!("\\omega_{{{}}}", upright(m)));
             let (seen, seen_latex) = match c {
                 "frame" => (format!("w_{p} / w_{q}"), format!("{wp}/{wq}")),
                 _ => (format!("(w_{p} - w_{c}) / (w_{q} - w_{c})"), format!("({wp} - {wc})/({wq} - {wc})")),
             };
-            infos.push(SymbolInfo {
-                name: unique(format!("i{suffix}")),
-                latex: format!("i{index}"),
-                value: Some(setup.ratio(j)),
-                kind: SymbolKind::Ratio,
-                meaning: format!("basic ratio {seen}"),
-                meaning_latex: Some(format!("basic ratio \\({seen_latex}\\)")),
+            infos.push(match hubs.is_hub(j) {
+                true => blank(SymbolKind::Ratio),
+                false => SymbolInfo {
+                    name: unique(format!("i{suffix}")),
+                    latex: format!("i{index}"),
+                    value: Some(hubs.ratio(setup, j)),
+                    kind: SymbolKind::Ratio,
+                    meaning: format!("basic ratio {seen}"),
+                    meaning_latex: Some(format!("basic ratio \\({seen_latex}\\)")),
+                },
             });
+            // Where the hub of its planet loses too, an arm has an efficiency of its own beside the one for both.
+            let is_split = hubs.arm(j).is_some_and(|arm| setup.lossy(arm.hub));
+            let own_label = symbol_label(setup, &hubs, j, !is_split);
+            let (suffix, index) = match is_split {
+                true => (format!("_{}", identifier(&own_label)), format!("_{{{}}}", upright(&own_label))),
+                false => (suffix, index),
+            };
+            let [p, q, c] = ends(setup, &hubs, j, !is_split);
             let efficiency = |name: String, latex: String, value: &Rational, meaning: String| SymbolInfo {
                 name,
                 latex,
@@ -197,6 +216,16 @@ impl Names {
                 meaning,
                 meaning_latex: None,
             };
+            if let Some(arm) = hubs.arm(j).filter(|_| hubs.shares(setup, j)) {
+                let [p, q, c] = ends(setup, &hubs, j, true);
+                let [own, of_hub] = [j, arm.hub].map(|j| symbol_label(setup, &hubs, j, false));
+                let meaning = format!(
+                    "basic efficiency between {p} and {q} seen from {c}: the product of those of {own} and {of_hub}"
+                );
+                let (name, index) = (format!("eta_{}", identifier(&label)), format!("_{{{}}}", upright(&label)));
+                let value = &e.forward * &setup.element(arm.hub).forward;
+                shared[j] = Some(efficiency(unique(name), format!("\\eta{index}"), &value, meaning));
+            }
             if e.forward == e.backward {
                 let meaning = format!("efficiency between {p} and {q} seen from {c}");
                 infos.push(efficiency(unique(format!("eta{suffix}")), format!("\\eta{index}"), &e.forward, meaning));
@@ -262,8 +291,8 @@ impl Names {
             let forward = of(ends[0], ends[1], &link.efficiency[0]);
             [forward, if directed { of(ends[1], ends[0], &link.efficiency[1]) } else { forward }]
         });
-        let mut names =
-            Self { infos, elements: k, terminals: setup.terminals.len(), details: BTreeMap::new(), backward, link };
+        let terminals = setup.terminals.len();
+        let mut names = Self { infos, elements: k, terminals, details: BTreeMap::new(), backward, shared, hubs, link };
         names.detail(setup, &mut unique);
         names
     }
@@ -312,6 +341,14 @@ impl Names {
             }
             self.details.insert(self.ratio(j), ratio);
         }
+        // Between central gears the teeth of the planet cancel.
+        let own = self.details.clone();
+        for j in 0..self.elements {
+            let Some(arm) = self.hubs.arm(j) else { continue };
+            let (mine, hub) = (&own[&self.ratio(j)], &own[&self.ratio(arm.hub)]);
+            let ratio = if arm.multiplies() { mine.times(hub) } else { mine.over(hub) };
+            self.details.insert(self.ratio(j), ratio);
+        }
     }
 
     /// A name that no symbol has, with a number if need be. The efficiency of an element gives way
@@ -356,6 +393,59 @@ impl Names {
             }
             self.details.insert(self.efficiency(j), product);
         }
+        // What stands for both is made of the meshes of both.
+        let own = self.details.clone();
+        for j in 0..self.elements {
+            let Some(arm) = self.hubs.arm(j).filter(|arm| self.hubs.is_shared(setup, pattern, arm.hub)) else {
+                continue;
+            };
+            let both = own[&self.efficiency(j)].times(&own[&self.efficiency(arm.hub)]);
+            self.details.insert(self.efficiency(j), both);
+        }
+    }
+
+    /// Ratio of an element in formulas: one where it only joins its ends, or measures a planet.
+    fn ratio_of(&self, j: usize) -> Function {
+        if self.hubs.is_hub(j) { Function::ONE } else { Function::symbol(self.ratio(j)) }
+    }
+
+    /// `ρ` of an element for a pattern of drivers.
+    fn rho(&self, setup: &Setup<'_>, pattern: &Pattern, j: usize) -> Function {
+        if self.hubs.is_hub(j) && self.hubs.is_shared(setup, pattern, j) {
+            return Function::ONE;
+        }
+        let eta = Function::symbol(self.efficiency(j));
+        match pattern[j] {
+            Some(true) => eta,
+            Some(false) => eta.recip(),
+            None => Function::ONE,
+        }
+    }
+}
+
+/// Names of the ends of an element and of its carrier; `basic`: of an arm, between central gears.
+fn ends<'s>(setup: &'s Setup<'_>, hubs: &Hubs, j: usize, basic: bool) -> [&'s str; 3] {
+    let e = setup.element(j);
+    let [mut p, mut q] = [e.p, e.q];
+    if let Some(arm) = hubs.arm(j).filter(|_| basic) {
+        let hub = setup.element(arm.hub);
+        let central = if arm.hub_runs_out { hub.q } else { hub.p };
+        *if arm.runs_in { &mut q } else { &mut p } = central;
+    }
+    [p, q, e.carrier].map(|m| setup.member_name(m))
+}
+
+/// What the symbols of an element are called by; `basic`: of an arm, by its set and central gear.
+fn symbol_label(setup: &Setup<'_>, hubs: &Hubs, j: usize, basic: bool) -> String {
+    let train = setup.c.train;
+    let e = setup.element(j);
+    let set = e.links.first().and_then(|l| train.meshes[l.mesh.index()].set);
+    match (hubs.arm(j).filter(|_| basic), set) {
+        (Some(arm), Some(set)) => {
+            format!("{}.{}", train.sets[set].name, setup.member_name(if arm.runs_in { e.p } else { e.q }))
+        }
+        (Some(_), None) => ends(setup, hubs, j, true)[..2].join("-"),
+        (None, _) => element_label(setup, j),
     }
 }
 
@@ -458,7 +548,8 @@ impl<'s, 't> Shape<'s, 't> {
         // What only joins its ends has the ratio one.
         let over = |symbol: &dyn Fn(usize) -> Symbol| -> Vec<Polynomial> {
             let of = |j: usize| {
-                if setup.element(j).is_rigid() { Polynomial::from(1) } else { Polynomial::symbol(symbol(j)) }
+                let is_one = setup.element(j).is_rigid() || names.hubs.is_hub(j);
+                if is_one { Polynomial::from(1) } else { Polynomial::symbol(symbol(j)) }
             };
             (0..k).map(of).collect()
         };
@@ -575,7 +666,7 @@ impl<'s, 't> Shape<'s, 't> {
                 let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.c.node(m));
                 // The end that the reader sees the speed of, where there is one.
                 if known(c) && !known(p) && known(q) {
-                    return Function::symbol(names.ratio(j)).times(&in_terminals(q).minus(&in_terminals(c)));
+                    return names.ratio_of(j).times(&in_terminals(q).minus(&in_terminals(c)));
                 }
                 in_terminals(p).minus(&in_terminals(c))
             })
@@ -587,11 +678,12 @@ impl<'s, 't> Shape<'s, 't> {
     fn x_value(&self, pattern: &Pattern, s: Symbol) -> Option<Function> {
         let k = self.setup.active.len();
         let j = s.0.checked_sub(2 * k).filter(|j| *j < k)?;
-        let (i, eta) = (Function::symbol(self.names.ratio(j)), Function::symbol(self.names.efficiency(j)));
-        Some(match pattern[j] {
-            Some(true) => i.times(&eta),
-            Some(false) => i.over(&eta),
-            None => i,
+        let rho = |j: usize| self.names.rho(self.setup, pattern, j);
+        let own = self.names.ratio_of(j).times(&rho(j));
+        Some(match self.names.hubs.arm(j) {
+            Some(arm) if arm.multiplies() => own.times(&rho(arm.hub)),
+            Some(arm) => own.over(&rho(arm.hub)),
+            None => own,
         })
     }
 
@@ -616,8 +708,17 @@ impl<'s, 't> Shape<'s, 't> {
             if e.is_rigid() {
                 continue;
             }
-            let [p, q, c] = [e.p, e.q, e.carrier].map(|m| setup.member_name(m));
             let s = names.efficiency(j).0;
+            let hub = names.hubs.arm(j).map(|arm| arm.hub);
+            let is_shared = hub.is_some_and(|hub| names.hubs.is_shared(setup, pattern, hub));
+            let basic = is_shared || hub.is_some_and(|hub| !setup.lossy(hub));
+            let [p, q, c] = ends(setup, &names.hubs, j, basic);
+            if names.infos[s].name.is_empty() {
+                continue;
+            }
+            if let (true, Some(info)) = (is_shared, &names.shared[j]) {
+                names.infos[s] = info.clone();
+            }
             if let (Some(false), Some(info)) = (pattern[j], &names.backward[j]) {
                 names.infos[s] = info.clone();
             }
@@ -712,16 +813,22 @@ impl<'s, 't> Shape<'s, 't> {
                     .expect("speeds have no poles of their own"),
                 false => self.sigma[j].clone(),
             };
-            // f σ (1 − ρ)
-            let eta = Function::symbol(names.efficiency(j));
-            let rho = if p_drives { eta } else { eta.recip() };
-            let potential = force.times(&sigma);
+            // f σ (1 − ρ), the force in front of the loss of a hub.
+            let rho = names.rho(setup, pattern, j);
+            let behind = force.times(&sigma);
+            let potential = match names.hubs.in_front(j) {
+                Some(hub) => behind.over(&names.rho(setup, pattern, hub)),
+                None => behind,
+            };
             let loss = potential.times(&Function::ONE.minus(&rho));
-            losses.push((
-                j,
-                self.by_driver(&names, j, p_drives).filter(|_| !one && d == 1).unwrap_or(loss.clone()),
-                loss,
-            ));
+            // The loss of a hub may stand in the efficiencies of its arms.
+            if rho != Function::ONE {
+                losses.push((
+                    j,
+                    self.by_driver(&names, j, p_drives).filter(|_| !one && d == 1).unwrap_or(loss.clone()),
+                    loss,
+                ));
+            }
             let driver = setup.member_name(if p_drives { e.p } else { e.q });
             conditions.push(Condition {
                 function: normalised(sign(potential, if p_drives { 1 } else { -1 })),
@@ -888,7 +995,11 @@ fn independent(rows: &[Vec<Polynomial>], setup: &Setup<'_>, names: &Names, actua
     let value = |s: Symbol| {
         let k = setup.active.len();
         let j = s.0 - names.x(0).0;
-        if actual { setup.ratio(j) } else { Rational::from(PRIMES[j % PRIMES.len()] + (j / k.max(1)) as i64) }
+        if actual {
+            names.hubs.ratio(setup, j)
+        } else {
+            Rational::from(PRIMES[j % PRIMES.len()] + (j / k.max(1)) as i64)
+        }
     };
     let mut numbers: Vec<Vec<Rational>> = rows.iter().map(|r| r.iter().map(|p| p.evaluate(&value)).collect()).collect();
     crate::exact::reduce(&mut numbers, setup.active.len()).len() == rows.len()

@@ -192,7 +192,10 @@ fn located(point: &Point<'_>, around: &Surroundings, states: &[State]) -> Vec<Lo
         all.push(Located {
             regime: around.regime(point, s),
             torques_n_m: setup.by_terminal(|t| s.torques[t].to_f64() * point.torque_unit),
-            powers_w: setup.by_terminal(|t| powers[t].to_f64() * point.torque_unit * point.speed_unit),
+            powers_w: setup.by_terminal(|t| {
+                let prescribed = point.powers.iter().find(|(own, _)| *own == t);
+                prescribed.map_or(powers[t].to_f64() * point.power_unit, |(_, power)| *power)
+            }),
             roles: setup.by_terminal(|t| role(signs[t])),
             drivers: Named(drivers(setup, &s.pattern)),
             efficiency: efficiency.to_f64(),

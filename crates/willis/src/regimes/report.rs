@@ -328,8 +328,14 @@ pub struct Crossing {
     pub to: String,
     /// Limit of the efficiency, coming from before.
     pub efficiency_before: Option<f64>,
+    /// The same, exactly.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_before_exact: Option<Rational>,
     /// Limit of the efficiency, coming from after.
     pub efficiency_after: Option<f64>,
+    /// The same, exactly.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_after_exact: Option<Rational>,
     /// What changes, in words.
     pub changes: Vec<String>,
 }

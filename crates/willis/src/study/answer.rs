@@ -6,8 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::{self, OperationReport, SolutionReport, Verdict};
 use crate::diagnostic::{Code, Diagnostics, Severity};
+use crate::exact::Rational;
 use crate::kinematics::{Configuration, Ratio};
 use crate::train::{MemberId, Operation, Train};
+use crate::units::Quantity;
 
 /// What can be said of a point of a study: the [verdict](Verdict) on its operating point, or that it makes none.
 ///
@@ -111,6 +113,8 @@ pub struct PointAnswer {
     pub warnings: Vec<PointWarning>,
     /// Speed of the input over that of the output: as they turn here, else as the gears tie them.
     pub ratio: Option<f64>,
+    /// Speeds that are prescribed, in rpm: as they are written, where they are written so.
+    pub(super) prescribed_rpm: Vec<(String, f64)>,
 }
 
 impl PointAnswer {
@@ -130,7 +134,7 @@ impl PointAnswer {
         let ratio = ratio(train, operation, &report);
         // The notes tell of the laws outside their ranges in the order of these.
         let mut outside = report.outside_laws.into_iter();
-        let deviation = report.speed_deviation.map(|d| d.relative);
+        let deviation = report.speed_deviation.as_ref().map(|d| d.relative);
         let own = notes.into_iter().filter(|d| d.severity == Severity::Warning && d.code != Code::SelfLocking);
         let own = own.map(|d| {
             let law = if d.code == Code::OutsideLaw { outside.next() } else { None };
@@ -139,9 +143,19 @@ impl PointAnswer {
             PointWarning { code: d.code, law, message: d.message, deviation }
         });
         let warnings = oil.chain(own).collect();
+        let in_rpm = |(m, w): &(MemberId, Quantity)| {
+            let rpm = |q: &Quantity| (&q.value * &Rational::from(30)).to_f64();
+            (w.pi_power == 1).then(|| (train.member_name(*m).to_owned(), rpm(w)))
+        };
+        // A speed that contradicts the others follows them.
+        let prescribed_rpm = match report.speed_deviation {
+            None => operation.speeds.iter().filter_map(in_rpm).collect(),
+            Some(_) => vec![],
+        };
         let is_one = matches!(report.verdict, Verdict::Unique | Verdict::Unloaded);
         Self {
             ratio,
+            prescribed_rpm,
             verdict: report.verdict.into(),
             reason: report.reason.unwrap_or_default(),
             solution: report.solutions.into_iter().next().filter(|_| is_one),
@@ -159,6 +173,7 @@ impl PointAnswer {
             solution: None,
             warnings: vec![],
             ratio: None,
+            prescribed_rpm: vec![],
         }
     }
 

@@ -12,7 +12,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::kinematics::Configuration;
 use crate::model::{Target, Who};
 use crate::train::{Load, MemberId};
-use crate::units;
+use crate::units::{self, Dimension};
 
 use super::answer::{PointAnswer, PointVerdict};
 use super::column::{Column, ColumnValues, Rows};
@@ -44,11 +44,15 @@ struct Values {
 }
 
 impl Values {
-    fn new(sweep: &Sweep<'_>, axis: usize, factor: f64) -> Self {
+    fn new(sweep: &Sweep<'_>, axis: usize, factor: f64, dimension: Dimension) -> Self {
         const MOST_KEPT: usize = 1 << 20;
+        /// So many are read as they would stand in a file: to the last bit what is prescribed there.
+        const MOST_READ: usize = 1 << 16;
         let own = &sweep.axes[axis];
         let kept = if own.len() <= MOST_KEPT { own.len() } else { 0 };
-        Self { axis, factor, si: (0..kept).map(|k| own.number(k) * factor).collect() }
+        let read = |k: usize| units::parse(&own.setting(k), dimension).ok().filter(|_| own.len() <= MOST_READ);
+        let si = |k: usize| read(k).map_or(own.number(k) * factor, |q| q.si().copysign(own.number(k) * factor));
+        Self { axis, factor, si: (0..kept).map(si).collect() }
     }
 
     fn at(&self, sweep: &Sweep<'_>, k: usize) -> f64 {
@@ -215,7 +219,7 @@ impl<'s> Sweep<'s> {
         let mut speeds = vec![];
         for (member, q) in &operation.speeds {
             speeds.push(match axis_of(*member, true)? {
-                Some((k, _)) => Input::Axis(Values::new(self, k, si(k))),
+                Some((k, _)) => Input::Axis(Values::new(self, k, si(k), Dimension::ANGULAR_SPEED)),
                 None => Input::Constant(q.si()),
             });
         }
@@ -232,11 +236,11 @@ impl<'s> Sweep<'s> {
             };
             torques.push(match axis_of(*member, false)? {
                 None => Input::Constant(q.si()),
-                Some((k, Who::Member(_))) => Input::Axis(Values::new(self, k, si(k))),
+                Some((k, Who::Member(_))) => Input::Axis(Values::new(self, k, si(k), Dimension::TORQUE)),
                 Some((k, who)) => {
                     let sign = if who == Who::Input { 1.0 } else { -1.0 };
                     let follows = transfer.speeds[member.0].as_ref().map(|f| f.iter().map(|x| x.to_f64()).collect());
-                    Input::Role(Values::new(self, k, sign * si(k)), follows.unwrap_or_default())
+                    Input::Role(Values::new(self, k, sign * si(k), Dimension::TORQUE), follows.unwrap_or_default())
                 }
             });
         }

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::{self, Margin, Point, Selection, Verdict};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::exact::Rational;
 use crate::losses::mesh_friction::MeshFriction;
 use crate::operating_point::LossKind;
 use crate::train::{FRAME, Load, Operation, Slot, Train};
@@ -62,6 +63,9 @@ pub struct OperationSensitivity {
     pub reason: Option<String>,
     /// Output over input power; absent where nothing comes in.
     pub efficiency: Option<f64>,
+    /// The same exactly, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_exact: Option<Rational>,
     /// Power in at all inputs, W.
     pub input_power_w: f64,
     /// All losses, W.
@@ -303,6 +307,7 @@ fn of_operation(
         verdict: report.verdict,
         reason: None,
         efficiency: None,
+        efficiency_exact: None,
         input_power_w: 0.0,
         loss_w: 0.0,
         quantities: vec![],
@@ -318,6 +323,7 @@ fn of_operation(
         return Ok(all);
     };
     all.efficiency = solution.efficiency;
+    all.efficiency_exact.clone_from(&solution.efficiency_exact);
     all.input_power_w = solution.input_power_w;
     all.loss_w = solution.loss_w;
     all.margin = Some(solution.margin.clone());

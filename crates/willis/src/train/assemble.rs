@@ -377,6 +377,7 @@ pub(super) fn assemble<'a>(
         states: &states,
         elements: spec.shift_element.iter().map(|e| (e.name.as_str(), e.kind)).collect(),
         shafts: spec.shaft.iter().map(|s| s.name.as_str()).collect(),
+        variators: &variators,
     };
     let scenarios = a.each(&spec.scenario, "scenario", |a, s, place| a.scenario(&s.twin(), &scene, place.to_owned()));
     a.loads_on_terminals(&operations, &terminals);

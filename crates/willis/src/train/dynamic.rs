@@ -290,13 +290,16 @@ pub enum SourceKind<S = Signal, C = Curve> {
     },
 }
 
-/// Something that acts on a member from outside; its torque is counted as power into the train.
+/// Something that acts on a member; its torque is counted as power into the train, that of a machine as power from its
+/// bus.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// What it is called.
     pub name: String,
     /// The member.
     pub member: MemberId,
+    /// The machine that does it, if one does: position of its variator, and of the machine there.
+    pub machine: Option<[usize; 2]>,
     /// What acts.
     pub kind: SourceKind,
     pub(crate) place: String,
@@ -310,6 +313,53 @@ pub struct Engagement {
     /// 0 to 1.
     pub signal: Signal,
     pub(crate) place: String,
+}
+
+/// What a variator does in a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Control {
+    /// Position in [`Train::variators`](super::Train::variators).
+    pub variator: usize,
+    /// What is given.
+    pub kind: ControlKind,
+    pub(crate) place: String,
+}
+
+/// What of a variator is given over time.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ControlKind {
+    /// Speed of its first member over that of its second; if `inverse`, of the second over the first.
+    Ratio {
+        /// The ratio.
+        ratio: Signal,
+        /// Which way round.
+        inverse: bool,
+    },
+    /// The rate of that ratio, 1/s.
+    Rate {
+        /// The ratio at the start.
+        initial: f64,
+        /// 1/s
+        rate: Signal,
+        /// Which way round the ratio is.
+        inverse: bool,
+    },
+    /// Torque that it exerts on its first member, N m.
+    Torque(Signal),
+    /// Power out of its store into the bus, W.
+    Store(Signal),
+}
+
+impl ControlKind {
+    /// The value over time.
+    pub fn signal(&self) -> &Signal {
+        match self {
+            Self::Ratio { ratio, .. } => ratio,
+            Self::Rate { rate, .. } => rate,
+            Self::Torque(signal) | Self::Store(signal) => signal,
+        }
+    }
 }
 
 /// A motion to simulate.
@@ -333,6 +383,8 @@ pub struct Scenario {
     /// When shift elements are engaged; those that are not named here are open, one-way clutches
     /// are always in action.
     pub engagements: Vec<Engagement>,
+    /// What variators do.
+    pub controls: Vec<Control>,
     /// How many rows of output, evenly spaced in time.
     pub samples: usize,
     pub(crate) place: String,

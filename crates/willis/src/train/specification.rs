@@ -19,11 +19,11 @@ use crate::units::{AngularSpeed, Force, Length, MomentOfInertia, Power, Temperat
 use field::{Field, Tabular, choice, specification};
 
 pub use dynamic::{
-    ControllerSpec, DragSpec, EngagementSpec, LinearSpec, LossRowSpec, MotorSpec, PlanetBodySpec, QuadraticSpec,
-    ScenarioSpec, ShaftSpec, SignalSpec, SourceSpec, VehicleSpec,
+    ControlSpec, ControllerSpec, DragSpec, EngagementSpec, LinearSpec, LossRowSpec, MotorSpec, PlanetBodySpec,
+    QuadraticSpec, ScenarioSpec, ShaftSpec, SignalSpec, SourceSpec, VehicleSpec,
 };
 pub(super) use dynamic::{
-    PlainController, PlainDrag, PlainLossRow, PlainPlanetBody, PlainScenario, PlainShaft, PlainSource,
+    PlainControl, PlainController, PlainDrag, PlainLossRow, PlainPlanetBody, PlainScenario, PlainShaft, PlainSource,
 };
 pub use physical::{
     BearingSpec, Fluid, GeometrySpec, HousingSpec, LawsSpec, MeshStiffness, OilSpec, OilSupply, RotorSpec, SealSpec,

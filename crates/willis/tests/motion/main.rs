@@ -13,3 +13,4 @@ mod reference;
 mod rows;
 mod runs;
 mod steps;
+mod variators;

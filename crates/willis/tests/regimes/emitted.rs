@@ -324,6 +324,8 @@ struct Function {
     /// Name and text.
     results: Vec<(String, String)>,
     conditions: Vec<String>,
+    /// Whether emitted code counts the equilibria.
+    counts: bool,
 }
 
 impl Function {
@@ -338,6 +340,7 @@ impl Function {
             arguments: arguments.iter().map(|a| a.name.clone()).collect(),
             results: f.results(Notation::Text, true).into_iter().map(|(name, text, _)| (name, text)).collect(),
             conditions: f.conditions(Notation::Text).into_iter().map(|(text, _)| text).collect(),
+            counts: f.ratios(Notation::Text).is_none(),
         }
     }
 
@@ -529,6 +532,22 @@ fn input<'p>(points: impl IntoIterator<Item = &'p Point>) -> String {
     text
 }
 
+/// How many formulas of a state hold at a point of one of them; each is an equilibrium. What another takes beside the
+/// arguments of the point is the train's.
+fn equilibria(functions: &[Function], p: &Point) -> usize {
+    let f = &functions[p.formula];
+    let Kind::Exact(at, _) = &p.kind else { unreachable!("only those are compared") };
+    let alike = |g: &&Function| g.sheet == f.sheet && g.formula.state == f.formula.state;
+    let holds = |g: &&Function| {
+        let of = |name: &str| {
+            let given = f.arguments.iter().position(|a| a == name).map(|k| at[k].clone());
+            given.or_else(|| g.arguments.iter().position(|a| a == name).map(|k| g.own[k].clone()))
+        };
+        g.formula.evaluate(&of).is_ok()
+    };
+    functions.iter().filter(alike).filter(holds).count()
+}
+
 /// Compares what a program answered, a line for each point, with what is right.
 fn compare(language: &str, functions: &[Function], points: &[&Point], answers: &str) -> [usize; 2] {
     let mut counts = [0; 2];
@@ -543,8 +562,10 @@ fn compare(language: &str, functions: &[Function], points: &[&Point], answers: &
             counts[1] += 1;
             continue;
         }
-        let got: Vec<f64> = answer.split(' ').map(|x| x.parse().unwrap_or_else(|_| panic!("{}", place()))).collect();
-        assert_eq!(got.len(), f.results.len(), "{}", place());
+        let mut got: Vec<f64> =
+            answer.split(' ').map(|x| x.parse().unwrap_or_else(|_| panic!("{}", place()))).collect();
+        assert_eq!(got.len(), f.results.len() + usize::from(f.counts), "{}", place());
+        let counted = if f.counts { got.pop() } else { None };
         if matches!(p.kind, Kind::Large) {
             assert!(got.iter().all(|x| x.is_finite()), "{}", place());
             continue;
@@ -553,6 +574,9 @@ fn compare(language: &str, functions: &[Function], points: &[&Point], answers: &
         for (k, (got, right)) in got.iter().zip(&expected).enumerate() {
             let close = (got - right).abs() <= 1e-12 * right.abs();
             assert!(close, "{}: {} = {got}, not {right}", place(), f.results[k].0);
+        }
+        if let Some(counted) = counted {
+            assert_eq!(counted, equilibria(functions, p) as f64, "{}: equilibria", place());
         }
         counts[0] += 1;
     }
@@ -567,7 +591,8 @@ fn python(folder: &Folder, sheets: &[FormulaSheet], functions: &[Function], poin
     }
     driver += "functions = [\n";
     for f in functions {
-        let keys: Vec<String> = f.results.iter().map(|(name, _)| format!("{name:?}")).collect();
+        let mut keys: Vec<String> = f.results.iter().map(|(name, _)| format!("{name:?}")).collect();
+        keys.extend(f.counts.then(|| "\"equilibria\"".to_owned()));
         let _ = writeln!(driver, "    (sheet{0}, sheet{0}.{1}, [{2}]),", f.sheet, f.formula.name, keys.join(", "));
     }
     driver += r#"]
@@ -620,7 +645,8 @@ int main(void)
     for (k, f) in functions.iter().enumerate() {
         let name = &f.formula.name;
         let arguments: String = (0..f.arguments.len()).map(|a| format!("a[{a}], ")).collect();
-        let fields: Vec<String> = f.results.iter().map(|(field, _)| format!("r.{field}")).collect();
+        let mut fields: Vec<String> = f.results.iter().map(|(field, _)| format!("r.{field}")).collect();
+        fields.extend(f.counts.then(|| "(double)r.equilibria".to_owned()));
         let _ = writeln!(
             text,
             "        case {k}: {{\n            struct {name} r, before;\n            memset(&r, 90, sizeof r);\n            \
@@ -650,7 +676,8 @@ fn rust(folder: &Folder, sheets: &[FormulaSheet], functions: &[Function], points
              Vec<f64> = words.map(|w| w.parse().unwrap()).collect();\n        match number {\n";
     for (k, f) in functions.iter().enumerate() {
         let arguments: Vec<String> = (0..f.arguments.len()).map(|a| format!("a[{a}]")).collect();
-        let fields: Vec<String> = f.results.iter().map(|(field, _)| format!("r.{field}")).collect();
+        let mut fields: Vec<String> = f.results.iter().map(|(field, _)| format!("r.{field}")).collect();
+        fields.extend(f.counts.then(|| "r.equilibria".to_owned()));
         let _ = writeln!(
             text,
             "            {k} => match sheet{}::{}({}) {{\n                Ok(r) => println!(\"{}\", {}),\n                \
@@ -698,14 +725,15 @@ impl Modelica {
                 f.outputs.push(word(rest));
             } else if let Some(rest) = line.strip_prefix("end ") {
                 assert_eq!(rest, format!("{};", f.name));
-            } else if line != "algorithm" {
+            } else if line.strip_prefix("  Real ").is_none() && !["algorithm", "protected"].contains(&line) {
                 f.lines.push(line.trim().to_owned());
             }
         }
         all
     }
 
-    fn call(&self, at: &[Rational]) -> Option<Vec<Rational>> {
+    /// `beside` are the functions of the file that it may call.
+    fn call(&self, at: &[Rational], beside: &[&Self]) -> Option<Vec<Rational>> {
         let mut known: HashMap<&str, Rational> =
             self.inputs.iter().map(String::as_str).zip(at.iter().cloned()).collect();
         for line in &self.lines {
@@ -728,7 +756,21 @@ impl Modelica {
                 }
             } else {
                 let (name, expression) = line.strip_suffix(';').unwrap().split_once(" := ").unwrap();
-                let value = exact(expression, &|n| known[n].clone()).0?;
+                let of = |text: &str| exact(text, &|n| known[n].clone()).0;
+                let called = beside.iter().find(|m| expression.starts_with(&format!("{}(", m.name)));
+                let value = if let Some(m) = called {
+                    let arguments = &expression[m.name.len() + 1..expression.len() - 1];
+                    let at: Option<Vec<Rational>> = arguments.split(", ").map(of).collect();
+                    m.call(&at?, &[])?.swap_remove(0)
+                } else if let Some(condition) = expression.strip_prefix("if ") {
+                    let condition = condition.strip_suffix(" then 1 else 0").expect("a truth as a number");
+                    let holds = |part: &str| {
+                        part == "true" || of(part.strip_suffix(" > 0").unwrap()).is_some_and(|v| v.sign() > 0)
+                    };
+                    Rational::from(i64::from(condition.split(" and ").all(holds)))
+                } else {
+                    of(expression)?
+                };
                 known.insert(name, value);
             }
         }
@@ -777,18 +819,31 @@ fn modelica_is_read_by_a_parser_and_answers_the_same() {
         assert!(parsed.errors.is_empty(), "{:?}\n{source}", parsed.errors);
         read.extend(Modelica::read(&source));
     }
+    let (read, beside): (Vec<Modelica>, Vec<Modelica>) =
+        read.into_iter().partition(|m| functions.iter().any(|f| f.formula.name == m.name));
+    let beside: Vec<&Modelica> = beside.iter().collect();
     assert_eq!(read.len(), functions.len());
+    let count = "equilibria".to_owned();
     for (m, f) in read.iter().zip(functions) {
         assert_eq!((&m.name, &m.inputs), (&f.formula.name, &f.arguments));
-        assert!(m.outputs.iter().eq(f.results.iter().map(|(name, _)| name)), "{:?}", m.outputs);
+        let results = f.results.iter().map(|(name, _)| name).chain(f.counts.then_some(&count));
+        assert!(m.outputs.iter().eq(results), "{:?}", m.outputs);
     }
-    let mut counts = [0, 0];
+    let (mut counts, mut several) = ([0, 0], 0);
     for p in points {
         let Kind::Exact(at, results) = &p.kind else { continue };
         let m = &read[p.formula];
-        assert_eq!(m.call(at), *results, "{}{at:?}", m.name);
+        let mut answer = m.call(at, &beside);
+        if let Some(all) = answer.as_mut().filter(|_| functions[p.formula].counts) {
+            let counted = all.pop().expect("the last result");
+            let expected = Rational::from(equilibria(functions, p) as i64);
+            assert_eq!(counted, expected, "{}{at:?}: equilibria", m.name);
+            several += usize::from(counted > Rational::ONE);
+        }
+        assert_eq!(answer, *results, "{}{at:?}", m.name);
         counts[usize::from(results.is_none())] += 1;
     }
+    assert!(several > 10, "{several} points with several equilibria");
     println!("Modelica: {} functions, {} answers, {} refusals", functions.len(), counts[0], counts[1]);
 }
 

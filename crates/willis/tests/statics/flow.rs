@@ -309,9 +309,45 @@ fn wrong_questions_are_answered_with_a_hint() {
         flows(&Train::from_toml(STAGE).unwrap(), &selection).unwrap_err().to_string()
     };
     assert!(with("ratd").contains("did you mean `rated`?"), "{}", with("ratd"));
-    let bare = STAGE.split("[[operation]]").next().unwrap();
+}
+
+/// Per unit of speed and torque at the input: the same graph as that of an operation with any other speed and torque, in
+/// proportion.
+#[test]
+fn a_state_without_an_operation_is_shown_per_unit_of_its_input() {
+    let text = common::example("zf-8hp70");
+    let bare = text.split("[[operation]]").next().unwrap();
+    let train = Train::from_toml(bare).unwrap();
+    let of_state = |state: &str| Selection { operation: None, state: Some(state.into()) };
+    let unit = &flows(&train, &of_state("3")).unwrap().operations[0];
+    assert_eq!((unit.unit.as_deref(), unit.state.as_deref()), (Some("input"), Some("3")));
+    check("unit", &unit.solutions[0]);
+    let with = format!(
+        "{bare}\n[[operation]]\nname = 'x'\nstate = '3'\nspeeds = {{ input = '10 rad/s' }}\ntorques = {{ input = '20 N m' }}\n"
+    );
+    let same = &flows(&Train::from_toml(&with).unwrap(), &of_state("3")).unwrap().operations[0];
+    assert_eq!(same.unit, None);
+    let (a, b) = (&unit.solutions[0], &same.solutions[0]);
+    assert_eq!(a.efficiency_exact, b.efficiency_exact);
+    assert!(a.efficiency_exact.is_some() && a.input_power_w == 1.0 && b.input_power_w == 200.0);
+    assert_eq!(a.edges.len(), b.edges.len());
+    for (x, y) in a.edges.iter().zip(&b.edges) {
+        assert!((200.0 * x.power_w - y.power_w).abs() < 1e-9, "{} to {}", x.from, x.to);
+    }
+    // Every state where none is named.
+    let all = flows(&train, &Selection::default()).unwrap();
+    assert_eq!(all.operations.len(), train.states().len());
+    assert!(all.operations.iter().all(|o| o.unit.is_some()));
+}
+
+/// With two freedoms one speed settles nothing, and the refusal says what would.
+#[test]
+fn a_state_with_two_freedoms_needs_an_operation() {
+    let text = common::example("esmail-fig1");
+    let bare = text.split("[[shift_element]]").next().unwrap();
     let wrong = flows(&Train::from_toml(bare).unwrap(), &Selection::default()).unwrap_err().to_string();
-    assert!(wrong.contains("a power flow needs an operating point"), "{wrong}");
+    assert!(wrong.contains("2 degrees of freedom"), "{wrong}");
+    assert!(wrong.contains("2 independent speeds and 1 torque or power"), "{wrong}");
 }
 
 /// A small generator of numbers, so that every run has the same trains.

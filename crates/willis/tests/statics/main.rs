@@ -5,6 +5,7 @@ mod common;
 
 mod compiled;
 mod degenerate;
+mod echo;
 mod flow;
 mod operating_point;
 mod properties;

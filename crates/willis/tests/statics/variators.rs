@@ -484,12 +484,6 @@ fn what_does_not_know_variators_says_so() {
     let train = prius("ring = \"1500 rpm\"", "members = [\"mg1\", \"ring\"]\nefficiency = 0.9");
     let wrong = train.compile(&Duty::new(["engine", "ring"], ["engine"]).output(Output::Efficiency)).unwrap_err();
     assert!(wrong.to_string().contains("variator"), "{wrong}");
-    let moving = read(&format!(
-        "{PRIUS}[inertias]\nmg1 = \"1 kg m^2\"\nring = \"1 kg m^2\"\nengine = \"1 kg m^2\"\n[[variator]]\n\
-         name = \"path\"\nmembers = [\"mg1\", \"ring\"]\nefficiency = 0.9\n[[scenario]]\nname = \"go\"\nduration = \"1 s\"\n"
-    ));
-    let wrong = willis::dynamics::Simulation::new(&moving, "go", &Default::default()).err().unwrap();
-    assert!(wrong.to_string().contains("is a variator"), "{wrong}");
 }
 
 /// A terminal on a member that has another name, and terminals that a clutch joins, stay torques of their own.

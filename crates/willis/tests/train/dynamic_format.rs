@@ -735,7 +735,7 @@ fn the_builder_is_checked_too() {
                 .source(SourceSpec::torque("a", SignalSpec::product(minus(), nan)))
                 .source(SourceSpec::torque("a", SignalSpec::table([])))
                 .source(SourceSpec::torque("a", SignalSpec::formula("w_b")))
-                .source(SourceSpec { member: "a".into(), ..SourceSpec::default() }),
+                .source(SourceSpec { member: Some("a".into()), ..SourceSpec::default() }),
         )
         .build()
         .unwrap_err();

@@ -211,11 +211,11 @@ fn solution(s: &SolutionReport) -> String {
     let (unit, scale) = power_unit(s);
     let power = |p: f64| significant(p / scale, 5);
     let exact = match &s.efficiency_exact {
-        Some(e) => e.to_string(),
-        None => String::new(),
+        Some(e) if !e.is_integer() => e.to_string(),
+        _ => String::new(),
     };
     // A longer one is for machines.
-    let exact = if (1..40).contains(&exact.len()) { format!(" = {exact}") } else { String::new() };
+    let exact = if (1..24).contains(&exact.len()) { format!(" = {exact}") } else { String::new() };
     let efficiency = match (s.all_dissipated, s.efficiency) {
         (true, _) => "none: every loaded member is an input, all power is dissipated".into(),
         (_, Some(e)) => percent(e) + &exact,

@@ -24,6 +24,14 @@ fn operation(o: &OperationFlow) -> String {
         out += &format!("   state {state}");
     }
     out.push('\n');
+    if let Some(unit) = &o.unit {
+        let text = format!(
+            "no operation of the file describes this: {unit} turns at 1 rad/s under 1 N m, and every speed, torque and \
+             power is in proportion to that"
+        );
+        out += &wrap(&text, "  units        ");
+        out.push('\n');
+    }
     if o.verdict != Verdict::Unique {
         out += &format!("  verdict      {}\n", bold(o.verdict.words()));
     }

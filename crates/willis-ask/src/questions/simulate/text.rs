@@ -48,7 +48,8 @@ pub fn text(r: &RunReport) -> String {
     out += &events(r);
     out += &speeds(r);
     out += &energy(r);
-    for (head, lines) in [("Assumptions in force", &r.assumptions), ("Notes", &r.notes)] {
+    let beyond: Vec<String> = r.beyond_limits.iter().map(ToString::to_string).collect();
+    for (head, lines) in [("Limits exceeded", &beyond), ("Assumptions in force", &r.assumptions), ("Notes", &r.notes)] {
         if lines.is_empty() {
             continue;
         }
@@ -203,6 +204,10 @@ fn energy(run: &RunReport) -> String {
     }
     if came_in == 0.0 {
         return out + "  balance      no energy came in\n";
+    }
+    for s in &e.machines {
+        let (verb, x) = if s.energy_j < 0.0 { ("took", -s.energy_j) } else { ("gave", s.energy_j) };
+        out += &format!("  {:<12} {verb} {} at {}, through its bus\n", s.name, joules(x), s.member);
     }
     // A sum of nothing is -0.0.
     let lost = e.losses.iter().map(|l| l.energy_j).filter(|l| l.abs() > nothing).sum::<f64>() + 0.0;

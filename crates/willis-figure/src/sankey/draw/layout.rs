@@ -394,6 +394,10 @@ impl<'f> Layout<'f> {
             for gap in first..self.flow.nodes[l.to].layer {
                 let left = self.columns[gap].right + self.channel(gap, true);
                 let right = self.columns[gap + 1].left - self.channel(gap + 1, false);
+                // The first gap of a link has room for its words.
+                if right - left < wide {
+                    continue;
+                }
                 let spots: Vec<(f64, f64)> =
                     ribbons[j].1.iter().copied().filter(|p| left <= p.0 && p.0 <= right).collect();
                 for part in [0.5, 0.35, 0.65, 0.2, 0.8] {

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::dynamics::source::{MOST_PULSES, shortest_pulse, signals_of};
 use crate::kinematics::Configuration;
-use crate::train::{Scenario, Signal, SourceKind, Train};
+use crate::train::{ControlKind, Scenario, Signal, SourceKind};
 
 /// An error if meshes constrain each other, or if nothing can move.
 pub(super) fn forces_and_freedom(c: &Configuration<'_>, scenario: &Scenario) -> Result<(), Diagnostics> {
@@ -26,6 +26,7 @@ pub(super) fn forces_and_freedom(c: &Configuration<'_>, scenario: &Scenario) -> 
 pub(super) fn pulses(scenario: &Scenario) -> Result<(), Diagnostics> {
     for signal in (scenario.sources.iter().flat_map(|s| signals_of(&s.kind)))
         .chain(scenario.engagements.iter().map(|e| &e.signal))
+        .chain(scenario.controls.iter().map(|c| c.kind.signal()))
     {
         if let Some(period) = shortest_pulse(signal)
             && (scenario.end - scenario.start) / period > MOST_PULSES
@@ -84,18 +85,18 @@ pub(super) fn rates(scenario: &Scenario) -> Result<(), Diagnostics> {
         let message = format!("`{}`: {what} {fault}", source.name);
         return Err(unfit(scenario, message, hint));
     }
+    for control in &scenario.controls {
+        if let ControlKind::Ratio { ratio, .. } = &control.kind
+            && !ratio.has_rate()
+        {
+            let message = "a ratio cannot follow a formula with jumps, as `floor` and `signum` have";
+            let d = Diagnostic::new(Code::Unfit, control.place.clone(), message);
+            return Err(d.hint("use ramps or a table").into());
+        }
+    }
     Ok(())
 }
 
 fn unfit(scenario: &Scenario, message: String, hint: &str) -> Diagnostics {
     Diagnostic::new(Code::Unfit, scenario.place.clone(), message).hint(hint).into()
-}
-
-/// A variator in motion is not computed: neither is its torque left out without a word.
-pub(super) fn no_variator(train: &Train) -> Result<(), Diagnostics> {
-    let Some(v) = train.variators.first() else { return Ok(()) };
-    let message = format!("`{}` is a variator, and no motion is computed with one", v.name);
-    let hint =
-        "leave it out of the file and let its machines be sources of the scenario, with a torque on their members";
-    Err(Diagnostic::new(Code::Unfit, "variator[0]", message).hint(hint).into())
 }

@@ -16,6 +16,8 @@ pub(in crate::dynamics) enum Rubs {
     Rolling(usize),
     /// A place of the laws.
     Law(usize),
+    /// What a variator loses, at the member that follows its ratio; a position among the paths.
+    Variator(usize),
     /// The swing of a member that has but a trace of inertia.
     Trace,
 }

@@ -69,7 +69,9 @@ pub(super) fn slip_together(
 ) -> Vec<Group> {
     let mut joined = Joined { free: coordinates.free, groups: Vec::new() };
     for f in frictions.iter_mut() {
-        let rubs = f.rigid || matches!(f.what, Rubs::Law(_)) || f.torque.points().iter().any(|p| p[1] > 0.0);
+        let rubs = f.rigid
+            || matches!(f.what, Rubs::Law(_) | Rubs::Variator(_))
+            || f.torque.points().iter().any(|p| p[1] > 0.0);
         if rubs && !f.open {
             f.group = joined.join(coordinates.exact_slip(f.members), &f.name, (f.port, 1.0));
         }

@@ -5,6 +5,7 @@ use crate::train::{FRAME, MemberId, Scenario, SourceKind};
 
 use super::coordinates::Coordinates;
 use super::frictions::{Friction, Rubs};
+use super::paths::Path;
 
 /// A torque from outside that follows from a balance: what accelerates inertia, less all other torques.
 #[derive(Clone)]
@@ -19,8 +20,10 @@ pub(in crate::dynamics) struct Reaction {
     pub frictions: Vec<(usize, f64)>,
     /// Shafts that act on it, and on which side.
     pub shafts: Vec<(usize, f64)>,
-    /// Sources that act on it.
+    /// Sources that act on it; machines act between their member and the frame.
     pub sources: Vec<usize>,
+    /// Ports of variators on it.
+    pub variators: Vec<usize>,
 }
 
 /// The frame's, then that of each member that the scenario holds.
@@ -29,9 +32,10 @@ pub(super) fn reactions(
     scenario: &Scenario,
     coordinates: &Coordinates,
     frictions: &[Friction],
+    paths: &[Path],
     traces: &[(MemberId, f64)],
 ) -> Vec<Reaction> {
-    let held = |&member: &MemberId| of_member(c, scenario, coordinates, frictions, member);
+    let held = |&member: &MemberId| of_member(c, scenario, coordinates, frictions, paths, member);
     std::iter::once(of_frame(c, scenario, coordinates, traces)).chain(scenario.fixed.iter().map(held)).collect()
 }
 
@@ -66,7 +70,8 @@ fn of_frame(
         elements: vec![],
         frictions: vec![],
         shafts: vec![],
-        sources: (0..scenario.sources.len()).collect(),
+        sources: (0..scenario.sources.len()).filter(|&k| scenario.sources[k].machine.is_none()).collect(),
+        variators: vec![],
     }
 }
 
@@ -75,6 +80,7 @@ fn of_member(
     scenario: &Scenario,
     coordinates: &Coordinates,
     frictions: &[Friction],
+    paths: &[Path],
     member: MemberId,
 ) -> Reaction {
     let side = |members: [MemberId; 2]| -> f64 {
@@ -107,6 +113,7 @@ fn of_member(
         frictions: acting.filter(|(_, side)| *side != 0.0).collect(),
         shafts: shafts.filter(|(_, side)| *side != 0.0).collect(),
         sources: (0..scenario.sources.len()).filter(|&k| scenario.sources[k].member == member).collect(),
+        variators: paths.iter().flat_map(Path::ports).filter(|(m, _)| *m == member).map(|(_, port)| port).collect(),
     }
 }
 

@@ -25,10 +25,14 @@ pub(super) struct Point<'t> {
     pub speeds: Vec<(MemberId, Rational)>,
     /// As many torques as are independent.
     pub loads: Loads,
+    /// Powers that are prescribed, by terminal, W.
+    pub powers: Vec<(usize, f64)>,
     /// One unit of speed, rad/s.
     pub speed_unit: f64,
     /// One unit of torque, N m.
     pub torque_unit: f64,
+    /// One unit of power, W: of one power of π, so that what cancels rounds nothing.
+    pub power_unit: f64,
 }
 
 impl<'t> Point<'t> {
@@ -50,14 +54,18 @@ impl<'t> Point<'t> {
             given.torques.iter().cloned().map(Ok).chain(given.powers.iter().map(|p| torque_of(train, &motion, p)));
         let (loads, torque_pi) = loads(&setup, &state, &torques.collect::<Result<Vec<_>, _>>()?)?;
         let speed = |m: MemberId| motion.speeds[m.0].clone().unwrap_or(Rational::ZERO);
+        let of_power = |(m, p): &(MemberId, Quantity)| Some((terminal(&setup, *m)?, p.si()));
+        let powers = given.powers.iter().filter_map(of_power).collect();
         Ok(Self {
             state,
             setup,
             base,
             speeds: given.speeds.iter().map(|(m, _)| (*m, speed(*m))).collect(),
             loads,
+            powers,
             speed_unit: std::f64::consts::PI.powi(motion.pi_power.into()),
             torque_unit: std::f64::consts::PI.powi(torque_pi.into()),
+            power_unit: std::f64::consts::PI.powi((torque_pi + motion.pi_power).into()),
         })
     }
 
@@ -129,12 +137,17 @@ fn torque_of(
     }
 }
 
+/// The terminal on the shaft of a member.
+fn terminal(setup: &Setup<'_>, m: MemberId) -> Option<usize> {
+    (0..setup.terminals.len()).find(|&t| setup.c.node(m) == Some(setup.terminals[t].node))
+}
+
 /// Torques: as many as are independent, on terminals that determine the others. With them their power of π.
 fn loads(setup: &Setup<'_>, state: &str, torques: &[(MemberId, Quantity)]) -> Result<(Loads, i8), Diagnostics> {
     let mut errors = Diagnostics::default();
     let mut given: Vec<(usize, &Quantity)> = Vec::new();
     for (m, q) in torques {
-        match (0..setup.terminals.len()).find(|&t| setup.c.node(*m) == Some(setup.terminals[t].node)) {
+        match terminal(setup, *m) {
             Some(t) if given.iter().any(|(other, _)| *other == t) => {
                 let name = setup.c.train.member_name(*m);
                 let text = format!("{name} is clutched to a member whose torque is given too");

@@ -66,6 +66,9 @@ pub struct Edge {
     pub changes: Vec<String>,
     /// Efficiency just before it.
     pub efficiency_before: f64,
+    /// The same, exactly.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub efficiency_before_exact: Option<Rational>,
     /// Efficiencies just behind it; none when no equilibrium exists there.
     pub efficiency_after: Vec<f64>,
 }
@@ -158,11 +161,13 @@ pub(super) fn speed_range(point: &Point<'_>, around: &Surroundings, here: &State
         let (boundary, behind) = (at(step), at(&behind));
         let after = equilibria(setup, &behind, &point.loads).states;
         let still = boundary.iter().all(Rational::is_zero);
+        let limit = efficiency_towards(setup, &boundary, base, &here.pattern, &here.torques);
         Some(Edge {
             at: (value + step).to_f64() * point.speed_unit,
             label: if still { "everything stands still".to_owned() } else { label },
             changes: changes(setup, (base, here), (&behind, &after)),
-            efficiency_before: efficiency_towards(setup, &boundary, base, &here.pattern, &here.torques).to_f64(),
+            efficiency_before: limit.to_f64(),
+            efficiency_before_exact: Some(limit),
             efficiency_after: after.iter().map(|s| efficiency_at(setup, &behind, &s.torques).to_f64()).collect(),
         })
     };
@@ -208,11 +213,13 @@ pub(super) fn torque_range(point: &Point<'_>, here: &State, n: usize) -> Range {
             true => here.torques.clone(),
             false => setup.torques_for(&here.pattern, &loads).unwrap_or_else(|| here.torques.clone()),
         };
+        let limit = efficiency_at(setup, base, &before);
         Some(Edge {
             at: (value + step).to_f64() * point.torque_unit,
             label: if none { "no torque acts".to_owned() } else { label },
             changes: changes(setup, (base, here), (base, &after)),
-            efficiency_before: efficiency_at(setup, base, &before).to_f64(),
+            efficiency_before: limit.to_f64(),
+            efficiency_before_exact: Some(limit),
             efficiency_after: after.iter().map(|s| efficiency_at(setup, base, &s.torques).to_f64()).collect(),
         })
     };

@@ -262,6 +262,9 @@ impl Sweep<'_> {
                 own.peek().is_some().then(|| own.sum())
             }
             What::SpeedRpm(name) => {
+                if let Some((_, rpm)) = answer.prescribed_rpm.iter().find(|(own, _)| own == name) {
+                    return *rpm;
+                }
                 let speed = s.members.get(name).and_then(|m| m.speed_rad_s);
                 speed.map(|w| w * 30.0 / std::f64::consts::PI)
             }

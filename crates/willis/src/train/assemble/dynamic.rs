@@ -9,14 +9,17 @@ use crate::train::assembler::{Assembler, check_name};
 use crate::train::csv;
 use crate::train::described::{GivenFriction, GivenMesh, GivenSet, Parts};
 use crate::train::dynamic::{
-    Curve, DragMount, Engagement, Friction, Inertia, LossRow, Scenario, Shaft, Signal, Source, SourceKind,
+    Control, ControlKind, Curve, DragMount, Engagement, Friction, Inertia, LossRow, Scenario, Shaft, Signal, Source,
+    SourceKind,
 };
 use crate::train::formula::Formula;
 use crate::train::physical::PlanetBody;
 use crate::train::specification::field::Field;
 use crate::train::specification::{
-    EfficiencySpec, PlainController, PlainDrag, PlainScenario, PlainShaft, PlainSource, ScenarioSpec, SignalSpec,
+    EfficiencySpec, PlainControl, PlainController, PlainDrag, PlainScenario, PlainShaft, PlainSource, ScenarioSpec,
+    SignalSpec,
 };
+use crate::train::variator::Variator;
 use crate::train::words::clip;
 use crate::train::{Efficiency, FRAME, MemberId, MemberKind, Set, ShiftElementId, ShiftElementKind, State};
 use crate::units::Time;
@@ -33,6 +36,7 @@ pub(super) struct Scene<'a> {
     /// Name and kind of each shift element.
     pub elements: Vec<(&'a str, ShiftElementKind)>,
     pub shafts: Vec<&'a str>,
+    pub variators: &'a [Variator],
 }
 
 impl Assembler<'_> {
@@ -391,7 +395,8 @@ impl Assembler<'_> {
             }
             initial_twists.extend(found.map(|k| (k, *twist)));
         }
-        let sources = self.sources(&spec.source, &fixed, &place);
+        let sources = self.sources(&spec.source, &fixed, scene.variators, &place);
+        let controls = self.controls(&spec.variator, scene.variators, &sources, &place);
         let mut engagements = self.given_engagements(spec, scene, &place);
         let scheduled = self.scheduled(spec, scene, &place);
         let own: HashSet<_> = engagements.iter().map(|e| e.element).collect();
@@ -405,6 +410,7 @@ impl Assembler<'_> {
             fixed,
             sources,
             engagements,
+            controls,
             samples: usize::try_from(samples).ok()?,
             place,
         })
@@ -476,7 +482,13 @@ impl Assembler<'_> {
         all
     }
 
-    fn sources(&mut self, specs: &[PlainSource], fixed: &[MemberId], place: &str) -> Vec<Source> {
+    fn sources(
+        &mut self,
+        specs: &[PlainSource],
+        fixed: &[MemberId],
+        variators: &[Variator],
+        place: &str,
+    ) -> Vec<Source> {
         let mut names: HashSet<String> = specs.iter().filter_map(|s| s.name.clone()).collect();
         let mut given = HashSet::new();
         let mut prescribed: HashSet<MemberId> = HashSet::new();
@@ -491,13 +503,39 @@ impl Assembler<'_> {
                 }
             }
             let at = format!("{place}.member");
-            let member = self.resolve(&spec.member, &at);
+            let machine = spec.machine.as_ref().map(|name| {
+                let at = format!("{place}.machine");
+                let found = self.driving(name, variators, &at);
+                if found.is_some() && all.iter().any(|s: &Source| s.machine == found) {
+                    let message = format!("two sources of this scenario are the machine `{}`", clip(name));
+                    self.refuse(Code::Conflict, &at, message, "a machine does one thing; add up the torques");
+                }
+                found
+            });
+            let named = match (&spec.member, &machine) {
+                (Some(name), None) => name.as_str(),
+                (None, Some(_)) => "",
+                (Some(_), Some(_)) => {
+                    let message = "`member` and `machine` both say where it acts";
+                    self.refuse(Code::Conflict, &at, message, "keep `machine` for what has its power from a bus");
+                    continue;
+                }
+                (None, None) => {
+                    let message = "this source does not say where it acts";
+                    self.refuse(Code::MissingKey, &at, message, "give `member`, or `machine` for one of a variator");
+                    continue;
+                }
+            };
+            let (machine, member) = match machine {
+                None => (None, self.resolve(named, &at)),
+                Some(found) => (found, found.map(|[v, k]| variators[v].machines()[k].member)),
+            };
             if member == Some(FRAME) {
                 let message = "the frame is at rest; nothing drives it";
                 self.refuse(Code::HeldAndDriven, &at, message, "name a member that turns");
             }
             if let (Some(_), Some(id)) = (&spec.speed, member.filter(|m| *m != FRAME)) {
-                let name = clip(&spec.member);
+                let name = clip(&self.members[id.0].name);
                 let message = match fixed.contains(&id) {
                     true => Some(format!("`{name}` is held and has a prescribed speed")),
                     false if !prescribed.insert(id) => Some(format!("the speed of `{name}` is prescribed twice")),
@@ -509,17 +547,136 @@ impl Assembler<'_> {
             }
             let kind = self.source_kind(spec, &place);
             let name = spec.name.clone().unwrap_or_else(|| {
-                let base = format!("{} {}", title(spec), spec.member);
+                let base = match &spec.machine {
+                    Some(machine) => machine.clone(),
+                    None => format!("{} {named}", title(spec)),
+                };
                 let numbered = (2..).map(|k| format!("{base} {k}"));
                 let mut free = std::iter::once(base.clone()).chain(numbered).filter(|n| !names.contains(n));
                 free.next().expect("numbers do not end")
             });
             names.insert(name.clone());
             if let (Some(member), Some(kind)) = (member, kind) {
-                all.push(Source { name, member, kind, place });
+                if machine.is_some() && matches!(kind, SourceKind::Vehicle { .. }) {
+                    let at = format!("{place}.vehicle");
+                    self.refuse(Code::Variator, &at, "a machine is no vehicle", "let the vehicle act on `member`");
+                }
+                all.push(Source { name, member, machine, kind, place });
             }
         }
         all
+    }
+
+    /// The machine of a name.
+    fn driving(&mut self, name: &str, variators: &[Variator], place: &str) -> Option<[usize; 2]> {
+        let machines =
+            || variators.iter().enumerate().flat_map(|(v, of)| of.machines().iter().enumerate().map(move |m| (v, m)));
+        if let Some((v, (k, _))) = machines().find(|(_, (_, m))| m.name == name) {
+            return Some([v, k]);
+        }
+        let message = format!("no variator has a machine `{}`", clip(name));
+        let d = Diagnostic::new(Code::UnknownName, place, message);
+        self.report(d.suggest(name, machines().map(|(_, (_, m))| m.name.as_str())));
+        None
+    }
+
+    /// What variators do.
+    fn controls(
+        &mut self,
+        specs: &[PlainControl],
+        variators: &[Variator],
+        sources: &[Source],
+        place: &str,
+    ) -> Vec<Control> {
+        let known: Vec<&str> = variators.iter().map(|v| v.name.as_str()).collect();
+        let mut all: Vec<Control> = Vec::new();
+        for (k, spec) in specs.iter().enumerate() {
+            let place = format!("{place}.variator[{k}]");
+            let at = format!("{place}.name");
+            let found = self.position("variator", "variator", &spec.name, at.clone(), &known);
+            let has_bus = found.is_some_and(|v| variators[v].has_bus());
+            let kind = self.control(spec, found.map(|_| has_bus), &place);
+            let Some(variator) = found else { continue };
+            let name = clip(&spec.name);
+            if all.iter().any(|c| c.variator == variator) {
+                let message = format!("what `{name}` does is said twice");
+                self.refuse(Code::Conflict, &at, message, "say it once");
+                continue;
+            }
+            let driven = sources.iter().filter(|s| s.machine.is_some_and(|[v, _]| v == variator)).count();
+            if has_bus && driven == variators[variator].machines().len() {
+                let message = format!("all machines of `{name}` are sources, and its store is given beside them");
+                let hint = "leave out the source of one machine, which then balances the bus, or leave out `store`";
+                self.refuse(Code::Variator, &format!("{place}.store"), message, hint);
+                continue;
+            }
+            all.extend(kind.map(|kind| Control { variator, kind, place }));
+        }
+        all
+    }
+
+    /// The one thing that is said of a variator; `has_bus`: if it is known, what it is.
+    fn control(&mut self, spec: &PlainControl, has_bus: Option<bool>, place: &str) -> Option<ControlKind> {
+        let key = |name: &str| format!("{place}.{name}");
+        let given = [
+            (spec.ratio.is_some(), "ratio", false),
+            (spec.ratio_rate.is_some(), "ratio_rate", false),
+            (spec.torque.is_some(), "torque", false),
+            (spec.store.is_some(), "store", true),
+        ];
+        let given: Vec<_> = given.into_iter().filter(|k| k.0).map(|(_, name, of_bus)| (name, of_bus)).collect();
+        let wants = match has_bus {
+            Some(true) => "`store`; what its machines do is said by sources with `machine`",
+            _ => "one of `ratio`, `ratio_rate` and `torque`",
+        };
+        match given[..] {
+            [] => {
+                let message = format!("what the variator `{}` does is not said", clip(&spec.name));
+                self.refuse(Code::MissingKey, place, message, &format!("give {wants}"));
+                return None;
+            }
+            [(first, _), (second, _), ..] => {
+                let message = format!("`{first}` and `{second}` of one variator: one of them follows from the other");
+                self.refuse(Code::Conflict, &key(second), message, &format!("give {wants}"));
+                return None;
+            }
+            [(name, of_bus)] if has_bus.is_some_and(|has_bus| has_bus != of_bus) => {
+                let message = match of_bus {
+                    true => "`store` belongs to a bus, and this variator has none".to_owned(),
+                    false => format!("`{name}` is of a variator with two members, and this one has machines on a bus"),
+                };
+                self.refuse(Code::Variator, &key(name), message, &format!("give {wants}"));
+                return None;
+            }
+            [_] => {}
+        }
+        let stray = [
+            (spec.initial_ratio.is_some() && spec.ratio_rate.is_none(), "initial_ratio", "`ratio_rate`"),
+            (spec.inverse && spec.ratio.is_none() && spec.ratio_rate.is_none(), "inverse", "`ratio` or `ratio_rate`"),
+        ];
+        for (_, name, beside) in stray.into_iter().filter(|s| s.0) {
+            let message = format!("`{name}` says something of {beside}, which is not given");
+            self.refuse(Code::Variator, &key(name), message, "leave it out");
+        }
+        let inverse = spec.inverse;
+        if let Some(s) = &spec.ratio {
+            return Some(ControlKind::Ratio { ratio: self.signal(s, &key("ratio"))?, inverse });
+        }
+        if let Some(s) = &spec.ratio_rate {
+            let rate = self.signal(s, &key("ratio_rate"));
+            let Some(initial) = spec.initial_ratio else {
+                let message = "the ratio changes at a rate, and where it begins is not given";
+                self.refuse(Code::MissingKey, &key("initial_ratio"), message, "give `initial_ratio`");
+                return None;
+            };
+            self.finite(&[("initial_ratio", initial)], place).then_some(())?;
+            return Some(ControlKind::Rate { initial, rate: rate?, inverse });
+        }
+        if let Some(s) = &spec.torque {
+            return Some(ControlKind::Torque(self.signal(s, &key("torque"))?));
+        }
+        let s = spec.store.as_ref()?;
+        Some(ControlKind::Store(self.signal(s, &key("store"))?))
     }
 
     /// The one thing that a source is.

@@ -4,7 +4,7 @@ use crate::train::dynamic::Contact;
 use crate::train::format::keys::{Kind, SignalKind, Table, TypedTable};
 use crate::train::format::{Datum, Node};
 use crate::units::{
-    Angle, AngularSpeed, Area, Density, Frequency, Length, Mass, MomentOfInertia, Stiffness, Time, Torque,
+    Angle, AngularSpeed, Area, Density, Frequency, Length, Mass, MomentOfInertia, Power, Stiffness, Time, Torque,
     TorquePerAcceleration, TorquePerSpeedSquared, ViscousCoefficient,
 };
 
@@ -127,8 +127,10 @@ specification! {
         may gears: Option<Vec<(Time, String)>>,
         /// How long elements take to engage and to open when the gear changes. Default: 0 s.
         may shift_time: Option<Time>,
-        /// What acts on members from outside.
+        /// What acts on members from outside, and what machines of variators do.
         may source: Vec<SourceSpec>,
+        /// What the variators of the train do.
+        may variator: Vec<ControlSpec>,
         /// Engagement of single shift elements over time.
         may engagement: Vec<EngagementSpec>,
     }
@@ -141,13 +143,36 @@ specification! {
         must value: SignalSpec<f64>,
     }
 
+    /// What a variator does over time. One with two members has a ratio, or a torque; of one with machines the store may
+    /// be said, and the machines are sources.
+    ControlSpec => PlainControl {
+        /// The variator.
+        must name: String as Kind::Name,
+        /// Speed of its first member over that of its second.
+        may ratio: Option<SignalSpec<f64>>,
+        /// How fast the ratio changes, instead of `ratio`, from `initial_ratio` on: "0.1 1/s".
+        may ratio_rate: Option<SignalSpec<Frequency>>,
+        /// The ratio at the start, with `ratio_rate`.
+        may initial_ratio: Option<f64>,
+        /// true: ratios are those of the second member's speed over the first's; for a second member that stands still.
+        may inverse: bool,
+        /// Torque that it exerts on its first member, instead of a ratio.
+        may torque: Option<SignalSpec<Torque>>,
+        /// Power out of its store into the bus. Default: that of the variator; where all machines have sources, whatever
+        /// balances the bus.
+        may store: Option<SignalSpec<Power>>,
+    }
+
     /// What acts on a member from outside: exactly one of torque, speed, controller, linear, quadratic, vehicle, motor.
     SourceSpec => PlainSource {
         /// What it is called. Default: after what it is, `torque on sun`.
         may name: Option<String>,
         /// The member it acts on.
-        must member: String as Kind::Name,
-        /// An external torque on the member.
+        may member: Option<String> as Kind::Name,
+        /// The machine of a variator that does this, instead of `member`: it acts on the member of the machine, with power
+        /// from the bus.
+        may machine: Option<String> as Kind::Name,
+        /// A torque on the member.
         may torque: Option<SignalSpec<Torque>>,
         /// A prescribed speed; its torque is a result.
         may speed: Option<SignalSpec<AngularSpeed>>,
@@ -653,6 +678,13 @@ impl ScenarioSpec {
         self
     }
 
+    /// Says what a variator does over time.
+    #[must_use]
+    pub fn variator(mut self, control: ControlSpec) -> Self {
+        self.variator.push(control);
+        self
+    }
+
     /// Says how far a shift element is engaged over time, 0 to 1; instead of what the state says.
     #[must_use]
     pub fn engagement(mut self, element: &str, value: impl Into<SignalSpec<f64>>) -> Self {
@@ -661,9 +693,31 @@ impl ScenarioSpec {
     }
 }
 
+impl ControlSpec {
+    /// Of a variator with two members: the speed of its first member over that of its second.
+    pub fn ratio(name: impl Into<String>, ratio: impl Into<SignalSpec<f64>>) -> Self {
+        Self { name: name.into(), ratio: Some(ratio.into()), ..Self::default() }
+    }
+
+    /// The same, changing at a rate from where it begins.
+    pub fn ratio_rate(name: impl Into<String>, initial: f64, rate: impl Into<SignalSpec<Frequency>>) -> Self {
+        Self { name: name.into(), ratio_rate: Some(rate.into()), initial_ratio: Some(initial), ..Self::default() }
+    }
+
+    /// Of a variator with two members: the torque that it exerts on the first.
+    pub fn torque(name: impl Into<String>, torque: impl Into<SignalSpec<Torque>>) -> Self {
+        Self { name: name.into(), torque: Some(torque.into()), ..Self::default() }
+    }
+
+    /// Of a variator with machines: the power out of its store.
+    pub fn store(name: impl Into<String>, power: impl Into<SignalSpec<Power>>) -> Self {
+        Self { name: name.into(), store: Some(power.into()), ..Self::default() }
+    }
+}
+
 impl SourceSpec {
     fn on(member: impl Into<String>) -> Self {
-        Self { member: member.into(), ..Self::default() }
+        Self { member: Some(member.into()), ..Self::default() }
     }
 
     /// An external torque.
@@ -699,6 +753,13 @@ impl SourceSpec {
     /// A motor.
     pub fn motor(member: impl Into<String>, motor: MotorSpec) -> Self {
         Self { motor: Some(motor), ..Self::on(member) }
+    }
+
+    /// Lets a machine of a variator do it, with power from its bus.
+    #[must_use]
+    pub fn by_machine(mut self, machine: impl Into<String>) -> Self {
+        (self.member, self.machine) = (None, Some(machine.into()));
+        self
     }
 
     /// Names it; otherwise it is called after what it is.
