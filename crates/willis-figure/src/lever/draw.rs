@@ -290,7 +290,9 @@ fn levers(v: &View<'_>, row: &[usize], top: f64) -> Group {
         let here: Vec<(f64, f64)> = link
             .points
             .iter()
-            .filter_map(|[b, n]| Some((lefts[*b]? + v.x(&v.lever.bars[*b], 0.0), top + v.y(v.lever.bars[*b].nodes[*n].position))))
+            .filter_map(|[b, n]| {
+                Some((lefts[*b]? + v.x(&v.lever.bars[*b], 0.0), top + v.y(v.lever.bars[*b].nodes[*n].position)))
+            })
             .collect();
         for pair in here.windows(2) {
             under = under.add(line(pair[0], pair[1], FAINT, 1.2).set("stroke-dasharray", "6 4"));
@@ -365,7 +367,8 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
     g = g.add(line((rest, v.y(first.position)), (rest, v.y(last.position)), LINE, 3.5));
     for case in 0..v.cases {
         if let (Some(a), Some(b)) = (v.speed(first, case), v.speed(last, case)) {
-            let l = line((v.x(bar, a), v.y(first.position)), (v.x(bar, b), v.y(last.position)), &case_colour(v, case), 2.2);
+            let l =
+                line((v.x(bar, a), v.y(first.position)), (v.x(bar, b), v.y(last.position)), &case_colour(v, case), 2.2);
             let about = [Of::Mesh(&name), Of::State(&v.lever.cases[case].name)];
             g = g.add(of(dashed(l, case), "lever", &about));
         }

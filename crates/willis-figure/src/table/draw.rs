@@ -238,7 +238,7 @@ fn sections(table: &ShaftTable, states: &[(String, ShaftState)]) -> Vec<Section>
         about,
     };
     let quantity = |name: &str, cell: &dyn Fn(&ShaftState) -> Cell| {
-        row(name.to_owned(), (Of::Quantity, name.to_owned()), cell)
+        row(name.to_owned(), (|n| Of::Quantity(n), name.to_owned()), cell)
     };
     let mut first = vec![
         quantity("ratio", &|s| Cell::exact(s.ratio.as_ref())),
@@ -261,9 +261,9 @@ fn sections(table: &ShaftTable, states: &[(String, ShaftState)]) -> Vec<Section>
             own.map(|(name, _)| name.to_owned()).collect()
         })
     };
-    let member = |name: &String| -> About { (Of::Member, name.clone()) };
+    let member = |name: &String| -> About { (|n| Of::Member(n), name.clone()) };
     let elements = names(states, |s| s.shift_elements.iter().map(|(name, _)| name.to_owned()).collect());
-    let element = |name: &String| -> About { (Of::Element, name.clone()) };
+    let element = |name: &String| -> About { (|n| Of::Element(n), name.clone()) };
     // What it is stands behind the name.
     let called = |name: &String| {
         let kind = states.iter().find_map(|(_, s)| s.shift_elements.get(name)).map_or("", |e| match e.kind {

@@ -35,14 +35,8 @@ impl<'a> Sheet<'a> {
             let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
             joined || data.terminals.iter().any(|t| t.member == k) || !data.members[k].carries.is_empty()
         };
-        let category = data
-            .members
-            .iter()
-            .enumerate()
-            .map(|(k, m)| {
-                (!m.planet || led_out(k)).then_some(m.colour)
-            })
-            .collect();
+        let category =
+            data.members.iter().enumerate().map(|(k, m)| (!m.planet || led_out(k)).then_some(m.colour)).collect();
         let mut s = Self { data, width, height: 0.0, left, unit, rise, category };
         s.height = s.list_top() + s.list_rows() as f64 * ROW + 52.0;
         s
