@@ -202,7 +202,7 @@ fn members(caption: &str, s: &SolutionReport) -> Block {
                 Role::Fixed => "held",
                 _ => "",
             };
-            let power = m.power_w.filter(|p| *p != 0.0).map_or("–".into(), |p| watts(p));
+            let power = m.power_w.filter(|p| *p != 0.0).map_or("–".into(), watts);
             vec![name.clone(), role.to_owned(), number(m.speed_rad_s, RPM), number(m.torque_n_m, 1.0), power]
         })
         .collect();

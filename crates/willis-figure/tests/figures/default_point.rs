@@ -43,11 +43,12 @@ fn every_gear_has_a_power_flow_and_a_ranking() {
                 compared += 1;
             }
             // A gear without losses has nothing to rank; every other one has.
-            if turns && row.drive.value.is_some_and(|e| e < 1.0 - 1e-9) {
-                if let Err(why) = FigureKind::Tornado.make(&model, &request) {
-                    let told = |code| why.iter().any(|d| d.code == code);
-                    assert!(!told(Code::UnknownSelection), "{name} {}: {why}", row.state);
-                }
+            if turns
+                && row.drive.value.is_some_and(|e| e < 1.0 - 1e-9)
+                && let Err(why) = FigureKind::Tornado.make(&model, &request)
+            {
+                let told = |code| why.iter().any(|d| d.code == code);
+                assert!(!told(Code::UnknownSelection), "{name} {}: {why}", row.state);
             }
         }
     }

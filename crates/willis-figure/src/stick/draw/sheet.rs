@@ -58,7 +58,9 @@ impl<'a> Sheet<'a> {
     }
 
     pub fn listed(&self) -> Vec<usize> {
-        (0..self.data.members.len()).filter(|&k| self.category[k].is_some()).collect()
+        let mut all: Vec<usize> = (0..self.data.members.len()).filter(|&k| self.category[k].is_some()).collect();
+        all.sort_by_key(|&k| self.category[k]);
+        all
     }
 
     pub fn list_columns(&self) -> usize {
