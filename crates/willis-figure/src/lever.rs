@@ -134,6 +134,9 @@ pub struct LeverSet {
 pub struct LeverNode {
     /// The member.
     pub member: String,
+    /// Number of its colour: its place among the members of the train; absent for the frame.
+    #[serde(default)]
+    pub colour: Option<usize>,
     /// What it is; several where sets share it.
     pub roles: Vec<LeverRole>,
     /// Height along the lever: 0 lowest, 1 highest of the picture (planets may stand beyond). Of
@@ -434,7 +437,8 @@ fn bar(train: &Train, families: &[Family], placed: &layout::Placed, parts: &[usi
             let at = found.unwrap_or_else(|| {
                 let speeds = shown.speeds.iter().map(|s| s[member.index()]).collect();
                 let name = train.member_name(member).to_owned();
-                nodes.push((member, LeverNode { member: name, roles: vec![], position, number, speeds }));
+                let colour = member.index().checked_sub(1);
+                nodes.push((member, LeverNode { member: name, colour, roles: vec![], position, number, speeds }));
                 nodes.len() - 1
             });
             let roles = &mut nodes[at].1.roles;

@@ -1,5 +1,6 @@
 //! What figures share: colours and type, frames of charts, dark paper, pixels.
 
+pub mod alive;
 pub mod axes;
 pub mod chart;
 pub mod markup;

@@ -91,6 +91,9 @@ pub struct StickBlock {
 pub struct StickMember {
     /// Its name.
     pub name: String,
+    /// Number of its colour: its place among the members of the train.
+    #[serde(default)]
+    pub colour: usize,
     /// A planet: its gears stand on a pin of a carrier.
     pub planet: bool,
     /// The blocks whose planets it carries, positions in [`Stick::blocks`].

@@ -2,6 +2,7 @@
 
 use svg::node::element::{Circle, Group, Path};
 
+use crate::parts::alive::{Of, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, figures, fit, halo, line, lines, number, page, rectangle,
     text, ticks, wide,
@@ -69,17 +70,7 @@ struct View<'a> {
 /// ```
 pub fn draw(lever: &Lever) -> String {
     let v = View::new(lever);
-    let mut rows: Vec<Vec<usize>> = vec![vec![]];
-    let mut used = 0.0;
-    for (k, bar) in lever.bars.iter().enumerate() {
-        let width = v.width(bar) + GAP;
-        if used > 0.0 && used + width > WIDEST - 2.0 * MARGIN {
-            rows.push(vec![]);
-            used = 0.0;
-        }
-        used += width;
-        rows.last_mut().expect("never empty").push(k);
-    }
+    let rows = rows(&v);
     let content =
         rows.iter().map(|r| r.iter().map(|k| v.width(&lever.bars[*k]) + GAP).sum::<f64>()).fold(0.0, f64::max);
     // A long title may widen the page somewhat.
@@ -106,6 +97,28 @@ pub fn draw(lever: &Lever) -> String {
         .add(g)
         .add(key)
         .to_string()
+}
+
+/// The levers in rows, about equally many in each.
+fn rows(v: &View<'_>) -> Vec<Vec<usize>> {
+    let broken = |room: f64| {
+        let mut rows: Vec<Vec<usize>> = vec![vec![]];
+        let mut used = 0.0;
+        for (k, bar) in v.lever.bars.iter().enumerate() {
+            let width = v.width(bar) + GAP;
+            if used > 0.0 && used + width > room {
+                rows.push(vec![]);
+                used = 0.0;
+            }
+            used += width;
+            rows.last_mut().expect("never empty").push(k);
+        }
+        rows
+    };
+    let widest = WIDEST - 2.0 * MARGIN;
+    let first = broken(widest);
+    // The narrowest page that needs no row more.
+    (1..=20).map(|k| broken(widest * f64::from(k) / 20.0)).find(|r| r.len() == first.len()).unwrap_or(first)
 }
 
 impl<'a> View<'a> {
@@ -150,8 +163,26 @@ impl<'a> View<'a> {
     }
 
     /// From the left edge of a lever's panel.
-    fn x(&self, speed: f64) -> f64 {
-        NAMES + PAD + (speed - self.low) / (self.high - self.low) * self.speeds
+    fn x(&self, bar: &LeverBar, speed: f64) -> f64 {
+        let (low, high) = self.range(bar);
+        NAMES + PAD + (speed - low) / (high - low) * self.speeds
+    }
+
+    /// The scale of speeds of a lever: that of the picture, or its own where nothing of it could be seen there.
+    fn range(&self, bar: &LeverBar) -> (f64, f64) {
+        /// How much of the common scale is enough.
+        const SEEN: f64 = 0.12;
+        let nodes = bar.nodes.iter().filter(|n| !planet(n));
+        let own = nodes.flat_map(|n| &n.speeds[..self.cases]).flatten().map(|w| w * self.factor);
+        let (low, high) = own.fold((0.0f64, 0.0f64), |(l, h), w| (l.min(w), h.max(w)));
+        match high - low {
+            spread if spread > 1e-9 * (self.high - self.low) && spread < SEEN * (self.high - self.low) => (low, high),
+            _ => (self.low, self.high),
+        }
+    }
+
+    fn own_scale(&self, bar: &LeverBar) -> bool {
+        self.range(bar) != (self.low, self.high)
     }
 
     fn y(&self, position: f64) -> f64 {
@@ -227,8 +258,14 @@ fn spread(wished: &[f64], gap: f64, limits: (f64, f64)) -> Vec<f64> {
     found
 }
 
-fn case_colour(k: usize) -> String {
-    colour(Some(k), 1.0)
+/// Of one case members have their colours, of several each case has one.
+fn case_colour(v: &View<'_>, k: usize) -> String {
+    if v.cases > 1 { colour(Some(k), 1.0) } else { FAINT.to_owned() }
+}
+
+/// The colour of a member in every kind of figure.
+fn own_colour(n: &LeverNode) -> String {
+    n.colour.map_or(INK.to_owned(), |c| colour(Some(c), 1.0))
 }
 
 fn dashed(l: svg::node::element::Line, k: usize) -> svg::node::element::Line {
@@ -253,7 +290,9 @@ fn levers(v: &View<'_>, row: &[usize], top: f64) -> Group {
         let here: Vec<(f64, f64)> = link
             .points
             .iter()
-            .filter_map(|[b, n]| Some((lefts[*b]? + v.x(0.0), top + v.y(v.lever.bars[*b].nodes[*n].position))))
+            .filter_map(|[b, n]| {
+                Some((lefts[*b]? + v.x(&v.lever.bars[*b], 0.0), top + v.y(v.lever.bars[*b].nodes[*n].position)))
+            })
             .collect();
         for pair in here.windows(2) {
             under = under.add(line(pair[0], pair[1], FAINT, 1.2).set("stroke-dasharray", "6 4"));
@@ -283,7 +322,7 @@ fn across(v: &View<'_>, rows: &[Vec<usize>], top: f64, content: f64) -> Group {
     let places: Vec<Vec<(usize, f64)>> = rows.iter().map(|row| lefts(v, row)).collect();
     let place = |[b, n]: [usize; 2]| {
         let (row, left) = places.iter().enumerate().find_map(|(r, all)| Some((r, all.iter().find(|p| p.0 == b)?.1)))?;
-        Some((row, left + v.x(0.0), top + tall * row as f64 + v.y(v.lever.bars[b].nodes[n].position)))
+        Some((row, left + v.x(&v.lever.bars[b], 0.0), top + tall * row as f64 + v.y(v.lever.bars[b].nodes[n].position)))
     };
     let mut used = 0;
     for link in &v.lever.links {
@@ -322,28 +361,33 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
             text(NAMES + PAD - 14.0, 16.0, 14.0, Anchor::Start, &fit(&head, (width - NAMES - 12.0) / BOLD, 14.0))
                 .set("font-weight", "bold"),
         )
-        .add(scale(v));
+        .add(scale(v, bar));
     let (last, first) = ends(bar);
-    let rest = v.x(0.0);
+    let rest = v.x(bar, 0.0);
     g = g.add(line((rest, v.y(first.position)), (rest, v.y(last.position)), LINE, 3.5));
     for case in 0..v.cases {
         if let (Some(a), Some(b)) = (v.speed(first, case), v.speed(last, case)) {
-            let l = line((v.x(a), v.y(first.position)), (v.x(b), v.y(last.position)), &case_colour(case), 2.2);
-            g = g.add(dashed(l, case));
+            let l =
+                line((v.x(bar, a), v.y(first.position)), (v.x(bar, b), v.y(last.position)), &case_colour(v, case), 2.2);
+            let about = [Of::Mesh(&name), Of::State(&v.lever.cases[case].name)];
+            g = g.add(of(dashed(l, case), "lever", &about));
         }
     }
+    let (low, high) = v.range(bar);
     for n in shown(bar) {
         for case in 0..v.cases {
-            let Some(w) = v.speed(n, case).filter(|w| (v.low..=v.high).contains(w)) else { continue };
+            let Some(w) = v.speed(n, case).filter(|w| (low..=high).contains(w)) else { continue };
             if planet(n) && v.cases > 1 {
                 continue;
             }
-            let dot = Circle::new().set("cx", number(v.x(w))).set("cy", number(v.y(n.position)));
+            let dot = Circle::new().set("cx", number(v.x(bar, w))).set("cy", number(v.y(n.position)));
+            let ink = if v.cases > 1 { case_colour(v, case) } else { own_colour(n) };
             let dot = match planet(n) {
-                true => dot.set("r", 2.6).set("fill", PAPER).set("stroke", case_colour(case)).set("stroke-width", 1.2),
-                false => dot.set("r", 3.4).set("fill", case_colour(case)),
+                true => dot.set("r", 2.6).set("fill", PAPER).set("stroke", ink).set("stroke-width", 1.2),
+                false => dot.set("r", if v.cases > 1 { 3.4 } else { 4.2 }).set("fill", ink),
             };
-            g = g.add(dot);
+            let about = [Of::Member(&n.member), Of::Mesh(&name), Of::State(&v.lever.cases[case].name)];
+            g = g.add(of(dot, "speed", &about));
         }
         g = g.add(mark(rest, v.y(n.position), &n.roles));
         let held = |c: &LeverCase| c.held.contains(&n.member);
@@ -352,7 +396,7 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
         }
     }
     if v.cases > 1 {
-        g = g.add(letters(v, first));
+        g = g.add(letters(v, bar, first));
     }
     g = g.add(names(v, bar));
     if v.lever.torques {
@@ -365,26 +409,32 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
 }
 
 /// The scale of speeds below a lever.
-fn scale(v: &View<'_>) -> Group {
+fn scale(v: &View<'_>, bar: &LeverBar) -> Group {
     let y = v.y(-BEYOND) + 8.0;
-    let mut g = Group::new().add(line((v.x(v.low), y), (v.x(v.high), y), FAINT, 1.0));
+    let (low, high) = v.range(bar);
+    let x = |w: f64| v.x(bar, w);
+    let mut g = Group::new().add(line((x(low), y), (x(high), y), FAINT, 1.0));
     // A number must not run into the next.
     let mut free = f64::NEG_INFINITY;
-    for t in ticks(v.low, v.high, 5) {
+    for t in ticks(low, high, 5) {
         let label = digits(t);
         let half = wide(&label, 10.0) / 2.0;
-        g = g.add(line((v.x(t), y), (v.x(t), y + 4.0), FAINT, 1.0));
-        if v.x(t) - half > free {
-            g = g.add(text(v.x(t), y + 15.0, 10.0, Anchor::Middle, &label).set("fill", FAINT));
-            free = v.x(t) + half + 4.0;
+        g = g.add(line((x(t), y), (x(t), y + 4.0), FAINT, 1.0));
+        if x(t) - half > free {
+            g = g.add(text(x(t), y + 15.0, 10.0, Anchor::Middle, &label).set("fill", FAINT));
+            free = x(t) + half + 4.0;
         }
     }
-    let middle = (v.x(v.low) + v.x(v.high)) / 2.0;
+    let middle = (x(low) + x(high)) / 2.0;
     let caption = match &v.lever.unit {
         None => "ω, rpm".to_owned(),
         Some(input) => format!("ω / ω {}", fit(input, v.speeds + PAD - 30.0, 11.0)),
     };
-    g.add(text(middle, y + 30.0, 11.0, Anchor::Middle, &caption).set("fill", FAINT))
+    g = g.add(text(middle, y + 30.0, 11.0, Anchor::Middle, &caption).set("fill", FAINT));
+    if v.own_scale(bar) {
+        g = g.add(text(middle, y + 44.0, 11.0, Anchor::Middle, "own scale").set("font-weight", "bold"));
+    }
+    g
 }
 
 /// What a point is, by its shape: disc sun, circle ring, square carrier.
@@ -422,8 +472,8 @@ fn ground(x: f64, y: f64) -> Group {
 }
 
 /// Letters of the cases above a lever, each led to its line.
-fn letters(v: &View<'_>, first: &LeverNode) -> Group {
-    let drawn: Vec<(usize, f64)> = (0..v.cases).filter_map(|c| Some((c, v.x(v.speed(first, c)?)))).collect();
+fn letters(v: &View<'_>, bar: &LeverBar, first: &LeverNode) -> Group {
+    let drawn: Vec<(usize, f64)> = (0..v.cases).filter_map(|c| Some((c, v.x(bar, v.speed(first, c)?)))).collect();
     let wished: Vec<f64> = drawn.iter().map(|d| d.1).collect();
     let at = spread(&wished, v.letters, (NAMES + 8.0, NAMES + 2.0 * PAD + v.speeds - 8.0));
     let end = v.y(first.position);
@@ -431,8 +481,8 @@ fn letters(v: &View<'_>, first: &LeverNode) -> Group {
     let mut g = Group::new();
     for ((case, x), place) in drawn.into_iter().zip(at) {
         let letter = text(place, y, 12.0, Anchor::Middle, &v.lever.cases[case].letter).set("font-weight", "bold");
-        g = g.add(line((place, y + 3.0), (x, end - 4.0), &case_colour(case), 0.8)).add(halo(
-            letter.set("fill", case_colour(case)),
+        g = g.add(line((place, y + 3.0), (x, end - 4.0), &case_colour(v, case), 0.8)).add(halo(
+            letter.set("fill", case_colour(v, case)),
             PAPER,
             3.0,
         ));
@@ -492,12 +542,14 @@ fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool
     let own = near.iter().map(|p| bar.nodes[p.node].position);
     let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
     g = g.add(line((centre, v.y(high)), (centre, v.y(low)), LINE, 3.5));
-    let ink = colour(Some(1), 1.0);
     let part = |p: &LeverPull| p.torque.abs() / v.largest;
     let side = |p: &LeverPull| if p.torque < 0.0 { -1.0 } else { 1.0 };
     let loaded: Vec<&LeverPull> = near.iter().copied().filter(|p| part(p) > 1e-9).collect();
     for p in &loaded {
-        g = g.add(arrow(centre, v.y(p.point), side(p) * (LONGEST_ARROW * part(p)).max(7.0), &ink));
+        let n = &bar.nodes[p.node];
+        let one = arrow(centre, v.y(p.point), side(p) * (LONGEST_ARROW * part(p)).max(7.0), &own_colour(n));
+        let own = p.mesh.as_deref().unwrap_or(&set.name);
+        g = g.add(of(one, "torque", &[Of::Member(&n.member), Of::Mesh(own)]));
     }
     // Values stand on the side that their arrow leaves free, clear of the arrows of others.
     let mut placed: Vec<(f64, f64)> = Vec::new();
@@ -515,7 +567,7 @@ fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool
         if (at - y).abs() > 3.0 {
             g = g.add(line((centre - side * 3.0, y), (x + side, at), LINE, 0.8));
         }
-        g = g.add(halo(text(x, at + 3.5, 10.0, anchor, &v.pull(p)), PAPER, 3.0));
+        g = g.add(halo(text(x, at + 3.5, 10.0, anchor, &v.pull(p)), PAPER, 5.0));
     }
     for p in &near {
         let n = &bar.nodes[p.node];
@@ -524,7 +576,7 @@ fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool
     }
     for p in &near {
         let dot = Circle::new().set("cx", number(centre)).set("cy", number(v.y(p.point))).set("r", 1.6);
-        g = g.add(dot.set("fill", ink.as_str()));
+        g = g.add(dot.set("fill", own_colour(&bar.nodes[p.node])));
     }
     g
 }
@@ -623,7 +675,7 @@ fn key(v: &View<'_>, top: f64, width: f64) -> (Group, f64) {
         for (k, case) in drawn.iter().enumerate() {
             let x = MARGIN + column * (k / rows) as f64;
             let y = y + 26.0 + 20.0 * (k % rows) as f64;
-            let sample = line((x, y - 4.0), (x + 40.0, y - 4.0), &case_colour(k), 2.2);
+            let sample = line((x, y - 4.0), (x + 40.0, y - 4.0), &case_colour(v, k), 2.2);
             if case.note.is_none() {
                 g = g.add(dashed(sample, k));
             }

@@ -7,6 +7,7 @@ use svg::node::element::{Circle, Group, Path, Polyline};
 
 use self::labels::Labels;
 use self::sheet::{LIST, MARGIN, PLATE, ROW, Sheet};
+use crate::parts::alive::{Of, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
@@ -137,20 +138,23 @@ impl Sheet<'_> {
         for loaded in [false, true] {
             for (k, m) in self.data.members.iter().enumerate().filter(|(k, _)| self.category[*k].is_some()) {
                 let ink = self.ink(Some(k));
+                let mut lines = Group::new();
                 for p in m.pieces.iter().filter(|p| p.loaded == loaded) {
-                    g = g.add(self.polyline(&p.points, &ink, if loaded { THICK } else { THIN }, labels));
+                    lines = lines.add(self.polyline(&p.points, &ink, if loaded { THICK } else { THIN }, labels));
                     if p.circulates {
                         let broken = self.polyline(&p.points, PAPER, 2.0, &mut Labels::default());
-                        g = g.add(broken.set("stroke-dasharray", "7 5").set("stroke-linecap", "butt"));
+                        lines = lines.add(broken.set("stroke-dasharray", "7 5").set("stroke-linecap", "butt"));
                     }
-                    g = g.add(self.direction(p, &ink));
+                    lines = lines.add(self.direction(p, &ink));
                 }
                 for d in m.dots.iter().filter(|_| loaded) {
                     let (x, y) = self.at(*d);
-                    g = g.add(
+                    lines = lines.add(
                         Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", 3).set("fill", ink.as_str()),
                     );
                 }
+                // What carries power lies above what does not, so a member may have two groups.
+                g = g.add(of(lines, if loaded { "power" } else { "line" }, &[Of::Member(&m.name)]));
             }
         }
         g
@@ -194,14 +198,15 @@ impl Sheet<'_> {
 
     fn gears(&self, labels: &mut Labels) -> Group {
         let mut g = Group::new();
-        for gear in &self.data.gears {
+        for (nth, gear) in self.data.gears.iter().enumerate() {
+            let mut body_of = Group::new();
             let planet = gear.role == GearRole::Planet;
             let ink = if planet { INK.to_owned() } else { self.ink(gear.member) };
             let body = if gear.loaded { THICK } else { THIN };
             for [hub, tip] in &gear.stems {
                 let (a, b) = (self.at(*hub), self.near(*tip, *hub));
                 labels.mark(a, b, body / 2.0 + 1.0);
-                g = g.add(line(a, b, &ink, body));
+                body_of = body_of.add(line(a, b, &ink, body));
             }
             for face in &gear.faces {
                 let stem = gear.stems.iter().find(|s| on(face, s[1])).or(gear.stems.first());
@@ -213,8 +218,11 @@ impl Sheet<'_> {
                 let (dx, dy) = if upright { (shifted.0 - from.0, 0.0) } else { (0.0, shifted.1 - from.1) };
                 let [a, b] = face.map(|p| self.at(p)).map(|p| (p.0 + dx, p.1 + dy));
                 labels.mark(a, b, 3.0);
-                g = g.add(line(a, b, &ink, 3.0));
+                body_of = body_of.add(line(a, b, &ink, 3.0));
             }
+            let name = gear.member.map_or("frame", |k| self.data.members[k].name.as_str());
+            let about = [Of::Member(name), Of::Mesh(&self.data.blocks[gear.block].name)];
+            g = g.add(of(body_of, &format!("gear{nth}"), &about));
         }
         // Stepped planets are one body; each turns on its pin.
         for (k, m) in self.data.members.iter().enumerate() {
@@ -260,7 +268,7 @@ impl Sheet<'_> {
     fn joints(&self, labels: &mut Labels) -> Group {
         let mut g = Group::new();
         for j in &self.data.joints {
-            g = g.add(self.joint(j, labels));
+            g = g.add(of(self.joint(j, labels), "joint", &[Of::Element(&j.name)]));
         }
         g
     }

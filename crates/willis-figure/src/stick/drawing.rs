@@ -335,6 +335,8 @@ impl<'a> Drawing<'a> {
         let speed = self.load.speeds[id.index()].as_ref();
         StickMember {
             name: self.train.member_name(id).to_owned(),
+            // The frame comes first and has none.
+            colour: id.index() - 1,
             planet: self.members.is_planet(id),
             carries: (0..self.plan.blocks.len()).filter(|&b| self.carries(b, id)).collect(),
             pieces,

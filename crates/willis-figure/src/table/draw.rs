@@ -5,6 +5,7 @@ use willis::analysis::{ShaftElement, ShaftState, ShaftTable};
 use willis::exact::Rational;
 use willis::train::ShiftElementKind;
 
+use crate::parts::alive::{Of, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, colour, figures, fit, line, lines, number, page, rectangle, text, titled, wide,
 };
@@ -37,11 +38,14 @@ enum Cell {
     Words(String),
 }
 
+/// What a row is about, and its name.
+type About = (for<'n> fn(&'n str) -> Of<'n>, String);
+
 /// A row: what it is about, and a cell for each state.
 struct Row {
     name: String,
-    /// `data-…` of its cells.
-    about: (&'static str, String),
+    /// What its cells stand for, beside the state.
+    about: About,
     cells: Vec<Cell>,
 }
 
@@ -101,11 +105,11 @@ pub fn draw(table: &ShaftTable) -> String {
         g = g.add(text(MARGIN, y, 12.0, Anchor::Start, "state").set("font-weight", "bold"));
         for (k, (name, _)) in block.iter().enumerate() {
             let head = text(x(k + 1) - 6.0, y, 13.0, Anchor::End, &fit(name, (column - 8.0) / BOLD, 13.0));
-            g = g.add(titled(head.set("font-weight", "bold").set("data-state", name.as_str()), name));
+            g = g.add(titled(of(head.set("font-weight", "bold"), "head", &[Of::State(name)]), name));
         }
         y += 8.0;
         g = g.add(line((MARGIN - 8.0, y), (right, y), INK, 1.2));
-        for s in sections {
+        for (nth, s) in sections.iter().enumerate() {
             if !s.head.is_empty() {
                 y += HEAD - ROW + 4.0;
                 let own = lines(&s.head, inner / BOLD, 12.0);
@@ -118,15 +122,17 @@ pub fn draw(table: &ShaftTable) -> String {
             }
             let most =
                 s.rows.iter().flat_map(|r| &r.cells).filter_map(Cell::number).fold(0.0, |a: f64, x| a.max(x.abs()));
-            for (k, row) in s.rows.iter().enumerate() {
-                if k % 2 == 0 {
+            for (line_of, row) in s.rows.iter().enumerate() {
+                if line_of % 2 == 0 {
                     g = g.add(rectangle(MARGIN - 8.0, y, right - MARGIN + 8.0, ROW, BAND));
                 }
                 let name = text(MARGIN, y + 15.0, 12.0, Anchor::Start, &fit(&row.name, names - 10.0, 12.0));
-                g = g.add(titled(name.set(row.about.0, row.about.1.as_str()), &row.name));
+                g = g.add(titled(name, &row.name));
+                // The same shaft has a row in several sections.
+                let word = format!("cell{nth}-{line_of}");
                 for (k, cell) in row.cells.iter().enumerate() {
                     let own = drawn(s, cell, [x(k), x(k + 1)], y, most);
-                    g = g.add(own.set("data-state", block[k].0.as_str()).set(row.about.0, row.about.1.as_str()));
+                    g = g.add(of(own, &word, &[(row.about.0)(&row.about.1), Of::State(&block[k].0)]));
                 }
                 y += ROW;
             }
@@ -226,13 +232,13 @@ fn names(states: &[(String, ShaftState)], of: impl Fn(&ShaftState) -> Vec<String
 }
 
 fn sections(table: &ShaftTable, states: &[(String, ShaftState)]) -> Vec<Section> {
-    let row = |name: String, about: (&'static str, String), cell: &dyn Fn(&ShaftState) -> Cell| Row {
+    let row = |name: String, about: About, cell: &dyn Fn(&ShaftState) -> Cell| Row {
         cells: states.iter().map(|(_, s)| cell(s)).collect(),
         name,
         about,
     };
     let quantity = |name: &str, cell: &dyn Fn(&ShaftState) -> Cell| {
-        row(name.to_owned(), ("data-quantity", name.replace(' ', "-")), cell)
+        row(name.to_owned(), (|n| Of::Quantity(n), name.to_owned()), cell)
     };
     let mut first = vec![
         quantity("ratio", &|s| Cell::exact(s.ratio.as_ref())),
@@ -255,9 +261,9 @@ fn sections(table: &ShaftTable, states: &[(String, ShaftState)]) -> Vec<Section>
             own.map(|(name, _)| name.to_owned()).collect()
         })
     };
-    let member = |name: &String| ("data-member", name.clone());
+    let member = |name: &String| -> About { (|n| Of::Member(n), name.clone()) };
     let elements = names(states, |s| s.shift_elements.iter().map(|(name, _)| name.to_owned()).collect());
-    let element = |name: &String| ("data-element", name.clone());
+    let element = |name: &String| -> About { (|n| Of::Element(n), name.clone()) };
     // What it is stands behind the name.
     let called = |name: &String| {
         let kind = states.iter().find_map(|(_, s)| s.shift_elements.get(name)).map_or("", |e| match e.kind {

@@ -109,6 +109,12 @@ fn faults(svg: &str, faces: &Arc<fontdb::Database>) -> Vec<String> {
             wrong.push(format!("no size: {}", &svg[n.range()].chars().take(120).collect::<String>()));
         }
     }
+    let mut ids = std::collections::BTreeSet::new();
+    for n in document.descendants() {
+        if n.attribute("id").is_some_and(|id| !ids.insert(id.to_owned()) || id.contains(' ')) {
+            wrong.push(format!("an id that is not one mark's: {:?}", n.attribute("id")));
+        }
+    }
     let options = Options { fontdb: faces.clone(), ..Options::default() };
     let tree = Tree::from_str(svg, &options).expect("proper SVG");
     let mut words = vec![];

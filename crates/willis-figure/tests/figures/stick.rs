@@ -299,6 +299,8 @@ fn other_names_give_the_same_picture() {
                 assert_eq!(n.name, other(k));
             }
             m.name.clone_from(&n.name);
+            // Colours follow the order of the members, which here follows the names.
+            m.colour = n.colour;
         }
         for (m, n) in s.meshes.iter_mut().zip(&t.meshes) {
             m.name.clone_from(&n.name);

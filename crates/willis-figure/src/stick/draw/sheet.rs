@@ -31,22 +31,12 @@ impl<'a> Sheet<'a> {
         let drawn = unit * data.width;
         let width = (drawn + 2.0 * MARGIN).clamp(640.0, 4000.0).max(0.0);
         let left = (width - drawn) / 2.0;
-        let mut next = 0;
         let led_out = |k: usize| {
             let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
             joined || data.terminals.iter().any(|t| t.member == k) || !data.members[k].carries.is_empty()
         };
-        let category = data
-            .members
-            .iter()
-            .enumerate()
-            .map(|(k, m)| {
-                (!m.planet || led_out(k)).then(|| {
-                    next += 1;
-                    next - 1
-                })
-            })
-            .collect();
+        let category =
+            data.members.iter().enumerate().map(|(k, m)| (!m.planet || led_out(k)).then_some(m.colour)).collect();
         let mut s = Self { data, width, height: 0.0, left, unit, rise, category };
         s.height = s.list_top() + s.list_rows() as f64 * ROW + 52.0;
         s
@@ -68,7 +58,9 @@ impl<'a> Sheet<'a> {
     }
 
     pub fn listed(&self) -> Vec<usize> {
-        (0..self.data.members.len()).filter(|&k| self.category[k].is_some()).collect()
+        let mut all: Vec<usize> = (0..self.data.members.len()).filter(|&k| self.category[k].is_some()).collect();
+        all.sort_by_key(|&k| self.category[k]);
+        all
     }
 
     pub fn list_columns(&self) -> usize {
