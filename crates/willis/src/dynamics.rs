@@ -41,6 +41,7 @@ mod source;
 mod start;
 mod steady;
 mod still;
+mod stretch;
 mod system;
 mod window;
 

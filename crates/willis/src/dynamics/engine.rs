@@ -12,8 +12,8 @@ use super::mode::{Map, Maps, Mode, Side, compose, dot, slope};
 use super::report::LimitExceeded;
 use super::shows::{Moves, Shows};
 use super::source::{out_of_domain, source_torque};
-use super::steady::Steady;
 use super::still::Still;
+use super::stretch::Steady;
 use super::system::{Rubs, System};
 
 /// What a backlash does.

@@ -5,8 +5,8 @@ use crate::train::{ShiftElementKind, Train};
 
 use super::element::element_name;
 use super::engine::{Engine, Touch};
-use super::margins::Watch;
 use super::report::{Event, Happening, HappeningKind, ModeLabel};
+use super::stretch::Watch;
 
 /// Why the mode is chosen anew.
 #[derive(Clone, Copy, Debug, PartialEq)]

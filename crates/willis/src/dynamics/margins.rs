@@ -4,23 +4,7 @@ use crate::train::Contact;
 
 use super::engine::{Engine, Touch};
 use super::mode::{Map, Mode, Side, dot_size};
-
-/// What is watched within a mode: it changes where a margin becomes negative.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Watch {
-    /// A sliding group comes to rest.
-    Slip(usize),
-    /// A held group breaks away, forward or backward; 0: either way.
-    Hold(usize, i8),
-    /// Something of what is held breaks away, decided for all of it together.
-    Rest,
-    /// The drive of an element reverses.
-    Side(usize),
-    /// A backlash or its damper changes.
-    Touch(usize),
-    /// A shift element begins or ceases to be engaged.
-    Engage(usize),
-}
+use super::stretch::Watch;
 
 /// A margin and the size of its round-off.
 #[derive(Clone, Copy, Debug)]

@@ -1,32 +1,11 @@
-//! What a stretch has in common: one mode, and one smooth piece of every signal.
-//!
-//! Most of what acts at a state then acts at every other one too, a constant torque or what rubs as hard at every speed.
-//! That is found once for the stretch, with the list of what else has to be asked and of what has to be watched.
+//! What acts alike at all states of a stretch, found once for it.
 
 use crate::train::SourceKind;
 
 use super::element::Element;
 use super::engine::Engine;
-use super::margins::Watch;
+use super::stretch::Steady;
 use super::system::Rubs;
-
-/// Torques of the ports that do not change, and where those come from that do.
-#[derive(Clone)]
-pub(super) struct Steady {
-    /// The time that says which piece it is of.
-    inside: f64,
-    /// Torques of the ports; zero where they change.
-    tau: Vec<f64>,
-    sources: Vec<(usize, usize)>,
-    /// Friction elements with a part in proportion to their speed, and those whose other part changes.
-    viscous: Vec<usize>,
-    sliding: Vec<usize>,
-    elements: Vec<usize>,
-    /// How far friction elements are engaged, where that does not change.
-    engaged: Vec<Option<f64>>,
-    /// What is watched.
-    pub watches: Vec<Watch>,
-}
 
 impl Element {
     /// Whether its constant loss is the same at every speed and load.

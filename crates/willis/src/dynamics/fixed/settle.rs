@@ -268,24 +268,6 @@ impl FixedStep {
                     self.solve(free, cols);
                 }
             }
-            if std::env::var_os("WILLIS_FLIPS").is_some() {
-                let what = match &flip {
-                    None => "none".to_string(),
-                    Some(Flip::Group(g, sign)) => {
-                        format!("group {g} {:?} -> {sign}", self.engine.system.groups[*g].names)
-                    }
-                    Some(Flip::Side(j)) => format!("side {j}"),
-                    Some(Flip::Stuck) => "stuck".into(),
-                    Some(Flip::Shaft(k, _)) => format!("shaft {k}"),
-                };
-                eprintln!(
-                    "FLIP step {} sign {:?} cap {:?} redundant {} kept {kept:b}: {what}",
-                    self.count,
-                    self.sign,
-                    self.capacity.iter().map(|c| c[0]).collect::<Vec<_>>(),
-                    self.maps[map as usize].is_redundant
-                );
-            }
             match flip {
                 None => return true,
                 Some(Flip::Group(g, sign)) => {
@@ -302,9 +284,6 @@ impl FixedStep {
                 Some(Flip::Side(j)) => self.side[j] = self.side[j].other(),
                 Some(Flip::Stuck) => return false,
             }
-        }
-        if std::env::var_os("WILLIS_FLIPS").is_some() {
-            eprintln!("FLIP step {} exhausted", self.count);
         }
         false
     }

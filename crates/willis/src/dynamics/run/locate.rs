@@ -1,6 +1,7 @@
 //! Events within a step.
 
-use crate::dynamics::margins::{Margin, NOISE, Watch};
+use crate::dynamics::margins::{Margin, NOISE};
+use crate::dynamics::stretch::Watch;
 
 use super::Simulation;
 
