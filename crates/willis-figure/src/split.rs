@@ -216,10 +216,9 @@ fn freedoms(train: &Train, base: &Operation, state: &Option<String>) -> usize {
 
 /// Input and output in a state.
 fn ends(train: &Train, state: &Option<String>) -> Option<[MemberId; 2]> {
-    let own = state.as_deref().and_then(|name| train.state(name));
-    let input = own.and_then(|s| s.input).or(train.input())?;
-    let output = own.and_then(|s| s.output).or(train.output())?;
-    Some([input, output])
+    let state = state.as_deref().and_then(|name| train.find_state(name).ok());
+    let [input, output] = train.ends(state);
+    Some([input?, output?])
 }
 
 /// Ratios at which a side of a variator stands still while input and output turn.

@@ -477,9 +477,8 @@ impl Physics<'_> {
         for v in &flow.variators {
             let VariatorPath::Bus { machines, standby, .. } = &self.train.variators[v.variator].path else { continue };
             for (k, (machine, side)) in machines.iter().zip(&v.sides).enumerate() {
-                if let MachineEfficiency::Map(map) = &machine.efficiency {
-                    let (eta, _) = map.at(side.speed.abs(), side.torque.abs() * side.power.signum());
-                    step.machines.push(([v.variator, k], eta));
+                if let MachineEfficiency::Map(_) = machine.efficiency {
+                    step.machines.push(([v.variator, k], machine.efficiency.at(side.torque, side.speed).0));
                 }
             }
             // The bus turns, so a power is a torque on it.

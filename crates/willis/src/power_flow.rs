@@ -11,6 +11,7 @@ use crate::statics::Solution;
 use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train, Variator};
 
 pub use limits::{BeyondLimit, LimitedQuantity};
+pub(crate) use limits::{machine_beyond, ratio_beyond};
 
 /// Torques and powers at one mesh (all `count` of them together).
 #[derive(Clone, Debug)]

@@ -594,6 +594,26 @@ impl Train {
         self.output
     }
 
+    /// Where power enters and leaves in a state when driving: as it says itself, else as the train does. Without a state,
+    /// those of the train.
+    ///
+    /// # Panics
+    /// If there is no state at that position.
+    ///
+    /// ```
+    /// use willis::train::Train;
+    ///
+    /// let text = "format = 1\nname = \"pair\"\nmembers = [\"a\", \"b\"]\nterminals = [\"a\", \"b\"]\n\
+    ///             [[mesh]]\ngears = [{ member = \"a\", teeth = 20 }, { member = \"b\", teeth = 40 }]\n";
+    /// let train = Train::from_toml(text)?;
+    /// assert_eq!(train.ends(None), [train.input(), train.output()]);
+    /// # Ok::<(), willis::diagnostic::Diagnostics>(())
+    /// ```
+    pub fn ends(&self, state: Option<usize>) -> [Option<MemberId>; 2] {
+        let own = state.map(|k| &self.states[k]);
+        [own.and_then(|s| s.input).or(self.input), own.and_then(|s| s.output).or(self.output)]
+    }
+
     /// Sweeps that the file describes.
     pub fn studies(&self) -> &[StudySpec] {
         &self.studies

@@ -34,10 +34,8 @@ pub fn pointed<'t>(train: &'t Train, selection: &Selection) -> Cow<'t, Train> {
 
 /// Where power enters and leaves in a state, driving.
 pub fn ends(train: &Train, state: Option<usize>) -> Option<(MemberId, MemberId)> {
-    let own = state.map(|k| &train.states()[k]);
-    let input = own.and_then(|s| s.input).or(train.input())?;
-    let output = own.and_then(|s| s.output).or(train.output())?;
-    (input != output).then_some((input, output))
+    let [input, output] = train.ends(state);
+    Some((input?, output?)).filter(|(input, output)| input != output)
 }
 
 fn driven(train: &Train, state: Option<usize>) -> Option<Train> {

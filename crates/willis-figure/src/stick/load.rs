@@ -52,10 +52,8 @@ impl Load {
             return load;
         }
         let own = state.map(|k| &train.states()[k]);
-        let input = own.and_then(|s| s.input).or(train.input());
-        let output = own.and_then(|s| s.output).or(train.output());
         let engaged: &[ShiftElementId] = own.map_or(&[], |s| &s.engaged);
-        let (Some(input), Some(output)) = (input, output) else { return load };
+        let [Some(input), Some(output)] = train.ends(state) else { return load };
         if input == output {
             return load;
         }

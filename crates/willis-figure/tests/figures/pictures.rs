@@ -38,6 +38,7 @@ fn texts(group: &usvg::Group, into: &mut Vec<(String, usvg::Rect)>) {
 
 /// Whether the last thing before an ellipsis is a number, or a part of one: nobody can tell which.
 fn cuts_a_number(words: &str) -> bool {
+    // What stands behind the last ellipsis was not cut.
     words.split('…').rev().skip(1).any(|before| {
         let last = before.rsplit([' ', '(', '=', ':']).next().unwrap_or("");
         let last = last.trim_start_matches(['−', '-', '+', '±']);

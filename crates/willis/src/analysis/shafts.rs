@@ -135,14 +135,13 @@ pub fn shaft_table(train: &Train, state: Option<&str>, lossless: bool) -> Result
         if state.is_some() && only != Some(k) {
             continue;
         }
-        let ends = (s.input.or(train.input), s.output.or(train.output));
-        match row(train, &s.engaged, ends, lossless) {
+        match row(train, &s.engaged, train.ends(Some(k)), lossless) {
             Some(row) => states.push((s.name.clone(), row)),
             None => diagnostics.push(no_ends(&format!("state {}", s.name), &format!("state[{k}]"))),
         }
     }
     if train.states.is_empty() || state == Some(AS_DRAWN) {
-        match row(train, &[], (train.input, train.output), lossless) {
+        match row(train, &[], train.ends(None), lossless) {
             Some(row) => states.push((AS_DRAWN.to_owned(), row)),
             None => return Err(no_ends("the train", "").into()),
         }
@@ -172,13 +171,8 @@ struct Torques {
     exact: Option<Rational>,
 }
 
-fn row(
-    train: &Train,
-    engaged: &[ShiftElementId],
-    ends: (Option<MemberId>, Option<MemberId>),
-    lossless: bool,
-) -> Option<ShaftState> {
-    let (Some(input), Some(output)) = ends else { return None };
+fn row(train: &Train, engaged: &[ShiftElementId], ends: [Option<MemberId>; 2], lossless: bool) -> Option<ShaftState> {
+    let [Some(input), Some(output)] = ends else { return None };
     if input == output {
         return None;
     }

@@ -18,12 +18,9 @@ pub(super) fn row(
     name: &str,
     diagnostics: &mut Diagnostics,
 ) -> Option<StateReport> {
-    let own = state.map(|k| &train.states[k]);
-    let input = own.and_then(|s| s.input).or(train.input);
-    let output = own.and_then(|s| s.output).or(train.output);
     let place = state.map_or(String::new(), |k| format!("state[{k}]"));
-    let (input, output) = match (input, output) {
-        (Some(input), Some(output)) if input != output => (input, output),
+    let (input, output) = match train.ends(state) {
+        [Some(input), Some(output)] if input != output => (input, output),
         _ => {
             if state.is_some() {
                 let text = format!("state {name}: input and output are not two different members, so it has no ratio");

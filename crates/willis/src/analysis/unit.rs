@@ -30,8 +30,7 @@ impl UnitPoint {
             let all: Diagnostics = Diagnostic::new(Code::Unfit, "", text).hint(hint).into();
             all
         };
-        let ends = (own.and_then(|s| s.input).or(train.input), own.and_then(|s| s.output).or(train.output));
-        let (Some(input), Some(output)) = ends else {
+        let [Some(input), Some(output)] = train.ends(state) else {
             let text = format!("{what} has no input and output, and no operation says how it turns and what loads it");
             return Err(refuse(text, "name two `terminals`, or `input` and `output`; or add an [[operation]]"));
         };

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::named::Named;
-use crate::power_flow::{BeyondLimit, Flow, LimitedQuantity, SideFlow, VariatorFlow};
-use crate::train::{MachineEfficiency, Train, Variator, VariatorKind, VariatorPath};
+use crate::power_flow::{BeyondLimit, Flow, SideFlow, VariatorFlow, machine_beyond, ratio_beyond};
+use crate::train::{Train, Variator, VariatorKind, VariatorPath};
 
 use super::SolutionReport;
 
@@ -86,11 +86,7 @@ fn report(train: &Train, v: &Variator, f: &VariatorFlow, input: f64) -> Variator
         torque_n_m: s.torque + 0.0,
         speed_rad_s: s.speed + 0.0,
         power_w: s.power + 0.0,
-        efficiency: v.machines().get(k).filter(|_| s.power != 0.0).map(|m| match &m.efficiency {
-            MachineEfficiency::Constant(e) if s.power > 0.0 => e.forward.to_f64(),
-            MachineEfficiency::Constant(e) => e.backward.to_f64(),
-            MachineEfficiency::Map(map) => map.at(s.speed.abs(), s.torque.abs() * s.power.signum()).0,
-        }),
+        efficiency: v.machines().get(k).filter(|_| s.power != 0.0).map(|m| m.efficiency.at(s.torque, s.speed).0),
     };
     VariatorReport {
         kind: v.kind,
@@ -105,37 +101,17 @@ fn report(train: &Train, v: &Variator, f: &VariatorFlow, input: f64) -> Variator
 
 /// Limits that a flow exceeds.
 pub(super) fn beyond(train: &Train, flow: &Flow) -> Vec<BeyondLimit> {
-    // A value that was computed to be a limit is not beyond it.
-    let above = |x: f64, limit: f64| x > limit * (1.0 + 1e-9);
-    let mut all = Vec::new();
-    for f in &flow.variators {
+    let of = |f: &VariatorFlow| {
         let v = &train.variators[f.variator];
-        let beyond = |machine: Option<&String>, quantity, value, limit| BeyondLimit {
-            variator: v.name.clone(),
-            machine: machine.cloned(),
-            quantity,
-            value,
-            limit,
+        let ratio = match &f.sides[..] {
+            [a, b] => ratio_beyond(v, a.speed / b.speed),
+            _ => None,
         };
-        if let (VariatorPath::Direct { ratio: [least, most], .. }, [a, b]) = (&v.path, &f.sides[..]) {
-            let ratio = a.speed / b.speed;
-            let slack = 1e-9 * ratio.abs();
-            let low = least.filter(|least| ratio.is_finite() && ratio < least - slack);
-            let high = most.filter(|most| ratio > most + slack);
-            all.extend(low.or(high).map(|limit| beyond(None, LimitedQuantity::Ratio, ratio, limit)));
-        }
-        for (machine, side) in v.machines().iter().zip(&f.sides) {
-            for (quantity, value, limit) in [
-                (LimitedQuantity::Torque, side.torque, machine.torque),
-                (LimitedQuantity::Power, side.power, machine.power),
-                (LimitedQuantity::Speed, side.speed, machine.speed),
-            ] {
-                let limit = limit.filter(|limit| above(value.abs(), *limit));
-                all.extend(limit.map(|limit| beyond(Some(&machine.name), quantity, value, limit)));
-            }
-        }
-    }
-    all
+        let machines = v.machines().iter().zip(&f.sides);
+        let machines = machines.flat_map(|(m, side)| machine_beyond(v, m, side.torque, side.speed));
+        ratio.into_iter().chain(machines).map(|(limit, _)| limit).collect::<Vec<_>>()
+    };
+    flow.variators.iter().flat_map(of).collect()
 }
 
 /// Machines of an equilibrium that run outside their maps.
@@ -143,10 +119,7 @@ pub(super) fn outside_maps(train: &Train, s: &SolutionReport) -> Vec<String> {
     let outside = |name: &str, m: &MachineReport| {
         let mut machines = train.variators.iter().flat_map(Variator::machines);
         let machine = machines.find(|own| own.name == name);
-        machine.is_some_and(|own| match &own.efficiency {
-            MachineEfficiency::Map(map) => map.at(m.speed_rad_s.abs(), m.torque_n_m.abs() * m.power_w.signum()).1,
-            MachineEfficiency::Constant(_) => false,
-        })
+        machine.is_some_and(|own| own.efficiency.at(m.torque_n_m, m.speed_rad_s).1)
     };
     let all = s.variators.iter().flat_map(|(_, v)| v.machines.iter());
     all.filter(|(name, m)| outside(name, m)).map(|(name, _)| name.clone()).collect()

@@ -4,6 +4,11 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::train::{Machine, Variator, VariatorPath};
+
+/// Part by which a limit may be exceeded: a value that was computed to be the limit is not beyond it.
+const SAME: f64 = 1e-9;
+
 /// A limit of a variator that an operating point exceeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -36,6 +41,37 @@ pub enum LimitedQuantity {
     Speed,
     /// Speed of the first side over that of the second.
     Ratio,
+}
+
+/// The limit that a ratio, first side over second, exceeds, and by what part of it.
+pub(crate) fn ratio_beyond(v: &Variator, ratio: f64) -> Option<(BeyondLimit, f64)> {
+    let VariatorPath::Direct { ratio: [least, most], .. } = &v.path else { return None };
+    let slack = SAME * ratio.abs();
+    let low = least.filter(|least| ratio.is_finite() && ratio < least - slack);
+    let limit = low.or(most.filter(|most| ratio > most + slack))?;
+    let beyond =
+        BeyondLimit { variator: v.name.clone(), machine: None, quantity: LimitedQuantity::Ratio, value: ratio, limit };
+    Some((beyond, (ratio - limit).abs() / limit.abs().max(SAME)))
+}
+
+/// The limits that a machine exceeds at a torque, N m, and a speed, rad/s, and by what part of them.
+pub(crate) fn machine_beyond<'m>(
+    v: &'m Variator,
+    machine: &'m Machine,
+    torque: f64,
+    speed: f64,
+) -> impl Iterator<Item = (BeyondLimit, f64)> + 'm {
+    let all = [
+        (LimitedQuantity::Torque, torque, machine.torque),
+        (LimitedQuantity::Power, torque * speed, machine.power),
+        (LimitedQuantity::Speed, speed, machine.speed),
+    ];
+    all.into_iter().filter_map(|(quantity, value, limit)| {
+        let limit = limit.filter(|limit| value.abs() > limit * (1.0 + SAME))?;
+        let machine = Some(machine.name.clone());
+        let beyond = BeyondLimit { variator: v.name.clone(), machine, quantity, value, limit };
+        Some((beyond, value.abs() / limit - 1.0))
+    })
 }
 
 impl fmt::Display for BeyondLimit {

@@ -400,9 +400,7 @@ pub fn formulas(train: &Train, request: &FormulaRequest) -> Result<FormulaSheet,
     }
     let several = states.len() > 1;
     for super::Choice { state, configuration: c, terminals: members, balance } in states {
-        let own = train.states.iter().find(|s| s.name == state);
-        let input = own.and_then(|s| s.input).or(train.input);
-        let output = own.and_then(|s| s.output).or(train.output);
+        let [input, output] = train.ends(train.states.iter().position(|s| s.name == state));
         // As drawn is left out when a shift table says how the train is used.
         let unasked = several && state == AS_DRAWN;
         let found = if c.degrees_of_freedom() == 1 && request.regime.is_some() {

@@ -209,10 +209,8 @@ impl PointAnswer {
 
 /// Where power enters and leaves when driving.
 fn ends(train: &Train, operation: &Operation) -> Option<[MemberId; 2]> {
-    let own = operation.state.map(|k| &train.states[k]);
-    let input = own.and_then(|s| s.input).or(train.input)?;
-    let output = own.and_then(|s| s.output).or(train.output)?;
-    Some([input, output])
+    let [input, output] = train.ends(operation.state);
+    Some([input?, output?])
 }
 
 /// Speed of the input over that of the output, where both are known and the output turns.

@@ -229,11 +229,11 @@ impl<'s> Question<'s> {
     }
 
     pub(super) fn role(&self, train: &Train, operation: &Operation, who: Who) -> Result<MemberId, Diagnostics> {
-        let own = operation.state.map(|k| &train.states[k]);
+        let [input, output] = train.ends(operation.state);
         let (found, what) = match who {
             Who::Member(m) => return Ok(m),
-            Who::Input => (own.and_then(|s| s.input).or(train.input), "input"),
-            Who::Output => (own.and_then(|s| s.output).or(train.output), "output"),
+            Who::Input => (input, "input"),
+            Who::Output => (output, "output"),
         };
         found.ok_or_else(|| {
             let hint = "name two `terminals`, or `input` and `output`; or call the member by its name";

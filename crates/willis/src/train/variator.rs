@@ -193,6 +193,15 @@ impl Variator {
 }
 
 impl MachineEfficiency {
+    /// The efficiency where a machine exerts a torque, N m, at a speed, rad/s; and whether that lies outside its map, whose
+    /// edge is taken there.
+    pub(crate) fn at(&self, torque: f64, speed: f64) -> (f64, bool) {
+        match self {
+            Self::Constant(e) => ((if torque * speed > 0.0 { &e.forward } else { &e.backward }).to_f64(), false),
+            Self::Map(map) => map.at(speed.abs(), if torque * speed < 0.0 { -torque.abs() } else { torque.abs() }),
+        }
+    }
+
     /// The values from which an operating point starts.
     pub(crate) fn nominal(&self) -> Efficiency {
         match self {
