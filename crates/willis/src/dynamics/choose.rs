@@ -86,6 +86,9 @@ impl Engine {
         for k in 0..self.touch.len() {
             self.touch[k] = self.touch_now(k, x);
         }
+        if !self.path_ends.is_empty() {
+            self.look_at_ends(t, x);
+        }
         let mut start = guess.clone();
         for g in 0..at_rest.len() {
             let slip = self.group_slip(g);

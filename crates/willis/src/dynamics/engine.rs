@@ -14,7 +14,7 @@ use super::shows::{Moves, Shows};
 use super::source::{out_of_domain, source_torque};
 use super::still::Still;
 use super::stretch::Steady;
-use super::system::{Rubs, System};
+use super::system::{PathKind, Rubs, System};
 
 /// What a backlash does.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -57,6 +57,10 @@ const MOST_ROUNDS: usize = 100;
 /// Size below which a speed, rad/s, or an angle, rad, counts as small at the start of a run.
 const LEAST_SCALE: f64 = 1e-3;
 
+/// How much less exactly than a speed the torque of a variator is followed: its damper makes a torque of the round-off of
+/// speeds, below which no step can go.
+const GIVE: f64 = 100.0;
+
 /// The same for what has but a trace of inertia: its angle says where it is, and its speed, a difference of large angles
 /// over a short time, need not be better than that.
 const FOLLOWS: f64 = 1e6;
@@ -83,8 +87,12 @@ pub(crate) struct Engine {
     pub tau: Vec<f64>,
     /// Variators at the state looked at last.
     pub path_states: Vec<PathState>,
+    /// Which limit the ratio of each is at: −1 the least, 1 the greatest, 0 none.
+    pub path_ends: Vec<i8>,
     /// Limits of variators that were exceeded, where they were by most.
     pub beyond: Vec<LimitExceeded>,
+    /// Machines that ran outside their maps, and when first.
+    pub left_maps: Vec<(String, f64)>,
     /// What is in contact, and the decisions of what it does.
     pub contacts: Contacts,
     /// Whether one motion is certain in every state.
@@ -127,6 +135,12 @@ impl Engine {
         let certificate = system.every_state_is_unique();
         let mut scales = vec![LEAST_SCALE; system.free + system.all() + system.integrals];
         system.followers.iter().for_each(|(k, _)| scales[*k] = FOLLOWS);
+        for path in &system.paths {
+            // The give of a variator is tiny, and counts by its torque.
+            if let PathKind::Geared(geared) = &path.kind {
+                scales[system.free + system.all() + geared.slip] = LEAST_SCALE / geared.stiffness;
+            }
+        }
         let plain = certificate == Some(true)
             && system.laws.is_none()
             && system.prescribed == 0
@@ -143,7 +157,9 @@ impl Engine {
             acceleration: vec![0.0; system.all()],
             tau: vec![0.0; system.ports],
             path_states: vec![PathState::default(); system.paths.len()],
+            path_ends: vec![0; system.paths.len()],
             beyond: vec![],
+            left_maps: vec![],
             scales,
             energy_scale: LEAST_ENERGY,
             unproved: 0,
@@ -169,6 +185,13 @@ impl Engine {
         self.energy_scale = x[self.scales.len()..].iter().fold(self.energy_scale, |m, e| m.max(e.abs()));
         for (scale, x) in self.scales.iter_mut().zip(x) {
             *scale = scale.max(0.1 * x.abs());
+        }
+        let integrals = self.integrals();
+        for path in &self.system.paths {
+            if let PathKind::Geared(geared) = &path.kind {
+                let k = integrals + geared.slip;
+                self.scales[k] = self.scales[k].max(GIVE * x[k].abs());
+            }
         }
     }
 
@@ -493,6 +516,11 @@ impl Engine {
         self.look(t, x);
         if !self.load_steadily(t, x) {
             self.load_looked(t, x);
+        } else if cfg!(debug_assertions) {
+            let steadily = self.tau.clone();
+            self.load_looked(t, x);
+            let same = steadily.iter().zip(&self.tau).all(|(a, b)| a == b || a.is_nan() && b.is_nan());
+            assert!(same, "at {t} s: {steadily:?}, not {:?}", self.tau);
         }
         if self.varying {
             let mode = self.mode.clone();

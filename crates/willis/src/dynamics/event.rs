@@ -55,6 +55,13 @@ fn unseen(engine: &Engine, why: Option<Why>) -> Option<Happening> {
             };
             (kind, vec![s.train.shafts()[k].name.clone()])
         }
+        Watch::End(k) => {
+            let kind = match engine.path_ends[k] {
+                0 => HappeningKind::LeavesLimit,
+                _ => HappeningKind::ReachesLimit,
+            };
+            (kind, vec![s.train.variators[s.paths[k].variator].name.clone()])
+        }
         Watch::Engage(k) => {
             let kind = if engine.engaged[k] { HappeningKind::Engages } else { HappeningKind::Opens };
             (kind, vec![s.frictions[k].name.clone()])
@@ -115,6 +122,8 @@ fn words(happenings: &[Happening]) -> String {
             HappeningKind::FullDamping => ["full damping in ", "", ""],
             HappeningKind::DampingLimited => ["damping limited to the spring's torque in ", "", ""],
             HappeningKind::ContactWithoutForce => ["contact without force in ", "", ""],
+            HappeningKind::ReachesLimit => ["", " reaches a limit of its ratio", " reach limits of their ratios"],
+            HappeningKind::LeavesLimit => ["", " leaves a limit of its ratio", " leave limits of their ratios"],
         };
         format!("{before}{}{}", list(h.of.iter().map(String::as_str)), if h.of.len() == 1 { one } else { several })
     };

@@ -82,6 +82,7 @@ impl Engine {
             .chain(together.then_some(Watch::Rest))
             .chain((0..s.elements.len()).filter(|&j| self.mode.element_slip(s, j) != 0).map(Watch::Side))
             .chain((0..s.elastic.len()).filter(|&k| s.train.shafts()[k].backlash > 0.0).map(Watch::Touch))
+            .chain((0..s.paths.len()).filter(|&k| s.paths[k].has_ends()).map(Watch::End))
             .chain((0..s.frictions.len()).filter(engages).map(Watch::Engage));
         watches.collect()
     }
@@ -113,6 +114,10 @@ impl Engine {
                     out.push(Margin { watch, value, noise: self.slack * noise });
                 }
                 Watch::Touch(k) => out.push(Margin { watch, value: self.touch_margin(k, x), noise: 0.0 }),
+                Watch::End(k) => {
+                    let (value, noise) = self.path_end_margin(k, t, x);
+                    out.push(Margin { watch, value, noise });
+                }
                 Watch::Engage(k) => {
                     let threshold = if self.system.frictions[k].rigid { 0.5 } else { 0.0 };
                     let value = self.engagement(k, t) - threshold;

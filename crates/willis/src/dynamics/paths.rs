@@ -1,16 +1,14 @@
 //! Variators while they move: torques of their sides, what their stores give, what they lose.
 
-use crate::power_flow::{BeyondLimit, LimitedQuantity};
-use crate::train::{ControlKind, Machine, MachineEfficiency, MemberId};
+use crate::power_flow::{BeyondLimit, machine_beyond, ratio_beyond};
+use crate::train::{ControlKind, Machine, MemberId};
 
 use super::engine::{Engine, PathState};
 use super::event::short;
+use super::margins::NOISE;
 use super::mode::dot;
 use super::report::LimitExceeded;
 use super::system::{BusMachine, Geared, GivenStore, MachineDoes, Path, PathKind};
-
-/// Part of a limit by which it may be exceeded: a value that was computed to be the limit is not beyond it.
-const SAME: f64 = 1e-9;
 
 /// Change of a torque, relative to it, below which the map of a machine agrees with it.
 const AGREEMENT: f64 = 1e-13;
@@ -33,17 +31,8 @@ pub(super) struct PathSide {
 /// Power that a machine takes from its bus while it exerts a torque.
 fn from_bus(machine: &Machine, torque: f64, speed: f64) -> f64 {
     let power = torque * speed;
-    let efficiency = efficiency(machine, torque, speed);
+    let (efficiency, _) = machine.efficiency.at(torque, speed);
     if power > 0.0 { power / efficiency } else { power * efficiency }
-}
-
-fn efficiency(machine: &Machine, torque: f64, speed: f64) -> f64 {
-    let motors = torque * speed > 0.0;
-    match &machine.efficiency {
-        MachineEfficiency::Constant(e) if motors => e.forward.to_f64(),
-        MachineEfficiency::Constant(e) => e.backward.to_f64(),
-        MachineEfficiency::Map(map) => map.at(speed.abs(), if motors { torque.abs() } else { -torque.abs() }).0,
-    }
 }
 
 /// The torque of a machine that takes this power from its bus.
@@ -57,7 +46,7 @@ fn balancing(machine: &Machine, power: f64, speed: f64) -> f64 {
     let mut torque = 0.0;
     let mut guess = power / speed;
     for _ in 0..MOST_ROUNDS {
-        let e = efficiency(machine, guess, speed);
+        let (e, _) = machine.efficiency.at(guess, speed);
         torque = if power > 0.0 { power * e / speed } else { power / (e * speed) };
         if (torque - guess).abs() <= AGREEMENT * torque.abs() {
             break;
@@ -78,7 +67,7 @@ impl Engine {
         &self.system.scenario.controls[path.control.expect("it is controlled")].kind
     }
 
-    /// What a ratio would be at the state looked at without its limits.
+    /// What a ratio would be at a state without its limits.
     fn wanted_ratio(&self, path: &Path, geared: &Geared, t: f64, x: &[f64]) -> f64 {
         match geared.ratio {
             Some(i) => x[self.integrals() + i],
@@ -86,16 +75,62 @@ impl Engine {
         }
     }
 
-    /// What it is.
-    fn ratio(&self, path: &Path, geared: &Geared, t: f64, x: &[f64]) -> f64 {
-        let given = self.wanted_ratio(path, geared, t, x);
-        // What is no number stays none.
-        if given < geared.limits[0] {
-            geared.limits[0]
-        } else if given > geared.limits[1] {
-            geared.limits[1]
-        } else {
-            given
+    /// What it is: at a limit that, elsewhere what is wanted.
+    fn ratio(&self, k: usize, geared: &Geared, t: f64, x: &[f64]) -> f64 {
+        match self.path_ends[k] {
+            -1 => geared.limits[0],
+            1 => geared.limits[1],
+            _ => self.wanted_ratio(&self.system.paths[k], geared, t, x),
+        }
+    }
+
+    /// How far a ratio is beyond its least, and beyond its greatest; and the round-off of that.
+    fn beyond_ends(&self, k: usize, geared: &Geared, t: f64, x: &[f64]) -> ([f64; 2], f64) {
+        let wanted = self.wanted_ratio(&self.system.paths[k], geared, t, x);
+        let [least, most] = geared.limits;
+        let size = geared.limits.iter().filter(|l| l.is_finite()).fold(wanted.abs(), |a, l| a.max(l.abs()));
+        ([least - wanted, wanted - most], NOISE * size)
+    }
+
+    /// The rate at which a ratio is to change where that is what is given.
+    fn wanted_rate(&self, k: usize, t: f64) -> f64 {
+        self.control(&self.system.paths[k]).signal().value(t, self.inside, &|m| self.member_speed(m))
+    }
+
+    /// Finds which limits ratios are at from now on; the state has been looked at.
+    pub(super) fn look_at_ends(&mut self, t: f64, x: &[f64]) {
+        for k in 0..self.path_ends.len() {
+            self.path_ends[k] = self.path_end_now(k, t, x);
+        }
+        self.look_at_paths(t, x);
+    }
+
+    fn path_end_now(&self, k: usize, t: f64, x: &[f64]) -> i8 {
+        let PathKind::Geared(geared) = &self.system.paths[k].kind else { return 0 };
+        let ([below, above], noise) = self.beyond_ends(k, geared, t, x);
+        match geared.ratio {
+            // A ratio that changes at a rate stays at its limit while the rate leads out of it.
+            Some(_) if below >= -noise && self.wanted_rate(k, t) < 0.0 => -1,
+            Some(_) if above >= -noise && self.wanted_rate(k, t) > 0.0 => 1,
+            None if below > 0.0 => -1,
+            None if above > 0.0 => 1,
+            _ => 0,
+        }
+    }
+
+    /// By how much a ratio stays at its limit, or between them, and the round-off of that.
+    pub(super) fn path_end_margin(&self, k: usize, t: f64, x: &[f64]) -> (f64, f64) {
+        let PathKind::Geared(geared) = &self.system.paths[k].kind else { return (f64::INFINITY, 0.0) };
+        let ([below, above], noise) = self.beyond_ends(k, geared, t, x);
+        match (self.path_ends[k], geared.ratio) {
+            (0, None) => (-below.max(above), noise),
+            // Held back at a limit it goes nowhere.
+            (0, Some(_)) => {
+                let rate = self.wanted_rate(k, t);
+                (if rate < 0.0 { -below } else { -above }, noise)
+            }
+            (end, None) => (if end < 0 { below } else { above }, noise),
+            (end, Some(_)) => (f64::from(end) * self.wanted_rate(k, t), 0.0),
         }
     }
 
@@ -121,7 +156,10 @@ impl Engine {
         let known = |(k, path): (usize, &Path)| {
             let PathKind::Geared(geared) = &path.kind else { return None };
             let follows_speed = geared.ratio.is_none() && self.control(path).signal().depends_on_speed();
-            (!follows_speed).then(|| (k, geared.members, self.ratio(path, geared, t, x)))
+            (!follows_speed).then(|| {
+                let [least, most] = geared.limits;
+                (k, geared.members, self.wanted_ratio(path, geared, t, x).max(least).min(most))
+            })
         };
         self.system.paths.iter().enumerate().filter_map(known).collect()
     }
@@ -131,7 +169,7 @@ impl Engine {
         for k in 0..self.system.paths.len() {
             let path = &self.system.paths[k];
             if let PathKind::Geared(geared) = &path.kind {
-                let ratio = self.ratio(path, geared, t, x);
+                let ratio = self.ratio(k, geared, t, x);
                 let slip = self.path_slip(geared, ratio);
                 let torque = geared.stiffness * x[self.integrals() + geared.slip] + geared.damping * slip;
                 self.path_states[k] = PathState { ratio, torque };
@@ -233,17 +271,12 @@ impl Engine {
     }
 
     /// Rates of the states of variators at the state solved last.
-    pub(super) fn path_rates(&self, t: f64, x: &[f64], rate: &mut [f64]) {
+    pub(super) fn path_rates(&self, t: f64, rate: &mut [f64]) {
         for (k, path) in self.system.paths.iter().enumerate() {
             let PathKind::Geared(geared) = &path.kind else { continue };
             rate[geared.slip] = self.path_slip(geared, self.path_states[k].ratio);
             if let Some(i) = geared.ratio {
-                let wanted = self.control(path).signal().value(t, self.inside, &|m| self.member_speed(m));
-                let now = x[self.integrals() + i];
-                let [least, most] = geared.limits;
-                // At its end it stays.
-                let stays = now >= most && wanted > 0.0 || now <= least && wanted < 0.0;
-                rate[i] = if stays { 0.0 } else { wanted };
+                rate[i] = if self.path_ends[k] == 0 { self.wanted_rate(k, t) } else { 0.0 };
             }
         }
     }
@@ -298,22 +331,15 @@ impl Engine {
         }
     }
 
-    /// Notes which limits of variators the state solved last exceeds, where that is more than before.
+    /// Notes which limits of variators the state solved last exceeds, where that is more than before, and machines that
+    /// leave their maps.
     pub(super) fn note_limits(&mut self, t: f64, x: &[f64]) {
         let mut beyond = std::mem::take(&mut self.beyond);
-        let mut note = |path: &Path, machine: Option<&Machine>, quantity, value: f64, limit: f64, excess: f64| {
-            if excess.is_nan() || excess <= SAME {
-                return;
-            }
-            let variator = &self.system.train.variators[path.variator].name;
-            let machine = machine.map(|m| &m.name);
-            let found = LimitExceeded {
-                limit: BeyondLimit { variator: variator.clone(), machine: machine.cloned(), quantity, value, limit },
-                time_s: t,
-                excess,
-            };
+        let mut note = |(limit, excess): (BeyondLimit, f64)| {
+            let found = LimitExceeded { limit, time_s: t, excess };
             let same = |b: &&mut LimitExceeded| {
-                b.limit.variator == *variator && b.limit.machine.as_ref() == machine && b.limit.quantity == quantity
+                let ([a, b], quantities) = ([&b.limit, &found.limit], b.limit.quantity == found.limit.quantity);
+                quantities && a.variator == b.variator && a.machine == b.machine
             };
             match beyond.iter_mut().find(same) {
                 Some(known) if known.excess < excess => *known = found,
@@ -321,33 +347,28 @@ impl Engine {
                 None => beyond.push(found),
             }
         };
+        let mut left = std::mem::take(&mut self.left_maps);
         for path in &self.system.paths {
+            let v = &self.system.train.variators[path.variator];
             match &path.kind {
                 PathKind::Geared(geared) => {
                     let wanted = self.wanted_ratio(path, geared, t, x);
-                    for limit in geared.limits {
-                        let excess = (wanted - limit) * if limit == geared.limits[0] { -1.0 } else { 1.0 };
-                        note(path, None, LimitedQuantity::Ratio, wanted, limit, excess / limit.abs().max(SAME));
-                    }
+                    let turned = v.members()[0] != geared.members[0];
+                    ratio_beyond(v, if turned { 1.0 / wanted } else { wanted }).into_iter().for_each(&mut note);
                 }
                 PathKind::Pushed { .. } => {}
                 PathKind::Bus { machines, .. } => {
-                    for (m, of) in machines.iter().zip(self.system.train.variators[path.variator].machines()) {
+                    for (m, of) in machines.iter().zip(v.machines()) {
                         let PathSide { speed, torque } = self.machine_side(m, t);
-                        for (quantity, value, limit) in [
-                            (LimitedQuantity::Torque, torque, of.torque),
-                            (LimitedQuantity::Power, torque * speed, of.power),
-                            (LimitedQuantity::Speed, speed, of.speed),
-                        ] {
-                            if let Some(limit) = limit {
-                                note(path, Some(of), quantity, value, limit, value.abs() / limit - 1.0);
-                            }
+                        machine_beyond(v, of, torque, speed).for_each(&mut note);
+                        if of.efficiency.at(torque, speed).1 && left.iter().all(|(name, _)| *name != of.name) {
+                            left.push((of.name.clone(), t));
                         }
                     }
                 }
             }
         }
-        self.beyond = beyond;
+        (self.beyond, self.left_maps) = (beyond, left);
     }
 
     /// Energy in what gives way in variators, J.
@@ -382,6 +403,7 @@ impl Engine {
                 let PathState { ratio, torque } = self.path_states[k];
                 let signal = self.control(path).signal();
                 let rate = match geared.ratio {
+                    _ if self.path_ends[k] != 0 => 0.0,
                     Some(_) => signal.value(t, self.inside, &|m| self.member_speed(m)),
                     None => signal.rate(t, self.inside, &|m| self.member_speed(m)),
                 };

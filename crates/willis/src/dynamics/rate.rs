@@ -33,7 +33,7 @@ impl Smooth for Engine {
             }
         }
         let states = self.states();
-        self.path_rates(t, x, &mut rate[integrals..states]);
+        self.path_rates(t, &mut rate[integrals..states]);
         self.powers(t, x, &mut rate[states..]);
     }
 

@@ -372,6 +372,10 @@ pub enum HappeningKind {
     DampingLimited,
     /// A shaft is in contact, and its damper would pull.
     ContactWithoutForce,
+    /// The ratio of a variator reaches a limit, and stays there.
+    ReachesLimit,
+    /// The ratio of a variator leaves its limit.
+    LeavesLimit,
 }
 
 /// Takes the output as it comes; [`ControlFlow::Break`] ends the run there.

@@ -373,6 +373,7 @@ impl Simulation {
             self.engine.settle_paths(self.t, &mut x, &at_rest);
         }
         let touch = self.engine.touch.clone();
+        let ends = self.engine.path_ends.clone();
         let mode = match self.engine.choose(self.t, &x, &at_rest, &guess) {
             // Where the drive of a mesh reverses, both sides agree to within what the integrator leaves open: the other
             // one goes on.
@@ -405,6 +406,7 @@ impl Simulation {
         let happened = match self.why {
             Some(Why::Watch(Watch::Side(j))) => mode.side[j] != guess.side[j],
             Some(Why::Watch(Watch::Touch(k))) => self.engine.touch[k] != touch[k],
+            Some(Why::Watch(Watch::End(k))) => self.engine.path_ends[k] != ends[k],
             _ => true,
         };
         if !happened {
@@ -727,6 +729,11 @@ impl Simulation {
         }
         if self.stiff {
             notes.push("stiff: an implicit integrator was used".into());
+        }
+        for (machine, t) in &self.engine.left_maps {
+            notes.push(format!(
+                "{machine} runs outside the map of its efficiency, at {t} s for the first time; the value at its edge was taken"
+            ));
         }
         RunReport {
             format: Format::new(),

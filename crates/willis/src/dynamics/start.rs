@@ -46,8 +46,8 @@ impl Condition {
 enum What {
     /// The speed of a member, as it is given.
     Given(MemberId),
-    /// The ratio of a variator, a position among the paths.
-    Ratio(usize),
+    /// The ratio of a variator: its position among the paths, and the ratio.
+    Ratio(usize, f64),
     /// What is left is at rest.
     Rest,
 }
@@ -72,7 +72,7 @@ fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostics>
         let left =
             |((p, q), size): ((&f64, &f64), &f64)| Some(p - ratio * q).filter(|x| x.abs() > 4.0 * f64::EPSILON * size);
         let row = p.iter().zip(q).zip(&size).map(|parts| left(parts).unwrap_or(0.0)).collect();
-        conditions.push(Condition { what: What::Ratio(k), row, size, value: 0.0 });
+        conditions.push(Condition { what: What::Ratio(k, ratio), row, size, value: 0.0 });
     }
     // What has no inertia turns as what acts on it will have it.
     for (_, row) in &s.followers {
@@ -119,13 +119,13 @@ fn initial_speeds(engine: &mut Engine, x: &mut [f64]) -> Result<(), Diagnostics>
                 );
                 (format!("{}.initial_speeds.{name}", s.scenario.place), message)
             }
-            What::Ratio(k) => {
+            What::Ratio(k, ratio) => {
                 let path = &s.paths[*k];
                 let control = &s.scenario.controls[path.control.expect("its ratio is given")];
                 let message = format!(
                     "`{}` cannot start with its ratio of {}: the speeds given make another one",
                     s.train.variators()[path.variator].name,
-                    short(engine.path_states[*k].ratio)
+                    short(*ratio)
                 );
                 (control.place.clone(), message)
             }

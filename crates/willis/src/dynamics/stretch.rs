@@ -16,6 +16,8 @@ pub(super) enum Watch {
     Side(usize),
     /// A backlash or its damper changes.
     Touch(usize),
+    /// The ratio of a variator reaches a limit, or leaves it.
+    End(usize),
     /// A shift element begins or ceases to be engaged.
     Engage(usize),
 }

@@ -145,6 +145,7 @@ fn val_steady_motion_is_what_the_statics_say() {
             let inertias: String = plain
                 .members()
                 .iter()
+                // The frame comes first, and has no inertia.
                 .skip(1)
                 .filter(|m| !m.name.contains('.'))
                 .map(|m| format!("\"{}\" = \"0.1 kg m^2\"\n", m.name))
@@ -152,6 +153,7 @@ fn val_steady_motion_is_what_the_statics_say() {
             let initial: String = plain
                 .members()
                 .iter()
+                // The frame comes first, and has no inertia.
                 .skip(1)
                 .filter(|m| !m.name.contains('.'))
                 .map(|m| format!("\"{}\" = \"{:e} rad/s\", ", m.name, speed(&m.name)))
@@ -406,4 +408,51 @@ fn val_a_given_torque_passes_its_power() {
         let expected = if out > 0.0 { 0.9 * out } else { out / 0.85 };
         assert!((into - expected).abs() < 1e-9 * out.abs().max(1.0), "{into}, not {expected}");
     }
+}
+
+/// A limit is one of the first side over the second, also where the scenario gives the inverse.
+#[test]
+fn limits_of_a_ratio_are_told_as_the_train_has_them() {
+    let limited = |control: &str| {
+        belt(&format!("duration = \"0.1 s\"\ninitial_speeds = {{ a = \"100 rad/s\" }}\nvariator = [{{ name = \"belt\", {control} }}]\n"))
+            .replace("backward = 0.85 }", "backward = 0.85 }\nratio = { min = 0.5, max = 2.5 }")
+    };
+    let ramp = |to: &str| format!("ratio = {{ type = \"ramp\", offset = 1, height = {to}, duration = \"0.1 s\" }}");
+    for (control, told) in [
+        (ramp("2"), "a ratio of 3.0000, 0.5000 above its greatest of 2.5000"),
+        // To 1/4, which is a ratio of 4.
+        (ramp("-0.75") + ", inverse = true", "a ratio of 4.0000, 1.5000 above its greatest of 2.5000"),
+        (ramp("3") + ", inverse = true", "a ratio of 0.2500, 0.2500 below its least of 0.5000"),
+    ] {
+        let (_, report) = run(&limited(&control));
+        let [beyond] = &report.beyond_limits[..] else { panic!("{control}: {:?}", report.beyond_limits) };
+        assert!(beyond.limit.to_string().contains(told), "{control}: {}", beyond.limit);
+    }
+    let wrong = Train::from_toml(&limited("initial_ratio = 4, ratio_rate = \"0 1/s\""))
+        .and_then(|t| Simulation::new(&t, "run", &Options::default()).map(|_| ()))
+        .expect_err("outside its limits");
+    assert!(wrong.iter().any(|d| d.code == Code::OutOfRange && d.place.ends_with("initial_ratio")), "{wrong}");
+    assert!(wrong.to_string().contains("a ratio of 4: it lies between 0.5 and 2.5"), "{wrong}");
+}
+
+/// A machine that runs outside its map takes the value at its edge, and the report says so.
+#[test]
+fn a_machine_that_leaves_its_map_is_told() {
+    let text = hybrid(
+        "store = \"free\"\n",
+        "source = [{ member = \"engine\", torque = \"50 N m\" }, { machine = \"A\", torque = \"-5 N m\" }, \
+         { machine = \"B\", torque = \"40 N m\" }]\n",
+    );
+    let text = text.replace("member = \"mg1\", efficiency = 0.9", "member = \"mg1\", efficiency = { map = \"a.csv\" }");
+    let notes = |most: &str| {
+        let map = format!("speed [rpm],torque [N m],efficiency\n0,0,0.9\n0,100,0.9\n{most},0,0.9\n{most},100,0.9\n");
+        let reading = Train::read_toml_with(&text, &mut |_| Ok(map.clone()));
+        let train = reading.train.unwrap_or_else(|| panic!("{}", reading.diagnostics));
+        let report = willis::dynamics::simulate(&train, "run", &Options::default(), &mut ()).expect("it runs");
+        assert_eq!(report.outcome, Outcome::Finished);
+        report.notes
+    };
+    let told = |notes: &[String]| notes.iter().any(|n| n.contains("A runs outside the map of its efficiency"));
+    assert!(told(&notes("1000")));
+    assert!(!told(&notes("1000000")));
 }

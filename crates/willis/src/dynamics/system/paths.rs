@@ -39,6 +39,11 @@ pub(in crate::dynamics) struct Path {
 }
 
 impl Path {
+    /// Whether its ratio is given and has limits.
+    pub fn has_ends(&self) -> bool {
+        matches!(&self.kind, PathKind::Geared(geared) if geared.limits.iter().any(|limit| limit.is_finite()))
+    }
+
     /// Members that it acts on through ports of its own, and these.
     pub fn ports(&self) -> Vec<(MemberId, usize)> {
         match &self.kind {
@@ -173,6 +178,9 @@ impl Paths {
                     if inverse {
                         geared.turn_round(v, control)?;
                     }
+                    if let ControlKind::Rate { initial, .. } = kind {
+                        geared.begins_within(*initial, v, control)?;
+                    }
                     all.integrals += 1 + usize::from(by_rate);
                     if geared.efficiency != [1.0; 2] {
                         geared.friction = Some(frictions + all.rubbing.len());
@@ -264,6 +272,19 @@ fn settles(scenario: &Scenario) -> f64 {
 }
 
 impl Geared {
+    /// # Errors
+    /// A ratio at the start outside its limits.
+    fn begins_within(&self, initial: f64, v: &Variator, control: &Control) -> Result<(), Diagnostics> {
+        let [least, most] = self.limits;
+        if least <= initial && initial <= most {
+            return Ok(());
+        }
+        let message =
+            format!("`{}` cannot start with a ratio of {initial}: it lies between {least} and {most}", v.name);
+        let place = format!("{}.initial_ratio", control.place);
+        Err(Diagnostic::new(Code::OutOfRange, place, message).hint("begin at a limit, or change the limits").into())
+    }
+
     /// The ratio is that of the second member's speed over the first's.
     fn turn_round(&mut self, v: &Variator, control: &Control) -> Result<(), Diagnostics> {
         let [least, most] = self.limits;
