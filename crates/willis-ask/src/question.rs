@@ -1,7 +1,10 @@
 //! What a question is, and what stands in the list of them.
 
 use std::any::Any;
+use std::borrow::Borrow;
 use std::fmt;
+use std::marker::PhantomData;
+use std::sync::Arc;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
@@ -139,7 +142,9 @@ impl<T> Options for T {}
 ///
 /// Implement it in a file of its own in `questions/` and add a line to the list there; command line, completions,
 /// schemas and the README's table follow.
-pub trait Question: Options + Clone + fmt::Debug + Serialize + DeserializeOwned + JsonSchema + Sized + 'static {
+pub trait Question:
+    Options + Clone + fmt::Debug + Serialize + DeserializeOwned + JsonSchema + Send + Sync + Sized + 'static
+{
     /// What it is called: `analyze`.
     const NAME: &'static str;
     /// How many trains it is asked of.
@@ -154,7 +159,7 @@ pub trait Question: Options + Clone + fmt::Debug + Serialize + DeserializeOwned 
     /// What can be written beside the answer.
     const EXTRAS: &'static [Extra] = &[];
     /// The answer; its JSON is a contract.
-    type Answer: Contract + Serialize + DeserializeOwned + JsonSchema + 'static;
+    type Answer: Contract + Serialize + DeserializeOwned + JsonSchema + Send + Sync + 'static;
 
     /// Looks at the request alone, before it is asked: fields that exclude each other.
     ///
@@ -227,7 +232,7 @@ pub trait Question: Options + Clone + fmt::Debug + Serialize + DeserializeOwned 
 }
 
 /// A request of any question.
-pub trait Request: fmt::Debug + Any {
+pub trait Request: fmt::Debug + Any + Send + Sync {
     /// What it asks.
     fn question(&self) -> &'static Entry;
 
@@ -248,6 +253,12 @@ pub trait Request: fmt::Debug + Any {
     /// # Errors
     /// What [`Question::ask`] says; or the number of trains is not what the question takes.
     fn ask<'a>(&'a self, of: &'a [Given], work: &dyn Work) -> Result<Box<dyn Answer + 'a>, Refusal>;
+
+    /// The same for an answer that is kept: it goes on when request and trains are gone, on any thread.
+    ///
+    /// # Errors
+    /// The same.
+    fn ask_for_good(&self, of: Arc<[Given]>, work: &dyn Work) -> Result<Box<dyn Answer + Send + Sync>, Refusal>;
 }
 
 /// An answer to any question.
@@ -283,15 +294,16 @@ pub trait Answer {
     fn told(&self) -> Vec<String>;
 }
 
-struct Answered<'a, Q: Question> {
-    question: &'a Q,
-    answer: Q::Answer,
-    of: &'a [Given],
+/// An answer with what it belongs to, borrowed or kept.
+struct Answered<Q, T, A> {
+    question: Q,
+    answer: A,
+    of: T,
 }
 
-impl<Q: Question> Answer for Answered<'_, Q> {
+impl<Q: Question, B: Borrow<Q>, T: AsRef<[Given]>> Answer for Answered<(B, PhantomData<Q>), T, Q::Answer> {
     fn text(&self) -> String {
-        self.question.text(&self.answer, self.of)
+        self.question.0.borrow().text(&self.answer, self.of.as_ref())
     }
 
     fn json(&self) -> String {
@@ -299,7 +311,7 @@ impl<Q: Question> Answer for Answered<'_, Q> {
     }
 
     fn tables(&self) -> Vec<Table> {
-        self.question.tables(&self.answer)
+        self.question.0.borrow().tables(&self.answer)
     }
 
     fn notes(&self) -> &[Diagnostic] {
@@ -311,16 +323,32 @@ impl<Q: Question> Answer for Answered<'_, Q> {
     }
 
     fn write(&self, form: &str) -> Result<Vec<File>, Refusal> {
-        self.question.write(&self.answer, form, self.of)
+        self.question.0.borrow().write(&self.answer, form, self.of.as_ref())
     }
 
     fn extra(&self, name: &str) -> Result<Vec<File>, Refusal> {
-        self.question.extra(&self.answer, name, self.of)
+        self.question.0.borrow().extra(&self.answer, name, self.of.as_ref())
     }
 
     fn told(&self) -> Vec<String> {
-        self.question.told(&self.answer)
+        self.question.0.borrow().told(&self.answer)
     }
+}
+
+/// Answers a question that fits the number of trains.
+fn answer<Q: Question>(question: &Q, of: &[Given], work: &dyn Work) -> Result<Q::Answer, Refusal> {
+    let (fits, wanted) = match Q::OF {
+        Of::Nothing => (of.is_empty(), "no train"),
+        Of::AtMostOne => (of.len() <= 1, "one train at most"),
+        Of::Train => (of.len() == 1, "one train"),
+        Of::Trains => (of.len() >= 2, "two trains or more"),
+    };
+    if !fits {
+        let message = format!("`{}` is asked of {wanted}, here are {}", Q::NAME, of.len());
+        return Err(Diagnostic::new(Code::UnknownSelection, "", message).into());
+    }
+    question.check()?;
+    question.ask(of, work)
 }
 
 impl<Q: Question> Request for Q {
@@ -345,19 +373,13 @@ impl<Q: Question> Request for Q {
     }
 
     fn ask<'a>(&'a self, of: &'a [Given], work: &dyn Work) -> Result<Box<dyn Answer + 'a>, Refusal> {
-        let (fits, wanted) = match Q::OF {
-            Of::Nothing => (of.is_empty(), "no train"),
-            Of::AtMostOne => (of.len() <= 1, "one train at most"),
-            Of::Train => (of.len() == 1, "one train"),
-            Of::Trains => (of.len() >= 2, "two trains or more"),
-        };
-        if !fits {
-            let message = format!("`{}` is asked of {wanted}, here are {}", Q::NAME, of.len());
-            return Err(Diagnostic::new(Code::UnknownSelection, "", message).into());
-        }
-        self.check()?;
-        let answer = Question::ask(self, of, work)?;
-        Ok(Box::new(Answered { question: self, answer, of }))
+        let answer = answer(self, of, work)?;
+        Ok(Box::new(Answered { question: (self, PhantomData::<Q>), answer, of }))
+    }
+
+    fn ask_for_good(&self, of: Arc<[Given]>, work: &dyn Work) -> Result<Box<dyn Answer + Send + Sync>, Refusal> {
+        let answer = answer(self, &of, work)?;
+        Ok(Box::new(Answered { question: (self.clone(), PhantomData::<Q>), answer, of }))
     }
 }
 

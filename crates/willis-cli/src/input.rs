@@ -52,15 +52,27 @@ const STREAM: &str = "a stream is read where `-` stands for the file: `... | wil
 /// Why a file was not read, and what to do.
 type Unread = (String, &'static str);
 
-/// Reads a train file, with the laws and values that the command line puts in.
-pub fn train(file: &str, matches: &ArgMatches) -> Result<Given, Refusal> {
+/// Reads a train file; `-` is standard input. The tables that it names are read from its folder and from the folders
+/// allowed.
+///
+/// # Errors
+/// Why the file cannot be read, or everything that is wrong with its text.
+pub fn read(file: &str, allowed: &[&Path]) -> Result<Given, Refusal> {
     // As it is shown; a file may be called anything.
     let name = &*printable(if file == "-" { "standard input" } else { file });
     let text = of_kind(file, &TRAIN).map_err(|wrong| Refusal::File(wrong, name.into()))?;
+    let model = Model::read(&text, &mut tables_of(file, allowed));
     let refused = |wrong| Refusal::File(wrong, Attachment { name: name.to_owned(), text: text.clone() });
+    Ok(Given::new(name, model.map_err(refused)?))
+}
+
+/// Reads a train file, with the laws and values that the command line puts in.
+pub(crate) fn train(file: &str, matches: &ArgMatches) -> Result<Given, Refusal> {
     let allowed = matches.try_get_many::<PathBuf>("allow").ok().flatten().into_iter().flatten();
     let allowed: Vec<&Path> = allowed.map(PathBuf::as_path).collect();
-    let mut given = Given::new(name, Model::read(&text, &mut tables_of(file, &allowed)).map_err(refused)?);
+    let mut given = read(file, &allowed)?;
+    let (name, text) = (given.name.clone(), given.model.to_toml().to_owned());
+    let refused = |wrong| Refusal::File(wrong, Attachment { name: name.clone(), text: text.clone() });
     let all = |name: &str| matches.try_get_many::<String>(name).ok().flatten().into_iter().flatten();
     let laws = all("law").map(|law| pair("law", law, "family=law", "mesh_friction=niemann"));
     let laws: Vec<(&str, &str)> = laws.collect::<Result<_, _>>()?;
@@ -87,7 +99,10 @@ fn pair<'a>(option: &str, text: &'a str, form: &str, example: &str) -> Result<(&
     })
 }
 
-/// Reads a table that is named on the command line.
+/// Reads a table that is named in a request.
+///
+/// # Errors
+/// Why it cannot be read.
 pub fn table(file: &str) -> Result<String, Diagnostics> {
     of_kind(file, &TABLE)
 }
@@ -169,7 +184,7 @@ fn plain(path: &Path) -> PathBuf {
 }
 
 /// Opens without waiting for anybody: a pipe without a writer is opened at once, and then found to be no file.
-pub fn carefully(options: &mut OpenOptions, follow: bool) {
+pub(crate) fn carefully(options: &mut OpenOptions, follow: bool) {
     #[cfg(unix)]
     {
         use rustix::fs::OFlags;
@@ -182,7 +197,7 @@ pub fn carefully(options: &mut OpenOptions, follow: bool) {
 }
 
 /// Opens an ordinary file and nothing else.
-pub fn regular(path: &Path) -> std::io::Result<File> {
+pub(crate) fn regular(path: &Path) -> std::io::Result<File> {
     let mut options = OpenOptions::new();
     carefully(options.read(true), true);
     let file = options.open(path)?;
@@ -193,7 +208,7 @@ pub fn regular(path: &Path) -> std::io::Result<File> {
 }
 
 /// A file that this program wrote.
-pub fn whole(path: &Path) -> Result<Vec<u8>, String> {
+pub(crate) fn whole(path: &Path) -> Result<Vec<u8>, String> {
     let mut bytes = vec![];
     let read = regular(path).and_then(|file| file.take((MOST_OWN_MIB << 20) + 1).read_to_end(&mut bytes));
     match read.map_err(|e| e.to_string())? as u64 > MOST_OWN_MIB << 20 {

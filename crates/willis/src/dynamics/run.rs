@@ -462,6 +462,7 @@ impl Simulation {
         let waves = self.engine.system.signals().any(|s| s.waves());
         loop {
             if waves {
+                self.engine.look(self.t, &self.x);
                 self.look_ahead();
             }
             // What is left of a stretch is not tiny.

@@ -1,5 +1,6 @@
 //! Events within a step.
 
+use crate::dynamics::integrator::Stepper;
 use crate::dynamics::margins::{Margin, NOISE};
 use crate::dynamics::stretch::Watch;
 
@@ -25,6 +26,16 @@ impl Simulation {
         self.state = x;
     }
 
+    /// Margins at the end of the last step, at which an explicit step has solved last.
+    fn margins_at_end(&mut self, t_new: f64) {
+        if self.stiff {
+            return self.margins_at(t_new);
+        }
+        let mut margins = std::mem::take(&mut self.margins);
+        self.engine.margins(t_new, self.explicit.x(), &mut margins);
+        self.margins = margins;
+    }
+
     /// The first event of the last step: just after it, and what it was.
     pub(super) fn find_event(&mut self, t_old: f64, t_new: f64) -> Option<(f64, Watch)> {
         let half = 0.5 * (t_old + t_new);
@@ -33,18 +44,21 @@ impl Simulation {
         if !std::mem::take(&mut self.start_is_known) {
             start.clear();
         }
+        self.margins_at_end(t_new);
+        let mut end = std::mem::take(&mut self.at_end);
+        std::mem::swap(&mut end, &mut self.margins);
         self.margins_at(half);
         let found = if self.margins.iter().any(Margin::is_broken) {
+            self.at_end = end;
             Some(self.bracket(t_old, half, &start, None))
         } else {
             let mut middle = std::mem::take(&mut self.at_middle);
             std::mem::swap(&mut middle, &mut self.margins);
-            self.margins_at(t_new);
-            let found = if self.margins.iter().any(Margin::is_broken) {
+            let found = if end.iter().any(Margin::is_broken) {
+                self.margins.clone_from(&end);
+                self.at_end = end;
                 Some(self.bracket(half, t_new, &middle, Some((t_old, &start))))
             } else {
-                let mut end = std::mem::take(&mut self.at_end);
-                end.clone_from(&self.margins);
                 // What leaves its limit and comes back within the step: near the lowest point of a parabola.
                 let dip = self.dip(t_old, t_new, &mut start, &middle, &end);
                 self.at_end = end;

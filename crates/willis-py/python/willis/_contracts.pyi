@@ -1,0 +1,4940 @@
+"""The types of all answers, as the contracts of the library say them.
+
+Written by ``generate.py``; changes belong to the library.
+"""
+
+from collections.abc import Mapping
+from typing import Any, Literal, TypeVar
+
+from . import _answer
+from ._answer import Answer
+from ._record import Record
+
+_T = TypeVar("_T", covariant=True)
+
+class Named(Mapping[str, _T]):
+    """Things by their names; a name that is an identifier is an attribute too."""
+
+    def __getattr__(self, name: str) -> _T: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
+class AnalyzeCertificateReport(Record):
+    """Whether the answer is the only one, and how that is known."""
+    @property
+    def unique_for_every_load(self) -> bool:
+        """Whether exactly one solution exists whatever the loads (with these directions of motion)."""
+    @property
+    def method(self) -> Literal["spectral-radius", "determinants", "enumeration", "undecided"]:
+        """How that is known."""
+
+class AnalyzeDirection(Record):
+    """One direction of power through a state."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of it."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power; absent unless the verdict is ``unique``."""
+    @property
+    def efficiency_exact(self) -> str | None:
+        """The efficiency exactly, where the efficiencies of the meshes are given."""
+    @property
+    def efficiencies(self) -> list[float]:
+        """The efficiency of every equilibrium."""
+    @property
+    def certificate(self) -> AnalyzeCertificateReport | None:
+        """Certificate, where a problem could be set up."""
+    @property
+    def reason(self) -> str | None:
+        """One sentence that explains a verdict other than ``unique``."""
+    @property
+    def why(self) -> Any | None:
+        """What ``reason`` says, as data."""
+
+class AnalyzeStateReport(Record):
+    """A row of the shift table."""
+    @property
+    def input(self) -> str:
+        """Where power enters when driving."""
+    @property
+    def output(self) -> str:
+        """Where power leaves when driving."""
+    @property
+    def exact(self) -> str | None:
+        """``ω_input/ω_output``, exactly; absent when there is no such number."""
+    @property
+    def value(self) -> float | None:
+        """The same as a decimal."""
+    @property
+    def no_ratio(self) -> str | None:
+        """Why there is no ratio."""
+    @property
+    def step(self) -> float | None:
+        """Ratio of this state over that of the next in the table, where both have the same sign."""
+    @property
+    def engaged(self) -> list[str]:
+        """Shift elements that are closed."""
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Degrees of freedom in this state."""
+    @property
+    def drive(self) -> AnalyzeDirection:
+        """Input drives output."""
+    @property
+    def coast(self) -> AnalyzeDirection:
+        """Output drives input."""
+
+class AnalyzeOutsideAt(Record):
+    """A place where a law was used outside its range."""
+    @property
+    def name(self) -> str:
+        """The mesh, bearing, seal, gear or rotor."""
+    @property
+    def value(self) -> float | None:
+        """The value there, in the unit of the quantity; absent where it is not finite."""
+
+class AnalyzeOutsideLaw(Record):
+    """A quantity outside the range of a law, wherever it was."""
+    @property
+    def family(self) -> str:
+        """Family of the law."""
+    @property
+    def law(self) -> str:
+        """Name of the law."""
+    @property
+    def symbol(self) -> str:
+        """Symbol of the quantity."""
+    @property
+    def unit(self) -> str:
+        """Its SI unit; ``-`` for a pure number."""
+    @property
+    def low(self) -> float | None:
+        """Lowest value of the range, in that unit; absent where there is none."""
+    @property
+    def high(self) -> float | None:
+        """Highest value of the range, in that unit; absent where there is none."""
+    @property
+    def places(self) -> list[AnalyzeOutsideAt]:
+        """Where the law was used so."""
+
+class AnalyzeSpeedDeviation(Record):
+    """Prescribed speeds that contradict the gears within the tolerance that was asked for
+    ([``Train::with_speed_tolerance``])."""
+    @property
+    def members(self) -> list[str]:
+        """The members that the gears tie together, in the order in which their speeds were given. The last one follows
+        the others."""
+    @property
+    def relative(self) -> float:
+        """By which part of the largest of their speeds, as the gears tie them, they contradict each other."""
+
+class AnalyzeMemberReport(Record):
+    """A member in an operating point."""
+    @property
+    def speed_rad_s(self) -> float | None:
+        """Absolute speed (for a bevel planet: carrier speed plus spin), rad/s; absent when not determined."""
+    @property
+    def speed(self) -> float | None: ...
+    @property
+    def carrier(self) -> str | None:
+        """The carrier it rides on, for a planet."""
+    @property
+    def relative_speed_rad_s(self) -> float | None:
+        """Speed relative to that carrier, rad/s."""
+    @property
+    def relative_speed(self) -> float | None: ...
+    @property
+    def torque_n_m(self) -> float | None:
+        """External torque on it, N m; absent when statics cannot divide it."""
+    @property
+    def torque(self) -> float | None: ...
+    @property
+    def power_w(self) -> float | None:
+        """External power into it, W."""
+    @property
+    def power(self) -> float | None: ...
+    @property
+    def role(self) -> Literal["input", "output", "fixed", "idle"]:
+        """What it does."""
+
+class AnalyzeMeshReport(Record):
+    """A mesh in an operating point; totals over its ``count`` pairs in parallel."""
+    @property
+    def driver(self) -> str | None:
+        """The member that drives, seen from the carrier; absent when idle or without relative motion."""
+    @property
+    def relative_speed_rad_s(self) -> float:
+        """Speed of the driver (else of the first gear) relative to the carrier, rad/s."""
+    @property
+    def relative_speed(self) -> float: ...
+    @property
+    def potential_power_w(self) -> float:
+        """Power of the driver seen from the carrier, W."""
+    @property
+    def potential_power(self) -> float: ...
+    @property
+    def efficiency(self) -> float:
+        """Efficiency in force."""
+    @property
+    def loss_w(self) -> float:
+        """Loss, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def first_torque_n_m(self) -> float:
+        """Torque that the first gear puts into the mesh, N m."""
+    @property
+    def first_torque(self) -> float: ...
+    @property
+    def second_torque_n_m(self) -> float:
+        """Torque that the second gear puts into the mesh, N m."""
+    @property
+    def second_torque(self) -> float: ...
+    @property
+    def carrier_torque_n_m(self) -> float:
+        """Torque that the carrier puts into the mesh, N m."""
+    @property
+    def carrier_torque(self) -> float: ...
+    @property
+    def count(self) -> int:
+        """Identical pairs in parallel."""
+
+class AnalyzeShiftElementReport(Record):
+    """An engaged shift element in an operating point."""
+    @property
+    def kind(self) -> Literal["clutch", "brake", "one-way"]:
+        """What it is."""
+    @property
+    def members(self) -> list[str]:
+        """The members it joins."""
+    @property
+    def torque_n_m(self) -> float | None:
+        """Torque it exerts on its first member, N m; absent when statics cannot divide it."""
+    @property
+    def torque(self) -> float | None: ...
+
+class AnalyzeMachineReport(Record):
+    """A side of a variator, or a machine."""
+    @property
+    def member(self) -> str:
+        """The member that it turns with."""
+    @property
+    def torque_n_m(self) -> float:
+        """Torque that it exerts on the member, N m."""
+    @property
+    def torque(self) -> float: ...
+    @property
+    def speed_rad_s(self) -> float:
+        """Speed of the member, rad/s."""
+    @property
+    def speed(self) -> float: ...
+    @property
+    def power_w(self) -> float:
+        """Power that it delivers to the member, W: positive where it motors."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def efficiency(self) -> float | None:
+        """Efficiency in force, where it passes power."""
+
+class AnalyzeVariatorReport(Record):
+    """A variator in an operating point."""
+    @property
+    def kind(self) -> Literal["electric", "hydrostatic", "belt"]:
+        """What it is made of."""
+    @property
+    def power_w(self) -> float:
+        """Power that reaches the receiving side, W; with more than two machines, all that motor together."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def share(self) -> float:
+        """That power over the input power: positive from the first side to the second, negative the other way. With
+        more than two machines the first that generates or motors counts as the first side."""
+    @property
+    def loss_w(self) -> float:
+        """Power lost on the way, W; standby losses included."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def store_w(self) -> float | None:
+        """Power out of the store into the bus, W; absent where there is no bus."""
+    @property
+    def store(self) -> float | None: ...
+    @property
+    def ratio(self) -> float | None:
+        """Speed of the first side over that of the second; absent with more than two, and where the second stands
+        still."""
+    @property
+    def machines(self) -> Named[AnalyzeMachineReport]:
+        """Its sides by their members, or its machines."""
+
+class AnalyzeBeyondLimit(Record):
+    """A limit of a variator that an operating point exceeds."""
+    @property
+    def variator(self) -> str:
+        """The variator."""
+    @property
+    def machine(self) -> str | None:
+        """Its machine; absent where the limit is that of the ratio."""
+    @property
+    def quantity(self) -> Literal["torque", "power", "speed", "ratio"]:
+        """What is limited."""
+    @property
+    def value(self) -> float:
+        """What it is, SI."""
+    @property
+    def limit(self) -> float:
+        """What it may be at most (or, of a ratio, at least), SI."""
+
+class AnalyzeLosses(Record):
+    """Losses by kind, W."""
+    @property
+    def mesh(self) -> float:
+        """Tooth friction."""
+    @property
+    def bearing(self) -> float:
+        """Bearings."""
+    @property
+    def windage(self) -> float:
+        """Air and oil mist."""
+    @property
+    def churning(self) -> float:
+        """Oil sump."""
+    @property
+    def seal(self) -> float:
+        """Shaft seals."""
+    @property
+    def variator(self) -> float:
+        """Variators."""
+
+class AnalyzeLossSource(Record):
+    """One place where power is lost."""
+    @property
+    def name(self) -> str:
+        """What loses it."""
+    @property
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"]:
+        """What kind of loss it is."""
+    @property
+    def law(self) -> str:
+        """Its name in the list of laws; ``given`` for a given efficiency."""
+    @property
+    def loss_w(self) -> float:
+        """The power, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def share(self) -> float:
+        """The part of all losses."""
+
+class AnalyzeContactReport(Record):
+    """A tooth contact in an operating point. Loads are those of one of the pairs in parallel."""
+    @property
+    def friction(self) -> float | None:
+        """Mean coefficient of friction; absent when the efficiency is given, or nothing is loaded."""
+    @property
+    def loss_factor(self) -> float:
+        """Loss factor ``H_V``."""
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio ``ε_α``."""
+    @property
+    def overlap_ratio(self) -> float:
+        """Overlap ratio ``ε_β`` of one helix."""
+    @property
+    def operating_pressure_angle_rad(self) -> float:
+        """Operating pressure angle in the transverse section, rad."""
+    @property
+    def operating_pressure_angle(self) -> float: ...
+    @property
+    def tangential_force_n(self) -> float:
+        """Tangential force at the operating pitch circle, N."""
+    @property
+    def tangential_force(self) -> float: ...
+    @property
+    def line_load_n_per_m(self) -> float:
+        """Load at the base circle over the face width, N/m."""
+    @property
+    def line_load(self) -> float: ...
+    @property
+    def pitch_line_speed_m_s(self) -> float:
+        """Pitch line speed relative to the carrier, m/s."""
+    @property
+    def pitch_line_speed(self) -> float: ...
+    @property
+    def sum_speed_m_s(self) -> float:
+        """Sum of the surface speeds at the pitch point, m/s."""
+    @property
+    def sum_speed(self) -> float: ...
+    @property
+    def sliding_speed_m_s(self) -> float:
+        """Largest sliding speed, m/s."""
+    @property
+    def sliding_speed(self) -> float: ...
+    @property
+    def pitch_pressure_pa(self) -> float:
+        """Hertzian pressure at the pitch point, Pa."""
+    @property
+    def pitch_pressure(self) -> float: ...
+    @property
+    def pressure_pa(self) -> float:
+        """Largest Hertzian pressure on the path of contact, Pa."""
+    @property
+    def pressure(self) -> float: ...
+    @property
+    def pitch_film_m(self) -> float | None:
+        """Film thickness at the pitch point, thermal reduction included, m; absent without an oil."""
+    @property
+    def pitch_film(self) -> float | None: ...
+    @property
+    def film_m(self) -> float | None:
+        """Smallest film thickness on the path of contact, m."""
+    @property
+    def film(self) -> float | None: ...
+    @property
+    def film_ratio(self) -> float | None:
+        """Smallest film thickness over the composite rms roughness, ``λ``."""
+    @property
+    def regime(self) -> Literal["boundary", "mixed", "full"] | None:
+        """Lubrication by ``λ``."""
+    @property
+    def sliding_loss_w(self) -> float:
+        """Loss by sliding, all pairs in parallel, W."""
+    @property
+    def sliding_loss(self) -> float: ...
+    @property
+    def rolling_loss_w(self) -> float:
+        """Loss by rolling where it is computed apart, all pairs in parallel, W."""
+    @property
+    def rolling_loss(self) -> float: ...
+
+class AnalyzeBearingReport(Record):
+    """A place with rolling bearings in an operating point."""
+    @property
+    def designation(self) -> str:
+        """Designation."""
+    @property
+    def members(self) -> list[str]:
+        """The members it joins."""
+    @property
+    def bearings(self) -> int:
+        """Bearings in all: side by side, at every planet."""
+    @property
+    def speed_rad_s(self) -> float:
+        """Speed of one ring relative to the other, rad/s."""
+    @property
+    def speed(self) -> float: ...
+    @property
+    def radial_load_n(self) -> float:
+        """Radial load of one bearing, the most loaded, N."""
+    @property
+    def radial_load(self) -> float: ...
+    @property
+    def axial_load_n(self) -> float:
+        """Axial load of one bearing, N."""
+    @property
+    def axial_load(self) -> float: ...
+    @property
+    def torque_n_m(self) -> float:
+        """Frictional torque of one bearing, mean of all, N m."""
+    @property
+    def torque(self) -> float: ...
+    @property
+    def law(self) -> str:
+        """Name of the law."""
+    @property
+    def loss_w(self) -> float:
+        """Loss of all of them, W."""
+    @property
+    def loss(self) -> float: ...
+
+class AnalyzeDragReport(Record):
+    """A torque that two members exert on each other against their relative motion.
+
+    Of a bearing that the teeth load there are several: the part that is there without load, and one for each mesh
+    whose load it carries. The latter is contained in that mesh's efficiency, so the mesh's torques include it."""
+    @property
+    def name(self) -> str:
+        """What exerts it: name of the bearing, seal, gear or rotor; of rolling, of the mesh."""
+    @property
+    def source(self) -> Literal["rolling", "bearing", "seal", "gear", "rotor"]:
+        """What that is."""
+    @property
+    def members(self) -> list[str]:
+        """The two members."""
+    @property
+    def torque_n_m(self) -> float:
+        """Torque on the first member, N m; the second feels the opposite."""
+    @property
+    def torque(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """Loss, W: torque times speed of the second relative to the first."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def contained_in(self) -> str | None:
+        """The mesh whose torques contain it."""
+
+class AnalyzeConvergence(Record):
+    """How the agreement of losses and torques was reached."""
+    @property
+    def converged(self) -> bool:
+        """Whether it was reached."""
+    @property
+    def rounds(self) -> int:
+        """Rounds of statics and laws."""
+    @property
+    def error(self) -> float:
+        """Bound on the error that is left, over the loss; the last change where nothing bounds it."""
+    @property
+    def contraction(self) -> float:
+        """The factor by which the last rounds reduced it."""
+
+class AnalyzeCirculationReport(Record):
+    """Power that goes round in circles."""
+    @property
+    def power_w(self) -> float:
+        """The power, W."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def share_of_input(self) -> float:
+        """The power over the input power."""
+    @property
+    def path(self) -> list[str]:
+        """The shafts and sets it passes, in order."""
+
+class AnalyzeBoundary(Record):
+    """A boundary of the region in which the present loss formula holds."""
+    @property
+    def member(self) -> str:
+        """The member whose prescribed value moves."""
+    @property
+    def value(self) -> float:
+        """Its value now, SI."""
+    @property
+    def boundary(self) -> float:
+        """Its value on the boundary, SI."""
+    @property
+    def mesh(self) -> str:
+        """The mesh that is unloaded, or stops moving, there."""
+
+class AnalyzeLockMargin(Record):
+    """The nearest self-locking threshold of one efficiency."""
+    @property
+    def meshes(self) -> list[str]:
+        """The mesh, or the meshes in a row that share one efficiency."""
+    @property
+    def efficiency(self) -> float:
+        """Their efficiency now."""
+    @property
+    def threshold(self) -> float:
+        """The efficiency at which the train locks."""
+
+class AnalyzeMargin(Record):
+    """How far a solution is from a change."""
+    @property
+    def torque(self) -> AnalyzeBoundary | None:
+        """The smallest change of a prescribed torque that unloads a mesh (and beyond which another loss formula
+        holds)."""
+    @property
+    def speed(self) -> AnalyzeBoundary | None:
+        """The smallest change of a prescribed speed that stops the relative motion in a mesh."""
+    @property
+    def lock(self) -> AnalyzeLockMargin | None:
+        """The mesh (or set) whose efficiency is nearest to the value at which the train locks."""
+    @property
+    def lock_loss_factor(self) -> float | None:
+        """The factor on all losses ``1 − η`` at which the train locks."""
+
+class AnalyzeTorque(Record):
+    @property
+    def member(self) -> str:
+        """The member."""
+
+class AnalyzeStictionquantity(Record):
+    """The torque on a member, N m."""
+    @property
+    def torque(self) -> AnalyzeTorque: ...
+
+class AnalyzeStictionRange(Record):
+    """A torque range that friction in a mesh at rest leaves open."""
+    @property
+    def what(self) -> str:
+        """What varies, in words."""
+    @property
+    def quantity(self) -> Literal["efficiency"] | AnalyzeStictionquantity:
+        """What ``what`` says, as data."""
+    @property
+    def low(self) -> float | None:
+        """Smallest value; absent when too many meshes rest to bound it."""
+    @property
+    def high(self) -> float | None:
+        """Largest value."""
+
+class AnalyzeSolutionReport(Record):
+    """One equilibrium."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power; 0 when everything is dissipated, absent when nothing is loaded."""
+    @property
+    def efficiency_exact(self) -> str | None:
+        """The efficiency exactly, where efficiencies, speeds and loads are known so: given efficiencies, speeds in one
+        unit and torques or powers in one unit. Points of studies have it only where a sign hung on it."""
+    @property
+    def all_dissipated(self) -> bool:
+        """Whether every loaded member is an input."""
+    @property
+    def input_power_w(self) -> float:
+        """Power in, W."""
+    @property
+    def input_power(self) -> float: ...
+    @property
+    def output_power_w(self) -> float:
+        """Power out, W."""
+    @property
+    def output_power(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def power_residual_w(self) -> float:
+        """Input less output less losses, W."""
+    @property
+    def power_residual(self) -> float: ...
+    @property
+    def members(self) -> Named[AnalyzeMemberReport]:
+        """Every member but the frame."""
+    @property
+    def meshes(self) -> Named[AnalyzeMeshReport]:
+        """Every mesh."""
+    @property
+    def shift_elements(self) -> Named[AnalyzeShiftElementReport]:
+        """Every engaged shift element."""
+    @property
+    def variators(self) -> Named[AnalyzeVariatorReport]:
+        """Every variator."""
+    @property
+    def beyond_limits(self) -> list[AnalyzeBeyondLimit]:
+        """Limits of variators that are exceeded."""
+    @property
+    def losses_w(self) -> AnalyzeLosses:
+        """Losses by kind."""
+    @property
+    def losses(self) -> AnalyzeLosses: ...
+    @property
+    def sources(self) -> list[AnalyzeLossSource]:
+        """Losses by source, largest first, where they are computed."""
+    @property
+    def contacts(self) -> Named[AnalyzeContactReport]:
+        """Tooth contacts of the meshes whose teeth are given."""
+    @property
+    def bearings(self) -> Named[AnalyzeBearingReport]:
+        """Rolling bearings."""
+    @property
+    def drags(self) -> list[AnalyzeDragReport]:
+        """Drag torques between members, where losses are computed."""
+    @property
+    def convergence(self) -> AnalyzeConvergence | None:
+        """How losses and torques were brought into agreement, where losses are computed."""
+    @property
+    def recirculation(self) -> list[AnalyzeCirculationReport]:
+        """Recirculating powers."""
+    @property
+    def margin(self) -> AnalyzeMargin:
+        """Distance to the next change."""
+    @property
+    def stiction(self) -> list[AnalyzeStictionRange]:
+        """What friction in meshes at rest leaves open."""
+
+class AnalyzeOperationReport(Record):
+    """An operating point."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def state(self) -> str | None:
+        """The state of the shift table."""
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Degrees of freedom with its elements engaged and members held."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of it."""
+    @property
+    def certificate(self) -> AnalyzeCertificateReport | None:
+        """Certificate, where a problem could be set up."""
+    @property
+    def reason(self) -> str | None:
+        """One sentence that explains the verdict."""
+    @property
+    def why(self) -> Any | None:
+        """What ``reason`` says, as data."""
+    @property
+    def outside_laws(self) -> list[AnalyzeOutsideLaw]:
+        """Laws that were used outside their ranges."""
+    @property
+    def speed_deviation(self) -> AnalyzeSpeedDeviation | None:
+        """Where prescribed speeds contradict the gears the most, within the tolerance that was asked for."""
+    @property
+    def speeds_rad_s(self) -> Named[float | None]:
+        """Speeds, also when the torques have no answer; rad/s."""
+    @property
+    def speeds(self) -> Named[float | None]: ...
+    @property
+    def solutions(self) -> list[AnalyzeSolutionReport]:
+        """Every equilibrium that drives a load (or, with two or more freedoms, any equilibrium)."""
+    @property
+    def dissipative_solutions(self) -> list[AnalyzeSolutionReport]:
+        """Of a locked train: equilibria in which every loaded member must push."""
+
+class AnalyzeSpan(Record):
+    """A part of a text."""
+    @property
+    def start(self) -> int:
+        """The first byte, counted from 0."""
+    @property
+    def end(self) -> int:
+        """The byte after the last."""
+    @property
+    def line(self) -> int:
+        """The line of the first character."""
+    @property
+    def column(self) -> int:
+        """The column of the first character."""
+    @property
+    def end_line(self) -> int:
+        """The line of the character after the last."""
+    @property
+    def end_column(self) -> int:
+        """The column of the character after the last."""
+
+class AnalyzeDiagnostic(Record):
+    """One thing to tell the user."""
+    @property
+    def code(self) -> str:
+        """Stable code; ``willis explain CODE`` tells more."""
+    @property
+    def severity(self) -> Literal["error", "warning", "note"]:
+        """How much it matters."""
+    @property
+    def place(self) -> str:
+        """The place in the train, such as ``set[1].ring.teeth``; empty for the train as a whole."""
+    @property
+    def message(self) -> str:
+        """What is the case, with the numbers and names in it."""
+    @property
+    def hints(self) -> list[str]:
+        """What to do; may name a value that works."""
+    @property
+    def file(self) -> str | None:
+        """The file whose text it stands on, as the caller names it."""
+    @property
+    def span(self) -> AnalyzeSpan | None:
+        """The part of the source text it stands on, when there is one."""
+    @property
+    def replacement(self) -> str | None:
+        """What to put in place of the spanned text, when that is known."""
+
+class AnalyzeAnswer(_answer.Analysis):
+    """Everything that is known about a train."""
+    @property
+    def format(self) -> Literal["willis-analysis-1"]:
+        """``willis-analysis-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def source(self) -> str | None:
+        """Source of its data."""
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Degrees of freedom as drawn, no shift element engaged."""
+    @property
+    def ratios(self) -> Named[AnalyzeStateReport]:
+        """The shift table, or one row ``as drawn``."""
+    @property
+    def operations(self) -> list[AnalyzeOperationReport]:
+        """The operating points."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What stands in for data that were not given, and what the model leaves out."""
+    @property
+    def diagnostics(self) -> list[AnalyzeDiagnostic]:
+        """Warnings and notes."""
+
+class TableShaftMember(Record):
+    """A member in a state."""
+    @property
+    def speed(self) -> str | None:
+        """Speed over that of the input; absent where the input does not settle it."""
+    @property
+    def carrier(self) -> str | None:
+        """The carrier on which it turns, for a planet."""
+    @property
+    def relative_speed(self) -> str | None:
+        """Speed relative to that carrier, over the speed of the input."""
+    @property
+    def torque(self) -> float | None:
+        """External torque over that of the input, reactions of brakes included; absent where it is not determined."""
+
+class TableShaftElement(Record):
+    """A shift element in a state."""
+    @property
+    def kind(self) -> Literal["clutch", "brake", "one-way"]:
+        """What it is."""
+    @property
+    def members(self) -> list[str]:
+        """The members it joins."""
+    @property
+    def engaged(self) -> bool:
+        """Whether it is closed."""
+    @property
+    def slip(self) -> str | None:
+        """Speed of the first member less that of the second, over the speed of the input: 0 while it is closed."""
+    @property
+    def torque(self) -> float | None:
+        """Torque that it exerts on the first member, over the input torque; 0 while it is open, absent where it is not
+        determined."""
+
+class TableShaftState(Record):
+    """One state."""
+    @property
+    def input(self) -> str:
+        """Where power enters."""
+    @property
+    def output(self) -> str:
+        """Where it leaves."""
+    @property
+    def engaged(self) -> list[str]:
+        """Shift elements that are closed."""
+    @property
+    def ratio(self) -> str | None:
+        """``ω_input/ω_output``, exactly."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power, the input driving."""
+    @property
+    def efficiency_exact(self) -> str | None:
+        """The efficiency exactly, where the efficiencies of the meshes are given."""
+    @property
+    def reason(self) -> str | None:
+        """Why speeds or torques are missing."""
+    @property
+    def why(self) -> Any | None:
+        """What ``reason`` says, as data."""
+    @property
+    def members(self) -> Named[TableShaftMember]:
+        """Every member, planets included."""
+    @property
+    def shift_elements(self) -> Named[TableShaftElement]:
+        """Every shift element."""
+    @property
+    def sets(self) -> Named[Named[float]]:
+        """Torque that each member puts into each set, or mesh of no set, over the input torque."""
+
+class TableSpan(Record):
+    """A part of a text."""
+    @property
+    def start(self) -> int:
+        """The first byte, counted from 0."""
+    @property
+    def end(self) -> int:
+        """The byte after the last."""
+    @property
+    def line(self) -> int:
+        """The line of the first character."""
+    @property
+    def column(self) -> int:
+        """The column of the first character."""
+    @property
+    def end_line(self) -> int:
+        """The line of the character after the last."""
+    @property
+    def end_column(self) -> int:
+        """The column of the character after the last."""
+
+class TableDiagnostic(Record):
+    """One thing to tell the user."""
+    @property
+    def code(self) -> str:
+        """Stable code; ``willis explain CODE`` tells more."""
+    @property
+    def severity(self) -> Literal["error", "warning", "note"]:
+        """How much it matters."""
+    @property
+    def place(self) -> str:
+        """The place in the train, such as ``set[1].ring.teeth``; empty for the train as a whole."""
+    @property
+    def message(self) -> str:
+        """What is the case, with the numbers and names in it."""
+    @property
+    def hints(self) -> list[str]:
+        """What to do; may name a value that works."""
+    @property
+    def file(self) -> str | None:
+        """The file whose text it stands on, as the caller names it."""
+    @property
+    def span(self) -> TableSpan | None:
+        """The part of the source text it stands on, when there is one."""
+    @property
+    def replacement(self) -> str | None:
+        """What to put in place of the spanned text, when that is known."""
+
+class TableAnswer(Answer):
+    """Speeds and torques of a whole shift table: the results contract ``willis-table-1``."""
+    @property
+    def format(self) -> Literal["willis-table-1"]:
+        """``willis-table-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def source(self) -> str | None:
+        """Where its numbers come from."""
+    @property
+    def lossless(self) -> bool:
+        """Whether torques are those without losses."""
+    @property
+    def states(self) -> Named[TableShaftState]:
+        """Every state; the train as drawn where it has none."""
+    @property
+    def diagnostics(self) -> list[TableDiagnostic]:
+        """What to know beside it."""
+
+class NewStart(Record):
+    """A train file to start from."""
+    @property
+    def kind(self) -> str:
+        """How it is asked for."""
+    @property
+    def about(self) -> str:
+        """One line about it."""
+    @property
+    def toml(self) -> str:
+        """The train file."""
+
+class NewAnswer(Answer):
+    """A train file to start from, or the kinds there are."""
+    @property
+    def format(self) -> Literal["willis-new-1"]:
+        """``willis-new-1``."""
+    @property
+    def starts(self) -> list[NewStart]:
+        """The kind that was asked for, or all."""
+
+class CheckSpan(Record):
+    """A part of a text."""
+    @property
+    def start(self) -> int:
+        """The first byte, counted from 0."""
+    @property
+    def end(self) -> int:
+        """The byte after the last."""
+    @property
+    def line(self) -> int:
+        """The line of the first character."""
+    @property
+    def column(self) -> int:
+        """The column of the first character."""
+    @property
+    def end_line(self) -> int:
+        """The line of the character after the last."""
+    @property
+    def end_column(self) -> int:
+        """The column of the character after the last."""
+
+class CheckDiagnostic(Record):
+    """One thing to tell the user."""
+    @property
+    def code(self) -> str:
+        """Stable code; ``willis explain CODE`` tells more."""
+    @property
+    def severity(self) -> Literal["error", "warning", "note"]:
+        """How much it matters."""
+    @property
+    def place(self) -> str:
+        """The place in the train, such as ``set[1].ring.teeth``; empty for the train as a whole."""
+    @property
+    def message(self) -> str:
+        """What is the case, with the numbers and names in it."""
+    @property
+    def hints(self) -> list[str]:
+        """What to do; may name a value that works."""
+    @property
+    def file(self) -> str | None:
+        """The file whose text it stands on, as the caller names it."""
+    @property
+    def span(self) -> CheckSpan | None:
+        """The part of the source text it stands on, when there is one."""
+    @property
+    def replacement(self) -> str | None:
+        """What to put in place of the spanned text, when that is known."""
+
+class CheckAnswer(Answer):
+    """A train file without errors."""
+    @property
+    def format(self) -> Literal["willis-check-1"]:
+        """``willis-check-1``."""
+    @property
+    def file(self) -> str:
+        """The file."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def members(self) -> int:
+        """How many members it has, planets included, without the frame."""
+    @property
+    def meshes(self) -> int:
+        """How many meshes."""
+    @property
+    def shift_elements(self) -> int:
+        """How many clutches, brakes and one-way clutches."""
+    @property
+    def states(self) -> int:
+        """How many rows of the shift table."""
+    @property
+    def operations(self) -> int:
+        """How many operating points."""
+    @property
+    def scenarios(self) -> int:
+        """How many motions to simulate."""
+    @property
+    def studies(self) -> int:
+        """How many sweeps."""
+    @property
+    def diagnostics(self) -> list[CheckDiagnostic]:
+        """Warnings and notes, each with its place in the file."""
+
+class FlowNode(Record):
+    """A component, a contact, or an end of the graph."""
+    @property
+    def id(self) -> str:
+        """Unique: kind and name, as in ``member:sun``, ``teeth:P1.sun-planet``, ``input:sun``; or ``frame``."""
+    @property
+    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "shift-element", "coupling", "variator", "input", "output"]:
+        """What it is."""
+    @property
+    def name(self) -> str:
+        """Its name in the train."""
+    @property
+    def speed_rad_s(self) -> float | None:
+        """Speed of a component, rad/s; absent when not determined."""
+    @property
+    def speed(self) -> float | None: ...
+    @property
+    def count(self) -> int:
+        """Identical ones in parallel: tooth pairs, bearings."""
+    @property
+    def power_in_w(self) -> float:
+        """Power that enters, W."""
+    @property
+    def power_in(self) -> float: ...
+    @property
+    def power_out_w(self) -> float:
+        """Power that leaves, W."""
+    @property
+    def power_out(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """Loss in it, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def efficiency(self) -> float | None:
+        """Outgoing over incoming absolute power; absent where none passes."""
+    @property
+    def carrier_frame_efficiency(self) -> float | None:
+        """Of a tooth contact: efficiency of sliding seen from the carrier."""
+    @property
+    def residual_w(self) -> float:
+        """Power in less power out less loss, W: round-off."""
+    @property
+    def residual(self) -> float: ...
+
+class FlowEdge(Record):
+    """Power, or only torque, between two nodes."""
+    @property
+    def to(self) -> str:
+        """The node that it enters."""
+    @property
+    def member(self) -> str:
+        """The component at one end, whose speed times the torque is the power."""
+    @property
+    def torque_n_m(self) -> float | None:
+        """Torque that the component puts into the contact (at an input or output: external torque on the component), N
+        m; absent where statics cannot divide it."""
+    @property
+    def torque(self) -> float | None: ...
+    @property
+    def power_w(self) -> float:
+        """Power, W; 0 where the component stands still."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def circulating_w(self) -> float:
+        """The part of it that runs in loops, W."""
+    @property
+    def circulating(self) -> float: ...
+
+class FlowLoop(Record):
+    """Power that runs in a circle."""
+    @property
+    def power_w(self) -> float:
+        """The power, W."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def share_of_input(self) -> float:
+        """Over the input power."""
+    @property
+    def nodes(self) -> list[str]:
+        """Identifiers of the nodes it passes, in order; from the last it returns to the first."""
+    @property
+    def passes(self) -> list[str]:
+        """The same seen from afar: names of shafts, sets and clutches."""
+    @property
+    def within(self) -> str | None:
+        """The set, or ordinary pair, that it never leaves; or the sets it passes although none of them takes part in a
+        circle as a whole ([``SolutionReport::recirculation``], which counts set by set). Such a loop depends on the
+        frame in which powers are counted, not on how the train is coupled."""
+
+class FlowStation(Record):
+    """A node on a path."""
+    @property
+    def node(self) -> str:
+        """Identifier of the node."""
+    @property
+    def efficiency(self) -> float:
+        """Its efficiency for the power on paths: out over in, loops taken out; 1 for a component."""
+
+class FlowPath(Record):
+    """A way from an input to an output."""
+    @property
+    def share_of_input(self) -> float:
+        """Part of the input power that takes it."""
+    @property
+    def efficiency(self) -> float:
+        """Product of the efficiencies along it."""
+    @property
+    def delivered_w(self) -> float:
+        """What arrives, W."""
+    @property
+    def delivered(self) -> float: ...
+    @property
+    def stations(self) -> list[FlowStation]:
+        """The nodes along it, input and output included."""
+
+class FlowHypergraph(Record):
+    """The power flow of one equilibrium."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power; 0 when everything is dissipated, absent when nothing is loaded."""
+    @property
+    def efficiency_exact(self) -> str | None:
+        """The efficiency exactly, where [``SolutionReport::efficiency_exact``] is known."""
+    @property
+    def input_power_w(self) -> float:
+        """Power in, W."""
+    @property
+    def input_power(self) -> float: ...
+    @property
+    def output_power_w(self) -> float:
+        """Power out, W."""
+    @property
+    def output_power(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def power_residual_w(self) -> float:
+        """Input less output less losses, W."""
+    @property
+    def power_residual(self) -> float: ...
+    @property
+    def largest_residual_w(self) -> float:
+        """The largest residual of a node, W."""
+    @property
+    def largest_residual(self) -> float: ...
+    @property
+    def nodes(self) -> list[FlowNode]:
+        """Frame, components, contacts, inputs and outputs."""
+    @property
+    def edges(self) -> list[FlowEdge]:
+        """Powers between them."""
+    @property
+    def loops(self) -> list[FlowLoop]:
+        """Power that runs in circles, largest first."""
+    @property
+    def paths(self) -> list[FlowPath]:
+        """Ways from inputs to outputs, those that deliver most first, at most [``MOST_PATHS``]."""
+    @property
+    def path_count(self) -> int:
+        """How many there are."""
+    @property
+    def share_on_paths(self) -> float:
+        """Part of the input power that takes any of them; the rest is lost on its way where nothing is passed on."""
+
+class FlowOperationFlow(Record):
+    """The power flow of an operating point."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def state(self) -> str | None:
+        """The state of the shift table."""
+    @property
+    def unit(self) -> str | None:
+        """Where no operation describes the state: the member whose speed and torque are the units, 1 rad/s and 1 N m."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of it."""
+    @property
+    def reason(self) -> str | None:
+        """One sentence that explains the verdict."""
+    @property
+    def solutions(self) -> list[FlowHypergraph]:
+        """Every equilibrium."""
+    @property
+    def dissipative_solutions(self) -> list[FlowHypergraph]:
+        """Of a locked train: equilibria in which every loaded member must push."""
+
+class FlowSpan(Record):
+    """A part of a text."""
+    @property
+    def start(self) -> int:
+        """The first byte, counted from 0."""
+    @property
+    def end(self) -> int:
+        """The byte after the last."""
+    @property
+    def line(self) -> int:
+        """The line of the first character."""
+    @property
+    def column(self) -> int:
+        """The column of the first character."""
+    @property
+    def end_line(self) -> int:
+        """The line of the character after the last."""
+    @property
+    def end_column(self) -> int:
+        """The column of the character after the last."""
+
+class FlowDiagnostic(Record):
+    """One thing to tell the user."""
+    @property
+    def code(self) -> str:
+        """Stable code; ``willis explain CODE`` tells more."""
+    @property
+    def severity(self) -> Literal["error", "warning", "note"]:
+        """How much it matters."""
+    @property
+    def place(self) -> str:
+        """The place in the train, such as ``set[1].ring.teeth``; empty for the train as a whole."""
+    @property
+    def message(self) -> str:
+        """What is the case, with the numbers and names in it."""
+    @property
+    def hints(self) -> list[str]:
+        """What to do; may name a value that works."""
+    @property
+    def file(self) -> str | None:
+        """The file whose text it stands on, as the caller names it."""
+    @property
+    def span(self) -> FlowSpan | None:
+        """The part of the source text it stands on, when there is one."""
+    @property
+    def replacement(self) -> str | None:
+        """What to put in place of the spanned text, when that is known."""
+
+class FlowAnswer(Answer):
+    """Power flows of a train: the results contract ``willis-flow-1``."""
+    @property
+    def format(self) -> Literal["willis-flow-1"]:
+        """``willis-flow-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def source(self) -> str | None:
+        """Source of its data."""
+    @property
+    def operations(self) -> list[FlowOperationFlow]:
+        """The operating points."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What stands in for data that were not given, and what the model leaves out."""
+    @property
+    def diagnostics(self) -> list[FlowDiagnostic]:
+        """Warnings and notes."""
+
+class LossesLosses(Record):
+    """Losses by kind, W."""
+    @property
+    def mesh(self) -> float:
+        """Tooth friction."""
+    @property
+    def bearing(self) -> float:
+        """Bearings."""
+    @property
+    def windage(self) -> float:
+        """Air and oil mist."""
+    @property
+    def churning(self) -> float:
+        """Oil sump."""
+    @property
+    def seal(self) -> float:
+        """Shaft seals."""
+    @property
+    def variator(self) -> float:
+        """Variators."""
+
+class LossesLossSource(Record):
+    """One place where power is lost."""
+    @property
+    def name(self) -> str:
+        """What loses it."""
+    @property
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"]:
+        """What kind of loss it is."""
+    @property
+    def law(self) -> str:
+        """Its name in the list of laws; ``given`` for a given efficiency."""
+    @property
+    def loss_w(self) -> float:
+        """The power, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def share(self) -> float:
+        """The part of all losses."""
+
+class LossesConvergence(Record):
+    """How the agreement of losses and torques was reached."""
+    @property
+    def converged(self) -> bool:
+        """Whether it was reached."""
+    @property
+    def rounds(self) -> int:
+        """Rounds of statics and laws."""
+    @property
+    def error(self) -> float:
+        """Bound on the error that is left, over the loss; the last change where nothing bounds it."""
+    @property
+    def contraction(self) -> float:
+        """The factor by which the last rounds reduced it."""
+
+class LossesOutsideAt(Record):
+    """A place where a law was used outside its range."""
+    @property
+    def name(self) -> str:
+        """The mesh, bearing, seal, gear or rotor."""
+    @property
+    def value(self) -> float | None:
+        """The value there, in the unit of the quantity; absent where it is not finite."""
+
+class LossesOutsideLaw(Record):
+    """A quantity outside the range of a law, wherever it was."""
+    @property
+    def family(self) -> str:
+        """Family of the law."""
+    @property
+    def law(self) -> str:
+        """Name of the law."""
+    @property
+    def symbol(self) -> str:
+        """Symbol of the quantity."""
+    @property
+    def unit(self) -> str:
+        """Its SI unit; ``-`` for a pure number."""
+    @property
+    def low(self) -> float | None:
+        """Lowest value of the range, in that unit; absent where there is none."""
+    @property
+    def high(self) -> float | None:
+        """Highest value of the range, in that unit; absent where there is none."""
+    @property
+    def places(self) -> list[LossesOutsideAt]:
+        """Where the law was used so."""
+
+class LossesLossPoint(Record):
+    """One point."""
+    @property
+    def operation(self) -> str:
+        """The operation it comes from."""
+    @property
+    def speed_of(self) -> str | None:
+        """The member of the first prescribed speed."""
+    @property
+    def speed_rad_s(self) -> float:
+        """Its speed, rad/s."""
+    @property
+    def speed(self) -> float: ...
+    @property
+    def torque_of(self) -> str | None:
+        """The member of the first load."""
+    @property
+    def torque_n_m(self) -> float | None:
+        """Its torque, N m."""
+    @property
+    def torque(self) -> float | None: ...
+    @property
+    def temperature_k(self) -> float | None:
+        """Oil temperature, K; absent without an oil."""
+    @property
+    def temperature(self) -> float | None: ...
+    @property
+    def law(self) -> str | None:
+        """The law in force, where laws are compared."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of the point."""
+    @property
+    def reason(self) -> str | None:
+        """One sentence that explains the verdict."""
+    @property
+    def why(self) -> Any | None:
+        """What ``reason`` says, as data."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power."""
+    @property
+    def input_power_w(self) -> float:
+        """Power in, W."""
+    @property
+    def input_power(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def losses_w(self) -> LossesLosses:
+        """Losses by kind."""
+    @property
+    def losses(self) -> LossesLosses: ...
+    @property
+    def sources(self) -> list[LossesLossSource]:
+        """Losses by source, largest first."""
+    @property
+    def friction(self) -> Named[float | None]:
+        """Mean coefficient of friction of each mesh."""
+    @property
+    def convergence(self) -> LossesConvergence | None:
+        """How losses and torques were brought into agreement."""
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings of this point."""
+    @property
+    def outside_laws(self) -> list[LossesOutsideLaw]:
+        """Those of them that say that a law was used outside its range, as data."""
+
+class LossesSpread(Record):
+    """How far the laws of a family disagree at a point: the honest uncertainty of a prediction. Laws outside their
+    range count only where fewer than two are inside; laws that reproduce a published error never count."""
+    @property
+    def least_w(self) -> list[Any]:
+        """Smallest loss, W, and the law that gives it."""
+    @property
+    def least(self) -> list[Any]: ...
+    @property
+    def most_w(self) -> list[Any]:
+        """Largest loss, W, and the law that gives it."""
+    @property
+    def most(self) -> list[Any]: ...
+    @property
+    def inside(self) -> int:
+        """Laws that were used inside their ranges."""
+    @property
+    def laws(self) -> int:
+        """Laws in all."""
+
+class LossesAnswer(Answer):
+    """Losses at the points asked for."""
+    @property
+    def format(self) -> Literal["willis-losses-1"]:
+        """``willis-losses-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def family(self) -> str | None:
+        """The family whose laws are compared."""
+    @property
+    def points(self) -> list[LossesLossPoint]:
+        """The points, operation by operation, speed, load, temperature, law."""
+    @property
+    def spreads(self) -> list[LossesSpread]:
+        """Where laws are compared: the spread over each group of points that differ in the law alone."""
+
+class SensitivitySourceChange(Record):
+    """What a quantity does to one loss."""
+    @property
+    def name(self) -> str:
+        """What loses it."""
+    @property
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"]:
+        """What kind of loss it is."""
+    @property
+    def law(self) -> str:
+        """Its law."""
+    @property
+    def change_w(self) -> float:
+        """Change for the step, W."""
+    @property
+    def change(self) -> float: ...
+
+class SensitivityQuantitySensitivity(Record):
+    """What one quantity does. Changes for a step are the derivative times the step: exact for small ones."""
+    @property
+    def name(self) -> str:
+        """Its path, as the file has it: ``P1.geometry.module``, ``B1.radial_load``; of the operation what an
+        [axis](crate::study::Axis) calls it: ``oil.temperature``, ``sun.speed``, ``sun.torque``."""
+    @property
+    def value(self) -> float:
+        """Its value, SI."""
+    @property
+    def unit(self) -> str:
+        """SI unit of the value."""
+    @property
+    def assumed(self) -> bool:
+        """Whether it is not given but taken."""
+    @property
+    def step(self) -> Literal["percent", "kelvin", "degree", "hundredth", "rpm", "tenth_millimetre", "unit"]:
+        """The step for which changes are told."""
+    @property
+    def step_size(self) -> float:
+        """That step, SI."""
+    @property
+    def efficiency_derivative(self) -> float | None:
+        """``dη/dq``, over the SI unit of the value."""
+    @property
+    def loss_derivative_w(self) -> float:
+        """``dP_loss/dq``, W over the SI unit of the value."""
+    @property
+    def loss_derivative(self) -> float: ...
+    @property
+    def efficiency_change(self) -> float | None:
+        """Change of the efficiency for the step."""
+    @property
+    def loss_change_w(self) -> float:
+        """Change of all losses for the step, W."""
+    @property
+    def loss_change(self) -> float: ...
+    @property
+    def loss_elasticity(self) -> float | None:
+        """``(dP_loss/P_loss)/(dq/q)``: percent of loss for one percent of the quantity; absent for temperatures,
+        angles and shifts."""
+    @property
+    def sources(self) -> list[SensitivitySourceChange]:
+        """The losses that it moves, the one that changes most first."""
+
+class SensitivityBoundary(Record):
+    """A boundary of the region in which the present loss formula holds."""
+    @property
+    def member(self) -> str:
+        """The member whose prescribed value moves."""
+    @property
+    def value(self) -> float:
+        """Its value now, SI."""
+    @property
+    def boundary(self) -> float:
+        """Its value on the boundary, SI."""
+    @property
+    def mesh(self) -> str:
+        """The mesh that is unloaded, or stops moving, there."""
+
+class SensitivityLockMargin(Record):
+    """The nearest self-locking threshold of one efficiency."""
+    @property
+    def meshes(self) -> list[str]:
+        """The mesh, or the meshes in a row that share one efficiency."""
+    @property
+    def efficiency(self) -> float:
+        """Their efficiency now."""
+    @property
+    def threshold(self) -> float:
+        """The efficiency at which the train locks."""
+
+class SensitivityMargin(Record):
+    """How far a solution is from a change."""
+    @property
+    def torque(self) -> SensitivityBoundary | None:
+        """The smallest change of a prescribed torque that unloads a mesh (and beyond which another loss formula
+        holds)."""
+    @property
+    def speed(self) -> SensitivityBoundary | None:
+        """The smallest change of a prescribed speed that stops the relative motion in a mesh."""
+    @property
+    def lock(self) -> SensitivityLockMargin | None:
+        """The mesh (or set) whose efficiency is nearest to the value at which the train locks."""
+    @property
+    def lock_loss_factor(self) -> float | None:
+        """The factor on all losses ``1 − η`` at which the train locks."""
+
+class SensitivityChecks(Record):
+    """How far derivatives are settled."""
+    @property
+    def balance_residual(self) -> float:
+        """Largest derivative of input less output less losses, over the largest of the three: round-off."""
+    @property
+    def rounds(self) -> int:
+        """Most rounds of laws and statics that one quantity took."""
+    @property
+    def error(self) -> float:
+        """Bound on the error that was left, over the largest derivative of a loss: the worst of all quantities."""
+
+class SensitivityOperationSensitivity(Record):
+    """What every input does at one operating point."""
+    @property
+    def name(self) -> str:
+        """Name of the operation."""
+    @property
+    def state(self) -> str | None:
+        """The state of the shift table, if not as drawn."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of the operation. There are derivatives only where it is ``unique``."""
+    @property
+    def reason(self) -> str | None:
+        """Why there are no derivatives."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power; absent where nothing comes in."""
+    @property
+    def efficiency_exact(self) -> str | None:
+        """The same exactly, where it is known."""
+    @property
+    def input_power_w(self) -> float:
+        """Power in at all inputs, W."""
+    @property
+    def input_power(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def quantities(self) -> list[SensitivityQuantitySensitivity]:
+        """Every quantity that moves a loss, the one with the largest effect first."""
+    @property
+    def without_effect(self) -> list[str]:
+        """Quantities on which no loss depends here."""
+    @property
+    def without_derivative(self) -> list[list[Any]]:
+        """Quantities without a derivative here, each with the reason."""
+    @property
+    def margin(self) -> SensitivityMargin | None:
+        """How far the point is from another driving end, and from locking."""
+    @property
+    def checks(self) -> SensitivityChecks | None:
+        """How far the derivatives are settled."""
+    @property
+    def notes(self) -> list[str]:
+        """What must be known to read the numbers."""
+
+class SensitivitySpan(Record):
+    """A part of a text."""
+    @property
+    def start(self) -> int:
+        """The first byte, counted from 0."""
+    @property
+    def end(self) -> int:
+        """The byte after the last."""
+    @property
+    def line(self) -> int:
+        """The line of the first character."""
+    @property
+    def column(self) -> int:
+        """The column of the first character."""
+    @property
+    def end_line(self) -> int:
+        """The line of the character after the last."""
+    @property
+    def end_column(self) -> int:
+        """The column of the character after the last."""
+
+class SensitivityDiagnostic(Record):
+    """One thing to tell the user."""
+    @property
+    def code(self) -> str:
+        """Stable code; ``willis explain CODE`` tells more."""
+    @property
+    def severity(self) -> Literal["error", "warning", "note"]:
+        """How much it matters."""
+    @property
+    def place(self) -> str:
+        """The place in the train, such as ``set[1].ring.teeth``; empty for the train as a whole."""
+    @property
+    def message(self) -> str:
+        """What is the case, with the numbers and names in it."""
+    @property
+    def hints(self) -> list[str]:
+        """What to do; may name a value that works."""
+    @property
+    def file(self) -> str | None:
+        """The file whose text it stands on, as the caller names it."""
+    @property
+    def span(self) -> SensitivitySpan | None:
+        """The part of the source text it stands on, when there is one."""
+    @property
+    def replacement(self) -> str | None:
+        """What to put in place of the spanned text, when that is known."""
+
+class SensitivityAnswer(Answer):
+    """What every input does to efficiency and losses: the results contract ``willis-sensitivity-1``."""
+    @property
+    def format(self) -> Literal["willis-sensitivity-1"]:
+        """``willis-sensitivity-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def operations(self) -> list[SensitivityOperationSensitivity]:
+        """Every operation asked for."""
+    @property
+    def diagnostics(self) -> list[SensitivityDiagnostic]:
+        """Warnings and notes of the operations."""
+
+class UncertaintyAnswer(Answer):
+    """How sure a number is, and the samples that say so."""
+
+class SweepAnswer(_answer.Sweep):
+    """A sweep: what its points say together, and the points themselves."""
+
+class CycleAnswer(_answer.Cycle):
+    """A duty cycle: its energies, and its rows."""
+
+class CompareVariant(Record):
+    """A variant."""
+    @property
+    def label(self) -> str:
+        """``A``, ``B``, …"""
+    @property
+    def file(self) -> str:
+        """What it is called, a file."""
+    @property
+    def train(self) -> str:
+        """Name of its train."""
+
+class CompareTextDifference(Record):
+    """A key in which files differ, or a prescription in which operations do."""
+    @property
+    def path(self) -> str:
+        """The path of the key, or what is prescribed."""
+    @property
+    def values(self) -> list[str | None]:
+        """The values as written, one for each variant; absent where it has none."""
+
+class CompareDifference(Record):
+    """A result in which variants differ."""
+    @property
+    def quantity(self) -> str:
+        """What it is."""
+    @property
+    def unit(self) -> Literal["", "efficiency", "W", "N m", "rad/s", "Pa"]:
+        """Its unit."""
+    @property
+    def values(self) -> list[None | float | str]:
+        """One value for each variant."""
+    @property
+    def differences(self) -> list[float | None]:
+        """Value less that of the first variant."""
+    @property
+    def relative(self) -> list[float | None]:
+        """The difference over the first variant's value; of an efficiency over what it lacks to 1."""
+    @property
+    def size(self) -> float:
+        """How large the difference is, 0 to 1: largest over the larger value, efficiencies measured by what they lack
+        to 1; 2 where words differ or a value is missing."""
+
+class CompareCompared(Record):
+    """A state or an operation in all variants that have it."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def missing_in(self) -> list[str]:
+        """Labels of the variants that do not have it."""
+    @property
+    def prescribed(self) -> list[CompareTextDifference]:
+        """What the variants prescribe differently: results are then those of different points."""
+    @property
+    def differences(self) -> list[CompareDifference]:
+        """Results that differ, largest first."""
+    @property
+    def equal(self) -> int:
+        """How many results are equal."""
+    @property
+    def reasons(self) -> list[list[Any]]:
+        """Why a variant has no answer: label and reason."""
+
+class CompareMapPlace(Record):
+    """A place on a map."""
+    @property
+    def difference(self) -> float:
+        """Value less that of the first variant."""
+    @property
+    def first(self) -> float:
+        """Value of the first variant."""
+    @property
+    def other(self) -> float:
+        """Value of the other."""
+    @property
+    def place(self) -> str:
+        """The point in words."""
+
+class CompareMapDifference(Record):
+    """A difference over many points."""
+    @property
+    def better(self) -> int:
+        """Points at which the other variant is better."""
+    @property
+    def worse(self) -> int:
+        """Points at which it is worse."""
+    @property
+    def equal(self) -> int:
+        """Points at which both are equal."""
+    @property
+    def mean(self) -> float | None:
+        """Mean of its value less that of the first."""
+    @property
+    def most_better(self) -> CompareMapPlace | None:
+        """Where it is better by most."""
+    @property
+    def most_worse(self) -> CompareMapPlace | None:
+        """Where it is worse by most."""
+
+class CompareBand(Record):
+    """Efficiency along a part of an axis."""
+    @property
+    def axis(self) -> str:
+        """The axis."""
+    @property
+    def to(self) -> str:
+        """Last value."""
+    @property
+    def better(self) -> int:
+        """Points at which the other variant is the more efficient."""
+    @property
+    def worse(self) -> int:
+        """Points at which it is the less efficient."""
+    @property
+    def equal(self) -> int:
+        """Points at which both are equal."""
+    @property
+    def mean(self) -> float | None:
+        """Mean of its efficiency less that of the first."""
+
+class CompareMapPair(Record):
+    """The first variant and another over the same axes."""
+    @property
+    def first(self) -> str:
+        """Label of the first."""
+    @property
+    def other(self) -> str:
+        """Label of the other."""
+    @property
+    def compared(self) -> int:
+        """Points at which both have one answer."""
+    @property
+    def only_first(self) -> int:
+        """Points at which only the first has one."""
+    @property
+    def only_other(self) -> int:
+        """Points at which only the other has one."""
+    @property
+    def neither(self) -> int:
+        """Points at which neither has one."""
+    @property
+    def efficiency(self) -> CompareMapDifference:
+        """Of the efficiency."""
+    @property
+    def loss_w(self) -> CompareMapDifference:
+        """Of the loss, W."""
+    @property
+    def loss(self) -> CompareMapDifference: ...
+    @property
+    def bands(self) -> list[CompareBand]:
+        """Efficiency along each axis."""
+
+class CompareMapComparison(Record):
+    """Variants over the same axes."""
+    @property
+    def over(self) -> list[str]:
+        """The axes as they were written."""
+    @property
+    def points(self) -> int:
+        """How many points."""
+    @property
+    def operations(self) -> list[str]:
+        """The operation from which each variant starts."""
+    @property
+    def prescribed(self) -> list[CompareTextDifference]:
+        """What these prescribe differently, where no axis sets it."""
+    @property
+    def pairs(self) -> list[CompareMapPair]:
+        """The first variant with each other."""
+
+class CompareAnswer(Answer):
+    """Variants side by side. Serialised it is the contract ``willis-compare-1``."""
+    @property
+    def format(self) -> Literal["willis-compare-1"]:
+        """``willis-compare-1``."""
+    @property
+    def variants(self) -> list[CompareVariant]:
+        """The variants."""
+    @property
+    def identical(self) -> bool:
+        """Whether all files say the same."""
+    @property
+    def states(self) -> list[CompareCompared]:
+        """The shift tables, state by state, largest difference first."""
+    @property
+    def operations(self) -> list[CompareCompared]:
+        """The operations by their names, largest difference first."""
+    @property
+    def map(self) -> CompareMapComparison | None:
+        """Over axes, where asked for."""
+
+class RegimesSymbolReport(Record):
+    """A symbol of the formulas."""
+    @property
+    def value(self) -> float | None:
+        """Value in this train, for ratios and efficiencies."""
+    @property
+    def exact(self) -> str | None:
+        """The same, exactly."""
+    @property
+    def meaning(self) -> str:
+        """What it stands for, in words."""
+    @property
+    def latex(self) -> str:
+        """In LaTeX."""
+
+class RegimesPlaneReport(Record):
+    """A plane through the origin of the speed space."""
+    @property
+    def label(self) -> str:
+        """What is the case on it: ``sun1 at rest``."""
+    @property
+    def at_rest(self) -> list[str]:
+        """Terminals at rest on it."""
+    @property
+    def without_relative_motion(self) -> list[str]:
+        """Elements without relative motion on it."""
+    @property
+    def form(self) -> list[float]:
+        """Coefficients of the base speeds."""
+
+class RegimesRatioRange(Record):
+    """An interval of a speed ratio."""
+    @property
+    def of(self) -> str:
+        """The quotient, such as ``w_ring/w_engine``."""
+    @property
+    def denominator_sign(self) -> int:
+        """Sign of the denominator."""
+    @property
+    def low(self) -> float | None:
+        """Lower bound."""
+    @property
+    def high(self) -> float | None:
+        """Upper bound."""
+
+class RegimesPrescribed(Record):
+    """What a torque prescribed on one terminal leads to."""
+    @property
+    def terminal(self) -> str:
+        """The terminal."""
+    @property
+    def positive(self) -> list[str]:
+        """Regimes with a positive torque on it."""
+    @property
+    def negative(self) -> list[str]:
+        """Regimes with a negative torque on it."""
+
+class RegimesRegionReport(Record):
+    """A region of speeds."""
+    @property
+    def number(self) -> int:
+        """Its number, from 1."""
+    @property
+    def order(self) -> list[str]:
+        """The order of the speeds, one chain for each element: ``w_4 > w_1 > 0 > w_2``."""
+    @property
+    def signs(self) -> list[int]:
+        """The side of each plane it lies on."""
+    @property
+    def example(self) -> Named[float]:
+        """Speeds inside it, by terminal."""
+    @property
+    def to(self) -> list[float] | None:
+        """See ``from``."""
+    @property
+    def ratio(self) -> RegimesRatioRange | None:
+        """Two freedoms, and no sign change of the first base speed inside: bounds of second over first base speed;
+        absent means infinite."""
+    @property
+    def bounded_by(self) -> list[str]:
+        """Planes that bound it."""
+    @property
+    def opposite(self) -> int:
+        """The region of all opposite speeds."""
+    @property
+    def prescribed(self) -> list[RegimesPrescribed]:
+        """One independent torque: which regimes answer a torque prescribed on each terminal."""
+
+class RegimesExamplePoint(Record):
+    """An operating point."""
+    @property
+    def speeds(self) -> Named[float]:
+        """Speeds by terminal, in any unit."""
+    @property
+    def torques(self) -> Named[float]:
+        """Torques by terminal, in any unit."""
+    @property
+    def efficiency(self) -> float:
+        """Efficiency there; zero when all is dissipated."""
+    @property
+    def efficiency_exact(self) -> str:
+        """The same, exactly."""
+
+class RegimesNeighbour(Record):
+    """A regime across a plane."""
+    @property
+    def plane(self) -> str:
+        """The plane between."""
+    @property
+    def regime(self) -> str:
+        """The regime there."""
+
+class RegimesRegimeReport(Record):
+    """One regime."""
+    @property
+    def id(self) -> str:
+        """Its name: number of the region, and the torque cell (``+`` or ``-`` for the sign of the first torque that is
+        not zero, else a number)."""
+    @property
+    def region(self) -> int:
+        """Number of the region of speeds."""
+    @property
+    def torque_signs(self) -> Named[int]:
+        """Sign of each terminal's torque."""
+    @property
+    def roles(self) -> Named[Literal["input", "output", "fixed", "idle"]]:
+        """What each terminal does."""
+    @property
+    def inputs(self) -> list[str]:
+        """Terminals where power enters."""
+    @property
+    def outputs(self) -> list[str]:
+        """Terminals where power leaves."""
+    @property
+    def drivers(self) -> Named[str | None]:
+        """Which end drives each element, seen from its carrier; absent when it carries no load or has no relative
+        motion or loss."""
+    @property
+    def formula(self) -> str:
+        """Name of its formula."""
+    @property
+    def efficiency_range(self) -> list[float] | None:
+        """Efficiencies between which it lies: the limits on the two bounding directions (two freedoms), or twice the
+        same number (one freedom)."""
+    @property
+    def example(self) -> RegimesExamplePoint:
+        """An operating point inside."""
+    @property
+    def mirror(self) -> str:
+        """The regime with all speeds and torques reversed."""
+    @property
+    def by_friction_only(self) -> bool:
+        """Without friction no torques of these signs exist here: friction has turned one round."""
+    @property
+    def all_dissipated(self) -> bool:
+        """Every loaded terminal is an input."""
+    @property
+    def neighbours(self) -> list[RegimesNeighbour]:
+        """Regimes across each bounding plane whose torques have the same signs."""
+
+class RegimesConditionReport(Record):
+    """A condition of a formula."""
+    @property
+    def positive(self) -> str:
+        """An expression that must be positive."""
+    @property
+    def meaning(self) -> str:
+        """What it ensures."""
+
+class RegimesThreshold(Record):
+    """The open interval of one ratio or efficiency in which the torque signs of a formula hold, all others as they
+    are."""
+    @property
+    def symbol(self) -> str:
+        """The symbol."""
+    @property
+    def value(self) -> float:
+        """Its value."""
+    @property
+    def low(self) -> float | None:
+        """Lower bound; absent when there is none."""
+    @property
+    def high(self) -> float | None:
+        """Upper bound; absent when there is none."""
+
+class RegimesFormulaReport(Record):
+    """A closed formula."""
+    @property
+    def id(self) -> str:
+        """Its name, ``F1``."""
+    @property
+    def roles(self) -> str:
+        """Inputs and outputs it belongs to."""
+    @property
+    def drivers(self) -> str:
+        """Drivers it belongs to."""
+    @property
+    def efficiency(self) -> str:
+        """Output over input power."""
+    @property
+    def efficiency_by_loss(self) -> str | None:
+        """The same by the losses over the power of the only input or output, where there is one."""
+    @property
+    def efficiency_latex(self) -> str:
+        """The first in LaTeX."""
+    @property
+    def loss(self) -> str:
+        """Power lost, as a sum over the elements that drive."""
+    @property
+    def torques(self) -> Named[str]:
+        """Torques of the terminals."""
+    @property
+    def conditions(self) -> list[RegimesConditionReport]:
+        """Positive throughout the regimes, and nowhere else."""
+    @property
+    def holds_for(self) -> list[RegimesThreshold]:
+        """Where basic ratios and efficiencies must lie for the torques to have these signs."""
+    @property
+    def regimes(self) -> list[str]:
+        """Regimes in which it holds."""
+
+class RegimesCrossing(Record):
+    """A regime's passage over a boundary."""
+    @property
+    def to(self) -> str:
+        """Regime after."""
+    @property
+    def efficiency_before(self) -> float | None:
+        """Limit of the efficiency, coming from before."""
+    @property
+    def efficiency_before_exact(self) -> str | None:
+        """The same, exactly."""
+    @property
+    def efficiency_after(self) -> float | None:
+        """Limit of the efficiency, coming from after."""
+    @property
+    def efficiency_after_exact(self) -> str | None:
+        """The same, exactly."""
+    @property
+    def changes(self) -> list[str]:
+        """What changes, in words."""
+
+class RegimesBoundaryReport(Record):
+    """The boundary between two neighbouring regions of a train with two freedoms."""
+    @property
+    def label(self) -> str:
+        """What is the case on it."""
+    @property
+    def direction(self) -> list[float]:
+        """Direction, in base speeds."""
+    @property
+    def speeds(self) -> Named[float]:
+        """Speeds on it, by terminal."""
+    @property
+    def between(self) -> list[int]:
+        """Regions on its two sides, counterclockwise."""
+    @property
+    def crossings(self) -> list[RegimesCrossing]:
+        """What happens to each torque cell."""
+
+class RegimesAssignmentReport(Record):
+    """An assignment of inputs and outputs."""
+    @property
+    def inputs(self) -> list[str]:
+        """Terminals where power enters."""
+    @property
+    def outputs(self) -> list[str]:
+        """Terminals where power leaves."""
+    @property
+    def regimes(self) -> list[str]:
+        """Regimes that realise it; none when it cannot be reached."""
+    @property
+    def reach(self) -> Literal["reached", "reached where friction turns a torque round, and nowhere else", "only because friction turns a torque round", "reached: friction takes everything", "cannot be reached: friction never takes everything", "cannot be reached: friction prevents it (without losses it exists)", "cannot be reached: speeds and torques never have these signs together"]:
+        """How it is reached, or why not."""
+
+class RegimesLinkReport(Record):
+    """A way for power beside the gears."""
+    @property
+    def variator(self) -> str | None:
+        """The variator; absent where two terminals were asked to balance."""
+    @property
+    def ends(self) -> list[str]:
+        """Its two ends, among the terminals; they are no inputs or outputs."""
+    @property
+    def efficiency(self) -> list[float]:
+        """From the first end to the second, and back."""
+
+class RegimesAtlas(Record):
+    """The regimes of one state."""
+    @property
+    def state(self) -> str:
+        """Name of the state, or ``as drawn``."""
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Degrees of freedom."""
+    @property
+    def terminals(self) -> list[str]:
+        """Members on which a torque acts."""
+    @property
+    def held(self) -> list[str]:
+        """Terminals that are held: they take torque, but no power."""
+    @property
+    def independent_torques(self) -> int:
+        """Independent terminal torques."""
+    @property
+    def base_speeds(self) -> list[str]:
+        """Terminals whose speeds settle all others."""
+    @property
+    def reason(self) -> str | None:
+        """Why there is nothing to list."""
+    @property
+    def symbols(self) -> Named[RegimesSymbolReport]:
+        """What the formulas' symbols stand for."""
+    @property
+    def planes(self) -> list[RegimesPlaneReport]:
+        """The planes that cut the speed space."""
+    @property
+    def regions(self) -> list[RegimesRegionReport]:
+        """The regions of speed, in order around the circle for two freedoms."""
+    @property
+    def regimes(self) -> list[RegimesRegimeReport]:
+        """The regimes."""
+    @property
+    def formulas(self) -> list[RegimesFormulaReport]:
+        """Their formulas, each once."""
+    @property
+    def boundaries(self) -> list[RegimesBoundaryReport]:
+        """The boundaries between neighbouring regions (two freedoms)."""
+    @property
+    def assignments(self) -> list[RegimesAssignmentReport]:
+        """Every assignment of inputs and outputs, and whether it can be reached."""
+    @property
+    def lossless(self) -> list[str]:
+        """Elements without loss: it does not matter who drives them."""
+    @property
+    def link(self) -> RegimesLinkReport | None:
+        """Terminals through which power runs beside the gears: the sides of a variator, or two that were asked to
+        balance."""
+    @property
+    def notes(self) -> list[str]:
+        """What else a reader must know."""
+
+class RegimesCase(Record):
+    """A range of basic ratios."""
+    @property
+    def label(self) -> str:
+        """``R > 1/eta``."""
+    @property
+    def latex(self) -> str:
+        """In LaTeX."""
+    @property
+    def low(self) -> float | None:
+        """Lower bound of R."""
+    @property
+    def high(self) -> float | None:
+        """Upper bound of R."""
+    @property
+    def band(self) -> bool:
+        """Between a self-locking limit and 1: not in the paper."""
+    @property
+    def here(self) -> bool:
+        """Whether this train lies in it."""
+    @property
+    def example(self) -> float:
+        """A ratio in it."""
+
+class RegimesFamilyRange(Record):
+    """Signs of torques and order of speeds."""
+    @property
+    def torque_signs(self) -> Named[int]:
+        """Sign of each terminal's torque."""
+    @property
+    def order(self) -> list[str]:
+        """Terminals and ``0``, from the fastest down."""
+    @property
+    def efficiency(self) -> float:
+        """Efficiency at the example ratio, at speeds in the middle of the range."""
+
+class RegimesGroup(Record):
+    """Regimes with one driver and so one formula."""
+    @property
+    def driver(self) -> str:
+        """The end that drives, seen from the carrier."""
+    @property
+    def loss(self) -> str:
+        """The loss over the input power, ``l = η − 1``, in the paper's notation."""
+    @property
+    def loss_latex(self) -> str:
+        """The same in LaTeX."""
+    @property
+    def ranges(self) -> list[RegimesFamilyRange]:
+        """Torque signs and order of speeds, in pairs of mirror images."""
+
+class RegimesRow(Record):
+    """An assignment of inputs and outputs."""
+    @property
+    def inputs(self) -> list[str]:
+        """Terminals where power enters."""
+    @property
+    def outputs(self) -> list[str]:
+        """Terminals where power leaves."""
+    @property
+    def cells(self) -> list[list[RegimesGroup]]:
+        """For each range of R, the regimes in groups that share a formula."""
+
+class RegimesAnswer(Answer):
+    """Regimes of a train, or of one set over all its basic ratios."""
+    @property
+    def format(self) -> Literal["willis-family-1"]:
+        """``willis-family-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def states(self) -> list[RegimesAtlas]:
+        """One for each state asked for."""
+    @property
+    def ends(self) -> list[str]:
+        """The ends of the set, p and q, and its carrier."""
+    @property
+    def carrier(self) -> str:
+        """See ``ends``."""
+    @property
+    def ratio(self) -> str:
+        """What R is."""
+    @property
+    def value(self) -> float:
+        """R of this train."""
+    @property
+    def exact(self) -> str:
+        """The same, exactly."""
+    @property
+    def efficiencies(self) -> list[float]:
+        """Efficiency seen from the carrier, p driving and q driving."""
+    @property
+    def cases(self) -> list[RegimesCase]:
+        """The ranges of R."""
+    @property
+    def rows(self) -> list[RegimesRow]:
+        """The assignments of inputs and outputs, in the paper's order, with their regimes in each range."""
+    @property
+    def regimes(self) -> int:
+        """Number of regimes in all ranges."""
+
+class FormulaWritten(Record):
+    """An expression, written twice."""
+    @property
+    def text(self) -> str:
+        """In plain text, as most languages read it."""
+    @property
+    def latex(self) -> str:
+        """In LaTeX."""
+
+class FormulaValued(Record):
+    """A number and the fraction that it is."""
+    @property
+    def exact(self) -> str:
+        """``493/500``."""
+    @property
+    def value(self) -> float:
+        """``0.986``."""
+
+class FormulaOneArgument(Record):
+    """What a formula takes."""
+    @property
+    def name(self) -> str:
+        """Its identifier."""
+    @property
+    def latex(self) -> str:
+        """In LaTeX."""
+    @property
+    def meaning(self) -> str:
+        """What it stands for, in words."""
+    @property
+    def value(self) -> float:
+        """Its value in this train; of a speed (rad/s) or a torque (N m) one inside the regime."""
+    @property
+    def exact(self) -> str:
+        """The same as a fraction."""
+    @property
+    def efficiency(self) -> bool:
+        """Whether it is an efficiency, above 0 and at most 1."""
+    @property
+    def fixed(self) -> bool:
+        """Whether the train fixes it: a ratio, a tooth number, an efficiency."""
+
+class FormulaOneCondition(Record):
+    """A condition of a formula."""
+    @property
+    def expression(self) -> FormulaWritten:
+        """Positive where the formula holds."""
+    @property
+    def ensures(self) -> str:
+        """What it ensures, in words."""
+
+class FormulaOneDerivative(Record):
+    """A derivative of the efficiency."""
+    @property
+    def of(self) -> str:
+        """The efficiency by which it is taken."""
+    @property
+    def formula(self) -> FormulaWritten:
+        """The derivative."""
+    @property
+    def value(self) -> float | None:
+        """Its value in this train; absent at a pole."""
+    @property
+    def share(self) -> float | None:
+        """How much of the whole loss this element or mesh causes, to first order; absent at a pole."""
+
+class FormulaOneFormula(Record):
+    """The closed formula of a regime, or of several that share it."""
+    @property
+    def name(self) -> str:
+        """An identifier: train, state, direction."""
+    @property
+    def title(self) -> str:
+        """What it is, in words."""
+    @property
+    def state(self) -> str:
+        """The state of the shift table, or ``as drawn``."""
+    @property
+    def regimes(self) -> list[str]:
+        """Regimes in which it holds (two or more freedoms)."""
+    @property
+    def inputs(self) -> list[str]:
+        """Terminals where power enters."""
+    @property
+    def outputs(self) -> list[str]:
+        """Terminals where power leaves."""
+    @property
+    def drivers(self) -> Named[str | None]:
+        """The member that drives each element; null where none does."""
+    @property
+    def efficiency(self) -> FormulaWritten:
+        """The efficiency."""
+    @property
+    def value(self) -> FormulaValued | None:
+        """Its value with the arguments' own values, as a fraction and as a number; absent at a pole."""
+    @property
+    def speed_ratio(self) -> FormulaWritten | None:
+        """Speed of the input over that of the output (one degree of freedom)."""
+    @property
+    def torque_ratio(self) -> FormulaWritten | None:
+        """Torque on the output over that on the input (one degree of freedom)."""
+    @property
+    def arguments(self) -> list[FormulaOneArgument]:
+        """What it takes."""
+    @property
+    def conditions(self) -> list[FormulaOneCondition]:
+        """Expressions that are positive where the formula holds, and nowhere else."""
+    @property
+    def derivatives(self) -> list[FormulaOneDerivative]:
+        """Derivatives of the efficiency, where they were asked for; the one that costs most first."""
+
+class FormulaNoFormula(Record):
+    """A state or a direction without a formula."""
+    @property
+    def state(self) -> str:
+        """The state."""
+    @property
+    def why(self) -> str:
+        """Why."""
+
+class FormulaAnswer(_answer.Formula):
+    """Closed formulas of a train."""
+    @property
+    def format(self) -> Literal["willis-formula-1"]:
+        """``willis-formula-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def formulas(self) -> list[FormulaOneFormula]:
+        """The formulas, state by state."""
+    @property
+    def without(self) -> list[FormulaNoFormula]:
+        """States, or directions of one, that have no formula."""
+    @property
+    def code(self) -> str:
+        """All formulas written in the language that was asked for."""
+
+class LocateEdge(Record):
+    """A boundary that a changing value meets."""
+    @property
+    def at(self) -> float:
+        """The value there, rad/s or N m."""
+    @property
+    def label(self) -> str:
+        """What is the case there."""
+    @property
+    def changes(self) -> list[str]:
+        """What changes behind it; empty when nothing does."""
+    @property
+    def efficiency_before(self) -> float:
+        """Efficiency just before it."""
+    @property
+    def efficiency_before_exact(self) -> str | None:
+        """The same, exactly."""
+    @property
+    def efficiency_after(self) -> list[float]:
+        """Efficiencies just behind it; none when no equilibrium exists there."""
+
+class LocateRange(Record):
+    """How far one prescribed value can change before the regime ends."""
+    @property
+    def quantity(self) -> Literal["speed", "torque"]:
+        """What it is."""
+    @property
+    def member(self) -> str:
+        """The member."""
+    @property
+    def value(self) -> float:
+        """Its value, rad/s or N m."""
+    @property
+    def below(self) -> LocateEdge | None:
+        """The boundary below, if there is one."""
+    @property
+    def above(self) -> LocateEdge | None:
+        """The boundary above, if there is one."""
+
+class LocateTorque(Record):
+    @property
+    def member(self) -> str:
+        """The member."""
+
+class LocateStictionquantity(Record):
+    """The torque on a member, N m."""
+    @property
+    def torque(self) -> LocateTorque: ...
+
+class LocateStictionRange(Record):
+    """A torque range that friction in a mesh at rest leaves open."""
+    @property
+    def what(self) -> str:
+        """What varies, in words."""
+    @property
+    def quantity(self) -> Literal["efficiency"] | LocateStictionquantity:
+        """What ``what`` says, as data."""
+    @property
+    def low(self) -> float | None:
+        """Smallest value; absent when too many meshes rest to bound it."""
+    @property
+    def high(self) -> float | None:
+        """Largest value."""
+
+class LocateLocated(Record):
+    """An equilibrium and its surroundings."""
+    @property
+    def regime(self) -> str | None:
+        """Name of the regime as ``willis regimes`` lists it, where that list was made."""
+    @property
+    def torques_n_m(self) -> Named[float]:
+        """Torques by terminal, N m."""
+    @property
+    def torques(self) -> Named[float]: ...
+    @property
+    def powers_w(self) -> Named[float]:
+        """Powers into the train by terminal, W."""
+    @property
+    def powers(self) -> Named[float]: ...
+    @property
+    def roles(self) -> Named[Literal["input", "output", "fixed", "idle"]]:
+        """What each terminal does."""
+    @property
+    def drivers(self) -> Named[str | None]:
+        """Which end drives each element."""
+    @property
+    def efficiency(self) -> float:
+        """Output over input power; zero when all is dissipated."""
+    @property
+    def efficiency_exact(self) -> str:
+        """The same, exactly."""
+    @property
+    def formula(self) -> str | None:
+        """The closed formula, where the train is small enough."""
+    @property
+    def ranges(self) -> list[LocateRange]:
+        """For each prescribed value the range within which the regime lasts, all others fixed."""
+    @property
+    def at_rest(self) -> list[str]:
+        """Loaded meshes, or sets, without relative motion: their friction may be anything up to its limit."""
+    @property
+    def stiction(self) -> list[LocateStictionRange]:
+        """What that leaves open, where [``analyze``](crate::analyze) tells it. The torques above are those in which
+        these meshes lose nothing."""
+
+class LocateAnswer(Answer):
+    """Where an operating point lies."""
+    @property
+    def format(self) -> Literal["willis-location-1"]:
+        """``willis-location-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def state(self) -> str:
+        """The state."""
+    @property
+    def speeds_rad_s(self) -> Named[float]:
+        """Speeds by terminal, rad/s."""
+    @property
+    def speeds(self) -> Named[float]: ...
+    @property
+    def order(self) -> list[str]:
+        """The order of the speeds."""
+    @property
+    def on(self) -> list[str]:
+        """Planes on which the point lies exactly: on the boundary between regions."""
+    @property
+    def region(self) -> int | None:
+        """Number of the region, where the regions were enumerated and the point is inside one."""
+    @property
+    def complete(self) -> bool:
+        """Whether every equilibrium was found."""
+    @property
+    def reason(self) -> str | None:
+        """Why there is none, or what else must be known."""
+    @property
+    def regimes(self) -> list[LocateLocated]:
+        """The equilibria; more than one where friction leaves a choice."""
+
+class SimulateHappening(Record):
+    """What happened to some elements at once."""
+    @property
+    def kind(self) -> Literal["start", "comes-to-rest", "breaks-away", "turns-round", "rests-for-an-instant", "engages", "opens", "locks", "overruns", "drive-reverses", "touches", "contact-lost", "no-contact", "full-damping", "damping-limited", "contact-without-force", "reaches-limit", "leaves-limit"]:
+        """What happens to the elements."""
+    @property
+    def of(self) -> list[str]:
+        """The elements."""
+
+class SimulateEvent(Record):
+    """A change of mode."""
+    @property
+    def time_s(self) -> float:
+        """When, s."""
+    @property
+    def time(self) -> float: ...
+    @property
+    def cause(self) -> str:
+        """What happened, in words, some names left out where they are many: ``start``; ``B comes to rest``, ``B and
+        P1.sun-planet break away``, ``bearing turns round``, ``C engages, B opens``, ``side shafts: contact``,
+        ``drive reverses in P1.sun-planet``."""
+    @property
+    def happenings(self) -> list[SimulateHappening]:
+        """What ``cause`` says, as data."""
+    @property
+    def modes(self) -> Named[Literal["forward", "backward", "stuck", "free"]]:
+        """The modes after it that differ from those before, by element."""
+
+class SimulateSourceEnergy(Record):
+    """Energy that came in at one place (negative: that went out)."""
+    @property
+    def name(self) -> str:
+        """The source; ``store of`` a variator."""
+    @property
+    def member(self) -> str:
+        """The member, or the variator."""
+    @property
+    def energy_j(self) -> float:
+        """Net, J."""
+    @property
+    def energy(self) -> float: ...
+    @property
+    def in_j(self) -> float:
+        """What came in, J."""
+    @property
+    def out_j(self) -> float:
+        """What went out, J."""
+    @property
+    def out(self) -> float: ...
+
+class SimulateEnergyLoss(Record):
+    """Energy that went into one cause of loss."""
+    @property
+    def name(self) -> str:
+        """Mesh, drag, shift element, shaft; place of a loss that follows a law."""
+    @property
+    def kind(self) -> Literal["mesh", "drag", "shift-element", "shaft", "rolling", "bearing", "windage", "churning", "seal", "variator"]:
+        """What loses it."""
+    @property
+    def energy_j(self) -> float:
+        """The energy, J."""
+    @property
+    def energy(self) -> float: ...
+
+class SimulateEnergyReport(Record):
+    """Where the energy of a run went: in = stored + losses + residual."""
+    @property
+    def sources(self) -> list[SimulateSourceEnergy]:
+        """By source from outside, stores of variators among them."""
+    @property
+    def machines(self) -> list[SimulateSourceEnergy]:
+        """What sources that are machines of variators gave to their members; it came from the buses."""
+    @property
+    def stored_j(self) -> float:
+        """Kinetic energy and that of twisted shafts, end less start, J."""
+    @property
+    def stored(self) -> float: ...
+    @property
+    def losses(self) -> list[SimulateEnergyLoss]:
+        """By cause, largest first."""
+    @property
+    def turned_over_j(self) -> float:
+        """All that came in or went out, J."""
+    @property
+    def turned_over(self) -> float: ...
+    @property
+    def residual_j(self) -> float:
+        """What does not close, J."""
+    @property
+    def residual(self) -> float: ...
+    @property
+    def efficiency(self) -> float | None:
+        """Out over in, where anything came in and nothing is stored beside it; else ``None``."""
+
+class SimulateLimitExceeded(Record):
+    """A limit of a variator that a run exceeds, where it does so by most among the ends of its steps."""
+    @property
+    def variator(self) -> str:
+        """The variator."""
+    @property
+    def machine(self) -> str | None:
+        """Its machine; absent where the limit is that of the ratio."""
+    @property
+    def quantity(self) -> Literal["torque", "power", "speed", "ratio"]:
+        """What is limited."""
+    @property
+    def value(self) -> float:
+        """What it is, SI."""
+    @property
+    def limit(self) -> float:
+        """What it may be at most (or, of a ratio, at least), SI."""
+    @property
+    def time_s(self) -> float:
+        """When, s."""
+    @property
+    def time(self) -> float: ...
+    @property
+    def excess(self) -> float:
+        """By what part of the limit."""
+
+class SimulateAnswer(_answer.Simulation):
+    """A run: the results contract ``willis-simulation-1``. Fields are added, never renamed; units are SI and stand in
+    the names.
+
+    [``simulate``](super::simulate) hands rows and events to its recorder, which may keep them in
+    [``RunReport::events``], [``RunReport::columns``] and [``RunReport::rows``]."""
+    @property
+    def format(self) -> Literal["willis-simulation-1"]:
+        """``willis-simulation-1``"""
+    @property
+    def train(self) -> str:
+        """The train."""
+    @property
+    def scenario(self) -> str:
+        """The scenario."""
+    @property
+    def outcome(self) -> Any:
+        """How it ended."""
+    @property
+    def start_s(self) -> float:
+        """Where it began, s."""
+    @property
+    def start(self) -> float: ...
+    @property
+    def from_s(self) -> float | None:
+        """From when on there are rows and events, s."""
+    @property
+    def end_s(self) -> float:
+        """Where it ended, s."""
+    @property
+    def end(self) -> float: ...
+    @property
+    def coordinates(self) -> list[str]:
+        """Members whose speeds are the coordinates."""
+    @property
+    def unique_for_every_load(self) -> bool:
+        """Whether the tooth forces have exactly one solution in every rolling state."""
+    @property
+    def steps(self) -> int:
+        """Steps taken."""
+    @property
+    def events(self) -> list[SimulateEvent]:
+        """Changes of mode, where they were kept."""
+    @property
+    def final_speeds_rad_s(self) -> Named[float]:
+        """Speeds of all members at the end, rad/s; without those that are no longer finite."""
+    @property
+    def final_speeds(self) -> Named[float]: ...
+    @property
+    def energy(self) -> SimulateEnergyReport | None:
+        """Where the energy went; nothing where it was not counted, or is no longer finite."""
+    @property
+    def beyond_limits(self) -> list[SimulateLimitExceeded]:
+        """Limits of variators that the run exceeds."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What stands in for data that were not given."""
+    @property
+    def scenario_end_s(self) -> float:
+        """Where the scenario ends, or was [told to](Options::to_s), s."""
+    @property
+    def scenario_end(self) -> float: ...
+    @property
+    def event_count(self) -> int:
+        """Number of changes of mode, the start among them."""
+    @property
+    def rows(self) -> list[list[float | None]] | None:
+        """Values in the order of the columns, SI; nothing where a value is not determined."""
+
+class ModesPart(Record):
+    """A number that belongs to a member, a shaft or a mesh."""
+    @property
+    def name(self) -> str:
+        """The member, shaft or mesh."""
+    @property
+    def value(self) -> float:
+        """Its number."""
+
+class ModesRigidMode(Record):
+    """A motion without strain, at 0 Hz."""
+    @property
+    def shape(self) -> list[ModesPart]:
+        """Angle of each member whose motion is settled; the largest is 1."""
+    @property
+    def kinetic_energy(self) -> list[ModesPart]:
+        """Share of the kinetic energy by member; 1 in all."""
+
+class ModesMode(Record):
+    """A vibration."""
+    @property
+    def frequency_hz(self) -> float:
+        """Undamped natural frequency f, Hz."""
+    @property
+    def frequency(self) -> float: ...
+    @property
+    def angular_frequency_rad_s(self) -> float:
+        """ω = 2π f, rad/s."""
+    @property
+    def angular_frequency(self) -> float: ...
+    @property
+    def damping_ratio(self) -> float | None:
+        """ζ = −Re λ/|λ| of its eigenvalue λ with damping; above 1 (then ``c/(2ω)`` of its shape) where it no longer
+        vibrates; ``None`` where nothing damps it."""
+    @property
+    def damped_frequency_hz(self) -> float | None:
+        """Frequency with damping, Im λ/(2π), Hz; ``None`` where it no longer vibrates."""
+    @property
+    def damped_frequency(self) -> float | None: ...
+    @property
+    def shape(self) -> list[ModesPart]:
+        """Angle amplitude of each member whose motion is settled, relative to the largest, which is 1. Opposite signs
+        swing in opposite directions."""
+    @property
+    def kinetic_energy(self) -> list[ModesPart]:
+        """Share of the kinetic energy by member; 1 in all."""
+    @property
+    def strain_energy(self) -> list[ModesPart]:
+        """Share of the strain energy by shaft and elastic mesh; 1 in all."""
+
+class ModesPlanetMode(Record):
+    """Vibrations in which the planets of a set swing against each other, and nothing else moves."""
+    @property
+    def set(self) -> str:
+        """The set."""
+    @property
+    def multiplicity(self) -> int:
+        """How many such vibrations there are: one less than planets."""
+    @property
+    def mode(self) -> ModesMode:
+        """One of them; its shape is that of one planet."""
+
+class ModesAnswer(Answer):
+    """Natural frequencies of a train."""
+    @property
+    def format(self) -> Literal["willis-modes-1"]:
+        """``willis-modes-1``"""
+    @property
+    def train(self) -> str:
+        """The train."""
+    @property
+    def state(self) -> str:
+        """The state of the shift table, or ``as drawn``."""
+    @property
+    def fixed(self) -> list[str]:
+        """Members held at rest beside it."""
+    @property
+    def coordinates(self) -> list[str]:
+        """Members whose angles are the coordinates."""
+    @property
+    def rigid_body_modes(self) -> list[ModesRigidMode]:
+        """Motions without strain; how many there are is certain, because they are found exactly."""
+    @property
+    def modes(self) -> list[ModesMode]:
+        """Vibrations, by rising frequency."""
+    @property
+    def planet_modes(self) -> list[ModesPlanetMode]:
+        """Planets against each other, of sets with elastic meshes."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What stands in for data that were not given."""
+
+class DrawStickBlock(Record):
+    """Planets on one carrier with their gears, or one ordinary pair."""
+    @property
+    def name(self) -> str:
+        """Name of the set, or of the first mesh."""
+    @property
+    def span(self) -> list[float]:
+        """Least and greatest x."""
+    @property
+    def top(self) -> float:
+        """The highest y of its gears."""
+
+class DrawStickPiece(Record):
+    """A line of a member, between two of its branches or ends."""
+    @property
+    def points(self) -> list[list[float]]:
+        """Corners, the ends included."""
+    @property
+    def loaded(self) -> bool:
+        """The power of the state passes it."""
+    @property
+    def power(self) -> float | None:
+        """Power from its first corner to its last, over that of the input, lossless; negative where it runs the other
+        way, absent where statics does not settle it or no state is shown."""
+    @property
+    def circulates(self) -> bool:
+        """That power is part of a circle from set to set."""
+
+class DrawStickMember(Record):
+    """A member and its lines."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def colour(self) -> int:
+        """Number of its colour: its place among the members of the train."""
+    @property
+    def planet(self) -> bool:
+        """A planet: its gears stand on a pin of a carrier."""
+    @property
+    def carries(self) -> list[int]:
+        """The blocks whose planets it carries, positions in [``Stick::blocks``]."""
+    @property
+    def pieces(self) -> list[DrawStickPiece]:
+        """Its lines; of a stepped planet what joins its steps, along the pin."""
+    @property
+    def dots(self) -> list[list[float]]:
+        """Where three or more of its lines meet."""
+    @property
+    def loaded(self) -> bool | None:
+        """It carries power in the state: unit torque at the input, no losses, driving. Absent where statics cannot
+        say, or where no state is shown."""
+    @property
+    def speed_ratio(self) -> float | None:
+        """Its speed over that of the input in the state, where defined."""
+    @property
+    def exact_speed_ratio(self) -> str | None:
+        """The same as an exact fraction."""
+
+class DrawStickGear(Record):
+    """A gear: its body and the lines of its teeth."""
+    @property
+    def member(self) -> int | None:
+        """Position in [``Stick::members``]; absent for the frame."""
+    @property
+    def block(self) -> int:
+        """Position in [``Stick::blocks``]."""
+    @property
+    def teeth(self) -> str:
+        """Number of teeth; empty where the file does not give it and no whole number follows from the others."""
+    @property
+    def role(self) -> Literal["sun", "planet", "ring", "side", "wheel"]:
+        """What it is."""
+    @property
+    def stems(self) -> list[list[list[float]]]:
+        """Lines from its hub (or pin) to its teeth."""
+    @property
+    def faces(self) -> list[list[list[float]]]:
+        """Lines of teeth."""
+    @property
+    def loaded(self) -> bool:
+        """It carries power in the state."""
+
+class DrawStickMesh(Record):
+    """A tooth contact."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def gears(self) -> list[int]:
+        """The two gears, positions in [``Stick::gears``]."""
+    @property
+    def at(self) -> list[float]:
+        """Where they touch."""
+    @property
+    def bevel(self) -> bool:
+        """A bevel pair."""
+
+class DrawStickJoint(Record):
+    """A shift element, or an elastic shaft."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def kind(self) -> Literal["clutch", "brake", "one-way", "shaft"]:
+        """What it is."""
+    @property
+    def members(self) -> list[int | None]:
+        """The two members; absent for the frame."""
+    @property
+    def ends(self) -> list[list[float]]:
+        """The ends of its symbol: the first on the first member, the second on the second one."""
+    @property
+    def engaged(self) -> bool:
+        """Closed in the state."""
+    @property
+    def loaded(self) -> bool:
+        """It carries power in the state."""
+
+class DrawStickGround(Record):
+    """A mark of the frame."""
+    @property
+    def at(self) -> list[float]:
+        """Where the frame begins."""
+    @property
+    def into(self) -> list[int]:
+        """The direction into the frame."""
+
+class DrawStickTerminal(Record):
+    """The end of a member at the border."""
+    @property
+    def member(self) -> int:
+        """The member."""
+    @property
+    def at(self) -> list[float]:
+        """Where it leaves."""
+    @property
+    def left(self) -> bool:
+        """At the left border; else the right one."""
+    @property
+    def way(self) -> Literal["in", "out"] | None:
+        """The direction of power, where the state or the train says it."""
+    @property
+    def open(self) -> bool:
+        """An external torque may act here; else the line only names a member that has no gear."""
+
+class DrawStick(Record):
+    """The schematic of a train, perhaps in a state of its shift table."""
+    @property
+    def title(self) -> str:
+        """Name of the train."""
+    @property
+    def state(self) -> str | None:
+        """The state whose closed elements and power path are shown."""
+    @property
+    def states(self) -> list[str]:
+        """Names of all states, in the order of the shift table."""
+    @property
+    def width(self) -> float:
+        """Width of the grid: every x is from 0 to this."""
+    @property
+    def height(self) -> float:
+        """Height of the grid: every y is from 0 to this."""
+    @property
+    def axes(self) -> list[float]:
+        """Heights of the centre lines, the lowest first; ordinary gear pairs stand between two of them."""
+    @property
+    def blocks(self) -> list[DrawStickBlock]:
+        """The blocks: planets on one carrier with their gears, or one ordinary pair."""
+    @property
+    def members(self) -> list[DrawStickMember]:
+        """Every member but the frame, planets included."""
+    @property
+    def gears(self) -> list[DrawStickGear]:
+        """Every gear."""
+    @property
+    def meshes(self) -> list[DrawStickMesh]:
+        """Every tooth contact."""
+    @property
+    def joints(self) -> list[DrawStickJoint]:
+        """Clutches, brakes, one-way clutches and elastic shafts."""
+    @property
+    def grounds(self) -> list[DrawStickGround]:
+        """Where something is fixed to the frame."""
+    @property
+    def terminals(self) -> list[DrawStickTerminal]:
+        """Where members leave the picture."""
+    @property
+    def frame(self) -> list[list[list[float]]]:
+        """Pins and webs of carriers that belong to the frame."""
+    @property
+    def crossings(self) -> list[list[float]]:
+        """Where lines of two members cross without touching."""
+
+class DrawLeverCase(Record):
+    """One motion."""
+    @property
+    def letter(self) -> str:
+        """What it is called in the picture: its own name where all names are short, else a small letter."""
+    @property
+    def name(self) -> str:
+        """The operation, or the state."""
+    @property
+    def ratio(self) -> float | None:
+        """``ω_in/ω_out`` of a state."""
+    @property
+    def engaged(self) -> list[str]:
+        """Closed shift elements."""
+    @property
+    def held(self) -> list[str]:
+        """Members at rest because something holds them, the frame among them."""
+    @property
+    def note(self) -> str | None:
+        """Why speeds or torques are missing, or which of several equilibria this is."""
+
+class DrawLeverPull(Record):
+    """A torque on a lever."""
+    @property
+    def node(self) -> int:
+        """Number of the node."""
+    @property
+    def mesh(self) -> str | None:
+        """The mesh through which it acts; absent at carriers and planets."""
+    @property
+    def torque(self) -> float:
+        """Torque that the member puts into the set, N m or in units of the input's."""
+    @property
+    def displacement(self) -> float:
+        """``λ``: by how much friction moves the force away from the carrier (``λ > 1``: it is driven) or towards it
+        (``λ < 1``: it drives)."""
+    @property
+    def point(self) -> float:
+        """Height at which it acts."""
+
+class DrawLeverSet(Record):
+    """The forces of one set on its lever."""
+    @property
+    def name(self) -> str:
+        """Name of the set, or of its meshes."""
+    @property
+    def pulls(self) -> list[DrawLeverPull]:
+        """What acts where; empty where torques are not shown."""
+
+class DrawLeverNode(Record):
+    """A point of a lever."""
+    @property
+    def member(self) -> str:
+        """The member."""
+    @property
+    def colour(self) -> int | None:
+        """Number of its colour: its place among the members of the train; absent for the frame."""
+    @property
+    def roles(self) -> list[Literal["carrier", "sun", "ring", "gear", "planet"]]:
+        """What it is; several where sets share it."""
+    @property
+    def position(self) -> float:
+        """Height along the lever: 0 lowest, 1 highest of the picture (planets may stand beyond). Of three points of a
+        set the ratio of distances is that of [``LeverNode::number``]."""
+    @property
+    def number(self) -> float:
+        """``N = (ω − ω_c)/(ω_p − ω_c)`` in its (first) set: 0 the carrier, 1 the first planet."""
+    @property
+    def speeds(self) -> list[float | None]:
+        """Speed in each case, rad/s or in units of the input's; absent where not determined."""
+
+class DrawLeverBar(Record):
+    """A lever: one set, or several that share two members and so lie on one line."""
+    @property
+    def sets(self) -> list[DrawLeverSet]:
+        """The sets on it."""
+    @property
+    def nodes(self) -> list[DrawLeverNode]:
+        """Its points, highest first."""
+
+class DrawLeverLink(Record):
+    """A member that stands on several levers: their points move alike."""
+    @property
+    def member(self) -> str:
+        """The member."""
+    @property
+    def points(self) -> list[list[int]]:
+        """Numbers of the levers and of the nodes on them."""
+
+class DrawLever(Record):
+    """The nomograph of a train."""
+    @property
+    def title(self) -> str:
+        """The train, and what is shown of it."""
+    @property
+    def unit(self) -> str | None:
+        """The member whose speed and torque are the units, ``ω/ω_in`` and ``T/T_in``; absent where speeds are in rad/s
+        and torques in N m."""
+    @property
+    def torques(self) -> bool:
+        """Whether torques are shown."""
+    @property
+    def cases(self) -> list[DrawLeverCase]:
+        """The motions shown: one, or every state."""
+    @property
+    def bars(self) -> list[DrawLeverBar]:
+        """The levers, from left to right."""
+    @property
+    def links(self) -> list[DrawLeverLink]:
+        """Members that stand on several levers."""
+    @property
+    def level(self) -> bool:
+        """Whether a member stands equally high on all of its levers."""
+
+class DrawSankeyLoss(Record):
+    """Power that turns into heat."""
+    @property
+    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "shift-element", "coupling", "variator", "input", "output"]:
+        """What loses it: teeth, bearings, seals, gears or rotors in their fluid."""
+    @property
+    def names(self) -> list[str]:
+        """The contacts that lose it; several where small ones are gathered."""
+    @property
+    def power_w(self) -> float:
+        """The loss, W."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def offset_w(self) -> float:
+        """From the top of the node's right side to the top of the loss, W."""
+    @property
+    def offset(self) -> float: ...
+
+class DrawSankeyNode(Record):
+    """A component, a tooth contact, a shift element, or an end."""
+    @property
+    def id(self) -> str:
+        """Its identifier in the hypergraph."""
+    @property
+    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "shift-element", "coupling", "variator", "input", "output"]:
+        """What it is."""
+    @property
+    def name(self) -> str:
+        """Its name in the train."""
+    @property
+    def speed_rad_s(self) -> float | None:
+        """Speed of a component, rad/s."""
+    @property
+    def speed(self) -> float | None: ...
+    @property
+    def count(self) -> int:
+        """Identical ones in parallel: tooth pairs."""
+    @property
+    def power_w(self) -> float:
+        """Power through it, W: what enters, and what leaves with the losses."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def input_w(self) -> float:
+        """External power that enters here, W; it takes the whole left side."""
+    @property
+    def input(self) -> float: ...
+    @property
+    def output_w(self) -> float:
+        """External power that leaves here, W; it takes the right side above the losses."""
+    @property
+    def output(self) -> float: ...
+    @property
+    def losses(self) -> list[DrawSankeyLoss]:
+        """What is lost here, largest first, stacked below everything that leaves."""
+    @property
+    def layer(self) -> int:
+        """Its layer, from the left; every link that is not led back runs to a later layer."""
+    @property
+    def row(self) -> int:
+        """Its place in the layer, from the top, among nodes and passing links."""
+
+class DrawSankeyLink(Record):
+    """Power from one node to another."""
+    @property
+    def to(self) -> int:
+        """Index of the node that it enters, at its left side."""
+    @property
+    def via(self) -> list[str]:
+        """What it passes on the way, unchanged: planets, clutches, bearings."""
+    @property
+    def power_w(self) -> float:
+        """The power, W."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def circulating_w(self) -> float:
+        """The part of it that runs in circles, W; the upper part of the ribbon."""
+    @property
+    def circulating(self) -> float: ...
+    @property
+    def back(self) -> bool:
+        """Whether it is led back to an earlier layer, above all nodes."""
+    @property
+    def from_offset_w(self) -> float:
+        """From the top of the right side of ``from`` to its upper edge, W."""
+    @property
+    def from_offset(self) -> float: ...
+    @property
+    def to_offset_w(self) -> float:
+        """From the top of the left side of ``to`` to its upper edge, W."""
+    @property
+    def to_offset(self) -> float: ...
+    @property
+    def rows(self) -> list[int]:
+        """Its rows in the layers that it passes on its way, from the left; empty when led back."""
+
+class DrawSankeyFlow(Record):
+    """The flow of one equilibrium in layers.
+
+    At every node ``Σ links in + input = Σ links out + output + Σ losses`` up to round-off."""
+    @property
+    def input_w(self) -> float:
+        """Power in, W."""
+    @property
+    def input(self) -> float: ...
+    @property
+    def output_w(self) -> float:
+        """Power out, W."""
+    @property
+    def output(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power."""
+    @property
+    def circles(self) -> list[str]:
+        """Power that runs in circles, in words ([``Hypergraph::recirculation``])."""
+    @property
+    def nodes(self) -> list[DrawSankeyNode]:
+        """Ends, components and contacts."""
+    @property
+    def links(self) -> list[DrawSankeyLink]:
+        """The power between them."""
+    @property
+    def layers(self) -> int:
+        """Number of layers."""
+
+class DrawSankeyPanel(Record):
+    """One equilibrium, or why there is none."""
+    @property
+    def title(self) -> str:
+        """The operation, its state, and which of several solutions."""
+    @property
+    def remark(self) -> str | None:
+        """What has to be said before the numbers: why the train is locked or not determined, or that nothing is
+        loaded."""
+    @property
+    def flow(self) -> DrawSankeyFlow | None:
+        """The flow; absent where no power runs."""
+
+class DrawSankey(Record):
+    """The power flows of a train, one panel for each equilibrium."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def panels(self) -> list[DrawSankeyPanel]:
+        """One for each equilibrium, and one for each operation without any."""
+
+class DrawNode(Record):
+    """A component, a contact, or an end of the graph."""
+    @property
+    def id(self) -> str:
+        """Unique: kind and name, as in ``member:sun``, ``teeth:P1.sun-planet``, ``input:sun``; or ``frame``."""
+    @property
+    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "shift-element", "coupling", "variator", "input", "output"]:
+        """What it is."""
+    @property
+    def name(self) -> str:
+        """Its name in the train."""
+    @property
+    def speed_rad_s(self) -> float | None:
+        """Speed of a component, rad/s; absent when not determined."""
+    @property
+    def speed(self) -> float | None: ...
+    @property
+    def count(self) -> int:
+        """Identical ones in parallel: tooth pairs, bearings."""
+    @property
+    def power_in_w(self) -> float:
+        """Power that enters, W."""
+    @property
+    def power_in(self) -> float: ...
+    @property
+    def power_out_w(self) -> float:
+        """Power that leaves, W."""
+    @property
+    def power_out(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """Loss in it, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def efficiency(self) -> float | None:
+        """Outgoing over incoming absolute power; absent where none passes."""
+    @property
+    def carrier_frame_efficiency(self) -> float | None:
+        """Of a tooth contact: efficiency of sliding seen from the carrier."""
+    @property
+    def residual_w(self) -> float:
+        """Power in less power out less loss, W: round-off."""
+    @property
+    def residual(self) -> float: ...
+
+class DrawEdge(Record):
+    """Power, or only torque, between two nodes."""
+    @property
+    def to(self) -> str:
+        """The node that it enters."""
+    @property
+    def member(self) -> str:
+        """The component at one end, whose speed times the torque is the power."""
+    @property
+    def torque_n_m(self) -> float | None:
+        """Torque that the component puts into the contact (at an input or output: external torque on the component), N
+        m; absent where statics cannot divide it."""
+    @property
+    def torque(self) -> float | None: ...
+    @property
+    def power_w(self) -> float:
+        """Power, W; 0 where the component stands still."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def circulating_w(self) -> float:
+        """The part of it that runs in loops, W."""
+    @property
+    def circulating(self) -> float: ...
+
+class DrawLoop(Record):
+    """Power that runs in a circle."""
+    @property
+    def power_w(self) -> float:
+        """The power, W."""
+    @property
+    def power(self) -> float: ...
+    @property
+    def share_of_input(self) -> float:
+        """Over the input power."""
+    @property
+    def nodes(self) -> list[str]:
+        """Identifiers of the nodes it passes, in order; from the last it returns to the first."""
+    @property
+    def passes(self) -> list[str]:
+        """The same seen from afar: names of shafts, sets and clutches."""
+    @property
+    def within(self) -> str | None:
+        """The set, or ordinary pair, that it never leaves; or the sets it passes although none of them takes part in a
+        circle as a whole ([``SolutionReport::recirculation``], which counts set by set). Such a loop depends on the
+        frame in which powers are counted, not on how the train is coupled."""
+
+class DrawStation(Record):
+    """A node on a path."""
+    @property
+    def node(self) -> str:
+        """Identifier of the node."""
+    @property
+    def efficiency(self) -> float:
+        """Its efficiency for the power on paths: out over in, loops taken out; 1 for a component."""
+
+class DrawPath(Record):
+    """A way from an input to an output."""
+    @property
+    def share_of_input(self) -> float:
+        """Part of the input power that takes it."""
+    @property
+    def efficiency(self) -> float:
+        """Product of the efficiencies along it."""
+    @property
+    def delivered_w(self) -> float:
+        """What arrives, W."""
+    @property
+    def delivered(self) -> float: ...
+    @property
+    def stations(self) -> list[DrawStation]:
+        """The nodes along it, input and output included."""
+
+class DrawHypergraph(Record):
+    """The power flow of one equilibrium."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power; 0 when everything is dissipated, absent when nothing is loaded."""
+    @property
+    def efficiency_exact(self) -> str | None:
+        """The efficiency exactly, where [``SolutionReport::efficiency_exact``] is known."""
+    @property
+    def input_power_w(self) -> float:
+        """Power in, W."""
+    @property
+    def input_power(self) -> float: ...
+    @property
+    def output_power_w(self) -> float:
+        """Power out, W."""
+    @property
+    def output_power(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """All losses, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def power_residual_w(self) -> float:
+        """Input less output less losses, W."""
+    @property
+    def power_residual(self) -> float: ...
+    @property
+    def largest_residual_w(self) -> float:
+        """The largest residual of a node, W."""
+    @property
+    def largest_residual(self) -> float: ...
+    @property
+    def nodes(self) -> list[DrawNode]:
+        """Frame, components, contacts, inputs and outputs."""
+    @property
+    def edges(self) -> list[DrawEdge]:
+        """Powers between them."""
+    @property
+    def loops(self) -> list[DrawLoop]:
+        """Power that runs in circles, largest first."""
+    @property
+    def paths(self) -> list[DrawPath]:
+        """Ways from inputs to outputs, those that deliver most first, at most [``MOST_PATHS``]."""
+    @property
+    def path_count(self) -> int:
+        """How many there are."""
+    @property
+    def share_on_paths(self) -> float:
+        """Part of the input power that takes any of them; the rest is lost on its way where nothing is passed on."""
+
+class DrawOperationFlow(Record):
+    """The power flow of an operating point."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def state(self) -> str | None:
+        """The state of the shift table."""
+    @property
+    def unit(self) -> str | None:
+        """Where no operation describes the state: the member whose speed and torque are the units, 1 rad/s and 1 N m."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of it."""
+    @property
+    def reason(self) -> str | None:
+        """One sentence that explains the verdict."""
+    @property
+    def solutions(self) -> list[DrawHypergraph]:
+        """Every equilibrium."""
+    @property
+    def dissipative_solutions(self) -> list[DrawHypergraph]:
+        """Of a locked train: equilibria in which every loaded member must push."""
+
+class DrawSpan(Record):
+    """A part of a text."""
+    @property
+    def start(self) -> int:
+        """The first byte, counted from 0."""
+    @property
+    def end(self) -> int:
+        """The byte after the last."""
+    @property
+    def line(self) -> int:
+        """The line of the first character."""
+    @property
+    def column(self) -> int:
+        """The column of the first character."""
+    @property
+    def end_line(self) -> int:
+        """The line of the character after the last."""
+    @property
+    def end_column(self) -> int:
+        """The column of the character after the last."""
+
+class DrawDiagnostic(Record):
+    """One thing to tell the user."""
+    @property
+    def code(self) -> str:
+        """Stable code; ``willis explain CODE`` tells more."""
+    @property
+    def severity(self) -> Literal["error", "warning", "note"]:
+        """How much it matters."""
+    @property
+    def place(self) -> str:
+        """The place in the train, such as ``set[1].ring.teeth``; empty for the train as a whole."""
+    @property
+    def message(self) -> str:
+        """What is the case, with the numbers and names in it."""
+    @property
+    def hints(self) -> list[str]:
+        """What to do; may name a value that works."""
+    @property
+    def file(self) -> str | None:
+        """The file whose text it stands on, as the caller names it."""
+    @property
+    def span(self) -> DrawSpan | None:
+        """The part of the source text it stands on, when there is one."""
+    @property
+    def replacement(self) -> str | None:
+        """What to put in place of the spanned text, when that is known."""
+
+class DrawFlowReport(Record):
+    """Power flows of a train: the results contract ``willis-flow-1``."""
+    @property
+    def format(self) -> Literal["willis-flow-1"]:
+        """``willis-flow-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def source(self) -> str | None:
+        """Source of its data."""
+    @property
+    def operations(self) -> list[DrawOperationFlow]:
+        """The operating points."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What stands in for data that were not given, and what the model leaves out."""
+    @property
+    def diagnostics(self) -> list[DrawDiagnostic]:
+        """Warnings and notes."""
+
+class DrawFrontBody(Record):
+    """A wheel in its place."""
+    @property
+    def centre_mm(self) -> list[float]:
+        """Its axis, mm."""
+    @property
+    def phase(self) -> float:
+        """Angle of the middle of a tooth, rad."""
+
+class DrawFrontWheel(Record):
+    """A wheel: one central gear, or one planet of which there are several alike.
+
+    # Formula ``````text half thickness at radius r, as an angle   ψ(r) = η − inv α(r),   cos α(r) = r_b/r η = (π/2
+    + 2 x tan α_n)/z + inv α_t `````` On a ring that is the half width of the space.
+
+    # Source ``[iso21771]``, tooth thickness half angle."""
+    @property
+    def name(self) -> str:
+        """The member it sits on."""
+    @property
+    def teeth(self) -> int:
+        """Tooth count ``z``."""
+    @property
+    def internal(self) -> bool:
+        """Whether it is a ring gear."""
+    @property
+    def planet(self) -> bool:
+        """Whether it is a planet."""
+    @property
+    def module_mm(self) -> float:
+        """Normal module ``m_n``, mm."""
+    @property
+    def shift(self) -> float:
+        """Profile shift coefficient ``x``, positive outward."""
+    @property
+    def reference_radius_mm(self) -> float:
+        """Reference radius ``r``, mm."""
+    @property
+    def base_radius_mm(self) -> float:
+        """Base radius ``r_b``, mm."""
+    @property
+    def tip_radius_mm(self) -> float:
+        """Tip radius ``r_a``, mm."""
+    @property
+    def root_radius_mm(self) -> float:
+        """Root radius ``r_f``, mm."""
+    @property
+    def base_half_angle(self) -> float:
+        """Half angle ``η`` of the tooth (of the space, on a ring) at the base circle, rad."""
+    @property
+    def outline_mm(self) -> list[list[float]]:
+        """One tooth and half a space at each side, mm, around the wheel's axis, counterclockwise; the tooth's middle
+        lies on the positive x axis."""
+    @property
+    def turns(self) -> float:
+        """Turns for one turn of the first central gear, relative to the carrier; zero where nothing can turn."""
+    @property
+    def ratio(self) -> str:
+        """The same exactly, ``-17/22``."""
+    @property
+    def bodies(self) -> list[DrawFrontBody]:
+        """Where its copies stand, the one of the first planet first."""
+
+class DrawFrontMesh(Record):
+    """A pair of wheels, at the first planet. The first wheel drives."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def wheels(self) -> list[int]:
+        """Driving and driven wheel."""
+    @property
+    def centre_distance_mm(self) -> float:
+        """Centre distance ``a``, mm."""
+    @property
+    def pressure_angle(self) -> float:
+        """Operating pressure angle in the transverse section ``α_wt``, rad."""
+    @property
+    def backlash_mm(self) -> float:
+        """Circumferential backlash ``j_t`` at the operating circles, mm."""
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio ``ε_α``."""
+    @property
+    def pitch_radii_mm(self) -> list[float]:
+        """Operating pitch radii ``r_w``, mm."""
+    @property
+    def pitch_point_mm(self) -> list[float]:
+        """Pitch point C, mm."""
+    @property
+    def direction(self) -> list[float]:
+        """Unit vector along the line of action, in the sense in which contacts run."""
+    @property
+    def path_mm(self) -> list[float]:
+        """The points A, B, C, D, E of the path of contact: distances from C along the line of action, mm, contacts
+        running from A to E."""
+    @property
+    def base_points_mm(self) -> list[float]:
+        """Where the line of action touches the base circles, driving wheel first: distances from C, mm."""
+    @property
+    def base_pitch_mm(self) -> float:
+        """Transverse base pitch ``p_bt``, mm: the distance of two contacts."""
+    @property
+    def contact_mm(self) -> float:
+        """The first contact after A as the wheels stand, mm from C."""
+
+class DrawFrontPlane(Record):
+    """Wheels that lie in one plane."""
+    @property
+    def wheels(self) -> list[int]:
+        """The wheels."""
+    @property
+    def meshes(self) -> list[int]:
+        """Their meshes."""
+
+class DrawFrontSpacing(Record):
+    """How the planets stand around the axis."""
+    @property
+    def planets(self) -> int:
+        """How many there are drawn."""
+    @property
+    def given(self) -> bool:
+        """Whether the train says how many."""
+    @property
+    def angles(self) -> list[float]:
+        """Angles from the first one, rad."""
+    @property
+    def equal(self) -> bool:
+        """Whether all angles between neighbours are the same."""
+    @property
+    def least_angle(self) -> float | None:
+        """Every angle at which a planet fits is a multiple of it, rad; absent when all do."""
+    @property
+    def clearance_mm(self) -> float | None:
+        """Smallest distance of the tips of planets that do not mesh, mm; absent with one planet."""
+
+class DrawFront(Record):
+    """The transverse section of a set, or of a pair of gears.
+
+    Lengths are in mm, angles in rad, counterclockwise. The axis of the carrier is the origin, the axis of the first
+    planet stands above it, on the positive y axis. The carrier is at rest: speeds are relative to it."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def set(self) -> str:
+        """The set; of a single pair, the mesh."""
+    @property
+    def kind(self) -> str:
+        """The type of the set, as in the file; ``pair`` for a single mesh."""
+    @property
+    def carrier(self) -> str:
+        """The member that carries the axes."""
+    @property
+    def assumed(self) -> bool:
+        """Whether the teeth are standard ones, because the train has none."""
+    @property
+    def notes(self) -> list[str]:
+        """What has to be said beside the picture, in sentences."""
+    @property
+    def wheels(self) -> list[DrawFrontWheel]:
+        """Every wheel."""
+    @property
+    def meshes(self) -> list[DrawFrontMesh]:
+        """Every pair of wheels in mesh."""
+    @property
+    def planes(self) -> list[DrawFrontPlane]:
+        """The planes that lie one behind the other: in one plane no wheel covers another."""
+    @property
+    def spacing(self) -> DrawFrontSpacing:
+        """The planets around the axis."""
+
+class DrawMapPattern(Record):
+    """An assignment of inputs and outputs."""
+    @property
+    def letter(self) -> str:
+        """A capital letter."""
+    @property
+    def label(self) -> str:
+        """``engine, mg1 -> ring``."""
+    @property
+    def efficiency(self) -> list[float] | None:
+        """Smallest and largest efficiency in the map; absent where no regime of it is drawn."""
+    @property
+    def dissipated(self) -> bool:
+        """No output: all power turns into heat."""
+
+class DrawMapCell(Record):
+    """A regime."""
+    @property
+    def regime(self) -> str:
+        """Its name."""
+    @property
+    def ring(self) -> int:
+        """0 outer ring (positive torque), 1 inner ring."""
+    @property
+    def slot(self) -> list[int]:
+        """Its place among several of one ring, and their number."""
+    @property
+    def pattern(self) -> int:
+        """Number of its pattern."""
+    @property
+    def efficiency(self) -> list[float]:
+        """Efficiency at equal steps of angle, from one bound to the other."""
+
+class DrawMapSector(Record):
+    """A region of speed."""
+    @property
+    def region(self) -> int:
+        """Number of the region."""
+    @property
+    def order(self) -> list[str]:
+        """The order of the speeds in it."""
+    @property
+    def to(self) -> float:
+        """Angle of its second bound."""
+    @property
+    def cells(self) -> list[DrawMapCell]:
+        """Its regimes, the outer ring's first."""
+
+class DrawMapBoundary(Record):
+    """A line between sectors, on both sides of the centre."""
+    @property
+    def letter(self) -> str:
+        """A small letter."""
+    @property
+    def label(self) -> str:
+        """What is the case on it."""
+    @property
+    def angles(self) -> list[float]:
+        """Its two angles."""
+    @property
+    def ratio(self) -> float | None:
+        """Second over first base speed; absent when that is infinite."""
+    @property
+    def at_rest(self) -> bool:
+        """A terminal stands still: its power passes zero. In a power split whose machines balance each other, a
+        machine at rest is a mechanical point, and the label says so."""
+    @property
+    def locked_up(self) -> bool:
+        """A set turns as one: no loss there."""
+
+class DrawCurve(Record):
+    """Efficiency of one ring over one sector."""
+    @property
+    def regime(self) -> str:
+        """The regime."""
+    @property
+    def ring(self) -> int:
+        """0 positive torque, 1 negative."""
+    @property
+    def slot(self) -> list[int]:
+        """Its place among several of one ring, and their number."""
+    @property
+    def pattern(self) -> int:
+        """Number of its pattern."""
+    @property
+    def points(self) -> list[list[float]]:
+        """Angle (within ``half``) and efficiency."""
+
+class DrawRegimeMap(Record):
+    """The speed plane of a train with two freedoms.
+
+    Angles are in degrees, counterclockwise from the direction of the first base speed, *as drawn*: a narrow sector
+    is widened, so that it can be read, and the others shrink. Opposite directions stay opposite."""
+    @property
+    def title(self) -> str:
+        """The train, and its state."""
+    @property
+    def base_speeds(self) -> list[str]:
+        """The two speeds that span the plane."""
+    @property
+    def torque(self) -> str:
+        """The torque whose sign tells the rings apart: outer ring positive, inner ring negative."""
+    @property
+    def balance(self) -> list[str] | None:
+        """Two terminals whose powers balance, where that was asked for."""
+    @property
+    def patterns(self) -> list[DrawMapPattern]:
+        """Every assignment of inputs and outputs that occurs."""
+    @property
+    def sectors(self) -> list[DrawMapSector]:
+        """The sectors, counterclockwise."""
+    @property
+    def boundaries(self) -> list[DrawMapBoundary]:
+        """The lines between them."""
+    @property
+    def curves(self) -> list[DrawCurve]:
+        """Efficiency over the half of the wheel on which the first base speed is positive."""
+    @property
+    def half(self) -> list[float]:
+        """The angles between which the first base speed is positive."""
+    @property
+    def least_efficiency(self) -> float:
+        """Smallest efficiency of a regime with an output."""
+    @property
+    def widened(self) -> bool:
+        """Whether sectors were widened."""
+
+class DrawChartAxis(Record):
+    """A quantity along an axis of a chart."""
+    @property
+    def name(self) -> str:
+        """Its name, as ``sweep --over`` takes it: ``sun.speed``."""
+    @property
+    def unit(self) -> str:
+        """The unit of its values; empty for plain numbers."""
+    @property
+    def values(self) -> list[float]:
+        """Its values, ascending."""
+
+class DrawMapPoint(Record):
+    """A point of a map."""
+    @property
+    def verdict(self) -> Literal["beyond"] | Literal["locked", "multiple", "refused", "undetermined", "unique", "unloaded"]:
+        """One of [``PointVerdict``](willis::study::PointVerdict); ``beyond`` where no state stays within the limits of
+        the input."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power."""
+    @property
+    def input_power_w(self) -> float | None:
+        """Power in, W."""
+    @property
+    def input_power(self) -> float | None: ...
+    @property
+    def loss_w(self) -> float | None:
+        """All losses, W."""
+    @property
+    def loss(self) -> float | None: ...
+    @property
+    def best(self) -> int | None:
+        """The best state, as position among [``EfficiencyMap::states``]."""
+
+class DrawMapMark(Record):
+    """An operation of the file in a map."""
+    @property
+    def operation(self) -> str:
+        """Its name."""
+    @property
+    def at(self) -> list[float]:
+        """Where it is, in the units of the axes."""
+
+class DrawEfficiencyMap(Record):
+    """An efficiency map."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def basis(self) -> str:
+        """The operating point, and what was chosen for it."""
+    @property
+    def x(self) -> DrawChartAxis:
+        """The quantity to the right."""
+    @property
+    def y(self) -> DrawChartAxis:
+        """The quantity upwards."""
+    @property
+    def points(self) -> list[DrawMapPoint]:
+        """The points, row by row from the lowest ``y`` on, each row along ``x``."""
+    @property
+    def states(self) -> list[str]:
+        """The states among which the best is chosen at every point; empty for a map of one state."""
+    @property
+    def marks(self) -> list[DrawMapMark]:
+        """The operations of the file that lie in the map."""
+
+class DrawSplitPoint(Record):
+    """A mode at one ratio."""
+    @property
+    def efficiencies(self) -> list[float]:
+        """The efficiency of every equilibrium, the best first; 0 where everything is dissipated."""
+    @property
+    def share(self) -> float | None:
+        """Power through all variators over the input power, signed, in the best of them."""
+    @property
+    def powers_w(self) -> list[list[Any]]:
+        """Power that each machine, or side, delivers to its member, W, in the best of them."""
+    @property
+    def powers(self) -> list[list[Any]]: ...
+    @property
+    def beyond_limits(self) -> bool:
+        """Whether a limit of a variator is exceeded."""
+
+class DrawMechanicalPoint(Record):
+    """A ratio at which a side of a variator stands still, so that no power passes it."""
+    @property
+    def side(self) -> str:
+        """The machine, or the member."""
+    @property
+    def ratio(self) -> float:
+        """Speed of the input over that of the output."""
+    @property
+    def exact(self) -> str:
+        """The same exactly."""
+
+class DrawSplitMode(Record):
+    """A state over the ratio."""
+    @property
+    def state(self) -> str | None:
+        """The state of the shift table; absent for the train as drawn."""
+    @property
+    def points(self) -> list[DrawSplitPoint]:
+        """One for each value of the axis."""
+    @property
+    def mechanical(self) -> list[DrawMechanicalPoint]:
+        """Ratios at which a side of a variator stands still."""
+
+class DrawSplitGear(Record):
+    """A state in which the gears fix the ratio."""
+    @property
+    def state(self) -> str:
+        """The state."""
+    @property
+    def ratio(self) -> float:
+        """Speed of the input over that of the output."""
+    @property
+    def efficiency(self) -> float:
+        """Output over input power."""
+
+class DrawSplit(Record):
+    """A power split over its ratio."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def basis(self) -> str:
+        """The operating point, and what it prescribes."""
+    @property
+    def x(self) -> DrawChartAxis:
+        """Speed of the input over that of the output."""
+    @property
+    def modes(self) -> list[DrawSplitMode]:
+        """The states in which a variator has its ratio free."""
+    @property
+    def gears(self) -> list[DrawSplitGear]:
+        """States in which the gears fix the ratio."""
+    @property
+    def best(self) -> list[int | None]:
+        """The mode with the best efficiency at each ratio, by its place in ``modes``; absent where none has an answer."""
+
+class DrawLossSeries(Record):
+    """The losses of a source."""
+    @property
+    def name(self) -> str:
+        """The source, as the losses name it; ``others`` for all that are too small to be told."""
+    @property
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"] | None:
+        """What kind of loss it is; of the others, none."""
+    @property
+    def law(self) -> str | None:
+        """Its law; ``given`` for an efficiency that the file gives."""
+    @property
+    def sources(self) -> int:
+        """How many sources it stands for."""
+    @property
+    def loss_w(self) -> list[float | None]:
+        """W at each value of the axis, absent where there is no single answer."""
+    @property
+    def loss(self) -> list[float | None]: ...
+    @property
+    def at_operation_w(self) -> float | None:
+        """W at the operating point."""
+    @property
+    def at_operation(self) -> float | None: ...
+
+class DrawLossChart(Record):
+    """Where the power goes, over a quantity and at the operating point."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def basis(self) -> str:
+        """The operating point, and what was chosen for it."""
+    @property
+    def x(self) -> DrawChartAxis:
+        """The quantity that varies."""
+    @property
+    def series(self) -> list[DrawLossSeries]:
+        """The sources, the largest at the operating point first; the last may be all others together."""
+    @property
+    def verdicts(self) -> list[Literal["locked", "multiple", "refused", "undetermined", "unique", "unloaded"]]:
+        """What can be said at each value: one of [``PointVerdict``](willis::study::PointVerdict)."""
+    @property
+    def efficiency(self) -> list[float | None]:
+        """Output over input power at each value."""
+    @property
+    def at(self) -> float | None:
+        """The operating point itself, in the unit of the axis, where it prescribes the quantity that varies."""
+    @property
+    def verdict(self) -> Literal["locked", "multiple", "refused", "undetermined", "unique", "unloaded"]:
+        """What can be said of the operating point: one of [``PointVerdict``](willis::study::PointVerdict)."""
+    @property
+    def input_power_w(self) -> float | None:
+        """Input power of the operating point, W; absent where it has no single answer."""
+    @property
+    def input_power(self) -> float | None: ...
+    @property
+    def loss_w(self) -> float | None:
+        """All losses of the operating point, W."""
+    @property
+    def loss(self) -> float | None: ...
+
+class DrawPathPoint(Record):
+    """A tooth pair at one place."""
+    @property
+    def s_mm(self) -> float:
+        """Distance ``s`` from C along the line of action, mm."""
+    @property
+    def line_load_n_per_m(self) -> float:
+        """Normal load per length of contact line, N/m."""
+    @property
+    def line_load(self) -> float: ...
+    @property
+    def sliding_m_s(self) -> float:
+        """Sliding speed ``|v_g|``, m/s."""
+    @property
+    def sliding(self) -> float: ...
+    @property
+    def sum_speed_m_s(self) -> float:
+        """Sum of the surface speeds ``u_1 + u_2``, m/s: twice the rolling speed."""
+    @property
+    def sum_speed(self) -> float: ...
+    @property
+    def pressure_pa(self) -> float:
+        """Hertzian pressure, Pa."""
+    @property
+    def pressure(self) -> float: ...
+    @property
+    def film_m(self) -> float | None:
+        """Film thickness, thermal reduction included, m; absent where nothing presses."""
+    @property
+    def film(self) -> float | None: ...
+    @property
+    def film_ratio(self) -> float | None:
+        """Film thickness over the composite rms roughness, ``λ``."""
+    @property
+    def friction(self) -> float | None:
+        """Coefficient of friction; of a mean law that of the mesh."""
+    @property
+    def loss_w(self) -> float | None:
+        """Power ``μ F_n v_g`` that this tooth pair turns into heat here, W."""
+    @property
+    def loss(self) -> float | None: ...
+
+class DrawMeshPath(Record):
+    """One of the pairs in parallel of a mesh."""
+    @property
+    def name(self) -> str:
+        """The mesh."""
+    @property
+    def gears(self) -> list[str]:
+        """Its two members."""
+    @property
+    def driver(self) -> int:
+        """Which of them drives, seen from the carrier."""
+    @property
+    def count(self) -> int:
+        """Identical pairs in parallel."""
+    @property
+    def breakpoints_mm(self) -> list[float]:
+        """The points A, B, C, D, E, mm from C along the line of action, positive towards the addendum of the first
+        gear; the first gear driving, contacts run from A to E."""
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio ``ε_α``."""
+    @property
+    def points(self) -> list[DrawPathPoint]:
+        """From A to E, on both sides of every jump of the load."""
+    @property
+    def friction(self) -> float | None:
+        """Mean coefficient of friction of the mesh; absent when its efficiency is given."""
+    @property
+    def sliding_loss_w(self) -> float:
+        """Sliding loss of the mesh, all pairs in parallel, as the operating point has it, W."""
+    @property
+    def sliding_loss(self) -> float: ...
+    @property
+    def integrated_loss_w(self) -> float | None:
+        """The local loss integrated over the path, over the base pitch, all pairs in parallel, W; absent when the
+        efficiency is given.
+
+        ``P = (1/p_bt) ∫ μ F_n v_g ds``: on the average over a base pitch so much is lost at once."""
+    @property
+    def integrated_loss(self) -> float | None: ...
+
+class DrawContactPath(Record):
+    """Load, speeds, film, friction and loss along the paths of contact of an operating point."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def operation(self) -> str:
+        """The operating point."""
+    @property
+    def oil(self) -> str:
+        """The oil."""
+    @property
+    def temperature_celsius(self) -> float:
+        """Its temperature, °C."""
+    @property
+    def friction_law(self) -> str:
+        """Law of tooth friction in force."""
+    @property
+    def local(self) -> bool:
+        """Whether it gives a coefficient for each place; else one mean value for the mesh."""
+    @property
+    def film_law(self) -> str:
+        """Law of the film thickness in force."""
+    @property
+    def limits(self) -> list[float]:
+        """Film thickness ratios λ at which mixed and full lubrication begin."""
+    @property
+    def meshes(self) -> list[DrawMeshPath]:
+        """Every loaded mesh that was asked for."""
+    @property
+    def left_out(self) -> list[str]:
+        """Meshes that were asked for and are not shown, with the reason."""
+
+class DrawTimeLine(Record):
+    """A curve."""
+    @property
+    def names(self) -> list[str]:
+        """Whose it is; several names where they agree throughout."""
+    @property
+    def pieces(self) -> list[list[list[float]]]:
+        """Its pieces between gaps: time, s, and value. First, least, greatest and last value of every short interval
+        are kept, so that no spike is lost."""
+
+class DrawTimePanel(Record):
+    """Curves that share an axis."""
+    @property
+    def quantity(self) -> str:
+        """Its heading: ``Speed``."""
+    @property
+    def unit(self) -> Literal["", "s", "rad/s", "rad", "rad/s^2", "N m", "W", "J"]:
+        """SI."""
+    @property
+    def lines(self) -> list[DrawTimeLine]:
+        """The curves, in the order of the columns."""
+    @property
+    def left_out(self) -> int:
+        """Curves that found no place: those with the smallest values."""
+
+class DrawModeSegment(Record):
+    """A time in one mode."""
+    @property
+    def to(self) -> float:
+        """s"""
+    @property
+    def mode(self) -> Literal["forward", "backward", "stuck", "free"] | None:
+        """Absent where the modes change too fast to be drawn."""
+
+class DrawModeRow(Record):
+    """The modes of one element."""
+    @property
+    def element(self) -> str:
+        """The element."""
+    @property
+    def segments(self) -> list[DrawModeSegment]:
+        """In rising time."""
+
+class DrawTimeMark(Record):
+    """A change of mode."""
+    @property
+    def time(self) -> float:
+        """s"""
+    @property
+    def cause(self) -> str:
+        """Why."""
+
+class DrawTimePlot(Record):
+    """A run over time."""
+    @property
+    def train(self) -> str:
+        """The train."""
+    @property
+    def scenario(self) -> str:
+        """The scenario."""
+    @property
+    def outcome(self) -> Any:
+        """How the run ended."""
+    @property
+    def run(self) -> list[float]:
+        """Where it began and ended, s."""
+    @property
+    def axis(self) -> list[float]:
+        """What the time axis shows, s: the whole scenario, unless the run ended in its first fifth."""
+    @property
+    def panels(self) -> list[DrawTimePanel]:
+        """One a quantity."""
+    @property
+    def modes(self) -> list[DrawModeRow]:
+        """What sticks, slips or is free."""
+    @property
+    def modes_left_out(self) -> int:
+        """Elements that found no place among the modes."""
+    @property
+    def marks(self) -> list[DrawTimeMark]:
+        """The first changes of mode after the start, with their causes."""
+    @property
+    def event_times(self) -> list[float]:
+        """When modes changed, s; of several within a thousandth of the run, the first."""
+    @property
+    def event_count(self) -> int:
+        """All changes of mode after the start."""
+
+class DrawShiftColumn(Record):
+    """A shift element."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def kind(self) -> Literal["clutch", "brake", "one-way"]:
+        """What it is."""
+
+class DrawShiftEfficiency(Record):
+    """Efficiency of a state in one direction."""
+    @property
+    def value(self) -> float | None:
+        """Output over input power, where that is one number."""
+    @property
+    def words(self) -> str:
+        """``locks``, ``several``, or why there is none; empty where there is a number."""
+
+class DrawShiftRow(Record):
+    """A state."""
+    @property
+    def state(self) -> str:
+        """Its name."""
+    @property
+    def closed(self) -> list[bool]:
+        """Which elements are closed, by column."""
+    @property
+    def path(self) -> list[str] | None:
+        """Where power enters and leaves when driving."""
+    @property
+    def ratio(self) -> float | None:
+        """``ω_input/ω_output``."""
+    @property
+    def exact(self) -> str | None:
+        """The same as a fraction."""
+    @property
+    def note(self) -> str | None:
+        """Why there is no ratio."""
+    @property
+    def drive(self) -> DrawShiftEfficiency:
+        """Input drives output."""
+    @property
+    def coast(self) -> DrawShiftEfficiency:
+        """Output drives input."""
+
+class DrawShiftChange(Record):
+    """From one state to the next."""
+    @property
+    def opens(self) -> list[str]:
+        """Elements that open."""
+    @property
+    def closes(self) -> list[str]:
+        """Elements that close."""
+    @property
+    def several(self) -> bool:
+        """Whether more than one element opens, or more than one closes: two shifts at once."""
+    @property
+    def step(self) -> float | None:
+        """Ratio of the first over that of the second, where both have one sign, input and output."""
+
+class DrawShiftSpread(Record):
+    """Largest over smallest ratio."""
+    @property
+    def value(self) -> float:
+        """The quotient."""
+    @property
+    def largest(self) -> str:
+        """The state with the largest ratio."""
+    @property
+    def smallest(self) -> str:
+        """The state with the smallest."""
+
+class DrawShiftTable(Record):
+    """A shift table."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def elements(self) -> list[DrawShiftColumn]:
+        """The columns."""
+    @property
+    def rows(self) -> list[DrawShiftRow]:
+        """The states, in the order of the train."""
+    @property
+    def changes(self) -> list[DrawShiftChange]:
+        """What happens between each row and the next."""
+    @property
+    def spread(self) -> DrawShiftSpread | None:
+        """Over all ratios of the sign of the first one."""
+    @property
+    def one_path(self) -> bool:
+        """Whether all states have the same input and output."""
+
+class DrawShaftMember(Record):
+    """A member in a state."""
+    @property
+    def speed(self) -> str | None:
+        """Speed over that of the input; absent where the input does not settle it."""
+    @property
+    def carrier(self) -> str | None:
+        """The carrier on which it turns, for a planet."""
+    @property
+    def relative_speed(self) -> str | None:
+        """Speed relative to that carrier, over the speed of the input."""
+    @property
+    def torque(self) -> float | None:
+        """External torque over that of the input, reactions of brakes included; absent where it is not determined."""
+
+class DrawShaftElement(Record):
+    """A shift element in a state."""
+    @property
+    def kind(self) -> Literal["clutch", "brake", "one-way"]:
+        """What it is."""
+    @property
+    def members(self) -> list[str]:
+        """The members it joins."""
+    @property
+    def engaged(self) -> bool:
+        """Whether it is closed."""
+    @property
+    def slip(self) -> str | None:
+        """Speed of the first member less that of the second, over the speed of the input: 0 while it is closed."""
+    @property
+    def torque(self) -> float | None:
+        """Torque that it exerts on the first member, over the input torque; 0 while it is open, absent where it is not
+        determined."""
+
+class DrawShaftState(Record):
+    """One state."""
+    @property
+    def input(self) -> str:
+        """Where power enters."""
+    @property
+    def output(self) -> str:
+        """Where it leaves."""
+    @property
+    def engaged(self) -> list[str]:
+        """Shift elements that are closed."""
+    @property
+    def ratio(self) -> str | None:
+        """``ω_input/ω_output``, exactly."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power, the input driving."""
+    @property
+    def efficiency_exact(self) -> str | None:
+        """The efficiency exactly, where the efficiencies of the meshes are given."""
+    @property
+    def reason(self) -> str | None:
+        """Why speeds or torques are missing."""
+    @property
+    def why(self) -> Any | None:
+        """What ``reason`` says, as data."""
+    @property
+    def members(self) -> Named[DrawShaftMember]:
+        """Every member, planets included."""
+    @property
+    def shift_elements(self) -> Named[DrawShaftElement]:
+        """Every shift element."""
+    @property
+    def sets(self) -> Named[Named[float]]:
+        """Torque that each member puts into each set, or mesh of no set, over the input torque."""
+
+class DrawShaftTable(Record):
+    """Speeds and torques of a whole shift table: the results contract ``willis-table-1``."""
+    @property
+    def format(self) -> Literal["willis-table-1"]:
+        """``willis-table-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def source(self) -> str | None:
+        """Where its numbers come from."""
+    @property
+    def lossless(self) -> bool:
+        """Whether torques are those without losses."""
+    @property
+    def states(self) -> Named[DrawShaftState]:
+        """Every state; the train as drawn where it has none."""
+    @property
+    def diagnostics(self) -> list[DrawDiagnostic]:
+        """What to know beside it."""
+
+class DrawTornadoBar(Record):
+    """What one quantity does. Small steps down do the opposite of steps up."""
+    @property
+    def name(self) -> str:
+        """Its path, as the file has it."""
+    @property
+    def value(self) -> float:
+        """Its value, SI."""
+    @property
+    def unit(self) -> str:
+        """SI unit of the value."""
+    @property
+    def assumed(self) -> bool:
+        """Whether it is not given but taken."""
+    @property
+    def step(self) -> Literal["percent", "kelvin", "degree", "hundredth", "rpm", "tenth_millimetre", "unit"]:
+        """The step up."""
+    @property
+    def loss_change_w(self) -> float:
+        """Change of all losses for it, W."""
+    @property
+    def loss_change(self) -> float: ...
+    @property
+    def efficiency_change(self) -> float | None:
+        """Change of the efficiency for it."""
+    @property
+    def moves(self) -> str | None:
+        """The loss that it changes most."""
+
+class DrawTornado(Record):
+    """Quantities of an operating point, ranked by what a small step of each does."""
+    @property
+    def title(self) -> str:
+        """The train, the operation and its state."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power at the point; absent where nothing comes in."""
+    @property
+    def loss_w(self) -> float:
+        """All losses at the point, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def input_power_w(self) -> float:
+        """Power in at all inputs, W."""
+    @property
+    def input_power(self) -> float: ...
+    @property
+    def bars(self) -> list[DrawTornadoBar]:
+        """The quantities, the largest change of the loss first."""
+    @property
+    def left_out(self) -> int:
+        """How many more quantities move the loss, less than those shown."""
+
+class DrawBandPoint(Record):
+    """The bands at one value."""
+    @property
+    def efficiency(self) -> list[float] | None:
+        """[``QUANTILES``] of the efficiency; absent where fewer than half of the samples have an answer."""
+    @property
+    def loss_w(self) -> list[float] | None:
+        """[``QUANTILES``] of the loss, W."""
+    @property
+    def loss(self) -> list[float] | None: ...
+    @property
+    def nominal_efficiency(self) -> float | None:
+        """The efficiency of the file as written."""
+    @property
+    def nominal_loss_w(self) -> float | None:
+        """The loss of the file as written, W."""
+    @property
+    def nominal_loss(self) -> float | None: ...
+    @property
+    def answered(self) -> int:
+        """Samples that have a single answer."""
+
+class DrawBands(Record):
+    """Bands in which efficiency and loss lie."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def basis(self) -> str:
+        """The operating point, and what was chosen for it."""
+    @property
+    def x(self) -> DrawChartAxis:
+        """The quantity that varies."""
+    @property
+    def quantities(self) -> list[str]:
+        """What is uncertain, each with its distribution."""
+    @property
+    def samples(self) -> int:
+        """Samples at each value."""
+    @property
+    def points(self) -> list[DrawBandPoint]:
+        """The bands, one for each value of the axis."""
+
+class DrawMissing(Record):
+    """A kind of figure that does not apply to a train."""
+    @property
+    def kind(self) -> Literal["stick", "lever", "sankey", "flow", "front", "regimes", "map", "split", "losses", "film", "path", "time", "shift", "table", "tornado", "band"]:
+        """The kind."""
+    @property
+    def why(self) -> str:
+        """Why."""
+
+class DrawAnswer(_answer.Drawing):
+    """A figure, or all that apply."""
+    @property
+    def format(self) -> Literal["willis-figures-1"]:
+        """``willis-figures-1``."""
+    @property
+    def figures(self) -> list[DrawStick | DrawLever | DrawSankey | DrawFlowReport | DrawFront | DrawRegimeMap | DrawEfficiencyMap | DrawSplit | DrawLossChart | DrawContactPath | DrawTimePlot | DrawShiftTable | DrawShaftTable | DrawTornado | DrawBands]:
+        """The figures, as data."""
+    @property
+    def missing(self) -> list[DrawMissing]:
+        """Kinds that do not apply, and why."""
+
+class ReportSection(Record):
+    """A part of a report with a heading."""
+    @property
+    def title(self) -> str:
+        """Its heading."""
+    @property
+    def blocks(self) -> list[Any]:
+        """What stands in it."""
+
+class ReportAnswer(_answer.Report):
+    """A report, ready to be typeset. Written as JSON it is the contract ``willis-report-1``."""
+    @property
+    def format(self) -> Literal["willis-report-1"]:
+        """``willis-report-1``."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def subtitle(self) -> str:
+        """What kind of document it is, in a few words."""
+    @property
+    def facts(self) -> list[list[str]]:
+        """What a reader looks for on the first page: a word and what it is."""
+    @property
+    def sections(self) -> list[ReportSection]:
+        """The sections in their order."""
+
+class ExportNotCarried(Record):
+    """A key of the train file that is not in the export."""
+    @property
+    def key(self) -> str:
+        """The key, without the positions of lists: ``drag.coulomb``, ``shift_element.capacity``."""
+    @property
+    def of(self) -> list[str]:
+        """The entries that have it, by their names, where they have some."""
+    @property
+    def values(self) -> list[str]:
+        """What is missing, with its unit: a text for each of ``of``, or one where nothing has a name."""
+    @property
+    def in_part(self) -> bool:
+        """Whether other values of the same entries are carried, as the first row of a table."""
+
+class ExportOneKind(Record):
+    """A format to export to."""
+    @property
+    def name(self) -> str:
+        """How it is asked for."""
+    @property
+    def about(self) -> str:
+        """What it is, in one line."""
+
+class ExportAnswer(Answer):
+    """Files for another program, or the kinds there are."""
+    @property
+    def format(self) -> Literal["willis-export-1"]:
+        """``willis-export-1``."""
+    @property
+    def kind(self) -> str | None:
+        """The format of the files; none where the kinds are listed."""
+    @property
+    def not_carried(self) -> list[ExportNotCarried]:
+        """What the train file says and the files do not."""
+    @property
+    def kinds(self) -> list[ExportOneKind]:
+        """The kinds there are, where no kind was named."""
+
+class LawsSymbol(Record):
+    """A symbol and its SI unit."""
+    @property
+    def symbol(self) -> str:
+        """The symbol."""
+    @property
+    def unit(self) -> str:
+        """Its SI unit; ``-`` for a pure number."""
+
+class LawsBounds(Record):
+    """The range of a quantity within which a law holds."""
+    @property
+    def symbol(self) -> str:
+        """Symbol of the quantity."""
+    @property
+    def unit(self) -> str:
+        """Its SI unit; ``-`` for a pure number."""
+    @property
+    def min(self) -> float | None:
+        """Lowest value, in that unit; absent where there is none."""
+    @property
+    def max(self) -> float | None:
+        """Highest value, in that unit; absent where there is none."""
+
+class LawsLawReport(Record):
+    """A law: what it gives, where it comes from, where it holds."""
+    @property
+    def family(self) -> str:
+        """Name of the family, ``mesh_friction``."""
+    @property
+    def law(self) -> str:
+        """Name of the law."""
+    @property
+    def default(self) -> bool:
+        """Whether it is the one used when nothing is chosen."""
+    @property
+    def title(self) -> str:
+        """Title for people."""
+    @property
+    def gives(self) -> LawsSymbol:
+        """What the family gives."""
+    @property
+    def source(self) -> str:
+        """Key in the list of references."""
+    @property
+    def place(self) -> str:
+        """The place in that work."""
+    @property
+    def trust(self) -> str:
+        """How far the formula was checked."""
+    @property
+    def valid(self) -> list[LawsBounds]:
+        """Where the source claims validity."""
+
+class LawsOneOil(Record):
+    """An oil of the catalogue."""
+    @property
+    def name(self) -> str:
+        """Its designation."""
+    @property
+    def base(self) -> str:
+        """Its base."""
+    @property
+    def viscosity_40_m2_s(self) -> float | None:
+        """Kinematic viscosity at 40 °C, m²/s; absent where it is not known there."""
+    @property
+    def viscosity_40(self) -> float | None: ...
+    @property
+    def viscosity_100_m2_s(self) -> float | None:
+        """Kinematic viscosity at 100 °C, m²/s; absent where it is not known there."""
+    @property
+    def viscosity_100(self) -> float | None: ...
+    @property
+    def density_15_kg_m3(self) -> float:
+        """Density at 15 °C, kg/m³."""
+    @property
+    def density_15(self) -> float: ...
+    @property
+    def trust(self) -> str:
+        """How far its data were checked."""
+
+class LawsOneBearing(Record):
+    """A bearing of the catalogue."""
+    @property
+    def designation(self) -> str:
+        """Its designation."""
+    @property
+    def kind(self) -> str:
+        """Its kind."""
+    @property
+    def bore_m(self) -> float:
+        """Bore, m."""
+    @property
+    def bore(self) -> float: ...
+    @property
+    def outside_diameter_m(self) -> float:
+        """Outside diameter, m."""
+    @property
+    def outside_diameter(self) -> float: ...
+    @property
+    def width_m(self) -> float:
+        """Width, m."""
+    @property
+    def width(self) -> float: ...
+    @property
+    def static_rating_n(self) -> float | None:
+        """Static load rating, N, where it is known."""
+    @property
+    def static_rating(self) -> float | None: ...
+    @property
+    def skf(self) -> bool:
+        """Whether the constants of the SKF friction model are known."""
+    @property
+    def trust(self) -> str:
+        """How far its data were checked."""
+
+class LawsAnswer(Answer):
+    """Laws, or a catalogue."""
+    @property
+    def format(self) -> Literal["willis-laws-1"]:
+        """``willis-laws-1``."""
+    @property
+    def laws(self) -> list[LawsLawReport]:
+        """The laws, family by family; the first of each is the default."""
+    @property
+    def oils(self) -> list[LawsOneOil]:
+        """The catalogue of oils, where it was asked for."""
+    @property
+    def bearings(self) -> list[LawsOneBearing]:
+        """The catalogue of bearings, where it was asked for."""
+
+class ValidateSection(Record):
+    """A part of a report."""
+    @property
+    def title(self) -> str:
+        """Title."""
+    @property
+    def text(self) -> list[str]:
+        """Sentences before the table."""
+    @property
+    def columns(self) -> list[str]:
+        """Names of the columns."""
+    @property
+    def rows(self) -> list[list[str | float | None]]:
+        """Rows of the table."""
+    @property
+    def points(self) -> list[str]:
+        """Points after the table."""
+
+class ValidateGate(Record):
+    """A comparison with a bound."""
+    @property
+    def what(self) -> str:
+        """What is compared."""
+    @property
+    def printed(self) -> str:
+        """As printed or measured."""
+    @property
+    def ours(self) -> float | None:
+        """Ours; ``null`` where there is no number to compare, which no bound lets pass."""
+    @property
+    def low(self) -> float:
+        """Lowest value that passes."""
+    @property
+    def high(self) -> float:
+        """Highest value that passes."""
+    @property
+    def holds(self) -> bool:
+        """Whether it passes."""
+    @property
+    def cause(self) -> str | None:
+        """Why it does not, where that is known."""
+
+class ValidateOneCase(Record):
+    """A case."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def about(self) -> str:
+        """What it compares."""
+
+class ValidateAnswer(Answer):
+    """A case, or the list of them."""
+    @property
+    def format(self) -> Literal["willis-cases-1"]:
+        """``willis-cases-1``."""
+    @property
+    def case(self) -> str:
+        """Name of the case."""
+    @property
+    def title(self) -> str:
+        """Title."""
+    @property
+    def source(self) -> str:
+        """Where the printed numbers come from."""
+    @property
+    def sections(self) -> list[ValidateSection]:
+        """In the order to be read."""
+    @property
+    def gates(self) -> list[ValidateGate]:
+        """What must hold."""
+    @property
+    def cases(self) -> list[ValidateOneCase]:
+        """All of them."""
+
+class ExplainExplained(Record):
+    """A diagnostic code."""
+    @property
+    def code(self) -> str:
+        """The code, ``E106``."""
+    @property
+    def severity(self) -> Literal["error", "warning", "note"]:
+        """How much it matters."""
+    @property
+    def title(self) -> str:
+        """One line that names the matter."""
+    @property
+    def explanation(self) -> str:
+        """What it means, why it matters and what to do."""
+
+class ExplainAnswer(Answer):
+    """Diagnostic codes."""
+    @property
+    def format(self) -> Literal["willis-codes-1"]:
+        """``willis-codes-1``."""
+    @property
+    def codes(self) -> list[ExplainExplained]:
+        """The code that was asked for, or all."""

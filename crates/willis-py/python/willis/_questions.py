@@ -1,0 +1,995 @@
+"""Every question of the library, as methods of a train and as functions.
+
+Written by ``generate.py``; changes belong to the library.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+from ._request import Quantity
+from ._request import ask as _ask
+from ._work import Progress
+
+if TYPE_CHECKING:
+    from . import _contracts as contracts
+    from ._train import Train
+
+__all__ = ["new", "laws", "validate", "explain"]
+
+
+class Questions:
+    """The questions that are asked of a train."""
+
+    __slots__ = ()
+
+    def analyze(
+        self,
+        *,
+        state: str | None = None,
+        operation: str | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.AnalyzeAnswer":
+        """Analyse a train: its shift table and its operating points.
+
+        Gives for every state the exact ratio and the efficiency driving and coasting; for every operation speeds,
+        torques, powers, losses, the verdict and its certificate. A train that locks is an answer: exit status 0.
+        Status 1 means the input is wrong.
+
+        Parameters
+        ----------
+        state
+            Only this state of the shift table.
+        operation
+            Only this operation.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.AnalyzeAnswer",
+            _ask(
+                "analyze",
+                [cast(Any, self)],
+                {"state": state, "operation": operation},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def table(
+        self,
+        *,
+        state: str | None = None,
+        speed: Quantity | None = None,
+        lossless: bool | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.TableAnswer":
+        """Tabulate the speed of every shaft and planet, the slip of every open element and every torque, in all
+        states.
+
+        Speeds are those over the speed of the input, or in rpm at a given one. Torques are those over the torque of
+        the input, which drives the output through the losses of the teeth.
+
+        Parameters
+        ----------
+        state
+            Only this state of the shift table.
+        speed
+            Show speeds in rpm at this speed of the input: 2000rpm.
+        lossless
+            Torques without losses.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.TableAnswer",
+            _ask(
+                "table",
+                [cast(Any, self)],
+                {"state": state, "speed": speed, "lossless": lossless},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def check(
+        self,
+        *,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.CheckAnswer":
+        """Check a train file and say everything that is wrong with it.
+
+        Parameters
+        ----------
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.CheckAnswer",
+            _ask(
+                "check",
+                [cast(Any, self)],
+                {},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def flow(
+        self,
+        *,
+        operation: str | None = None,
+        state: str | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.FlowAnswer":
+        """Show where the power runs in an operating point: components, contacts, paths, losses.
+
+        The graph has every component and every contact between components (teeth, bearings, seals, clutches), the
+        power between them, the balance of each, the efficiency of each contact and of every path from input to
+        output, and power that runs in circles.
+
+        Parameters
+        ----------
+        operation
+            Only this operation.
+        state
+            Only operations that run in this state of the shift table.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.FlowAnswer",
+            _ask(
+                "flow",
+                [cast(Any, self)],
+                {"operation": operation, "state": state},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def losses(
+        self,
+        *,
+        operation: str | None = None,
+        speeds: Mapping[str, Quantity] | Sequence[Quantity] | Quantity | None = None,
+        powers: Mapping[str, Quantity] | Sequence[Quantity] | Quantity | None = None,
+        torques: Mapping[str, Quantity] | Sequence[Quantity] | Quantity | None = None,
+        temperature: Mapping[str, Quantity] | Sequence[Quantity] | Quantity | None = None,
+        compare: str | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.LossesAnswer":
+        """Tell where every watt goes, at a few speeds, loads and temperatures, or law beside law.
+
+        Starts from the operations of the file. Loads stay as the file gives them (a torque stays that torque, a
+        power that power) unless powers or torques vary them.
+
+        Parameters
+        ----------
+        operation
+            Only this operation.
+        speeds
+            Speeds of the operation's first prescribed speed: 500rpm,1000rpm,2000rpm.
+        powers
+            Powers at the operation's first load: 100kW,200kW.
+        torques
+            Torques at the operation's first load: '100 N m,200 N m'.
+        temperature
+            Oil temperatures: 40degC,60degC,90degC.
+        compare
+            Compare all laws of this family: mesh_friction, bearing, windage, ...
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.LossesAnswer",
+            _ask(
+                "losses",
+                [cast(Any, self)],
+                {"operation": operation, "speeds": speeds, "powers": powers, "torques": torques, "temperature": temperature, "compare": compare},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def sensitivity(
+        self,
+        *,
+        operation: str | None = None,
+        state: str | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.SensitivityAnswer":
+        """Rank the inputs by what they do to efficiency and losses: which loss to attack first.
+
+        Exact derivatives (no differences are taken) of efficiency, of all losses and of each loss by every
+        continuous quantity of the file and of the operation, for a step of one percent (1 K, 1 degree, 0.01 of a
+        profile shift); and how far the point is from another driving end and from locking.
+
+        Parameters
+        ----------
+        operation
+            Only this operation.
+        state
+            Only operations that run in this state.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.SensitivityAnswer",
+            _ask(
+                "sensitivity",
+                [cast(Any, self)],
+                {"operation": operation, "state": state},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def uncertainty(
+        self,
+        *,
+        operation: str | None = None,
+        state: str | None = None,
+        vary: Sequence[str] | str | None = None,
+        laws: Sequence[str] | str | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.UncertaintyAnswer":
+        """Tell how sure a number is: its distribution when quantities are uncertain, and what dominates it.
+
+        Quantities are those of the train file and of the operation. Distributions: ``0.98..0.99`` (equally likely),
+        ``+-5%`` about the file's value, ``normal(0.4 um, 0.05 um)`` and ``lognormal(0.4 um, 1.3)`` (both cut off at
+        three standard deviations), ``triangular(0.2, 0.4, 0.8 um)``; sets of equally likely values: ``3,4``, laws:
+        ``all``, ``inside`` (their range), or names.
+
+        Without --vary and --laws: given losses 1 - efficiency by 20 %, roughness by 20 %, the oil's temperature by
+        5 K each way, and the laws of tooth friction inside their range; each is listed as an assumption.
+
+        Parameters
+        ----------
+        operation
+            The operation. Default: the first one in the state, else the file's first.
+        state
+            In this state of the shift table.
+        vary
+            An uncertain quantity: 'P1.mesh_efficiency=0.985..0.995'. Several times for several quantities.
+        laws
+            Families whose laws are each as likely as the others, with commas between; or all.
+        samples
+            How many samples; made a power of two.
+        seed
+            Other seeds give other samples; the same seed the same, bit for bit.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.UncertaintyAnswer",
+            _ask(
+                "uncertainty",
+                [cast(Any, self)],
+                {"operation": operation, "state": state, "vary": vary, "laws": laws, "samples": samples, "seed": seed},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def sweep(
+        self,
+        *,
+        over: Mapping[str, object] | Sequence[str] | str | None = None,
+        study: str | None = None,
+        operation: str | None = None,
+        state: str | None = None,
+        hold: Literal["as-given", "torque", "power", "output"] | None = None,
+        columns: Sequence[str] | str | None = None,
+        fast: bool | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.SweepAnswer":
+        """Evaluate a train at many points: maps, trends, every gear at once.
+
+        Any quantity of the train file or of the operating point can vary, along as many axes as wanted:
+
+        ::
+
+              --over "input.speed=500 rpm..12000 rpm:100"   --over "output.torque=10..400 N m:80"
+
+        ::
+
+              --over state=all   --over P1.planet.count=3,4,6   --over "oil.temperature=20..100 degC:9"
+
+        ``…:100`` are so many values, ends included; ``…:31:log`` a constant ratio; ``…:step 500 rpm`` every so
+        much. Torque and power of ``input`` and ``output`` are positive where they drive; of a member called by its
+        name they are those ON it, as in the train file. Every point is that of ``analyze``; a point that is locked
+        or has several solutions is a row that says so. Without --output a summary is all there is. An interrupted
+        sweep goes on when the same command is given again.
+
+        Parameters
+        ----------
+        over
+            An axis, QUANTITY=VALUES; several times for several axes, the last runs fastest.
+        study
+            A [[study]] of the train file, instead of axes and what belongs to them.
+        operation
+            The operation from which the sweep starts. Default: the first one in the state, else the file's first.
+        state
+            The state of the shift table.
+        hold
+            What stays the same while other quantities vary.
+        columns
+            More columns: members, meshes, elements, sources, all, or single ones such as carrier.torque_n_m.
+        fast
+            Compile the train, for maps of millions of points: given efficiencies; axes of speed, torque, state, and a
+            few values of the file; no columns of powers and warnings. Numbers agree with ``analyze`` to a part in
+            10^12.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.SweepAnswer",
+            _ask(
+                "sweep",
+                [cast(Any, self)],
+                {"over": over, "study": study, "operation": operation, "state": state, "hold": hold, "columns": columns, "fast": fast},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def cycle(
+        self,
+        *,
+        profile: str | os.PathLike[str] | object | None = None,
+        ignore_column: Sequence[str] | str | None = None,
+        only_column: Sequence[str] | str | None = None,
+        operation: str | None = None,
+        state: str | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.CycleAnswer":
+        """Tell what a duty cycle or a load spectrum costs: energies by source, state and direction, the worst rows.
+
+        Each row of the profile, a CSV file, is one operating condition. A column weighs the rows in time: ``time
+        [s]`` of a trace (each row holds until the next), or ``duration [s]``, ``hours`` or ``share`` of a spectrum.
+        The other columns set quantities, with the unit in the header: ``input.speed [rpm]``, ``output.torque [N
+        m]``, ``oil.temperature [degC]``, state, or any quantity of the train file. Rows without an answer are told
+        with their reason, and the energies say which part of the time they cover.
+
+        Parameters
+        ----------
+        profile
+            The profile (CSV), or - for standard input.
+        ignore_column
+            Leave this column of the profile out; its name, with or without the unit. Several times for several columns.
+        only_column
+            Read this column of the profile and no others than are named so. Several times for several columns.
+        operation
+            The operation that gives what no column sets. Default: the first one in the state, else the file's first.
+        state
+            State of the shift table, where no column gives it.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.CycleAnswer",
+            _ask(
+                "cycle",
+                [cast(Any, self)],
+                {"profile": profile, "ignore_column": ignore_column, "only_column": only_column, "operation": operation, "state": state},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def compare(
+        self,
+        *others: Train,
+        operation: str | None = None,
+        state: str | None = None,
+        over: Mapping[str, object] | Sequence[str] | str | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.CompareAnswer":
+        """Lay variants of a train side by side: what the files differ in, and what that changes.
+
+        Keys that differ come first, then states and operations by the size of their differences, then in a line
+        what is equal. Operations of one name that prescribe different things are compared and marked. With --over
+        the same axes are applied to every variant: where which is better, and by how much.
+
+        Parameters
+        ----------
+        operation
+            Only this operation.
+        state
+            Only this state, and operations in it.
+        over
+            A quantity and its values: 'input.speed=500 rpm..6000 rpm:12'. Several times for a grid.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.CompareAnswer",
+            _ask(
+                "compare",
+                [cast(Any, self), *others],
+                {"operation": operation, "state": state, "over": over},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def regimes(
+        self,
+        *,
+        state: str | None = None,
+        terminals: Sequence[str] | str | None = None,
+        balance: Sequence[str] | str | None = None,
+        family: bool | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.RegimesAnswer":
+        """List every regime of a train: who drives whom, in which speeds, with which formula.
+
+        For two and more degrees of freedom: the regions of speed, the signs of the torques, inputs and outputs, the
+        driving ends, the closed formula of efficiency and loss, the boundaries and what changes across them, and
+        which assignments of inputs and outputs cannot be reached. For one degree of freedom: driving and coasting
+        of every state with its formula.
+
+        Parameters
+        ----------
+        state
+            Only this state of the shift table, or "as drawn".
+        terminals
+            Members on which torque may act, with commas between; else the train's terminals.
+        balance
+            Two terminals whose powers add to zero: the machines of a hybrid with an idle battery.
+        family
+            One set with three terminals: for every basic ratio it can have (Esmail's Table 1).
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.RegimesAnswer",
+            _ask(
+                "regimes",
+                [cast(Any, self)],
+                {"state": state, "terminals": terminals, "balance": balance, "family": family},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def formula(
+        self,
+        *,
+        state: str | None = None,
+        from_: Sequence[str] | str | None = None,
+        to: Sequence[str] | str | None = None,
+        terminals: Sequence[str] | str | None = None,
+        balance: Sequence[str] | str | None = None,
+        regime: str | None = None,
+        lang: Literal["text", "latex", "python", "rust", "c", "modelica"] | None = None,
+        ratios: Literal["basic", "teeth", "numbers"] | None = None,
+        efficiencies: Literal["basic", "meshes", "numbers"] | None = None,
+        derivatives: bool | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.FormulaAnswer":
+        """Give the closed formula of efficiency, speed ratio and torque ratio, also as code.
+
+        Emitted code checks first whether its formula holds for its arguments and refuses to answer where it does
+        not.
+
+        Parameters
+        ----------
+        state
+            Only this state of the shift table, or "as drawn".
+        from_
+            Where power enters; else the state's input. Several with commas between.
+        to
+            Where power leaves; else the state's output. Several with commas between.
+        terminals
+            Members on which torque may act, for two and more degrees of freedom.
+        balance
+            Two terminals whose powers add to zero.
+        regime
+            Only the regime of this name, as ``willis regimes`` lists it.
+        lang
+            How to write it.
+        ratios
+            How ratios are written.
+        efficiencies
+            How efficiencies are written.
+        derivatives
+            Also the derivatives with respect to every efficiency: which mesh matters most.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.FormulaAnswer",
+            _ask(
+                "formula",
+                [cast(Any, self)],
+                {"state": state, "from": from_, "to": to, "terminals": terminals, "balance": balance, "regime": regime, "lang": lang, "ratios": ratios, "efficiencies": efficiencies, "derivatives": derivatives},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def locate(
+        self,
+        *,
+        state: str | None = None,
+        speeds: Mapping[str, Quantity] | Sequence[Quantity] | Quantity | None = None,
+        torques: Mapping[str, Quantity] | Sequence[Quantity] | Quantity | None = None,
+        powers: Mapping[str, Quantity] | Sequence[Quantity] | Quantity | None = None,
+        operation: str | None = None,
+        terminals: Sequence[str] | str | None = None,
+        balance: Sequence[str] | str | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.LocateAnswer":
+        """Tell in which regime an operating point lies, how far each boundary is and what changes there.
+
+        Works for trains of any size: it looks at this one point.
+
+        Parameters
+        ----------
+        state
+            State of the shift table; else the train as drawn.
+        speeds
+            Speeds of as many members as there are degrees of freedom: engine=2000rpm,ring=1000rpm.
+        torques
+            Torques of as many terminals as are independent: 'engine=100 N m'.
+        powers
+            Powers into the train, in place of torques: 'engine=40 kW'.
+        operation
+            Take speeds, torques and powers from this operation of the file.
+        terminals
+            Members on which torque may act, with commas between; else the train's terminals.
+        balance
+            Two terminals whose powers add to zero.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.LocateAnswer",
+            _ask(
+                "locate",
+                [cast(Any, self)],
+                {"state": state, "speeds": speeds, "torques": torques, "powers": powers, "operation": operation, "terminals": terminals, "balance": balance},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def simulate(
+        self,
+        scenario: str | None = None,
+        *,
+        columns: Sequence[str] | str | None = None,
+        samples: int | None = None,
+        from_: Quantity | None = None,
+        to: Quantity | None = None,
+        tolerance: float | None = None,
+        fixed_step: Quantity | None = None,
+        lagged_forces: bool | None = None,
+        continue_when_ambiguous: bool | None = None,
+        most_events: int | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.SimulateAnswer":
+        """Simulate a scenario: how the train accelerates, sticks, slips and shifts, and where the energy goes.
+
+        A run that jams, has several solutions or ends otherwise before the scenario is an answer: exit status 0,
+        and the outcome says so. Ctrl-C ends the run where it is, with exit status 130. In both cases what was
+        computed is written and told.
+
+        Rows are in SI units; where a value is not determined the field is empty (CSV) or null. Modes are 1 forward,
+        -1 backward, 0 stuck, 2 free. A CSV of a run that ended early has a last line that begins with ``# `` and
+        says when and why, also where the disk was full; in Parquet the metadata ``willis.complete`` is false and
+        ``willis.ended_s`` has the time.
+
+        Parameters
+        ----------
+        scenario
+            The scenario; needed where the file has several.
+        columns
+            Only these columns in rows and figure, by kind (speed, torque, mode, ...) or by name.
+        samples
+            How many rows, evenly spaced in time; else as the scenario says.
+        from_
+            Rows and events from this time on: '2 s'. The run begins at its start, and energies are those of the whole
+            run.
+        to
+            End the run here instead of at the end of the scenario: '3 s'.
+        tolerance
+            Relative tolerance of speeds and angles, from 1e-13 to 1e-2 [default: 1e-10].
+        fixed_step
+            Advance in steps of this length, each of bounded cost: '1 ms'.
+        lagged_forces
+            Take the sign of each tooth force from the step before, as in Galvagno 2010, to show the error of that.
+        continue_when_ambiguous
+            Where several motions are possible, go on with one of them.
+        most_events
+            The most changes of mode within a thousandth of the scenario [default: 1000].
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.SimulateAnswer",
+            _ask(
+                "simulate",
+                [cast(Any, self)],
+                {"scenario": scenario, "columns": columns, "samples": samples, "from": from_, "to": to, "tolerance": tolerance, "fixed_step": fixed_step, "lagged_forces": lagged_forces, "continue_when_ambiguous": continue_when_ambiguous, "most_events": most_events},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def modes(
+        self,
+        *,
+        state: str | None = None,
+        fixed: Sequence[str] | str | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.ModesAnswer":
+        """List torsional natural frequencies: shapes, damping, where the energy is.
+
+        Small vibrations of the moments of inertia on the elastic shafts; the gears tie them together.
+
+        Parameters
+        ----------
+        state
+            State of the shift table; else the train as drawn.
+        fixed
+            Members held at rest, with commas between.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.ModesAnswer",
+            _ask(
+                "modes",
+                [cast(Any, self)],
+                {"state": state, "fixed": fixed},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def draw(
+        self,
+        kind: Literal["stick", "lever", "sankey", "flow", "front", "regimes", "map", "split", "losses", "film", "path", "time", "shift", "table", "tornado", "band", "all"] | None = None,
+        *,
+        state: str | None = None,
+        operation: str | None = None,
+        part: str | None = None,
+        over: Mapping[str, object] | Sequence[str] | str | None = None,
+        terminals: Sequence[str] | str | None = None,
+        balance: Sequence[str] | str | None = None,
+        nominal: bool | None = None,
+        animated: bool | None = None,
+        theme: Literal["light", "dark", "auto"] | None = None,
+        scale: float | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.DrawAnswer":
+        """Draw a train: its scheme, levers, power flow, teeth, regimes, maps, losses.
+
+        A kind that does not apply to a train says why, and which do. ``all`` draws whatever applies. ``--format
+        json`` gives the figure as data.
+
+        Parameters
+        ----------
+        kind
+            What to draw; ``all`` draws whatever applies into a folder.
+        state
+            A state of the shift table.
+        operation
+            An operation; else the file's first, or all where a figure shows several.
+        part
+            The set, mesh or scenario to draw.
+        over
+            A quantity along an axis, as ``sweep`` takes it: "sun.speed=500..3000 rpm:40".
+        terminals
+            Members on which torque may act, with commas between (regimes); else the train's terminals.
+        balance
+            Two terminals whose powers add to zero (regimes).
+        nominal
+            Draw teeth without geometry as nominal ones of module 1.
+        animated
+            Wheels turn (front, in SVG).
+        theme
+            Light or dark, or as the reader's screen is set.
+        scale
+            Pixels of a PNG to a unit of the figure, from 0.1 to 10.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.DrawAnswer",
+            _ask(
+                "draw",
+                [cast(Any, self)],
+                {"kind": kind, "state": state, "operation": operation, "part": part, "over": over, "terminals": terminals, "balance": balance, "nominal": nominal, "animated": animated, "theme": theme, "scale": scale},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def report(
+        self,
+        *,
+        operation: str | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.ReportAnswer":
+        """Write the engineering report of a train: one file that explains itself, as web page or PDF.
+
+        Question, train with schematic and teeth, results with verdict and certificate, power flow, losses and what
+        to change first, maps, regimes and closed formulas, assumptions, warnings, laws with their sources, and how
+        to do it again. The same input gives the same bytes.
+
+        Parameters
+        ----------
+        operation
+            Only this operation.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.ReportAnswer",
+            _ask(
+                "report",
+                [cast(Any, self)],
+                {"operation": operation},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def export(
+        self,
+        kind: Literal["csv", "vecto", "modelica-loss-table", "modelica", "simscape", "mujoco", "drake", "openfast", "list"] | None = None,
+        *,
+        state: str | None = None,
+        all_states: bool | None = None,
+        operation: str | None = None,
+        speeds: str | None = None,
+        torques: str | None = None,
+        temperature: Mapping[str, Quantity] | Sequence[Quantity] | Quantity | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.ExportAnswer":
+        """Write loss maps, efficiency tables, models and actuator blocks for other programs.
+
+        Without a kind it lists the kinds. Numbers are those of ``analyze``, at every point of the ranges; without
+        ranges they are taken from the operations of the file, and told. What a format cannot say (a lock, several
+        solutions, a dependence on load) stands in the comments of the file and among the notes; a point without an
+        answer gets no number.
+
+        Parameters
+        ----------
+        kind
+            The format: vecto, modelica-loss-table, ...; or list.
+        state
+            This state of the shift table.
+        all_states
+            Every state that can be exported.
+        operation
+            Take state and ranges from this operation of the file.
+        speeds
+            Speeds of the input: 200rpm..2200rpm:11 are 11 values; or 500rpm,1000rpm.
+        torques
+            Torques on the input, positive driving, negative coasting: '-500 N m..500 N m:21'.
+        temperature
+            Oil temperatures: 40degC,90degC. Most formats take one.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+        """
+        return cast(
+            "contracts.ExportAnswer",
+            _ask(
+                "export",
+                [cast(Any, self)],
+                {"kind": kind, "state": state, "all_states": all_states, "operation": operation, "speeds": speeds, "torques": torques, "temperature": temperature},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+
+def new(
+    kind: Literal["set", "automatic", "split", "losses", "motion"] | None = None,
+    *,
+    threads: int | None = None,
+    yes: bool = False,
+    progress: bool | Progress | None = None,
+) -> "contracts.NewAnswer":
+    """Write a commented train file to start from.
+
+    Without a kind it lists the kinds: ``willis new automatic -o mine.toml``.
+
+    Parameters
+    ----------
+    kind
+        The kind, as listed.
+    threads, yes, progress
+        Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+        called with a word, how much is done and how much there is.
+    """
+    return cast(
+        "contracts.NewAnswer",
+        _ask(
+            "new",
+            [],
+            {"kind": kind},
+            threads=threads,
+            yes=yes,
+            progress=progress,
+        ),
+    )
+
+
+def laws(
+    family: Literal["mesh_friction", "rolling", "loss_factor", "load_sharing", "film", "film_reduction", "bearing", "windage", "churning", "seal", "rotor_drag"] | None = None,
+    *,
+    oils: bool | None = None,
+    bearings: bool | None = None,
+    threads: int | None = None,
+    yes: bool = False,
+    progress: bool | Progress | None = None,
+) -> "contracts.LawsAnswer":
+    """List every loss law with its range, source and how far it was checked.
+
+    Parameters
+    ----------
+    family
+        Only this family.
+    oils
+        List the catalogue of oils instead.
+    bearings
+        List the catalogue of bearings instead.
+    threads, yes, progress
+        Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+        called with a word, how much is done and how much there is.
+    """
+    return cast(
+        "contracts.LawsAnswer",
+        _ask(
+            "laws",
+            [],
+            {"family": family, "oils": oils, "bearings": bearings},
+            threads=threads,
+            yes=yes,
+            progress=progress,
+        ),
+    )
+
+
+def validate(
+    case: Literal["wang-2020", "losses", "galvagno"] | None = None,
+    *,
+    threads: int | None = None,
+    yes: bool = False,
+    progress: bool | Progress | None = None,
+) -> "contracts.ValidateAnswer":
+    """Compare published numbers with ours: what agrees, what does not, and why.
+
+    Without a case it lists the cases. Exit status 0 also where a number differs: that is an answer.
+
+    Parameters
+    ----------
+    case
+        The case, as listed.
+    threads, yes, progress
+        Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+        called with a word, how much is done and how much there is.
+    """
+    return cast(
+        "contracts.ValidateAnswer",
+        _ask(
+            "validate",
+            [],
+            {"case": case},
+            threads=threads,
+            yes=yes,
+            progress=progress,
+        ),
+    )
+
+
+def explain(
+    code: Literal["E001", "E002", "E003", "E004", "E005", "E006", "E007", "E008", "E101", "E102", "E103", "E104", "E105", "E106", "E107", "E108", "E109", "E110", "E111", "E112", "E113", "E114", "E201", "E202", "E203", "E204", "E205", "E206", "E207", "E208", "E209", "E210", "E211", "E212", "W301", "W302", "W303", "W304", "W305", "W306", "W307", "W308", "W309", "W310", "W311", "W312", "W313", "W314", "W315", "W316", "W317", "W318", "W319", "W320", "W321", "N401", "N402", "N403", "N404"] | None = None,
+    *,
+    threads: int | None = None,
+    yes: bool = False,
+    progress: bool | Progress | None = None,
+) -> "contracts.ExplainAnswer":
+    """Explain a diagnostic code, or list all of them.
+
+    Parameters
+    ----------
+    code
+        The code, such as E106.
+    threads, yes, progress
+        Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+        called with a word, how much is done and how much there is.
+    """
+    return cast(
+        "contracts.ExplainAnswer",
+        _ask(
+            "explain",
+            [],
+            {"code": code},
+            threads=threads,
+            yes=yes,
+            progress=progress,
+        ),
+    )

@@ -1,0 +1,71 @@
+"""From arguments to a request."""
+
+from __future__ import annotations
+
+import enum
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from . import _quantity
+from ._answer import Answer
+from ._answer import ask as _ask
+
+if TYPE_CHECKING:
+    from ._train import Train
+
+#: A time, a torque, …: text with its unit, a number in SI units, or a quantity of ``pint``.
+Quantity: TypeAlias = "str | float | Any"
+
+#: Fields that are quantities, with the unit of a number.
+_QUANTITIES = {"from": "s", "to": "s", "fixed_step": "s", "speed": "rad/s"}
+
+#: Fields that are lists of quantities, or of members with theirs.
+_LISTED = {"speeds": "rad/s", "torques": "N m", "powers": "W", "temperature": "K"}
+
+
+def ask(
+    question: str,
+    trains: Sequence[Train],
+    given: Mapping[str, Any],
+    *,
+    threads: int | None,
+    yes: bool,
+    progress: Any,
+) -> Answer:
+    """Asks a question; what is ``None`` is left out."""
+    request = {name: _field(question, name, value) for name, value in given.items() if value is not None}
+    return _ask(question, trains, request, threads=threads, yes=yes, progress=progress)
+
+
+def _field(question: str, name: str, value: Any) -> Any:
+    if name == "over":
+        return _quantity.axes(value)
+    if name in _LISTED and not (question == "export" and isinstance(value, str)):
+        return _quantity.listed(value, _LISTED[name])
+    if question != "formula" and name in _QUANTITIES:
+        return _quantity.one(value, _QUANTITIES[name])
+    if name in ("state", "operation", "scenario") and isinstance(value, int):
+        return str(value)
+    if name == "profile":
+        return _attachment(name, value)
+    if isinstance(value, enum.Enum):
+        return value.value
+    if isinstance(value, str) and name in _LISTS:
+        return [value]
+    if isinstance(value, (tuple, set, range)):
+        return list(value)
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    return value
+
+
+#: Fields that are lists, of which one item may be given alone.
+_LISTS = {"columns", "terminals", "balance", "vary", "laws", "ignore_column", "only_column", "fixed", "from", "to"}
+
+
+def _attachment(name: str, value: Any) -> dict[str, str]:
+    """A file by its path, or a table that is in memory."""
+    if isinstance(value, (str, os.PathLike)):
+        return {"name": os.fspath(value), "text": ""}
+    return {"name": name, "text": _quantity.csv(value)}
