@@ -1,7 +1,7 @@
 //! A train: its text, and what was changed in it.
 
 use std::collections::BTreeMap;
-use std::hash::{DefaultHasher, Hash, Hasher};
+use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
@@ -171,5 +171,4 @@ impl Train {
     fn compile(&self, py: Python<'_>, duty: Duty) -> PyResult<Compiled> {
         Compiled::new(py, self.train(), duty)
     }
-
 }

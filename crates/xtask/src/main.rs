@@ -13,6 +13,7 @@ mod licences;
 mod measure;
 mod package;
 mod pdf;
+mod python;
 mod step;
 mod tested;
 mod wasm;
@@ -56,6 +57,7 @@ const STEPS: &[Step] = &[
     Step::new("pages", "the book as web pages", Action::Call(book::pages)).may_skip(),
     Step::new("bench-gate", "work counts have not grown", Action::Call(bench::bench_gate)).may_skip(),
     Step::new("wasm", "the library answers as WebAssembly", Action::Call(wasm::wasm)).may_skip(),
+    Step::new("python", "the Python package: wheel, tests, types, notebooks", Action::Call(python::python)).may_skip(),
     Step::new("pdf", "reports as PDF, by a typesetter that is built for nobody else", Action::Call(pdf::pdf)),
     Step::new(
         "fuzz",

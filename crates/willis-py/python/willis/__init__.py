@@ -18,8 +18,7 @@ from . import _willis
 from ._answer import Analysis, Answer, Cycle, Drawing, Formula, Report, Simulation, Sweep
 from ._compiled import CompiledTrain
 from ._errors import Diagnostic, TrainError, TrainWarning
-from ._questions import *  # noqa: F403
-from ._questions import __all__ as _functions
+from ._questions import explain, laws, new, validate
 from ._record import Record
 from ._table import Table
 from ._train import Train, read, simple
@@ -42,7 +41,10 @@ __all__ = [
     "Train",
     "TrainError",
     "TrainWarning",
+    "explain",
+    "laws",
+    "new",
     "read",
     "simple",
-    *_functions,
+    "validate",
 ]

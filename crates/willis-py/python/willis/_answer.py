@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Sequence
+from functools import cache
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -79,7 +80,8 @@ class Answer:
     def notes(self) -> list[Diagnostic]:
         """Warnings and notes about it."""
         text = self._core.notes()[0] if self._core is not None else self._kept["notes"]  # type: ignore[index]
-        return [Diagnostic._of(d) for d in json.loads(text)]
+        file = self._trains[0].name if self._trains else None
+        return [Diagnostic._of(d, file) for d in json.loads(text)]
 
     @property
     def is_partial(self) -> bool:
@@ -283,7 +285,7 @@ class Analysis(Answer):
 
 def _stick(train: Train, state: str | None) -> str | None:
     try:
-        return train.draw("stick", **({"state": state} if state else {})).svg
+        return train.draw("stick", state=state).svg
     except (TrainError, TypeError):
         return None
 
@@ -399,7 +401,8 @@ class Formula(Answer):
 
         names = sorted(set(re.findall(r"[A-Za-z_]\w*", text)))
         symbols = {name: sympy.Symbol(name, real=True) for name in names}
-        return sympy.sympify(text.replace("^", "**"), locals=symbols)
+        parse: Any = sympy.sympify
+        return parse(text.replace("^", "**"), locals=symbols)
 
 
 KINDS: dict[str, type[Answer]] = {
@@ -413,14 +416,13 @@ KINDS: dict[str, type[Answer]] = {
 }
 
 
+@cache
+def _entries() -> dict[str, dict[str, Any]]:
+    return {entry["name"]: entry for entry in json.loads(_willis.questions())}
+
+
 def _entry(question: str) -> dict[str, Any]:
-    global _ENTRIES
-    if _ENTRIES is None:
-        _ENTRIES = {entry["name"]: entry for entry in json.loads(_willis.questions())}
-    return _ENTRIES[question]
-
-
-_ENTRIES: dict[str, dict[str, Any]] | None = None
+    return _entries()[question]
 
 
 def ask(

@@ -153,6 +153,8 @@ def _output(name: str) -> tuple[str, str]:
 
 def _floats(value: Any, name: str) -> NDArray[np.float64]:
     array = np.asarray(value)
+    if array.dtype.kind in "cmM":
+        raise TypeError(f"{name}: numbers are needed, in rad/s and N m; this is an array of {array.dtype}")
     if array.dtype.kind not in "fiub":
         try:
             array = np.asarray([float(v) for v in array.ravel()]).reshape(array.shape)

@@ -26,7 +26,7 @@ class Diagnostic:
     fix: str | None = None
 
     @classmethod
-    def _of(cls, data: dict[str, Any]) -> Diagnostic:
+    def _of(cls, data: dict[str, Any], file: str | None = None) -> Diagnostic:
         span = data.get("span") or {}
         replacement = data.get("replacement")
         if isinstance(replacement, dict):
@@ -37,7 +37,7 @@ class Diagnostic:
             message=data["message"],
             place=data.get("place", ""),
             hints=tuple(data.get("hints", ())),
-            file=data.get("file"),
+            file=data.get("file") or file,
             line=span.get("line"),
             column=span.get("column"),
             fix=replacement,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator
 from difflib import get_close_matches
+from functools import partial
 from typing import Any
 
 #: Ends of names that say the unit, the longest first. A name without its unit means the same, where it is the only one.
@@ -33,11 +34,12 @@ def wrap(value: Any) -> Any:
     return value
 
 
-class Record(Mapping[str, Any]):
+class Record:
     """Data with names: ``r.efficiency`` and ``r["efficiency"]`` are the same.
 
     Values are in SI units and their names say so; a name without its unit means the same: ``r.torque`` is
-    ``r.torque_n_m``.
+    ``r.torque_n_m``. It goes round as a dictionary does, with ``keys()``, ``values()``, ``items()`` and ``get()``, unless the
+    data have a name of their own that reads so.
     """
 
     __slots__ = ("_data",)
@@ -62,9 +64,11 @@ class Record(Mapping[str, Any]):
         if name.startswith("__"):
             raise AttributeError(name)
         key = self._find(name)
-        if key is None:
-            raise AttributeError(f"there is no `{name}` here{_near(name, self._data)}")
-        return wrap(self._data[key])
+        if key is not None:
+            return wrap(self._data[key])
+        if name in _WAYS:
+            return partial(_WAYS[name], self)
+        raise AttributeError(f"there is no `{name}` here{_near(name, self._data)}")
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError("an answer does not change")
@@ -74,6 +78,9 @@ class Record(Mapping[str, Any]):
 
     def __len__(self) -> int:
         return len(self._data)
+
+    def __contains__(self, name: object) -> bool:
+        return self._find(str(name)) is not None
 
     def __dir__(self) -> list[str]:
         names = [k for k in self._data if k.isidentifier()]
@@ -101,7 +108,27 @@ class Record(Mapping[str, Any]):
         return copy.deepcopy(self._data)
 
 
-def _near(name: str, data: Mapping[str, Any]) -> str:
+def _keys(record: Record) -> list[str]:
+    return list(record)
+
+
+def _values(record: Record) -> list[Any]:
+    return [record[k] for k in record]
+
+
+def _items(record: Record) -> list[tuple[str, Any]]:
+    return [(k, record[k]) for k in record]
+
+
+def _get(record: Record, name: str, default: Any = None) -> Any:
+    return record[name] if name in record else default
+
+
+#: How to go round the data.
+_WAYS: dict[str, Callable[..., Any]] = {"keys": _keys, "values": _values, "items": _items, "get": _get}
+
+
+def _near(name: str, data: dict[str, Any]) -> str:
     names = [str(k) for k in data]
     near = get_close_matches(name, [*names, *map(bare, names)], n=3)
     if near:

@@ -55,8 +55,9 @@ def _field(question: str, name: str, value: Any) -> Any:
         return [value]
     if isinstance(value, (tuple, set, range)):
         return list(value)
-    if hasattr(value, "tolist"):
-        return value.tolist()
+    listed = getattr(value, "tolist", None)
+    if listed is not None:
+        return listed()
     return value
 
 

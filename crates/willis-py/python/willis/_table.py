@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from . import _willis
 from ._record import bare
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 
 class Table:
@@ -62,7 +59,8 @@ class Table:
         names = self._core.columns
         if name in names:
             return name
-        found = [c for c in names if bare(c) == name] or [c for c in names if ".".join(reversed(bare(c).split(".", 1))) == name]
+        wanted = _spelt(name)
+        found = [c for c in names if bare(c) == name] or [c for c in names if wanted in _spellings(c)]
         if len(found) == 1:
             return found[0]
         from difflib import get_close_matches
@@ -138,6 +136,16 @@ def _plain(value: Any) -> Any:
     if isinstance(value, np.generic):
         value = value.item()
     return None if isinstance(value, float) and value != value else value
+
+
+def _spelt(name: str) -> str:
+    return name.replace(".", "_").replace(" ", "_")
+
+
+def _spellings(column: str) -> set[str]:
+    """A column without its unit, and with what it is of behind: ``speed.sun`` is ``sun.speed`` too."""
+    of = bare(column)
+    return {_spelt(of), _spelt(".".join(reversed(of.split(".", 1)))), _spelt(column), _spelt(of.removesuffix("_rpm"))}
 
 
 def html(table: Table, most: int = 40) -> str:

@@ -94,7 +94,7 @@ class Train(Questions):
         if self._warnings is None:
             import json
 
-            self._warnings = [Diagnostic._of(d) for d in json.loads(self._core.warnings())]
+            self._warnings = [Diagnostic._of(d, self.name) for d in json.loads(self._core.warnings())]
         return self._warnings
 
     def __getitem__(self, path: str) -> Any:
