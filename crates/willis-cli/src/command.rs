@@ -41,7 +41,7 @@ pub fn command() -> Command {
 }
 
 /// What was said on the command line; a file name alone is analysed.
-pub fn matches(words: impl IntoIterator<Item = OsString>) -> ArgMatches {
+pub fn matches(words: impl IntoIterator<Item = OsString>) -> Result<ArgMatches, clap::Error> {
     let command = command();
     let mut words: Vec<OsString> = words.into_iter().collect();
     let is_value = |k: usize| k > 1 && words[k - 1] == "--color";
@@ -54,7 +54,7 @@ pub fn matches(words: impl IntoIterator<Item = OsString>) -> ArgMatches {
             words.insert(k, "analyze".into());
         }
     }
-    command.get_matches_from(words)
+    command.try_get_matches_from(words)
 }
 
 /// `0.5%` or `0.005`

@@ -54,10 +54,25 @@ impl From<String> for Ended {
     }
 }
 
+/// Runs a command line of a program that shows the answer itself: what would be on standard output, or what is wrong.
+///
+/// # Errors
+/// What the command line does not allow, a refusal, or that the work was interrupted, in words.
+pub fn answer(words: impl IntoIterator<Item = OsString>) -> Result<String, String> {
+    let matches = command::matches(words).map_err(|e| e.to_string())?;
+    let (name, own) = matches.subcommand().expect("clap asks for a command");
+    match run(name, own).unwrap_or_else(|ended| ended) {
+        Ended::Answered(out) => Ok(out),
+        Ended::Interrupted { told, .. } | Ended::Refused { told, .. } | Ended::Misused(told) => {
+            Err(willis_ask::style::plain(&told))
+        }
+    }
+}
+
 /// Runs the command line with these words, the first of them the name of the program, and gives its exit status. What the
 /// command line does not allow ends the program.
 pub fn run_command(words: impl IntoIterator<Item = OsString>) -> u8 {
-    let matches = command::matches(words);
+    let matches = command::matches(words).unwrap_or_else(|e| e.exit());
     match matches.get_one::<String>("color").map(String::as_str) {
         Some("always") => anstream::ColorChoice::Always.write_global(),
         Some("never") => anstream::ColorChoice::Never.write_global(),

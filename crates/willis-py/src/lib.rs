@@ -36,4 +36,10 @@ mod _willis {
     fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
         py.detach(|| willis_cli::run_command(words))
     }
+
+    /// The same for a program that shows the answer itself: what is wrong, if something is.
+    #[pyfunction]
+    fn command_told(py: Python<'_>, words: Vec<OsString>) -> Option<String> {
+        py.detach(|| willis_cli::answer(words)).err()
+    }
 }

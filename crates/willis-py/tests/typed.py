@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 train: willis.Train = willis.read("zf-8hp70.toml")
 a = train.analyze(state="3")
 efficiency: float | None = a.efficiency
-torque: float = a.operations[0].solutions[0].members["output"].torque
+torque: float | None = a.operations[0].solutions[0].members["output"].torque
 verdict: str = a.ratios["3"].drive.verdict
 compiled: willis.CompiledTrain = train.compile("3")
 eta: NDArray[np.float64] = compiled.efficiency(speed=[1.0, 2.0], torque=np.ones(2))

@@ -18,6 +18,8 @@ from . import _willis
 from ._answer import Analysis, Answer, Cycle, Drawing, Formula, Report, Simulation, Sweep
 from ._compiled import CompiledTrain
 from ._errors import Diagnostic, TrainError, TrainWarning
+from ._exercise import Exercise, exercise
+from ._on import On, Parts, on
 from ._questions import explain, laws, new, validate
 from ._record import Record
 from ._table import Table
@@ -32,7 +34,10 @@ __all__ = [
     "Cycle",
     "Diagnostic",
     "Drawing",
+    "Exercise",
     "Formula",
+    "On",
+    "Parts",
     "Record",
     "Report",
     "Simulation",
@@ -41,9 +46,11 @@ __all__ = [
     "Train",
     "TrainError",
     "TrainWarning",
+    "exercise",
     "explain",
     "laws",
     "new",
+    "on",
     "read",
     "simple",
     "validate",

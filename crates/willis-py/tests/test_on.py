@@ -1,0 +1,100 @@
+"""Work on engines of others: the bytes of one machine."""
+
+from __future__ import annotations
+
+import os
+import signal
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+import pytest
+import willis
+from conftest import EXAMPLES
+from willis import _on
+
+OVER = {"input.speed": "500..6000 rpm:40", "input.torque": "10..400 N m:50"}
+
+
+def parts_of_one_machine(train: willis.Train, shards: int, form: str) -> list[bytes]:
+    words = _on._words([f"{k}={v}" for k, v in OVER.items()], {"state": "3"})
+    return [_on.shard(train._core.parts(), words, k, shards, form) for k in range(1, shards + 1)]
+
+
+@pytest.mark.parametrize("form", ["parquet", "csv"])
+def test_processes_make_the_bytes_of_one(automatic: willis.Train, tmp_path: Path, form: str) -> None:
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        parts = willis.on(pool).sweep(automatic, over=OVER, state="3", shards=3, path=tmp_path / "out", form=form)
+    assert parts.is_whole
+    assert [Path(f).read_bytes() for f in parts.files] == parts_of_one_machine(automatic, 3, form)
+
+
+def test_what_is_there_is_kept(automatic: willis.Train, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    with ThreadPoolExecutor(2) as pool:
+        first = willis.on(pool).sweep(automatic, over=OVER, state="3", shards=4, path=out)
+        Path(first.files[2]).unlink()
+        before = os.stat(first.files[0]).st_mtime_ns
+        told: list[tuple[int, int]] = []
+        again = willis.on(pool).sweep(
+            automatic, over=OVER, state="3", shards=4, path=out, progress=lambda *now: told.append(now)
+        )
+    assert again.files == first.files and told == [(4, 4)]
+    assert os.stat(first.files[0]).st_mtime_ns == before
+
+
+def test_a_wrong_request_is_told(automatic: willis.Train, tmp_path: Path) -> None:
+    with ThreadPoolExecutor(1) as pool, pytest.raises(willis.TrainError, match="no state `33`"):
+        willis.on(pool).sweep(automatic, over=OVER, state="33", shards=2, path=tmp_path / "out")
+    with ThreadPoolExecutor(1) as pool, pytest.raises(TypeError, match="no `speed`"):
+        willis.on(pool).sweep(automatic, over=OVER, speed=3, shards=2, path=tmp_path / "out")
+    with pytest.raises(TypeError, match="no engine"):
+        willis.on(3)
+
+
+def test_a_lost_pool_leaves_names(automatic: willis.Train, tmp_path: Path) -> None:
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        pool.submit(os.getpid).result()
+        pool.submit(os.kill, os.getpid(), 0).result()
+        process = next(iter(pool._processes.values()))
+        os.kill(process.pid, signal.SIGKILL)
+        parts = willis.on(pool, tries=2).sweep(automatic, over=OVER, state="3", shards=2, path=tmp_path / "out")
+    assert set(parts.unfinished) | {k + 1 for k in range(len(parts.files))} == {1, 2}
+    assert not list((tmp_path / "out").glob("*.part"))
+
+
+def test_dask_survives_a_killed_worker(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    train = willis.read(EXAMPLES / "zf-8hp70.toml")
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster, distributed.Client(cluster) as client:
+        client.wait_for_workers(2)
+        killed: list[int] = []
+
+        def kill(done: int, of: int) -> None:
+            if not killed:
+                pids = client.run(os.getpid)
+                killed.append(next(iter(pids.values())))
+                os.kill(killed[0], signal.SIGKILL)
+
+        parts = willis.on(client).sweep(train, over=OVER, state="3", shards=8, path=tmp_path / "out", progress=kill)
+    assert killed and parts.is_whole
+    assert [Path(f).read_bytes() for f in parts.files] == parts_of_one_machine(train, 8, "parquet")
+
+
+def test_ray_makes_the_bytes_of_one(automatic: willis.Train, tmp_path: Path) -> None:
+    ray = pytest.importorskip("ray")
+    ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+    try:
+        parts = willis.on(ray).sweep(automatic, over=OVER, state="3", shards=3, path=tmp_path / "out")
+    finally:
+        ray.shutdown()
+    assert [Path(f).read_bytes() for f in parts.files] == parts_of_one_machine(automatic, 3, "parquet")
+
+
+def test_many_trains(automatic: willis.Train) -> None:
+    trains = [automatic.with_(**{"P1.sun.teeth": z}) for z in (44, 46, 48)]
+    with ThreadPoolExecutor(2) as pool:
+        found = list(willis.on(pool).ask("analyze", trains, state="3"))
+    assert found == [t.analyze(state="3") for t in trains]
