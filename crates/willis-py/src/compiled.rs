@@ -37,7 +37,8 @@ const BLOCK: usize = 1 << 15;
 
 impl Compiled {
     pub fn new(py: Python<'_>, train: &Train, duty: Duty) -> PyResult<Self> {
-        let mut own = compiled::Duty::new(duty.speeds.iter().map(String::as_str), duty.torques.iter().map(String::as_str));
+        let mut own =
+            compiled::Duty::new(duty.speeds.iter().map(String::as_str), duty.torques.iter().map(String::as_str));
         if let Some(state) = &duty.state {
             own = own.state(state);
         }
@@ -90,8 +91,7 @@ impl Compiled {
         threads: usize,
     ) -> PyResult<(Vec<Bound<'py, PyArray1<f64>>>, usize)> {
         let slices = self.slices(&inputs, points)?;
-        let arrays: Vec<_> =
-            (0..self.train.outputs()).map(|_| PyArray1::<f64>::zeros(py, points, false)).collect();
+        let arrays: Vec<_> = (0..self.train.outputs()).map(|_| PyArray1::<f64>::zeros(py, points, false)).collect();
         let mut writable: Vec<_> = arrays.iter().map(|a| a.readwrite()).collect();
         let mut out: Vec<&mut [f64]> =
             writable.iter_mut().map(|w| w.as_slice_mut().map_err(PyErr::from)).collect::<PyResult<_>>()?;
@@ -113,7 +113,11 @@ impl Compiled {
                     let (slices, constant) = (&slices, &constant);
                     let job = move || self.part(slices, constant, at, if whole { len.max(1) } else { BLOCK }, own);
                     if at + len >= points {
-                        return job() + parts.into_iter().map(|p: std::thread::ScopedJoinHandle<'_, usize>| p.join().unwrap_or(0)).sum::<usize>();
+                        return job()
+                            + parts
+                                .into_iter()
+                                .map(|p: std::thread::ScopedJoinHandle<'_, usize>| p.join().unwrap_or(0))
+                                .sum::<usize>();
                     }
                     parts.push(scope.spawn(job));
                     at += len;

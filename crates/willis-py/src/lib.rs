@@ -9,14 +9,11 @@ mod refused;
 mod table;
 mod train;
 
-
 #[pyo3::pymodule(gil_used = false)]
 mod _willis {
     use std::ffi::OsString;
 
     use pyo3::prelude::{Python, pyfunction};
-
-    use pyo3::prelude::*;
 
     #[pymodule_export]
     use crate::answer::{Answer, ask, questions};

@@ -155,7 +155,9 @@ impl Train {
         let of = std::slice::from_ref(&self.given);
         let model = changed.map_err(|wrong| refused(py, &Refusal::Wrong(wrong, 0), of))?;
         let mut changes = self.given.changes.clone();
-        changes.extend(values.iter().map(|(path, value)| format!("--set {}", willis_ask::quoted(&format!("{path}={value}")))));
+        changes.extend(
+            values.iter().map(|(path, value)| format!("--set {}", willis_ask::quoted(&format!("{path}={value}")))),
+        );
         Ok(Self { given: Given { name: self.given.name.clone(), model, changes }, tolerance: self.tolerance })
     }
 

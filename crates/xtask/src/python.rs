@@ -59,7 +59,16 @@ fn test(context: &Context, venv: &Path, wheels: &Path) -> Result<(), String> {
         ("python", &[&script("generate.py"), "--check"]),
         ("python", &["-m", "pytest", "--quiet", "-p", "no:cacheprovider", &script("tests")]),
         ("python", &["-m", "doctest", &script("python/willis/_quantity.py")]),
-        ("mypy", &["--strict", "--config-file", &script("pyproject.toml"), &script("python/willis"), &script("tests/typed.py")]),
+        (
+            "mypy",
+            &[
+                "--strict",
+                "--config-file",
+                &script("pyproject.toml"),
+                &script("python/willis"),
+                &script("tests/typed.py"),
+            ],
+        ),
     ];
     for (program, words) in steps {
         let mut command = of(context, venv, program);
