@@ -45,7 +45,7 @@ pub use lever::{
 pub use losses::draw::draw as draw_losses;
 pub use losses::{LossChart, LossSeries, loss_chart};
 pub use map::draw::draw as draw_map;
-pub use map::{EfficiencyMap, MapMark, MapPoint, MapVerdict, efficiency_map};
+pub use map::{EfficiencyMap, MapBorder, MapJoint, MapMark, MapPoint, MapVerdict, efficiency_map};
 pub use modes::draw as draw_modes;
 pub use parts::axes::ChartAxis;
 #[cfg(feature = "png")]

@@ -1,6 +1,7 @@
 //! What a mark of a picture stands for, so that programs find it: `data-*` attributes and an id that stays while numbers change.
 
 use svg::Node;
+use svg::node::element::Element;
 
 /// What a mark stands for, by its name in the train.
 #[derive(Clone, Copy)]
@@ -29,9 +30,13 @@ impl<'n> Of<'n> {
     }
 }
 
-/// A mark with what it stands for. Its id is made of the same names, behind a word that tells it from other marks of them.
+/// A mark with what it stands for. Its id is made of the same names, behind a word that tells it from other marks of them. A
+/// pointer that rests on it shows the names in full.
 pub fn of<T: Node>(mut mark: T, word: &str, all: &[Of<'_>]) -> T {
     let mut id = word.to_owned();
+    let mut title = Element::new("title");
+    title.append(svg::node::Text::new(all.iter().map(|one| one.parts().1).collect::<Vec<_>>().join(", ")));
+    mark.append(title);
     for one in all {
         let (kind, name) = one.parts();
         mark.assign(format!("data-{kind}"), name);

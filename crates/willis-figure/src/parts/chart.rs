@@ -37,6 +37,11 @@ impl Scale {
         Self { low, high, ..own }.rounded()
     }
 
+    /// Numbers at even steps, about so many; the scale may run downwards.
+    fn ticks(&self, about: usize) -> Vec<f64> {
+        ticks(self.low.min(self.high), self.low.max(self.high), about)
+    }
+
     /// To the next full tick at both ends.
     pub fn rounded(self) -> Self {
         let all = ticks(self.low, self.high, 5);
@@ -103,11 +108,11 @@ impl Chart {
     }
 
     fn ticks_x(&self) -> Vec<f64> {
-        ticks(self.x.low, self.x.high, ((self.right - self.left) / 80.0).max(3.0) as usize)
+        self.x.ticks(((self.right - self.left) / 80.0).max(3.0) as usize)
     }
 
     fn ticks_y(&self) -> Vec<f64> {
-        ticks(self.y.low, self.y.high, ((self.bottom - self.top) / 45.0).max(2.0) as usize)
+        self.y.ticks(((self.bottom - self.top) / 45.0).max(2.0) as usize)
     }
 
     /// A line through points; broken where one is missing, none where all are.
