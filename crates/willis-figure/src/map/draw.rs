@@ -7,7 +7,7 @@ use std::fmt::Write;
 use svg::node::element::{ClipPath, Definitions, Group, Path};
 use willis::study::PointVerdict;
 
-use crate::parts::alive::{Of, of};
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, number, page, rectangle,
@@ -451,26 +451,25 @@ fn legend(map: &EfficiencyMap, chart: &Chart, bands: &[[f64; 2]], power: bool) -
     }
     y += 6.0;
     for (verdict, _) in verdicts(map) {
-        g = g
+        let patch = guide(Group::new())
             .add(rectangle(LEGEND, y, 26.0, 15.0, PAPER).set("stroke", LINE).set("stroke-width", 0.6))
-            .add(strokes([LEGEND, y, LEGEND + 26.0, y + 15.0], verdict))
+            .add(strokes([LEGEND, y, LEGEND + 26.0, y + 15.0], verdict));
+        g = g
+            .add(patch)
             .add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, says(verdict)));
         y += 20.0;
     }
     if power {
         let dash = line((LEGEND, y + 8.0), (LEGEND + 26.0, y + 8.0), FAINT, 1.0).set("stroke-dasharray", "5 4");
-        g = g.add(dash).add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, "power into the train"));
+        g = g.add(guide(dash)).add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, "power into the train"));
         y += 22.0;
     }
     for (k, m) in map.marks.iter().enumerate().take(9) {
         let name = fit(&m.operation, WIDTH - LEGEND - 60.0, 11.0);
-        g = g.add(badge(LEGEND + 13.0, y + 9.0, &(k + 1).to_string())).add(text(
-            LEGEND + 34.0,
-            y + 13.0,
-            11.0,
-            Anchor::Start,
-            &name,
-        ));
+        let own = Group::new()
+            .add(badge(LEGEND + 13.0, y + 9.0, &(k + 1).to_string()))
+            .add(text(LEGEND + 34.0, y + 13.0, 11.0, Anchor::Start, &name));
+        g = g.add(of(own, "key", &[Of::State(&m.operation)]));
         y += 22.0;
     }
     g

@@ -55,6 +55,22 @@ pub fn of<T: Node>(mut mark: T, word: &str, all: &[Of<'_>]) -> T {
     mark
 }
 
+/// A mark that stands for nothing of the train: frame, grid, or key to the signs.
+pub fn guide<T: Node>(mut mark: T) -> T {
+    mark.assign("class", "guide");
+    mark
+}
+
+/// The mark of a gear contact, bearing or other part that is named `what` and loses or passes power.
+pub fn part(kind: willis::hypergraph::NodeKind, name: &str) -> Of<'_> {
+    use willis::hypergraph::NodeKind as Kind;
+    match kind {
+        Kind::Teeth => Of::Mesh(name),
+        Kind::Member | Kind::Gear | Kind::Rotor | Kind::Input | Kind::Output => Of::Member(name),
+        _ => Of::Element(name),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use svg::node::element::Group;

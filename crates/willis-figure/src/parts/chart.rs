@@ -2,6 +2,7 @@
 
 use svg::node::element::{Group, Path};
 
+use crate::parts::alive::guide;
 use crate::parts::style::{Anchor, FAINT, LINE, fit, line, number, rectangle, text, ticks, wide};
 
 /// Grid lines.
@@ -72,7 +73,7 @@ impl Chart {
 
     /// The grid, to be drawn below what the chart shows.
     pub fn grid(&self) -> Group {
-        let mut g = Group::new();
+        let mut g = guide(Group::new());
         for t in self.ticks_x() {
             g = g.add(line((self.x(t), self.top), (self.x(t), self.bottom), GRID, 1.0));
         }
@@ -84,7 +85,7 @@ impl Chart {
 
     /// Frame, numbers and titles, to be drawn above it.
     pub fn frame(&self) -> Group {
-        let mut g = Group::new().add(
+        let mut g = guide(Group::new()).add(
             rectangle(self.left, self.top, self.right - self.left, self.bottom - self.top, "none")
                 .set("stroke", LINE)
                 .set("stroke-width", 1),

@@ -8,6 +8,7 @@ use svg::Node as _;
 use svg::node::element::{Element, Group, Path, Polygon};
 use willis::hypergraph::NodeKind;
 
+use crate::parts::alive::{Of, guide, of, part};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, PAPER, colour, fit, halo, line, lines, number, page, rectangle, text, watts, wide,
 };
@@ -92,10 +93,10 @@ pub fn draw(data: &Sankey) -> String {
         told.push(format!("{}. {}", panel.title, sentences.join(" ")));
         if let Some(d) = drawing {
             y += 20.0;
-            body = body.add(scale_mark(y, d.scale));
+            body = body.add(guide(scale_mark(y, d.scale)));
             y += 10.0;
             let at = format!("translate({} {})", number((width - d.width) / 2.0), number(y));
-            body = body.add(picture(d).set("transform", at));
+            body = body.add(picture(d, &panel.title).set("transform", at));
             y += d.height;
             legend.see(d.flow);
         }
@@ -152,16 +153,21 @@ fn scale_mark(y: f64, scale: f64) -> Group {
         .add(text(x + long + 7.0, y, SMALL, Anchor::Start, &watts(power)).set("fill", FAINT))
 }
 
-fn picture(d: &Layout<'_>) -> Group {
+fn picture(d: &Layout<'_>, panel: &str) -> Group {
     let mut g = Group::new();
     // What is led back lies above what it crosses; its paper rim shows that nothing mixes there.
     for back in [false, true] {
         for (k, l) in d.flow.links.iter().enumerate().filter(|(_, l)| l.back == back) {
-            g = g.add(link(d, k, l));
+            g = g.add(link(d, k, l, panel));
         }
     }
     for (k, n) in d.flow.nodes.iter().enumerate() {
-        g = g.add(losses(d, k, n)).add(node(d, k, n));
+        let own = [part(n.kind, &n.name), Of::State(panel)];
+        if !n.losses.is_empty() {
+            let [name, panel] = own;
+            g = g.add(of(losses(d, k, n), &format!("loss{:?}", n.kind), &[name, Of::Quantity("loss_w"), panel]));
+        }
+        g = g.add(of(node(d, k, n), &format!("node{:?}", n.kind), &own));
     }
     for label in &d.labels {
         let power = &d.flow.links[label.link];
@@ -179,15 +185,17 @@ fn filled(path: String, fill: &str) -> Path {
 }
 
 /// A ribbon, its circulating part hatched.
-fn link(d: &Layout<'_>, k: usize, l: &SankeyLink) -> Group {
-    let of = |k: usize| &d.flow.nodes[k].name;
+fn link(d: &Layout<'_>, k: usize, l: &SankeyLink, panel: &str) -> Group {
+    let name = |k: usize| &d.flow.nodes[k].name;
     let mut about = Element::new("title");
-    let mut told = format!("{} to {}: {}", of(l.from), of(l.to), watts(l.power_w));
+    let mut told = format!("{} to {}: {}", name(l.from), name(l.to), watts(l.power_w));
     if l.circulating_w > 0.0 {
         told += &format!(", {} of it in a circle", watts(l.circulating_w));
     }
     about.append(svg::node::Text::new(told));
-    let mut g = Group::new().add(about);
+    let [from, to] = [l.from, l.to].map(|k| &d.flow.nodes[k]);
+    let link = format!("power_w {:?} {} to {:?} {} {}", from.kind, from.name, to.kind, to.name, l.via.join(" "));
+    let mut g = of(Group::new().add(about), "ribbon", &[Of::Quantity(link.trim_end()), Of::State(panel)]);
     let whole = d.ribbon(k, [0.0, l.power_w]);
     if l.back {
         g = g.add(
@@ -416,7 +424,7 @@ impl Legend {
             entries.push((Some(bar(k, 12.0, -8.0, 16.0)), words));
         }
         entries.push((None, "%: of the external power that enters"));
-        let mut g = Group::new();
+        let mut g = guide(Group::new());
         let (mut x, mut y) = (MARGIN, top + 14.0);
         for (mark, words) in entries {
             let indent = if mark.is_some() { 32.0 } else { 0.0 };

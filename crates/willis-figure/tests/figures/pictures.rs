@@ -89,6 +89,14 @@ fn faults(svg: &str, faces: &Arc<fontdb::Database>) -> Vec<String> {
             continue;
         }
         marks += 1;
+        // Every mark says what it stands for, or that it only guides the eye; the first is the paper.
+        let says = |a: roxmltree::Node<'_, '_>| {
+            let alive = ["member", "mesh", "element", "state", "quantity"].iter().any(|d| a.has_attribute(&*format!("data-{d}")));
+            alive && a.has_attribute("id") || a.attribute("class") == Some("guide")
+        };
+        if marks > 1 && !n.ancestors().any(says) {
+            wrong.push(format!("a mark of nothing: {}", &svg[n.range()].chars().take(120).collect::<String>()));
+        }
         let line = n.has_tag_name("line");
         let stroke = n.ancestors().find_map(|a| a.attribute("stroke")).filter(|c| c.starts_with('#'));
         // Fills may have a rim of their own colour, which closes the seam to the next.
