@@ -17,6 +17,7 @@ pub(crate) const KIND: Kind<Front> = Kind {
     title: "Teeth in mesh",
     takes: &[Ask::Part, Ask::Nominal, Ask::Animated],
     effort: kind::of_file,
+    applies: None,
     make: |s, r| front(s.train(), r.part.as_deref(), r.nominal),
     draw: |data, how| draw::draw(data, how.animated),
 };

@@ -14,6 +14,8 @@ pub(crate) struct Kind<T> {
     pub takes: &'static [Ask],
     /// How much work it is to make the data.
     pub effort: fn(&Model, &FigureRequest) -> Effort,
+    /// Whether the data can be made, where that is known without making them.
+    pub applies: Option<fn(&Model) -> bool>,
     /// Makes the data.
     pub make: fn(&Model, &FigureRequest) -> Result<T, Diagnostics>,
     /// Draws them as SVG in its light form.

@@ -34,6 +34,7 @@ pub(crate) const KIND: Kind<Lever> = Kind {
     title: "Levers",
     takes: &[Ask::State, Ask::Operation],
     effort: kind::of_operations,
+    applies: None,
     make: |s, r| lever(s.train(), &LeverRequest::of(r)),
     draw: |data, _| draw::draw(data),
 };

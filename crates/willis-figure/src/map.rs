@@ -19,6 +19,7 @@ pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
     title: "Efficiency map",
     takes: &[Ask::State, Ask::Operation, Ask::Over],
     effort,
+    applies: Some(applies),
     make: |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
     draw: |data, _| draw::draw(data),
 };
@@ -124,6 +125,13 @@ pub enum MapVerdict {
     /// The verdict on the operating point there.
     #[serde(untagged)]
     Point(PointVerdict),
+}
+
+/// There is a map where there is an operating point and quantities to vary.
+fn applies(model: &Model) -> bool {
+    let first = model.train().states().first().filter(|_| model.train().operations().is_empty());
+    let Ok(question) = Question::new(model, None, first.map(|s| s.name.as_str()), Hold::AsGiven) else { return false };
+    axes::parse(&[axes::usual_speed(&question, 2), axes::usual_load(&question, 2)], model).is_ok()
 }
 
 /// The axes as asked, else the usual ones: of each, how many values it has.

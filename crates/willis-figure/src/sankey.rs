@@ -24,6 +24,7 @@ pub(crate) const KIND: Kind<Sankey> = Kind {
     title: "Power flow to scale",
     takes: &[Ask::State, Ask::Operation],
     effort: kind::of_operations,
+    applies: None,
     make: |s, r| Ok(sankey(&powers(s, r)?)),
     draw: |data, _| draw::draw(data),
 };

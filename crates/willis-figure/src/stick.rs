@@ -27,6 +27,7 @@ pub(crate) const KIND: Kind<Stick> = Kind {
     title: "Kinematic schematic",
     takes: &[Ask::State],
     effort: kind::of_file,
+    applies: None,
     make: |s, r| stick(s.train(), r.state.as_deref()),
     draw: |data, _| draw::draw(data),
 };

@@ -17,6 +17,7 @@ pub(crate) const KIND: Kind<TimePlot> = Kind {
     title: "Motion over time",
     takes: &[Ask::Part],
     effort: kind::of_file,
+    applies: Some(|model| !model.train().scenarios().is_empty()),
     make: |s, r| scenario(s.train(), r.part.as_deref()),
     draw: |data, _| draw::draw(data),
 };

@@ -14,6 +14,7 @@ pub(crate) const KIND: Kind<ContactPath> = Kind {
     title: "Contact along its path",
     takes: &[Ask::Operation, Ask::Part],
     effort: kind::of_operations,
+    applies: None,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
     draw: |data, _| draw(data),
 };

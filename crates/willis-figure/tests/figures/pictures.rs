@@ -192,16 +192,20 @@ fn every_kind_of_every_example_is_fit_to_print() {
     let (mut wrong, mut drawn) = (String::new(), BTreeMap::new());
     let own = examples().into_iter().map(|(name, _)| (model(&name), name));
     for (model, name) in own.chain(hard().into_iter().map(|(name, model)| (model, name.to_owned()))) {
+        let applicable = FigureKind::applicable(&model);
         for kind in FigureKind::ALL {
             let request = FigureRequest { samples: 128, ..Default::default() };
+            let quick = kind.effort(&model, &request).seconds < 1.0;
             let figure = match kind.make(&model, &request) {
                 Ok(figure) => figure,
                 Err(why) => {
-                    // A kind that does not apply says why.
+                    // A kind that does not apply says why, and is not offered.
+                    assert!(!applicable.contains(kind), "{name}: {} is offered: {why}", kind.name());
                     assert!(why.iter().all(|d| d.message.len() > 15), "{}: {}", name, kind.name());
                     continue;
                 }
             };
+            assert!(!quick || applicable.contains(kind), "{name}: {} is not offered", kind.name());
             *drawn.entry(kind.name()).or_insert(0) += 1;
             let text = serde_json::to_string(&figure).expect("plain data");
             let back: Figure = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{name} {}: {e}", kind.name()));
