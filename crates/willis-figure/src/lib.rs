@@ -40,7 +40,7 @@ pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWhee
 pub use kind::{Ask, Drawing, FigureRequest};
 pub use lever::draw::draw as draw_lever;
 pub use lever::{
-    Lever, LeverBar, LeverCase, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
+    Lever, LeverBar, LeverCase, LeverLayout, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
 };
 pub use losses::draw::draw as draw_losses;
 pub use losses::{LossChart, LossSeries, loss_chart};
@@ -64,7 +64,7 @@ pub use split::draw::draw as draw_split;
 pub use split::{MechanicalPoint, Split, SplitGear, SplitMode, SplitPoint, split};
 pub use stick::draw::draw as draw_stick;
 pub use stick::{
-    GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickMember, StickMesh,
+    GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickLayout, StickMember, StickMesh,
     StickPiece, StickTerminal, Way, stick,
 };
 pub use table::draw::draw as draw_table;
