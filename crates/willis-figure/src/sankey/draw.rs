@@ -74,7 +74,7 @@ pub fn draw(data: &Sankey) -> String {
     let mut body = Group::new()
         .add(text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&data.train, room / BOLD, 20.0)).set("font-weight", "bold"))
         .add(
-            text(MARGIN, 60.0, 13.0, Anchor::Start, "Power from inputs to outputs, widths to scale in each picture")
+            text(MARGIN, 60.0, 13.0, Anchor::Start, "Power from inputs to outputs, widths to scale in each picture; losses have a scale of their own")
                 .set("fill", FAINT),
         );
     let mut y = 68.0;
@@ -93,7 +93,7 @@ pub fn draw(data: &Sankey) -> String {
         told.push(format!("{}. {}", panel.title, sentences.join(" ")));
         if let Some(d) = drawing {
             y += 20.0;
-            body = body.add(guide(scale_mark(y, d.scale)));
+            body = body.add(guide(scale_marks(y, d)));
             y += 10.0;
             let at = format!("translate({} {})", number((width - d.width) / 2.0), number(y));
             body = body.add(picture(d, &panel.title).set("transform", at));
@@ -138,19 +138,31 @@ fn efficiency(x: f64) -> String {
     if (99.995..100.0).contains(&p) || (0.0 < p && p < 0.1) { format!("{p:.4} %") } else { format!("{p:.2} %") }
 }
 
-/// How long a power of a round number is.
-fn scale_mark(y: f64, scale: f64) -> Group {
+/// How wide powers of round numbers are, and losses, if these have a scale of their own.
+fn scale_marks(y: f64, d: &Layout<'_>) -> Group {
+    let (power, end) = scale_mark(MARGIN, y, d.scale, "scale", Carries::Power);
+    if d.widened == 1.0 || d.flow.nodes.iter().all(|n| n.losses.is_empty()) {
+        return power;
+    }
+    let name = format!("losses {} times wider", number(d.widened));
+    power.add(scale_mark(end + 26.0, y, d.scale * d.widened, &name, Carries::Loss).0)
+}
+
+/// How wide a power of a round number is; and where the mark ends.
+fn scale_mark(x: f64, y: f64, scale: f64, name: &str, carries: Carries) -> (Group, f64) {
     let raw = 30.0 / scale;
     let size = 10f64.powf(raw.log10().floor());
     let power = [1.0, 2.0, 5.0].into_iter().rev().map(|s| s * size).find(|p| *p <= raw).unwrap_or(size);
     let long = power * scale;
-    let x = MARGIN + 36.0;
-    Group::new()
-        .add(text(MARGIN, y, SMALL, Anchor::Start, "scale").set("fill", FAINT))
-        .add(rectangle(x, y - 8.0, long, 8.0, &Carries::Power.colour()))
-        .add(line((x, y - 9.5), (x, y + 1.5), INK, 1.2))
-        .add(line((x + long, y - 9.5), (x + long, y + 1.5), INK, 1.2))
-        .add(text(x + long + 7.0, y, SMALL, Anchor::Start, &watts(power)).set("fill", FAINT))
+    let from = x + wide(name, SMALL) + 8.0;
+    let end = from + long + 7.0;
+    let mark = Group::new()
+        .add(text(x, y, SMALL, Anchor::Start, name).set("fill", FAINT))
+        .add(rectangle(from, y - 8.0, long, 8.0, &carries.colour()))
+        .add(line((from, y - 9.5), (from, y + 1.5), INK, 1.2))
+        .add(line((from + long, y - 9.5), (from + long, y + 1.5), INK, 1.2))
+        .add(text(end, y, SMALL, Anchor::Start, &watts(power)).set("fill", FAINT));
+    (mark, end + wide(&watts(power), SMALL))
 }
 
 fn picture(d: &Layout<'_>, panel: &str) -> Group {
@@ -262,38 +274,35 @@ fn losses(d: &Layout<'_>, k: usize, n: &SankeyNode) -> Group {
     let fill = Carries::Loss.colour();
     let x = d.middle(n.layer) + BAR / 2.0;
     let [top, bottom] = [d.top[k] + first.offset_w * d.scale, d.top[k] + n.power_w * d.scale];
-    let (width, r) = (bottom - top, layout::TURN);
+    let (width, r) = ((bottom - top) * d.widened, layout::TURN);
     let (inner, low) = (x + r, bottom + r);
     let p = |x: f64, y: f64| format!("{} {}", number(x), number(y));
     if width < 1.0 {
         let middle = (top + bottom) / 2.0;
-        let path =
-            format!("M{} A{1} {1} 0 0 1 {2} V{3}", p(x, middle), number(r), p(inner, middle + r), number(low + 5.0));
+        let path = format!("M{} Q{} {} V{}", p(x, middle), p(inner, middle), p(inner, low), number(low + 5.0));
         g = g.add(Path::new().set("d", path).set("fill", "none").set("stroke", fill.clone()).set("stroke-width", 1));
     } else {
+        // From its true width at the node to that of its own scale.
         let path = format!(
-            "M{} A{6} {6} 0 0 1 {} V{} H{} V{} A{7} {7} 0 0 0 {} Z",
+            "M{} Q{} {} V{} H{} V{} Q{} {} Z",
             p(x, top),
+            p(inner + width, top),
             p(inner + width, low),
             number(low + 5.0),
             number(inner),
             number(low),
-            p(x, bottom),
-            number(r + width),
-            number(r)
+            p(inner, bottom),
+            p(x, bottom)
         );
         g = g.add(filled(path, &fill));
         // Kinds of loss side by side.
         for l in &n.losses[1..] {
             let to = (n.power_w - l.offset_w) * d.scale;
-            if to > 1.0 && width - to > 1.0 {
-                let path = format!(
-                    "M{} A{2} {2} 0 0 1 {1} V{3}",
-                    p(x, bottom - to),
-                    p(inner + to, low),
-                    number(r + to),
-                    number(low + 5.0)
-                );
+            let wide = to * d.widened;
+            if wide > 1.0 && width - wide > 1.0 {
+                let at = inner + wide;
+                let path =
+                    format!("M{} Q{} {} V{}", p(x, bottom - to), p(at, bottom - to), p(at, low), number(low + 5.0));
                 g = g.add(Path::new().set("d", path).set("fill", "none").set("stroke", PAPER).set("stroke-width", 0.8));
             }
         }
