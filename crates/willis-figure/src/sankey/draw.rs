@@ -27,15 +27,27 @@ enum Carries {
     Input,
     Power,
     Circle,
+    /// In a circle only in the frame of the housing.
+    Framed,
     Loss,
 }
 
 impl Carries {
+    /// Dashes and hatching over what goes round.
+    fn rounds(self) -> Option<String> {
+        match self {
+            Self::Circle => Some(colour(Some(1), 1.0)),
+            Self::Framed => Some(colour(None, 0.7)),
+            _ => None,
+        }
+    }
+
     fn colour(self) -> String {
         match self {
             Self::Input => colour(Some(2), 0.75),
             Self::Power => colour(Some(0), 0.42),
             Self::Circle => colour(Some(4), 0.55),
+            Self::Framed => colour(None, 0.13),
             Self::Loss => colour(Some(6), 0.8),
         }
     }
@@ -224,7 +236,8 @@ fn link(d: &Layout<'_>, k: usize, l: &SankeyLink, panel: &str) -> Group {
         g = g.add(band(&d.ribbon(k, [round, l.power_w]), Carries::Power));
     }
     if round > 1e-9 * l.power_w {
-        g = g.add(band(&d.ribbon(k, [0.0, round]), Carries::Circle));
+        let carries = if l.framed { Carries::Framed } else { Carries::Circle };
+        g = g.add(band(&d.ribbon(k, [0.0, round]), carries));
     }
     if l.back {
         for (x, y) in whole.on_the_way_back() {
@@ -240,26 +253,19 @@ fn band(ribbon: &Ribbon, carries: Carries) -> Group {
     // One too narrow to be seen is a hairline.
     if ribbon.width() < 1.0 {
         let path = Path::new().set("d", ribbon.spine()).set("fill", "none").set("stroke-width", 1);
-        return Group::new().add(match carries {
-            Carries::Circle => path.set("stroke", colour(Some(1), 1.0)).set("stroke-dasharray", "6 4"),
-            _ => path.set("stroke", colour(Some(0), 0.8)),
+        return Group::new().add(match carries.rounds() {
+            Some(ink) => path.set("stroke", ink).set("stroke-dasharray", "6 4"),
+            None => path.set("stroke", colour(Some(0), 0.8)),
         });
     }
-    let mut g = Group::new().add(filled(ribbon.outline(), &fill));
-    if carries == Carries::Circle && ribbon.width() < 5.0 {
+    let g = Group::new().add(filled(ribbon.outline(), &fill));
+    let Some(ink) = carries.rounds() else { return g };
+    let path = Path::new().set("fill", "none").set("stroke", ink);
+    g.add(match ribbon.width() < 5.0 {
         // Too narrow for hatching.
-        let path = Path::new().set("d", ribbon.spine()).set("fill", "none").set("stroke", colour(Some(1), 1.0));
-        g = g.add(path.set("stroke-width", 1.2).set("stroke-dasharray", "6 4"));
-    } else if carries == Carries::Circle {
-        g = g.add(
-            Path::new()
-                .set("d", ribbon.hatching())
-                .set("fill", "none")
-                .set("stroke", colour(Some(1), 1.0))
-                .set("stroke-width", 1),
-        );
-    }
-    g
+        true => path.set("d", ribbon.spine()).set("stroke-width", 1.2).set("stroke-dasharray", "6 4"),
+        false => path.set("d", ribbon.hatching()).set("stroke-width", if carries == Carries::Framed { 0.6 } else { 1.0 }),
+    })
 }
 
 fn triangle(corners: [(f64, f64); 3], fill: &str) -> Polygon {
@@ -392,13 +398,15 @@ fn node(d: &Layout<'_>, k: usize, n: &SankeyNode) -> Group {
 struct Legend {
     kinds: Vec<NodeKind>,
     circle: bool,
+    framed: bool,
     loss: bool,
 }
 
 impl Legend {
     fn see(&mut self, f: &SankeyFlow) {
         self.kinds.extend(f.nodes.iter().map(|n| n.kind));
-        self.circle |= f.links.iter().any(|l| l.circulating_w > 0.0);
+        self.circle |= f.links.iter().any(|l| l.circulating_w > 0.0 && !l.framed);
+        self.framed |= f.links.iter().any(|l| l.framed);
         self.loss |= f.nodes.iter().any(|n| !n.losses.is_empty());
     }
 
@@ -417,6 +425,9 @@ impl Legend {
         ];
         if self.circle {
             entries.push((Some(sample(Carries::Circle)), "runs in a circle"));
+        }
+        if self.framed {
+            entries.push((Some(sample(Carries::Framed)), "runs in a circle only as seen from the housing"));
         }
         if self.loss {
             let arrow = triangle([(5.0, -4.0), (19.0, -4.0), (12.0, 6.0)], &Carries::Loss.colour());
