@@ -1,6 +1,7 @@
 //! A planetary set or a pair of gears seen along its axis: true teeth, in mesh.
 
 pub mod draw;
+pub mod dxf;
 mod layout;
 mod nominal;
 mod profile;

@@ -36,6 +36,7 @@ pub use contact_path::{ContactPath, MeshPath, PathPoint, contact_path};
 pub use flow::dot::flow_dot;
 pub use flow::draw::draw as draw_flow;
 pub use front::draw::draw as draw_front;
+pub use front::dxf::front_dxf;
 pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWheel, front};
 pub use kind::{Ask, Drawing, FigureRequest};
 pub use lever::draw::draw as draw_lever;

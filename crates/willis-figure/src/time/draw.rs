@@ -69,7 +69,12 @@ pub fn draw(plot: &TimePlot) -> String {
 fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
     let words = plot.outcome.words();
     let [start, end] = plot.run;
-    let one = format!("From {} to {}; the run {words}", time.moment(start), time.moment(end));
+    let whole = TimeAxis::new(plot.run);
+    let mut one = format!("From {} to {}; the run {words}", whole.moment(start), whole.moment(end));
+    if plot.axis[0] > start || plot.axis[1] < end {
+        one += &format!("; shown from {} to {}", time.moment(plot.axis[0]), time.moment(plot.axis[1]));
+    }
+
     let changes = match plot.event_count {
         0 => "no change of mode".to_owned(),
         1 => "one change of mode: the thin upright line".to_owned(),
@@ -82,6 +87,15 @@ fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
     }
     if plot.modes_left_out > 0 {
         two.push(format!("{} rows of modes left out", plot.modes_left_out));
+    }
+    let shown = (time.from.max(start), time.to.min(end));
+    let close = 1e-6 * (shown.1 - shown.0);
+    let whole = |pieces: &[Vec<[f64; 2]>]| match pieces {
+        [only] => only.first().is_some_and(|p| p[0] <= shown.0 + close) && only.last().is_some_and(|p| p[0] >= shown.1 - close),
+        _ => false,
+    };
+    if plot.panels.iter().flat_map(|p| &p.lines).any(|l| !whole(&l.pieces)) {
+        two.push("where a curve has a gap, rigid parts leave its value open".to_owned());
     }
     let mut two = two.join("; ");
     if let Some(first) = two.get(..1) {
