@@ -102,6 +102,9 @@ pub struct TimePanel {
 pub struct TimeLine {
     /// Whose it is; several names where they agree throughout.
     pub names: Vec<String>,
+    /// Number of the colour of the first, of a speed: the place of the member in the train.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<usize>,
     /// Its pieces between gaps: time, s, and value. First, least, greatest and last value of every
     /// short interval are kept, so that no spike is lost.
     pub pieces: Vec<Vec<[f64; 2]>>,
@@ -193,6 +196,7 @@ pub struct TimePlotBuilder {
     /// Whether the span is a part of the run, and the row before the next.
     part: bool,
     before: Option<(f64, Vec<f64>)>,
+    members: Vec<String>,
     planets: Vec<String>,
     meshes: Vec<String>,
     curves: Vec<(usize, Column, Decimated)>,
@@ -210,6 +214,7 @@ impl TimePlotBuilder {
             span,
             part: false,
             before: None,
+            members: train.members().iter().map(|m| m.name.clone()).collect(),
             planets: train.members().iter().filter(planet).map(|m| m.name.clone()).collect(),
             meshes: train.meshes().iter().map(|m| m.name.clone()).collect(),
             curves: vec![],
@@ -265,7 +270,13 @@ impl TimePlotBuilder {
             if !self.part && reached > start && reached - start < 0.2 * (end - start) { [start, reached] } else { [start, end] };
         let panels = KINDS.iter().filter_map(|(kind, quantity)| {
             let own: Vec<_> = self.curves.iter().filter(|(_, c, _)| c.kind == *kind).collect();
-            panel(quantity, own.first()?.1.unit, own.iter().map(|(_, c, d)| (label(c), d.pieces())))
+            let mut panel = panel(quantity, own.first()?.1.unit, own.iter().map(|(_, c, d)| (label(c), d.pieces())))?;
+            if *kind == ColumnKind::Speed {
+                // The frame is the first member.
+                let place = |name: &String| self.members.iter().position(|m| m == name)?.checked_sub(1);
+                panel.lines.iter_mut().for_each(|l| l.colour = l.names.first().and_then(place));
+            }
+            Some(panel)
         });
         let panels = panels.collect();
         let mut modes: Vec<_> = self
@@ -318,7 +329,7 @@ fn panel(
         }
         match lines.iter_mut().find(|l| agree(&l.pieces, &pieces)) {
             Some(same) => same.names.push(name),
-            None => lines.push(TimeLine { names: vec![name], pieces }),
+            None => lines.push(TimeLine { names: vec![name], colour: None, pieces }),
         }
     }
     let all = lines.len();

@@ -157,7 +157,7 @@ fn panel(view: &Front, plane: &FrontPlane, at: &View, first: bool, animated: boo
         for (body, _) in w.bodies.iter().enumerate() {
             let mut path = Path::new()
                 .set("d", outline(w, body, at))
-                .set("fill", colour(Some(k), 0.24))
+                .set("fill", colour(w.colour, 0.24))
                 .set("fill-rule", "evenodd")
                 .set("stroke", INK)
                 .set("stroke-width", number(weight))
@@ -336,7 +336,7 @@ fn marks(view: &Front, k: usize, at: &View) -> Group {
         let r = w.root_radius_mm * at.scale;
         g = g.add(badge(c.0, c.1, &key));
         if body == 0 && r > 46.0 {
-            let over = |t| halo(t, &colour(Some(k), 0.24), 3.0);
+            let over = |t| halo(t, &colour(w.colour, 0.24), 3.0);
             g = g
                 .add(over(text(c.0, c.1 - 28.0, 12.0, Anchor::Middle, &fit(own(view, &w.name), 1.5 * r, 12.0))))
                 .add(over(text(c.0, c.1 - 14.0, 12.0, Anchor::Middle, &format!("z = {}", w.teeth))));
@@ -392,7 +392,7 @@ fn numbers(view: &Front, x: f64, y: f64, room: f64) -> (Group, f64) {
     for (k, w) in view.wheels.iter().enumerate() {
         y += 22.0;
         let mut row = Group::new()
-            .add(rectangle(x + 12.0, y - 13.0, 22.0, 18.0, &colour(Some(k), 0.24)))
+            .add(rectangle(x + 12.0, y - 13.0, 22.0, 18.0, &colour(w.colour, 0.24)))
             .add(badge(x + 10.0, y - 4.0, &(k + 1).to_string()))
             .add(text(x + 40.0, y, 12.0, Anchor::Start, &fit(own(view, &w.name), name_room - 16.0, 12.0)));
         let turns = w.ratio.replace('-', "−");

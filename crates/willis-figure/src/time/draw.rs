@@ -286,7 +286,7 @@ fn curve(l: &TimeLine, k: usize, time: &TimeAxis, y: &impl Fn(f64) -> f64) -> Gr
                     .set("cx", number(one[0]))
                     .set("cy", number(one[1]))
                     .set("r", 2)
-                    .set("fill", colour(Some(k), 1.0)),
+                    .set("fill", colour(l.colour.or(Some(k)), 1.0)),
             );
             continue;
         }
@@ -294,7 +294,7 @@ fn curve(l: &TimeLine, k: usize, time: &TimeAxis, y: &impl Fn(f64) -> f64) -> Gr
         let mut path = Path::new()
             .set("d", format!("M{}", words.join(" L")))
             .set("fill", "none")
-            .set("stroke", colour(Some(k), 1.0))
+            .set("stroke", colour(l.colour.or(Some(k)), 1.0))
             .set("stroke-width", 1.8)
             .set("stroke-linejoin", "round");
         if dashes(k) != "none" {
@@ -346,7 +346,7 @@ fn names(p: &TimePanel, time: &TimeAxis, y: &impl Fn(f64) -> f64, top: f64, bott
     let mut g = Group::new();
     for ((k, x, end), at) in ends.iter().zip(placed) {
         let l = &p.lines[*k];
-        let own = colour(Some(*k), 1.0);
+        let own = colour(l.colour.or(Some(*k)), 1.0);
         let mut row = Group::new();
         let from = if RIGHT - x > 3.0 { (*x, *end) } else { (RIGHT, *end) };
         // From the end of the curve, level to the margin, then to the name.

@@ -226,6 +226,35 @@ fn every_kind_of_every_example_is_fit_to_print() {
     }
 }
 
+/// A member has one colour, in every kind that gives colours to members: its place in the train.
+#[test]
+fn a_member_has_one_colour_in_all_kinds() {
+    let mut seen = BTreeMap::new();
+    for (name, _) in examples() {
+        let model = model(&name);
+        let train = model.train();
+        for kind in ["stick", "lever", "front", "time"].map(|k| FigureKind::named(k).expect("a kind")) {
+            let Ok(figure) = kind.make(&model, &FigureRequest { nominal: true, ..Default::default() }) else { continue };
+            let given: Vec<(&str, Option<usize>)> = match &figure {
+                Figure::Stick(s) => s.members.iter().map(|m| (&*m.name, Some(m.colour))).collect(),
+                Figure::Lever(l) => l.bars.iter().flat_map(|b| &b.nodes).map(|n| (&*n.member, n.colour)).collect(),
+                Figure::Front(f) => f.wheels.iter().map(|w| (&*w.name, w.colour)).collect(),
+                Figure::Time(t) => {
+                    let speeds = t.panels.iter().filter(|p| p.quantity == "Speed");
+                    speeds.flat_map(|p| &p.lines).map(|l| (&*l.names[0], l.colour)).collect()
+                }
+                _ => vec![],
+            };
+            for (member, colour) in given {
+                let place = train.members().iter().position(|m| m.name == member).and_then(|k| k.checked_sub(1));
+                assert_eq!(colour, place, "{name} {}: {member}", kind.name());
+                *seen.entry(kind.name()).or_insert(0) += 1;
+            }
+        }
+    }
+    assert!(seen.len() == 4 && seen.values().all(|n| *n > 5), "{seen:?}");
+}
+
 /// Names that nobody expects: long, foreign, and full of markup.
 #[test]
 fn any_name_finds_its_place() {
