@@ -65,8 +65,8 @@ pub use split::draw::draw as draw_split;
 pub use split::{MechanicalPoint, Split, SplitGear, SplitMode, SplitPoint, split};
 pub use stick::draw::draw as draw_stick;
 pub use stick::{
-    GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickLayout, StickMember, StickMesh,
-    StickPiece, StickTerminal, Way, stick,
+    GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickLayout, StickMember,
+    StickMesh, StickPiece, StickTerminal, Way, stick,
 };
 pub use table::draw::draw as draw_table;
 pub use time::draw::draw as draw_time;

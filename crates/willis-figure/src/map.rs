@@ -229,8 +229,8 @@ fn several(mut zones: [usize; 4]) -> usize {
 fn joint(mut corners: [usize; 4], mut zone: impl FnMut([f64; 2]) -> usize) -> [f64; 2] {
     let ([mut x, mut y], mut half) = ([0.0, 0.0], 0.5);
     for _ in 0..HALVINGS - 2 {
-        let [low, right, top, left, middle] =
-            [[1.0, 0.0], [2.0, 1.0], [1.0, 2.0], [0.0, 1.0], [1.0, 1.0]].map(|[a, b]| zone([x + a * half, y + b * half]));
+        let [low, right, top, left, middle] = [[1.0, 0.0], [2.0, 1.0], [1.0, 2.0], [0.0, 1.0], [1.0, 1.0]]
+            .map(|[a, b]| zone([x + a * half, y + b * half]));
         let [a, b, c, d] = corners;
         let quarters = [
             ([0.0, 0.0], [a, low, middle, left]),

@@ -266,8 +266,11 @@ impl TimePlotBuilder {
     pub fn finish(self, report: &RunReport) -> TimePlot {
         let [start, end] = self.span;
         let reached = report.end_s;
-        let axis =
-            if !self.part && reached > start && reached - start < 0.2 * (end - start) { [start, reached] } else { [start, end] };
+        let axis = if !self.part && reached > start && reached - start < 0.2 * (end - start) {
+            [start, reached]
+        } else {
+            [start, end]
+        };
         let panels = KINDS.iter().filter_map(|(kind, quantity)| {
             let own: Vec<_> = self.curves.iter().filter(|(_, c, _)| c.kind == *kind).collect();
             let mut panel = panel(quantity, own.first()?.1.unit, own.iter().map(|(_, c, d)| (label(c), d.pieces())))?;

@@ -176,7 +176,9 @@ impl Draw {
     fn window(&self) -> Result<Option<[f64; 2]>, Diagnostics> {
         let time = |field: &str, given: &Option<String>| match given {
             None => Ok(None),
-            Some(text) => values(field, std::slice::from_ref(text), Dimension::TIME).map(|all| all.first().map(|q| q.si())),
+            Some(text) => {
+                values(field, std::slice::from_ref(text), Dimension::TIME).map(|all| all.first().map(|q| q.si()))
+            }
         };
         let (from, to) = (time("from", &self.from)?, time("to", &self.to)?);
         let asked = from.is_some() || to.is_some();

@@ -97,8 +97,9 @@ fn panel(all: &Bands, top: f64, name: String, reading: Reading<'_>) -> Group {
     let what = if chart.y.title.starts_with("Eff") { "efficiency" } else { "loss_w" };
     let mut g = Group::new().add(chart.grid());
     for ([low, high], strength) in [([0, 4], 0.2), ([1, 3], 0.45)] {
-        let points: Vec<_> =
-            (all.x.values.iter().zip(&all.points)).map(|(x, p)| (*x, reading(p).0.map(|q| [q[low], q[high]]))).collect();
+        let points: Vec<_> = (all.x.values.iter().zip(&all.points))
+            .map(|(x, p)| (*x, reading(p).0.map(|q| [q[low], q[high]])))
+            .collect();
         for (run, area) in chart.areas(&points).into_iter().enumerate() {
             let word = format!("band{run}-{}", if low == 0 { 90 } else { 50 });
             g = g.add(of(area.set("fill", colour(Some(0), strength)), &word, &[Of::Quantity(what)]));

@@ -484,9 +484,11 @@ fn letters(v: &View<'_>, bar: &LeverBar, first: &LeverNode) -> Group {
     let mut g = Group::new();
     for ((case, x), place) in drawn.into_iter().zip(at) {
         let letter = text(place, y, 12.0, Anchor::Middle, &v.lever.cases[case].letter).set("font-weight", "bold");
-        let own = Group::new()
-            .add(line((place, y + 3.0), (x, end - 4.0), &case_colour(v, case), 0.8))
-            .add(halo(letter.set("fill", case_colour(v, case)), PAPER, 3.0));
+        let own = Group::new().add(line((place, y + 3.0), (x, end - 4.0), &case_colour(v, case), 0.8)).add(halo(
+            letter.set("fill", case_colour(v, case)),
+            PAPER,
+            3.0,
+        ));
         let name = bar.sets.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" + ");
         g = g.add(of(own, "letter", &[Of::Mesh(&name), Of::State(&v.lever.cases[case].name)]));
     }

@@ -298,7 +298,8 @@ fn level(map: &EfficiencyMap, mesh: &Mesh<'_>, state: usize, taken: &mut Vec<[f6
 /// Lines of one level as one path.
 fn contour(all: &[Vec<Place>], ink: &str) -> Option<Path> {
     let all: Vec<String> = all.iter().map(|l| d(l, false)).collect();
-    let path = Path::new().set("d", all.join(" ")).set("fill", "none").set("stroke", ink).set("stroke-linejoin", "round");
+    let path =
+        Path::new().set("d", all.join(" ")).set("fill", "none").set("stroke", ink).set("stroke-linejoin", "round");
     (!all.is_empty()).then_some(path)
 }
 
@@ -394,7 +395,10 @@ fn hatched(mesh: &Mesh<'_>, verdict: MapVerdict, chart: &Chart, name: &str) -> G
     let [Some(clip), Some(ground)] = [area(&outlines), area(&outlines)] else { return Group::new() };
     let hatch = strokes([chart.left, chart.top, chart.right, chart.bottom], verdict);
     let own = Group::new()
-        .add(Definitions::new().add(ClipPath::new().set("id", format!("{name}-clip")).add(clip.set("clip-rule", "evenodd"))))
+        .add(
+            Definitions::new()
+                .add(ClipPath::new().set("id", format!("{name}-clip")).add(clip.set("clip-rule", "evenodd"))),
+        )
         .add(ground.set("fill", PAPER).set("stroke", INK).set("stroke-width", 0.6))
         .add(hatch.set("clip-path", format!("url(#{name}-clip)")));
     of(own, name, &[Of::Quantity("verdict")])
@@ -454,9 +458,7 @@ fn legend(map: &EfficiencyMap, chart: &Chart, bands: &[[f64; 2]], power: bool) -
         let patch = guide(Group::new())
             .add(rectangle(LEGEND, y, 26.0, 15.0, PAPER).set("stroke", LINE).set("stroke-width", 0.6))
             .add(strokes([LEGEND, y, LEGEND + 26.0, y + 15.0], verdict));
-        g = g
-            .add(patch)
-            .add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, says(verdict)));
+        g = g.add(patch).add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, says(verdict)));
         y += 20.0;
     }
     if power {
@@ -466,9 +468,13 @@ fn legend(map: &EfficiencyMap, chart: &Chart, bands: &[[f64; 2]], power: bool) -
     }
     for (k, m) in map.marks.iter().enumerate().take(9) {
         let name = fit(&m.operation, WIDTH - LEGEND - 60.0, 11.0);
-        let own = Group::new()
-            .add(badge(LEGEND + 13.0, y + 9.0, &(k + 1).to_string()))
-            .add(text(LEGEND + 34.0, y + 13.0, 11.0, Anchor::Start, &name));
+        let own = Group::new().add(badge(LEGEND + 13.0, y + 9.0, &(k + 1).to_string())).add(text(
+            LEGEND + 34.0,
+            y + 13.0,
+            11.0,
+            Anchor::Start,
+            &name,
+        ));
         g = g.add(of(own, "key", &[Of::State(&m.operation)]));
         y += 22.0;
     }

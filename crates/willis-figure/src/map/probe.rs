@@ -72,11 +72,7 @@ impl Loosest {
 }
 
 impl<'q, 's> Probe<'q, 's> {
-    pub fn new(
-        question: &'q Question<'s>,
-        axes: [&Axis; 2],
-        choice: Option<Choice>,
-    ) -> Result<Self, Diagnostics> {
+    pub fn new(question: &'q Question<'s>, axes: [&Axis; 2], choice: Option<Choice>) -> Result<Self, Diagnostics> {
         let target = |a: &Axis| Target::parse(&a.name, question.model()).map(|t| (t, a.unit.clone()));
         let targets = axes.map(target);
         let [x, y] = targets.map(|t| t.map_err(|d| Diagnostics::from_iter([*d])));

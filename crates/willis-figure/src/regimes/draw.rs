@@ -249,7 +249,9 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
     let mut g = Group::new()
         .add(text(LEGEND, top - 34.0, 13.0, Anchor::Start, &head).set("font-weight", "bold"))
         .add(text(LEGEND, top - 16.0, 12.0, Anchor::Start, &key).set("fill", FAINT))
-        .add(guide(rectangle(left, top, right - left, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1)));
+        .add(guide(
+            rectangle(left, top, right - left, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1),
+        ));
     for t in ticks(floor, 1.0, 4) {
         g = g
             .add(guide(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0)))

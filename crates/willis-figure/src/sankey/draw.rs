@@ -86,8 +86,14 @@ pub fn draw(data: &Sankey) -> String {
     let mut body = Group::new()
         .add(text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&data.train, room / BOLD, 20.0)).set("font-weight", "bold"))
         .add(
-            text(MARGIN, 60.0, 13.0, Anchor::Start, "Power from inputs to outputs, widths to scale in each picture; losses have a scale of their own")
-                .set("fill", FAINT),
+            text(
+                MARGIN,
+                60.0,
+                13.0,
+                Anchor::Start,
+                "Power from inputs to outputs, widths to scale in each picture; losses have a scale of their own",
+            )
+            .set("fill", FAINT),
         );
     let mut y = 68.0;
     let mut told = Vec::new();
@@ -264,7 +270,9 @@ fn band(ribbon: &Ribbon, carries: Carries) -> Group {
     g.add(match ribbon.width() < 5.0 {
         // Too narrow for hatching.
         true => path.set("d", ribbon.spine()).set("stroke-width", 1.2).set("stroke-dasharray", "6 4"),
-        false => path.set("d", ribbon.hatching()).set("stroke-width", if carries == Carries::Framed { 0.6 } else { 1.0 }),
+        false => {
+            path.set("d", ribbon.hatching()).set("stroke-width", if carries == Carries::Framed { 0.6 } else { 1.0 })
+        }
     })
 }
 

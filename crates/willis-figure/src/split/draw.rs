@@ -220,7 +220,8 @@ fn gears(split: &Split, chart: &Chart) -> Group {
     inside.fold(Group::new(), |g, gear| {
         let (x, y) = (chart.x(gear.ratio), chart.y(100.0 * gear.efficiency));
         let dot = Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", 4);
-        let dot = of(dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", 1.6), "gear", &[Of::State(&gear.state)]);
+        let dot =
+            of(dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", 1.6), "gear", &[Of::State(&gear.state)]);
         g.add(dot).add(text(
             x + 8.0,
             // Clear of the curves, which are beside and above it.

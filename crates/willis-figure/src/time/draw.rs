@@ -91,7 +91,10 @@ fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
     let shown = (time.from.max(start), time.to.min(end));
     let close = 1e-6 * (shown.1 - shown.0);
     let whole = |pieces: &[Vec<[f64; 2]>]| match pieces {
-        [only] => only.first().is_some_and(|p| p[0] <= shown.0 + close) && only.last().is_some_and(|p| p[0] >= shown.1 - close),
+        [only] => {
+            only.first().is_some_and(|p| p[0] <= shown.0 + close)
+                && only.last().is_some_and(|p| p[0] >= shown.1 - close)
+        }
         _ => false,
     };
     if plot.panels.iter().flat_map(|p| &p.lines).any(|l| !whole(&l.pieces)) {
@@ -462,7 +465,13 @@ fn modes(plot: &TimePlot, time: &TimeAxis, top: f64) -> Group {
             None => "changing fast",
             _ => look(m).1,
         };
-        g = g.add(guide(block(m, x, top - 21.0, 22.0, 13.0))).add(text(x + 28.0, top - 10.0, 11.0, Anchor::Start, word));
+        g = g.add(guide(block(m, x, top - 21.0, 22.0, 13.0))).add(text(
+            x + 28.0,
+            top - 10.0,
+            11.0,
+            Anchor::Start,
+            word,
+        ));
         x += 50.0 + 6.2 * word.chars().count() as f64;
     }
     for (k, r) in plot.modes.iter().enumerate() {

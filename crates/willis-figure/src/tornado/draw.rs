@@ -96,9 +96,12 @@ pub fn draw(t: &Tornado) -> String {
         }
         g = g.add(of(row, "row", &[Of::Quantity(&b.name)]));
     }
-    g = g
-        .add(guide(line((middle, TOP - 4.0), (middle, bottom), INK, 1.2)))
-        .add(guide(line((left - room, bottom), (right, bottom), LINE, 1.0)));
+    g = g.add(guide(line((middle, TOP - 4.0), (middle, bottom), INK, 1.2))).add(guide(line(
+        (left - room, bottom),
+        (right, bottom),
+        LINE,
+        1.0,
+    )));
 
     let mut notes =
         vec!["Dark: the step up, with its value; light: the step down. Derivatives times the step: exact for small effects, a direction for large ones.".to_owned()];

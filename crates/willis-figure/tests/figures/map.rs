@@ -51,7 +51,8 @@ fn a_ridge_lies_on_its_line_and_has_no_islands() {
     let bands: Vec<&str> = svg.split("<path").filter(|p| p.contains("id=\"band-")).collect();
     assert!(bands.len() > 4);
     for band in bands {
-        let outlines = band.split(" d=\"").nth(1).and_then(|d| d.split('"').next()).map_or(0, |d| d.matches('M').count());
+        let outlines =
+            band.split(" d=\"").nth(1).and_then(|d| d.split('"').next()).map_or(0, |d| d.matches('M').count());
         assert!((1..=2).contains(&outlines), "{band}");
     }
 }

@@ -91,7 +91,9 @@ fn faults(svg: &str, faces: &Arc<fontdb::Database>) -> Vec<String> {
         marks += 1;
         // Every mark says what it stands for, or that it only guides the eye; the first is the paper.
         let says = |a: roxmltree::Node<'_, '_>| {
-            let alive = ["member", "mesh", "element", "state", "quantity"].iter().any(|d| a.has_attribute(&*format!("data-{d}")));
+            let alive = ["member", "mesh", "element", "state", "quantity"]
+                .iter()
+                .any(|d| a.has_attribute(&*format!("data-{d}")));
             alive && a.has_attribute("id") || a.attribute("class") == Some("guide")
         };
         if marks > 1 && !n.ancestors().any(says) {
@@ -234,7 +236,9 @@ fn a_member_has_one_colour_in_all_kinds() {
         let model = model(&name);
         let train = model.train();
         for kind in ["stick", "lever", "front", "time"].map(|k| FigureKind::named(k).expect("a kind")) {
-            let Ok(figure) = kind.make(&model, &FigureRequest { nominal: true, ..Default::default() }) else { continue };
+            let Ok(figure) = kind.make(&model, &FigureRequest { nominal: true, ..Default::default() }) else {
+                continue;
+            };
             let given: Vec<(&str, Option<usize>)> = match &figure {
                 Figure::Stick(s) => s.members.iter().map(|m| (&*m.name, Some(m.colour))).collect(),
                 Figure::Lever(l) => l.bars.iter().flat_map(|b| &b.nodes).map(|n| (&*n.member, n.colour)).collect(),

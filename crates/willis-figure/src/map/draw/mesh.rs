@@ -68,7 +68,8 @@ impl<'m> Mesh<'m> {
             let ends = border.between.map(|k| corner(at, &map.points[k]));
             // What is the same within what a step of the search changes is the same.
             let step = (ends[0].loss - sides[0].loss).abs().max((ends[1].loss - sides[1].loss).abs());
-            let jumps = !((sides[0].loss - sides[1].loss).abs() <= 1e-6 + 0.02 * step);
+            let apart = (sides[0].loss - sides[1].loss).abs();
+            let jumps = apart.is_nan() || apart > 1e-6 + 0.02 * step;
             if !jumps {
                 let mean = |of: fn(&Corner) -> f64| (of(&sides[0]) + of(&sides[1])) / 2.0;
                 let (loss, power) = (mean(|c| c.loss), mean(|c| c.power));
