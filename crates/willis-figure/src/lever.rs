@@ -11,7 +11,7 @@
 //! SAE 810102 (1981).
 
 pub mod draw;
-mod family;
+pub(crate) mod family;
 mod layout;
 mod role;
 

@@ -24,6 +24,7 @@ mod stick;
 mod table;
 mod time;
 mod tornado;
+mod wolf;
 
 // `report::document` looks for it here.
 use willis::contract;
@@ -73,6 +74,8 @@ pub use time::draw::draw as draw_time;
 pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder};
 pub use tornado::draw::draw as draw_tornado;
 pub use tornado::{Tornado, TornadoBar, tornado};
+pub use wolf::draw::draw as draw_wolf;
+pub use wolf::{Wolf, WolfMember, WolfSet, WolfShaft, WolfTie, wolf};
 
 /// The code of the page of this crate runs as a doctest.
 #[cfg(doctest)]

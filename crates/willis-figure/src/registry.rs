@@ -143,6 +143,8 @@ kinds! {
     "stick": Stick(Stick) = stick::KIND;
     /// Nomograph: speeds and torques; the state `all` lays all states over each other.
     "lever": Lever(Lever) = lever::KIND;
+    /// Wolf's symbols: sets as boxes, their sum shafts, and how they are coupled.
+    "wolf": Wolf(Wolf) = wolf::KIND;
     /// Power from input to output, each loss branching off, to scale.
     "sankey": Sankey(Sankey) = sankey::KIND;
     /// Power through components and contacts.
