@@ -89,7 +89,7 @@ fn every_dxf_has_all_teeth_between_root_and_tip() {
         seen += 1;
         let dxf = willis_figure::front_dxf(&view);
         let lines: Vec<&str> = dxf.lines().collect();
-        assert!(dxf.is_ascii() && lines.len() % 2 == 0, "{name}: pairs of code and value");
+        assert!(dxf.is_ascii() && lines.len().is_multiple_of(2), "{name}: pairs of code and value");
         let pairs: Vec<(u16, &str)> = lines.chunks(2).map(|p| (p[0].parse().expect("a group code"), p[1])).collect();
         assert_eq!(pairs.last(), Some(&(0, "EOF")), "{name}");
         let entities: Vec<&[(u16, &str)]> = pairs.chunk_by(|_, next| next.0 != 0).collect();
