@@ -8,7 +8,7 @@ use willis::model::Target;
 use willis::study::{Axis, PointAnswer, PointVerdict, Question, Trains};
 use willis::train::MemberId;
 
-use crate::map::{MapPoint, MapVerdict};
+use crate::{MapPoint, MapVerdict};
 
 const RPM: f64 = std::f64::consts::PI / 30.0;
 
