@@ -82,6 +82,7 @@ fn legend(y: f64) -> (Group, f64) {
 type Reading<'a> = &'a dyn Fn(&BandPoint) -> (Option<[f64; 5]>, Option<f64>);
 
 fn panel(all: &Bands, top: f64, name: String, reading: Reading<'_>) -> Group {
+    let what = if name.is_empty() { "efficiency" } else { "loss_w" };
     let values = all.points.iter().flat_map(|p| {
         let (band, nominal) = reading(p);
         band.into_iter().flatten().chain(nominal)
@@ -94,7 +95,6 @@ fn panel(all: &Bands, top: f64, name: String, reading: Reading<'_>) -> Group {
         x: Scale::of(all.x.values.iter().copied(), title(&all.x)),
         y: if name.is_empty() { Scale::efficiency(values) } else { Scale::of(values, name).rounded() },
     };
-    let what = if chart.y.title.starts_with("Eff") { "efficiency" } else { "loss_w" };
     let mut g = Group::new().add(chart.grid());
     for ([low, high], strength) in [([0, 4], 0.2), ([1, 3], 0.45)] {
         let points: Vec<_> = (all.x.values.iter().zip(&all.points))
