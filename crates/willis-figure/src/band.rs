@@ -15,6 +15,7 @@ pub(crate) const KIND: Kind<Bands> = Kind {
     title: "How sure it is",
     takes: &[Ask::State, Ask::Operation, Ask::Over],
     effort,
+    applies: Some(applies),
     make: |s, r| {
         let samples = if r.samples == 0 { SAMPLES } else { r.samples };
         let (operation, state) = (r.operation.clone(), r.state.clone());
@@ -31,6 +32,13 @@ fn effort(model: &Model, request: &FigureRequest) -> Effort {
         Ok(question) => question.effort(samples as u64, steps as u64),
         Err(_) => Effort::of_points(model.train(), 1),
     }
+}
+
+/// There are bands where something is uncertain and a speed can be varied.
+fn applies(model: &Model) -> bool {
+    let request = UncertaintyRequest { samples: SAMPLES, ..Default::default() };
+    let Ok(plan) = UncertaintyPlan::new(model, &request) else { return false };
+    axes::parse(&[axes::usual_speed(plan.question(), STEPS)], model).is_ok()
 }
 
 /// Samples where the caller does not say.

@@ -14,6 +14,7 @@ pub(crate) const KIND: Kind<FlowReport> = Kind {
     title: "Power flow",
     takes: &[Ask::State, Ask::Operation],
     effort: kind::of_operations,
+    applies: None,
     make: powers,
     draw: |data, _| draw::draw(data),
 };

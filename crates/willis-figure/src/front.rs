@@ -1,6 +1,7 @@
 //! A planetary set or a pair of gears seen along its axis: true teeth, in mesh.
 
 pub mod draw;
+pub mod dxf;
 mod layout;
 mod nominal;
 mod profile;
@@ -17,6 +18,7 @@ pub(crate) const KIND: Kind<Front> = Kind {
     title: "Teeth in mesh",
     takes: &[Ask::Part, Ask::Nominal, Ask::Animated],
     effort: kind::of_file,
+    applies: None,
     make: |s, r| front(s.train(), r.part.as_deref(), r.nominal),
     draw: |data, how| draw::draw(data, how.animated),
 };
@@ -69,6 +71,9 @@ pub struct Front {
 pub struct FrontWheel {
     /// The member it sits on.
     pub name: String,
+    /// Number of its colour: the place of that member in the train; absent for the frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<usize>,
     /// Tooth count `z`.
     pub teeth: u32,
     /// Whether it is a ring gear.
@@ -368,6 +373,7 @@ pub fn front(train: &Train, set: Option<&str>, nominal: bool) -> Result<Front, D
         let p: &Profile = &w.profile;
         FrontWheel {
             name: train.members()[w.member].name.clone(),
+            colour: w.member.checked_sub(1),
             teeth: p.teeth,
             internal: p.internal,
             planet: w.planet,

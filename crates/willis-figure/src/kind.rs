@@ -14,6 +14,8 @@ pub(crate) struct Kind<T> {
     pub takes: &'static [Ask],
     /// How much work it is to make the data.
     pub effort: fn(&Model, &FigureRequest) -> Effort,
+    /// Whether the data can be made, where that is known without making them.
+    pub applies: Option<fn(&Model) -> bool>,
     /// Makes the data.
     pub make: fn(&Model, &FigureRequest) -> Result<T, Diagnostics>,
     /// Draws them as SVG in its light form.
@@ -50,6 +52,8 @@ pub enum Ask {
     Balance,
     /// [`FigureRequest::nominal`].
     Nominal,
+    /// [`FigureRequest::window`].
+    Window,
     /// [`Drawing::animated`].
     Animated,
 }
@@ -65,6 +69,7 @@ impl Ask {
             Self::Terminals => "terminals",
             Self::Balance => "balance",
             Self::Nominal => "nominal",
+            Self::Window => "from",
             Self::Animated => "animated",
         }
     }
@@ -89,6 +94,8 @@ pub struct FigureRequest {
     pub balance: Option<[String; 2]>,
     /// Teeth without geometry are drawn as nominal ones of module 1.
     pub nominal: bool,
+    /// From when to when a scenario is shown, s; infinite where it is shown from its start or to its end.
+    pub window: Option<[f64; 2]>,
     /// Samples of bands at every value; 0 for as many as usual.
     pub samples: usize,
 }
@@ -109,6 +116,7 @@ impl FigureRequest {
             (Ask::Terminals, self.terminals.is_some()),
             (Ask::Balance, self.balance.is_some()),
             (Ask::Nominal, self.nominal),
+            (Ask::Window, self.window.is_some()),
         ];
         given.into_iter().filter(|g| g.1).map(|g| g.0).collect()
     }

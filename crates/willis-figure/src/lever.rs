@@ -11,7 +11,7 @@
 //! SAE 810102 (1981).
 
 pub mod draw;
-mod family;
+pub(crate) mod family;
 mod layout;
 mod role;
 
@@ -34,6 +34,7 @@ pub(crate) const KIND: Kind<Lever> = Kind {
     title: "Levers",
     takes: &[Ask::State, Ask::Operation],
     effort: kind::of_operations,
+    applies: None,
     make: |s, r| lever(s.train(), &LeverRequest::of(r)),
     draw: |data, _| draw::draw(data),
 };
@@ -200,15 +201,49 @@ pub struct LeverLink {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn lever(train: &Train, request: &LeverRequest) -> Result<Lever, Diagnostics> {
-    let families = families(train);
-    if families.is_empty() {
-        return Err(unfit("it has no gears", "a lever is a set of gears on one carrier"));
+    LeverLayout::new(train)?.show(train, request)
+}
+
+/// Where the points of all levers of a train stand: by tooth numbers alone, so that speeds and torques change without moving
+/// them.
+pub struct LeverLayout {
+    families: Vec<Family>,
+    placed: layout::Placed,
+}
+
+impl LeverLayout {
+    /// Lays out a train.
+    ///
+    /// # Errors
+    /// A train without gears.
+    pub fn new(train: &Train) -> Result<Self, Diagnostics> {
+        let families = families(train);
+        if families.is_empty() {
+            return Err(unfit("it has no gears", "a lever is a set of gears on one carrier"));
+        }
+        let placed = layout::place(&families);
+        Ok(Self { families, placed })
     }
+
+    /// The levers with speeds and torques. The train must be the one that was laid out, perhaps with other operating points.
+    ///
+    /// # Errors
+    /// No such operation or state; a state that has no motion to show.
+    pub fn show(&self, train: &Train, request: &LeverRequest) -> Result<Lever, Diagnostics> {
+        shown(train, &self.families, &self.placed, request)
+    }
+}
+
+fn shown(
+    train: &Train,
+    families: &[Family],
+    placed: &layout::Placed,
+    request: &LeverRequest,
+) -> Result<Lever, Diagnostics> {
     let shown = Shown::find(train, request)?;
-    let placed = layout::place(&families);
     let mut bars: Vec<LeverBar> = Vec::new();
     for parts in &placed.bars {
-        bars.push(bar(train, &families, &placed, parts, &shown));
+        bars.push(bar(train, families, placed, parts, &shown));
     }
     let far = |n: &LeverNode| !(n.position.is_finite() && n.number.is_finite());
     if bars.iter().flat_map(|b| &b.nodes).any(far) {

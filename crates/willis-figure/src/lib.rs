@@ -24,6 +24,7 @@ mod stick;
 mod table;
 mod time;
 mod tornado;
+mod wolf;
 
 // `report::document` looks for it here.
 use willis::contract;
@@ -36,16 +37,17 @@ pub use contact_path::{ContactPath, MeshPath, PathPoint, contact_path};
 pub use flow::dot::flow_dot;
 pub use flow::draw::draw as draw_flow;
 pub use front::draw::draw as draw_front;
+pub use front::dxf::front_dxf;
 pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWheel, front};
 pub use kind::{Ask, Drawing, FigureRequest};
 pub use lever::draw::draw as draw_lever;
 pub use lever::{
-    Lever, LeverBar, LeverCase, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
+    Lever, LeverBar, LeverCase, LeverLayout, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
 };
 pub use losses::draw::draw as draw_losses;
 pub use losses::{LossChart, LossSeries, loss_chart};
 pub use map::draw::draw as draw_map;
-pub use map::{EfficiencyMap, MapMark, MapPoint, MapVerdict, efficiency_map};
+pub use map::{EfficiencyMap, MapBorder, MapJoint, MapMark, MapPoint, MapVerdict, efficiency_map};
 pub use modes::draw as draw_modes;
 pub use parts::axes::ChartAxis;
 #[cfg(feature = "png")]
@@ -64,14 +66,16 @@ pub use split::draw::draw as draw_split;
 pub use split::{MechanicalPoint, Split, SplitGear, SplitMode, SplitPoint, split};
 pub use stick::draw::draw as draw_stick;
 pub use stick::{
-    GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickMember, StickMesh,
-    StickPiece, StickTerminal, Way, stick,
+    GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickLayout, StickMember,
+    StickMesh, StickPiece, StickTerminal, Way, stick,
 };
 pub use table::draw::draw as draw_table;
 pub use time::draw::draw as draw_time;
 pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder};
 pub use tornado::draw::draw as draw_tornado;
 pub use tornado::{Tornado, TornadoBar, tornado};
+pub use wolf::draw::draw as draw_wolf;
+pub use wolf::{Wolf, WolfMember, WolfSet, WolfShaft, WolfTie, wolf};
 
 /// The code of the page of this crate runs as a doctest.
 #[cfg(doctest)]

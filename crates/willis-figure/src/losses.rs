@@ -16,6 +16,7 @@ pub(crate) const KIND: Kind<LossChart> = Kind {
     title: "Losses by source",
     takes: &[Ask::State, Ask::Operation, Ask::Over],
     effort,
+    applies: None,
     make: |s, r| loss_chart(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
     draw: |data, _| draw::draw(data),
 };

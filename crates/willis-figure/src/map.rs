@@ -1,22 +1,25 @@
 //! Efficiency over two quantities, with what has no answer, and the gear that loses least.
 
 pub mod draw;
+mod probe;
 
 use serde::{Deserialize, Serialize};
 use willis::analysis::{self, Selection};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
-use willis::study::{Axis, Hold, PointAnswer, PointVerdict, Question, Sweep};
+use willis::study::{Axis, Hold, PointVerdict, Question};
 use willis::train::{Load, MemberId, Operation, Train};
 use willis::work::Effort;
 
 use crate::kind::{Ask, FigureRequest, Kind};
 use crate::parts::axes::{self, ChartAxis};
+use probe::{Limits, Probe};
 
 pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
     title: "Efficiency map",
     takes: &[Ask::State, Ask::Operation, Ask::Over],
     effort,
+    applies: Some(applies),
     make: |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
     draw: |data, _| draw::draw(data),
 };
@@ -24,10 +27,12 @@ pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
 /// Points along the axes where the caller does not say.
 const COLUMNS: usize = 41;
 const ROWS: usize = 31;
-/// How many times finer where efficiencies are given and points are cheap.
-const FINER: usize = 2;
+/// The same where each point is asked of every state.
+const FEWER: [usize; 2] = [21, 16];
 /// Points of a map that are computed at most.
-const MOST_POINTS: u64 = 100_000;
+const MOST_POINTS: usize = 100_000;
+/// Halvings of a step of the grid in which a border is looked for: a hundredth of a pixel.
+const HALVINGS: usize = 11;
 
 /// An efficiency map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -44,6 +49,10 @@ pub struct EfficiencyMap {
     pub y: ChartAxis,
     /// The points, row by row from the lowest `y` on, each row along `x`.
     pub points: Vec<MapPoint>,
+    /// Where one zone ends and the next begins: between all neighbours of different zones.
+    pub borders: Vec<MapBorder>,
+    /// Where three zones or more meet within a cell of the grid.
+    pub joints: Vec<MapJoint>,
     /// The states among which the best is chosen at every point; empty for a map of one state.
     pub states: Vec<String>,
     /// The operations of the file that lie in the map.
@@ -65,6 +74,33 @@ pub struct MapPoint {
     pub loss_w: Option<f64>,
     /// The best state, as position among [`EfficiencyMap::states`].
     pub best: Option<usize>,
+    /// Points of a zone have the same verdict and best state, power through each mesh in the same direction, and the same
+    /// inputs and outputs: within it the efficiency has neither jump nor kink.
+    pub zone: usize,
+}
+
+/// The border of two zones between two neighbouring points of the map.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct MapBorder {
+    /// The points, as positions among [`EfficiencyMap::points`].
+    pub between: [usize; 2],
+    /// Where it is: 0 at the first point, 1 at the second.
+    pub at: f64,
+    /// What holds right before and right behind it.
+    pub sides: [MapPoint; 2],
+}
+
+/// Where several zones meet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct MapJoint {
+    /// The lower left point of its cell, as position among [`EfficiencyMap::points`].
+    pub cell: usize,
+    /// Where it is in the cell: 0 at that point, 1 at the next along each axis.
+    pub at: [f64; 2],
 }
 
 /// An operation of the file in a map.
@@ -91,17 +127,11 @@ pub enum MapVerdict {
     Point(PointVerdict),
 }
 
-impl MapPoint {
-    fn of(answer: &PointAnswer) -> Self {
-        let s = answer.solution.as_ref().filter(|_| answer.is_unique());
-        Self {
-            verdict: MapVerdict::Point(answer.verdict),
-            efficiency: s.and_then(|s| s.efficiency),
-            input_power_w: s.map(|s| s.input_power_w),
-            loss_w: s.map(|s| s.loss_w),
-            best: None,
-        }
-    }
+/// There is a map where there is an operating point and quantities to vary.
+fn applies(model: &Model) -> bool {
+    let first = model.train().states().first().filter(|_| model.train().operations().is_empty());
+    let Ok(question) = Question::new(model, None, first.map(|s| s.name.as_str()), Hold::AsGiven) else { return false };
+    axes::parse(&[axes::usual_speed(&question, 2), axes::usual_load(&question, 2)], model).is_ok()
 }
 
 /// The axes as asked, else the usual ones: of each, how many values it has.
@@ -113,20 +143,11 @@ fn effort(model: &Model, request: &FigureRequest) -> Effort {
             // Where neither is named, every state may be tried.
             let open = request.state.is_none() && request.operation.is_none();
             let states = if open { train.states().len().max(1) } else { 1 };
-            usual(train).iter().product::<usize>().max(COLUMNS * ROWS * states)
+            (COLUMNS * ROWS).max(FEWER[0] * FEWER[1] * states)
         }
         over => axes::points(over, model),
     };
     Effort::new("operating points", points as u64, one)
-}
-
-/// How many columns and rows a map has where nothing is said.
-fn usual(train: &Train) -> [usize; 2] {
-    /// Points of a finer map take so long at most, s.
-    const QUICK: f64 = 2.0;
-    let finer = [COLUMNS, ROWS].map(|n| FINER * (n - 1) + 1);
-    let takes = Effort::of_points(train, finer.iter().product::<usize>() as u64).seconds;
-    if takes > QUICK || train.meshes().iter().any(|m| m.computed) { [COLUMNS, ROWS] } else { finer }
 }
 
 /// Computes an efficiency map. Without axes it runs over the first speed of the operation and its load (of a train with
@@ -181,10 +202,7 @@ pub fn efficiency_map(
         return Ok(map);
     }
     let over = match over {
-        [] => {
-            let [columns, rows] = usual(train);
-            vec![axes::usual_speed(&question, columns), axes::usual_load(&question, rows)]
-        }
+        [] => vec![axes::usual_speed(&question, COLUMNS), axes::usual_load(&question, ROWS)],
         [_, _] => over.to_vec(),
         _ => {
             let message = format!("a map runs over two quantities, not {}", over.len());
@@ -192,23 +210,109 @@ pub fn efficiency_map(
         }
     };
     let [x, y] = <[Axis; 2]>::try_from(axes::parse(&over, model)?).expect("two are parsed");
+    few_enough(x.len() * y.len())?;
     let basis = axes::basis(&question, &[&x, &y]);
     let marks = marks(&question, &x, &y);
-    let (own_x, own_y) = (ChartAxis::of(&x), ChartAxis::of(&y));
-    let sweep = bounded(question, vec![y, x])?;
-    let mut trains = Default::default();
-    let points = (0..sweep.len()).map(|k| MapPoint::of(&sweep.answer(k, &mut trains))).collect();
-    Ok(EfficiencyMap { title: train.name().to_owned(), basis, x: own_x, y: own_y, points, states: vec![], marks })
+    let mut probe = Probe::new(&question, [&x, &y], None)?;
+    let own = [ChartAxis::of(&x), ChartAxis::of(&y)];
+    Ok(EfficiencyMap { title: train.name().to_owned(), basis, marks, ..mapped(own, &mut probe) })
 }
 
-fn bounded<'s>(question: Question<'s>, axes: Vec<Axis>) -> Result<Sweep<'s>, Diagnostics> {
-    let sweep = Sweep::new(question, axes, &[])?;
-    if sweep.len() > MOST_POINTS {
-        let message = format!("{} points are too many for a picture", sweep.len());
+/// How many different zones there are.
+fn several(mut zones: [usize; 4]) -> usize {
+    zones.sort_unstable();
+    1 + zones.windows(2).filter(|w| w[0] != w[1]).count()
+}
+
+/// Where zones meet in the unit square with these zones at its corners: the quarter in which most of them still meet, again and
+/// again.
+fn joint(mut corners: [usize; 4], mut zone: impl FnMut([f64; 2]) -> usize) -> [f64; 2] {
+    let ([mut x, mut y], mut half) = ([0.0, 0.0], 0.5);
+    for _ in 0..HALVINGS - 2 {
+        let [low, right, top, left, middle] = [[1.0, 0.0], [2.0, 1.0], [1.0, 2.0], [0.0, 1.0], [1.0, 1.0]]
+            .map(|[a, b]| zone([x + a * half, y + b * half]));
+        let [a, b, c, d] = corners;
+        let quarters = [
+            ([0.0, 0.0], [a, low, middle, left]),
+            ([1.0, 0.0], [low, b, right, middle]),
+            ([1.0, 1.0], [middle, right, c, top]),
+            ([0.0, 1.0], [left, middle, top, d]),
+        ];
+        // Of several the first.
+        let Some(([u, v], own)) = quarters.into_iter().rev().max_by_key(|q| several(q.1)) else { break };
+        (x, y, corners) = (x + u * half, y + v * half, own);
+        half /= 2.0;
+    }
+    [x + half, y + half]
+}
+
+fn few_enough(points: usize) -> Result<(), Diagnostics> {
+    if points > MOST_POINTS {
+        let message = format!("{points} points are too many for a picture");
         let d = Diagnostic::new(Code::BadAxis, "", message);
         return Err(d.hint(format!("{MOST_POINTS} are possible; `sweep` takes more")).into());
     }
-    Ok(sweep)
+    Ok(())
+}
+
+/// The points of a map and the borders between them; no words yet.
+fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
+    let width = x.values.len();
+    let place = |k: usize| [x.values[k % width], y.values[k / width]];
+    let mut found: Vec<_> = (0..width * y.values.len()).map(|k| probe.at(place(k))).collect();
+    // A point exactly on a border belongs to no zone: it is told as what lies a millionth of a step inwards of it.
+    let plain = probe.loosest();
+    let inwards = |values: &[f64], k: usize| match k + 1 < values.len() {
+        true => values[k] + 1e-6 * (values[k + 1] - values[k]),
+        false => values[k] - 1e-6 * (values[k] - values[k - 1]),
+    };
+    for (k, f) in found.iter_mut().enumerate().filter(|(_, f)| plain.on_border(f)) {
+        *f = probe.at([inwards(&x.values, k % width), inwards(&y.values, k / width)]);
+    }
+    let points: Vec<MapPoint> = found.into_iter().map(|f| f.point).collect();
+    let right = (0..points.len()).filter(|k| (k + 1) % width > 0).map(|k| [k, k + 1]);
+    let up = (0..points.len() - width).map(|k| [k, k + width]);
+    let parted = right.chain(up).filter(|[a, b]| points[*a].zone != points[*b].zone);
+    let mut border = |between: [usize; 2]| {
+        let [a, b] = between.map(place);
+        let on = |t: f64| [0, 1].map(|c| a[c] + t * (b[c] - a[c]));
+        let mut sides = between.map(|k| points[k].clone());
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = (low + high) / 2.0;
+            let there = probe.at(on(middle)).point;
+            match there.zone == sides[0].zone {
+                true => (low, sides[0]) = (middle, there),
+                false => (high, sides[1]) = (middle, there),
+            }
+        }
+        // What is narrower than a step goes to the zone beyond it.
+        if sides[1].zone != points[between[1]].zone {
+            sides[1] = points[between[1]].clone();
+        }
+        MapBorder { between, at: (low + high) / 2.0, sides }
+    };
+    let borders = parted.map(&mut border).collect();
+    let mut joints = vec![];
+    for cell in (0..points.len() - width).filter(|k| (k + 1) % width > 0) {
+        let corners = [cell, cell + 1, cell + 1 + width, cell + width].map(|k| points[k].zone);
+        if several(corners) > 2 {
+            let [a, b] = [cell, cell + 1 + width].map(place);
+            let zone = |at: [f64; 2]| probe.at([0, 1].map(|c| a[c] + at[c] * (b[c] - a[c]))).point.zone;
+            joints.push(MapJoint { cell, at: joint(corners, zone) });
+        }
+    }
+    EfficiencyMap {
+        title: String::new(),
+        basis: String::new(),
+        x,
+        y,
+        points,
+        borders,
+        joints,
+        states: vec![],
+        marks: vec![],
+    }
 }
 
 /// Where the operations of the file lie that prescribe both quantities.
@@ -266,59 +370,60 @@ fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnost
         return Ok(None);
     }
     let table = analysis::analyze(train, &Selection { state: None, operation: None })?.ratios;
+    let own = |name: &str| table.0.iter().find(|row| row.0 == name).and_then(|row| row.1.value);
     let ratios: Vec<f64> = table.0.iter().filter_map(|(_, row)| row.value).filter(|r| *r > 0.0).collect();
     if ratios.len() < 2 {
         return Ok(None);
     }
     let (most_speed, most_torque) = (axes::most_speed(question, input), axes::most_torque(question, input));
+    let limits = Limits { input, speed: [least_speed(train, input), most_speed], torque: most_torque };
     let (high, low) = ratios.iter().fold((0.0f64, f64::INFINITY), |(h, l), r| (h.max(*r), l.min(*r)));
     let digits = |x: f64| {
         let unit = 10f64.powf(x.log10().floor() - 1.0);
         format!("{:.12e}", (x / unit).ceil() * unit).parse::<f64>().unwrap_or(x)
     };
     let (speed, torque) = (digits(most_speed / low), digits(most_torque * high));
+    let [columns, rows] = FEWER;
     let over = [
-        format!("output.speed={} rpm..{speed} rpm:{COLUMNS}", speed / 40.0),
-        format!("output.torque={} N m..{torque} N m:{ROWS}", torque / 30.0),
+        format!("output.speed={} rpm..{speed} rpm:{columns}", speed / 40.0),
+        format!("output.torque={} N m..{torque} N m:{rows}", torque / 30.0),
         "state=all".to_owned(),
     ];
     let [x, y] = <[Axis; 2]>::try_from(axes::parse(&over[..2], model)?).expect("two are parsed");
     let states = Axis::parse(&over[2], model).map_err(|d| Diagnostics::from_iter([*d]))?;
     let names: Vec<String> = (0..states.len()).map(|k| states.setting(k)).collect();
-    let (own_x, own_y) = (ChartAxis::of(&x), ChartAxis::of(&y));
-    let sweep = bounded(question.clone(), vec![y, x, states])?;
-    let mut trains = Default::default();
-    let input_name = train.member_name(input);
-    let count = names.len() as u64;
-    let points: Vec<MapPoint> = (0..sweep.len() / count)
-        .map(|p| {
-            let mut best = MapPoint {
-                verdict: MapVerdict::Beyond,
-                efficiency: None,
-                input_power_w: None,
-                loss_w: None,
-                best: None,
-            };
-            for k in 0..count {
-                let answer = sweep.answer(p * count + k, &mut trains);
-                let Some(m) = answer.solution.as_ref().and_then(|s| s.members.get(input_name)) else { continue };
-                let speed = m.speed_rad_s.unwrap_or(f64::NAN) * 30.0 / std::f64::consts::PI;
-                let torque = m.torque_n_m.unwrap_or(f64::NAN);
-                let within = speed > 0.0 && speed <= most_speed * (1.0 + 1e-9) && torque <= most_torque * (1.0 + 1e-9);
-                let new = MapPoint { best: Some(k as usize), ..MapPoint::of(&answer) };
-                if within && new.efficiency > best.efficiency {
-                    best = new;
-                }
+    let choice = names.iter().map(|name| (name.clone(), own(name))).collect();
+    let mut probe = Probe::new(question, [&x, &y], Some((limits, choice)))?;
+    // The limits of every gear are lines of the grid, so that the corners between them are sharp.
+    let [mut own_x, mut own_y] = [ChartAxis::of(&x), ChartAxis::of(&y)];
+    for at in probe.corners([own_x.values[0], own_y.values[0]]) {
+        for (axis, value) in [&mut own_x, &mut own_y].into_iter().zip(at) {
+            let within = axis.values[0] < value && axis.values.last() > Some(&value);
+            let close = |v: &f64| (v - value).abs() < 1e-9 * value.abs();
+            if within && !axis.values.iter().any(close) {
+                axis.values.insert(axis.values.partition_point(|v| *v < value), value);
             }
-            best
-        })
-        .collect();
-    if points.iter().filter_map(|p| p.best).collect::<std::collections::BTreeSet<_>>().len() < 2 {
+        }
+    }
+    let map = mapped([own_x, own_y], &mut probe);
+    if map.points.iter().filter_map(|p| p.best).collect::<std::collections::BTreeSet<_>>().len() < 2 {
         return Ok(None);
     }
+    let input_name = train.member_name(input);
+    let from = if limits.speed[0] > 0.0 { format!("from {} ", limits.speed[0]) } else { "up ".to_owned() };
     let basis = format!(
-        "At every point the state that loses least, with {input_name} up to {most_speed} rpm and {most_torque} N m"
+        "At every point the state that loses least, with {input_name} {from}to {most_speed} rpm and up to {most_torque} N m"
     );
-    let title = train.name().to_owned();
-    Ok(Some(EfficiencyMap { title, basis, x: own_x, y: own_y, points, states: names, marks: vec![] }))
+    Ok(Some(EfficiencyMap { title: train.name().to_owned(), basis, states: names, ..map }))
+}
+
+/// The speed below which the file never drives its input, rpm: five sixths of the least, as the largest is six fifths of
+/// the most. Operations at one speed, or nearly so, do not say that it cannot turn more slowly.
+fn least_speed(train: &Train, input: MemberId) -> f64 {
+    /// From the least speed to the most, where they are a range.
+    const RANGE: f64 = 2.0;
+    let all = train.operations().iter().flat_map(|o| &o.speeds).filter(|s| s.0 == input);
+    let rpm = all.map(|s| s.1.si() * 30.0 / std::f64::consts::PI).filter(|w| *w > 0.0);
+    let (least, most) = rpm.fold((f64::INFINITY, 0.0f64), |(l, m), w| (l.min(w), m.max(w)));
+    if most >= RANGE * least { (least / 1.2).floor() } else { 0.0 }
 }

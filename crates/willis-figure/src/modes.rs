@@ -3,6 +3,7 @@
 use svg::node::element::Group;
 use willis::dynamics::{ModesReport, Part};
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{Anchor, BOLD, FAINT, LINE, colour, digits, fit, line, page, rectangle, text};
 
 const LEFT: f64 = 190.0;
@@ -92,7 +93,7 @@ fn table<'a>(
     key: &str,
     names: &[&str],
     shown: &'a [Shown<'a>],
-    of: impl Fn(&'a Shown<'a>) -> &'a [Part],
+    parts: impl Fn(&'a Shown<'a>) -> &'a [Part],
     top: f64,
 ) -> Group {
     let bottom = top + ROW * names.len() as f64;
@@ -100,31 +101,29 @@ fn table<'a>(
     let mut g = Group::new()
         .add(text(28.0, top - 10.0, 13.0, Anchor::Start, head).set("font-weight", "bold"))
         .add(text(34.0 + 8.0 * head.chars().count() as f64, top - 10.0, 11.0, Anchor::Start, key).set("fill", FAINT))
-        .add(line((28.0, top), (right, top), LINE, 1.0));
+        .add(guide(line((28.0, top), (right, top), LINE, 1.0)));
     for (j, name) in names.iter().enumerate() {
         let y = top + ROW * j as f64;
-        g = g.add(text(28.0, y + 15.0, 12.0, Anchor::Start, &fit(name, LEFT - 40.0, 12.0))).add(line(
-            (28.0, y + ROW),
-            (right, y + ROW),
-            "#e4e4e4",
-            1.0,
-        ));
+        let rule = line((28.0, y + ROW), (right, y + ROW), "#e4e4e4", 1.0);
+        g = g.add(text(28.0, y + 15.0, 12.0, Anchor::Start, &fit(name, LEFT - 40.0, 12.0))).add(guide(rule));
     }
     for (k, m) in shown.iter().enumerate() {
-        let (x, parts) = (middle(k), of(m));
+        let (x, parts) = (middle(k), parts(m));
         for (j, name) in names.iter().enumerate() {
             let Some(p) = parts.iter().find(|p| p.name == *name) else { continue };
             let y = top + ROW * j as f64;
             let length = 26.0 * p.value.abs().min(1.0);
             let from = if p.value < 0.0 { x - length } else { x };
             let fill = colour(Some(usize::from(p.value < 0.0)), 0.75);
-            g = g.add(rectangle(from, y + 5.0, length, ROW - 10.0, &fill));
+            let bar = rectangle(from, y + 5.0, length, ROW - 10.0, &fill);
+            let part = if head == "Shape" { Of::Member(name) } else { Of::Element(name) };
+            g = g.add(of(bar, &format!("mode{k}"), &[part, Of::Quantity(&m.heads[1])]));
             // The number stands on the free side.
             let value = digits(if p.value.abs() < 1e-9 { 0.0 } else { p.value });
             let (at, anchor) = if p.value < 0.0 { (x + 4.0, Anchor::Start) } else { (x - 4.0, Anchor::End) };
             g = g.add(text(at, y + 15.0, 10.0, anchor, &value).set("fill", FAINT));
         }
-        g = g.add(line((x, top), (x, bottom), LINE, 1.0));
+        g = g.add(guide(line((x, top), (x, bottom), LINE, 1.0)));
     }
     g
 }

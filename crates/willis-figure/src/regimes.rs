@@ -14,6 +14,7 @@ pub(crate) const KIND: Kind<RegimeMap> = Kind {
     title: "Regimes",
     takes: &[Ask::State, Ask::Terminals, Ask::Balance],
     effort: kind::of_file,
+    applies: None,
     make: |s, r| {
         let (state, terminals, balance) = (r.state.clone(), r.terminals.clone(), r.balance.clone());
         regime_map(s.train(), &RegimeSelection { state, terminals, balance })

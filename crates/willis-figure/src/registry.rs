@@ -74,6 +74,16 @@ macro_rules! kinds {
                 }
             }
 
+            /// Whether the figure of a train can be made, in little time: what takes long is not made to find out.
+            fn applies(self, model: &Model) -> bool {
+                match self {
+                    $(Self::$kind => match $entry.applies {
+                        Some(quick) => quick(model),
+                        None => ($entry.make)(model, &FigureRequest::default()).is_ok(),
+                    },)*
+                }
+            }
+
             /// Makes the figure of a train, however long it takes; see [`FigureKind::effort`].
             ///
             /// # Errors
@@ -133,6 +143,8 @@ kinds! {
     "stick": Stick(Stick) = stick::KIND;
     /// Nomograph: speeds and torques; the state `all` lays all states over each other.
     "lever": Lever(Lever) = lever::KIND;
+    /// Wolf's symbols: sets as boxes, their sum shafts, and how they are coupled.
+    "wolf": Wolf(Wolf) = wolf::KIND;
     /// Power from input to output, each loss branching off, to scale.
     "sankey": Sankey(Sankey) = sankey::KIND;
     /// Power through components and contacts.
@@ -182,7 +194,7 @@ impl FigureKind {
         /// What a list may cost, s.
         const LONGEST: f64 = 2.0;
         let request = FigureRequest { samples: 128, ..Default::default() };
-        let fits = |k: &Self| k.effort(model, &request).seconds < LONGEST && k.make(model, &request).is_ok();
+        let fits = |k: &Self| k.effort(model, &request).seconds < LONGEST && k.applies(model);
         Self::ALL.iter().copied().filter(fits).collect()
     }
 

@@ -15,7 +15,7 @@ mod layers;
 
 use serde::{Deserialize, Serialize};
 use willis::analysis::Verdict;
-use willis::hypergraph::{FlowReport, Hypergraph, Node, NodeKind};
+use willis::hypergraph::{Edge, FlowReport, Hypergraph, Loop, Node, NodeKind};
 
 use crate::flow::powers;
 use crate::kind::{self, Ask, Kind};
@@ -24,6 +24,7 @@ pub(crate) const KIND: Kind<Sankey> = Kind {
     title: "Power flow to scale",
     takes: &[Ask::State, Ask::Operation],
     effort: kind::of_operations,
+    applies: None,
     make: |s, r| Ok(sankey(&powers(s, r)?)),
     draw: |data, _| draw::draw(data),
 };
@@ -139,6 +140,9 @@ pub struct SankeyLink {
     pub power_w: f64,
     /// The part of it that runs in circles, W; the upper part of the ribbon.
     pub circulating_w: f64,
+    /// That part goes round only as powers are counted in the frame of the housing: it never leaves its set.
+    #[serde(default)]
+    pub framed: bool,
     /// Whether it is led back to an earlier layer, above all nodes.
     pub back: bool,
     /// From the top of the right side of `from` to its upper edge, W.
@@ -219,9 +223,16 @@ struct Arc {
     via: Vec<String>,
     power: f64,
     circulating: f64,
+    /// Of that, what passes from set to set, W.
+    coupled: f64,
 }
 
 fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
+    let coupled = |e: &Edge| {
+        let passes =
+            |l: &&Loop| l.nodes.iter().zip(l.nodes.iter().cycle().skip(1)).any(|(a, b)| *a == e.from && *b == e.to);
+        g.loops.iter().filter(|l| l.within.is_none()).filter(passes).map(|l| l.power_w).sum()
+    };
     let index = |id: &str| g.nodes.iter().position(|n| n.id == id).expect("edges join nodes of the graph");
     let mut arcs: Vec<Arc> = g
         .edges
@@ -233,6 +244,7 @@ fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
             via: vec![],
             power: e.power_w,
             circulating: e.circulating_w.min(e.power_w),
+            coupled: coupled(e),
         })
         .collect();
     let touched = |k: usize| arcs.iter().any(|a| a.from == k || a.to == k);
@@ -280,6 +292,7 @@ fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
             via: a.via,
             power_w: a.power,
             circulating_w: a.circulating,
+            framed: a.circulating > 0.0 && a.coupled <= 1e-9 * a.power,
             back: false,
             from_offset_w: 0.0,
             to_offset_w: 0.0,

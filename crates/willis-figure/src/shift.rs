@@ -16,6 +16,7 @@ pub(crate) const KIND: Kind<ShiftTable> = Kind {
     title: "Shift table",
     takes: &[],
     effort: kind::of_operations,
+    applies: None,
     make: |s, _| shift(s.train()),
     draw: |data, _| draw::draw(data),
 };

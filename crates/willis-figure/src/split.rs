@@ -23,6 +23,7 @@ pub(crate) const KIND: Kind<Split> = Kind {
         let points = if request.over.is_empty() { POINTS } else { axes::points(&request.over, model) };
         Effort::of_points(model.train(), (points * model.train().states().len().max(1)) as u64)
     },
+    applies: None,
     make: split,
     draw: |data, _| draw::draw(data),
 };

@@ -27,6 +27,7 @@ pub(crate) const KIND: Kind<Stick> = Kind {
     title: "Kinematic schematic",
     takes: &[Ask::State],
     effort: kind::of_file,
+    applies: None,
     make: |s, r| stick(s.train(), r.state.as_deref()),
     draw: |data, _| draw::draw(data),
 };
@@ -280,21 +281,71 @@ pub struct StickTerminal {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn stick(train: &Train, state: Option<&str>) -> Result<Stick, Diagnostics> {
+    // A state that there is not takes no layout.
+    state.map(|name| train.find_state(name)).transpose()?;
+    StickLayout::new(train)?.show(train, state)
+}
+
+/// Where everything of a stick diagram stands, whatever the state: laid out once, it shows every state in the same place.
+///
+/// ```
+/// use willis_figure::StickLayout;
+/// use willis::train::{SetSpec, ShiftElementSpec, StateSpec, Train};
+///
+/// let train = Train::builder("two speeds")
+///     .members(["s", "r", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("r", 70), "c").planet(20, 4))
+///     .shift_element(ShiftElementSpec::brake("B", "r"))
+///     .shift_element(ShiftElementSpec::clutch("C", "s", "c"))
+///     .state(StateSpec::new("low", ["B"]))
+///     .state(StateSpec::new("direct", ["C"]))
+///     .build()?;
+/// let layout = StickLayout::new(&train)?;
+/// let [low, direct] = ["low", "direct"].map(|state| layout.show(&train, Some(state)).unwrap());
+/// assert!(low.gears.iter().zip(&direct.gears).all(|(a, b)| a.faces == b.faces));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub struct StickLayout {
+    members: members::Members,
+    plan: blocks::Plan,
+    layout: layout::Layout,
+}
+
+impl StickLayout {
+    /// Lays out a train.
+    ///
+    /// # Errors
+    /// A train without any member to draw, or one whose lines find no way past each other.
+    pub fn new(train: &Train) -> Result<Self, Diagnostics> {
+        let (members, plan, layout) = laid_out(train)?;
+        Ok(Self { members, plan, layout })
+    }
+
+    /// The schematic of the train in a state: what is closed, loaded, and how fast it turns. The train must be the one that was
+    /// laid out, perhaps with other numbers.
+    ///
+    /// # Errors
+    /// An unknown state.
+    pub fn show(&self, train: &Train, state: Option<&str>) -> Result<Stick, Diagnostics> {
+        let shown = state.map(|name| train.find_state(name)).transpose()?;
+        let plan = self.plan.in_state(train, &self.members, shown);
+        let load = load::Load::new(train, shown);
+        Ok(drawing::Drawing::new(train, &self.members, &plan, self.layout.clone(), &load).stick(shown))
+    }
+}
+
+fn laid_out(train: &Train) -> Result<(members::Members, blocks::Plan, layout::Layout), Diagnostics> {
     let wrong = |d: Diagnostic| Err([d].into_iter().collect::<Diagnostics>());
-    let shown = match state {
-        None => None,
-        Some(name) => Some(train.find_state(name)?),
-    };
     let members = members::Members::new(train);
     if members.order.is_empty() {
         let d = Diagnostic::new(Code::Unfit, "", "no stick diagram: the train has no member beside the frame");
         return wrong(d.hint("name its rotors in `members`, and give them gears"));
     }
-    let plan = blocks::Plan::new(train, &members, shown);
+    let plan = blocks::Plan::new(train, &members);
     let Some(best) = layout::best(&plan) else {
         let d = Diagnostic::new(Code::Unfit, "", "no stick diagram: its lines find no way past each other");
         return wrong(d.hint("draw a part of the train"));
     };
-    let load = load::Load::new(train, shown);
-    Ok(drawing::Drawing::new(train, &members, &plan, best, &load).stick(shown))
+    Ok((members, plan, best))
 }

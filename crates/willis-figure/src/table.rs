@@ -11,6 +11,7 @@ pub(crate) const KIND: Kind<ShaftTable> = Kind {
     title: "Speeds and torques",
     takes: &[Ask::State],
     effort: kind::of_file,
+    applies: None,
     make: |s, r| shaft_table(s.train(), r.state.as_deref(), false),
     draw: |data, _| draw::draw(data),
 };

@@ -15,17 +15,18 @@ use crate::kind::{self, Ask, Kind};
 
 pub(crate) const KIND: Kind<TimePlot> = Kind {
     title: "Motion over time",
-    takes: &[Ask::Part],
+    takes: &[Ask::Part, Ask::Window],
     effort: kind::of_file,
-    make: |s, r| scenario(s.train(), r.part.as_deref()),
+    applies: Some(|model| !model.train().scenarios().is_empty()),
+    make: |s, r| scenario(s.train(), r.part.as_deref(), r.window),
     draw: |data, _| draw::draw(data),
 };
 
 /// The scenario of that name, or the first, simulated.
 ///
 /// # Errors
-/// No such scenario, none at all, or what [`simulate`] says.
-fn scenario(train: &Train, name: Option<&str>) -> Result<TimePlot, Diagnostics> {
+/// No such scenario, none at all, a window in which nothing happens, or what [`simulate`] says.
+fn scenario(train: &Train, name: Option<&str>, window: Option<[f64; 2]>) -> Result<TimePlot, Diagnostics> {
     let scenario = match (name, train.scenarios().first()) {
         (Some(name), _) => train.find_scenario(name)?,
         (None, Some(first)) => first,
@@ -34,7 +35,18 @@ fn scenario(train: &Train, name: Option<&str>) -> Result<TimePlot, Diagnostics> 
             return Err(d.hint("a [[scenario]] says what drives and what happens when").into());
         }
     };
-    let mut plot = TimePlotBuilder::new(train, [scenario.start, scenario.end]);
+    let span = [scenario.start, scenario.end];
+    let mut plot = TimePlotBuilder::new(train, span);
+    if let Some([from, to]) = window {
+        let [from, to] = [from.max(span[0]), to.min(span[1])];
+        // Not numbers are no window either.
+        if !matches!(from.partial_cmp(&to), Some(std::cmp::Ordering::Less)) {
+            let message = format!("nothing of the scenario `{}` lies in that time", scenario.name);
+            let hint = format!("it runs from {} s to {} s", span[0], span[1]);
+            return Err(Diagnostic::new(Code::OutOfRange, "", message).hint(hint).into());
+        }
+        plot = plot.within([from, to]);
+    }
     let report = simulate(train, &scenario.name, &Options::default(), &mut plot)?;
     Ok(plot.finish(&report))
 }
@@ -64,7 +76,7 @@ pub struct TimePlot {
     pub marks: Vec<TimeMark>,
     /// When modes changed, s; of several within a thousandth of the run, the first.
     pub event_times: Vec<f64>,
-    /// All changes of mode after the start.
+    /// All changes of mode after the start, of those that are shown.
     pub event_count: usize,
 }
 
@@ -90,6 +102,9 @@ pub struct TimePanel {
 pub struct TimeLine {
     /// Whose it is; several names where they agree throughout.
     pub names: Vec<String>,
+    /// Number of the colour of the first, of a speed: the place of the member in the train.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<usize>,
     /// Its pieces between gaps: time, s, and value. First, least, greatest and last value of every
     /// short interval are kept, so that no spike is lost.
     pub pieces: Vec<Vec<[f64; 2]>>,
@@ -178,6 +193,10 @@ const SHORT: f64 = 1e-3;
 #[derive(Debug)]
 pub struct TimePlotBuilder {
     span: [f64; 2],
+    /// Whether the span is a part of the run, and the row before the next.
+    part: bool,
+    before: Option<(f64, Vec<f64>)>,
+    members: Vec<String>,
     planets: Vec<String>,
     meshes: Vec<String>,
     curves: Vec<(usize, Column, Decimated)>,
@@ -193,6 +212,9 @@ impl TimePlotBuilder {
         let planet = |m: &&willis::train::Member| m.kind == MemberKind::Planet;
         Self {
             span,
+            part: false,
+            before: None,
+            members: train.members().iter().map(|m| m.name.clone()).collect(),
             planets: train.members().iter().filter(planet).map(|m| m.name.clone()).collect(),
             meshes: train.meshes().iter().map(|m| m.name.clone()).collect(),
             curves: vec![],
@@ -203,15 +225,61 @@ impl TimePlotBuilder {
         }
     }
 
+    /// Only what happens between two times, s.
+    pub fn within(self, window: [f64; 2]) -> Self {
+        Self { span: window, part: true, ..self }
+    }
+
+    /// Takes a row into curves and modes.
+    fn take(&mut self, time: f64, values: &[f64]) {
+        for (k, _, curve) in &mut self.curves {
+            curve.push(time, values[*k]);
+        }
+        for (k, _, modes) in &mut self.modes {
+            modes.push(time, values[*k]);
+        }
+    }
+
+    /// Takes what of a row lies in the window: at its ends the values between this row and the one before.
+    fn take_part(&mut self, time: f64, values: &[f64]) {
+        let before = self.before.replace((time, values.to_vec()));
+        let [from, to] = self.span;
+        let Some((earlier, old)) = before.filter(|b| b.0 < time) else {
+            if (from..=to).contains(&time) {
+                self.take(time, values);
+            }
+            return;
+        };
+        let modes: Vec<usize> = self.modes.iter().map(|m| m.0).collect();
+        for end in [from, to].into_iter().filter(|end| earlier < *end && *end < time) {
+            let part = (end - earlier) / (time - earlier);
+            let between = |k: usize| if modes.contains(&k) { old[k] } else { old[k] + part * (values[k] - old[k]) };
+            let row: Vec<f64> = (0..values.len()).map(between).collect();
+            self.take(end, &row);
+        }
+        if (from..=to).contains(&time) {
+            self.take(time, values);
+        }
+    }
+
     /// The figure.
     pub fn finish(self, report: &RunReport) -> TimePlot {
         let [start, end] = self.span;
         let reached = report.end_s;
-        let axis =
-            if reached > start && reached - start < 0.2 * (end - start) { [start, reached] } else { [start, end] };
+        let axis = if !self.part && reached > start && reached - start < 0.2 * (end - start) {
+            [start, reached]
+        } else {
+            [start, end]
+        };
         let panels = KINDS.iter().filter_map(|(kind, quantity)| {
             let own: Vec<_> = self.curves.iter().filter(|(_, c, _)| c.kind == *kind).collect();
-            panel(quantity, own.first()?.1.unit, own.iter().map(|(_, c, d)| (label(c), d.pieces())))
+            let mut panel = panel(quantity, own.first()?.1.unit, own.iter().map(|(_, c, d)| (label(c), d.pieces())))?;
+            if *kind == ColumnKind::Speed {
+                // The frame is the first member.
+                let place = |name: &String| self.members.iter().position(|m| m == name)?.checked_sub(1);
+                panel.lines.iter_mut().for_each(|l| l.colour = l.names.first().and_then(place));
+            }
+            Some(panel)
         });
         let panels = panels.collect();
         let mut modes: Vec<_> = self
@@ -264,7 +332,7 @@ fn panel(
         }
         match lines.iter_mut().find(|l| agree(&l.pieces, &pieces)) {
             Some(same) => same.names.push(name),
-            None => lines.push(TimeLine { names: vec![name], pieces }),
+            None => lines.push(TimeLine { names: vec![name], colour: None, pieces }),
         }
     }
     let all = lines.len();
@@ -319,17 +387,16 @@ impl Recorder for TimePlotBuilder {
     }
 
     fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
-        for (k, _, curve) in &mut self.curves {
-            curve.push(sample.time_s, sample.values[*k]);
-        }
-        for (k, _, modes) in &mut self.modes {
-            modes.push(sample.time_s, sample.values[*k]);
+        match self.part {
+            true => self.take_part(sample.time_s, sample.values),
+            false => self.take(sample.time_s, sample.values),
         }
         ControlFlow::Continue(())
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        if event.is_start() {
+        let inside = !self.part || (self.span[0]..=self.span[1]).contains(&event.time_s);
+        if event.is_start() || !inside {
             return ControlFlow::Continue(());
         }
         self.event_count += 1;

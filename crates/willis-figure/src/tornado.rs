@@ -14,6 +14,7 @@ pub(crate) const KIND: Kind<Tornado> = Kind {
     title: "What matters most",
     takes: &[Ask::State, Ask::Operation],
     effort: kind::of_operations,
+    applies: None,
     make: ranking,
     draw: |data, _| draw::draw(data),
 };

@@ -4,10 +4,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
+use willis::units::Dimension;
 use willis::work::Work;
 use willis_figure::{Ask, Drawing, Figure, FigureKind, FigureRequest, Theme, draw, themed};
 
-use super::amount::pair;
+use super::amount::{pair, values};
 use super::names;
 #[cfg(feature = "clap")]
 use super::names::Known;
@@ -46,6 +47,12 @@ pub struct Draw {
     /// Draw teeth without geometry as nominal ones of module 1.
     #[cfg_attr(feature = "clap", arg(long))]
     pub nominal: bool,
+    /// From when a scenario is shown (time): "3 s".
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME"))]
+    pub from: Option<String>,
+    /// Until when a scenario is shown (time): "3500 ms".
+    #[cfg_attr(feature = "clap", arg(long, value_name = "TIME"))]
+    pub to: Option<String>,
     /// Wheels turn (front, in SVG).
     #[cfg_attr(feature = "clap", arg(long))]
     pub animated: bool,
@@ -68,6 +75,8 @@ impl Default for Draw {
             terminals: None,
             balance: None,
             nominal: false,
+            from: None,
+            to: None,
             animated: false,
             theme: Look::Light,
             scale: 2.0,
@@ -158,8 +167,22 @@ impl Draw {
             terminals: self.terminals.clone(),
             balance: pair(self.balance.as_deref())?,
             nominal: self.nominal,
+            window: self.window()?,
             samples: 0,
         })
+    }
+
+    /// From when to when a scenario is shown.
+    fn window(&self) -> Result<Option<[f64; 2]>, Diagnostics> {
+        let time = |field: &str, given: &Option<String>| match given {
+            None => Ok(None),
+            Some(text) => {
+                values(field, std::slice::from_ref(text), Dimension::TIME).map(|all| all.first().map(|q| q.si()))
+            }
+        };
+        let (from, to) = (time("from", &self.from)?, time("to", &self.to)?);
+        let asked = from.is_some() || to.is_some();
+        Ok(asked.then(|| [from.unwrap_or(f64::NEG_INFINITY), to.unwrap_or(f64::INFINITY)]))
     }
 
     fn drawing(&self) -> Drawing {
@@ -186,15 +209,24 @@ impl Draw {
     }
 }
 
+/// Outlines and dimensions of what has a true size.
+const DXF: Form = Form { name: "dxf", endings: &["dxf"], about: "outlines and dimensions for CAD (front)" };
+
+fn no_drawing(kind: FigureKind) -> Diagnostic {
+    let message = format!("`draw {}` has no DXF: nothing in it has a true size", kind.name());
+    Diagnostic::new(Code::Unfit, "", message).hint("`draw front` has one; other pictures are SVG or PNG")
+}
+
 impl Question for Draw {
     const NAME: &'static str = "draw";
     #[cfg(feature = "png")]
     const FORMS: &'static [Form] = &[
         Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" },
         Form { name: "png", endings: &["png"], about: "a picture of pixels" },
+        DXF,
     ];
     #[cfg(not(feature = "png"))]
-    const FORMS: &'static [Form] = &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }];
+    const FORMS: &'static [Form] = &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }, DXF];
     type Answer = DrawAnswer;
 
     fn check(&self) -> Result<(), Diagnostics> {
@@ -259,7 +291,15 @@ impl Question for Draw {
             DrawAnswer::All(all) => all.figures.iter().collect(),
         };
         let picture = |figure: &Figure| -> Result<File, Refusal> {
-            let (name, svg) = (format!("{}.{form}", figure.kind().name()), self.svg(figure));
+            let name = format!("{}.{form}", figure.kind().name());
+            if form == DXF.name {
+                let bytes = match figure {
+                    Figure::Front(view) => willis_figure::front_dxf(view).into_bytes(),
+                    _ => return Err(no_drawing(figure.kind()).into()),
+                };
+                return Ok(File { name, bytes, about: figure.title().to_owned() });
+            }
+            let svg = self.svg(figure);
             let bytes = match form {
                 #[cfg(feature = "png")]
                 "png" => willis_figure::png(&svg, self.scale)

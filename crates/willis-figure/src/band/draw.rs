@@ -2,6 +2,7 @@
 
 use svg::node::element::Group;
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{Anchor, BOLD, FAINT, INK, colour, digits, fit, line, lines, page, rectangle, text};
 use crate::{BandPoint, Bands};
@@ -64,7 +65,7 @@ fn words(all: &Bands) -> String {
 
 fn legend(y: f64) -> (Group, f64) {
     let entries = ["5 % to 95 %", "25 % to 75 %", "median", "as the file says"];
-    let mut g = Group::new();
+    let mut g = guide(Group::new());
     for (k, entry) in entries.iter().enumerate() {
         let x = 28.0 + 170.0 * k as f64;
         g = match k {
@@ -80,9 +81,10 @@ fn legend(y: f64) -> (Group, f64) {
 
 type Reading<'a> = &'a dyn Fn(&BandPoint) -> (Option<[f64; 5]>, Option<f64>);
 
-fn panel(all: &Bands, top: f64, name: String, of: Reading<'_>) -> Group {
+fn panel(all: &Bands, top: f64, name: String, reading: Reading<'_>) -> Group {
+    let what = if name.is_empty() { "efficiency" } else { "loss_w" };
     let values = all.points.iter().flat_map(|p| {
-        let (band, nominal) = of(p);
+        let (band, nominal) = reading(p);
         band.into_iter().flatten().chain(nominal)
     });
     let chart = Chart {
@@ -95,20 +97,24 @@ fn panel(all: &Bands, top: f64, name: String, of: Reading<'_>) -> Group {
     };
     let mut g = Group::new().add(chart.grid());
     for ([low, high], strength) in [([0, 4], 0.2), ([1, 3], 0.45)] {
-        let points: Vec<_> =
-            (all.x.values.iter().zip(&all.points)).map(|(x, p)| (*x, of(p).0.map(|q| [q[low], q[high]]))).collect();
-        for area in chart.areas(&points) {
-            g = g.add(area.set("fill", colour(Some(0), strength)));
+        let points: Vec<_> = (all.x.values.iter().zip(&all.points))
+            .map(|(x, p)| (*x, reading(p).0.map(|q| [q[low], q[high]])))
+            .collect();
+        for (run, area) in chart.areas(&points).into_iter().enumerate() {
+            let word = format!("band{run}-{}", if low == 0 { 90 } else { 50 });
+            g = g.add(of(area.set("fill", colour(Some(0), strength)), &word, &[Of::Quantity(what)]));
         }
     }
     let over = |y: &dyn Fn(&BandPoint) -> Option<f64>| -> Vec<(f64, Option<f64>)> {
         all.x.values.iter().zip(&all.points).map(|(x, p)| (*x, y(p))).collect()
     };
-    if let Some(median) = chart.path(over(&|p| of(p).0.map(|q| q[2]))) {
-        g = g.add(median.set("stroke", colour(Some(0), 1.0)).set("stroke-width", 2.4));
+    if let Some(median) = chart.path(over(&|p| reading(p).0.map(|q| q[2]))) {
+        let median = median.set("stroke", colour(Some(0), 1.0)).set("stroke-width", 2.4);
+        g = g.add(of(median, "median", &[Of::Quantity(what)]));
     }
-    if let Some(nominal) = chart.path(over(&|p| of(p).1)) {
-        g = g.add(nominal.set("stroke", INK).set("stroke-width", 1.4).set("stroke-dasharray", "6 4"));
+    if let Some(nominal) = chart.path(over(&|p| reading(p).1)) {
+        let nominal = nominal.set("stroke", INK).set("stroke-width", 1.4).set("stroke-dasharray", "6 4");
+        g = g.add(of(nominal, "nominal", &[Of::Quantity(what)]));
     }
     g.add(chart.frame())
 }

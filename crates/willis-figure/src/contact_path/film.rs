@@ -4,6 +4,7 @@ use svg::node::element::{Circle, Group, Path};
 
 use super::{ContactPath, MeshPath, contact_path};
 use crate::kind::{self, Ask, Kind};
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
     ticks, wide,
@@ -13,6 +14,7 @@ pub(crate) const KIND: Kind<ContactPath> = Kind {
     title: "Oil film along the path of contact",
     takes: &[Ask::Operation, Ask::Part],
     effort: kind::of_operations,
+    applies: None,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
     draw: |data, _| draw(data),
 };
@@ -70,27 +72,28 @@ pub fn draw(path: &ContactPath) -> String {
         (mixed, full, 0.16, "mixed: asperities and film share it"),
         (full, high, 0.05, "full film"),
     ];
-    for (a, b, strength, _) in bands {
-        g = g.add(rectangle(LEFT, y(b), RIGHT - LEFT, y(a) - y(b), &colour(None, strength)));
+    for (a, b, strength, words) in bands {
+        let band = rectangle(LEFT, y(b), RIGHT - LEFT, y(a) - y(b), &colour(None, strength));
+        g = g.add(of(band, "band", &[Of::Quantity(&format!("film_ratio {words}"))]));
     }
     for t in log_ticks(low, high) {
         g = g
-            .add(line((LEFT - 4.0, y(t)), (LEFT, y(t)), LINE, 1.0))
+            .add(guide(line((LEFT - 4.0, y(t)), (LEFT, y(t)), LINE, 1.0)))
             .add(text(LEFT - 8.0, y(t) + 4.0, 11.0, Anchor::End, &digits(t)).set("fill", FAINT));
     }
     for t in ticks(from, to, 9) {
         g = g
-            .add(line((x(t), bottom), (x(t), bottom + 4.0), LINE, 1.0))
+            .add(guide(line((x(t), bottom), (x(t), bottom + 4.0), LINE, 1.0)))
             .add(text(x(t), bottom + 17.0, 11.0, Anchor::Middle, &digits(t)).set("fill", FAINT));
     }
     for limit in path.limits {
-        g = g.add(line((LEFT, y(limit)), (RIGHT, y(limit)), INK, 1.2));
+        g = g.add(guide(line((LEFT, y(limit)), (RIGHT, y(limit)), INK, 1.2)));
     }
     g = g
-        .add(line((x(0.0), TOP), (x(0.0), bottom), FAINT, 1.0).set("stroke-dasharray", "10 3 2 3"))
+        .add(guide(line((x(0.0), TOP), (x(0.0), bottom), FAINT, 1.0).set("stroke-dasharray", "10 3 2 3")))
         .add(text(x(0.0), TOP - 6.0, 12.0, Anchor::Middle, "C").set("font-weight", "bold"));
     for (k, m) in path.meshes.iter().enumerate() {
-        g = g.add(curve(m, k, &x, &y));
+        g = g.add(of(curve(m, k, &x, &y), "curve", &[Of::Mesh(&m.name), Of::Quantity("film_ratio")]));
     }
     // Words of the bands over the curves, where none should be.
     for (a, b, _, words) in bands {
@@ -104,7 +107,7 @@ pub fn draw(path: &ContactPath) -> String {
         g = g.add(halo(text(LEFT + 8.0, at, 12.0, Anchor::Start, words).set("fill", FAINT), PAPER, 3.0));
     }
     g = g
-        .add(rectangle(LEFT, TOP, RIGHT - LEFT, bottom - TOP, "none").set("stroke", LINE).set("stroke-width", 1))
+        .add(guide(rectangle(LEFT, TOP, RIGHT - LEFT, bottom - TOP, "none").set("stroke", LINE).set("stroke-width", 1)))
         .add(labels(path, &x, &y, bottom))
         .add(text(LEFT, TOP - 24.0, 12.0, Anchor::Start, "film thickness over composite roughness λ"))
         .add(text(
@@ -221,13 +224,14 @@ fn labels(path: &ContactPath, x: &dyn Fn(f64) -> f64, y: &dyn Fn(f64) -> f64, bo
         let x = RIGHT + 24.0;
         let least = m.least_film_ratio().unwrap_or(0.0);
         let words = format!("least λ {}: {}", digits(least), regime(path, least));
-        g = g
+        let own = Group::new()
             .add(line((end, at), (x - 4.0, place), colour(Some(k), 1.0).as_str(), 0.8))
             .add(
                 text(x, place + 4.0, 13.0, Anchor::Start, &fit(&m.name, (WIDTH - 14.0 - x) / BOLD, 13.0))
                     .set("font-weight", "bold"),
             )
             .add(text(x, place + 19.0, 11.0, Anchor::Start, &words).set("fill", FAINT));
+        g = g.add(of(own, "name", &[Of::Mesh(&m.name)]));
         debug_assert!(wide(&words, 11.0) < WIDTH - x);
     }
     g

@@ -5,6 +5,7 @@ use svg::node::element::{Group, Path};
 use super::film::heading;
 use super::{ContactPath, MeshPath, PathPoint, contact_path};
 use crate::kind::{self, Ask, Kind};
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text, ticks,
 };
@@ -13,6 +14,7 @@ pub(crate) const KIND: Kind<ContactPath> = Kind {
     title: "Contact along its path",
     takes: &[Ask::Operation, Ask::Part],
     effort: kind::of_operations,
+    applies: None,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
     draw: |data, _| draw(data),
 };
@@ -96,14 +98,14 @@ pub fn draw(path: &ContactPath) -> String {
         let x = |s: f64| left + (s - from) / (to - from) * column;
         g = g
             .add(text(left, 92.0, 13.0, Anchor::Start, &fit(&m.name, column / BOLD, 13.0)).set("font-weight", "bold"))
-            .add(breaks(m, &x, bottom));
+            .add(of(breaks(m, &x, bottom), "breaks", &[Of::Mesh(&m.name)]));
         for (r, row) in ROWS.iter().enumerate() {
             let top = TOP + r as f64 * STEP;
             g = g.add(panel(row, shown, k, top, (left, left + column), &x));
         }
         for t in ticks(from, to, (column / 45.0) as usize) {
             g = g
-                .add(line((x(t), bottom), (x(t), bottom + 4.0), LINE, 1.0))
+                .add(guide(line((x(t), bottom), (x(t), bottom + 4.0), LINE, 1.0)))
                 .add(text(x(t), bottom + 17.0, 11.0, Anchor::Middle, &digits(t)).set("fill", FAINT));
         }
         let driver = format!("s, mm; {} drives, contact runs {}", m.gears[m.driver], ["A to E", "E to A"][m.driver]);
@@ -235,13 +237,14 @@ fn panel(
     let scale = if high > 0.0 { high * 1.1 } else { 1.0 };
     let y = |v: f64| bottom - v / scale * PANEL;
     for t in ticks(0.0, scale, 4) {
-        g = g.add(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0));
+        g = g.add(guide(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0)));
         if k == 0 {
             g = g.add(text(left - 6.0, y(t) + 4.0, 11.0, Anchor::End, &digits(t)).set("fill", FAINT));
         }
     }
     let m = &shown[k];
     let mut drawn = false;
+    let mut own = of(Group::new(), "curve", &[Of::Mesh(&m.name), Of::Quantity(row.title)]);
     for (get, dashed) in row.curves {
         // Where there is no value the line breaks.
         for piece in m.points.split(|p| get(p).is_none()) {
@@ -261,7 +264,7 @@ fn panel(
                     number(x(last.s_mm)),
                     number(bottom)
                 );
-                g = g.add(Path::new().set("d", d).set("fill", colour(Some(k), 0.25)));
+                own = own.add(Path::new().set("d", d).set("fill", colour(Some(k), 0.25)));
             }
             let mut line = Path::new()
                 .set("d", format!("M{}", all.join(" L")))
@@ -272,15 +275,16 @@ fn panel(
             if *dashed {
                 line = line.set("stroke-dasharray", "6 3");
             }
-            g = g.add(line);
+            own = own.add(line);
         }
     }
+    g = g.add(own);
     if !drawn {
         let words = "not computed: the efficiency is given";
         let t = text((left + right) / 2.0, top + PANEL / 2.0 + 4.0, 11.0, Anchor::Middle, words);
         g = g.add(halo(t.set("fill", FAINT), PAPER, 4.0));
     }
-    g = g.add(rectangle(left, top, right - left, PANEL, "none").set("stroke", LINE).set("stroke-width", 1));
+    g = g.add(guide(rectangle(left, top, right - left, PANEL, "none").set("stroke", LINE).set("stroke-width", 1)));
     if k == 0 {
         let title = text(left, top - 5.0, 12.0, Anchor::Start, &fit(row.title, right - left, 12.0));
         g = g.add(halo(title, PAPER, 4.0));

@@ -11,6 +11,7 @@ use svg::node::element::Group;
 use willis::analysis::Verdict;
 use willis::hypergraph::{FlowReport, Hypergraph, NodeKind};
 
+use crate::parts::alive::guide;
 use crate::parts::style::{Anchor, BOLD, FAINT, LINE, fit, line, lines, number, page, text, watts, wide};
 use layout::Drawing;
 use marks::{Round, ground, shape, stroke};
@@ -53,12 +54,14 @@ pub fn draw(all: &FlowReport) -> String {
         let title = format!("{}{state}", o.name);
         for (k, g) in o.solutions.iter().enumerate() {
             let number = if count > 1 { format!(", solution {} of {count}", k + 1) } else { String::new() };
-            panels.push((format!("{title}{number}"), caption(g), Some(Drawing::new(g))));
+            let title = format!("{title}{number}");
+            let drawing = Drawing::new(g, &title);
+            panels.push((title, caption(g), Some(drawing)));
         }
-        for g in &o.dissipative_solutions {
+        for (k, g) in o.dissipative_solutions.iter().enumerate() {
             let mut words = vec!["Locked: this is what it would take if every loaded member pushed.".to_owned()];
             words.extend(caption(g));
-            panels.push((title.clone(), words, Some(Drawing::new(g))));
+            panels.push((title.clone(), words, Some(Drawing::new(g, &format!("{title}, locked {}", k + 1)))));
         }
         if count == 0 && o.dissipative_solutions.is_empty() {
             let word = if o.verdict == Verdict::Locked { "The train is locked" } else { "Not determined" };
@@ -188,7 +191,7 @@ fn legend(kinds: &[NodeKind], [round, within, ground_marks, rest]: [bool; 4], to
             "loss; η: outgoing over incoming power",
         ));
     }
-    let mut g = Group::new();
+    let mut g = guide(Group::new());
     let (mut x, mut y) = (MARGIN, top + 14.0);
     for (mark, words) in entries {
         let room = 30.0 + wide(words, SMALL) + 18.0;

@@ -8,6 +8,7 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 
 use svg::node::element::{Group, Path, Polygon, Style};
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, badge, colour, digits, fit, halo, line, lines, number, page, rectangle, text, wide,
 };
@@ -82,7 +83,7 @@ pub fn draw(view: &Front, animated: bool) -> String {
     let (x, y) = if several { (EDGE, TOP + panels.1 + 16.0) } else { (EDGE + size + 32.0, TOP) };
     let mut bottom = y;
     if let Some(mesh) = view.planes.first().and_then(|p| p.meshes.first()).map(|&m| &view.meshes[m]) {
-        page_body = page_body.add(enlarged(view, mesh, x, y));
+        page_body = page_body.add(of(enlarged(view, mesh, x, y), "enlarged", &[Of::Mesh(&mesh.name)]));
         bottom = y + ENLARGED + 62.0;
     }
     let (x, y, room) =
@@ -146,6 +147,7 @@ fn description(view: &Front) -> String {
 /// The wheels of one plane.
 fn panel(view: &Front, plane: &FrontPlane, at: &View, first: bool, animated: bool) -> Group {
     let mut g = Group::new();
+    let set = Of::Mesh(&view.set);
     // Rings behind, suns before their planets.
     let mut order = plane.wheels.clone();
     order.sort_by_key(|&w| (!view.wheels[w].internal, view.wheels[w].planet, w));
@@ -155,7 +157,7 @@ fn panel(view: &Front, plane: &FrontPlane, at: &View, first: bool, animated: boo
         for (body, _) in w.bodies.iter().enumerate() {
             let mut path = Path::new()
                 .set("d", outline(w, body, at))
-                .set("fill", colour(Some(k), 0.24))
+                .set("fill", colour(w.colour, 0.24))
                 .set("fill-rule", "evenodd")
                 .set("stroke", INK)
                 .set("stroke-width", number(weight))
@@ -163,25 +165,27 @@ fn panel(view: &Front, plane: &FrontPlane, at: &View, first: bool, animated: boo
             if animated && w.turns != 0.0 {
                 path = turning(path, view, w, at.at(w.bodies[body].centre_mm));
             }
-            g = g.add(path);
+            g = g.add(of(path, &format!("wheel{body}"), &[Of::Member(&w.name), set]));
         }
     }
-    g = g.add(circles(view, plane, at)).add(carrier(view, plane, at));
+    let word = |name: &str| format!("{name}{}", plane.wheels.first().copied().unwrap_or(0));
+    let carried = of(carrier(view, plane, at), &word("carrier"), &[Of::Member(&view.carrier), set]);
+    g = g.add(guide(circles(view, plane, at))).add(carried);
     if let Some(mesh) = plane.meshes.first().map(|&m| &view.meshes[m]) {
-        g = g.add(action(mesh, at));
+        g = g.add(of(action(mesh, at), "action", &[Of::Mesh(&mesh.name)]));
         if first {
             let half = window(view, mesh) * at.scale;
             let (x, y) = at.at(mesh.pitch_point_mm);
-            g = g.add(
+            g = g.add(guide(
                 rectangle(x - half, y - half, 2.0 * half, 2.0 * half, "none")
                     .set("stroke", INK)
                     .set("stroke-width", 0.8)
                     .set("stroke-dasharray", "3 2"),
-            );
+            ));
         }
     }
     for &k in &order {
-        g = g.add(marks(view, k, at));
+        g = g.add(of(marks(view, k, at), "mark", &[Of::Member(&view.wheels[k].name), set]));
     }
     g
 }
@@ -332,7 +336,7 @@ fn marks(view: &Front, k: usize, at: &View) -> Group {
         let r = w.root_radius_mm * at.scale;
         g = g.add(badge(c.0, c.1, &key));
         if body == 0 && r > 46.0 {
-            let over = |t| halo(t, &colour(Some(k), 0.24), 3.0);
+            let over = |t| halo(t, &colour(w.colour, 0.24), 3.0);
             g = g
                 .add(over(text(c.0, c.1 - 28.0, 12.0, Anchor::Middle, &fit(own(view, &w.name), 1.5 * r, 12.0))))
                 .add(over(text(c.0, c.1 - 14.0, 12.0, Anchor::Middle, &format!("z = {}", w.teeth))));
@@ -384,11 +388,11 @@ fn numbers(view: &Front, x: f64, y: f64, room: f64) -> (Group, f64) {
         g = g.add(text(right - from, y, 12.0, Anchor::End, head).set("fill", FAINT));
     }
     y += 6.0;
-    g = g.add(line((x, y), (right, y), LINE, 1.0));
+    g = g.add(guide(line((x, y), (right, y), LINE, 1.0)));
     for (k, w) in view.wheels.iter().enumerate() {
         y += 22.0;
-        g = g
-            .add(rectangle(x + 12.0, y - 13.0, 22.0, 18.0, &colour(Some(k), 0.24)))
+        let mut row = Group::new()
+            .add(rectangle(x + 12.0, y - 13.0, 22.0, 18.0, &colour(w.colour, 0.24)))
             .add(badge(x + 10.0, y - 4.0, &(k + 1).to_string()))
             .add(text(x + 40.0, y, 12.0, Anchor::Start, &fit(own(view, &w.name), name_room - 16.0, 12.0)));
         let turns = w.ratio.replace('-', "−");
@@ -402,11 +406,12 @@ fn numbers(view: &Front, x: f64, y: f64, room: f64) -> (Group, f64) {
             w.teeth.to_string(),
         ];
         for (cell, (_, from)) in cells.iter().zip(columns) {
-            g = g.add(text(right - from, y, 12.0, Anchor::End, cell));
+            row = row.add(text(right - from, y, 12.0, Anchor::End, cell));
         }
+        g = g.add(of(row, "row", &[Of::Member(&w.name)]));
     }
     y += 12.0;
-    g = g.add(line((x, y), (right, y), LINE, 1.0));
+    g = g.add(guide(line((x, y), (right, y), LINE, 1.0)));
     let mut say = |g: Group, words: &str, ink: &str| {
         let mut g = g;
         for row in lines(words, room, 12.0) {

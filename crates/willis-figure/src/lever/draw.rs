@@ -2,7 +2,7 @@
 
 use svg::node::element::{Circle, Group, Path};
 
-use crate::parts::alive::{Of, of};
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, figures, fit, halo, line, lines, number, page, rectangle,
     text, ticks, wide,
@@ -283,10 +283,10 @@ fn levers(v: &View<'_>, row: &[usize], top: f64) -> Group {
         let left = lefts[k].expect("just placed");
         for n in shown(bar) {
             let y = top + v.y(n.position);
-            under = under.add(line((left + NAMES, y), (left + v.width(bar), y), GUIDE, 1.0));
+            under = under.add(guide(line((left + NAMES, y), (left + v.width(bar), y), GUIDE, 1.0)));
         }
     }
-    for link in &v.lever.links {
+    for (nth, link) in v.lever.links.iter().enumerate() {
         let here: Vec<(f64, f64)> = link
             .points
             .iter()
@@ -294,9 +294,9 @@ fn levers(v: &View<'_>, row: &[usize], top: f64) -> Group {
                 Some((lefts[*b]? + v.x(&v.lever.bars[*b], 0.0), top + v.y(v.lever.bars[*b].nodes[*n].position)))
             })
             .collect();
-        for pair in here.windows(2) {
-            under = under.add(line(pair[0], pair[1], FAINT, 1.2).set("stroke-dasharray", "6 4"));
-        }
+        let own = here.windows(2).map(|w| line(w[0], w[1], FAINT, 1.2).set("stroke-dasharray", "6 4"));
+        let word = format!("link{nth}-{}", row.first().copied().unwrap_or(0));
+        under = under.add(of(own.fold(Group::new(), Group::add), &word, &[Of::Member(&link.member)]));
     }
     row.iter().fold(under, |g, &k| {
         let left = lefts[k].expect("just placed");
@@ -345,7 +345,8 @@ fn across(v: &View<'_>, rows: &[Vec<usize>], top: f64, content: f64) -> Group {
                 n(x_end, y_end)
             );
             let way = Path::new().set("d", d).set("fill", "none").set("stroke", FAINT).set("stroke-width", 1.2);
-            g = g.add(way.set("stroke-dasharray", "6 4").set("data-member", link.member.as_str()));
+            let way = way.set("stroke-dasharray", "6 4");
+            g = g.add(of(way, &format!("across{used}"), &[Of::Member(&link.member)]));
             used += 1;
         }
     }
@@ -361,10 +362,10 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
             text(NAMES + PAD - 14.0, 16.0, 14.0, Anchor::Start, &fit(&head, (width - NAMES - 12.0) / BOLD, 14.0))
                 .set("font-weight", "bold"),
         )
-        .add(scale(v, bar));
+        .add(guide(scale(v, bar)));
     let (last, first) = ends(bar);
     let rest = v.x(bar, 0.0);
-    g = g.add(line((rest, v.y(first.position)), (rest, v.y(last.position)), LINE, 3.5));
+    g = g.add(guide(line((rest, v.y(first.position)), (rest, v.y(last.position)), LINE, 3.5)));
     for case in 0..v.cases {
         if let (Some(a), Some(b)) = (v.speed(first, case), v.speed(last, case)) {
             let l =
@@ -389,11 +390,13 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
             let about = [Of::Member(&n.member), Of::Mesh(&name), Of::State(&v.lever.cases[case].name)];
             g = g.add(of(dot, "speed", &about));
         }
-        g = g.add(mark(rest, v.y(n.position), &n.roles));
+        let own = [Of::Member(&n.member), Of::Mesh(&name)];
+        let mut point = mark(rest, v.y(n.position), &n.roles);
         let held = |c: &LeverCase| c.held.contains(&n.member);
         if v.lever.cases[..v.cases].iter().any(held) {
-            g = g.add(ground(rest - 6.0, v.y(n.position)));
+            point = point.add(ground(rest - 6.0, v.y(n.position)));
         }
+        g = g.add(of(point, "point", &own));
     }
     if v.cases > 1 {
         g = g.add(letters(v, bar, first));
@@ -481,11 +484,13 @@ fn letters(v: &View<'_>, bar: &LeverBar, first: &LeverNode) -> Group {
     let mut g = Group::new();
     for ((case, x), place) in drawn.into_iter().zip(at) {
         let letter = text(place, y, 12.0, Anchor::Middle, &v.lever.cases[case].letter).set("font-weight", "bold");
-        g = g.add(line((place, y + 3.0), (x, end - 4.0), &case_colour(v, case), 0.8)).add(halo(
+        let own = Group::new().add(line((place, y + 3.0), (x, end - 4.0), &case_colour(v, case), 0.8)).add(halo(
             letter.set("fill", case_colour(v, case)),
             PAPER,
             3.0,
         ));
+        let name = bar.sets.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" + ");
+        g = g.add(of(own, "letter", &[Of::Mesh(&name), Of::State(&v.lever.cases[case].name)]));
     }
     g
 }
@@ -502,7 +507,7 @@ fn names(v: &View<'_>, bar: &LeverBar) -> Group {
         let name = fit(&n.member, (right - 2.0) / weight, size);
         let mut label = text(right, y - 5.0, size, Anchor::End, &name);
         label = if planet(n) { label.set("fill", FAINT) } else { label.set("font-weight", "bold") };
-        g = g.add(line((right + 2.0, *y), (NAMES + 4.0, *wished), LINE, 0.8)).add(halo(label, PAPER, 3.0));
+        g = g.add(guide(line((right + 2.0, *y), (NAMES + 4.0, *wished), LINE, 0.8))).add(halo(label, PAPER, 3.0));
         let speed = match (v.cases, n.speeds[0].map(|w| w * v.factor)) {
             (1, Some(w)) => v.readable(w),
             (1, None) => "not settled".to_owned(),
@@ -541,15 +546,14 @@ fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool
     }
     let own = near.iter().map(|p| bar.nodes[p.node].position);
     let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-    g = g.add(line((centre, v.y(high)), (centre, v.y(low)), LINE, 3.5));
+    g = g.add(guide(line((centre, v.y(high)), (centre, v.y(low)), LINE, 3.5)));
     let part = |p: &LeverPull| p.torque.abs() / v.largest;
     let side = |p: &LeverPull| if p.torque < 0.0 { -1.0 } else { 1.0 };
     let loaded: Vec<&LeverPull> = near.iter().copied().filter(|p| part(p) > 1e-9).collect();
     for p in &loaded {
         let n = &bar.nodes[p.node];
         let one = arrow(centre, v.y(p.point), side(p) * (LONGEST_ARROW * part(p)).max(7.0), &own_colour(n));
-        let own = p.mesh.as_deref().unwrap_or(&set.name);
-        g = g.add(of(one, "torque", &[Of::Member(&n.member), Of::Mesh(own)]));
+        g = g.add(of(one, "torque", &whose(bar, set, p)));
     }
     // Values stand on the side that their arrow leaves free, clear of the arrows of others.
     let mut placed: Vec<(f64, f64)> = Vec::new();
@@ -565,20 +569,26 @@ fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool
         let x = centre - side * 7.0;
         let anchor = if side > 0.0 { Anchor::End } else { Anchor::Start };
         if (at - y).abs() > 3.0 {
-            g = g.add(line((centre - side * 3.0, y), (x + side, at), LINE, 0.8));
+            g = g.add(guide(line((centre - side * 3.0, y), (x + side, at), LINE, 0.8)));
         }
         g = g.add(halo(text(x, at + 3.5, 10.0, anchor, &v.pull(p)), PAPER, 5.0));
     }
     for p in &near {
         let n = &bar.nodes[p.node];
         let dot = Circle::new().set("cx", number(centre)).set("cy", number(v.y(n.position))).set("r", 2.6);
-        g = g.add(dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", 1));
+        let dot = dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", 1);
+        g = g.add(of(dot, "arm", &whose(bar, set, p)));
     }
     for p in &near {
         let dot = Circle::new().set("cx", number(centre)).set("cy", number(v.y(p.point))).set("r", 1.6);
-        g = g.add(dot.set("fill", own_colour(&bar.nodes[p.node])));
+        g = g.add(of(dot.set("fill", own_colour(&bar.nodes[p.node])), "attack", &whose(bar, set, p)));
     }
     g
+}
+
+/// What a force stands for.
+fn whose<'b>(bar: &'b LeverBar, set: &'b LeverSet, p: &'b LeverPull) -> [Of<'b>; 2] {
+    [Of::Member(&bar.nodes[p.node].member), Of::Mesh(p.mesh.as_deref().unwrap_or(&set.name))]
 }
 
 /// Whether an arrow points away from where the values of this side stand.
@@ -628,7 +638,7 @@ fn caption(v: &View<'_>) -> Vec<String> {
 
 /// Shapes, and the letters of the cases.
 fn key(v: &View<'_>, top: f64, width: f64) -> (Group, f64) {
-    let mut g = Group::new();
+    let mut g = guide(Group::new());
     let mut y = top + 8.0;
     let nodes = || v.lever.bars.iter().flat_map(shown);
     let mut x = MARGIN;

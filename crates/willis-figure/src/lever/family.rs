@@ -6,7 +6,7 @@ use willis::train::{FRAME, Gear, MemberId, MemberKind, Train};
 use super::role::LeverRole;
 
 /// Gears that mesh with each other's planets on one carrier: a lever before it is placed.
-pub(super) struct Family {
+pub(crate) struct Family {
     pub name: String,
     pub carrier: MemberId,
     /// Every point but the carrier, with its number N; the reference first.
@@ -15,7 +15,7 @@ pub(super) struct Family {
     pub meshes: Vec<Contact>,
 }
 
-pub(super) struct Point {
+pub(crate) struct Point {
     pub member: MemberId,
     pub number: Rational,
     pub role: LeverRole,
@@ -23,7 +23,7 @@ pub(super) struct Point {
     pub way: Option<usize>,
 }
 
-pub(super) struct Contact {
+pub(crate) struct Contact {
     /// Position among the train's meshes.
     pub mesh: usize,
     /// Positions in [`Family::points`].
@@ -48,7 +48,7 @@ fn is_planet(train: &Train, m: MemberId) -> bool {
 }
 
 /// Follows the meshes of one carrier from planet to planet.
-pub(super) fn families(train: &Train) -> Vec<Family> {
+pub(crate) fn families(train: &Train) -> Vec<Family> {
     let mut taken = vec![false; train.meshes().len()];
     let mut all = Vec::new();
     while let Some(start) = taken.iter().position(|t| !t) {

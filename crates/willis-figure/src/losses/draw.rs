@@ -5,6 +5,7 @@ use willis::losses::entries;
 use willis::operating_point::LossKind;
 use willis::study::PointVerdict;
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, page, rectangle, text,
@@ -76,6 +77,20 @@ fn name(s: &LossSeries) -> String {
     }
 }
 
+/// What a series stands for: the teeth of a mesh, or another part that loses power.
+fn source(s: &LossSeries) -> [Of<'_>; 2] {
+    let (part, what) = match s.kind {
+        Some(LossKind::Sliding) => (Of::Mesh(&s.name), "loss_w sliding"),
+        Some(LossKind::Rolling) => (Of::Mesh(&s.name), "loss_w rolling"),
+        Some(LossKind::Bearing) => (Of::Element(&s.name), "loss_w bearing"),
+        Some(LossKind::Windage) => (Of::Element(&s.name), "loss_w windage"),
+        Some(LossKind::Churning) => (Of::Element(&s.name), "loss_w churning"),
+        Some(LossKind::Seal) => (Of::Element(&s.name), "loss_w seal"),
+        _ => (Of::Element(&s.name), "loss_w other"),
+    };
+    [part, Of::Quantity(what)]
+}
+
 fn letter(k: usize) -> String {
     char::from(b'A' + k as u8).to_string()
 }
@@ -138,13 +153,14 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
                 (chart.x.values[j], y)
             })
             .collect();
-        for area in axes.areas(&points) {
-            g = g.add(area.set("fill", fill(k, s)).set("stroke", PAPER).set("stroke-width", 0.8));
+        for (run, area) in axes.areas(&points).into_iter().enumerate() {
+            let area = area.set("fill", fill(k, s)).set("stroke", PAPER).set("stroke-width", 0.8);
+            g = g.add(of(area, &format!("area{run}"), &source(s)));
         }
     }
     let outline = (0..count).map(|j| (chart.x.values[j], total[j].filter(|_| known(j)).map(|t| t / size)));
     if let Some(outline) = axes.path(outline) {
-        g = g.add(outline.set("stroke", INK).set("stroke-width", 1.6));
+        g = g.add(of(outline.set("stroke", INK).set("stroke-width", 1.6), "curve", &[Of::Quantity("loss_w")]));
     }
     // Letters where a layer is thickest, if they fit.
     for (k, (below, above)) in layers.iter().enumerate() {
@@ -163,7 +179,8 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
     }
     if let Some(at) = chart.at {
         let x = axes.x(at);
-        g = g.add(line((x, axes.top), (x, axes.bottom), INK, 1.0).set("stroke-dasharray", "5 4"));
+        let mark = line((x, axes.top), (x, axes.bottom), INK, 1.0).set("stroke-dasharray", "5 4");
+        g = g.add(of(mark, "at", &[Of::Quantity(&chart.x.name)]));
         let (place, anchor) = if x > (LEFT + RIGHT) / 2.0 { (x - 5.0, Anchor::End) } else { (x + 5.0, Anchor::Start) };
         let label = text(place, axes.top + 14.0, 11.0, anchor, "operating point");
         g = g.add(halo(label, PAPER, 3.0));
@@ -180,10 +197,11 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
     let mut y = top + 8.0;
     for (k, s) in chart.series.iter().enumerate().rev() {
         let label = fit(&name(s), WIDTH - KEY - 60.0, 12.0);
-        g = g
+        let key = Group::new()
             .add(rectangle(KEY, y, 22.0, 15.0, &fill(k, s)))
             .add(text(KEY + 11.0, y + 12.0, 11.0, Anchor::Middle, &letter(k)).set("font-weight", "bold"))
             .add(text(KEY + 32.0, y + 12.0, 12.0, Anchor::Start, &label));
+        g = g.add(of(key, "key", &source(s)));
         y += 22.0;
     }
     // Efficiency as a small chart of its own below the legend.
@@ -201,7 +219,8 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
         let points = (0..count).map(|k| (chart.x.values[k], chart.efficiency[k].map(|e| 100.0 * e)));
         g = g.add(small.grid());
         if let Some(curve) = small.path(points) {
-            g = g.add(curve.set("stroke", colour(Some(0), 1.0)).set("stroke-width", 2));
+            let curve = curve.set("stroke", colour(Some(0), 1.0)).set("stroke-width", 2);
+            g = g.add(of(curve, "curve", &[Of::Quantity("efficiency")]));
         }
         g = g.add(small.frame());
     }
@@ -232,7 +251,7 @@ fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
             true => format!("{}, {} %", power(w), digits(100.0 * w / loss)),
             false => power(w),
         };
-        g = g
+        let mut bar = Group::new()
             .add(badge(37.0, y + 9.0, &letter(k)))
             .add(text(54.0, y + 13.0, 12.0, Anchor::Start, &fit(&name(s), start - 66.0, 12.0)))
             .add(rectangle(start, y + 1.0, length.max(0.8), 16.0, &fill(k, s)))
@@ -241,9 +260,10 @@ fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
         if let Some(law) = law(s) {
             let shown = fit(&law, WIDTH - 28.0 - from - 8.0, 10.0);
             let label = text(from + 8.0, y + 13.0, 10.0, Anchor::Start, &shown).set("fill", FAINT);
-            g = g.add(titled(label, &law));
+            bar = bar.add(titled(label, &law));
         }
+        g = g.add(of(bar, "bar", &source(s)));
         y += 22.0;
     }
-    (g.add(line((start, top + 20.0), (start, y), LINE, 1.0)), y)
+    (g.add(guide(line((start, top + 20.0), (start, y), LINE, 1.0))), y)
 }

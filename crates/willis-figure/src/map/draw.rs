@@ -1,18 +1,20 @@
 //! Efficiency maps.
 
+mod mesh;
+
 use std::fmt::Write;
 
-use contour::ContourBuilder;
-use svg::Node as _;
 use svg::node::element::{ClipPath, Definitions, Group, Path};
 use willis::study::PointVerdict;
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, number, page, rectangle,
-    text, watts, wide,
+    text, ticks, watts, wide,
 };
 use crate::{EfficiencyMap, MapVerdict};
+use mesh::{Height, Mesh, Place};
 
 const WIDTH: f64 = 940.0;
 const LEFT: f64 = 92.0;
@@ -26,6 +28,9 @@ const LOSSES: [f64; 19] =
 /// Bands of colour at most.
 const BANDS: usize = 9;
 
+/// The losses at the ends of the colours, in every map the same: one colour means one loss.
+const ENDS: [f64; 2] = [0.0005, 0.7];
+
 /// From little loss to much: lightness falls all the way, so that grey tells the same.
 const RAMP: [[u8; 3]; 6] = [
     [0xfb, 0xf8, 0xcf],
@@ -36,7 +41,11 @@ const RAMP: [[u8; 3]; 6] = [
     [0x2b, 0x58, 0x9c],
 ];
 
-fn ramp(part: f64) -> String {
+/// The colour of a band of losses.
+fn shade([low, high]: [f64; 2]) -> String {
+    let [first, last] = ENDS;
+    let middle = (low.clamp(first, last) * high.clamp(first, last)).sqrt();
+    let part = (middle / first).ln() / (last / first).ln();
     let place = part.clamp(0.0, 1.0) * (RAMP.len() - 1) as f64;
     let k = (place as usize).min(RAMP.len() - 2);
     let mix = |c: usize| {
@@ -47,7 +56,8 @@ fn ramp(part: f64) -> String {
 }
 
 /// An efficiency map: filled, labelled bands, lines of constant input power, hatching where there is no single answer,
-/// the operations of the file as points; of an automatic transmission below it the state that is best at every point.
+/// the operations of the file as points; of an automatic transmission below it the state that is best at every point. A
+/// map that is the same everywhere is a sentence.
 pub fn draw(map: &EfficiencyMap) -> String {
     let mut top = 64.0;
     let mut body = Group::new().add(
@@ -57,22 +67,64 @@ pub fn draw(map: &EfficiencyMap) -> String {
         body = body.add(text(28.0, top - 4.0, 13.0, Anchor::Start, &l).set("fill", FAINT));
         top += 17.0;
     }
+    let head = format!("Efficiency map of {}", map.title);
+    if let Some(efficiency) = constant(map) {
+        let said = everywhere(map, efficiency);
+        for l in lines(&said, WIDTH - 56.0, 15.0) {
+            top += 21.0;
+            body = body.add(text(28.0, top, 15.0, Anchor::Start, &l));
+        }
+        return page(WIDTH, top + 28.0, &head, &words(map)).add(body).to_string();
+    }
     top += 22.0;
     let chart = |top: f64| Chart {
         left: LEFT,
         top,
         right: RIGHT,
         bottom: top + HEIGHT,
-        x: Scale::of(map.x.values.iter().copied(), title(&map.x)),
-        y: Scale::of(map.y.values.iter().copied(), title(&map.y)),
+        x: outwards(Scale::of(map.x.values.iter().copied(), title(&map.x))),
+        y: outwards(Scale::of(map.y.values.iter().copied(), title(&map.y))),
     };
-    body = body.add(efficiency(map, &chart(top), 0));
+    let own = chart(top);
+    body = body.add(efficiency(map, &Mesh::new(map, &own), &own));
     let mut bottom = top + HEIGHT + 60.0;
     if !map.states.is_empty() {
-        body = body.add(states(map, &chart(bottom)));
+        let own = chart(bottom);
+        body = body.add(states(map, &Mesh::new(map, &own), &own));
         bottom += HEIGHT + 60.0;
     }
-    page(WIDTH, bottom, &format!("Efficiency map of {}", map.title), &words(map)).add(body).to_string()
+    page(WIDTH, bottom, &head, &words(map)).add(body).to_string()
+}
+
+/// What is negative grows away from the origin all the same, so that more load is always higher up.
+fn outwards(scale: Scale) -> Scale {
+    match scale.high <= 0.0 {
+        true => Scale { low: scale.high, high: scale.low, ..scale },
+        false => scale,
+    }
+}
+
+/// The efficiency of a map on which it is one number everywhere, as far as numbers are printed.
+fn constant(map: &EfficiencyMap) -> Option<f64> {
+    let all: Option<Vec<f64>> = map.points.iter().map(|p| p.efficiency).collect();
+    let all = all?;
+    let (least, most) = all.iter().fold((f64::INFINITY, 0.0f64), |(l, m), e| (l.min(*e), m.max(*e)));
+    (most - least < 5e-5 && map.states.is_empty()).then_some((least + most) / 2.0)
+}
+
+/// A map that is the same everywhere, in words.
+fn everywhere(map: &EfficiencyMap, efficiency: f64) -> String {
+    let range = |axis: &crate::ChartAxis| {
+        let [first, .., last] = &axis.values[..] else { return axis.name.clone() };
+        format!("{} from {} to {} {}", axis.name, digits(*first), digits(*last), axis.unit).trim_end().to_owned()
+    };
+    format!(
+        "The efficiency is {} everywhere: for {} and {}. The file gives efficiencies that depend on neither. Teeth with a \
+         module and an oil, bearings, or drag torques would make a map of it.",
+        percent(efficiency),
+        range(&map.x),
+        range(&map.y)
+    )
 }
 
 /// What the picture tells those who do not see it.
@@ -122,150 +174,140 @@ fn says(verdict: MapVerdict) -> &'static str {
     }
 }
 
-/// Values on the points of the map, which lie between those of the library's cells.
-fn builder(map: &EfficiencyMap) -> ContourBuilder {
-    // Values stand in the middle of the library's cells, half a cell inside.
-    ContourBuilder::new(map.x.values.len(), map.y.values.len(), true).x_origin(-0.5).y_origin(-0.5)
-}
-
-/// From positions among the values of an axis to its values.
-fn value(values: &[f64], place: f64) -> f64 {
-    let place = place.clamp(0.0, (values.len() - 1) as f64);
-    let k = (place as usize).min(values.len() - 2);
-    values[k] + (place - k as f64) * (values[k + 1] - values[k])
-}
-
-fn ring<'a>(map: &EfficiencyMap, chart: &Chart, points: impl Iterator<Item = (f64, f64)> + 'a) -> Vec<(f64, f64)> {
-    points.map(|(a, b)| (chart.x(value(&map.x.values, a)), chart.y(value(&map.y.values, b)))).collect()
-}
-
-fn d(points: &[(f64, f64)], close: bool) -> String {
+fn d(points: &[Place], close: bool) -> String {
     let all: Vec<String> = points.iter().map(|p| format!("{} {}", number(p.0), number(p.1))).collect();
     format!("M{}{}", all.join(" L"), if close { " Z" } else { "" })
 }
 
-/// Losses that part the bands of this map, none of which is a mere sliver.
+/// A region as one path.
+fn area(outlines: &[Vec<Place>]) -> Option<Path> {
+    let all: Vec<String> = outlines.iter().map(|o| d(o, true)).collect();
+    (!all.is_empty()).then(|| Path::new().set("d", all.concat()).set("fill-rule", "evenodd"))
+}
+
+/// Losses that part the bands of this map, none of which is a mere sliver: of the usual ones, or at even steps where
+/// these are too far apart.
 fn levels(losses: &[f64]) -> Vec<f64> {
+    /// Fewer lines than that say too little.
+    const FEW: usize = 3;
     let mut sorted: Vec<f64> = losses.iter().copied().filter(|l| l.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
+    let [least, .., most] = sorted[..] else { return vec![] };
     let below = |l: f64| sorted.partition_point(|x| *x < l);
     let sliver = sorted.len().div_ceil(60);
-    let mut taken = 0;
-    let within: Vec<f64> = (LOSSES.iter().map(|p| p / 100.0))
-        .filter(|l| {
+    let wide = |all: Vec<f64>| -> Vec<f64> {
+        let mut taken = 0;
+        let broad = |l: &f64| {
             let here = below(*l);
             let wide = here >= taken + sliver && here + sliver <= sorted.len();
             taken = if wide { here } else { taken };
             wide
-        })
-        .collect();
+        };
+        all.into_iter().filter(broad).collect()
+    };
+    let usual = wide(LOSSES.iter().map(|p| p / 100.0).collect());
+    let even = || wide(ticks(least, most, 6));
+    let within = if usual.len() < FEW && most - least > 1e-4 { even() } else { usual };
     let every = within.len().div_ceil(BANDS - 1).max(1);
     within.into_iter().step_by(every).collect()
 }
 
-fn efficiency(map: &EfficiencyMap, chart: &Chart, number_of: usize) -> Group {
+fn efficiency(map: &EfficiencyMap, mesh: &Mesh<'_>, chart: &Chart) -> Group {
     let losses: Vec<f64> = map.points.iter().map(|p| p.efficiency.map_or(f64::NAN, |e| 1.0 - e)).collect();
     let (least, most) = (losses.iter().filter(|l| l.is_finite()))
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), l| (a.min(*l), b.max(*l)));
-    let clip = format!("map{number_of}");
-    let frame = rectangle(chart.left, chart.top, chart.right - chart.left, chart.bottom - chart.top, "none");
-    let mut g = Group::new().add(Definitions::new().add(ClipPath::new().set("id", clip.clone()).add(frame)));
-    let mut fills = Group::new().set("clip-path", format!("url(#{clip})"));
     let between = levels(&losses);
-    let shades = between.len() + 1;
-    // What has no value takes that of its nearest neighbours, and is hatched over.
-    let filled = without_gaps(map, &losses);
-    // From one state to the next the efficiency jumps: nothing lies between.
-    let steps = !map.states.is_empty();
-    let shade = |k: usize| ramp(if shades > 1 { k as f64 / (shades - 1) as f64 } else { 0.0 });
-    if steps {
-        let band = |p: usize| losses[p].is_finite().then(|| between.partition_point(|l| *l <= losses[p]));
-        runs(map, chart, &band, &mut |[x0, y0, x1, y1], k| {
-            let (fill, stroke) = (shade(k), shade(k));
-            let cell = rectangle(x0, y0, x1 - x0, y1 - y0, &fill);
-            fills.append(cell.set("stroke", stroke).set("stroke-width", 0.6));
-        });
-    } else if least.is_finite() {
-        let mut at = vec![-1e9];
-        at.extend(&between);
-        at.push(1e9);
-        let bands = builder(map).isobands(&filled, &at).unwrap_or_default();
-        for (k, band) in bands.iter().enumerate() {
-            let fill = shade(k);
-            let mut path = String::new();
-            for polygon in band.geometry() {
-                for r in std::iter::once(polygon.exterior()).chain(polygon.interiors()) {
-                    path += &d(&ring(map, chart, r.coords().map(|c| (c.x, c.y))), true);
-                }
-            }
-            if !path.is_empty() {
-                let stroke = fill.clone();
-                fills = fills.add(
-                    Path::new()
-                        .set("d", path)
-                        .set("fill", fill)
-                        .set("fill-rule", "evenodd")
-                        .set("stroke", stroke)
-                        .set("stroke-width", 0.7),
-                );
-            }
-        }
+    let bands: Vec<[f64; 2]> = (0..=between.len())
+        .map(|k| [k.checked_sub(1).map_or(least, |k| between[k]), between.get(k).copied().unwrap_or(most)])
+        .collect();
+    let mut g = Group::new();
+    // Each band lies on those of less loss, so that no paper shows between them.
+    for (k, band) in bands.iter().enumerate() {
+        let outlines = match k {
+            0 => mesh.region(|p| p.efficiency.is_some()),
+            _ => mesh.above(band[0]),
+        };
+        let Some(path) = area(&outlines) else { continue };
+        let range = format!("efficiency {}", range(*band));
+        g = g.add(of(path.set("fill", shade(*band)), "band", &[Of::Quantity(&range)]));
     }
     // Lines between the bands with their efficiency.
     let marks = places(map, chart);
     let mut labels: Vec<[f64; 4]> = marks.iter().map(|p| [p.0 - 11.0, p.1 - 11.0, p.0 + 11.0, p.1 + 11.0]).collect();
     let mut said = Group::new();
-    let parting = if steps { &[][..] } else { &between };
-    for l in builder(map).lines(&filled, parting).unwrap_or_default() {
-        let name = percent(1.0 - l.threshold());
-        let mut longest: Vec<(f64, f64)> = vec![];
-        for points in open_lines(map, chart, l.geometry().iter().map(|one| one.coords().map(|c| (c.x, c.y)))) {
-            fills = fills.add(
-                Path::new().set("d", d(&points, false)).set("fill", "none").set("stroke", INK).set("stroke-width", 0.6),
-            );
-            if points.len() > longest.len() {
-                longest = points;
-            }
-        }
-        if let Some(t) = label(&longest, &name, chart, &mut labels, INK) {
-            said = said.add(t);
-        }
+    for l in &between {
+        let name = percent(1.0 - l);
+        let all = mesh.lines(Height::Loss, *l);
+        let Some(path) = contour(&all, INK) else { continue };
+        let own = [Of::Quantity(&format!("efficiency {name}"))];
+        g = g.add(of(path.set("stroke-width", 0.6), "contour", &own));
+        said = said.add(label(&all, &name, chart, &mut labels, INK));
+    }
+    for k in 0..map.states.len() {
+        g = g.add(edge(map, mesh, k, 0.6));
+        said = said.add(level(map, mesh, k, &mut labels));
     }
     // Constant power into the train.
     let power: Vec<f64> = map.points.iter().map(|p| p.input_power_w.unwrap_or(f64::NAN)).collect();
     let powers = powers(&power);
-    for l in builder(map).lines(&without_gaps(map, &power), &powers).unwrap_or_default() {
-        let mut longest: Vec<(f64, f64)> = vec![];
-        for points in open_lines(map, chart, l.geometry().iter().map(|one| one.coords().map(|c| (c.x, c.y)))) {
-            fills = fills.add(
-                Path::new()
-                    .set("d", d(&points, false))
-                    .set("fill", "none")
-                    .set("stroke", FAINT)
-                    .set("stroke-width", 1)
-                    .set("stroke-dasharray", "5 4"),
-            );
-            if points.len() > longest.len() {
-                longest = points;
-            }
-        }
-        if let Some(t) = label(&longest, &watts(l.threshold()), chart, &mut labels, FAINT) {
-            said = said.add(t);
-        }
+    for w in &powers {
+        let all = mesh.lines(Height::Power, *w);
+        let Some(path) = contour(&all, FAINT) else { continue };
+        let own = [Of::Quantity(&format!("input_power_w {}", watts(*w)))];
+        g = g.add(of(path.set("stroke-width", 1).set("stroke-dasharray", "5 4"), "contour", &own));
+        said = said.add(label(&all, &watts(*w), chart, &mut labels, FAINT));
     }
-    if steps {
-        fills = fills.add(steps_between(map, chart, 0.6));
+    for (verdict, _) in verdicts(map) {
+        let word = match verdict {
+            MapVerdict::Beyond => "beyond",
+            MapVerdict::Point(v) => v.name(),
+        };
+        g = g.add(hatched(mesh, verdict, chart, &format!("map-{word}")));
     }
-    fills = fills.add(hatching(map, chart));
-    g = g.add(fills).add(said).add(chart.frame());
+    g = g.add(said).add(chart.frame());
     for (k, (m, (x, y))) in map.marks.iter().zip(&marks).enumerate() {
         let at = (chart.x(m.at[0]), chart.y(m.at[1]));
+        let mut mark = Group::new();
         if at.0 != *x {
-            g = g.add(line(at, (*x, *y), INK, 1.0));
+            mark = mark.add(line(at, (*x, *y), INK, 1.0));
         }
-        g = g.add(badge(*x, *y, &(k + 1).to_string()));
+        mark = mark.add(badge(*x, *y, &(k + 1).to_string()));
+        g = g.add(of(mark, "operation", &[Of::State(&m.operation)]));
     }
-    g.add(legend(map, chart, &between, [least, most], !powers.is_empty()))
+    g.add(legend(map, chart, &bands, !powers.is_empty()))
+}
+
+/// The efficiency of a state, where it is one number and has room.
+fn level(map: &EfficiencyMap, mesh: &Mesh<'_>, state: usize, taken: &mut Vec<[f64; 4]>) -> Group {
+    let own = map.points.iter().filter(|p| p.best == Some(state)).filter_map(|p| p.efficiency);
+    let (least, most) = own.fold((f64::INFINITY, 0.0f64), |(l, m), e| (l.min(e), m.max(e)));
+    let ((x, y), _) = mesh.middle(|p| p.best == Some(state));
+    let name = percent((least + most) / 2.0);
+    let half = wide(&name, 10.5) / 2.0 + 2.0;
+    let place = [x - half, y - 8.0, x + half, y + 8.0];
+    let inside = [(place[0], y), (place[2], y), (x, place[1]), (x, place[3])];
+    let room = inside.iter().all(|p| mesh.holds(*p, |p| p.best == Some(state)));
+    let free = taken.iter().all(|t| place[0] > t[2] || place[2] < t[0] || place[1] > t[3] || place[3] < t[1]);
+    if !(most - least < 5e-5 && room && free) {
+        return Group::new();
+    }
+    taken.push(place);
+    halo(text(x, y + 3.5, 10.5, Anchor::Middle, &name), PAPER, 3.0)
+}
+
+/// Lines of one level as one path.
+fn contour(all: &[Vec<Place>], ink: &str) -> Option<Path> {
+    let all: Vec<String> = all.iter().map(|l| d(l, false)).collect();
+    let path =
+        Path::new().set("d", all.join(" ")).set("fill", "none").set("stroke", ink).set("stroke-linejoin", "round");
+    (!all.is_empty()).then_some(path)
+}
+
+/// The edge of where a state is best.
+fn edge(map: &EfficiencyMap, mesh: &Mesh<'_>, state: usize, weight: f64) -> Group {
+    let path = area(&mesh.region(|p| p.best == Some(state)));
+    let own = path.map(|p| p.set("fill", "none").set("stroke", INK).set("stroke-width", weight));
+    own.into_iter().fold(Group::new(), |g, p| g.add(of(p, "edge", &[Of::State(&map.states[state])])))
 }
 
 /// Where the numbers of the operations stand: side by side where operations share a place.
@@ -281,37 +323,6 @@ fn places(map: &EfficiencyMap, chart: &Chart) -> Vec<(f64, f64)> {
     all
 }
 
-/// The values with every gap closed by the nearest value in the map, so that lines end where a region without answers
-/// begins and not before.
-fn without_gaps(map: &EfficiencyMap, values: &[f64]) -> Vec<f64> {
-    let width = map.x.values.len();
-    let mut filled = values.to_vec();
-    while filled.iter().any(|v| !v.is_finite()) {
-        let before = filled.clone();
-        for k in 0..filled.len() {
-            if before[k].is_finite() {
-                continue;
-            }
-            let (row, column) = (k / width, k % width);
-            let near = [
-                (row > 0).then(|| k - width),
-                (column > 0).then(|| k - 1),
-                (column + 1 < width).then(|| k + 1),
-                (k + width < before.len()).then(|| k + width),
-            ];
-            let known = near.into_iter().flatten().map(|j| before[j]).filter(|v| v.is_finite());
-            let (sum, count) = known.fold((0.0, 0), |(s, n), v| (s + v, n + 1));
-            if count > 0 {
-                filled[k] = sum / f64::from(count);
-            }
-        }
-        if before.iter().all(|v| !v.is_finite()) {
-            return vec![0.0; values.len()];
-        }
-    }
-    filled
-}
-
 /// Powers of 1, 2, 5 that lie within the map, six at most.
 fn powers(values: &[f64]) -> Vec<f64> {
     let (least, most) =
@@ -325,83 +336,72 @@ fn powers(values: &[f64]) -> Vec<f64> {
     within[within.len().saturating_sub(6)..].to_vec()
 }
 
-/// Words on a line, where there is room.
-fn label(points: &[(f64, f64)], name: &str, chart: &Chart, taken: &mut Vec<[f64; 4]>, ink: &str) -> Option<Group> {
-    if points.len() < 4 {
-        return None;
-    }
-    let width = wide(name, 10.5) + 8.0;
-    for part in [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88] {
-        let (x, y) = points[((points.len() - 1) as f64 * part) as usize];
-        let own = [x - width / 2.0, y - 8.0, x + width / 2.0, y + 8.0];
-        let inside = own[0] > chart.left + 4.0
-            && own[2] < chart.right - 4.0
-            && own[1] > chart.top + 4.0
-            && own[3] < chart.bottom - 4.0;
-        if inside && taken.iter().all(|t| own[0] > t[2] || own[2] < t[0] || own[1] > t[3] || own[3] < t[1]) {
-            taken.push(own);
-            return Some(halo(text(x, y + 3.5, 10.5, Anchor::Middle, name).set("fill", ink), PAPER, 3.0));
-        }
-    }
-    None
-}
-
-/// Rectangles around neighbours in a row that share a value, row by row.
-fn runs<T: Copy + PartialEq>(
-    map: &EfficiencyMap,
-    chart: &Chart,
-    of: &dyn Fn(usize) -> Option<T>,
-    tell: &mut dyn FnMut([f64; 4], T),
-) {
-    let width = map.x.values.len();
-    let x = |k: f64| chart.x(value(&map.x.values, k));
-    let y = |k: f64| chart.y(value(&map.y.values, k));
-    for row in 0..map.y.values.len() {
-        let mut from = 0;
-        while from < width {
-            let own = of(row * width + from);
-            let run = (from..width).take_while(|k| of(row * width + k) == own).count();
-            if let Some(own) = own {
-                let (a, b, r) = (from as f64, (from + run) as f64, row as f64);
-                tell([x(a - 0.5), y(r + 0.5), x(b - 0.5), y(r - 0.5)], own);
+/// Words along the longest line on which there is room for them.
+fn label(all: &[Vec<Place>], name: &str, chart: &Chart, taken: &mut Vec<[f64; 4]>, ink: &str) -> Group {
+    let (width, height) = (wide(name, 10.5) + 8.0, 15.0);
+    let mut ranked: Vec<&Vec<Place>> = all.iter().collect();
+    ranked.sort_by(|a, b| length(b).total_cmp(&length(a)));
+    for points in ranked.into_iter().take_while(|l| length(l) > 1.3 * width) {
+        let long = length(points);
+        for part in [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88] {
+            let (a, b) = (along(points, part * long - width / 2.0), along(points, part * long + width / 2.0));
+            // Where the line bends, words do not follow it.
+            if (b.0 - a.0).hypot(b.1 - a.1) < 0.95 * width {
+                continue;
             }
-            from += run;
+            let (x, y) = along(points, part * long);
+            let steep = ((b.1 - a.1) / (b.0 - a.0)).atan();
+            let half = [
+                (width * steep.cos() + height * steep.sin().abs()) / 2.0,
+                (width * steep.sin().abs() + height * steep.cos()) / 2.0,
+            ];
+            let own = [x - half[0], y - half[1], x + half[0], y + half[1]];
+            let inside = own[0] > chart.left + 2.0
+                && own[2] < chart.right - 2.0
+                && own[1] > chart.top + 2.0
+                && own[3] < chart.bottom - 2.0;
+            if inside && taken.iter().all(|t| own[0] > t[2] || own[2] < t[0] || own[1] > t[3] || own[3] < t[1]) {
+                taken.push(own);
+                let turn = format!("rotate({} {} {})", number(steep.to_degrees()), number(x), number(y));
+                let words = text(x, y + 3.5, 10.5, Anchor::Middle, name).set("fill", ink).set("transform", turn);
+                return halo(words, PAPER, 3.0);
+            }
         }
     }
+    Group::new()
 }
 
-/// Cells around points without a single answer.
-fn hatching(map: &EfficiencyMap, chart: &Chart) -> Group {
-    let (mut paper, mut hatch) = (Group::new(), Group::new());
-    let verdict = |k: usize| Some(map.points[k].verdict).filter(|v| *v != UNIQUE);
-    runs(map, chart, &verdict, &mut |[x0, y0, x1, y1], verdict| {
-        paper.append(rectangle(x0, y0, x1 - x0, y1 - y0, PAPER).set("stroke", PAPER).set("stroke-width", 0.5));
-        hatch.append(strokes([x0, y0, x1, y1], verdict));
-    });
-    Group::new().add(paper).add(hatch)
+fn length(line: &[Place]) -> f64 {
+    line.windows(2).map(|w| (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1)).sum()
 }
 
-/// The lines without what of them runs along the frame.
-fn open_lines(
-    map: &EfficiencyMap,
-    chart: &Chart,
-    lines: impl Iterator<Item = impl Iterator<Item = (f64, f64)>>,
-) -> Vec<Vec<(f64, f64)>> {
-    let most = ((map.x.values.len() - 1) as f64, (map.y.values.len() - 1) as f64);
-    let along = |a: (f64, f64), b: (f64, f64)| {
-        (a.0 <= 0.0 && b.0 <= 0.0)
-            || (a.1 <= 0.0 && b.1 <= 0.0)
-            || (a.0 >= most.0 && b.0 >= most.0)
-            || (a.1 >= most.1 && b.1 >= most.1)
-    };
-    let mut all = vec![];
-    for one in lines {
-        let points: Vec<(f64, f64)> = one.collect();
-        for piece in points.chunk_by(|a, b| !along(*a, *b)).filter(|p| p.len() > 1) {
-            all.push(ring(map, chart, piece.iter().copied()));
+/// The place on a line at a distance from its start.
+fn along(line: &[Place], distance: f64) -> Place {
+    let mut rest = distance.max(0.0);
+    for w in line.windows(2) {
+        let step = (w[1].0 - w[0].0).hypot(w[1].1 - w[0].1);
+        if rest <= step && step > 0.0 {
+            let t = rest / step;
+            return (w[0].0 + t * (w[1].0 - w[0].0), w[0].1 + t * (w[1].1 - w[0].1));
         }
+        rest -= step;
     }
-    all
+    line.last().copied().unwrap_or_default()
+}
+
+/// Where there is no single answer: hatched, on paper.
+fn hatched(mesh: &Mesh<'_>, verdict: MapVerdict, chart: &Chart, name: &str) -> Group {
+    let outlines = mesh.region(|p| p.verdict == verdict);
+    let [Some(clip), Some(ground)] = [area(&outlines), area(&outlines)] else { return Group::new() };
+    let hatch = strokes([chart.left, chart.top, chart.right, chart.bottom], verdict);
+    let own = Group::new()
+        .add(
+            Definitions::new()
+                .add(ClipPath::new().set("id", format!("{name}-clip")).add(clip.set("clip-rule", "evenodd"))),
+        )
+        .add(ground.set("fill", PAPER).set("stroke", INK).set("stroke-width", 0.6))
+        .add(hatch.set("clip-path", format!("url(#{name}-clip)")));
+    of(own, name, &[Of::Quantity("verdict")])
 }
 
 /// Slanted lines through a rectangle, the same on the whole page; where there is nothing to ask, none.
@@ -433,96 +433,76 @@ fn strokes([x0, y0, x1, y1]: [f64; 4], verdict: MapVerdict) -> Path {
         .set("stroke-width", 0.9)
 }
 
-fn legend(map: &EfficiencyMap, chart: &Chart, between: &[f64], [least, most]: [f64; 2], power: bool) -> Group {
+/// A band of losses as efficiencies.
+fn range([low, high]: [f64; 2]) -> String {
+    match high - low < 1e-9 {
+        true => format!("{} everywhere", percent(1.0 - low)),
+        false => format!("{} to {}", percent(1.0 - high), percent(1.0 - low)),
+    }
+}
+
+fn legend(map: &EfficiencyMap, chart: &Chart, bands: &[[f64; 2]], power: bool) -> Group {
     let mut y = chart.top + 10.0;
     let mut g = Group::new().add(text(LEGEND, y, 13.0, Anchor::Start, "Efficiency").set("font-weight", "bold"));
     y += 12.0;
-    if least.is_finite() {
-        let shades = between.len() + 1;
-        for k in 0..shades {
-            let fill = ramp(if shades > 1 { k as f64 / (shades - 1) as f64 } else { 0.0 });
-            let low = between.get(k).copied().unwrap_or(most);
-            let high = if k == 0 { least } else { between[k - 1] };
-            let label = match shades {
-                1 if most - least < 1e-9 => format!("{} everywhere", percent(1.0 - most)),
-                _ => format!("{} to {}", percent(1.0 - high), percent(1.0 - low)),
-            };
-            g = g.add(rectangle(LEGEND, y, 26.0, 15.0, &fill).set("stroke", LINE).set("stroke-width", 0.6)).add(text(
-                LEGEND + 34.0,
-                y + 12.0,
-                11.0,
-                Anchor::Start,
-                &label,
-            ));
-            y += 18.0;
-        }
+    for band in bands.iter().filter(|b| b[0].is_finite()) {
+        let label = range(*band);
+        let patch = rectangle(LEGEND, y, 26.0, 15.0, &shade(*band)).set("stroke", LINE).set("stroke-width", 0.6);
+        let words = text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, &label);
+        let own = Group::new().add(patch).add(words);
+        g = g.add(of(own, "legend", &[Of::Quantity(&format!("efficiency {label}"))]));
+        y += 18.0;
     }
     y += 6.0;
     for (verdict, _) in verdicts(map) {
-        g = g
+        let patch = guide(Group::new())
             .add(rectangle(LEGEND, y, 26.0, 15.0, PAPER).set("stroke", LINE).set("stroke-width", 0.6))
-            .add(strokes([LEGEND, y, LEGEND + 26.0, y + 15.0], verdict))
-            .add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, says(verdict)));
+            .add(strokes([LEGEND, y, LEGEND + 26.0, y + 15.0], verdict));
+        g = g.add(patch).add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, says(verdict)));
         y += 20.0;
     }
     if power {
         let dash = line((LEGEND, y + 8.0), (LEGEND + 26.0, y + 8.0), FAINT, 1.0).set("stroke-dasharray", "5 4");
-        g = g.add(dash).add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, "power into the train"));
+        g = g.add(guide(dash)).add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, "power into the train"));
         y += 22.0;
     }
     for (k, m) in map.marks.iter().enumerate().take(9) {
         let name = fit(&m.operation, WIDTH - LEGEND - 60.0, 11.0);
-        g = g.add(badge(LEGEND + 13.0, y + 9.0, &(k + 1).to_string())).add(text(
+        let own = Group::new().add(badge(LEGEND + 13.0, y + 9.0, &(k + 1).to_string())).add(text(
             LEGEND + 34.0,
             y + 13.0,
             11.0,
             Anchor::Start,
             &name,
         ));
+        g = g.add(of(own, "key", &[Of::State(&m.operation)]));
         y += 22.0;
     }
     g
 }
 
 /// Which state is best where.
-fn states(map: &EfficiencyMap, chart: &Chart) -> Group {
+fn states(map: &EfficiencyMap, mesh: &Mesh<'_>, chart: &Chart) -> Group {
     let width = map.x.values.len();
     let mut g = Group::new();
-    let mut used: Vec<usize> = map.points.iter().filter_map(|p| p.best).collect();
-    used.sort_unstable();
-    used.dedup();
+    let used: Vec<usize> = (0..map.states.len()).filter(|k| map.points.iter().any(|p| p.best == Some(*k))).collect();
     let shade = |state: usize| colour(Some(state), 0.55);
-    let mut middles: Vec<(usize, f64, f64, f64)> = vec![];
-    let best = |k: usize| Some(map.points[k].best);
-    runs(map, chart, &best, &mut |[x0, y0, x1, y1], best| match best {
-        Some(state) => {
-            let (fill, stroke) = (shade(state), shade(state));
-            g.append(rectangle(x0, y0, x1 - x0, y1 - y0, &fill).set("stroke", stroke).set("stroke-width", 0.6));
-        }
-        None => g.append(strokes([x0, y0, x1, y1], MapVerdict::Beyond)),
-    });
-    // The middle of every region.
-    for (k, p) in map.points.iter().enumerate() {
-        let Some(state) = p.best else { continue };
-        let (x, y) = (chart.x(map.x.values[k % width]), chart.y(map.y.values[k / width]));
-        match middles.iter_mut().find(|m| m.0 == state) {
-            Some(m) => *m = (state, m.1 + x, m.2 + y, m.3 + 1.0),
-            None => middles.push((state, x, y, 1.0)),
+    for state in &used {
+        if let Some(path) = area(&mesh.region(|p| p.best == Some(*state))) {
+            let path = path.set("fill", shade(*state)).set("stroke", INK).set("stroke-width", 0.9);
+            g = g.add(of(path, "best", &[Of::State(&map.states[*state])]));
         }
     }
-    g = g.add(steps_between(map, chart, 0.9));
-    g = g.add(chart.frame());
+    g = g.add(hatched(mesh, MapVerdict::Beyond, chart, "states-beyond")).add(chart.frame());
     // A region's name stands at a point of it near its middle.
     let mut taken: Vec<[f64; 4]> = vec![];
-    for (state, x, y, count) in &middles {
-        let middle = (x / count, y / count);
+    for state in &used {
+        let (middle, _) = mesh.middle(|p| p.best == Some(*state));
         let own = map.points.iter().enumerate().filter(|(_, p)| p.best == Some(*state));
         let places = own.map(|(k, _)| (chart.x(map.x.values[k % width]), chart.y(map.y.values[k / width])));
-        let near = places.min_by(|a, b| {
-            let far = |p: &(f64, f64)| (p.0 - middle.0).powi(2) + (p.1 - middle.1).powi(2);
-            far(a).total_cmp(&far(b))
-        });
-        let Some((x, y)) = near else { continue };
+        let far = |p: &Place| (p.0 - middle.0).powi(2) + (p.1 - middle.1).powi(2);
+        let inside = mesh.holds(middle, |p| p.best == Some(*state)).then_some(middle);
+        let Some((x, y)) = inside.or_else(|| places.min_by(|a, b| far(a).total_cmp(&far(b)))) else { continue };
         let name = fit(&map.states[*state], 80.0, 13.0);
         let half = wide(&name, 13.0) * BOLD / 2.0 + 2.0;
         let x = x.clamp(chart.left + half + 2.0, chart.right - half - 2.0);
@@ -537,34 +517,14 @@ fn states(map: &EfficiencyMap, chart: &Chart) -> Group {
     g = g.add(text(LEGEND, y, 13.0, Anchor::Start, "Best state").set("font-weight", "bold"));
     y += 12.0;
     for state in used {
-        let share = map.points.iter().filter(|p| p.best == Some(state)).count() as f64 / map.points.len() as f64;
+        let share = mesh.middle(|p| p.best == Some(state)).1;
         let label = format!("{} %", digits((1000.0 * share).round() / 10.0));
-        g = g
+        let own = Group::new()
             .add(rectangle(LEGEND, y, 26.0, 15.0, &shade(state)).set("stroke", LINE).set("stroke-width", 0.6))
             .add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, &fit(&map.states[state], 110.0, 11.0)))
             .add(text(WIDTH - 28.0, y + 12.0, 11.0, Anchor::End, &label).set("fill", FAINT));
+        g = g.add(of(own, "legend", &[Of::State(&map.states[state])]));
         y += 19.0;
     }
-    g.add(text(LEGEND, y + 14.0, 10.0, Anchor::Start, "share of the points of the map").set("fill", FAINT))
-}
-
-/// Lines between the regions of different states.
-fn steps_between(map: &EfficiencyMap, chart: &Chart, weight: f64) -> Path {
-    let width = map.x.values.len();
-    let at = |row: usize, column: usize| map.points[row * width + column].best;
-    let x = |k: f64| number(chart.x(value(&map.x.values, k)));
-    let y = |k: f64| number(chart.y(value(&map.y.values, k)));
-    let mut steps = String::new();
-    for row in 0..map.y.values.len() {
-        for column in 0..width {
-            let (c, r) = (column as f64, row as f64);
-            if column + 1 < width && at(row, column) != at(row, column + 1) {
-                let _ = write!(steps, "M{} {} V{} ", x(c + 0.5), y(r - 0.5), y(r + 0.5));
-            }
-            if row + 1 < map.y.values.len() && at(row, column) != at(row + 1, column) {
-                let _ = write!(steps, "M{} {} H{} ", x(c - 0.5), y(r + 0.5), x(c + 0.5));
-            }
-        }
-    }
-    Path::new().set("d", steps.trim_end().to_owned()).set("fill", "none").set("stroke", INK).set("stroke-width", weight)
+    g.add(text(LEGEND, y + 14.0, 10.0, Anchor::Start, "share of the map").set("fill", FAINT))
 }

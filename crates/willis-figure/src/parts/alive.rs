@@ -1,6 +1,7 @@
 //! What a mark of a picture stands for, so that programs find it: `data-*` attributes and an id that stays while numbers change.
 
 use svg::Node;
+use svg::node::element::Element;
 
 /// What a mark stands for, by its name in the train.
 #[derive(Clone, Copy)]
@@ -29,9 +30,13 @@ impl<'n> Of<'n> {
     }
 }
 
-/// A mark with what it stands for. Its id is made of the same names, behind a word that tells it from other marks of them.
+/// A mark with what it stands for. Its id is made of the same names, behind a word that tells it from other marks of them. A
+/// pointer that rests on it shows the names in full.
 pub fn of<T: Node>(mut mark: T, word: &str, all: &[Of<'_>]) -> T {
     let mut id = word.to_owned();
+    let mut title = Element::new("title");
+    title.append(svg::node::Text::new(all.iter().map(|one| one.parts().1).collect::<Vec<_>>().join(", ")));
+    mark.append(title);
     for one in all {
         let (kind, name) = one.parts();
         mark.assign(format!("data-{kind}"), name);
@@ -48,6 +53,22 @@ pub fn of<T: Node>(mut mark: T, word: &str, all: &[Of<'_>]) -> T {
     }
     mark.assign("id", id);
     mark
+}
+
+/// A mark that stands for nothing of the train: frame, grid, or key to the signs.
+pub fn guide<T: Node>(mut mark: T) -> T {
+    mark.assign("class", "guide");
+    mark
+}
+
+/// The mark of a gear contact, bearing or other part that is named `what` and loses or passes power.
+pub fn part(kind: willis::hypergraph::NodeKind, name: &str) -> Of<'_> {
+    use willis::hypergraph::NodeKind as Kind;
+    match kind {
+        Kind::Teeth => Of::Mesh(name),
+        Kind::Member | Kind::Gear | Kind::Rotor | Kind::Input | Kind::Output => Of::Member(name),
+        _ => Of::Element(name),
+    }
 }
 
 #[cfg(test)]

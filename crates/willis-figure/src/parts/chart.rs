@@ -2,6 +2,7 @@
 
 use svg::node::element::{Group, Path};
 
+use crate::parts::alive::guide;
 use crate::parts::style::{Anchor, FAINT, LINE, fit, line, number, rectangle, text, ticks, wide};
 
 /// Grid lines.
@@ -37,6 +38,11 @@ impl Scale {
         Self { low, high, ..own }.rounded()
     }
 
+    /// Numbers at even steps, about so many; the scale may run downwards.
+    fn ticks(&self, about: usize) -> Vec<f64> {
+        ticks(self.low.min(self.high), self.low.max(self.high), about)
+    }
+
     /// To the next full tick at both ends.
     pub fn rounded(self) -> Self {
         let all = ticks(self.low, self.high, 5);
@@ -67,7 +73,7 @@ impl Chart {
 
     /// The grid, to be drawn below what the chart shows.
     pub fn grid(&self) -> Group {
-        let mut g = Group::new();
+        let mut g = guide(Group::new());
         for t in self.ticks_x() {
             g = g.add(line((self.x(t), self.top), (self.x(t), self.bottom), GRID, 1.0));
         }
@@ -79,7 +85,7 @@ impl Chart {
 
     /// Frame, numbers and titles, to be drawn above it.
     pub fn frame(&self) -> Group {
-        let mut g = Group::new().add(
+        let mut g = guide(Group::new()).add(
             rectangle(self.left, self.top, self.right - self.left, self.bottom - self.top, "none")
                 .set("stroke", LINE)
                 .set("stroke-width", 1),
@@ -103,11 +109,11 @@ impl Chart {
     }
 
     fn ticks_x(&self) -> Vec<f64> {
-        ticks(self.x.low, self.x.high, ((self.right - self.left) / 80.0).max(3.0) as usize)
+        self.x.ticks(((self.right - self.left) / 80.0).max(3.0) as usize)
     }
 
     fn ticks_y(&self) -> Vec<f64> {
-        ticks(self.y.low, self.y.high, ((self.bottom - self.top) / 45.0).max(2.0) as usize)
+        self.y.ticks(((self.bottom - self.top) / 45.0).max(2.0) as usize)
     }
 
     /// A line through points; broken where one is missing, none where all are.

@@ -2,6 +2,7 @@
 
 use svg::node::element::{Group, Path};
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, FAINT, INK, LINE, PAPER, badge, colour, digits, halo, line, number, page, rectangle, text, ticks,
 };
@@ -105,29 +106,30 @@ fn wheel(map: &RegimeMap) -> Group {
         for ring in [0, 1] {
             if s.cells.iter().all(|c| c.ring != ring) {
                 let (inner, outer) = if ring == 0 { (RADII[1], RADII[2]) } else { (RADII[0], RADII[1]) };
-                g = g.add(Path::new().set("d", piece(inner, outer, s.from, s.to)).set("fill", "#f2f2f2"));
+                g = g.add(guide(Path::new().set("d", piece(inner, outer, s.from, s.to)).set("fill", "#f2f2f2")));
                 let (x, y) = at((inner + outer) / 2.0, (s.from + s.to) / 2.0);
                 g = g.add(text(x, y + 4.0, 11.0, Anchor::Middle, "none").set("fill", FAINT));
             }
         }
         for c in &s.cells {
-            g = g.add(shades(map, s, c));
+            g = g.add(of(shades(map, s, c), "cell", &[Of::State(&c.regime), Of::Quantity("efficiency")]));
         }
     }
     // Lines over the shades.
     for s in &map.sectors {
         for c in &s.cells {
             let (inner, outer) = band(c);
-            g = g.add(
+            g = g.add(guide(
                 Path::new()
                     .set("d", piece(inner, outer, s.from, s.to))
                     .set("fill", "none")
                     .set("stroke", PAPER)
                     .set("stroke-width", 1.2),
-            );
+            ));
         }
     }
     for b in &map.boundaries {
+        let mut own = Group::new();
         for a in b.angles {
             let (colour, width) = if b.locked_up { (INK, 2.4) } else { (INK, 1.1) };
             let mut l = line(at(RADII[0], a), at(RADII[2] + 10.0, a), colour, width);
@@ -135,8 +137,9 @@ fn wheel(map: &RegimeMap) -> Group {
                 l = l.set("stroke-dasharray", "4 3");
             }
             let (x, y) = at(RADII[2] + 20.0, a);
-            g = g.add(l).add(badge(x, y, &b.letter));
+            own = own.add(l).add(badge(x, y, &b.letter));
         }
+        g = g.add(of(own, &format!("boundary-{}", b.letter), &[Of::Quantity(&b.label)]));
     }
     for s in &map.sectors {
         for c in &s.cells {
@@ -199,7 +202,7 @@ fn legend(map: &RegimeMap) -> Group {
         Group::new().add(text(LEGEND, 106.0, 13.0, Anchor::Start, "Inputs → outputs").set("font-weight", "bold"));
     let mut y = 128.0;
     for (k, p) in map.patterns.iter().enumerate() {
-        g = g
+        let mut own = Group::new()
             .add(rectangle(LEGEND, y - 12.0, 26.0, 16.0, &colour(category(map, k), 0.75)))
             .add(halo(
                 text(LEGEND + 13.0, y + 1.0, 13.0, Anchor::Middle, &p.letter).set("font-weight", "bold"),
@@ -211,7 +214,8 @@ fn legend(map: &RegimeMap) -> Group {
             (false, Some([least, most])) => format!("{} … {} %", percent(least), percent(most)),
             _ => "no output".to_owned(),
         };
-        g = g.add(text(WIDTH - 28.0, y, 12.0, Anchor::End, &range).set("fill", FAINT));
+        own = own.add(text(WIDTH - 28.0, y, 12.0, Anchor::End, &range).set("fill", FAINT));
+        g = g.add(of(own, &format!("key-{}", p.letter), &[Of::State(&p.label)]));
         y += 21.0;
     }
     y += 18.0;
@@ -220,10 +224,11 @@ fn legend(map: &RegimeMap) -> Group {
     y += 24.0;
     for b in &map.boundaries {
         let ratio = b.ratio.map_or("∞".to_owned(), digits);
-        g = g
+        let own = Group::new()
             .add(badge(LEGEND + 13.0, y - 4.0, &b.letter))
             .add(text(LEGEND + 36.0, y, 13.0, Anchor::Start, &short(&b.label, 54)))
             .add(text(WIDTH - 28.0, y, 12.0, Anchor::End, &ratio).set("fill", FAINT));
+        g = g.add(of(own, &format!("key-{}", b.letter), &[Of::Quantity(&b.label)]));
         y += 21.0;
     }
     g
@@ -244,10 +249,12 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
     let mut g = Group::new()
         .add(text(LEGEND, top - 34.0, 13.0, Anchor::Start, &head).set("font-weight", "bold"))
         .add(text(LEGEND, top - 16.0, 12.0, Anchor::Start, &key).set("fill", FAINT))
-        .add(rectangle(left, top, right - left, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1));
+        .add(guide(
+            rectangle(left, top, right - left, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1),
+        ));
     for t in ticks(floor, 1.0, 4) {
         g = g
-            .add(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0))
+            .add(guide(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0)))
             .add(text(left - 6.0, y(t) + 4.0, 11.0, Anchor::End, &format!("{} %", percent(t))).set("fill", FAINT));
     }
     for b in &map.boundaries {
@@ -260,14 +267,15 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
                 l = l.set("stroke-dasharray", "4 3");
             }
             let ratio = b.ratio.map_or(if a > map.half[0] + 90.0 { "∞" } else { "−∞" }.to_owned(), digits);
-            g = g.add(l).add(text(x(a), bottom + 16.0, 10.0, Anchor::Middle, &ratio).set("fill", FAINT)).add(badge(
-                x(a),
-                bottom + 32.0,
-                &b.letter,
-            ));
+            let own = Group::new()
+                .add(l)
+                .add(text(x(a), bottom + 16.0, 10.0, Anchor::Middle, &ratio).set("fill", FAINT))
+                .add(badge(x(a), bottom + 32.0, &b.letter));
+            let word = format!("limit-{}{}", b.letter, if a > map.half[0] + 90.0 { "" } else { "-first" });
+            g = g.add(of(own, &word, &[Of::Quantity(&b.label)]));
         }
     }
-    for c in &map.curves {
+    for (k, c) in map.curves.iter().enumerate() {
         let own = category(map, c.pattern);
         let points: Vec<String> =
             c.points.iter().map(|[a, eta]| format!("{} {}", number(x(*a)), number(y(*eta)))).collect();
@@ -279,7 +287,8 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
         if c.ring == 1 {
             path = path.set("stroke-dasharray", "7 4");
         }
-        g = g.add(path);
+        let label = &map.patterns[c.pattern].label;
+        g = g.add(of(path, &format!("curve{k}"), &[Of::State(label), Of::Quantity("efficiency")]));
     }
     // Letters last, above the solid and below the dashed curves.
     let mut taken: Vec<(f64, f64)> = vec![];

@@ -8,6 +8,7 @@ use svg::Node as _;
 use svg::node::element::{Element, Group, Path, Polygon};
 use willis::hypergraph::NodeKind;
 
+use crate::parts::alive::{Of, guide, of, part};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, PAPER, colour, fit, halo, line, lines, number, page, rectangle, text, watts, wide,
 };
@@ -26,15 +27,27 @@ enum Carries {
     Input,
     Power,
     Circle,
+    /// In a circle only in the frame of the housing.
+    Framed,
     Loss,
 }
 
 impl Carries {
+    /// Dashes and hatching over what goes round.
+    fn rounds(self) -> Option<String> {
+        match self {
+            Self::Circle => Some(colour(Some(1), 1.0)),
+            Self::Framed => Some(colour(None, 0.7)),
+            _ => None,
+        }
+    }
+
     fn colour(self) -> String {
         match self {
             Self::Input => colour(Some(2), 0.75),
             Self::Power => colour(Some(0), 0.42),
             Self::Circle => colour(Some(4), 0.55),
+            Self::Framed => colour(None, 0.13),
             Self::Loss => colour(Some(6), 0.8),
         }
     }
@@ -73,8 +86,14 @@ pub fn draw(data: &Sankey) -> String {
     let mut body = Group::new()
         .add(text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&data.train, room / BOLD, 20.0)).set("font-weight", "bold"))
         .add(
-            text(MARGIN, 60.0, 13.0, Anchor::Start, "Power from inputs to outputs, widths to scale in each picture")
-                .set("fill", FAINT),
+            text(
+                MARGIN,
+                60.0,
+                13.0,
+                Anchor::Start,
+                "Power from inputs to outputs, widths to scale in each picture; losses have a scale of their own",
+            )
+            .set("fill", FAINT),
         );
     let mut y = 68.0;
     let mut told = Vec::new();
@@ -92,10 +111,10 @@ pub fn draw(data: &Sankey) -> String {
         told.push(format!("{}. {}", panel.title, sentences.join(" ")));
         if let Some(d) = drawing {
             y += 20.0;
-            body = body.add(scale_mark(y, d.scale));
+            body = body.add(guide(scale_marks(y, d)));
             y += 10.0;
             let at = format!("translate({} {})", number((width - d.width) / 2.0), number(y));
-            body = body.add(picture(d).set("transform", at));
+            body = body.add(picture(d, &panel.title).set("transform", at));
             y += d.height;
             legend.see(d.flow);
         }
@@ -137,31 +156,48 @@ fn efficiency(x: f64) -> String {
     if (99.995..100.0).contains(&p) || (0.0 < p && p < 0.1) { format!("{p:.4} %") } else { format!("{p:.2} %") }
 }
 
-/// How long a power of a round number is.
-fn scale_mark(y: f64, scale: f64) -> Group {
+/// How wide powers of round numbers are, and losses, if these have a scale of their own.
+fn scale_marks(y: f64, d: &Layout<'_>) -> Group {
+    let (power, end) = scale_mark(MARGIN, y, d.scale, "scale", Carries::Power);
+    if d.widened == 1.0 || d.flow.nodes.iter().all(|n| n.losses.is_empty()) {
+        return power;
+    }
+    let name = format!("losses {} times wider", number(d.widened));
+    power.add(scale_mark(end + 26.0, y, d.scale * d.widened, &name, Carries::Loss).0)
+}
+
+/// How wide a power of a round number is; and where the mark ends.
+fn scale_mark(x: f64, y: f64, scale: f64, name: &str, carries: Carries) -> (Group, f64) {
     let raw = 30.0 / scale;
     let size = 10f64.powf(raw.log10().floor());
     let power = [1.0, 2.0, 5.0].into_iter().rev().map(|s| s * size).find(|p| *p <= raw).unwrap_or(size);
     let long = power * scale;
-    let x = MARGIN + 36.0;
-    Group::new()
-        .add(text(MARGIN, y, SMALL, Anchor::Start, "scale").set("fill", FAINT))
-        .add(rectangle(x, y - 8.0, long, 8.0, &Carries::Power.colour()))
-        .add(line((x, y - 9.5), (x, y + 1.5), INK, 1.2))
-        .add(line((x + long, y - 9.5), (x + long, y + 1.5), INK, 1.2))
-        .add(text(x + long + 7.0, y, SMALL, Anchor::Start, &watts(power)).set("fill", FAINT))
+    let from = x + wide(name, SMALL) + 8.0;
+    let end = from + long + 7.0;
+    let mark = Group::new()
+        .add(text(x, y, SMALL, Anchor::Start, name).set("fill", FAINT))
+        .add(rectangle(from, y - 8.0, long, 8.0, &carries.colour()))
+        .add(line((from, y - 9.5), (from, y + 1.5), INK, 1.2))
+        .add(line((from + long, y - 9.5), (from + long, y + 1.5), INK, 1.2))
+        .add(text(end, y, SMALL, Anchor::Start, &watts(power)).set("fill", FAINT));
+    (mark, end + wide(&watts(power), SMALL))
 }
 
-fn picture(d: &Layout<'_>) -> Group {
+fn picture(d: &Layout<'_>, panel: &str) -> Group {
     let mut g = Group::new();
     // What is led back lies above what it crosses; its paper rim shows that nothing mixes there.
     for back in [false, true] {
         for (k, l) in d.flow.links.iter().enumerate().filter(|(_, l)| l.back == back) {
-            g = g.add(link(d, k, l));
+            g = g.add(link(d, k, l, panel));
         }
     }
     for (k, n) in d.flow.nodes.iter().enumerate() {
-        g = g.add(losses(d, k, n)).add(node(d, k, n));
+        let own = [part(n.kind, &n.name), Of::State(panel)];
+        if !n.losses.is_empty() {
+            let [name, panel] = own;
+            g = g.add(of(losses(d, k, n), &format!("loss{:?}", n.kind), &[name, Of::Quantity("loss_w"), panel]));
+        }
+        g = g.add(of(node(d, k, n), &format!("node{:?}", n.kind), &own));
     }
     for label in &d.labels {
         let power = &d.flow.links[label.link];
@@ -179,15 +215,17 @@ fn filled(path: String, fill: &str) -> Path {
 }
 
 /// A ribbon, its circulating part hatched.
-fn link(d: &Layout<'_>, k: usize, l: &SankeyLink) -> Group {
-    let of = |k: usize| &d.flow.nodes[k].name;
+fn link(d: &Layout<'_>, k: usize, l: &SankeyLink, panel: &str) -> Group {
+    let name = |k: usize| &d.flow.nodes[k].name;
     let mut about = Element::new("title");
-    let mut told = format!("{} to {}: {}", of(l.from), of(l.to), watts(l.power_w));
+    let mut told = format!("{} to {}: {}", name(l.from), name(l.to), watts(l.power_w));
     if l.circulating_w > 0.0 {
         told += &format!(", {} of it in a circle", watts(l.circulating_w));
     }
     about.append(svg::node::Text::new(told));
-    let mut g = Group::new().add(about);
+    let [from, to] = [l.from, l.to].map(|k| &d.flow.nodes[k]);
+    let link = format!("power_w {:?} {} to {:?} {} {}", from.kind, from.name, to.kind, to.name, l.via.join(" "));
+    let mut g = of(Group::new().add(about), "ribbon", &[Of::Quantity(link.trim_end()), Of::State(panel)]);
     let whole = d.ribbon(k, [0.0, l.power_w]);
     if l.back {
         g = g.add(
@@ -204,7 +242,8 @@ fn link(d: &Layout<'_>, k: usize, l: &SankeyLink) -> Group {
         g = g.add(band(&d.ribbon(k, [round, l.power_w]), Carries::Power));
     }
     if round > 1e-9 * l.power_w {
-        g = g.add(band(&d.ribbon(k, [0.0, round]), Carries::Circle));
+        let carries = if l.framed { Carries::Framed } else { Carries::Circle };
+        g = g.add(band(&d.ribbon(k, [0.0, round]), carries));
     }
     if l.back {
         for (x, y) in whole.on_the_way_back() {
@@ -220,26 +259,21 @@ fn band(ribbon: &Ribbon, carries: Carries) -> Group {
     // One too narrow to be seen is a hairline.
     if ribbon.width() < 1.0 {
         let path = Path::new().set("d", ribbon.spine()).set("fill", "none").set("stroke-width", 1);
-        return Group::new().add(match carries {
-            Carries::Circle => path.set("stroke", colour(Some(1), 1.0)).set("stroke-dasharray", "6 4"),
-            _ => path.set("stroke", colour(Some(0), 0.8)),
+        return Group::new().add(match carries.rounds() {
+            Some(ink) => path.set("stroke", ink).set("stroke-dasharray", "6 4"),
+            None => path.set("stroke", colour(Some(0), 0.8)),
         });
     }
-    let mut g = Group::new().add(filled(ribbon.outline(), &fill));
-    if carries == Carries::Circle && ribbon.width() < 5.0 {
+    let g = Group::new().add(filled(ribbon.outline(), &fill));
+    let Some(ink) = carries.rounds() else { return g };
+    let path = Path::new().set("fill", "none").set("stroke", ink);
+    g.add(match ribbon.width() < 5.0 {
         // Too narrow for hatching.
-        let path = Path::new().set("d", ribbon.spine()).set("fill", "none").set("stroke", colour(Some(1), 1.0));
-        g = g.add(path.set("stroke-width", 1.2).set("stroke-dasharray", "6 4"));
-    } else if carries == Carries::Circle {
-        g = g.add(
-            Path::new()
-                .set("d", ribbon.hatching())
-                .set("fill", "none")
-                .set("stroke", colour(Some(1), 1.0))
-                .set("stroke-width", 1),
-        );
-    }
-    g
+        true => path.set("d", ribbon.spine()).set("stroke-width", 1.2).set("stroke-dasharray", "6 4"),
+        false => {
+            path.set("d", ribbon.hatching()).set("stroke-width", if carries == Carries::Framed { 0.6 } else { 1.0 })
+        }
+    })
 }
 
 fn triangle(corners: [(f64, f64); 3], fill: &str) -> Polygon {
@@ -254,38 +288,35 @@ fn losses(d: &Layout<'_>, k: usize, n: &SankeyNode) -> Group {
     let fill = Carries::Loss.colour();
     let x = d.middle(n.layer) + BAR / 2.0;
     let [top, bottom] = [d.top[k] + first.offset_w * d.scale, d.top[k] + n.power_w * d.scale];
-    let (width, r) = (bottom - top, layout::TURN);
+    let (width, r) = ((bottom - top) * d.widened, layout::TURN);
     let (inner, low) = (x + r, bottom + r);
     let p = |x: f64, y: f64| format!("{} {}", number(x), number(y));
     if width < 1.0 {
         let middle = (top + bottom) / 2.0;
-        let path =
-            format!("M{} A{1} {1} 0 0 1 {2} V{3}", p(x, middle), number(r), p(inner, middle + r), number(low + 5.0));
+        let path = format!("M{} Q{} {} V{}", p(x, middle), p(inner, middle), p(inner, low), number(low + 5.0));
         g = g.add(Path::new().set("d", path).set("fill", "none").set("stroke", fill.clone()).set("stroke-width", 1));
     } else {
+        // From its true width at the node to that of its own scale.
         let path = format!(
-            "M{} A{6} {6} 0 0 1 {} V{} H{} V{} A{7} {7} 0 0 0 {} Z",
+            "M{} Q{} {} V{} H{} V{} Q{} {} Z",
             p(x, top),
+            p(inner + width, top),
             p(inner + width, low),
             number(low + 5.0),
             number(inner),
             number(low),
-            p(x, bottom),
-            number(r + width),
-            number(r)
+            p(inner, bottom),
+            p(x, bottom)
         );
         g = g.add(filled(path, &fill));
         // Kinds of loss side by side.
         for l in &n.losses[1..] {
             let to = (n.power_w - l.offset_w) * d.scale;
-            if to > 1.0 && width - to > 1.0 {
-                let path = format!(
-                    "M{} A{2} {2} 0 0 1 {1} V{3}",
-                    p(x, bottom - to),
-                    p(inner + to, low),
-                    number(r + to),
-                    number(low + 5.0)
-                );
+            let wide = to * d.widened;
+            if wide > 1.0 && width - wide > 1.0 {
+                let at = inner + wide;
+                let path =
+                    format!("M{} Q{} {} V{}", p(x, bottom - to), p(at, bottom - to), p(at, low), number(low + 5.0));
                 g = g.add(Path::new().set("d", path).set("fill", "none").set("stroke", PAPER).set("stroke-width", 0.8));
             }
         }
@@ -375,13 +406,15 @@ fn node(d: &Layout<'_>, k: usize, n: &SankeyNode) -> Group {
 struct Legend {
     kinds: Vec<NodeKind>,
     circle: bool,
+    framed: bool,
     loss: bool,
 }
 
 impl Legend {
     fn see(&mut self, f: &SankeyFlow) {
         self.kinds.extend(f.nodes.iter().map(|n| n.kind));
-        self.circle |= f.links.iter().any(|l| l.circulating_w > 0.0);
+        self.circle |= f.links.iter().any(|l| l.circulating_w > 0.0 && !l.framed);
+        self.framed |= f.links.iter().any(|l| l.framed);
         self.loss |= f.nodes.iter().any(|n| !n.losses.is_empty());
     }
 
@@ -401,6 +434,9 @@ impl Legend {
         if self.circle {
             entries.push((Some(sample(Carries::Circle)), "runs in a circle"));
         }
+        if self.framed {
+            entries.push((Some(sample(Carries::Framed)), "runs in a circle only as seen from the housing"));
+        }
         if self.loss {
             let arrow = triangle([(5.0, -4.0), (19.0, -4.0), (12.0, 6.0)], &Carries::Loss.colour());
             entries.push((Some(Group::new().add(arrow)), "loss"));
@@ -416,7 +452,7 @@ impl Legend {
             entries.push((Some(bar(k, 12.0, -8.0, 16.0)), words));
         }
         entries.push((None, "%: of the external power that enters"));
-        let mut g = Group::new();
+        let mut g = guide(Group::new());
         let (mut x, mut y) = (MARGIN, top + 14.0);
         for (mark, words) in entries {
             let indent = if mark.is_some() { 32.0 } else { 0.0 };

@@ -58,6 +58,8 @@ fn assign_layers(nodes: &mut [SankeyNode], links: &[SankeyLink]) -> usize {
 
 /// What stands in a layer: a node, or a link that passes.
 struct Columns {
+    /// How many items are nodes; they are the first, in the order in which the train has them.
+    nodes: usize,
     /// By layer, items from the top.
     rows: Vec<Vec<usize>>,
     /// By item.
@@ -97,6 +99,12 @@ impl Columns {
                     }
                 }
             }
+        }
+        // Where nothing crosses, nodes stand in the order of the train, so that gears look alike.
+        for column in &self.rows {
+            let own: Vec<usize> = column.iter().copied().filter(|item| *item < self.nodes).collect();
+            let turned: usize = (1..own.len()).map(|k| own[..k].iter().filter(|a| **a > own[k]).count()).sum();
+            sum += 0.002 * largest * turned as f64;
         }
         // Side by side, the upper should have the shorter way.
         for (k, a) in self.backs.iter().enumerate() {
@@ -180,7 +188,7 @@ fn assign_rows(nodes: &mut [SankeyNode], links: &mut [SankeyLink], layers: usize
     let mut rows = vec![vec![]; layers];
     (0..layer.len()).for_each(|item| rows[layer[item]].push(item));
     let largest = links.iter().fold(0.0f64, |a, l| a.max(l.power_w));
-    let mut columns = Columns { rows, layer, steps, backs };
+    let mut columns = Columns { nodes: nodes.len(), rows, layer, steps, backs };
     columns.exchange(largest);
     let mut best = (columns.cost(largest), columns.rows.clone());
     for round in 0..SWEEPS {

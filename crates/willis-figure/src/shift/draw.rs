@@ -3,6 +3,7 @@
 use svg::node::element::{Circle, Group, Path, Rectangle};
 use willis::train::ShiftElementKind;
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text, wide,
 };
@@ -63,15 +64,17 @@ pub fn draw(table: &ShiftTable) -> String {
     for k in 0..table.rows.len() {
         let y = c.top + ROW * k as f64;
         if k % 2 == 0 {
-            g = g.add(rectangle(MARGIN - 8.0, y, c.changes - MARGIN, ROW, BAND));
+            g = g.add(guide(rectangle(MARGIN - 8.0, y, c.changes - MARGIN, ROW, BAND)));
         }
     }
     g = g.add(grid(table, &c, bottom)).add(staircase(table, &c));
     for (k, row) in table.rows.iter().enumerate() {
-        g = g.add(cells(table, &c, row, c.top + ROW * (k as f64 + 0.5)));
+        let own = cells(table, &c, row, c.top + ROW * (k as f64 + 0.5));
+        g = g.add(of(own, "row", &[Of::State(&row.state)]));
     }
     for (k, change) in table.changes.iter().enumerate().filter(|(k, _)| !turns(table, *k)) {
-        g = g.add(changes(&c, change, c.top + ROW * (k + 1) as f64));
+        let own = changes(&c, change, c.top + ROW * (k + 1) as f64);
+        g = g.add(of(own, "change", &[Of::State(&table.rows[k].state)]));
     }
     g = g.add(key(table, bottom + 34.0 + 19.0 * foot.len() as f64));
     for (k, row) in foot.iter().enumerate() {
@@ -171,7 +174,7 @@ fn key(table: &ShiftTable, y: f64) -> Group {
         (ShiftElementKind::OneWay, "one-way clutch"),
     ];
     let mut x = MARGIN + 10.0;
-    let mut g = Group::new();
+    let mut g = guide(Group::new());
     for (kind, name) in kinds.into_iter().filter(|(kind, _)| table.elements.iter().any(|e| e.kind == *kind)) {
         g = g.add(symbol(kind, x, y - 4.0)).add(text(x + 16.0, y, 13.0, Anchor::Start, name));
         x += 16.0 + wide(name, 13.0) + 30.0;
@@ -194,7 +197,7 @@ fn head(table: &ShiftTable, c: &Columns) -> Group {
     }
     for (k, e) in table.elements.iter().enumerate() {
         let x = c.element(k);
-        g = g.add(symbol(e.kind, x, y - 4.0));
+        g = g.add(of(symbol(e.kind, x, y - 4.0), "column", &[Of::Element(&e.name)]));
         g = g.add(if c.upright {
             let name = fit(&e.name, TALLEST / BOLD, 12.0);
             text(x + 4.0, y - 14.0, 12.0, Anchor::Start, &name)
@@ -211,12 +214,12 @@ fn head(table: &ShiftTable, c: &Columns) -> Group {
         .add(bold(c.coast + 8.0, Anchor::Start, "coasting"))
         .add(bold(c.changes + 22.0, Anchor::Start, "change"))
         .add(text(c.drive + 8.0, y - 15.0, 11.0, Anchor::Start, "nominal efficiency; bars: loss").set("fill", FAINT));
-    g.add(line((MARGIN - 8.0, c.top), (c.changes - 8.0, c.top), INK, 1.2))
+    g.add(guide(line((MARGIN - 8.0, c.top), (c.changes - 8.0, c.top), INK, 1.2)))
 }
 
 /// Thin lines between columns and the places of the dots.
 fn grid(table: &ShiftTable, c: &Columns, bottom: f64) -> Group {
-    let mut g = Group::new();
+    let mut g = guide(Group::new());
     for (k, _) in table.rows.iter().enumerate() {
         for e in 0..table.elements.len() {
             let y = c.top + ROW * (k as f64 + 0.5);
@@ -238,7 +241,8 @@ fn cells(table: &ShiftTable, c: &Columns, row: &ShiftRow, y: f64) -> Group {
     }
     for (k, _) in row.closed.iter().enumerate().filter(|(_, closed)| **closed) {
         let dot = Circle::new().set("cx", number(c.element(k))).set("cy", number(y)).set("r", 8);
-        g = g.add(dot.set("fill", INK));
+        let own = [Of::Element(&table.elements[k].name), Of::State(&row.state)];
+        g = g.add(of(dot.set("fill", INK), "closed", &own));
     }
     let end = c.steps - 14.0;
     let Some(ratio) = row.ratio else {
@@ -303,25 +307,28 @@ fn staircase(table: &ShiftTable, c: &Columns) -> Group {
     let middle = |k: usize| c.top + ROW * (k as f64 + 0.5);
     if low < 0.0 && high > 0.0 {
         let bottom = c.top + ROW * table.rows.len() as f64;
-        g = g.add(line((x(0.0), c.top), (x(0.0), bottom), LINE, 1.0).set("stroke-dasharray", "2 4"));
+        g = g.add(guide(line((x(0.0), c.top), (x(0.0), bottom), LINE, 1.0).set("stroke-dasharray", "2 4")));
     }
     let ink = colour(Some(0), 1.0);
     for (k, change) in table.changes.iter().enumerate() {
         let (Some(a), Some(b), Some(step)) = (sizes[k], sizes[k + 1], change.step) else { continue };
         let y = c.top + ROW * (k + 1) as f64;
+        let mut own = Group::new();
         for (from, to) in [((x(a), middle(k)), (x(a), y)), ((x(a), y), (x(b), y)), ((x(b), y), (x(b), middle(k + 1)))] {
-            g = g.add(line(from, to, &ink, 2.2).set("stroke-linecap", "square"));
+            own = own.add(line(from, to, &ink, 2.2).set("stroke-linecap", "square"));
         }
-        g = g.add(text(x(a.max(b)) + 7.0, y + 4.0, 11.0, Anchor::Start, &decimals(step)));
+        own = own.add(text(x(a.max(b)) + 7.0, y + 4.0, 11.0, Anchor::Start, &decimals(step)));
+        g = g.add(of(own, "step", &[Of::State(&table.rows[k].state)]));
     }
     for (k, size) in sizes.iter().enumerate() {
         let Some(size) = size else { continue };
         let backward = table.rows[k].ratio.is_some_and(|i| i < 0.0);
         let dot = Circle::new().set("cx", number(x(*size))).set("cy", number(middle(k))).set("r", 4.6);
-        g = g.add(match backward {
+        let dot = match backward {
             true => dot.set("fill", PAPER).set("stroke", ink.as_str()).set("stroke-width", 1.8),
             false => dot.set("fill", ink.as_str()),
-        });
+        };
+        g = g.add(of(dot, "ratio", &[Of::State(&table.rows[k].state), Of::Quantity("ratio")]));
     }
     g
 }

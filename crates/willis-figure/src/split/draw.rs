@@ -2,6 +2,7 @@
 
 use svg::node::element::{Circle, Group};
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::chart::{Chart, Scale};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, number, page, rectangle, text, wide,
@@ -40,22 +41,24 @@ pub fn draw(split: &Split) -> String {
         let chart = Chart { left: LEFT, top, right: RIGHT, bottom: top + height, x: scale, y };
         body = body.add(chart.grid());
         if k > 0 && chart.y.low < 0.0 && chart.y.high > 0.0 {
-            body = body.add(line((LEFT, chart.y(0.0)), (RIGHT, chart.y(0.0)), LINE, 1.2));
+            body = body.add(guide(line((LEFT, chart.y(0.0)), (RIGHT, chart.y(0.0)), LINE, 1.2)));
         }
         if k == 0 && several {
             body = body.add(best(split, &chart));
         }
         body = body.add(mechanical(split, &chart, k == 0));
-        for c in &curves {
+        let what = ["efficiency", "share", "power_w"][k];
+        for (n, c) in curves.iter().enumerate() {
             if let Some(path) = chart.path(x.iter().copied().zip(c.points.iter().copied())) {
                 let path = path.set("stroke", c.colour.as_str()).set("stroke-width", 2);
-                body = body.add(if c.dashed { path.set("stroke-dasharray", "6 3") } else { path });
+                let path = if c.dashed { path.set("stroke-dasharray", "6 3") } else { path };
+                body = body.add(of(path, &format!("curve{n}"), &[Of::Element(&c.name), Of::Quantity(what)]));
             }
         }
         if k == 0 {
             body = body.add(others(split, &chart)).add(gears(split, &chart));
         }
-        body = body.add(chart.frame()).add(names(&curves, &chart));
+        body = body.add(chart.frame()).add(names(&curves, &chart, what));
         top += height + GAP;
     }
     let (notes, bottom) = notes(split, top + 20.0);
@@ -153,7 +156,8 @@ fn best(split: &Split, chart: &Chart) -> Group {
         let to = (from..x.len()).find(|&k| split.best[k] != split.best[from]).unwrap_or(x.len());
         if let Some(mode) = split.best[from] {
             let (left, right) = (chart.x(edge(from)), chart.x(edge(to)));
-            g = g.add(rectangle(left, chart.bottom - 6.0, right - left, 6.0, &colour(Some(mode), 0.6)));
+            let own = rectangle(left, chart.bottom - 6.0, right - left, 6.0, &colour(Some(mode), 0.6));
+            g = g.add(of(own, &format!("best{from}"), &[Of::State(&mode_name(split, mode))]));
         }
         from = to;
     }
@@ -178,7 +182,9 @@ fn mechanical(split: &Split, chart: &Chart, named: bool) -> Group {
     let mut ends = [f64::NEG_INFINITY; 2];
     for (ratio, sides) in told {
         let x = chart.x(ratio);
-        g = g.add(line((x, chart.top), (x, chart.bottom), INK, 1.0).set("stroke-dasharray", "3 3"));
+        let own = line((x, chart.top), (x, chart.bottom), INK, 1.0).set("stroke-dasharray", "3 3");
+        let word = format!("rest{}", number(chart.top));
+        g = g.add(of(own, &word, &[Of::Element(&sides.join(", ")), Of::Quantity(&format!("ratio {ratio}"))]));
         if named {
             let label = format!("{} at rest, {}", sides.join(", "), digits(ratio));
             let half = wide(&label, 11.0) / 2.0;
@@ -195,13 +201,16 @@ fn mechanical(split: &Split, chart: &Chart, named: bool) -> Group {
 fn others(split: &Split, chart: &Chart) -> Group {
     let mut g = Group::new();
     for (k, mode) in split.modes.iter().enumerate() {
+        let name = mode_name(split, k);
+        let mut own = of(Group::new(), &format!("others{k}"), &[Of::State(&name), Of::Quantity("efficiency")]);
         for (x, p) in split.x.values.iter().zip(&mode.points) {
             for e in p.efficiencies.iter().skip(1).filter(|e| 100.0 * **e >= chart.y.low) {
                 let dot =
                     Circle::new().set("cx", number(chart.x(*x))).set("cy", number(chart.y(100.0 * e))).set("r", 1.6);
-                g = g.add(dot.set("fill", colour(Some(k), 0.8)));
+                own = own.add(dot.set("fill", colour(Some(k), 0.8)));
             }
         }
+        g = g.add(own);
     }
     g
 }
@@ -211,7 +220,9 @@ fn gears(split: &Split, chart: &Chart) -> Group {
     inside.fold(Group::new(), |g, gear| {
         let (x, y) = (chart.x(gear.ratio), chart.y(100.0 * gear.efficiency));
         let dot = Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", 4);
-        g.add(dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", 1.6)).add(text(
+        let dot =
+            of(dot.set("fill", PAPER).set("stroke", INK).set("stroke-width", 1.6), "gear", &[Of::State(&gear.state)]);
+        g.add(dot).add(text(
             x + 8.0,
             // Clear of the curves, which are beside and above it.
             y + 18.0,
@@ -223,7 +234,7 @@ fn gears(split: &Split, chart: &Chart) -> Group {
 }
 
 /// Names of the curves at their right ends, none over another.
-fn names(curves: &[Curve], chart: &Chart) -> Group {
+fn names(curves: &[Curve], chart: &Chart, what: &str) -> Group {
     const SPACING: f64 = 15.0;
     let end = |c: &Curve| c.points.iter().rev().flatten().next().map(|y| chart.y(*y));
     let mut labels: Vec<(f64, &Curve)> =
@@ -238,7 +249,8 @@ fn names(curves: &[Curve], chart: &Chart) -> Group {
         let name = fit(&c.name, WIDTH - RIGHT - 48.0, 12.0);
         let mark = line((RIGHT + 8.0, y), (RIGHT + 26.0, y), &c.colour, 2.0);
         let mark = if c.dashed { mark.set("stroke-dasharray", "6 3") } else { mark };
-        g.add(mark).add(text(RIGHT + 32.0, y + 4.0, 12.0, Anchor::Start, &name))
+        let own = Group::new().add(mark).add(text(RIGHT + 32.0, y + 4.0, 12.0, Anchor::Start, &name));
+        g.add(of(own, "name", &[Of::Element(&c.name), Of::Quantity(what)]))
     })
 }
 

@@ -7,6 +7,7 @@ use super::shapes::{self, Shape};
 use super::{JointKind, Way};
 
 /// Planets on one carrier with their gears, or one ordinary pair, in every arrangement.
+#[derive(Clone)]
 pub(super) struct Block {
     pub name: String,
     /// The axis that it stands on; of an ordinary pair the upper one.
@@ -16,6 +17,7 @@ pub(super) struct Block {
 }
 
 /// A shift element or elastic shaft.
+#[derive(Clone)]
 pub(super) struct Joint {
     /// Its place among the shift elements, then shafts, of the train.
     pub number: usize,
@@ -26,12 +28,14 @@ pub(super) struct Joint {
 }
 
 /// A member that leaves the picture.
+#[derive(Clone)]
 pub(super) struct Exit {
     pub net: usize,
     pub way: Option<Way>,
     pub open: bool,
 }
 
+#[derive(Clone)]
 pub(super) struct Plan {
     pub nets: usize,
     pub blocks: Vec<Block>,
@@ -43,9 +47,9 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub fn new(train: &Train, members: &Members, state: Option<usize>) -> Self {
+    /// No shift element is closed, and power enters and leaves where it does in all states.
+    pub fn new(train: &Train, members: &Members) -> Self {
         let net = |m: MemberId| members.net(m);
-        let engaged = state.map_or(&[][..], |k| &train.states()[k].engaged);
         let mut joints: Vec<Joint> = train
             .shift_elements()
             .iter()
@@ -59,7 +63,7 @@ impl Plan {
                     ShiftElementKind::OneWay => JointKind::OneWay,
                 },
                 members: e.members.map(net),
-                engaged: engaged.iter().any(|id| id.index() == k),
+                engaged: false,
             })
             .collect();
         let first = joints.len();
@@ -75,7 +79,7 @@ impl Plan {
         joints.retain(|j| j.members[0] != j.members[1]);
 
         let (families, pairs) = families(train, members);
-        let (axes, axis_of) = axes(train, members, &joints, state);
+        let (axes, axis_of) = axes(train, members, &joints);
         let mut blocks = Vec::new();
         for meshes in &families {
             let first = &train.meshes()[meshes[0].index()];
@@ -102,17 +106,10 @@ impl Plan {
             blocks.push(Block { name: mesh.name.clone(), axis, pair: true, shapes });
         }
 
-        let [input, output] = ends(train, state);
+        let ends = ends(train, None).map(|m| m.and_then(net));
         let mut exits: Vec<Exit> = Vec::new();
         for &m in train.terminals().iter().filter(|m| **m != FRAME) {
-            let way = if Some(m) == input {
-                Some(Way::In)
-            } else if Some(m) == output {
-                Some(Way::Out)
-            } else {
-                None
-            };
-            exits.extend(net(m).map(|net| Exit { net, way, open: true }));
+            exits.extend(net(m).map(|net| Exit { net, way: way(ends, net), open: true }));
         }
         // Input first, then output: they choose their side.
         exits.sort_by_key(|e| match e.way {
@@ -129,6 +126,27 @@ impl Plan {
             }
         }
         Self { nets: members.order.len(), blocks, joints, exits, axes, axis_of }
+    }
+
+    /// The same parts in a state: what is closed, and where power enters and leaves. Nothing moves.
+    pub fn in_state(&self, train: &Train, members: &Members, state: Option<usize>) -> Self {
+        let mut own = self.clone();
+        let engaged = state.map_or(&[][..], |k| &train.states()[k].engaged);
+        for j in own.joints.iter_mut().filter(|j| j.kind != JointKind::Shaft) {
+            j.engaged = engaged.iter().any(|id| id.index() == j.number);
+        }
+        let ends = ends(train, state).map(|m| m.and_then(|m| members.net(m)));
+        own.exits.iter_mut().filter(|e| e.open).for_each(|e| e.way = way(ends, e.net));
+        own
+    }
+}
+
+/// What an end of the train does with power, where these are its input and its output.
+fn way(ends: [Option<usize>; 2], net: usize) -> Option<Way> {
+    match ends {
+        [Some(input), _] if input == net => Some(Way::In),
+        [_, Some(output)] if output == net => Some(Way::Out),
+        _ => None,
     }
 }
 
@@ -184,7 +202,7 @@ fn families(train: &Train, members: &Members) -> (Vec<Vec<MeshId>>, Vec<MeshId>)
 }
 
 /// Which members turn about one line, and in which order the lines lie: the input's lowest.
-fn axes(train: &Train, members: &Members, joints: &[Joint], state: Option<usize>) -> (usize, Vec<usize>) {
+fn axes(train: &Train, members: &Members, joints: &[Joint]) -> (usize, Vec<usize>) {
     let count = members.order.len();
     let mut group: Vec<usize> = (0..count).collect();
     fn root(group: &[usize], mut k: usize) -> usize {
@@ -231,7 +249,7 @@ fn axes(train: &Train, members: &Members, joints: &[Joint], state: Option<usize>
             links.push([of[a], of[b]]);
         }
     }
-    let [input, _] = ends(train, state);
+    let [input, _] = ends(train, None);
     let input = input.or(train.input());
     let start = input.and_then(|m| members.net(m)).map_or(0, |n| of[n]);
     let mut level: Vec<Option<usize>> = vec![None; count];

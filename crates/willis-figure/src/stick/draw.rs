@@ -7,7 +7,7 @@ use svg::node::element::{Circle, Group, Path, Polyline};
 
 use self::labels::Labels;
 use self::sheet::{LIST, MARGIN, PLATE, ROW, Sheet};
-use crate::parts::alive::{Of, of};
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
@@ -109,7 +109,7 @@ fn role(g: &StickGear) -> &'static str {
 
 impl Sheet<'_> {
     fn axes(&self) -> Group {
-        let mut g = Group::new();
+        let mut g = guide(Group::new());
         for y in &self.data.axes {
             let (from, to) = (self.at([0.0, *y]), self.at([self.data.width, *y]));
             g = g
@@ -125,16 +125,16 @@ impl Sheet<'_> {
             let [a, b] = j.ends.map(|p| self.at(p));
             let (x, y) = ((a.0 + b.0) / 2.0, (a.1 + b.1) / 2.0);
             let r = PLATE + 5.0;
-            g = g.add(rectangle(x - r, y - r, 2.0 * r, 2.0 * r, &colour(Some(4), 0.45)).set("rx", 4));
+            let ground = rectangle(x - r, y - r, 2.0 * r, 2.0 * r, &colour(Some(4), 0.45)).set("rx", 4);
+            g = g.add(of(ground, "closed", &[Of::Element(&j.name)]));
         }
         g
     }
 
     fn member_lines(&self, labels: &mut Labels) -> Group {
         let mut g = Group::new();
-        for l in &self.data.frame {
-            g = g.add(self.polyline(l, INK, THIN + 0.6, labels));
-        }
+        let frame = self.data.frame.iter().map(|l| self.polyline(l, INK, THIN + 0.6, labels));
+        g = g.add(of(frame.fold(Group::new(), Group::add), "line", &[Of::Member("frame")]));
         for loaded in [false, true] {
             for (k, m) in self.data.members.iter().enumerate().filter(|(k, _)| self.category[*k].is_some()) {
                 let ink = self.ink(Some(k));
@@ -236,15 +236,16 @@ impl Sheet<'_> {
             hubs.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
             hubs.dedup();
             let (Some(first), Some(last)) = (hubs.first(), hubs.last()) else { continue };
+            let mut own = Group::new();
             if first != last {
                 let width = if m.loaded == Some(true) { 8.0 } else { 5.0 };
-                g = g.add(line(self.at(*first), self.at(*last), INK, width));
+                own = own.add(line(self.at(*first), self.at(*last), INK, width));
                 labels.mark(self.at(*first), self.at(*last), width / 2.0);
             }
             for h in hubs {
                 let (x, y) = self.at(h);
                 labels.mark((x, y), (x, y), 6.0);
-                g = g.add(
+                own = own.add(
                     Circle::new()
                         .set("cx", number(x))
                         .set("cy", number(y))
@@ -254,6 +255,7 @@ impl Sheet<'_> {
                         .set("stroke-width", 1.6),
                 );
             }
+            g = g.add(of(own, "pin", &[Of::Member(&m.name)]));
         }
         g
     }
@@ -334,12 +336,13 @@ impl Sheet<'_> {
             labels.mark(along(-PLATE - 1.0, 0.0), along(PLATE + 1.0, 7.0), 1.0);
             g = g.add(hatch((x, y), (ix, iy)));
         }
-        g
+        of(g, "ground", &[Of::Member("frame")])
     }
 
     fn terminals(&self, labels: &mut Labels) -> Group {
-        let mut g = Group::new();
-        for t in &self.data.terminals {
+        let mut all = Group::new();
+        for (nth, t) in self.data.terminals.iter().enumerate() {
+            let mut g = Group::new();
             let m = &self.data.members[t.member];
             let ink = self.ink(Some(t.member));
             let (x, y) = self.at(t.at);
@@ -391,8 +394,9 @@ impl Sheet<'_> {
             let (tx, anchor) = (tip + side * 10.0, if t.left { Anchor::End } else { Anchor::Start });
             labels.texts.push(Labels::bounds(tx, y + 4.0, 12.0, anchor, wide(&name, 12.0) * BOLD));
             g = g.add(text(tx, y + 4.0, 12.0, anchor, &name).set("font-weight", "bold"));
+            all = all.add(of(g, &format!("terminal{nth}"), &[Of::Member(&m.name)]));
         }
-        g
+        all
     }
 
     /// Under the lowest axis: no line runs there.
@@ -408,11 +412,12 @@ impl Sheet<'_> {
             let (x, y) = (self.at([middle(b), 0.0]).0, self.bottom() + 40.0);
             let [from, to] = block.span.map(|x| self.at([x, 0.0]).0);
             let tick = y - 15.0;
-            g = g
+            let own = Group::new()
                 .add(line((from, tick), (to, tick), LINE, 1.0))
                 .add(line((from, tick - 4.0), (from, tick), LINE, 1.0))
                 .add(line((to, tick - 4.0), (to, tick), LINE, 1.0))
                 .add(text(x, y, 12.0, Anchor::Middle, &fit(&block.name, room / BOLD, 12.0)).set("font-weight", "bold"));
+            g = g.add(of(own, "set", &[Of::Mesh(&block.name)]));
         }
         g
     }
@@ -437,15 +442,16 @@ impl Sheet<'_> {
             let y = top + ROW * (row % rows + 1) as f64;
             let width = if m.loaded == Some(true) { THICK } else { THIN };
             let number = self.category[k].map_or(0, |c| c + 1);
-            g = g
+            let mut own = Group::new()
                 .add(text(x + 14.0, y, 11.0, Anchor::End, &number.to_string()).set("fill", FAINT))
                 .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
                 .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, 120.0, 12.0)))
                 .add(text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), 150.0, 11.0)).set("fill", FAINT));
             if let Some(speed) = m.speed_ratio.filter(|_| speeds) {
                 let shown = if speed == 0.0 { "stands still".to_owned() } else { digits(speed) };
-                g = g.add(text(x + LIST - 24.0, y, 11.0, Anchor::End, &shown));
+                own = own.add(text(x + LIST - 24.0, y, 11.0, Anchor::End, &shown));
             }
+            g = g.add(of(own, "row", &[Of::Member(&m.name)]));
         }
         g
     }
@@ -454,7 +460,7 @@ impl Sheet<'_> {
     fn key(&self) -> Group {
         let y = self.height - 24.0;
         let mut x = 36.0;
-        let mut g = Group::new();
+        let mut g = guide(Group::new());
         let kinds = [
             (JointKind::Clutch, "clutch"),
             (JointKind::Brake, "brake"),

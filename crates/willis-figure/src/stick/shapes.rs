@@ -471,17 +471,19 @@ fn bevel_set(train: &Train, members: &Members, meshes: &[MeshId], planet: Member
             s.closed.push([(1, y), (2, y)]);
         }
     }
-    // The pin, with the carrier at its outer end; at the inner one too, or the planet itself.
+    // The pin, with the carrier at its outer end; at the inner one too, or the planet itself. The carrier of a plain
+    // differential is the cage around its gears.
     let own = members.net(carrier);
     let top = s.top;
-    for y in 0..top {
+    let cage = rows.len() == 1 && rows[0].1.iter().all(Option::is_some) && !members.led_out(planet);
+    for y in i32::from(cage)..top {
         let net = if y == 0 && members.led_out(planet) { members.net(planet) } else { own };
         s.wires.push((net, [(1, y), (1, y + 1)]));
     }
     s.open(own, (1, top), (0, 1));
     match (members.led_out(planet), own) {
         (true, _) => s.open(members.net(planet), (1, 0), (0, -1)),
-        (_, Some(n)) => s.ports.push((n, (1, 0))),
+        (_, Some(n)) if !cage => s.ports.push((n, (1, 0))),
         _ => s.block((1, 0)),
     }
     s

@@ -5,7 +5,7 @@ use willis::analysis::{ShaftElement, ShaftState, ShaftTable};
 use willis::exact::Rational;
 use willis::train::ShiftElementKind;
 
-use crate::parts::alive::{Of, of};
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, colour, figures, fit, line, lines, number, page, rectangle, text, titled, wide,
 };
@@ -108,7 +108,7 @@ pub fn draw(table: &ShaftTable) -> String {
             g = g.add(titled(of(head.set("font-weight", "bold"), "head", &[Of::State(name)]), name));
         }
         y += 8.0;
-        g = g.add(line((MARGIN - 8.0, y), (right, y), INK, 1.2));
+        g = g.add(guide(line((MARGIN - 8.0, y), (right, y), INK, 1.2)));
         for (nth, s) in sections.iter().enumerate() {
             if !s.head.is_empty() {
                 y += HEAD - ROW + 4.0;
@@ -118,13 +118,13 @@ pub fn draw(table: &ShaftTable) -> String {
                     g = g.add(text(MARGIN, y, 12.0, Anchor::Start, words).set("font-weight", "bold"));
                 }
                 y += 6.0;
-                g = g.add(line((MARGIN - 8.0, y), (right, y), LINE, 1.0));
+                g = g.add(guide(line((MARGIN - 8.0, y), (right, y), LINE, 1.0)));
             }
             let most =
                 s.rows.iter().flat_map(|r| &r.cells).filter_map(Cell::number).fold(0.0, |a: f64, x| a.max(x.abs()));
             for (line_of, row) in s.rows.iter().enumerate() {
                 if line_of % 2 == 0 {
-                    g = g.add(rectangle(MARGIN - 8.0, y, right - MARGIN + 8.0, ROW, BAND));
+                    g = g.add(guide(rectangle(MARGIN - 8.0, y, right - MARGIN + 8.0, ROW, BAND)));
                 }
                 let name = text(MARGIN, y + 15.0, 12.0, Anchor::Start, &fit(&row.name, names - 10.0, 12.0));
                 g = g.add(titled(name, &row.name));

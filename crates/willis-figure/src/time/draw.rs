@@ -3,6 +3,7 @@
 use svg::node::element::{Circle, Group, Path};
 use willis::dynamics::{ColumnUnit, ModeLabel, Outcome};
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, FAINT, INK, LINE, PAPER, colour, figures, halo, line, number, page, rectangle, text, ticks,
 };
@@ -68,7 +69,12 @@ pub fn draw(plot: &TimePlot) -> String {
 fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
     let words = plot.outcome.words();
     let [start, end] = plot.run;
-    let one = format!("From {} to {}; the run {words}", time.moment(start), time.moment(end));
+    let whole = TimeAxis::new(plot.run);
+    let mut one = format!("From {} to {}; the run {words}", whole.moment(start), whole.moment(end));
+    if plot.axis[0] > start || plot.axis[1] < end {
+        one += &format!("; shown from {} to {}", time.moment(plot.axis[0]), time.moment(plot.axis[1]));
+    }
+
     let changes = match plot.event_count {
         0 => "no change of mode".to_owned(),
         1 => "one change of mode: the thin upright line".to_owned(),
@@ -81,6 +87,18 @@ fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
     }
     if plot.modes_left_out > 0 {
         two.push(format!("{} rows of modes left out", plot.modes_left_out));
+    }
+    let shown = (time.from.max(start), time.to.min(end));
+    let close = 1e-6 * (shown.1 - shown.0);
+    let whole = |pieces: &[Vec<[f64; 2]>]| match pieces {
+        [only] => {
+            only.first().is_some_and(|p| p[0] <= shown.0 + close)
+                && only.last().is_some_and(|p| p[0] >= shown.1 - close)
+        }
+        _ => false,
+    };
+    if plot.panels.iter().flat_map(|p| &p.lines).any(|l| !whole(&l.pieces)) {
+        two.push("where a curve has a gap, rigid parts leave its value open".to_owned());
     }
     let mut two = two.join("; ");
     if let Some(first) = two.get(..1) {
@@ -141,7 +159,7 @@ impl TimeAxis {
 
     fn grid(&self, top: f64, bottom: f64) -> Group {
         let at = self.ticks.iter().map(|t| self.x(t * self.scale));
-        at.fold(Group::new(), |g, x| g.add(line((x, top), (x, bottom), GRID, 1.0)))
+        at.fold(guide(Group::new()), |g, x| g.add(line((x, top), (x, bottom), GRID, 1.0)))
     }
 
     fn labels(&self, bottom: f64) -> Group {
@@ -216,22 +234,29 @@ fn panel(plot: &TimePlot, p: &TimePanel, time: &TimeAxis, top: f64) -> Group {
     for (t, name) in at.iter().zip(tick_labels(&at)) {
         let y = y(t * scale);
         g = g
-            .add(line((LEFT, y), (RIGHT, y), GRID, 1.0))
+            .add(guide(line((LEFT, y), (RIGHT, y), GRID, 1.0)))
             .add(text(LEFT - 6.0, y + 4.0, 11.0, Anchor::End, &name).set("fill", FAINT));
     }
     if low < 0.0 && high > 0.0 {
-        g = g.add(line((LEFT, y(0.0)), (RIGHT, y(0.0)), LINE, 1.0));
+        g = g.add(guide(line((LEFT, y(0.0)), (RIGHT, y(0.0)), LINE, 1.0)));
     }
     g = g.add(frame(top, bottom));
     // The first curve last, on top of the others.
     for (k, l) in p.lines.iter().enumerate().rev() {
-        g = g.add(curve(l, k, time, &y));
+        g = g.add(of(curve(l, k, time, &y), &format!("curve{k}"), &whose(p, l)));
     }
     g.add(names(p, time, &y, top, bottom))
 }
 
 fn frame(top: f64, bottom: f64) -> svg::node::element::Rectangle {
-    rectangle(LEFT, top, RIGHT - LEFT, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1)
+    guide(rectangle(LEFT, top, RIGHT - LEFT, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1))
+}
+
+/// What a curve shows: speeds are of members, everything else of parts.
+fn whose<'p>(p: &'p TimePanel, l: &'p TimeLine) -> [Of<'p>; 2] {
+    let name = l.names.first().map_or("", String::as_str);
+    let part = if p.unit == ColumnUnit::RadianPerSecond { Of::Member(name) } else { Of::Element(name) };
+    [part, Of::Quantity(&p.quantity)]
 }
 
 /// The time that the run did not reach.
@@ -240,7 +265,7 @@ fn absent(plot: &TimePlot, time: &TimeAxis, top: f64, bottom: f64) -> Group {
     if RIGHT - from < 1.0 {
         return Group::new();
     }
-    let g = Group::new().add(rectangle(from, top, RIGHT - from, bottom - top, ABSENT));
+    let g = guide(Group::new()).add(rectangle(from, top, RIGHT - from, bottom - top, ABSENT));
     // One word of it is enough, above the first panel.
     if top > TOP || RIGHT - from < 70.0 {
         return g;
@@ -264,7 +289,7 @@ fn curve(l: &TimeLine, k: usize, time: &TimeAxis, y: &impl Fn(f64) -> f64) -> Gr
                     .set("cx", number(one[0]))
                     .set("cy", number(one[1]))
                     .set("r", 2)
-                    .set("fill", colour(Some(k), 1.0)),
+                    .set("fill", colour(l.colour.or(Some(k)), 1.0)),
             );
             continue;
         }
@@ -272,7 +297,7 @@ fn curve(l: &TimeLine, k: usize, time: &TimeAxis, y: &impl Fn(f64) -> f64) -> Gr
         let mut path = Path::new()
             .set("d", format!("M{}", words.join(" L")))
             .set("fill", "none")
-            .set("stroke", colour(Some(k), 1.0))
+            .set("stroke", colour(l.colour.or(Some(k)), 1.0))
             .set("stroke-width", 1.8)
             .set("stroke-linejoin", "round");
         if dashes(k) != "none" {
@@ -324,11 +349,12 @@ fn names(p: &TimePanel, time: &TimeAxis, y: &impl Fn(f64) -> f64, top: f64, bott
     let mut g = Group::new();
     for ((k, x, end), at) in ends.iter().zip(placed) {
         let l = &p.lines[*k];
-        let own = colour(Some(*k), 1.0);
+        let own = colour(l.colour.or(Some(*k)), 1.0);
+        let mut row = Group::new();
         let from = if RIGHT - x > 3.0 { (*x, *end) } else { (RIGHT, *end) };
         // From the end of the curve, level to the margin, then to the name.
         if RIGHT - x > 3.0 {
-            g = g.add(line(from, (RIGHT, *end), &own, 0.8).set("stroke-dasharray", "1 3"));
+            row = row.add(line(from, (RIGHT, *end), &own, 0.8).set("stroke-dasharray", "1 3"));
         }
         let mut key = Path::new()
             .set(
@@ -349,7 +375,8 @@ fn names(p: &TimePanel, time: &TimeAxis, y: &impl Fn(f64) -> f64, top: f64, bott
         if dashes(*k) != "none" {
             key = key.set("stroke-dasharray", dashes(*k));
         }
-        g = g.add(key).add(text(RIGHT + 41.0, at + 4.0, 12.0, Anchor::Start, &together(&l.names, 24)));
+        row = row.add(key).add(text(RIGHT + 41.0, at + 4.0, 12.0, Anchor::Start, &together(&l.names, 24)));
+        g = g.add(of(row, &format!("name{k}"), &whose(p, l)));
     }
     g
 }
@@ -438,11 +465,17 @@ fn modes(plot: &TimePlot, time: &TimeAxis, top: f64) -> Group {
             None => "changing fast",
             _ => look(m).1,
         };
-        g = g.add(block(m, x, top - 21.0, 22.0, 13.0)).add(text(x + 28.0, top - 10.0, 11.0, Anchor::Start, word));
+        g = g.add(guide(block(m, x, top - 21.0, 22.0, 13.0))).add(text(
+            x + 28.0,
+            top - 10.0,
+            11.0,
+            Anchor::Start,
+            word,
+        ));
         x += 50.0 + 6.2 * word.chars().count() as f64;
     }
     for (k, r) in plot.modes.iter().enumerate() {
-        g = g.add(mode_row(r, time, top + ROW * k as f64));
+        g = g.add(of(mode_row(r, time, top + ROW * k as f64), "mode", &[Of::Element(&r.element)]));
     }
     g.add(frame(top, bottom))
 }
@@ -491,14 +524,13 @@ fn events(plot: &TimePlot, time: &TimeAxis, frames: &[(f64, f64)]) -> Group {
             d += &format!("M{} {} V{} ", number(x), number(*top), number(*bottom));
         }
     }
-    g = g.add(
-        Path::new()
-            .set("d", d.trim_end())
-            .set("fill", "none")
-            .set("stroke", INK)
-            .set("stroke-width", 0.6)
-            .set("stroke-opacity", if drawn > 60 { 0.15 } else { 0.5 }),
-    );
+    let path = Path::new()
+        .set("d", d.trim_end())
+        .set("fill", "none")
+        .set("stroke", INK)
+        .set("stroke-width", 0.6)
+        .set("stroke-opacity", if drawn > 60 { 0.15 } else { 0.5 });
+    g = g.add(of(path, "events", &[Of::Quantity("event_times")]));
     // Beside the head of the first panel.
     let head = plot.panels.first().map_or("Mode", |p| p.quantity.as_str()).chars().count() + 8;
     let mut free = LEFT.max(28.0 + 7.0 * head as f64);

@@ -3,6 +3,7 @@
 use svg::node::element::Group;
 use willis::units;
 
+use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
     ticks, watts, wide,
@@ -61,7 +62,7 @@ pub fn draw(t: &Tornado) -> String {
     for tick in ticks(-most, most, 6) {
         let label = digits(tick);
         g = g
-            .add(line((x(tick), TOP), (x(tick), bottom), "#e4e4e4", 1.0))
+            .add(guide(line((x(tick), TOP), (x(tick), bottom), "#e4e4e4", 1.0)))
             .add(text(x(tick), bottom + 16.0, 11.0, Anchor::Middle, &label).set("fill", FAINT));
     }
     for (k, words) in [(0, "quantity"), (1, "value"), (2, "step")] {
@@ -74,7 +75,7 @@ pub fn draw(t: &Tornado) -> String {
     ));
     for (k, b) in t.bars.iter().enumerate() {
         let y = TOP + ROW * (k as f64 + 0.5);
-        g = g
+        let mut row = Group::new()
             .add(
                 text(columns[0], y + 4.0, 12.0, Anchor::Start, &fit(&name(b), names / BOLD, 12.0))
                     .set("font-weight", "bold"),
@@ -87,19 +88,20 @@ pub fn draw(t: &Tornado) -> String {
         let (at, anchor) =
             if up { (x(b.loss_change_w) + 6.0, Anchor::Start) } else { (x(b.loss_change_w) - 6.0, Anchor::End) };
         let change = text(at, y + 4.0, 11.0, anchor, &signed(b.loss_change_w));
-        g = g.add(halo(change, PAPER, 3.0));
+        row = row.add(halo(change, PAPER, 3.0));
         if let Some(eta) = b.efficiency_change {
             // Round-off is no effect.
             let points = if eta.abs() < 1e-10 { 0.0 } else { 100.0 * eta };
-            g = g.add(text(width - MARGIN, y + 4.0, 11.0, Anchor::End, &signed(points)));
+            row = row.add(text(width - MARGIN, y + 4.0, 11.0, Anchor::End, &signed(points)));
         }
+        g = g.add(of(row, "row", &[Of::Quantity(&b.name)]));
     }
-    g = g.add(line((middle, TOP - 4.0), (middle, bottom), INK, 1.2)).add(line(
+    g = g.add(guide(line((middle, TOP - 4.0), (middle, bottom), INK, 1.2))).add(guide(line(
         (left - room, bottom),
         (right, bottom),
         LINE,
         1.0,
-    ));
+    )));
 
     let mut notes =
         vec!["Dark: the step up, with its value; light: the step down. Derivatives times the step: exact for small effects, a direction for large ones.".to_owned()];

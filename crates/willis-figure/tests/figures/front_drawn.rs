@@ -79,3 +79,40 @@ fn films_and_paths_are_drawn_for_every_law_and_operating_point() {
         }
     }
 }
+
+/// What a program that draws parts gets is the geometry itself.
+#[test]
+fn every_dxf_has_all_teeth_between_root_and_tip() {
+    let mut seen = 0;
+    for (name, train) in crate::trains::examples() {
+        let Ok(view) = front(&train, None, true) else { continue };
+        seen += 1;
+        let dxf = willis_figure::front_dxf(&view);
+        let lines: Vec<&str> = dxf.lines().collect();
+        assert!(dxf.is_ascii() && lines.len().is_multiple_of(2), "{name}: pairs of code and value");
+        let pairs: Vec<(u16, &str)> = lines.chunks(2).map(|p| (p[0].parse().expect("a group code"), p[1])).collect();
+        assert_eq!(pairs.last(), Some(&(0, "EOF")), "{name}");
+        let entities: Vec<&[(u16, &str)]> = pairs.chunk_by(|_, next| next.0 != 0).collect();
+        let of = |e: &[(u16, &str)], code: u16| e.iter().find(|p| p.0 == code).map_or("", |p| p.1).to_owned();
+        for (k, w) in view.wheels.iter().enumerate() {
+            let layer = format!("WHEEL_{}", k + 1);
+            let own = || entities.iter().filter(|e| of(e, 8) == layer);
+            assert_eq!(own().filter(|e| of(e, 0) == "POLYLINE").count(), w.bodies.len(), "{name}");
+            let points: Vec<[f64; 2]> = own()
+                .filter(|e| of(e, 0) == "VERTEX")
+                .map(|e| [10, 20].map(|c| of(e, c).parse().expect("a coordinate")))
+                .collect();
+            assert!(points.len() >= 4 * w.teeth as usize * w.bodies.len(), "{name}");
+            let (low, high) = (w.tip_radius_mm.min(w.root_radius_mm), w.tip_radius_mm.max(w.root_radius_mm));
+            for (body, all) in w.bodies.iter().zip(points.chunks(points.len() / w.bodies.len())) {
+                for p in all {
+                    let r = (p[0] - body.centre_mm[0]).hypot(p[1] - body.centre_mm[1]);
+                    assert!(r > low - 0.01 * w.module_mm && r < high + 0.01 * w.module_mm, "{name}: {low} {r} {high}");
+                }
+            }
+        }
+        let numbers = entities.iter().filter(|e| of(e, 8) == "NUMBERS").count();
+        assert_eq!(numbers, view.wheels.len(), "{name}");
+    }
+    assert!(seen > 5, "{seen}");
+}

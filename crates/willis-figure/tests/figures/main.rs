@@ -13,6 +13,7 @@ mod html;
 mod lever;
 mod lever_drawn;
 mod pictures;
+mod map;
 mod regimes;
 mod report;
 mod sankey;

@@ -89,6 +89,16 @@ fn faults(svg: &str, faces: &Arc<fontdb::Database>) -> Vec<String> {
             continue;
         }
         marks += 1;
+        // Every mark says what it stands for, or that it only guides the eye; the first is the paper.
+        let says = |a: roxmltree::Node<'_, '_>| {
+            let alive = ["member", "mesh", "element", "state", "quantity"]
+                .iter()
+                .any(|d| a.has_attribute(&*format!("data-{d}")));
+            alive && a.has_attribute("id") || a.attribute("class") == Some("guide")
+        };
+        if marks > 1 && !n.ancestors().any(says) {
+            wrong.push(format!("a mark of nothing: {}", &svg[n.range()].chars().take(120).collect::<String>()));
+        }
         let line = n.has_tag_name("line");
         let stroke = n.ancestors().find_map(|a| a.attribute("stroke")).filter(|c| c.starts_with('#'));
         // Fills may have a rim of their own colour, which closes the seam to the next.
@@ -184,16 +194,20 @@ fn every_kind_of_every_example_is_fit_to_print() {
     let (mut wrong, mut drawn) = (String::new(), BTreeMap::new());
     let own = examples().into_iter().map(|(name, _)| (model(&name), name));
     for (model, name) in own.chain(hard().into_iter().map(|(name, model)| (model, name.to_owned()))) {
+        let applicable = FigureKind::applicable(&model);
         for kind in FigureKind::ALL {
             let request = FigureRequest { samples: 128, ..Default::default() };
+            let quick = kind.effort(&model, &request).seconds < 1.0;
             let figure = match kind.make(&model, &request) {
                 Ok(figure) => figure,
                 Err(why) => {
-                    // A kind that does not apply says why.
+                    // A kind that does not apply says why, and is not offered.
+                    assert!(!applicable.contains(kind), "{name}: {} is offered: {why}", kind.name());
                     assert!(why.iter().all(|d| d.message.len() > 15), "{}: {}", name, kind.name());
                     continue;
                 }
             };
+            assert!(!quick || applicable.contains(kind), "{name}: {} is not offered", kind.name());
             *drawn.entry(kind.name()).or_insert(0) += 1;
             let text = serde_json::to_string(&figure).expect("plain data");
             let back: Figure = serde_json::from_str(&text).unwrap_or_else(|e| panic!("{name} {}: {e}", kind.name()));
@@ -212,6 +226,37 @@ fn every_kind_of_every_example_is_fit_to_print() {
     for kind in FigureKind::ALL {
         assert!(drawn.get(kind.name()).copied().unwrap_or(0) >= 2, "{}: {drawn:?}", kind.name());
     }
+}
+
+/// A member has one colour, in every kind that gives colours to members: its place in the train.
+#[test]
+fn a_member_has_one_colour_in_all_kinds() {
+    let mut seen = BTreeMap::new();
+    for (name, _) in examples() {
+        let model = model(&name);
+        let train = model.train();
+        for kind in ["stick", "lever", "front", "time"].map(|k| FigureKind::named(k).expect("a kind")) {
+            let Ok(figure) = kind.make(&model, &FigureRequest { nominal: true, ..Default::default() }) else {
+                continue;
+            };
+            let given: Vec<(&str, Option<usize>)> = match &figure {
+                Figure::Stick(s) => s.members.iter().map(|m| (&*m.name, Some(m.colour))).collect(),
+                Figure::Lever(l) => l.bars.iter().flat_map(|b| &b.nodes).map(|n| (&*n.member, n.colour)).collect(),
+                Figure::Front(f) => f.wheels.iter().map(|w| (&*w.name, w.colour)).collect(),
+                Figure::Time(t) => {
+                    let speeds = t.panels.iter().filter(|p| p.quantity == "Speed");
+                    speeds.flat_map(|p| &p.lines).map(|l| (&*l.names[0], l.colour)).collect()
+                }
+                _ => vec![],
+            };
+            for (member, colour) in given {
+                let place = train.members().iter().position(|m| m.name == member).and_then(|k| k.checked_sub(1));
+                assert_eq!(colour, place, "{name} {}: {member}", kind.name());
+                *seen.entry(kind.name()).or_insert(0) += 1;
+            }
+        }
+    }
+    assert!(seen.len() == 4 && seen.values().all(|n| *n > 5), "{seen:?}");
 }
 
 /// Names that nobody expects: long, foreign, and full of markup.

@@ -445,3 +445,42 @@ fn teeth_that_no_wheel_has_are_left_out() {
     let planets = simpson.gears.iter().filter(|g| g.role == willis_figure::GearRole::Planet);
     assert!(planets.clone().count() == 2 && planets.clone().all(|g| g.teeth.is_empty()));
 }
+
+/// A program keeps the picture and changes its numbers: in every state everything stands where it stood, under the same ids.
+#[test]
+fn no_state_moves_anything() {
+    use std::collections::BTreeMap;
+    use willis_figure::{LeverLayout, LeverRequest, StickLayout, draw_stick};
+    let mut seen = 0;
+    for (name, train) in crate::trains::examples() {
+        if train.states().len() < 2 {
+            continue;
+        }
+        let layout = StickLayout::new(&train).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let levers = LeverLayout::new(&train).expect("it has gears");
+        let places = |state: &str| {
+            let data = layout.show(&train, Some(state)).expect("a state");
+            let svg = draw_stick(&data);
+            let ids: Vec<String> =
+                svg.split(" id=\"").skip(1).map(|p| p.split('"').next().unwrap_or("").into()).collect();
+            // What is closed has a ground of its own, and what is loaded lies above the rest.
+            let ids: Vec<String> = ids.into_iter().filter(|id| !id.starts_with("closed-")).collect();
+            let gears: Vec<_> = data.gears.iter().map(|g| (g.faces.clone(), g.stems.clone())).collect();
+            let joints: Vec<_> = data.joints.iter().map(|j| (j.name.clone(), j.ends)).collect();
+            (ids, gears, joints, data.axes.clone(), data.width)
+        };
+        let heights = |state: &str| {
+            let lever = levers.show(&train, &LeverRequest::State(state.to_owned())).ok()?;
+            let nodes = lever.bars.iter().flat_map(|b| &b.nodes).map(|n| (n.member.clone(), n.position));
+            Some(nodes.map(|(m, p)| (m, p.to_bits())).collect::<BTreeMap<_, _>>())
+        };
+        let first = places(&train.states()[0].name);
+        let high: Vec<_> = train.states().iter().filter_map(|s| heights(&s.name)).collect();
+        for s in &train.states()[1..] {
+            assert_eq!(places(&s.name), first, "{name}, state {}", s.name);
+        }
+        assert!(high.windows(2).all(|w| w[0] == w[1]), "{name}");
+        seen += 1;
+    }
+    assert!(seen > 8, "{seen}");
+}

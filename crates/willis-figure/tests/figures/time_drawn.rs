@@ -279,3 +279,39 @@ fn shapes_of_vibration_keep_apart() {
     let svg = apart("modes", &willis_figure::draw_modes(&all));
     assert!(svg.contains("2 more modes are not drawn") && svg.contains("21 Hz"));
 }
+
+/// A window shows what the whole picture has there, from edge to edge, and nothing else.
+#[test]
+fn a_window_is_a_part_of_the_run() {
+    let mut whole = TimePlotBuilder::new(&train(), [0.0, 3.0]);
+    launch(&mut whole, 3.0, 3000);
+    let whole = whole.finish(&report(Outcome::Finished, 3.0));
+    let value = |plot: &TimePlot, panel: usize, line: usize, t: f64| {
+        let pieces = plot.panels[panel].lines[line].pieces.iter();
+        let inside = |w: &&[[f64; 2]]| w[0][0] <= t && t <= w[1][0];
+        let w = pieces.flat_map(|p| p.windows(2)).find(inside)?;
+        let part = if w[1][0] > w[0][0] { (t - w[0][0]) / (w[1][0] - w[0][0]) } else { 0.0 };
+        Some(w[0][1] + part * (w[1][1] - w[0][1]))
+    };
+    for [from, to] in [[0.5, 1.0], [0.70005, 0.81], [2.0, 3.0], [2.05, 2.2]] {
+        let mut part = TimePlotBuilder::new(&train(), [0.0, 3.0]).within([from, to]);
+        launch(&mut part, 3.0, 3000);
+        let part = part.finish(&report(Outcome::Finished, 3.0));
+        assert_eq!(part.axis, [from, to]);
+        let times = || part.panels.iter().flat_map(|p| &p.lines).flat_map(|l| l.pieces.iter().flatten()).map(|p| p[0]);
+        assert!(times().all(|t| (from..=to).contains(&t)));
+        assert!(times().fold(f64::INFINITY, f64::min) == from && times().fold(0.0, f64::max) == to);
+        let ends = |r: &willis_figure::ModeRow| (r.segments[0].from, r.segments[r.segments.len() - 1].to);
+        assert!(part.modes.iter().all(|r| ends(r) == (from, to)), "{:?}", part.modes);
+        assert!(part.marks.iter().all(|m| (from..=to).contains(&m.time)) && part.event_count == part.marks.len());
+        // The speeds are the first panel of both.
+        for line in 0..part.panels[0].lines.len() {
+            assert_eq!(part.panels[0].lines[line].names, whole.panels[0].lines[line].names);
+            for k in 1..50 {
+                let t = from + (to - from) * f64::from(k) / 50.0;
+                let (Some(a), Some(b)) = (value(&part, 0, line, t), value(&whole, 0, line, t)) else { panic!("{t}") };
+                assert!((a - b).abs() < 0.5, "{t}: {a} {b}");
+            }
+        }
+    }
+}

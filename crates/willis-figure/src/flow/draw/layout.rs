@@ -125,7 +125,7 @@ fn places(sizes: &[f64], pairs: &[(usize, usize)]) -> (Vec<Place>, Vec<Vec<usize
 }
 
 impl Drawing {
-    pub fn new(g: &Hypergraph) -> Self {
+    pub fn new(g: &Hypergraph, panel: &str) -> Self {
         // What takes part; the frame is drawn as a mark at what leans on it.
         let touched = |id: &str| g.edges.iter().any(|e| e.from == id || e.to == id);
         let shown: Vec<&Node> = g.nodes.iter().filter(|n| n.kind != NodeKind::Frame && touched(&n.id)).collect();
@@ -261,11 +261,11 @@ impl Drawing {
         }
         let mut group = Group::new();
         for l in lines.iter().filter(|l| l.width == 0.0).chain(lines.iter().filter(|l| l.width > 0.0)) {
-            group = group.add(draw(l, g));
+            group = group.add(draw(l, g, panel));
         }
         for p in all.iter() {
             if let Some(k) = p.node {
-                group = group.add(symbol(shown[k], middle[p.column], p.y, leans[k], more[k]));
+                group = group.add(symbol(shown[k], (middle[p.column], p.y), leans[k], more[k], panel));
             }
         }
         for (b, words) in &labels {

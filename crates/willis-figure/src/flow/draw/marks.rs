@@ -5,6 +5,7 @@ use svg::node::element::{Circle, Element, Group, Path, Polygon};
 use willis::hypergraph::{Hypergraph, Node, NodeKind};
 
 use super::words::{GROUND, R, ROW, SMALL, name, values};
+use crate::parts::alive::{Of, of, part};
 use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, colour, halo, line, number, rectangle, text, watts};
 
 /// Whether power runs in a circle.
@@ -62,13 +63,14 @@ pub struct Line {
 }
 
 /// A line with its arrow head, and its words for a pointer.
-pub fn draw(l: &Line, g: &Hypergraph) -> Group {
+pub fn draw(l: &Line, g: &Hypergraph, panel: &str) -> Group {
     let e = &g.edges[l.edge];
     let p = &l.points;
     let mut words = Element::new("title");
     let name = |id: &str| g.node(id).map_or(String::new(), |n| n.name.clone());
     words.append(svg::node::Text::new(format!("{} to {}: {}", name(&e.from), name(&e.to), watts(e.power_w))));
-    let mut group = Group::new().add(words);
+    let link = format!("power_w {} to {}", e.from, e.to);
+    let mut group = of(Group::new().add(words), &format!("line{}", l.edge), &[Of::Quantity(&link), Of::State(panel)]);
     // Where a symbol's outline is met.
     let reach = |y: f64| (R * R - y * y).max(0.0).sqrt().max(R * 0.5);
     let last = p.len() - 1;
@@ -201,8 +203,9 @@ pub fn ground(x: f64, y: f64) -> Group {
     g
 }
 
-pub fn symbol(n: &Node, x: f64, y: f64, leans: bool, more: f64) -> Group {
-    let mut g = Group::new();
+pub fn symbol(n: &Node, (x, y): (f64, f64), leans: bool, more: f64, panel: &str) -> Group {
+    let word = if n.kind == NodeKind::Input || n.kind == NodeKind::Output { "end" } else { "node" };
+    let mut g = of(Group::new(), &format!("{word}{:?}", n.kind), &[part(n.kind, &n.name), Of::State(panel)]);
     if leans {
         g = g.add(ground(x, y));
     }

@@ -37,7 +37,7 @@ pub fn enlarged(view: &Front, mesh: &FrontMesh, x: f64, y: f64) -> Group {
     for &k in &mesh.wheels {
         let w = &view.wheels[k];
         let edge: Vec<(f64, f64)> = whole(w).into_iter().map(|p| at.at(p)).collect();
-        let fill = colour(Some(k), 0.24);
+        let fill = colour(w.colour, 0.24);
         // What lies beyond the frame is cut off, the material and its edge each for itself. Of a ring
         // the frame is its material, less the space within its teeth.
         let inside = frame.area(&edge);

@@ -25,6 +25,10 @@ const ROUND: f64 = 8.0;
 /// Least room between nodes of a column.
 const APART: f64 = 12.0;
 
+/// How many times wider losses may be than power, and how wide the largest becomes so at most, pixels.
+const WIDER: [f64; 6] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
+const WIDEST_LOSS: f64 = 18.0;
+
 /// Half the width of a loss's arrow head, and its length.
 pub fn head_of(width: f64) -> f64 {
     (width / 2.0 + 3.5).min(width / 2.0 * 1.25 + 4.0)
@@ -64,6 +68,8 @@ pub struct Layout<'f> {
     pub flow: &'f SankeyFlow,
     /// Pixels for a watt.
     pub scale: f64,
+    /// So many times wider losses are drawn: what is lost is little, and would not be seen.
+    pub widened: f64,
     pub width: f64,
     pub height: f64,
     /// By node: the upper end of its power.
@@ -92,9 +98,13 @@ impl<'f> Layout<'f> {
         let round = flow.links.iter().any(|l| l.back);
         let scale = if round { WIDEST_ROUND } else { WIDEST } / largest;
         let links = flow.links.len();
+        let lost = |n: &SankeyNode| n.losses.iter().map(|l| l.power_w).sum::<f64>();
+        let most = flow.nodes.iter().map(lost).fold(f64::MIN_POSITIVE, f64::max);
+        let widened = WIDER.into_iter().rev().find(|times| times * most * scale <= WIDEST_LOSS).unwrap_or(1.0);
         let mut own = Self {
             flow,
             scale,
+            widened,
             width: 0.0,
             height: 0.0,
             top: vec![0.0; flow.nodes.len()],
@@ -129,7 +139,7 @@ impl<'f> Layout<'f> {
         let head = Words::of(self.flow).head(n).len() as f64;
         let mut below = height + pad(height) + 2.0;
         if let Some(first) = n.losses.first() {
-            let width = (n.power_w - first.offset_w) * self.scale;
+            let width = (n.power_w - first.offset_w) * self.scale * self.widened;
             let rows = Words::of(self.flow).foot(n).len() as f64;
             below = height + TURN + 4.0 + head_of(width) + LINE_HEIGHT * (rows + 0.2);
         }
@@ -253,7 +263,7 @@ impl<'f> Layout<'f> {
                 .map(|(k, t)| wide(t, SMALL) * if k == 0 { BOLD } else { 1.0 })
                 .chain(words.foot(n).iter().map(|t| wide(t, SMALL)))
                 .fold(0.0f64, f64::max);
-            let lost: f64 = n.losses.iter().map(|l| l.power_w * self.scale).sum();
+            let lost: f64 = n.losses.iter().map(|l| l.power_w * self.scale * self.widened).sum();
             let ends = if n.input_w > 0.0 || n.output_w > 0.0 { BAR / 2.0 + END } else { 0.0 };
             let turn = if n.losses.is_empty() { 0.0 } else { BAR / 2.0 + TURN + lost + 6.0 };
             half[n.layer] = half[n.layer].max(texts / 2.0 + 4.0).max(ends).max(turn);

@@ -1,0 +1,230 @@
+//! What holds at any place of a map, between the points of its grid too.
+
+use std::collections::BTreeMap;
+
+use willis::analysis::Role;
+use willis::diagnostic::Diagnostics;
+use willis::model::Target;
+use willis::study::{Axis, PointAnswer, PointVerdict, Question, Trains};
+use willis::train::MemberId;
+
+use crate::{MapPoint, MapVerdict};
+
+const RPM: f64 = std::f64::consts::PI / 30.0;
+
+/// Within what the input of an automatic transmission stays.
+#[derive(Clone, Copy)]
+pub struct Limits {
+    /// The input.
+    pub input: MemberId,
+    /// Its least and its largest speed, rpm.
+    pub speed: [f64; 2],
+    /// Its largest torque, N m.
+    pub torque: f64,
+}
+
+impl Limits {
+    fn hold(&self, speed: f64, torque: f64) -> bool {
+        let [least, most] = self.speed;
+        let turns = speed > 0.0 && speed >= least * (1.0 - 1e-9) && speed <= most * (1.0 + 1e-9);
+        turns && torque <= self.torque * (1.0 + 1e-9)
+    }
+}
+
+/// The limits, and the states between which the choice is, with their ratios where these are known.
+pub type Choice = (Limits, Vec<(String, Option<f64>)>);
+
+/// Answers at places of a map.
+pub struct Probe<'q, 's> {
+    question: &'q Question<'s>,
+    /// The quantities along the axes, with their units.
+    axes: [(Target, String); 2],
+    /// Of an automatic transmission: what limits the choice.
+    choice: Option<Choice>,
+    trains: Trains,
+    /// The zones that were met, by what tells them apart.
+    zones: BTreeMap<(&'static str, Option<usize>, String), usize>,
+    loosest: Loosest,
+}
+
+/// A point of a map as it was found.
+pub struct Found {
+    pub point: MapPoint,
+    /// How many parts neither give nor take power.
+    idle: usize,
+}
+
+/// In how few idle parts each state was seen, by its position.
+#[derive(Clone, Default)]
+pub struct Loosest(BTreeMap<Option<usize>, usize>);
+
+impl Loosest {
+    /// Whether a point lies exactly where a part changes the direction of its power: more is idle than elsewhere.
+    pub fn on_border(&self, found: &Found) -> bool {
+        match found.point.verdict {
+            MapVerdict::Point(PointVerdict::Unloaded) => true,
+            MapVerdict::Point(PointVerdict::Unique) => {
+                self.0.get(&found.point.best).is_some_and(|least| found.idle > *least)
+            }
+            _ => false,
+        }
+    }
+}
+
+impl<'q, 's> Probe<'q, 's> {
+    pub fn new(question: &'q Question<'s>, axes: [&Axis; 2], choice: Option<Choice>) -> Result<Self, Diagnostics> {
+        let target = |a: &Axis| Target::parse(&a.name, question.model()).map(|t| (t, a.unit.clone()));
+        let targets = axes.map(target);
+        let [x, y] = targets.map(|t| t.map_err(|d| Diagnostics::from_iter([*d])));
+        let (trains, zones, loosest) = Default::default();
+        Ok(Self { question, axes: [x?, y?], choice, trains, zones, loosest })
+    }
+
+    /// The least count of idle parts in what was found so far.
+    pub fn loosest(&self) -> Loosest {
+        self.loosest.clone()
+    }
+
+    /// What holds at a place.
+    pub fn at(&mut self, place: [f64; 2]) -> Found {
+        let (point, ways) = match self.choice.take() {
+            None => {
+                let answer = self.answer(place, None);
+                (MapPoint::of(&answer, None), Ways::of(&answer))
+            }
+            Some(choice) => {
+                let best = self.best(place, &choice);
+                self.choice = Some(choice);
+                best
+            }
+        };
+        let idle = ways.idle;
+        if point.verdict == MapVerdict::Point(PointVerdict::Unique) {
+            let least = self.loosest.0.entry(point.best).or_insert(idle);
+            *least = idle.min(*least);
+        }
+        let word = match point.verdict {
+            MapVerdict::Beyond => "",
+            MapVerdict::Point(verdict) => verdict.name(),
+        };
+        // Where there is no answer, no power goes anywhere.
+        let own = point.efficiency.map_or("", |_| &ways.word);
+        let next = self.zones.len();
+        let zone = *self.zones.entry((word, point.best, own.to_owned())).or_insert(next);
+        Found { point: MapPoint { zone, ..point }, idle }
+    }
+
+    /// The state that loses least of those within the limits.
+    fn best(&mut self, place: [f64; 2], (limits, states): &Choice) -> (MapPoint, Ways) {
+        /// Efficiencies that differ by less are the same: the first state stays.
+        const SAME: f64 = 1e-12;
+        let mut best = (MapPoint::beyond(), Ways::default());
+        for (k, (state, ratio)) in states.iter().enumerate() {
+            // Without any loss the input needs the least torque.
+            let within = |r: f64| limits.hold(place[0] * r, place[1] / r);
+            if !ratio.is_none_or(within) {
+                continue;
+            }
+            let answer = self.answer(place, Some(state));
+            let Some([speed, torque]) = self.input(&answer, limits.input) else { continue };
+            let new = MapPoint::of(&answer, Some(k));
+            if limits.hold(speed, torque) && new.efficiency > best.0.efficiency.map(|e| e + SAME) {
+                best = (new, Ways::of(&answer));
+            }
+        }
+        best
+    }
+
+    /// Where the input of each state has its largest torque at its largest and at its least speed. Efficiencies are those
+    /// near a place.
+    pub fn corners(&mut self, near: [f64; 2]) -> Vec<[f64; 2]> {
+        let Some((limits, states)) = self.choice.clone() else { return vec![] };
+        let mut all = vec![];
+        for (state, _) in &states {
+            let answer = self.answer(near, Some(state));
+            let Some([speed, torque]) = self.input(&answer, limits.input) else { continue };
+            if speed > 0.0 && torque > 0.0 {
+                let at = |w: f64| [near[0] * w / speed, near[1] * limits.torque / torque];
+                all.extend(limits.speed.map(at));
+            }
+        }
+        all
+    }
+
+    /// Speed and torque of the input, rpm and N m.
+    fn input(&self, answer: &PointAnswer, input: MemberId) -> Option<[f64; 2]> {
+        let name = self.question.model().train().member_name(input);
+        let m = answer.solution.as_ref()?.members.get(name)?;
+        Some([m.speed_rad_s? / RPM, m.torque_n_m?])
+    }
+
+    fn answer(&mut self, place: [f64; 2], state: Option<&str>) -> PointAnswer {
+        let along = self.axes.iter().zip(place).map(|((target, unit), value)| (target, format!("{value} {unit}")));
+        let mut settings: Vec<(&Target, String)> = along.map(|(t, v)| (t, v.trim_end().to_owned())).collect();
+        settings.extend(state.map(|s| (&Target::State, s.to_owned())));
+        match self.question.at(&settings, &mut self.trains) {
+            Ok((train, operation)) => PointAnswer::of(&train, &operation),
+            Err(wrong) => PointAnswer::refused(wrong),
+        }
+    }
+}
+
+impl MapPoint {
+    fn beyond() -> Self {
+        let none = None;
+        Self { verdict: MapVerdict::Beyond, efficiency: none, input_power_w: none, loss_w: none, best: None, zone: 0 }
+    }
+
+    fn of(answer: &PointAnswer, best: Option<usize>) -> Self {
+        let s = answer.solution.as_ref().filter(|_| answer.is_unique());
+        Self {
+            verdict: MapVerdict::Point(answer.verdict),
+            efficiency: s.and_then(|s| s.efficiency),
+            input_power_w: s.map(|s| s.input_power_w),
+            loss_w: s.map(|s| s.loss_w),
+            best,
+            zone: 0,
+        }
+    }
+}
+
+/// Which way power goes through every part that can change it, and through how many it does not go.
+#[derive(Default)]
+struct Ways {
+    word: String,
+    idle: usize,
+}
+
+impl Ways {
+    fn of(answer: &PointAnswer) -> Self {
+        let mut ways = Self::default();
+        let Some(s) = &answer.solution else { return ways };
+        for (_, m) in s.members.iter() {
+            ways.add(match m.role {
+                Role::Input => "in",
+                Role::Output => "out",
+                Role::Idle => "",
+                _ => "held",
+            });
+        }
+        for (_, m) in s.meshes.iter() {
+            ways.add(m.driver.as_deref().unwrap_or(""));
+        }
+        for (_, m) in s.variators.iter().flat_map(|(_, v)| v.machines.iter()) {
+            ways.add(if m.power_w > 0.0 {
+                "motors"
+            } else if m.power_w < 0.0 {
+                "generates"
+            } else {
+                ""
+            });
+        }
+        ways
+    }
+
+    fn add(&mut self, way: &str) {
+        self.word.push_str(way);
+        self.word.push('\0');
+        self.idle += usize::from(way.is_empty());
+    }
+}
