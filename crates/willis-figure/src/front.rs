@@ -18,7 +18,7 @@ pub(crate) const KIND: Kind<Front> = Kind {
     takes: &[Ask::Part, Ask::Nominal, Ask::Animated],
     effort: kind::of_file,
     make: |s, r| front(s.train(), r.part.as_deref(), r.nominal),
-    draw: |data, how| draw::draw(data, how.animated),
+    draw: draw::draw_on,
 };
 
 /// The transverse section of a set, or of a pair of gears.

@@ -35,7 +35,7 @@ pub(crate) const KIND: Kind<Lever> = Kind {
     takes: &[Ask::State, Ask::Operation],
     effort: kind::of_operations,
     make: |s, r| lever(s.train(), &LeverRequest::of(r)),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 impl LeverRequest {

@@ -17,7 +17,7 @@ pub(crate) const KIND: Kind<ShiftTable> = Kind {
     takes: &[],
     effort: kind::of_operations,
     make: |s, _| shift(s.train()),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// A shift table.

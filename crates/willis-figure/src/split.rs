@@ -24,7 +24,7 @@ pub(crate) const KIND: Kind<Split> = Kind {
         Effort::of_points(model.train(), (points * model.train().states().len().max(1)) as u64)
     },
     make: split,
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// Ratios where the caller does not say.

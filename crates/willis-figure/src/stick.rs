@@ -28,7 +28,7 @@ pub(crate) const KIND: Kind<Stick> = Kind {
     takes: &[Ask::State],
     effort: kind::of_file,
     make: |s, r| stick(s.train(), r.state.as_deref()),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// A point of the picture: x along the axis, y outward; the unit is a step of the grid.

@@ -18,7 +18,7 @@ pub(crate) const KIND: Kind<TimePlot> = Kind {
     takes: &[Ask::Part],
     effort: kind::of_file,
     make: |s, r| scenario(s.train(), r.part.as_deref()),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// The scenario of that name, or the first, simulated.

@@ -15,7 +15,7 @@ pub(crate) const KIND: Kind<Tornado> = Kind {
     takes: &[Ask::State, Ask::Operation],
     effort: kind::of_operations,
     make: ranking,
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// Bars of a ranking.

@@ -1,4 +1,4 @@
-//! `willis-pdf`: a report of Willis, written as JSON, comes in; a PDF goes out.
+//! `willis-pdf`: a report or figure of Willis, written as JSON, comes in; a PDF goes out.
 
 use std::io::{IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
@@ -8,14 +8,14 @@ use std::{env, fs, io};
 use willis_pdf::Paper;
 
 const HELP: &str = "\
-Sets an engineering report of Willis as PDF.
+Sets an engineering report of Willis, or one of its figures, as PDF.
 
 Usage: willis-pdf [--paper PAPER] [-o FILE] < report.json
 
-Reads a document of the format willis-report-1 from standard input.
+Reads a document of the format willis-report-1 or a figure of the format willis-plate-1 from standard input.
 
   -o, --output FILE  where to write; without it, standard output
-      --paper PAPER  a4 (default) or us-letter
+      --paper PAPER  a4 (default) or us-letter; a figure has a page of its own size
   -h, --help         this text
   -V, --version      the version
 ";

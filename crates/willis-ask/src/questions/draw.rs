@@ -163,7 +163,7 @@ impl Draw {
     }
 
     fn drawing(&self) -> Drawing {
-        Drawing { animated: self.animated }
+        Drawing { animated: self.animated, ..Drawing::default() }
     }
 
     /// Refuses what would make no difference to this kind.

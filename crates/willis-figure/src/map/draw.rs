@@ -545,7 +545,7 @@ fn states(map: &EfficiencyMap, chart: &Chart) -> Group {
             .add(text(WIDTH - 28.0, y + 12.0, 11.0, Anchor::End, &label).set("fill", FAINT));
         y += 19.0;
     }
-    g.add(text(LEGEND, y + 14.0, 10.0, Anchor::Start, "share of the points of the map").set("fill", FAINT))
+    g.add(text(LEGEND, y + 14.0, 11.0, Anchor::Start, "share of the points of the map").set("fill", FAINT))
 }
 
 /// Lines between the regions of different states.

@@ -191,7 +191,7 @@ fn label(map: &RegimeMap, s: &MapSector, c: &MapCell) -> Group {
     let (size, gap) = if thin { (13.0, 5.0) } else { (16.0, 1.0) };
     let letter = text(x, y + gap, size, Anchor::Middle, &map.patterns[c.pattern].letter).set("font-weight", "bold");
     let g = Group::new().add(halo(letter, PAPER, 3.0));
-    if thin { g } else { g.add(halo(text(x, y + 14.0, 10.0, Anchor::Middle, &c.regime), PAPER, 3.0)) }
+    if thin { g } else { g.add(halo(text(x, y + 14.0, 11.0, Anchor::Middle, &c.regime), PAPER, 3.0)) }
 }
 
 fn legend(map: &RegimeMap) -> Group {
@@ -260,7 +260,7 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
                 l = l.set("stroke-dasharray", "4 3");
             }
             let ratio = b.ratio.map_or(if a > map.half[0] + 90.0 { "∞" } else { "−∞" }.to_owned(), digits);
-            g = g.add(l).add(text(x(a), bottom + 16.0, 10.0, Anchor::Middle, &ratio).set("fill", FAINT)).add(badge(
+            g = g.add(l).add(text(x(a), bottom + 16.0, 11.0, Anchor::Middle, &ratio).set("fill", FAINT)).add(badge(
                 x(a),
                 bottom + 32.0,
                 &b.letter,

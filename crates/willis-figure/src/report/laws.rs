@@ -1,9 +1,9 @@
 //! What was assumed, which laws were in force with their sources and ranges, and how to do it all again.
 
-use willis::diagnostic::Severity;
+use willis::diagnostic::{Diagnostic, Severity};
 use willis::losses::{Entry, Tag, Trust, entries};
 
-use super::Findings;
+use super::{Findings, words};
 use super::results::{significant, single};
 use crate::report::document::{Block, Column, Level, Section};
 
@@ -18,13 +18,18 @@ pub fn assumptions(all: &Findings<'_>) -> Section {
             Severity::Warning | Severity::Error => Level::Warning,
             _ => Level::Note,
         };
-        let place = if d.place.is_empty() { String::new() } else { format!(" ({})", d.place) };
-        blocks.push(Block::Notice { level, text: format!("{}: {}{place}", d.code.as_str(), d.message) });
+        blocks.push(Block::Notice { level, text: told(d) });
     }
     if all.analysis.diagnostics.is_empty() {
         blocks.push(Block::Text { text: "There are no warnings.".into() });
     }
     Section { title: "Assumptions and warnings".into(), blocks }
+}
+
+/// A warning or note, where it comes from, and the code under which it is explained.
+pub fn told(d: &Diagnostic) -> String {
+    let place = if d.place.is_empty() { String::new() } else { format!("{}; ", words::place(&d.place)) };
+    format!("{} ({place}{})", d.message, d.code.as_str())
 }
 
 /// Laws that computed a loss in an operating point.
@@ -44,7 +49,7 @@ pub fn in_force(all: &Findings<'_>) -> Option<Section> {
     let text = "Ratios are exact: speeds follow from whole numbers of teeth by elimination. Torques with friction are \
                 solved with the driving end of every mesh as unknown, and the answer carries its certificate. Published \
                 ratios, efficiencies and power flows, measured losses and trajectories of other programs are compared \
-                with this program's in every run of its tests; the pages under `validation/` list each with its source, \
+                with this program's in every run of its tests; the validation pages of Willis list each with its source, \
                 disagreements included.";
     blocks.push(Block::Text { text: text.into() });
     Some(Section { title: "Laws and validation".into(), blocks })
@@ -77,7 +82,7 @@ fn row(e: &Entry) -> Vec<String> {
     }
     let source = format!("{}, {}", e.source.0, e.source.1);
     let valid = if valid.is_empty() { "not told by the source".to_owned() } else { valid.join("; ") };
-    vec![e.family.replace('_', " "), format!("{} ({})", e.title, e.id), source, valid, checked]
+    vec![e.family.replace('_', " "), e.title.to_owned(), source, valid, checked]
 }
 
 pub fn again(all: &Findings<'_>) -> Section {
@@ -86,16 +91,22 @@ pub fn again(all: &Findings<'_>) -> Section {
         blocks.push(Block::Text { text: "These commands give the same numbers and the same bytes:".into() });
         blocks.push(Block::Code { text: all.request.commands.join("\n") });
     }
-    let file = if all.request.file.is_empty() { "The train file" } else { &all.request.file };
-    let hash = match all.request.hash.is_empty() {
-        true => String::new(),
-        false => format!(", SHA-256 {}", all.request.hash),
-    };
-    blocks.push(Block::Text { text: format!("{file}{hash}:") });
-    blocks.push(Block::Code { text: all.model.document().text() });
+    let file = if all.request.file.is_empty() { "the train file" } else { &all.request.file };
+    if !all.request.hash.is_empty() {
+        let place = if all.request.appendix { ", which is the appendix" } else { "" };
+        let text = format!("They read {file}{place}. Its SHA-256 is {}.", all.request.hash);
+        blocks.push(Block::Text { text });
+    }
     for (name, text) in all.model.files() {
         let lines = text.lines().count();
-        blocks.push(Block::Text { text: format!("It names {name}, a table of {lines} lines.") });
+        blocks.push(Block::Text { text: format!("The train file names {name}, a table of {lines} lines.") });
     }
     Section { title: "How to do it again".into(), blocks }
+}
+
+/// The train file.
+pub fn appendix(all: &Findings<'_>) -> Section {
+    let file = if all.request.file.is_empty() { "train file" } else { &all.request.file };
+    let blocks = vec![Block::Code { text: all.model.document().text() }];
+    Section { title: format!("Appendix: {file}"), blocks }
 }

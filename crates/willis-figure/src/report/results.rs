@@ -5,19 +5,21 @@ use willis::analysis::{
 };
 use willis::exact::Rational;
 use willis::operating_point::Regime;
-use willis::regimes::{FormulaRequest, formulas as closed};
+use willis::regimes::{ClosedFormula, FormulaRequest, formulas as closed};
 use willis::statics::Certificate;
 use willis::symbolic::Notation;
+use willis::train::AS_DRAWN;
 
 use super::{Findings, TOLD, and_more, notice};
 use crate::FigureKind;
-use crate::parts::style::watts;
-use crate::report::document::{Block, Column, Level, Section};
+use crate::parts::style::{figures, watts};
+use crate::report::document::{Block, Column, Level, Section, Term};
+use crate::report::formula::{Display, mathml};
 
 /// Formulas that are printed.
 const FORMULAS: usize = 12;
-/// Longest formula that is printed, in characters of LaTeX.
-const LONGEST: usize = 1200;
+/// The width of a page in the type size of its formulas.
+const LINE: f64 = 47.0;
 /// Quantities in the table of what matters most.
 const RANKED: usize = 12;
 
@@ -33,12 +35,28 @@ pub fn significant(x: f64, digits: i32) -> String {
     }
     let size = x.abs().log10().floor() as i32;
     if !(-5..9).contains(&size) {
-        return format!("{x:.*e}", digits as usize - 1).replace('-', "−");
+        return figures(x, digits);
     }
     let decimals = (digits - 1 - size).clamp(0, 12) as usize;
     let text = format!("{x:.decimals$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     text.replace('-', "−")
+}
+
+/// So many decimals, so that numbers of a row stand below each other.
+pub fn fixed(x: f64, decimals: usize) -> String {
+    match x {
+        x if x == 0.0 => "0".to_owned(),
+        x if x.is_finite() && (0.5 * 10f64.powi(-(decimals as i32))..1e5).contains(&x.abs()) => {
+            format!("{x:.decimals$}").replace('-', "−")
+        }
+        x => figures(x, 3),
+    }
+}
+
+/// A power with its sign.
+pub fn signed_watts(x: f64) -> String {
+    if x > 0.0 { format!("+{}", watts(x)) } else { watts(x) }
 }
 
 pub fn signed(x: f64) -> String {
@@ -82,7 +100,7 @@ pub fn single(o: &OperationReport) -> Option<&SolutionReport> {
 
 pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
     let mut blocks = vec![];
-    blocks.extend(all.figures.block(FigureKind::Shift, None, "States, ratios, steps and efficiencies"));
+    blocks.extend(all.figures.block(FigureKind::Shift, None, "States, ratios, steps and nominal efficiencies"));
     let columns = ["State", "From – to", "Ratio exactly"].map(Column::words).into_iter();
     let columns = columns
         .chain(["Ratio", "Step"].map(Column::numbers))
@@ -146,6 +164,7 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
             blocks.push(members(&format!("Members{which}"), s));
             blocks.push(Block::Text { text: balance(s) });
             blocks.extend(elements(s));
+            blocks.extend(bearings(&o.name, s));
             blocks.extend(variators(s));
             blocks.extend(stiction(s));
         }
@@ -192,8 +211,8 @@ pub fn basis(s: &SolutionReport) -> &'static str {
 
 fn members(caption: &str, s: &SolutionReport) -> Block {
     let columns = ["Member", "Role"].map(Column::words).into_iter();
-    let columns = columns.chain(["Speed rpm", "Torque N m", "Power"].map(Column::numbers)).collect();
-    let number = |x: Option<f64>, scale: f64| x.map_or("–".into(), |x| significant(x * scale, 6));
+    let columns = columns.chain(["Speed, rpm", "Torque, N m", "Power"].map(Column::numbers)).collect();
+    let number = |x: Option<f64>, scale: f64| x.map_or("–".into(), |x| significant(x * scale, 5));
     let rows = (s.members.iter())
         .map(|(name, m)| {
             let role = match m.role {
@@ -213,13 +232,16 @@ fn members(caption: &str, s: &SolutionReport) -> Block {
 
 fn balance(s: &SolutionReport) -> String {
     let mut text = format!(
-        "{} in, {} out, {} lost: efficiency {}. The balance of power closes to {:.1e} W.",
+        "{} in, {} out, {} lost: efficiency {}.",
         watts(s.input_power_w),
         watts(s.output_power_w),
         watts(s.loss_w),
         efficiency(s),
-        s.power_residual_w.abs()
     );
+    // Round-off is nothing to tell.
+    if s.power_residual_w.abs() > 1e-9 * s.input_power_w.abs() {
+        text += &format!(" The balance of power closes to {}.", watts(s.power_residual_w.abs()));
+    }
     for c in &s.recirculation {
         text += &format!(
             " {} ({} % of the input) run in a circle: {}.",
@@ -231,7 +253,7 @@ fn balance(s: &SolutionReport) -> String {
     if let Some(c) = &s.convergence {
         text += &match c.converged {
             true => format!(" Losses and torques agree after {} rounds.", c.rounds),
-            false => format!(" NOT CONVERGED after {} rounds: {:.1e} of the loss is left.", c.rounds, c.error),
+            false => format!(" NOT CONVERGED after {} rounds: {} of the loss is left.", c.rounds, exact_percent(c.error)),
         };
     }
     if let Some(l) = &s.margin.lock {
@@ -266,24 +288,49 @@ fn stiction(s: &SolutionReport) -> Option<Block> {
 
 fn elements(s: &SolutionReport) -> Option<Block> {
     let columns = ["Engaged", "Kind", "Joins"].map(Column::words).into_iter();
-    let columns = columns.chain([Column::numbers("Torque N m")]).collect();
+    let columns = columns.chain([Column::numbers("Torque, N m")]).collect();
     let rows: Vec<Vec<String>> = (s.shift_elements.iter())
         .map(|(name, e)| {
-            let torque = e.torque_n_m.map_or("not divided by statics".into(), |t| significant(t, 6));
+            let torque = e.torque_n_m.map_or("not divided by statics".into(), |t| significant(t, 5));
             vec![name.clone(), e.kind.to_string(), e.members.join(" – "), torque]
         })
         .collect();
     (!rows.is_empty()).then(|| Block::Table { caption: "Torques of engaged elements".into(), columns, rows })
 }
 
+/// The forces on bearings.
+fn bearings(operation: &str, s: &SolutionReport) -> Option<Block> {
+    let columns = ["Bearing", "Designation", "Joins"].map(Column::words).into_iter();
+    let numbers = ["Number", "Speed, rpm", "Radial force, N", "Axial force, N", "Friction, N m", "Loss of all"];
+    let columns = columns.chain(numbers.map(Column::numbers)).collect();
+    let rows: Vec<Vec<String>> = (s.bearings.iter())
+        .map(|(name, b)| {
+            let n = |x: f64| significant(if x.abs() < 1e-9 { 0.0 } else { x }, 4);
+            vec![
+                name.clone(),
+                b.designation.clone(),
+                b.members.join(" – "),
+                b.bearings.to_string(),
+                n(b.speed_rad_s.abs() * RPM),
+                n(b.radial_load_n),
+                n(b.axial_load_n),
+                significant(b.torque_n_m, 3),
+                watts(b.loss_w),
+            ]
+        })
+        .collect();
+    let caption = format!("Forces on bearings at {operation}, each of one bearing, the most loaded; the speed is that of one ring relative to the other");
+    (!rows.is_empty()).then_some(Block::Table { caption, columns, rows })
+}
+
 /// What each variator does, side by side or machine by machine.
 fn variators(s: &SolutionReport) -> Vec<Block> {
     let one = |(name, v): &(String, VariatorReport)| {
         let columns = ["Side", "On member"].map(Column::words).into_iter();
-        let columns = columns.chain(["Speed rpm", "Torque on it N m", "Power into it"].map(Column::numbers)).collect();
+        let columns = columns.chain(["Speed, rpm", "Torque on it, N m", "Power into it"].map(Column::numbers)).collect();
         let row = |(side, m): &(String, MachineReport)| {
             let power = watts(m.power_w);
-            let [speed, torque] = [m.speed_rad_s * RPM, m.torque_n_m].map(|x| significant(x, 6));
+            let [speed, torque] = [m.speed_rad_s * RPM, m.torque_n_m].map(|x| significant(x, 5));
             vec![side.clone(), m.member.clone(), speed, torque, power]
         };
         let store = match v.store_w {
@@ -316,13 +363,15 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
     }
     blocks.extend(all.figures.block(FigureKind::Film, None, "Oil film over roughness along the path of contact"));
     blocks.extend(all.figures.block(FigureKind::Path, None, "Friction, sliding and load along the path of contact"));
-    blocks.extend(what_first(all));
-    blocks.extend(all.figures.block(FigureKind::Tornado, None, "What a step of each quantity changes"));
+    match all.figures.block(FigureKind::Tornado, None, "What to change first: what a step of each quantity changes") {
+        Some(picture @ Block::Figure { .. }) => blocks.push(picture),
+        other => blocks.extend(what_first(all).into_iter().chain(other)),
+    }
     (!blocks.is_empty()).then(|| Section { title: "Losses, and what to change first".into(), blocks })
 }
 
 fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
-    let heads = ["µ", "HV", "Fₜ N", "vₜ m/s", "slide m/s", "Hertz MPa", "h µm", "λ"];
+    let heads = ["µ", "HV", "Fₜ, N", "vₜ, m/s", "slide, m/s", "Hertz, MPa", "h, µm", "λ"];
     let columns = [Column::words("Tooth contact")].into_iter().chain(heads.map(Column::numbers));
     let columns = columns.chain([Column::words("Film")]).collect();
     let rows: Vec<Vec<String>> = (s.contacts.iter())
@@ -362,7 +411,7 @@ fn what_first(all: &Findings<'_>) -> Option<Block> {
     };
     let columns = [Column::words("Quantity")].into_iter();
     let columns = columns
-        .chain([Column::numbers("Step"), Column::numbers("η points"), Column::numbers("Losses W")])
+        .chain([Column::numbers("Step"), Column::numbers("η, points"), Column::numbers("Losses, W")])
         .chain([Column::words("Moves most")])
         .collect();
     let rows: Vec<Vec<String>> = (o.quantities.iter().take(RANKED))
@@ -415,47 +464,107 @@ pub fn formulas(all: &Findings<'_>) -> Option<Section> {
     let title = if blocks.is_empty() { "Closed formulas" } else { "Regimes and closed formulas" };
     if let Ok(sheet) = closed(train, &FormulaRequest::default()) {
         let count = sheet.formulas.len();
-        let short = |latex: &String| latex.len() <= LONGEST;
-        let mut printed = 0;
+        let mut printed: Vec<&ClosedFormula> = vec![];
         for f in &sheet.formulas {
-            let latex = f.efficiency(Notation::Latex);
-            if printed == FORMULAS || !short(&latex) {
-                continue;
+            if printed.len() == FORMULAS {
+                break;
             }
-            printed += 1;
-            let heading = match f.state == willis::train::AS_DRAWN {
-                true => f.title.clone(),
-                false => format!("State {}: {}", f.state, f.title),
-            };
-            blocks.push(Block::Heading { text: heading });
-            blocks.push(Block::Formula { latex: format!("\\eta = {latex}"), note: String::new() });
-            if let ([from], [to], Some([speed, torque])) =
-                (&f.inputs[..], &f.outputs[..], f.ratios(Notation::Latex).filter(|r| r.iter().all(short)))
-            {
-                blocks.push(Block::Formula { latex: speed, note: format!("speed of {from} over speed of {to}") });
-                blocks.push(Block::Formula { latex: torque, note: format!("torque on {to} over torque on {from}") });
-            }
-            let mut items = vec![];
-            for a in &f.arguments {
-                // Speeds and torques are the reader's to give.
-                items.push(match a.fixed {
-                    true => format!("{} = {}: {}", a.name, significant(a.value, 7), a.meaning),
-                    false => format!("{}: {}", a.name, a.meaning),
-                });
-            }
-            for (condition, meaning) in f.conditions(Notation::Text) {
-                items.push(format!("holds where {condition} > 0 ({meaning})"));
-            }
-            blocks.push(Block::List { items });
+            let Some(own) = formula(f) else { continue };
+            printed.push(f);
+            blocks.extend(own);
         }
-        if printed < count {
+        blocks.extend(symbols(&printed));
+        if printed.len() < count {
             let text = format!(
-                "{} of {count} formulas are not printed here, for their number or their length; `willis formula` gives \
-                 them all, also as code.",
-                count - printed
+                "{} of {count} formulas are not printed here, for their number or their length. The command willis formula \
+                 gives them all, also as code.",
+                count - printed.len()
             );
             blocks.push(Block::Text { text });
         }
     }
     (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
+}
+
+/// A formula with its left side and the conditions under which it holds; none where it is wider than a page.
+fn formula(f: &ClosedFormula) -> Option<Vec<Block>> {
+    let heading = match f.state == AS_DRAWN {
+        true => f.title.clone(),
+        false => format!("State {}: {}", f.state, f.title),
+    };
+    let efficiency = format!("\\eta = {}", f.efficiency(Notation::Latex));
+    let mut blocks = vec![Block::Heading { text: heading }];
+    let mut push = |latex: String, note: String| {
+        blocks.push(Block::Formula { latex, note });
+    };
+    if !fits(&efficiency) {
+        return None;
+    }
+    push(efficiency, String::new());
+    if let ([from], [to], Some([speed, torque])) = (&f.inputs[..], &f.outputs[..], f.ratios(Notation::Latex)) {
+        let (from, to) = (index(from), index(to));
+        let sides = [
+            (format!("i = \\frac{{\\omega_{{{from}}}}}{{\\omega_{{{to}}}}} = {speed}"), "speed ratio"),
+            (format!("\\frac{{T_{{{to}}}}}{{T_{{{from}}}}} = {torque}"), "torque ratio, external torques"),
+        ];
+        for (latex, note) in sides.into_iter().filter(|(latex, _)| fits(latex)) {
+            push(latex, note.to_owned());
+        }
+    }
+    let items = conditions(f);
+    if !items.is_empty() {
+        blocks.push(Block::Terms { head: "It holds where".into(), items });
+    }
+    Some(blocks)
+}
+
+/// The conditions of a formula that fit the width of a page; the others are counted.
+fn conditions(f: &ClosedFormula) -> Vec<Term> {
+    let all = f.conditions(Notation::Latex).into_iter().map(|(latex, text)| Term { latex: format!("{latex} > 0"), text });
+    let (short, long): (Vec<Term>, Vec<Term>) = all.partition(|t| width(&t.latex).is_some_and(|w| w < 0.6 * LINE));
+    let more = (!long.is_empty()).then(|| Term {
+        latex: format!("+ {}", long.len()),
+        text: "more, too long for this page; the command willis formula has them".to_owned(),
+    });
+    short.into_iter().chain(more).collect()
+}
+
+/// What the symbols of these formulas stand for, each once.
+fn symbols(formulas: &[&ClosedFormula]) -> Option<Block> {
+    let mut items: Vec<Term> = vec![];
+    for a in formulas.iter().flat_map(|f| &f.arguments) {
+        // Speeds and torques are the reader's to give.
+        let latex = match a.fixed {
+            true => format!("{} = {}", a.latex, significant(a.value, 6).replace('−', "-")),
+            false => a.latex.clone(),
+        };
+        let own = Term { latex, text: a.meaning.clone() };
+        if !items.contains(&own) {
+            items.push(own);
+        }
+    }
+    (!items.is_empty()).then(|| Block::Terms { head: "Symbols".into(), items })
+}
+
+/// A name as an upright index.
+fn index(name: &str) -> String {
+    let escaped = name.chars().fold(String::new(), |mut out, c| {
+        match c {
+            '_' | '&' | '%' | '$' | '#' | '{' | '}' => out.extend(['\\', c]),
+            '\\' | '^' | '~' => out.push(' '),
+            c => out.push(c),
+        }
+        out
+    });
+    format!("\\text{{{escaped}}}")
+}
+
+/// How wide a formula is, in its type size.
+fn width(latex: &str) -> Option<f64> {
+    mathml(latex, Display::Line).map(|(_, width)| width)
+}
+
+/// Whether a formula fits the width of a page.
+fn fits(latex: &str) -> bool {
+    width(latex).is_some_and(|w| w <= LINE)
 }

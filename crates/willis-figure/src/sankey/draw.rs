@@ -18,7 +18,7 @@ use words::{SMALL, Words, losers, percent};
 
 const MARGIN: f64 = 28.0;
 /// Narrowest page.
-const NARROWEST: f64 = 760.0;
+const NARROWEST: f64 = 750.0;
 
 /// What a ribbon carries.
 #[derive(Clone, Copy, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use crate::parts::alive::{Of, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{GearRole, JointKind, Place, Stick, StickGear, StickJoint, StickPiece, Way};
+use crate::{Drawing, GearRole, JointKind, Place, Stick, StickGear, StickJoint, StickPiece, Way};
 
 /// Length of a terminal's arrow.
 const ARROW: f64 = 40.0;
@@ -37,7 +37,11 @@ const THICK: f64 = 6.0;
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(data: &Stick) -> String {
-    let sheet = Sheet::new(data);
+    draw_on(data, Drawing::default())
+}
+
+pub(super) fn draw_on(data: &Stick, paper: Drawing) -> String {
+    let sheet = Sheet::new(data, paper);
     let mut page = page(sheet.width, sheet.height, &format!("Stick diagram of {}", data.title), &words(data)).add(
         text(28.0, 38.0, 20.0, Anchor::Start, &fit(&data.title, (sheet.width - 56.0) / BOLD, 20.0))
             .set("font-weight", "bold"),

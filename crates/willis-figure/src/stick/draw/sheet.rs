@@ -1,7 +1,7 @@
 //! The page of a stick diagram: where it is drawn, and which members are listed in which colour.
 
 use crate::parts::style::{INK, colour};
-use crate::{Place, Stick};
+use crate::{Drawing, Place, Stick};
 
 /// Left and right of the grid: names and arrows of the terminals.
 pub const MARGIN: f64 = 168.0;
@@ -25,11 +25,13 @@ pub struct Sheet<'a> {
 }
 
 impl<'a> Sheet<'a> {
-    pub fn new(data: &'a Stick) -> Self {
-        let unit = (1064.0 / data.width.max(1.0)).clamp(44.0, 80.0).floor();
+    pub fn new(data: &'a Stick, paper: Drawing) -> Self {
+        let margins = 2.0 * MARGIN;
+        let room = paper.page(1064.0 + margins, 560.0) - margins;
+        let unit = (room / data.width.max(1.0)).clamp(44.0, 80.0).floor();
         let rise = (420.0 / data.height.max(1.0)).clamp(46.0, 66.0).floor();
         let drawn = unit * data.width;
-        let width = (drawn + 2.0 * MARGIN).clamp(640.0, 4000.0).max(0.0);
+        let width = (drawn + margins).clamp(640.0, 4000.0).max(0.0);
         let left = (width - drawn) / 2.0;
         let led_out = |k: usize| {
             let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
