@@ -9,7 +9,6 @@ mod paper;
 mod results;
 mod scheme;
 mod wheels;
-mod words;
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -25,6 +24,7 @@ use willis::work::{self, Cancelled, Effort, Work};
 
 use crate::parts::style::watts;
 use crate::parts::markup::untitled;
+use crate::parts::words::{self, spelled};
 use crate::report::document::{Block, Column, Document, Level, Section, TitleBlock};
 use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
@@ -33,7 +33,7 @@ const PICTURED: usize = 4;
 /// Operations that are told one by one, and rows of a table: a report is read by people.
 const TOLD: usize = 100;
 /// Widths of figures, in their units: of the text of a page, and of a page for figures alone.
-const WIDTHS: [u32; 2] = [750, 1180];
+const WIDTHS: [u32; 2] = [770, 1180];
 
 /// What a report is about.
 #[derive(Clone, Debug, Default)]
@@ -103,7 +103,7 @@ impl Sure {
         }
         found.sort_by(f64::total_cmp);
         let [low, high] = [0.05, 0.95].map(|p| unstable::quantile(&found, p));
-        let varied = plan.quantities().iter().map(|q| format!("{} {}", q.name, q.describe())).collect();
+        let varied = plan.quantities().iter().map(|q| spelled(&format!("{} {}", q.name, q.describe()))).collect();
         (high > low).then_some(Self { low, high, samples: samples.len(), varied })
     }
 
@@ -218,7 +218,12 @@ fn worth_showing(figure: &Figure) -> bool {
     match figure {
         Figure::Map(m) => m.points.iter().any(|p| p.efficiency.is_some()),
         Figure::Losses(l) => !l.series.is_empty(),
-        Figure::Band(b) => b.points.iter().any(|p| p.efficiency.is_some()),
+        // A band that is level everywhere is a number, which is told.
+        Figure::Band(b) => {
+            let known = || b.points.iter().filter_map(|p| p.efficiency);
+            let first = known().next();
+            known().any(|q| first.is_some_and(|f| f.iter().zip(q).any(|(a, b)| (a - b).abs() > 1e-4)))
+        }
         _ => true,
     }
 }
@@ -444,7 +449,7 @@ fn summary(all: &Findings<'_>) -> Section {
         let text = format!(
             "At {} the quantity that matters most is {}: a step of {} changes the losses by {}.",
             first.name,
-            q.name,
+            spelled(&q.name),
             q.step.size(),
             results::signed_watts(q.loss_change_w)
         );

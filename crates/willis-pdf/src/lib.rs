@@ -3,6 +3,7 @@
 //! All words of a report reach the template as data: none is ever read as typst's markup.
 
 mod maths;
+mod measure;
 mod pictures;
 mod world;
 
@@ -11,6 +12,8 @@ use typst_layout::PagedDocument;
 use typst_pdf::PdfOptions;
 
 use crate::contract::Contract;
+pub use crate::measure::Measured;
+
 use crate::document::{Block, Document, Plate};
 use crate::paper::{Extent, MM, Place};
 use crate::pictures::Picture;

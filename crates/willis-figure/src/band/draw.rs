@@ -4,6 +4,7 @@ use svg::node::element::Group;
 
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{Anchor, BOLD, FAINT, INK, colour, digits, fit, line, lines, page, rectangle, text};
+use crate::parts::words::spelled;
 use crate::{BandPoint, Bands, Drawing};
 
 const WIDTH: f64 = 900.0;
@@ -20,6 +21,7 @@ pub fn draw(all: &Bands) -> String {
 
 pub(super) fn draw_on(all: &Bands, paper: Drawing) -> String {
     let width = paper.page(WIDTH, NARROWEST);
+    let tall = HEIGHT * width / WIDTH;
     let mut top = 60.0;
     let mut body = Group::new().add(
         text(28.0, 38.0, 20.0, Anchor::Start, &fit(&all.title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
@@ -36,14 +38,14 @@ pub(super) fn draw_on(all: &Bands, paper: Drawing) -> String {
     let efficiency =
         |p: &BandPoint| (p.efficiency.map(|q| q.map(|e| 100.0 * e)), p.nominal_efficiency.map(|e| 100.0 * e));
     let loss = |p: &BandPoint| (p.loss_w.map(|q| q.map(|w| w / size)), p.nominal_loss_w.map(|w| w / size));
-    body = body.add(panel(all, [top, width - 28.0], String::new(), &efficiency));
-    top += HEIGHT + 64.0;
-    body = body.add(panel(all, [top, width - 28.0], format!("Losses, {unit}"), &loss));
-    top += HEIGHT + 62.0;
+    body = body.add(panel(all, [top, top + tall, width - 28.0], String::new(), &efficiency));
+    top += tall + 64.0;
+    body = body.add(panel(all, [top, top + tall, width - 28.0], format!("Losses, {unit}"), &loss));
+    top += tall + 62.0;
     let head = format!("Uncertain ({} samples at each of {} values)", all.samples, all.points.len());
     body = body.add(text(28.0, top, 13.0, Anchor::Start, &head).set("font-weight", "bold"));
     for q in &all.quantities {
-        for l in lines(q, width - 56.0, 11.0) {
+        for l in lines(&spelled(q), width - 56.0, 11.0) {
             top += 16.0;
             body = body.add(text(28.0, top, 11.0, Anchor::Start, &l).set("fill", FAINT));
         }
@@ -86,7 +88,7 @@ fn legend(y: f64, width: f64) -> (Group, f64) {
 
 type Reading<'a> = &'a dyn Fn(&BandPoint) -> (Option<[f64; 5]>, Option<f64>);
 
-fn panel(all: &Bands, [top, right]: [f64; 2], name: String, of: Reading<'_>) -> Group {
+fn panel(all: &Bands, [top, bottom, right]: [f64; 3], name: String, of: Reading<'_>) -> Group {
     let values = all.points.iter().flat_map(|p| {
         let (band, nominal) = of(p);
         band.into_iter().flatten().chain(nominal)
@@ -95,7 +97,7 @@ fn panel(all: &Bands, [top, right]: [f64; 2], name: String, of: Reading<'_>) -> 
         left: LEFT,
         top,
         right,
-        bottom: top + HEIGHT,
+        bottom,
         x: Scale::of(all.x.values.iter().copied(), title(&all.x)),
         y: if name.is_empty() { Scale::efficiency(values) } else { Scale::of(values, name).rounded() },
     };

@@ -159,7 +159,8 @@ impl<'a> View<'a> {
             low,
             high,
             speeds,
-            height: (BLOCK * most as f64).max(360.0),
+            // No higher on narrow paper than it is wide.
+            height: (BLOCK * most as f64).max((0.32 * widest).min(360.0)),
             largest,
             torque,
             forces,

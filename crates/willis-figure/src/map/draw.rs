@@ -12,12 +12,14 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, number, page, rectangle,
     text, watts, wide,
 };
-use crate::{EfficiencyMap, MapVerdict};
+use crate::{Drawing, EfficiencyMap, MapVerdict};
 
 const WIDTH: f64 = 940.0;
+const NARROWEST: f64 = 640.0;
 const LEFT: f64 = 92.0;
-const RIGHT: f64 = 690.0;
-const LEGEND: f64 = 716.0;
+/// The legend is so far from the chart, and so wide.
+const BESIDE: f64 = 26.0;
+const LEGEND: f64 = 224.0;
 const HEIGHT: f64 = 400.0;
 
 /// Losses in per cent at which colours change.
@@ -49,11 +51,17 @@ fn ramp(part: f64) -> String {
 /// An efficiency map: filled, labelled bands, lines of constant input power, hatching where there is no single answer,
 /// the operations of the file as points; of an automatic transmission below it the state that is best at every point.
 pub fn draw(map: &EfficiencyMap) -> String {
+    draw_on(map, Drawing::default())
+}
+
+pub(super) fn draw_on(map: &EfficiencyMap, paper: Drawing) -> String {
+    let width = paper.page(WIDTH, NARROWEST);
+    let tall = HEIGHT * width / WIDTH;
     let mut top = 64.0;
     let mut body = Group::new().add(
-        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&map.title, (WIDTH - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
+        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&map.title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
     );
-    for l in lines(&map.basis, WIDTH - 56.0, 13.0) {
+    for l in lines(&map.basis, width - 56.0, 13.0) {
         body = body.add(text(28.0, top - 4.0, 13.0, Anchor::Start, &l).set("fill", FAINT));
         top += 17.0;
     }
@@ -61,18 +69,18 @@ pub fn draw(map: &EfficiencyMap) -> String {
     let chart = |top: f64| Chart {
         left: LEFT,
         top,
-        right: RIGHT,
-        bottom: top + HEIGHT,
+        right: width - LEGEND - BESIDE,
+        bottom: top + tall,
         x: Scale::of(map.x.values.iter().copied(), title(&map.x)),
         y: Scale::of(map.y.values.iter().copied(), title(&map.y)),
     };
     body = body.add(efficiency(map, &chart(top), 0));
-    let mut bottom = top + HEIGHT + 60.0;
+    let mut bottom = top + tall + 60.0;
     if !map.states.is_empty() {
         body = body.add(states(map, &chart(bottom)));
-        bottom += HEIGHT + 60.0;
+        bottom += tall + 60.0;
     }
-    page(WIDTH, bottom, &format!("Efficiency map of {}", map.title), &words(map)).add(body).to_string()
+    page(width, bottom, &format!("Efficiency map of {}", map.title), &words(map)).add(body).to_string()
 }
 
 /// What the picture tells those who do not see it.
@@ -330,7 +338,7 @@ fn label(points: &[(f64, f64)], name: &str, chart: &Chart, taken: &mut Vec<[f64;
     if points.len() < 4 {
         return None;
     }
-    let width = wide(name, 10.5) + 8.0;
+    let width = wide(name, 11.0) + 8.0;
     for part in [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.12, 0.88] {
         let (x, y) = points[((points.len() - 1) as f64 * part) as usize];
         let own = [x - width / 2.0, y - 8.0, x + width / 2.0, y + 8.0];
@@ -340,7 +348,7 @@ fn label(points: &[(f64, f64)], name: &str, chart: &Chart, taken: &mut Vec<[f64;
             && own[3] < chart.bottom - 4.0;
         if inside && taken.iter().all(|t| own[0] > t[2] || own[2] < t[0] || own[1] > t[3] || own[3] < t[1]) {
             taken.push(own);
-            return Some(halo(text(x, y + 3.5, 10.5, Anchor::Middle, name).set("fill", ink), PAPER, 3.0));
+            return Some(halo(text(x, y + 3.5, 11.0, Anchor::Middle, name).set("fill", ink), PAPER, 3.0));
         }
     }
     None
@@ -434,8 +442,9 @@ fn strokes([x0, y0, x1, y1]: [f64; 4], verdict: MapVerdict) -> Path {
 }
 
 fn legend(map: &EfficiencyMap, chart: &Chart, between: &[f64], [least, most]: [f64; 2], power: bool) -> Group {
+    let key = chart.right + BESIDE;
     let mut y = chart.top + 10.0;
-    let mut g = Group::new().add(text(LEGEND, y, 13.0, Anchor::Start, "Efficiency").set("font-weight", "bold"));
+    let mut g = Group::new().add(text(key, y, 13.0, Anchor::Start, "Efficiency").set("font-weight", "bold"));
     y += 12.0;
     if least.is_finite() {
         let shades = between.len() + 1;
@@ -447,8 +456,8 @@ fn legend(map: &EfficiencyMap, chart: &Chart, between: &[f64], [least, most]: [f
                 1 if most - least < 1e-9 => format!("{} everywhere", percent(1.0 - most)),
                 _ => format!("{} to {}", percent(1.0 - high), percent(1.0 - low)),
             };
-            g = g.add(rectangle(LEGEND, y, 26.0, 15.0, &fill).set("stroke", LINE).set("stroke-width", 0.6)).add(text(
-                LEGEND + 34.0,
+            g = g.add(rectangle(key, y, 26.0, 15.0, &fill).set("stroke", LINE).set("stroke-width", 0.6)).add(text(
+                key + 34.0,
                 y + 12.0,
                 11.0,
                 Anchor::Start,
@@ -460,20 +469,20 @@ fn legend(map: &EfficiencyMap, chart: &Chart, between: &[f64], [least, most]: [f
     y += 6.0;
     for (verdict, _) in verdicts(map) {
         g = g
-            .add(rectangle(LEGEND, y, 26.0, 15.0, PAPER).set("stroke", LINE).set("stroke-width", 0.6))
-            .add(strokes([LEGEND, y, LEGEND + 26.0, y + 15.0], verdict))
-            .add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, says(verdict)));
+            .add(rectangle(key, y, 26.0, 15.0, PAPER).set("stroke", LINE).set("stroke-width", 0.6))
+            .add(strokes([key, y, key + 26.0, y + 15.0], verdict))
+            .add(text(key + 34.0, y + 12.0, 11.0, Anchor::Start, says(verdict)));
         y += 20.0;
     }
     if power {
-        let dash = line((LEGEND, y + 8.0), (LEGEND + 26.0, y + 8.0), FAINT, 1.0).set("stroke-dasharray", "5 4");
-        g = g.add(dash).add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, "power into the train"));
+        let dash = line((key, y + 8.0), (key + 26.0, y + 8.0), FAINT, 1.0).set("stroke-dasharray", "5 4");
+        g = g.add(dash).add(text(key + 34.0, y + 12.0, 11.0, Anchor::Start, "power into the train"));
         y += 22.0;
     }
     for (k, m) in map.marks.iter().enumerate().take(9) {
-        let name = fit(&m.operation, WIDTH - LEGEND - 60.0, 11.0);
-        g = g.add(badge(LEGEND + 13.0, y + 9.0, &(k + 1).to_string())).add(text(
-            LEGEND + 34.0,
+        let name = fit(&m.operation, LEGEND - 60.0, 11.0);
+        g = g.add(badge(key + 13.0, y + 9.0, &(k + 1).to_string())).add(text(
+            key + 34.0,
             y + 13.0,
             11.0,
             Anchor::Start,
@@ -534,18 +543,19 @@ fn states(map: &EfficiencyMap, chart: &Chart) -> Group {
         }
     }
     let mut y = chart.top + 10.0;
-    g = g.add(text(LEGEND, y, 13.0, Anchor::Start, "Best state").set("font-weight", "bold"));
+    let key = chart.right + BESIDE;
+    g = g.add(text(key, y, 13.0, Anchor::Start, "Best state").set("font-weight", "bold"));
     y += 12.0;
     for state in used {
         let share = map.points.iter().filter(|p| p.best == Some(state)).count() as f64 / map.points.len() as f64;
         let label = format!("{} %", digits((1000.0 * share).round() / 10.0));
         g = g
-            .add(rectangle(LEGEND, y, 26.0, 15.0, &shade(state)).set("stroke", LINE).set("stroke-width", 0.6))
-            .add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, &fit(&map.states[state], 110.0, 11.0)))
-            .add(text(WIDTH - 28.0, y + 12.0, 11.0, Anchor::End, &label).set("fill", FAINT));
+            .add(rectangle(key, y, 26.0, 15.0, &shade(state)).set("stroke", LINE).set("stroke-width", 0.6))
+            .add(text(key + 34.0, y + 12.0, 11.0, Anchor::Start, &fit(&map.states[state], 110.0, 11.0)))
+            .add(text(key + LEGEND - 28.0, y + 12.0, 11.0, Anchor::End, &label).set("fill", FAINT));
         y += 19.0;
     }
-    g.add(text(LEGEND, y + 14.0, 11.0, Anchor::Start, "share of the points of the map").set("fill", FAINT))
+    g.add(text(key, y + 14.0, 11.0, Anchor::Start, "share of the points of the map").set("fill", FAINT))
 }
 
 /// Lines between the regions of different states.

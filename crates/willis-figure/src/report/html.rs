@@ -32,7 +32,7 @@ const PAGE: [(&str, &str); 10] = [
 /// What a page has room for whether it is A4 or US Letter, in points.
 const PAPER_SIZE: [f64; 2] = [210.0 * MM, 279.4 * MM];
 /// A page between its margins, in points.
-const PRINTED: f64 = 170.0 * MM;
+const PRINTED: f64 = 174.0 * MM;
 
 /// A report as a web page in one file: light or dark as the screen is set, light in print.
 ///

@@ -3,7 +3,8 @@
 use willis::diagnostic::{Diagnostic, Severity};
 use willis::losses::{Entry, Tag, Trust, entries};
 
-use super::{Findings, words};
+use super::Findings;
+use crate::parts::words;
 use super::results::{significant, single};
 use crate::report::document::{Block, Column, Level, Section};
 

@@ -8,7 +8,7 @@ pub const SMALLEST: f64 = 7.0;
 /// Points to a unit of a figure where there is room.
 const USUAL: f64 = 0.66;
 /// Between the text and the edges of a page, in all, as the style sheets have it: both sides, top and bottom.
-const EDGES: [f64; 2] = [40.0 * MM, 38.0 * MM];
+const EDGES: [f64; 2] = [36.0 * MM, 31.0 * MM];
 /// The same of a page for figures alone.
 const PLATE_EDGES: [f64; 2] = [30.0 * MM, 33.0 * MM];
 /// Room for a caption below a figure, and for a heading above it.
@@ -101,9 +101,9 @@ mod tests {
     #[test]
     fn what_fits_stands_in_the_text() {
         let place = |width: f64, smallest| Extent { size: [width, 800.0], smallest }.place(A4);
-        assert!(matches!(place(750.0, Some(11.0)), Place::Text(_)));
-        assert!(matches!(place(760.0, Some(11.0)), Place::Page([a, b], _) if a > b && a < 850.0));
-        assert!(matches!(place(760.0, Some(12.0)), Place::Text(_)));
+        assert!(matches!(place(770.0, Some(11.0)), Place::Text(_)));
+        assert!(matches!(place(780.0, Some(11.0)), Place::Page([a, b], _) if a > b && a < 850.0));
+        assert!(matches!(place(780.0, Some(12.0)), Place::Text(_)));
         assert!(matches!(place(9000.0, None), Place::Text(_)));
     }
 }

@@ -1,9 +1,9 @@
 //! What came out: the shift table, the operating points, losses, maps, motion, formulas.
 
 use willis::analysis::{
-    CertificateReport, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport, Verdict,
+    CertificateReport, Direction, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport, Verdict,
 };
-use willis::exact::Rational;
+use willis::losses::entries;
 use willis::operating_point::Regime;
 use willis::regimes::{ClosedFormula, FormulaRequest, formulas as closed};
 use willis::statics::Certificate;
@@ -13,11 +13,12 @@ use willis::train::AS_DRAWN;
 use super::{Findings, TOLD, and_more, notice};
 use crate::FigureKind;
 use crate::parts::style::{figures, watts};
+use crate::parts::words::spelled;
 use crate::report::document::{Block, Column, Level, Section, Term};
 use crate::report::formula::{Display, mathml};
 
 /// Formulas that are printed.
-const FORMULAS: usize = 12;
+const FORMULAS: usize = 9;
 /// The width of a page in the type size of its formulas.
 const LINE: f64 = 47.0;
 /// Quantities in the table of what matters most.
@@ -107,7 +108,10 @@ pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
         .chain(["Nominal η driving", "Nominal η coasting"].map(Column::numbers))
         .chain([Column::words("Only solution")]);
     let rows: Vec<Vec<String>> = all.analysis.ratios.iter().map(|(name, s)| state(name, s)).collect();
-    if !rows.is_empty() {
+    // The figure has all of it but the proofs.
+    if matches!(blocks[..], [Block::Figure { .. }]) {
+        blocks.push(Block::Text { text: proofs(all) });
+    } else if !rows.is_empty() {
         let caption =
             "Ratio is the input's over the output's speed. Efficiencies are nominal: from those of the meshes as given or \
              assumed, whatever the operating point"
@@ -126,12 +130,31 @@ pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
     (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
 }
 
+/// In which gears the solution is proved to be the only one.
+fn proofs(all: &Findings<'_>) -> String {
+    let open = |(name, s): &(String, StateReport)| {
+        let ways = [("driving", &s.drive), ("coasting", &s.coast)].into_iter();
+        let not: Vec<&str> = ways.filter(|(_, d)| !proved(d)).map(|(way, _)| way).collect();
+        (!not.is_empty()).then(|| format!("{name} ({})", not.join(", ")))
+    };
+    let open: Vec<String> = all.analysis.ratios.iter().filter_map(open).collect();
+    let exactly = "It is proved that the solution is the only one for every load, driving and coasting, with the nominal \
+                   efficiencies: from those of the meshes as given or assumed, whatever the operating point";
+    match open.is_empty() {
+        true => format!("{exactly}."),
+        false => format!("{exactly}. It is not proved of: {}.", open.join("; ")),
+    }
+}
+
+fn proved(d: &Direction) -> bool {
+    d.certificate.is_some_and(|c| c.unique_for_every_load)
+}
+
 fn state(name: &str, s: &StateReport) -> Vec<String> {
-    let way = |d: &willis::analysis::Direction| match d.efficiency {
+    let way = |d: &Direction| match d.efficiency {
         Some(e) => exact_percent(e),
         None => d.verdict.words().to_owned(),
     };
-    let proved = |d: &willis::analysis::Direction| d.certificate.is_some_and(|c| c.unique_for_every_load);
     let certain = match (proved(&s.drive), proved(&s.coast)) {
         (true, true) => "both ways",
         (true, false) => "driving",
@@ -141,7 +164,7 @@ fn state(name: &str, s: &StateReport) -> Vec<String> {
     vec![
         name.to_owned(),
         format!("{} – {}", s.input, s.output),
-        s.exact.as_ref().map(Rational::to_fraction).or(s.no_ratio.clone()).unwrap_or_else(|| "–".into()),
+        s.exact.as_ref().map(|i| i.to_fraction().replace('-', "−")).or(s.no_ratio.clone()).unwrap_or_else(|| "–".into()),
         s.value.map_or("–".into(), |v| significant(v, 6)),
         s.step.map_or(String::new(), |v| significant(v, 4)),
         way(&s.drive),
@@ -355,7 +378,7 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
         let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
             .map(|x| {
-                vec![x.name.clone(), x.kind.words().into(), x.law.clone(), watts(x.loss_w), exact_percent(x.share)]
+                vec![x.name.clone(), x.kind.words().into(), title(&x.law), watts(x.loss_w), percent(x.share)]
             })
             .collect();
         blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
@@ -368,6 +391,17 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         other => blocks.extend(what_first(all).into_iter().chain(other)),
     }
     (!blocks.is_empty()).then(|| Section { title: "Losses, and what to change first".into(), blocks })
+}
+
+/// A law by its title rather than by its name in files.
+fn title(law: &str) -> String {
+    let known = entries().iter().find(|e| e.id == law).map(|e| e.title.to_owned());
+    known.unwrap_or_else(|| if law == "given" { "efficiency given".to_owned() } else { law.replace('_', " ") })
+}
+
+/// A share, with three digits.
+fn percent(x: f64) -> String {
+    format!("{} %", significant(100.0 * x, 3))
 }
 
 fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
@@ -417,7 +451,7 @@ fn what_first(all: &Findings<'_>) -> Option<Block> {
     let rows: Vec<Vec<String>> = (o.quantities.iter().take(RANKED))
         .map(|q| {
             let most = q.sources.first().map_or(String::new(), |x| format!("{} {} W", x.name, signed(x.change_w)));
-            let name = if q.assumed { format!("{} (not given)", q.name) } else { q.name.clone() };
+            let name = if q.assumed { format!("{} (not given)", spelled(&q.name)) } else { spelled(&q.name) };
             vec![
                 name,
                 q.step.label().to_owned(),
@@ -501,14 +535,16 @@ fn formula(f: &ClosedFormula) -> Option<Vec<Block>> {
         return None;
     }
     push(efficiency, String::new());
-    if let ([from], [to], Some([speed, torque])) = (&f.inputs[..], &f.outputs[..], f.ratios(Notation::Latex)) {
+    if let ([from], [to], Some([speed, _])) = (&f.inputs[..], &f.outputs[..], f.ratios(Notation::Latex)) {
         let (from, to) = (index(from), index(to));
-        let sides = [
-            (format!("i = \\frac{{\\omega_{{{from}}}}}{{\\omega_{{{to}}}}} = {speed}"), "speed ratio"),
-            (format!("\\frac{{T_{{{to}}}}}{{T_{{{from}}}}} = {torque}"), "torque ratio, external torques"),
-        ];
-        for (latex, note) in sides.into_iter().filter(|(latex, _)| fits(latex)) {
-            push(latex, note.to_owned());
+        let ratio = format!("i = \\frac{{\\omega_{{{from}}}}}{{\\omega_{{{to}}}}} = {speed}");
+        // The torques follow: what enters less what is lost leaves.
+        let torques = format!("\\frac{{T_{{{to}}}}}{{T_{{{from}}}}} = -\\eta\\,i");
+        let both = format!("{ratio}, \\quad {torques}");
+        match (fits(&both), fits(&ratio)) {
+            (true, _) => push(both, String::new()),
+            (false, true) => push(ratio, String::new()),
+            _ => {}
         }
     }
     let items = conditions(f);
@@ -538,7 +574,10 @@ fn symbols(formulas: &[&ClosedFormula]) -> Option<Block> {
             true => format!("{} = {}", a.latex, significant(a.value, 6).replace('−', "-")),
             false => a.latex.clone(),
         };
-        let own = Term { latex, text: a.meaning.clone() };
+        let own = match a.meaning_latex() {
+            Some(formula) => Term { latex: format!("{latex} = {formula}"), text: "basic ratio".to_owned() },
+            None => Term { latex, text: a.meaning.clone() },
+        };
         if !items.contains(&own) {
             items.push(own);
         }

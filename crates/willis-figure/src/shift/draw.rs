@@ -10,10 +10,10 @@ use crate::{Drawing, ShiftChange, ShiftEfficiency, ShiftRow, ShiftTable};
 
 const MARGIN: f64 = 28.0;
 const ROW: f64 = 40.0;
-const RATIO: f64 = 96.0;
 /// Widths on a screen, and the least.
-const STEPS: [f64; 2] = [230.0, 150.0];
-const EFFICIENCY: [f64; 2] = [128.0, 88.0];
+const RATIO: [f64; 2] = [96.0, 78.0];
+const STEPS: [f64; 2] = [230.0, 136.0];
+const EFFICIENCY: [f64; 2] = [128.0, 80.0];
 /// Room for the letters of a vertical name.
 const TALLEST: f64 = 104.0;
 const BAND: &str = "#f6f6f6";
@@ -126,7 +126,7 @@ impl Columns {
         };
         let paths = next(paths);
         let elements = next(element * table.elements.len() as f64 + 10.0);
-        let ratio = next(RATIO);
+        let ratio = next(between(RATIO));
         let steps = next(between(STEPS));
         let drive = next(between(EFFICIENCY));
         let coast = next(between(EFFICIENCY));
@@ -270,7 +270,7 @@ fn cells(table: &ShiftTable, c: &Columns, row: &ShiftRow, y: f64) -> Group {
         return g;
     };
     let exact =
-        row.exact.clone().filter(|e| e.contains('/') && wide(e, 11.0) < RATIO - 16.0).map(|e| e.replace('-', "−"));
+        row.exact.clone().filter(|e| e.contains('/') && wide(e, 11.0) < c.steps - c.ratio - 16.0).map(|e| e.replace('-', "−"));
     let up = if exact.is_some() { 2.0 } else { -4.0 };
     g = g.add(text(end, y - up, 13.0, Anchor::End, &decimals(ratio)).set("font-weight", "bold"));
     if let Some(exact) = exact {

@@ -6,7 +6,7 @@ mod sheet;
 use svg::node::element::{Circle, Group, Path, Polyline};
 
 use self::labels::Labels;
-use self::sheet::{LIST, MARGIN, PLATE, ROW, Sheet};
+use self::sheet::{LIST, PLATE, ROW, Sheet};
 use crate::parts::alive::{Of, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
@@ -391,7 +391,7 @@ impl Sheet<'_> {
             if !t.open {
                 g = g.add(line((x, y), (tip, y), &ink, width));
             }
-            let name = fit(&m.name, (MARGIN - ARROW - 18.0) / BOLD, 12.0);
+            let name = fit(&m.name, (self.margin - ARROW - 18.0) / BOLD, 12.0);
             let (tx, anchor) = (tip + side * 10.0, if t.left { Anchor::End } else { Anchor::Start });
             labels.texts.push(Labels::bounds(tx, y + 4.0, 12.0, anchor, wide(&name, 12.0) * BOLD));
             g = g.add(text(tx, y + 4.0, 12.0, anchor, &name).set("font-weight", "bold"));

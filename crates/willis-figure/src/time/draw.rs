@@ -35,14 +35,15 @@ pub fn draw(plot: &TimePlot) -> String {
 
 pub(super) fn draw_on(plot: &TimePlot, paper: Drawing) -> String {
     let width = paper.page(WIDTH, NARROWEST);
+    let tall = PANEL * width / WIDTH;
     let time = TimeAxis::new(plot.axis, width - NAMES);
     let mut body = Group::new();
     let mut y = TOP;
     let mut frames = Vec::new();
     for p in &plot.panels {
-        body = body.add(panel(plot, p, &time, y));
-        frames.push((y, y + PANEL));
-        y += PANEL + GAP;
+        body = body.add(panel(plot, p, &time, [y, y + tall]));
+        frames.push((y, y + tall));
+        y += tall + GAP;
     }
     if !plot.modes.is_empty() {
         body = body.add(modes(plot, &time, y));
@@ -217,12 +218,11 @@ fn range(lines: &[TimeLine], scale: f64) -> (f64, f64) {
     (if low == 0.0 { low } else { low - room }, if high == 0.0 { high } else { high + room })
 }
 
-fn panel(plot: &TimePlot, p: &TimePanel, time: &TimeAxis, top: f64) -> Group {
-    let bottom = top + PANEL;
+fn panel(plot: &TimePlot, p: &TimePanel, time: &TimeAxis, [top, bottom]: [f64; 2]) -> Group {
     let most = p.lines.iter().flat_map(|l| l.pieces.iter().flatten()).fold(0.0f64, |m, v| m.max(v[1].abs()));
     let (unit, scale) = unit(p.unit, most);
     let (low, high) = range(&p.lines, scale);
-    let y = |v: f64| bottom - (v / scale - low) / (high - low) * PANEL;
+    let y = |v: f64| bottom - (v / scale - low) / (high - low) * (bottom - top);
     let head = if unit.is_empty() { p.quantity.clone() } else { format!("{}, {unit}", p.quantity) };
     let mut g = Group::new()
         .add(text(28.0, top - 10.0, 13.0, Anchor::Start, &head).set("font-weight", "bold"))

@@ -7,6 +7,7 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
     ticks, watts, wide,
 };
+use crate::parts::words::spelled;
 use crate::{Drawing, Tornado, TornadoBar};
 
 const MARGIN: f64 = 28.0;
@@ -147,7 +148,8 @@ fn caption(t: &Tornado) -> String {
 }
 
 fn name(b: &TornadoBar) -> String {
-    if b.assumed { format!("{} *", b.name) } else { b.name.clone() }
+    let name = spelled(&b.name);
+    if b.assumed { format!("{name} *") } else { name }
 }
 
 /// With a sign and three digits.

@@ -1,10 +1,12 @@
 //! The page of a stick diagram: where it is drawn, and which members are listed in which colour.
 
-use crate::parts::style::{INK, colour};
+use crate::parts::style::{BOLD, INK, colour, wide};
 use crate::{Drawing, Place, Stick};
 
-/// Left and right of the grid: names and arrows of the terminals.
-pub const MARGIN: f64 = 168.0;
+/// Left and right of the grid on a screen.
+const MARGIN: f64 = 168.0;
+/// The least of it, beside the longest name: an arrow.
+const ARROW_ROOM: f64 = 64.0;
 const TOP: f64 = 124.0;
 /// Half the length of a friction plate, of the line of the frame.
 pub const PLATE: f64 = 9.0;
@@ -17,6 +19,8 @@ pub struct Sheet<'a> {
     pub data: &'a Stick,
     pub width: f64,
     pub height: f64,
+    /// Left and right of the grid: names and arrows of the terminals.
+    pub margin: f64,
     pub left: f64,
     pub unit: f64,
     pub rise: f64,
@@ -26,9 +30,13 @@ pub struct Sheet<'a> {
 
 impl<'a> Sheet<'a> {
     pub fn new(data: &'a Stick, paper: Drawing) -> Self {
-        let margins = 2.0 * MARGIN;
-        let room = paper.page(1064.0 + margins, 560.0) - margins;
-        let unit = (room / data.width.max(1.0)).clamp(44.0, 80.0).floor();
+        let names = data.terminals.iter().map(|t| wide(&data.members[t.member].name, 12.0) * BOLD);
+        let narrow = (names.fold(0.0, f64::max) + ARROW_ROOM).min(MARGIN);
+        let on_screen = 1064.0 + 2.0 * MARGIN;
+        let room = paper.page(on_screen, 560.0);
+        let [margin, least] = if room < on_screen { [narrow, 32.0] } else { [MARGIN, 44.0] };
+        let margins = 2.0 * margin;
+        let unit = ((room - margins) / data.width.max(1.0)).clamp(least, 80.0).floor();
         let rise = (420.0 / data.height.max(1.0)).clamp(46.0, 66.0).floor();
         let drawn = unit * data.width;
         let width = (drawn + margins).clamp(640.0, 4000.0).max(0.0);
@@ -39,7 +47,7 @@ impl<'a> Sheet<'a> {
         };
         let category =
             data.members.iter().enumerate().map(|(k, m)| (!m.planet || led_out(k)).then_some(m.colour)).collect();
-        let mut s = Self { data, width, height: 0.0, left, unit, rise, category };
+        let mut s = Self { data, width, height: 0.0, margin, left, unit, rise, category };
         s.height = s.list_top() + s.list_rows() as f64 * ROW + 52.0;
         s
     }
