@@ -160,7 +160,7 @@ impl<'a> View<'a> {
             high,
             speeds,
             // No higher on narrow paper than it is wide.
-            height: (BLOCK * most as f64).max((0.32 * widest).min(360.0)),
+            height: (BLOCK * most as f64).max((0.23 * widest).min(360.0)),
             largest,
             torque,
             forces,

@@ -133,7 +133,7 @@ fn stacked(chart: &LossChart, top: f64, width: f64) -> (Group, f64) {
         left: LEFT,
         top,
         right,
-        bottom: top + HEIGHT * width / WIDTH,
+        bottom: top + HEIGHT * (width / WIDTH).powi(2),
         x: Scale::of(chart.x.values.iter().copied(), title(&chart.x)),
         y: Scale::of(values.into_iter(), format!("Losses, {unit}")).rounded(),
     };

@@ -56,7 +56,9 @@ pub fn draw(map: &EfficiencyMap) -> String {
 
 pub(super) fn draw_on(map: &EfficiencyMap, paper: Drawing) -> String {
     let width = paper.page(WIDTH, NARROWEST);
-    let tall = HEIGHT * width / WIDTH;
+    // Lower on narrow paper, twice so where two stand below each other.
+    let part = width / WIDTH;
+    let tall = HEIGHT * if map.states.is_empty() { part } else { part * part };
     let mut top = 64.0;
     let mut body = Group::new().add(
         text(28.0, 38.0, 20.0, Anchor::Start, &fit(&map.title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),

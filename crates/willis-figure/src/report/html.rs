@@ -177,7 +177,7 @@ impl Page {
         };
         let pages = self.pages.iter().enumerate().fold(String::new(), |mut all, (k, [width, height])| {
             let name = format!("plate-{}", k + 1);
-            let _ = writeln!(all, "@page {name} {{ size: {width}mm {height}mm; margin: 18mm 15mm 15mm; }}");
+            let _ = writeln!(all, "@page {name} {{ size: {width}mm {height}mm; margin: 16mm 9mm 15mm; }}");
             let _ = writeln!(all, ".{name} {{ page: {name}; }}");
             all
         });

@@ -9,8 +9,10 @@ pub const SMALLEST: f64 = 7.0;
 const USUAL: f64 = 0.66;
 /// Between the text and the edges of a page, in all, as the style sheets have it: both sides, top and bottom.
 const EDGES: [f64; 2] = [36.0 * MM, 31.0 * MM];
+/// How far a figure may stand in both margins, in all.
+const INTO_MARGINS: f64 = 16.0 * MM;
 /// The same of a page for figures alone.
-const PLATE_EDGES: [f64; 2] = [30.0 * MM, 33.0 * MM];
+const PLATE_EDGES: [f64; 2] = [18.0 * MM, 31.0 * MM];
 /// Room for a caption below a figure, and for a heading above it.
 const CAPTION: f64 = 40.0;
 const HEADING: f64 = 40.0;
@@ -50,8 +52,11 @@ impl Extent {
 
     /// Where it goes in a report on paper of that width and height.
     pub fn place(&self, [width, height]: [f64; 2]) -> Place {
-        if let Some(wide) = self.within([width - EDGES[0], height - EDGES[1] - CAPTION]) {
-            return Place::Text(wide);
+        let room = [width - EDGES[0], height - EDGES[1] - CAPTION];
+        // Into the margins only as far as its text needs.
+        if let Some(wide) = self.within(room).or_else(|| self.within([room[0] + INTO_MARGINS, room[1]])) {
+            let least = self.least() * self.size[0];
+            return Place::Text(if wide > room[0] { least } else { wide });
         }
         let [mut short, mut long] = [width, height];
         for _ in 0..=DOUBLED {
@@ -83,7 +88,7 @@ mod tests {
                 for height in [100.0, 700.0, 1500.0, 9000.0] {
                     let own = Extent { size: [width, height], smallest: Some(11.0) };
                     let (wide, page, edges) = match own.place(paper) {
-                        Place::Text(wide) => (wide, paper, EDGES),
+                        Place::Text(wide) => (wide, paper, [EDGES[0] - INTO_MARGINS, EDGES[1]]),
                         Place::Page(page, wide) => (wide, page, PLATE_EDGES),
                     };
                     let factor = wide / width;
@@ -101,9 +106,10 @@ mod tests {
     #[test]
     fn what_fits_stands_in_the_text() {
         let place = |width: f64, smallest| Extent { size: [width, 800.0], smallest }.place(A4);
-        assert!(matches!(place(770.0, Some(11.0)), Place::Text(_)));
-        assert!(matches!(place(780.0, Some(11.0)), Place::Page([a, b], _) if a > b && a < 850.0));
-        assert!(matches!(place(780.0, Some(12.0)), Place::Text(_)));
+        assert!(matches!(place(770.0, Some(11.0)), Place::Text(w) if w < 174.0 * MM));
+        assert!(matches!(place(860.0, Some(11.0)), Place::Page([a, b], _) if a > b && a < 850.0));
+        assert!(matches!(place(840.0, Some(11.0)), Place::Text(w) if w > 174.0 * MM && w < 190.0 * MM));
+        assert!(matches!(place(860.0, Some(12.0)), Place::Text(_)));
         assert!(matches!(place(9000.0, None), Place::Text(_)));
     }
 }

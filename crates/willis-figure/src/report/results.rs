@@ -371,6 +371,11 @@ fn variators(s: &SolutionReport) -> Vec<Block> {
 
 pub fn losses(all: &Findings<'_>) -> Option<Section> {
     let mut blocks = vec![];
+    if let Some((o, s)) = all.analysis.operations.iter().find_map(|o| Some((o, single(o)?))) {
+        let from = format!("At {} {} of {} are lost", o.name, watts(s.loss_w), watts(s.input_power_w));
+        let most = s.sources.first().map(|x| format!("; the most in {}, {}: {}", x.name, x.kind.words(), watts(x.loss_w)));
+        blocks.push(Block::Text { text: format!("{from}{}.", most.unwrap_or_default()) });
+    }
     blocks.extend(all.figures.block(FigureKind::Losses, None, "Losses by source"));
     for o in all.analysis.operations.iter().take(TOLD) {
         let Some(s) = single(o).filter(|s| !s.sources.is_empty()) else { continue };
@@ -478,13 +483,23 @@ pub fn maps(all: &Findings<'_>) -> Option<Section> {
         None,
         "How sure efficiency and losses are; what counts as uncertain stands below the picture",
     ));
-    (!blocks.is_empty()).then(|| Section { title: "Maps".into(), blocks })
+    let text = match all.model.train().states().is_empty() {
+        true => "How the efficiency depends on the operating point.",
+        false => "How the efficiency depends on the operating point and the state.",
+    };
+    (!blocks.is_empty()).then(|| {
+        blocks.insert(0, Block::Text { text: text.into() });
+        Section { title: "Maps".into(), blocks }
+    })
 }
 
 pub fn motion(all: &Findings<'_>) -> Option<Section> {
     let scenario = all.model.train().scenarios().first()?;
     let figure = all.figures.block(FigureKind::Time, None, &format!("Scenario {}", scenario.name))?;
-    Some(Section { title: "Motion".into(), blocks: vec![figure] })
+    let others: Vec<&str> = all.model.train().scenarios().iter().skip(1).map(|s| s.name.as_str()).collect();
+    let more = if others.is_empty() { String::new() } else { format!(" The file has others: {}.", others.join(", ")) };
+    let text = format!("Speeds, torques and powers over time in the scenario {}.{more}", scenario.name);
+    Some(Section { title: "Motion".into(), blocks: vec![Block::Text { text }, figure] })
 }
 
 pub fn formulas(all: &Findings<'_>) -> Option<Section> {
@@ -497,13 +512,14 @@ pub fn formulas(all: &Findings<'_>) -> Option<Section> {
     ));
     let title = if blocks.is_empty() { "Closed formulas" } else { "Regimes and closed formulas" };
     if let Ok(sheet) = closed(train, &FormulaRequest::default()) {
-        let count = sheet.formulas.len();
+        // A gear in which all turn as one needs no formula.
+        let count = sheet.formulas.iter().filter(|f| !f.arguments.is_empty()).count();
         let mut printed: Vec<&ClosedFormula> = vec![];
         for f in &sheet.formulas {
             if printed.len() == FORMULAS {
                 break;
             }
-            let Some(own) = formula(f) else { continue };
+            let Some(own) = formula(f).filter(|_| !f.arguments.is_empty()) else { continue };
             printed.push(f);
             blocks.extend(own);
         }
@@ -526,27 +542,28 @@ fn formula(f: &ClosedFormula) -> Option<Vec<Block>> {
         true => f.title.clone(),
         false => format!("State {}: {}", f.state, f.title),
     };
-    let efficiency = format!("\\eta = {}", f.efficiency(Notation::Latex));
-    let mut blocks = vec![Block::Heading { text: heading }];
-    let mut push = |latex: String, note: String| {
-        blocks.push(Block::Formula { latex, note });
-    };
-    if !fits(&efficiency) {
-        return None;
-    }
-    push(efficiency, String::new());
+    let mut lines = vec![format!("\\eta = {}", f.efficiency(Notation::Latex))];
     if let ([from], [to], Some([speed, _])) = (&f.inputs[..], &f.outputs[..], f.ratios(Notation::Latex)) {
         let (from, to) = (index(from), index(to));
-        let ratio = format!("i = \\frac{{\\omega_{{{from}}}}}{{\\omega_{{{to}}}}} = {speed}");
-        // The torques follow: what enters less what is lost leaves.
-        let torques = format!("\\frac{{T_{{{to}}}}}{{T_{{{from}}}}} = -\\eta\\,i");
-        let both = format!("{ratio}, \\quad {torques}");
-        match (fits(&both), fits(&ratio)) {
-            (true, _) => push(both, String::new()),
-            (false, true) => push(ratio, String::new()),
-            _ => {}
+        lines.push(format!("i = \\frac{{\\omega_{{{from}}}}}{{\\omega_{{{to}}}}} = {speed}"));
+        // What enters less what is lost leaves.
+        lines.push(format!("\\frac{{T_{{{to}}}}}{{T_{{{from}}}}} = -\\eta\\,i"));
+    }
+    if !lines.iter().all(|latex| fits(latex)) {
+        return None;
+    }
+    let mut blocks = vec![Block::Heading { text: heading }];
+    // As many in a line as fit there.
+    let mut line = String::new();
+    for latex in lines {
+        let longer = format!("{line}, \\qquad {latex}");
+        match line.is_empty() {
+            true => line = latex,
+            false if fits(&longer) => line = longer,
+            false => blocks.push(Block::Formula { latex: std::mem::replace(&mut line, latex), note: String::new() }),
         }
     }
+    blocks.push(Block::Formula { latex: line, note: String::new() });
     let items = conditions(f);
     if !items.is_empty() {
         blocks.push(Block::Terms { head: "It holds where".into(), items });
@@ -557,7 +574,9 @@ fn formula(f: &ClosedFormula) -> Option<Vec<Block>> {
 /// The conditions of a formula that fit the width of a page; the others are counted.
 fn conditions(f: &ClosedFormula) -> Vec<Term> {
     let all = f.conditions(Notation::Latex).into_iter().map(|(latex, text)| Term { latex: format!("{latex} > 0"), text });
-    let (short, long): (Vec<Term>, Vec<Term>) = all.partition(|t| width(&t.latex).is_some_and(|w| w < 0.6 * LINE));
+    let (short, long): (Vec<Term>, Vec<Term>) = all.partition(|t| {
+        !t.latex.contains("\\begin") && width(&t.latex).is_some_and(|w| w < 0.6 * LINE)
+    });
     let more = (!long.is_empty()).then(|| Term {
         latex: format!("+ {}", long.len()),
         text: "more, too long for this page; the command willis formula has them".to_owned(),
@@ -578,8 +597,11 @@ fn symbols(formulas: &[&ClosedFormula]) -> Option<Block> {
             Some(formula) => Term { latex: format!("{latex} = {formula}"), text: "basic ratio".to_owned() },
             None => Term { latex, text: a.meaning.clone() },
         };
-        if !items.contains(&own) {
-            items.push(own);
+        match items.iter_mut().find(|t| t.latex == own.latex) {
+            // Whichever wheel drives: of several gears each has its own words.
+            Some(same) if !same.text.contains(&own.text) => same.text = format!("{}; {}", same.text, own.text),
+            Some(_) => {}
+            None => items.push(own),
         }
     }
     (!items.is_empty()).then(|| Block::Terms { head: "Symbols".into(), items })

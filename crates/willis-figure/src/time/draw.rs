@@ -17,7 +17,7 @@ const TOP: f64 = 112.0;
 const PANEL: f64 = 172.0;
 const GAP: f64 = 42.0;
 const ROW: f64 = 24.0;
-/// Width of a column of events.
+/// Width of a column of events, at most.
 const EVENTS: f64 = 510.0;
 /// Between the labels of two curves.
 const SPACING: f64 = 14.0;
@@ -529,22 +529,21 @@ fn events(plot: &TimePlot, time: &TimeAxis, frames: &[(f64, f64)]) -> Group {
     g
 }
 
-/// The first events in words, in columns; and where the page ends.
+/// The first events in words, in two columns; and where the page ends.
 fn told(plot: &TimePlot, time: &TimeAxis, top: f64) -> (Group, f64) {
     if plot.marks.is_empty() {
         return (Group::new(), top - 10.0);
     }
     let mut g = Group::new().add(text(28.0, top, 13.0, Anchor::Start, "Changes of mode").set("font-weight", "bold"));
-    // One column where two do not fit.
-    let columns = if time.right + NAMES < 2.0 * EVENTS { 1 } else { 2 };
-    let rows = plot.marks.len().div_ceil(columns);
+    let rows = plot.marks.len().div_ceil(2);
+    let column = EVENTS.min((time.right + NAMES - 40.0) / 2.0);
     for (k, m) in plot.marks.iter().enumerate() {
-        let x = 28.0 + (k / rows) as f64 * EVENTS;
+        let x = 28.0 + (k / rows) as f64 * column;
         let y = top + 22.0 + 18.0 * (k % rows) as f64;
         g = g
             .add(text(x + 16.0, y, 12.0, Anchor::End, &(k + 1).to_string()).set("fill", FAINT))
             .add(text(x + 104.0, y, 12.0, Anchor::End, &time.moment(m.time)))
-            .add(text(x + 116.0, y, 12.0, Anchor::Start, &short(&m.cause, 58)));
+            .add(text(x + 116.0, y, 12.0, Anchor::Start, &fit(&m.cause, column - 124.0, 12.0)));
     }
     let mut height = top + 22.0 + 18.0 * rows as f64;
     let rest = plot.event_count.saturating_sub(plot.marks.len());
