@@ -54,8 +54,7 @@ impl Typesetter {
             Ok(said) => Err(format!("{}: does not work: {}\n", program.display(), said.status)),
             Err(e) => Err(format!(
                 "a PDF is set by the program {TYPESETTER}, which could not be started: {e}\n  install it once (about five \
-                 minutes): cargo install --path crates/willis-pdf\n  or write .html and print it, which gives the same \
-                 pages\n"
+                 minutes): cargo install --path crates/willis-pdf\n  or write .html and print it\n"
             )),
         }
     }

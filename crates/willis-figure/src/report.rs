@@ -349,7 +349,6 @@ fn wanted(model: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(F
     // The longest first, so that the cores end together.
     let mut all = vec![
         (Map, only.clone()),
-        (Band, FigureRequest { samples: 128, ..only.clone() }),
         plain(Time),
         (Losses, only.clone()),
         (Tornado, only.clone()),
@@ -363,6 +362,9 @@ fn wanted(model: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(F
         (Film, only.clone()),
         (Path, only.clone()),
     ];
+    if !analysis.operations.is_empty() {
+        all.push((Band, FigureRequest { samples: 128, ..only.clone() }));
+    }
     for set in train.sets() {
         all.push((Front, FigureRequest { part: Some(set.name.clone()), ..Default::default() }));
     }
@@ -393,8 +395,7 @@ fn facts(all: &Findings<'_>) -> Vec<[String; 2]> {
         fact("Made with", all.request.version.clone());
     }
     if !all.request.hash.is_empty() {
-        let short: String = all.request.hash.chars().take(12).collect();
-        fact("Train file", format!("{}, SHA-256 {short}…", all.request.file));
+        fact("Train file", all.request.file.clone());
     }
     facts
 }

@@ -1,6 +1,6 @@
 //! What was assumed, which laws were in force with their sources and ranges, and how to do it all again.
 
-use willis::diagnostic::{Diagnostic, Severity};
+use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::losses::{Entry, Tag, Trust, entries};
 
 use super::Findings;
@@ -14,7 +14,8 @@ pub fn assumptions(all: &Findings<'_>) -> Section {
         true => blocks.push(Block::Text { text: "Nothing stands in for data that were not given.".into() }),
         false => blocks.push(Block::List { items: all.analysis.assumptions.clone() }),
     }
-    for d in &all.analysis.diagnostics {
+    // What friction at rest leaves open stands at its operating point.
+    for d in all.analysis.diagnostics.iter().filter(|d| d.code != Code::Stiction) {
         let level = match d.severity {
             Severity::Warning | Severity::Error => Level::Warning,
             _ => Level::Note,

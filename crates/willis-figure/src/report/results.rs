@@ -202,6 +202,8 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
         blocks.extend(all.figures.block(FigureKind::Lever, of, &lever));
     }
     if all.analysis.operations.is_empty() {
+        let text = "Speeds and torques for one unit of speed and torque at the input, as levers.";
+        blocks.push(Block::Text { text: text.into() });
         blocks.extend(all.figures.block(FigureKind::Lever, None, "Speeds on levers"));
     }
     blocks.extend(all.figures.block(FigureKind::Split, None, "The power split over its ratio"));
@@ -376,6 +378,7 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         let most = s.sources.first().map(|x| format!("; the most in {}, {}: {}", x.name, x.kind.words(), watts(x.loss_w)));
         blocks.push(Block::Text { text: format!("{from}{}.", most.unwrap_or_default()) });
     }
+    let told = blocks.len();
     blocks.extend(all.figures.block(FigureKind::Losses, None, "Losses by source"));
     for o in all.analysis.operations.iter().take(TOLD) {
         let Some(s) = single(o).filter(|s| !s.sources.is_empty()) else { continue };
@@ -394,6 +397,14 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
     match all.figures.block(FigureKind::Tornado, None, "What to change first: what a step of each quantity changes") {
         Some(picture @ Block::Figure { .. }) => blocks.push(picture),
         other => blocks.extend(what_first(all).into_iter().chain(other)),
+    }
+    if told == 0 && !blocks.is_empty() {
+        let text = "The file has no operating point; this is at one by default, which the picture names.";
+        blocks.insert(0, Block::Text { text: text.into() });
+    }
+    // Nothing but the sum is in the summary already.
+    if blocks.len() == told {
+        blocks.clear();
     }
     (!blocks.is_empty()).then(|| Section { title: "Losses, and what to change first".into(), blocks })
 }
@@ -604,7 +615,7 @@ fn symbols(formulas: &[&ClosedFormula]) -> Option<Block> {
             None => items.push(own),
         }
     }
-    (!items.is_empty()).then(|| Block::Terms { head: "Symbols".into(), items })
+    (!items.is_empty()).then(|| Block::Terms { head: "Symbols:".into(), items })
 }
 
 /// A name as an upright index.

@@ -6,7 +6,7 @@ mod sheet;
 use svg::node::element::{Circle, Group, Path, Polyline};
 
 use self::labels::Labels;
-use self::sheet::{LIST, PLATE, ROW, Sheet};
+use self::sheet::{PLATE, ROW, Sheet};
 use crate::parts::alive::{Of, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
@@ -428,16 +428,16 @@ impl Sheet<'_> {
         let rows = self.list_rows() - 1;
         let speeds = self.speeds();
         for column in 0..self.list_columns().min(self.listed().len().div_ceil(rows.max(1))) {
-            let x = 28.0 + LIST * column as f64;
+            let x = 28.0 + self.list * column as f64;
             g = g.add(text(x + 54.0, top, 11.0, Anchor::Start, "member").set("fill", FAINT));
             g = g.add(text(x + 182.0, top, 11.0, Anchor::Start, "its parts").set("fill", FAINT));
             if speeds {
-                g = g.add(text(x + LIST - 24.0, top, 11.0, Anchor::End, "speed / input").set("fill", FAINT));
+                g = g.add(text(x + self.list - 24.0, top, 11.0, Anchor::End, "speed / input").set("fill", FAINT));
             }
         }
         for (row, k) in self.listed().into_iter().enumerate() {
             let m = &self.data.members[k];
-            let x = 28.0 + LIST * (row / rows) as f64;
+            let x = 28.0 + self.list * (row / rows) as f64;
             let y = top + ROW * (row % rows + 1) as f64;
             let width = if m.loaded == Some(true) { THICK } else { THIN };
             let number = self.category[k].map_or(0, |c| c + 1);
@@ -445,10 +445,10 @@ impl Sheet<'_> {
                 .add(text(x + 14.0, y, 11.0, Anchor::End, &number.to_string()).set("fill", FAINT))
                 .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
                 .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, 120.0, 12.0)))
-                .add(text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), 150.0, 11.0)).set("fill", FAINT));
+                .add(text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), self.list - 280.0, 11.0)).set("fill", FAINT));
             if let Some(speed) = m.speed_ratio.filter(|_| speeds) {
                 let shown = if speed == 0.0 { "stands still".to_owned() } else { digits(speed) };
-                g = g.add(text(x + LIST - 24.0, y, 11.0, Anchor::End, &shown));
+                g = g.add(text(x + self.list - 24.0, y, 11.0, Anchor::End, &shown));
             }
         }
         g

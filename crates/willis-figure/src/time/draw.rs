@@ -35,7 +35,8 @@ pub fn draw(plot: &TimePlot) -> String {
 
 pub(super) fn draw_on(plot: &TimePlot, paper: Drawing) -> String {
     let width = paper.page(WIDTH, NARROWEST);
-    let tall = PANEL * width / WIDTH;
+    // Lower on narrow paper.
+    let tall = PANEL * (width / WIDTH).powi(2);
     let time = TimeAxis::new(plot.axis, width - NAMES);
     let mut body = Group::new();
     let mut y = TOP;

@@ -48,7 +48,7 @@ pub fn draw(t: &Tornado) -> String {
 
 pub(super) fn draw_on(t: &Tornado, paper: Drawing) -> String {
     let longest = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0, f64::max);
-    let names = longest(&mut t.bars.iter().map(|b| wide(&name(b), 12.0) * BOLD)).clamp(110.0, 0.25 * paper.page(1160.0, 440.0));
+    let names = longest(&mut t.bars.iter().map(|b| wide(&name(b), 12.0) * BOLD)).clamp(110.0, (0.3 * paper.page(1000.0, 440.0)).min(290.0));
     let values = longest(&mut t.bars.iter().map(|b| wide(&value(b), 11.0).max(wide(b.step.label(), 11.0)))).max(60.0);
     // The change stands at the end of the bar, on both sides.
     let room = longest(&mut t.bars.iter().map(|b| wide(&signed(b.loss_change_w), 11.0))) + 10.0;

@@ -10,8 +10,8 @@ const ARROW_ROOM: f64 = 64.0;
 const TOP: f64 = 124.0;
 /// Half the length of a friction plate, of the line of the frame.
 pub const PLATE: f64 = 9.0;
-/// Width of one column of the list of members, and height of its rows.
-pub const LIST: f64 = 430.0;
+/// Width of one column of the list of members, and the least of it; height of its rows.
+const LIST: [f64; 2] = [430.0, 340.0];
 pub const ROW: f64 = 19.0;
 
 /// The page of a stick diagram.
@@ -21,6 +21,8 @@ pub struct Sheet<'a> {
     pub height: f64,
     /// Left and right of the grid: names and arrows of the terminals.
     pub margin: f64,
+    /// Width of a column of the list of members.
+    pub list: f64,
     pub left: f64,
     pub unit: f64,
     pub rise: f64,
@@ -47,7 +49,9 @@ impl<'a> Sheet<'a> {
         };
         let category =
             data.members.iter().enumerate().map(|(k, m)| (!m.planet || led_out(k)).then_some(m.colour)).collect();
-        let mut s = Self { data, width, height: 0.0, margin, left, unit, rise, category };
+        let half = (width - 56.0) / 2.0;
+        let list = if room < on_screen && half >= LIST[1] { half.min(LIST[0]) } else { LIST[0] };
+        let mut s = Self { data, width, height: 0.0, margin, list, left, unit, rise, category };
         s.height = s.list_top() + s.list_rows() as f64 * ROW + 52.0;
         s
     }
@@ -74,7 +78,7 @@ impl<'a> Sheet<'a> {
     }
 
     pub fn list_columns(&self) -> usize {
-        (((self.width - 56.0) / LIST) as usize).max(1)
+        (((self.width - 56.0) / self.list + 1e-9) as usize).max(1)
     }
 
     pub fn list_rows(&self) -> usize {
