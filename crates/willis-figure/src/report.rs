@@ -17,13 +17,13 @@ use willis::Diagnostics;
 use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
 use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::model::Model;
-use willis::train::Train;
 use willis::study::{PointAnswer, Sensitivity, UncertaintyPlan, UncertaintyRequest, sensitivity};
+use willis::train::Train;
 use willis::unstable;
 use willis::work::{self, Cancelled, Effort, Work};
 
-use crate::parts::style::watts;
 use crate::parts::markup::untitled;
+use crate::parts::style::watts;
 use crate::parts::words::{self, spelled};
 use crate::report::document::{Block, Column, Document, Level, Section, TitleBlock};
 use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
@@ -490,11 +490,7 @@ fn warnings(all: &Findings<'_>) -> Vec<Block> {
     const FIRST: usize = 6;
     let count = all.warnings().count();
     let notice = |text: String| Block::Notice { level: Level::Warning, text };
-    let mut blocks: Vec<Block> = (all.warnings().take(FIRST))
-        .map(|d| {
-            notice(laws::told(d))
-        })
-        .collect();
+    let mut blocks: Vec<Block> = (all.warnings().take(FIRST)).map(|d| notice(laws::told(d))).collect();
     if count > FIRST {
         blocks.push(notice(format!("{} more stand under Assumptions and warnings.", count - FIRST)));
     }

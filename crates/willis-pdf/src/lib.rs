@@ -76,9 +76,7 @@ pub fn read(json: &str) -> Result<Work, String> {
     let value: Value = serde_json::from_str(json).map_err(|e| format!("not JSON: {e}"))?;
     let incomplete = |format: &'static str| move |e: serde_json::Error| format!("not a complete {format}: {e}");
     match value.get("format").and_then(Value::as_str) {
-        Some(Document::FORMAT) => {
-            serde_json::from_value(value).map(Work::Report).map_err(incomplete(Document::FORMAT))
-        }
+        Some(Document::FORMAT) => serde_json::from_value(value).map(Work::Report).map_err(incomplete(Document::FORMAT)),
         Some(Plate::FORMAT) => serde_json::from_value(value).map(Work::Plate).map_err(incomplete(Plate::FORMAT)),
         Some(other) => {
             Err(format!("format {other:?}: this program reads {:?} and {:?}", Document::FORMAT, Plate::FORMAT))
@@ -146,9 +144,7 @@ fn prepared(document: &Document, paper: Paper) -> Result<Value, String> {
             }
         }
     }
-    let group = |(k, ([width, height], figures)): (usize, ([f64; 2], Vec<Value>))| {
-        json!({ "first": k == 0, "width": width, "height": height, "figures": figures })
-    };
+    let group = |(k, ([width, height], figures)): (usize, ([f64; 2], Vec<Value>))| json!({ "first": k == 0, "width": width, "height": height, "figures": figures });
     value["plates"] = plates.into_iter().enumerate().map(group).collect();
     Ok(value)
 }

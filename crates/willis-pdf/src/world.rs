@@ -22,8 +22,7 @@ fn carried() -> impl Iterator<Item = Font> {
 
 static REPORT: LazyLock<Source> =
     LazyLock::new(|| Source::new(file("report.typ"), include_str!("report.typ").to_owned()));
-static PLATE: LazyLock<Source> =
-    LazyLock::new(|| Source::new(file("plate.typ"), include_str!("plate.typ").to_owned()));
+static PLATE: LazyLock<Source> = LazyLock::new(|| Source::new(file("plate.typ"), include_str!("plate.typ").to_owned()));
 static DATA: LazyLock<FileId> = LazyLock::new(|| file("report.json"));
 
 fn file(name: &str) -> FileId {

@@ -38,7 +38,10 @@ fn document(rows: usize) -> Document {
         formula(r"\nosuch #panic()"),
         Block::Terms {
             head: text(),
-            items: vec![Term { latex: "i_{0} > 0".into(), text: text() }, Term { latex: r"\nosuch".into(), text: text() }],
+            items: vec![
+                Term { latex: "i_{0} > 0".into(), text: text() },
+                Term { latex: r"\nosuch".into(), text: text() },
+            ],
         },
         Block::Code { text: text() },
     ];

@@ -218,7 +218,8 @@ impl Question for Draw {
         PLATE,
     ];
     #[cfg(not(feature = "png"))]
-    const FORMS: &'static [Form] = &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }, PLATE];
+    const FORMS: &'static [Form] =
+        &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }, PLATE];
     type Answer = DrawAnswer;
 
     fn check(&self) -> Result<(), Diagnostics> {

@@ -200,7 +200,12 @@ fn curve(m: &MeshPath, k: usize, x: &dyn Fn(f64) -> f64, y: &dyn Fn(f64) -> f64)
 }
 
 /// Names at the ends of the curves, spread so that none covers another.
-fn labels(path: &ContactPath, x: &dyn Fn(f64) -> f64, y: &dyn Fn(f64) -> f64, [right, width, bottom]: [f64; 3]) -> Group {
+fn labels(
+    path: &ContactPath,
+    x: &dyn Fn(f64) -> f64,
+    y: &dyn Fn(f64) -> f64,
+    [right, width, bottom]: [f64; 3],
+) -> Group {
     let mut g = Group::new();
     let mut all: Vec<(usize, f64, f64)> = path
         .meshes

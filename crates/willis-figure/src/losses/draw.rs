@@ -231,7 +231,8 @@ fn bars(chart: &LossChart, top: f64, width: f64) -> (Group, f64) {
     };
     g = g.add(text(28.0, top + 10.0, 13.0, Anchor::Start, &head).set("font-weight", "bold"));
     let mut y = top + 24.0;
-    let (start, most) = (f64::min(330.0, 0.34 * width), chart.series.iter().filter_map(|s| s.at_operation_w).fold(0.0f64, f64::max));
+    let (start, most) =
+        (f64::min(330.0, 0.34 * width), chart.series.iter().filter_map(|s| s.at_operation_w).fold(0.0f64, f64::max));
     for (k, s) in chart.series.iter().enumerate() {
         let Some(w) = s.at_operation_w else { continue };
         let length = if most > 0.0 { (width - start - f64::min(290.0, 0.3 * width)) * w / most } else { 0.0 };

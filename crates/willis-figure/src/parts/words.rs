@@ -82,7 +82,9 @@ fn numbers(text: &str) -> String {
         match number.and_then(|n| Some((n, rest[..n].parse::<f64>().ok()?))) {
             Some((n, x)) => {
                 let behind = &rest[n..];
-                let unit = |u: &str| behind.strip_prefix(u).filter(|b| !b.starts_with(|c: char| c.is_alphanumeric() || "/·".contains(c)));
+                let unit = |u: &str| {
+                    behind.strip_prefix(u).filter(|b| !b.starts_with(|c: char| c.is_alphanumeric() || "/·".contains(c)))
+                };
                 if let Some(behind) = unit(" W") {
                     out += &watts(x);
                     rest = behind;

@@ -73,7 +73,8 @@ fn block(train: &Train, states: &[(String, ShaftState)]) -> Block {
     let gear = |name: &String| if name == AS_DRAWN { "Value".to_owned() } else { name.clone() };
     let columns = [Column::words("Quantity"), Column::words("Of")].into_iter();
     let columns = columns.chain(states.iter().map(|(name, _)| Column::numbers(gear(name)))).collect();
-    let what = if train.states().is_empty() { "Ratio, speeds and torques" } else { "Ratio, speeds and torques of all gears" };
+    let what =
+        if train.states().is_empty() { "Ratio, speeds and torques" } else { "Ratio, speeds and torques of all gears" };
     let more = train.members().iter().filter(|m| m.kind == MemberKind::Shaft).count().saturating_sub(SHAFTS + 1);
     let left_out = if more > 0 { format!("; {more} more shafts are not shown") } else { String::new() };
     let caption = format!(

@@ -7,13 +7,13 @@ use std::fmt::Write;
 
 use minijinja::{Environment, Value, context};
 
+use crate::Drawing;
 use crate::parts::markup::prefixed;
 use crate::parts::style::{self, FAINT, INK, LINE, PAPER, wide};
 use crate::parts::theme::{colours, dark, rules};
 use crate::report::document::{Block, Column, Document, Level, Section, Term};
 use crate::report::formula::{Display, mathml};
 use crate::report::paper::{self, Extent, MM, Place};
-use crate::Drawing;
 
 /// Colours of the page by the names that its style sheet uses.
 const PAGE: [(&str, &str); 10] = [

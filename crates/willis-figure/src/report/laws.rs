@@ -4,8 +4,8 @@ use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::losses::{Entry, Tag, Trust, entries};
 
 use super::Findings;
-use crate::parts::words;
 use super::results::{significant, single};
+use crate::parts::words;
 use crate::report::document::{Block, Column, Level, Section};
 
 pub fn assumptions(all: &Findings<'_>) -> Section {

@@ -1,7 +1,8 @@
 //! What came out: the shift table, the operating points, losses, maps, motion, formulas.
 
 use willis::analysis::{
-    CertificateReport, Direction, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport, Verdict,
+    CertificateReport, Direction, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport,
+    Verdict,
 };
 use willis::losses::entries;
 use willis::operating_point::Regime;
@@ -164,7 +165,11 @@ fn state(name: &str, s: &StateReport) -> Vec<String> {
     vec![
         name.to_owned(),
         format!("{} – {}", s.input, s.output),
-        s.exact.as_ref().map(|i| i.to_fraction().replace('-', "−")).or(s.no_ratio.clone()).unwrap_or_else(|| "–".into()),
+        s.exact
+            .as_ref()
+            .map(|i| i.to_fraction().replace('-', "−"))
+            .or(s.no_ratio.clone())
+            .unwrap_or_else(|| "–".into()),
         s.value.map_or("–".into(), |v| significant(v, 6)),
         s.step.map_or(String::new(), |v| significant(v, 4)),
         way(&s.drive),
@@ -278,7 +283,9 @@ fn balance(s: &SolutionReport) -> String {
     if let Some(c) = &s.convergence {
         text += &match c.converged {
             true => format!(" Losses and torques agree after {} rounds.", c.rounds),
-            false => format!(" NOT CONVERGED after {} rounds: {} of the loss is left.", c.rounds, exact_percent(c.error)),
+            false => {
+                format!(" NOT CONVERGED after {} rounds: {} of the loss is left.", c.rounds, exact_percent(c.error))
+            }
         };
     }
     if let Some(l) = &s.margin.lock {
@@ -344,7 +351,9 @@ fn bearings(operation: &str, s: &SolutionReport) -> Option<Block> {
             ]
         })
         .collect();
-    let caption = format!("Forces on bearings at {operation}, each of one bearing, the most loaded; the speed is that of one ring relative to the other");
+    let caption = format!(
+        "Forces on bearings at {operation}, each of one bearing, the most loaded; the speed is that of one ring relative to the other"
+    );
     (!rows.is_empty()).then_some(Block::Table { caption, columns, rows })
 }
 
@@ -352,7 +361,8 @@ fn bearings(operation: &str, s: &SolutionReport) -> Option<Block> {
 fn variators(s: &SolutionReport) -> Vec<Block> {
     let one = |(name, v): &(String, VariatorReport)| {
         let columns = ["Side", "On member"].map(Column::words).into_iter();
-        let columns = columns.chain(["Speed, rpm", "Torque on it, N m", "Power into it"].map(Column::numbers)).collect();
+        let columns =
+            columns.chain(["Speed, rpm", "Torque on it, N m", "Power into it"].map(Column::numbers)).collect();
         let row = |(side, m): &(String, MachineReport)| {
             let power = watts(m.power_w);
             let [speed, torque] = [m.speed_rad_s * RPM, m.torque_n_m].map(|x| significant(x, 5));
@@ -375,7 +385,8 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
     let mut blocks = vec![];
     if let Some((o, s)) = all.analysis.operations.iter().find_map(|o| Some((o, single(o)?))) {
         let from = format!("At {} {} of {} are lost", o.name, watts(s.loss_w), watts(s.input_power_w));
-        let most = s.sources.first().map(|x| format!("; the most in {}, {}: {}", x.name, x.kind.words(), watts(x.loss_w)));
+        let most =
+            s.sources.first().map(|x| format!("; the most in {}, {}: {}", x.name, x.kind.words(), watts(x.loss_w)));
         blocks.push(Block::Text { text: format!("{from}{}.", most.unwrap_or_default()) });
     }
     let told = blocks.len();
@@ -385,9 +396,7 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
         let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
-            .map(|x| {
-                vec![x.name.clone(), x.kind.words().into(), title(&x.law), watts(x.loss_w), percent(x.share)]
-            })
+            .map(|x| vec![x.name.clone(), x.kind.words().into(), title(&x.law), watts(x.loss_w), percent(x.share)])
             .collect();
         blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
         blocks.extend(contacts(&o.name, s));
@@ -584,10 +593,10 @@ fn formula(f: &ClosedFormula) -> Option<Vec<Block>> {
 
 /// The conditions of a formula that fit the width of a page; the others are counted.
 fn conditions(f: &ClosedFormula) -> Vec<Term> {
-    let all = f.conditions(Notation::Latex).into_iter().map(|(latex, text)| Term { latex: format!("{latex} > 0"), text });
-    let (short, long): (Vec<Term>, Vec<Term>) = all.partition(|t| {
-        !t.latex.contains("\\begin") && width(&t.latex).is_some_and(|w| w < 0.6 * LINE)
-    });
+    let all =
+        f.conditions(Notation::Latex).into_iter().map(|(latex, text)| Term { latex: format!("{latex} > 0"), text });
+    let (short, long): (Vec<Term>, Vec<Term>) =
+        all.partition(|t| !t.latex.contains("\\begin") && width(&t.latex).is_some_and(|w| w < 0.6 * LINE));
     let more = (!long.is_empty()).then(|| Term {
         latex: format!("+ {}", long.len()),
         text: "more, too long for this page; the command willis formula has them".to_owned(),

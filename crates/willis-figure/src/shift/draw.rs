@@ -269,8 +269,11 @@ fn cells(table: &ShiftTable, c: &Columns, row: &ShiftRow, y: f64) -> Group {
         }
         return g;
     };
-    let exact =
-        row.exact.clone().filter(|e| e.contains('/') && wide(e, 11.0) < c.steps - c.ratio - 16.0).map(|e| e.replace('-', "−"));
+    let exact = row
+        .exact
+        .clone()
+        .filter(|e| e.contains('/') && wide(e, 11.0) < c.steps - c.ratio - 16.0)
+        .map(|e| e.replace('-', "−"));
     let up = if exact.is_some() { 2.0 } else { -4.0 };
     g = g.add(text(end, y - up, 13.0, Anchor::End, &decimals(ratio)).set("font-weight", "bold"));
     if let Some(exact) = exact {
@@ -289,8 +292,7 @@ fn efficiency(c: &Columns, y: f64, e: &ShiftEfficiency, worst: f64, way: usize) 
     let (x, room) = ([c.drive, c.coast][way] + 8.0, c.coast - c.drive);
     let g = Group::new();
     let Some(value) = e.value else {
-        return g
-            .add(text(x, y + 4.0, 11.0, Anchor::Start, &fit(&e.words, room - 14.0, 11.0)).set("fill", FAINT));
+        return g.add(text(x, y + 4.0, 11.0, Anchor::Start, &fit(&e.words, room - 14.0, 11.0)).set("fill", FAINT));
     };
     let g = g.add(text(x + 52.0, y + 4.0, 12.0, Anchor::End, &percent(value)));
     let length = if worst > 0.0 { (1.0 - value) / worst * (room - 72.0) } else { 0.0 };

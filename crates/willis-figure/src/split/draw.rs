@@ -69,7 +69,10 @@ pub(super) fn draw_on(split: &Split, paper: Drawing) -> String {
     let (notes, bottom) = notes(split, top + 20.0, width);
     let describe = describe(split);
     page(width, bottom, &format!("Power split of {}", split.title), &describe)
-        .add(text(28.0, 38.0, 20.0, Anchor::Start, &fit(&split.title, (width - 80.0) / BOLD, 20.0)).set("font-weight", "bold"))
+        .add(
+            text(28.0, 38.0, 20.0, Anchor::Start, &fit(&split.title, (width - 80.0) / BOLD, 20.0))
+                .set("font-weight", "bold"),
+        )
         .add(text(28.0, 60.0, 13.0, Anchor::Start, &fit(&split.basis, width - 80.0, 13.0)).set("fill", FAINT))
         .add(body)
         .add(notes)

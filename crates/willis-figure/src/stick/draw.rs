@@ -445,7 +445,10 @@ impl Sheet<'_> {
                 .add(text(x + 14.0, y, 11.0, Anchor::End, &number.to_string()).set("fill", FAINT))
                 .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
                 .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, 120.0, 12.0)))
-                .add(text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), self.list - 280.0, 11.0)).set("fill", FAINT));
+                .add(
+                    text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), self.list - 280.0, 11.0))
+                        .set("fill", FAINT),
+                );
             if let Some(speed) = m.speed_ratio.filter(|_| speeds) {
                 let shown = if speed == 0.0 { "stands still".to_owned() } else { digits(speed) };
                 g = g.add(text(x + self.list - 24.0, y, 11.0, Anchor::End, &shown));

@@ -68,7 +68,9 @@ pub(super) fn draw_on(plot: &TimePlot, paper: Drawing) -> String {
     let title = format!("{}: {}", plot.train, plot.scenario);
     let (one, two) = subtitle(plot, &time, width - 56.0);
     page(width, height, &format!("Motion of {title}"), &description(plot))
-        .add(text(28.0, 38.0, 20.0, Anchor::Start, &fit(&title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"))
+        .add(
+            text(28.0, 38.0, 20.0, Anchor::Start, &fit(&title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
+        )
         .add(text(28.0, 58.0, 13.0, Anchor::Start, &one).set("fill", FAINT))
         .add(text(28.0, 75.0, 13.0, Anchor::Start, &two).set("fill", FAINT))
         .add(body)

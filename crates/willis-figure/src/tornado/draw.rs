@@ -48,7 +48,8 @@ pub fn draw(t: &Tornado) -> String {
 
 pub(super) fn draw_on(t: &Tornado, paper: Drawing) -> String {
     let longest = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0, f64::max);
-    let names = longest(&mut t.bars.iter().map(|b| wide(&name(b), 12.0) * BOLD)).clamp(110.0, (0.3 * paper.page(1000.0, 440.0)).min(290.0));
+    let names = longest(&mut t.bars.iter().map(|b| wide(&name(b), 12.0) * BOLD))
+        .clamp(110.0, (0.3 * paper.page(1000.0, 440.0)).min(290.0));
     let values = longest(&mut t.bars.iter().map(|b| wide(&value(b), 11.0).max(wide(b.step.label(), 11.0)))).max(60.0);
     // The change stands at the end of the bar, on both sides.
     let room = longest(&mut t.bars.iter().map(|b| wide(&signed(b.loss_change_w), 11.0))) + 10.0;
@@ -59,7 +60,8 @@ pub(super) fn draw_on(t: &Tornado, paper: Drawing) -> String {
     let middle = left + half;
     let right = middle + half + room;
     // A long title may widen the page somewhat.
-    let width = (right + EFFECT + MARGIN).max((wide(&t.title, 20.0) * BOLD + 2.0 * MARGIN).min(paper.page(1200.0, 0.0)));
+    let width =
+        (right + EFFECT + MARGIN).max((wide(&t.title, 20.0) * BOLD + 2.0 * MARGIN).min(paper.page(1200.0, 0.0)));
     let bottom = TOP + ROW * t.bars.len() as f64;
 
     let inner = width - 2.0 * MARGIN;

@@ -47,7 +47,12 @@ fn a_value_out_of_range_is_never_under_the_sign_of_a_proof() {
             let Some((level, text)) = values.first() else { panic!("{name} {}: nothing about its value", o.name) };
             assert_eq!(*level == Level::Warning, !o.outside_laws.is_empty(), "{name} {}: {text}", o.name);
             for law in &o.outside_laws {
-                assert!(text.contains(&law.law.replace('_', " ")), "{name} {}: {} is not named in `{text}`", o.name, law.law);
+                assert!(
+                    text.contains(&law.law.replace('_', " ")),
+                    "{name} {}: {} is not named in `{text}`",
+                    o.name,
+                    law.law
+                );
                 outside += 1;
             }
             banded += usize::from(text.contains("90 % of"));
@@ -111,7 +116,10 @@ fn all_gears_stand_in_the_first_table() {
         let (columns, rows) = first.unwrap();
         assert_eq!(columns.len(), 2 + gears, "{name}");
         for quantity in ["Ratio", "Efficiency", "Speed", "Torque"] {
-            assert!(rows.iter().any(|r| r[0] == quantity && r.iter().skip(2).any(|c| !c.is_empty())), "{name} {quantity}");
+            assert!(
+                rows.iter().any(|r| r[0] == quantity && r.iter().skip(2).any(|c| !c.is_empty())),
+                "{name} {quantity}"
+            );
         }
         for state in model.train().states() {
             assert!(columns.iter().any(|c| c.head == state.name), "{name}: {}", state.name);
