@@ -3,7 +3,7 @@
 use svg::node::element::{Group, Path};
 
 use crate::parts::style::{
-    Anchor, FAINT, INK, LINE, PAPER, badge, colour, digits, halo, line, number, page, rectangle, text, ticks,
+    Anchor, FAINT, INK, LINE, PAPER, badge, colour, digits, halo, line, number, page, rectangle, text, ticks, wide,
 };
 use crate::{MapCell, MapSector, RegimeMap};
 
@@ -250,6 +250,7 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
             .add(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0))
             .add(text(left - 6.0, y(t) + 4.0, 11.0, Anchor::End, &format!("{} %", percent(t))).set("fill", FAINT));
     }
+    let mut numbered: Vec<(f64, f64)> = vec![];
     for b in &map.boundaries {
         for a in b.angles.iter().flat_map(|a| [*a, a - 360.0]) {
             if a < map.half[0] - 1e-6 || a > map.half[1] + 1e-6 {
@@ -260,11 +261,13 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
                 l = l.set("stroke-dasharray", "4 3");
             }
             let ratio = b.ratio.map_or(if a > map.half[0] + 90.0 { "∞" } else { "−∞" }.to_owned(), digits);
-            g = g.add(l).add(text(x(a), bottom + 16.0, 11.0, Anchor::Middle, &ratio).set("fill", FAINT)).add(badge(
-                x(a),
-                bottom + 32.0,
-                &b.letter,
-            ));
+            g = g.add(l).add(badge(x(a), bottom + 32.0, &b.letter));
+            // The list has every ratio: here none runs into another.
+            let half = wide(&ratio, 11.0) / 2.0 + 2.0;
+            if numbered.iter().all(|(at, other)| (x(a) - at).abs() >= half + other) {
+                numbered.push((x(a), half));
+                g = g.add(text(x(a), bottom + 16.0, 11.0, Anchor::Middle, &ratio).set("fill", FAINT));
+            }
         }
     }
     for c in &map.curves {

@@ -57,6 +57,29 @@ pub fn in_force(all: &Findings<'_>) -> Option<Section> {
     Some(Section { title: "Laws and validation".into(), blocks })
 }
 
+/// A source as it is cited in words: `niemann_winter2003` is Niemann and Winter 2003, `isotr14179_2` is ISO/TR 14179-2.
+fn cited(key: &str) -> String {
+    const NAMES: [(&str, &str); 6] = [
+        ("isotr", "ISO/TR"),
+        ("isots", "ISO/TS"),
+        ("agma", "AGMA"),
+        ("skf", "SKF"),
+        ("bilgenboulos", "Bilgen and Boulos"),
+        ("wilsonsheu", "Wilson and Sheu"),
+    ];
+    let Some(at) = key.find(|c: char| c.is_ascii_digit()) else { return key.replace('_', " ") };
+    let (letters, number) = key.split_at(at);
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    };
+    let name = match NAMES.iter().find(|(key, _)| *key == letters) {
+        Some((_, name)) => (*name).to_owned(),
+        None => letters.split('_').filter(|w| !w.is_empty()).map(capital).collect::<Vec<String>>().join(" and "),
+    };
+    format!("{name} {}", number.replace('_', "-"))
+}
+
 fn row(e: &Entry) -> Vec<String> {
     let number = |x: f64| if x.is_finite() { significant(x, 4) } else { String::new() };
     let range = |r: &(&str, &str, f64, f64)| {
@@ -82,7 +105,7 @@ fn row(e: &Entry) -> Vec<String> {
             _ => {}
         }
     }
-    let source = format!("{}, {}", e.source.0, e.source.1);
+    let source = format!("{}, {}", cited(e.source.0), e.source.1);
     let valid = if valid.is_empty() { "not told by the source".to_owned() } else { valid.join("; ") };
     vec![e.family.replace('_', " "), e.title.to_owned(), source, valid, checked]
 }
@@ -111,4 +134,21 @@ pub fn appendix(all: &Findings<'_>) -> Section {
     let file = if all.request.file.is_empty() { "train file" } else { &all.request.file };
     let blocks = vec![Block::Code { text: all.model.document().text() }];
     Section { title: format!("Appendix: {file}"), blocks }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_source_is_cited_in_words() {
+        let of = |key| cited(key);
+        assert_eq!(of("niemann_winter2003"), "Niemann and Winter 2003");
+        assert_eq!([of("isotr14179_2"), of("isots6336_22")], ["ISO/TR 14179-2", "ISO/TS 6336-22"]);
+        assert_eq!(of("practice"), "practice");
+        for e in entries() {
+            let words = cited(e.source.0);
+            assert!(!words.contains('_') && !words.is_empty(), "{words}");
+        }
+    }
 }

@@ -105,7 +105,7 @@ fn nothing_is_loaded() {
 #[test]
 fn formulas_are_set_or_shown_as_written() {
     with_page(|_, xml| {
-        assert_eq!(named(xml, "math").count(), 3);
+        assert_eq!(named(xml, "math").count(), 4);
         assert!(named(xml, "code").any(|c| c.text() == Some(r"\text{<b>&} \nosuch{<i>}")));
     });
 }
