@@ -2,6 +2,7 @@
 
 use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::losses::{Entry, Tag, Trust, entries};
+use willis::units::for_people;
 
 use super::Findings;
 use super::results::{significant, single};
@@ -84,13 +85,21 @@ fn row(e: &Entry) -> Vec<String> {
     let number = |x: f64| if x.is_finite() { significant(x, 4) } else { String::new() };
     let range = |r: &(&str, &str, f64, f64)| {
         let (symbol, unit, low, high) = *r;
-        let text = match (low.is_finite(), high.is_finite()) {
-            (true, true) => format!("{} ≤ {symbol} ≤ {}", number(low), number(high)),
-            (true, false) => format!("{symbol} ≥ {}", number(low)),
-            (false, true) => format!("{symbol} ≤ {}", number(high)),
-            (false, false) => return String::new(),
+        let symbol = symbol.replace('_', "");
+        // Each end in the unit that people use for it.
+        let end = |x: f64| {
+            let (x, unit) = match unit {
+                "N/m" => (x / 1e3, "N/mm"),
+                unit => for_people(x, unit),
+            };
+            format!("{} {unit}", number(x)).trim().to_owned()
         };
-        format!("{text} {unit}").trim().to_owned()
+        match (low.is_finite(), high.is_finite()) {
+            (true, true) => format!("{} ≤ {symbol} ≤ {}", end(low), end(high)),
+            (true, false) => format!("{symbol} ≥ {}", end(low)),
+            (false, true) => format!("{symbol} ≤ {}", end(high)),
+            (false, false) => String::new(),
+        }
     };
     let valid: Vec<String> = e.valid.iter().map(range).filter(|t| !t.is_empty()).collect();
     let mut checked = match e.trust {

@@ -427,10 +427,12 @@ impl Sheet<'_> {
         let top = self.list_top();
         let rows = self.list_rows() - 1;
         let speeds = self.speeds();
+        // Names, parts and speeds share a narrow column.
+        let parts = 182.0 - 0.45 * (430.0 - self.list);
         for column in 0..self.list_columns().min(self.listed().len().div_ceil(rows.max(1))) {
             let x = 28.0 + self.list * column as f64;
             g = g.add(text(x + 54.0, top, 11.0, Anchor::Start, "member").set("fill", FAINT));
-            g = g.add(text(x + 182.0, top, 11.0, Anchor::Start, "its parts").set("fill", FAINT));
+            g = g.add(text(x + parts, top, 11.0, Anchor::Start, "its parts").set("fill", FAINT));
             if speeds {
                 g = g.add(text(x + self.list - 24.0, top, 11.0, Anchor::End, "speed / input").set("fill", FAINT));
             }
@@ -444,9 +446,9 @@ impl Sheet<'_> {
             g = g
                 .add(text(x + 14.0, y, 11.0, Anchor::End, &number.to_string()).set("fill", FAINT))
                 .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
-                .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, 120.0, 12.0)))
+                .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, parts - 62.0, 12.0)))
                 .add(
-                    text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), self.list - 280.0, 11.0))
+                    text(x + parts, y, 11.0, Anchor::Start, &fit(&self.parts(k), self.list - 98.0 - parts, 11.0))
                         .set("fill", FAINT),
                 );
             if let Some(speed) = m.speed_ratio.filter(|_| speeds) {
