@@ -116,6 +116,7 @@ fn row(e: &Entry) -> Vec<String> {
     }
     let source = format!("{}, {}", cited(e.source.0), e.source.1);
     let valid = if valid.is_empty() { "not told by the source".to_owned() } else { valid.join("; ") };
+    let checked = words::plain(&checked, &|_| false);
     vec![e.family.replace('_', " "), e.title.to_owned(), source, valid, checked]
 }
 

@@ -48,7 +48,7 @@ pub fn significant(x: f64, digits: i32) -> String {
 /// So many decimals, so that numbers of a row stand below each other.
 pub fn fixed(x: f64, decimals: usize) -> String {
     match x {
-        x if x == 0.0 => "0".to_owned(),
+        0.0 => "0".to_owned(),
         x if x.is_finite() && (0.5 * 10f64.powi(-(decimals as i32))..1e5).contains(&x.abs()) => {
             format!("{x:.decimals$}").replace('-', "−")
         }

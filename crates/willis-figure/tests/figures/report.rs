@@ -161,7 +161,7 @@ fn words_are_no_code_and_numbers_are_for_people() {
         let document = report(&model, &ReportRequest::default(), &Serial).unwrap();
         for text in words(&document) {
             assert!(!text.contains('`'), "{name}: code in `{text}`");
-            for word in text.split(|c: char| c.is_whitespace() || "()[],;:“”/".contains(c)) {
+            for word in text.split(|c: char| c.is_whitespace() || "()[],;:=“”/".contains(c)) {
                 let known = word.split('.').any(|w| !w.is_empty() && names.contains(w));
                 assert!(known || !word.contains('_'), "{name}: a key in `{text}`");
                 let number = word.trim_end_matches('.');
