@@ -2,12 +2,16 @@
 
 use willis_ask::Entry;
 
+use crate::pdf;
+
 /// Forms of every answer, and of one with tables.
 pub const TEXT: &str = "text";
 pub const JSON: &str = "json";
 pub const CSV: &str = "csv";
 pub const JSON_LINES: &str = "jsonl";
 pub const PARQUET: &str = "parquet";
+/// The form that a program of its own makes.
+pub const PDF: &str = "pdf";
 
 /// The forms in which the answer to a question can be had.
 pub fn forms(entry: &Entry) -> Vec<&'static str> {
@@ -19,8 +23,8 @@ pub fn forms(entry: &Entry) -> Vec<&'static str> {
         }
     }
     all.extend(entry.forms.iter().map(|f| f.name));
-    if entry.name == "report" {
-        all.push("pdf");
+    if pdf::sets(entry) {
+        all.push(PDF);
     }
     all
 }

@@ -79,8 +79,14 @@ pub fn possible(path: &Path) -> Result<(), String> {
     if folder.canonicalize().is_ok_and(|f| ["/dev", "/proc", "/sys"].iter().any(|s| f.starts_with(s))) {
         return told("is a place of the system; without -o the answer goes to standard output");
     }
+    match fs::symlink_metadata(path) {
+        // A name that the system cannot have, a folder that nobody may look into.
+        Err(e) if e.kind() != ErrorKind::NotFound => return told(&e.to_string()),
+        _ => {}
+    }
     clear_unfinished(path);
-    Ok(())
+    // Whether a file can be made there is known only by making one.
+    tempfile::tempfile_in(folder).map(drop).or_else(|e| told(&e.to_string()))
 }
 
 fn folder_of(path: &Path) -> &Path {

@@ -9,7 +9,7 @@ use willis::diagnostic::Diagnostic;
 use willis_ask::table::{self, Table};
 use willis_ask::{Answer, Entry, Extra, File, Given, Refusal, style};
 
-use crate::form::{CSV, JSON, JSON_LINES, PARQUET, TEXT, forms};
+use crate::form::{CSV, JSON, JSON_LINES, PARQUET, PDF, TEXT, forms};
 use crate::work::{Terminal, cores};
 use crate::{Ended, input, output, pdf};
 
@@ -40,8 +40,8 @@ impl<'a> Asked<'a> {
             let told = format!("--table belongs to --format {CSV}, {JSON_LINES} or {PARQUET}");
             return Err(Ended::Misused(told));
         }
-        if form == PARQUET && output.is_none() {
-            return Err(format!("{PARQUET} is not for the screen: name a file with -o\n").into());
+        if [PARQUET, PDF].contains(&form) && output.is_none() {
+            return Err(format!("{form} is not for the screen: name a file with -o\n").into());
         }
         Ok(Self { entry, matches, output, force: matches.get_flag("force"), form })
     }
@@ -100,7 +100,7 @@ fn promised(entry: &Entry, known: &[&'static str], path: &Path, natural: &'stati
         "csv" => Some(CSV),
         "jsonl" | "ndjson" => Some(JSON_LINES),
         "parquet" => Some(PARQUET),
-        "pdf" => Some("pdf"),
+        "pdf" => Some(PDF),
         _ => None,
     };
     // What writes files of any name does so whatever the ending.
@@ -148,6 +148,10 @@ pub fn run_on(threads: usize, entry: &'static Entry, matches: &ArgMatches) -> Re
     for (extra, path) in &extras {
         asked.guard_extra(extra, path, &read)?;
     }
+    if asked.form == PDF {
+        // Before anything is computed for it.
+        pdf::Typesetter::find()?;
+    }
     for file in request.attachments() {
         match input::table(&file.name) {
             Ok(text) => file.text = text,
@@ -187,9 +191,20 @@ fn hand_out(asked: &Asked<'_>, answer: &dyn Answer, of: &[Given]) -> Result<Stri
         }
         JSON => vec![File::text(format!("{}.json", asked.entry.name), answer.json())],
         CSV | JSON_LINES | PARQUET => vec![tables(asked, &answer.tables())?],
-        "pdf" => {
+        PDF => {
+            let typesetter = pdf::Typesetter::find()?;
             let paper = pdf::paper(asked.matches);
-            vec![File { name: "report.pdf".into(), bytes: pdf::typeset(&answer.json(), paper)?, about: String::new() }]
+            if asked.entry.forms.iter().any(|f| f.name == pdf::PLATE) {
+                let plates = answer.write(pdf::PLATE).map_err(|refusal| asked.refused(&refusal, of))?;
+                let set = |plate: File| {
+                    let name = plate.name.replace(pdf::PLATE_ENDING, ".pdf");
+                    Ok(File { name, bytes: typesetter.set(&plate.bytes, paper)?, about: plate.about })
+                };
+                plates.into_iter().map(set).collect::<Result<Vec<_>, String>>()?
+            } else {
+                let bytes = typesetter.set(answer.json().as_bytes(), paper)?;
+                vec![File { name: format!("{}.pdf", asked.entry.name), bytes, about: String::new() }]
+            }
         }
         other => answer.write(other).map_err(|refusal| asked.refused(&refusal, of))?,
     };

@@ -21,7 +21,7 @@ pub(crate) const KIND: Kind<Bands> = Kind {
         let (operation, state) = (r.operation.clone(), r.state.clone());
         bands(s, &UncertaintyRequest { operation, state, samples, ..Default::default() }, &r.over)
     },
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// The samples, each a train of its own, along the axis.

@@ -20,7 +20,7 @@ pub(crate) const KIND: Kind<Front> = Kind {
     effort: kind::of_file,
     applies: None,
     make: |s, r| front(s.train(), r.part.as_deref(), r.nominal),
-    draw: |data, how| draw::draw(data, how.animated),
+    draw: draw::draw_on,
 };
 
 /// The transverse section of a set, or of a pair of gears.

@@ -129,4 +129,17 @@ impl FigureRequest {
 pub struct Drawing {
     /// Wheels turn, where the kind has wheels.
     pub animated: bool,
+    /// How wide the paper is, in units of the figure, of which its smallest text has 11. A kind lays itself out in that width
+    /// as far as it can; absent for as wide as suits a screen.
+    pub width: Option<u32>,
+}
+
+impl Drawing {
+    /// The size of the smallest text of every figure, in units of the figure.
+    pub const SMALLEST_TEXT: f64 = 11.0;
+
+    /// The width of a page that is so wide on a screen; on narrow paper as wide as that is, but not below what it needs.
+    pub(crate) fn page(self, usual: f64, needs: f64) -> f64 {
+        self.width.map_or(usual, |width| f64::from(width).clamp(needs.min(usual), usual))
+    }
 }

@@ -36,7 +36,7 @@ pub(crate) const KIND: Kind<Lever> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, r| lever(s.train(), &LeverRequest::of(r)),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 impl LeverRequest {

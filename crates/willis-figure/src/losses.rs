@@ -18,7 +18,7 @@ pub(crate) const KIND: Kind<LossChart> = Kind {
     effort,
     applies: None,
     make: |s, r| loss_chart(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// The points along the axis.

@@ -21,7 +21,7 @@ pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
     effort,
     applies: Some(applies),
     make: |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// Points along the axes where the caller does not say.

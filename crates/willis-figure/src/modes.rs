@@ -121,7 +121,7 @@ fn table<'a>(
             // The number stands on the free side.
             let value = digits(if p.value.abs() < 1e-9 { 0.0 } else { p.value });
             let (at, anchor) = if p.value < 0.0 { (x + 4.0, Anchor::Start) } else { (x - 4.0, Anchor::End) };
-            g = g.add(text(at, y + 15.0, 10.0, anchor, &value).set("fill", FAINT));
+            g = g.add(text(at, y + 15.0, 11.0, anchor, &value).set("fill", FAINT));
         }
         g = g.add(guide(line((x, top), (x, bottom), LINE, 1.0)));
     }

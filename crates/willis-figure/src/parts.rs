@@ -1,4 +1,4 @@
-//! What figures share: colours and type, frames of charts, dark paper, pixels.
+//! What figures share: colours and type, frames of charts, dark paper, pixels, words.
 
 pub mod alive;
 pub mod axes;
@@ -9,3 +9,4 @@ pub mod png;
 pub mod point;
 pub mod style;
 pub mod theme;
+pub mod words;

@@ -2,10 +2,13 @@
 
 pub mod document;
 mod formula;
+mod gears;
 pub mod html;
 mod laws;
+mod paper;
 mod results;
 mod scheme;
+mod wheels;
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -15,17 +18,22 @@ use willis::analysis::{Analysis, OperationReport, Selection, Verdict, analyze};
 use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::model::Model;
 use willis::study::{PointAnswer, Sensitivity, UncertaintyPlan, UncertaintyRequest, sensitivity};
+use willis::train::Train;
 use willis::unstable;
 use willis::work::{self, Cancelled, Effort, Work};
 
+use crate::parts::markup::untitled;
 use crate::parts::style::watts;
-use crate::report::document::{Block, Column, Document, Level, Section};
+use crate::parts::words::{self, spelled};
+use crate::report::document::{Block, Column, Document, Level, Section, TitleBlock};
 use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
 /// Operations that get pictures of their own; all are told in tables.
 const PICTURED: usize = 4;
 /// Operations that are told one by one, and rows of a table: a report is read by people.
 const TOLD: usize = 100;
+/// Widths of figures, in their units: of the text of a page, and of a page for figures alone.
+const WIDTHS: [u32; 2] = [770, 1180];
 
 /// What a report is about.
 #[derive(Clone, Debug, Default)]
@@ -40,6 +48,10 @@ pub struct ReportRequest {
     pub version: String,
     /// The commands that make the results again.
     pub commands: Vec<String>,
+    /// Who makes it for what.
+    pub title_block: TitleBlock,
+    /// Whether the train file stands at the end.
+    pub appendix: bool,
 }
 
 /// Everything that a report tells.
@@ -91,7 +103,7 @@ impl Sure {
         }
         found.sort_by(f64::total_cmp);
         let [low, high] = [0.05, 0.95].map(|p| unstable::quantile(&found, p));
-        let varied = plan.quantities().iter().map(|q| format!("{} {}", q.name, q.describe())).collect();
+        let varied = plan.quantities().iter().map(|q| spelled(&format!("{} {}", q.name, q.describe()))).collect();
         (high > low).then_some(Self { low, high, samples: samples.len(), varied })
     }
 
@@ -144,7 +156,7 @@ impl Figures {
             let (kind, request) = &wanted[k];
             let drawn = || {
                 let figure = make(*kind, request)?;
-                Ok(worth_showing(&figure).then(|| draw(&figure, Drawing::default())))
+                Ok(worth_showing(&figure).then(|| on_paper(&figure)))
             };
             // Nothing outlives a panic that it could have left half done.
             let picture = match catch_unwind(AssertUnwindSafe(drawn)) {
@@ -194,12 +206,24 @@ fn last_words(panic: &(dyn Any + Send)) -> &str {
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("no reason is known")
 }
 
+/// A figure laid out for the text of a page; where it does not fit there, for a page of its own. Its caption is its title.
+fn on_paper(figure: &Figure) -> String {
+    let drawn = |width| untitled(&draw(figure, Drawing { width: Some(width), ..Drawing::default() }));
+    let text = drawn(WIDTHS[0]);
+    if html::fits_text(&text) { text } else { drawn(WIDTHS[1]) }
+}
+
 /// Whether a figure says more than a sentence would.
 fn worth_showing(figure: &Figure) -> bool {
     match figure {
         Figure::Map(m) => m.points.iter().any(|p| p.efficiency.is_some()),
         Figure::Losses(l) => !l.series.is_empty(),
-        Figure::Band(b) => b.points.iter().any(|p| p.efficiency.is_some()),
+        // A band that is level everywhere is a number, which is told.
+        Figure::Band(b) => {
+            let known = || b.points.iter().filter_map(|p| p.efficiency);
+            let first = known().next();
+            known().any(|q| first.is_some_and(|f| f.iter().zip(q).any(|(a, b)| (a - b).abs() > 1e-4)))
+        }
         _ => true,
     }
 }
@@ -261,14 +285,40 @@ pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result
         Some(laws::assumptions(&all)),
         laws::in_force(&all),
         Some(laws::again(&all)),
+        request.appendix.then(|| laws::appendix(&all)),
     ];
+    let sections = sections.into_iter().flatten().filter(|s| !s.blocks.is_empty());
     Ok(Document {
         format: Default::default(),
         title: train.name().to_owned(),
         subtitle: "Gear train report".to_owned(),
+        title_block: request.title_block.clone(),
         facts: facts(&all),
-        sections: sections.into_iter().flatten().filter(|s| !s.blocks.is_empty()).map(shortened).collect(),
+        sections: sections.map(shortened).map(|s| in_words(train, s)).collect(),
     })
+}
+
+/// A section without keys and marks of code in its sentences.
+fn in_words(train: &Train, mut section: Section) -> Section {
+    let is_name = |text: &str| {
+        train.member(text).is_some()
+            || train.mesh(text).is_some()
+            || train.state(text).is_some()
+            || train.scenario(text).is_some()
+            || train.sets().iter().any(|s| s.name == text)
+            || train.shift_elements().iter().any(|e| e.name == text)
+            || train.operations().iter().any(|o| o.name == text)
+    };
+    let plain = |text: &mut String| *text = words::plain(text, &is_name);
+    for block in &mut section.blocks {
+        match block {
+            Block::Text { text } | Block::Notice { text, .. } => plain(text),
+            Block::List { items } => items.iter_mut().for_each(plain),
+            Block::Table { caption, .. } | Block::Figure { caption, .. } => plain(caption),
+            _ => {}
+        }
+    }
+    section
 }
 
 /// That only the first of many are told.
@@ -299,7 +349,6 @@ fn wanted(model: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(F
     // The longest first, so that the cores end together.
     let mut all = vec![
         (Map, only.clone()),
-        (Band, FigureRequest { samples: 128, ..only.clone() }),
         plain(Time),
         (Losses, only.clone()),
         (Tornado, only.clone()),
@@ -313,6 +362,9 @@ fn wanted(model: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(F
         (Film, only.clone()),
         (Path, only.clone()),
     ];
+    if !analysis.operations.is_empty() {
+        all.push((Band, FigureRequest { samples: 128, ..only.clone() }));
+    }
     for set in train.sets() {
         all.push((Front, FigureRequest { part: Some(set.name.clone()), ..Default::default() }));
     }
@@ -343,34 +395,16 @@ fn facts(all: &Findings<'_>) -> Vec<[String; 2]> {
         fact("Made with", all.request.version.clone());
     }
     if !all.request.hash.is_empty() {
-        let short: String = all.request.hash.chars().take(12).collect();
-        fact("Train file", format!("{}, SHA-256 {short}…", all.request.file));
+        fact("Train file", all.request.file.clone());
     }
     facts
 }
 
-/// What was asked and what came out, in a few lines.
+/// What was examined and what came out, on the first page.
 fn summary(all: &Findings<'_>) -> Section {
-    let mut blocks = vec![];
+    let mut blocks = vec![Block::Notice { level: Level::Note, text: scope(all) }];
     let train = all.model.train();
-    let question = match all.analysis.operations.len() {
-        0 => format!(
-            "What does {} do: its ratios, the direction in which it can be driven, and its efficiency, with the proof \
-             that each answer is the only one?",
-            train.name()
-        ),
-        1 => format!(
-            "How does {} run at {}: speeds, torques, where the power goes, and is the answer the only one?",
-            train.name(),
-            all.analysis.operations[0].name
-        ),
-        n => format!(
-            "How does {} run at {n} operating points: speeds, torques, where the power goes, and is each answer the \
-             only one?",
-            train.name()
-        ),
-    };
-    blocks.push(Block::Text { text: question });
+    blocks.extend(gears::tables(train));
     let columns = ["Operating point", "Verdict"].map(Column::words).into_iter();
     let columns = columns.chain(["Efficiency", "90 % band", "Power in", "Lost"].map(Column::numbers)).collect();
     let rows: Vec<Vec<String>> = (all.analysis.operations.iter())
@@ -414,15 +448,41 @@ fn summary(all: &Findings<'_>) -> Section {
         && let Some(q) = first.quantities.first()
     {
         let text = format!(
-            "At {} the quantity that matters most is {}: a step of {} changes the losses by {} W.",
+            "At {} the quantity that matters most is {}: a step of {} changes the losses by {}.",
             first.name,
-            q.name,
+            spelled(&q.name),
             q.step.size(),
-            results::signed(q.loss_change_w)
+            results::signed_watts(q.loss_change_w)
         );
         blocks.push(Block::Text { text });
     }
-    Section { title: "Question and answer".into(), blocks }
+    Section { title: "Summary".into(), blocks }
+}
+
+/// What the report is about, and what it is not.
+fn scope(all: &Findings<'_>) -> String {
+    let computed = |o: &OperationReport| results::single(o).is_some_and(|s| !s.sources.is_empty());
+    let bearings = |o: &OperationReport| results::single(o).is_some_and(|s| !s.bearings.0.is_empty());
+    let mut examined = vec!["ratios", "speeds", "torques"];
+    if all.analysis.operations.is_empty() {
+        examined.push("nominal efficiencies");
+    } else {
+        examined.extend(["power flow", "efficiency"]);
+    }
+    if all.analysis.operations.iter().any(computed) {
+        examined.push("losses by source");
+    }
+    if all.analysis.operations.iter().any(bearings) {
+        examined.push("forces on bearings");
+    }
+    if !all.model.train().scenarios().is_empty() {
+        examined.push("motion");
+    }
+    format!(
+        "Scope. Examined: {}. Not examined: strength. Nothing is said of the load capacity of tooth flanks and roots, the life \
+         of bearings, shafts and housings, or noise.",
+        examined.join(", ")
+    )
 }
 
 /// Warnings belong where nobody overlooks them; of many the first, and where the others are.
@@ -430,12 +490,7 @@ fn warnings(all: &Findings<'_>) -> Vec<Block> {
     const FIRST: usize = 6;
     let count = all.warnings().count();
     let notice = |text: String| Block::Notice { level: Level::Warning, text };
-    let mut blocks: Vec<Block> = (all.warnings().take(FIRST))
-        .map(|d| {
-            let place = if d.place.is_empty() { String::new() } else { format!(" ({})", d.place) };
-            notice(format!("{}: {}{place}", d.code.as_str(), d.message))
-        })
-        .collect();
+    let mut blocks: Vec<Block> = (all.warnings().take(FIRST)).map(|d| notice(laws::told(d))).collect();
     if count > FIRST {
         blocks.push(notice(format!("{} more stand under Assumptions and warnings.", count - FIRST)));
     }

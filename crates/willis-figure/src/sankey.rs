@@ -26,7 +26,7 @@ pub(crate) const KIND: Kind<Sankey> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, r| Ok(sankey(&powers(s, r)?)),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// Losses of one kind at one node that are below this part of the input are gathered.

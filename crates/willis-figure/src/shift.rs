@@ -18,7 +18,7 @@ pub(crate) const KIND: Kind<ShiftTable> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, _| shift(s.train()),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// A shift table.

@@ -25,7 +25,7 @@ pub(crate) const KIND: Kind<Split> = Kind {
     },
     applies: None,
     make: split,
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// Ratios where the caller does not say.

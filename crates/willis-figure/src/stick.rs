@@ -29,7 +29,7 @@ pub(crate) const KIND: Kind<Stick> = Kind {
     effort: kind::of_file,
     applies: None,
     make: |s, r| stick(s.train(), r.state.as_deref()),
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// A point of the picture: x along the axis, y outward; the unit is a step of the grid.

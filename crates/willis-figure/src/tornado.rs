@@ -16,7 +16,7 @@ pub(crate) const KIND: Kind<Tornado> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: ranking,
-    draw: |data, _| draw::draw(data),
+    draw: draw::draw_on,
 };
 
 /// Bars of a ranking.

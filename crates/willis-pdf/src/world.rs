@@ -1,4 +1,4 @@
-//! What typst sees: a template, a report, fonts. No files, no network, no clock.
+//! What typst sees: a template, a report or a figure, fonts. No files, no network, no clock.
 
 use std::fmt::Write;
 use std::sync::LazyLock;
@@ -20,23 +20,32 @@ fn carried() -> impl Iterator<Item = Font> {
     own.chain(fonts::embedded().map(|(font, _)| font))
 }
 
-static TEMPLATE: LazyLock<Source> =
+static REPORT: LazyLock<Source> =
     LazyLock::new(|| Source::new(file("report.typ"), include_str!("report.typ").to_owned()));
+static PLATE: LazyLock<Source> = LazyLock::new(|| Source::new(file("plate.typ"), include_str!("plate.typ").to_owned()));
 static DATA: LazyLock<FileId> = LazyLock::new(|| file("report.json"));
 
 fn file(name: &str) -> FileId {
     FileId::new(RootedPath::new(VirtualRoot::Project, VirtualPath::new(name).expect("a plain name")))
 }
 
-/// A desk with one report on it.
+/// What is set.
+#[derive(Clone, Copy)]
+pub enum Template {
+    Report,
+    Plate,
+}
+
+/// A desk with one report on it, or one figure.
 pub struct Desk {
+    template: &'static Source,
     library: LazyHash<Library>,
     fonts: FontStore,
     data: Bytes,
 }
 
 impl Desk {
-    pub fn new(data: String, paper: &str) -> Self {
+    pub fn new(template: Template, data: String, paper: &str) -> Self {
         let mut inputs = Dict::new();
         inputs.insert("paper".into(), paper.into_value());
         let mut store = FontStore::new();
@@ -53,7 +62,11 @@ impl Desk {
             store.extend(fonts::system());
         }
         let library = Library::builder().with_inputs(inputs).build();
-        Self { library: LazyHash::new(library), fonts: store, data: Bytes::from_string(data) }
+        let template = match template {
+            Template::Report => &*REPORT,
+            Template::Plate => &*PLATE,
+        };
+        Self { template, library: LazyHash::new(library), fonts: store, data: Bytes::from_string(data) }
     }
 }
 
@@ -67,11 +80,11 @@ impl World for Desk {
     }
 
     fn main(&self) -> FileId {
-        TEMPLATE.id()
+        self.template.id()
     }
 
     fn source(&self, id: FileId) -> FileResult<Source> {
-        if id == TEMPLATE.id() { Ok(TEMPLATE.clone()) } else { Err(FileError::AccessDenied) }
+        if id == self.template.id() { Ok(self.template.clone()) } else { Err(FileError::AccessDenied) }
     }
 
     fn file(&self, id: FileId) -> FileResult<Bytes> {

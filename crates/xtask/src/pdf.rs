@@ -1,12 +1,48 @@
-//! Reports as PDF: the typesetter is tested, and sets one.
+//! Reports as PDF: the typesetter is tested, reports are measured, and one is set.
 
+use std::path::Path;
+use std::process::Command;
 use std::{env, fs};
 
 use crate::context::{Context, component, passes};
 use crate::generate::build_willis;
 use crate::step::{Outcome, outcome};
 
-/// Tests the typesetter, and sets one report.
+/// Reports that are measured, and how many pages they may have.
+const MEASURED: [(&str, usize); 7] = [
+    ("shift-8hp70", 8),
+    ("prius-hybrid", 16),
+    ("fva-planetary-stage", 16),
+    ("wolfrom-236", 10),
+    ("aisin-tl-80sn", 12),
+    ("wang-herringbone-physical", 16),
+    ("two-mode-split", 14),
+];
+
+/// No text of a report is smaller than 7 pt, and none has more pages than it should.
+fn measured(context: &Context, typesetter: &Path) -> Result<(), String> {
+    for (train, most) in MEASURED {
+        let json = context.target.join(format!("report-{train}.json"));
+        let file = format!("examples/{train}.toml");
+        let mut command = context.willis();
+        command.args(["report", &file, "--author", "Willis", "--format", "json", "--force", "-o"]).arg(&json);
+        context.output(&mut command)?;
+        let input = fs::File::open(&json).map_err(|e| format!("{}: {e}", json.display()))?;
+        let told = context.output(Command::new(typesetter).arg("--measure").stdin(input))?;
+        let told = String::from_utf8_lossy(&told.stdout);
+        println!("{train}: {}", told.trim());
+        let mut numbers = told.split_whitespace().filter_map(|w| w.parse::<f64>().ok());
+        let (Some(pages), Some(smallest)) = (numbers.next(), numbers.next()) else {
+            return Err(format!("{train}: not measured"));
+        };
+        if pages > most as f64 || smallest < 6.995 {
+            return Err(format!("{train}: {pages} pages of {most}, smallest text {smallest} pt of 7"));
+        }
+    }
+    Ok(())
+}
+
+/// Tests the typesetter, measures reports, and sets one.
 pub(crate) fn pdf(context: &Context) -> Outcome {
     const MANIFEST: &str = "crates/willis-pdf/Cargo.toml";
     let all = || -> Result<(), String> {
@@ -19,6 +55,7 @@ pub(crate) fn pdf(context: &Context) -> Outcome {
             passes(context.words(&words).env("CARGO_TARGET_DIR", &own), &words)?;
         }
         build_willis(context)?;
+        measured(context, &own.join("debug/willis-pdf"))?;
         let report = context.target.join("report.pdf");
         let mut command = context.willis();
         let path = env::join_paths(

@@ -6,6 +6,7 @@ use willis::contract::{Contract, Format};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use willis::units::Dimension;
 use willis::work::Work;
+use willis_figure::report::document::Plate;
 use willis_figure::{Ask, Drawing, Figure, FigureKind, FigureRequest, Theme, draw, themed};
 
 use super::amount::{pair, values};
@@ -62,6 +63,9 @@ pub struct Draw {
     /// Pixels of a PNG to a unit of the figure, from 0.1 to 10.
     #[cfg_attr(feature = "clap", arg(long, default_value_t = 2.0, value_parser = scale))]
     pub scale: f32,
+    /// Lay the figure out for paper so many mm wide, with no text below 7 pt; what cannot be so narrow is wider.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MM", value_parser = paper))]
+    pub width: Option<f64>,
 }
 
 impl Default for Draw {
@@ -80,6 +84,7 @@ impl Default for Draw {
             animated: false,
             theme: Look::Light,
             scale: 2.0,
+            width: None,
         }
     }
 }
@@ -114,6 +119,18 @@ fn scale(text: &str) -> Result<f32, String> {
     match text.parse::<f32>() {
         Ok(x) if SCALES.contains(&x) => Ok(x),
         _ => Err("a number from 0.1 to 10".into()),
+    }
+}
+
+/// Widths of paper for figures, in mm.
+const PAPERS: std::ops::RangeInclusive<f64> = 30.0..=2000.0;
+
+/// A width of paper.
+#[cfg(feature = "clap")]
+fn paper(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if PAPERS.contains(&x) => Ok(x),
+        _ => Err("a number of millimetres from 30 to 2000".into()),
     }
 }
 
@@ -186,7 +203,10 @@ impl Draw {
     }
 
     fn drawing(&self) -> Drawing {
-        Drawing { animated: self.animated }
+        /// Points to a millimetre, and the size of the smallest text in points.
+        const PRINTED: [f64; 2] = [72.0 / 25.4, 7.0];
+        let units = |mm: f64| (mm * PRINTED[0] / PRINTED[1] * Drawing::SMALLEST_TEXT) as u32;
+        Drawing { animated: self.animated, width: self.width.map(units) }
     }
 
     /// Refuses what would make no difference to this kind.
@@ -217,6 +237,9 @@ fn no_drawing(kind: FigureKind) -> Diagnostic {
     Diagnostic::new(Code::Unfit, "", message).hint("`draw front` has one; other pictures are SVG or PNG")
 }
 
+/// The form of which a typesetter makes a page.
+const PLATE: Form = Form { name: "plate", endings: &[], about: "a picture with its paper, which willis-pdf sets" };
+
 impl Question for Draw {
     const NAME: &'static str = "draw";
     #[cfg(feature = "png")]
@@ -224,12 +247,18 @@ impl Question for Draw {
         Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" },
         Form { name: "png", endings: &["png"], about: "a picture of pixels" },
         DXF,
+        PLATE,
     ];
     #[cfg(not(feature = "png"))]
-    const FORMS: &'static [Form] = &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }, DXF];
+    const FORMS: &'static [Form] =
+        &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }, DXF, PLATE];
     type Answer = DrawAnswer;
 
     fn check(&self) -> Result<(), Diagnostics> {
+        if let Some(width) = self.width.filter(|w| !PAPERS.contains(w)) {
+            let d = Diagnostic::new(Code::OutOfRange, "", format!("a picture is not laid out for {width} mm of paper"));
+            return Err(d.hint(format!("from {} to {} mm", PAPERS.start(), PAPERS.end())).into());
+        }
         if SCALES.contains(&self.scale) {
             return Ok(());
         }
@@ -291,6 +320,14 @@ impl Question for Draw {
             DrawAnswer::All(all) => all.figures.iter().collect(),
         };
         let picture = |figure: &Figure| -> Result<File, Refusal> {
+            if form == PLATE.name {
+                // Paper is light.
+                let svg = draw(figure, self.drawing());
+                let plate = Plate { format: Format::new(), svg, width_mm: self.width };
+                let name = format!("{}.plate.json", figure.kind().name());
+                let file = File::text(name, crate::json(&plate));
+                return Ok(File { about: figure.title().to_owned(), ..file });
+            }
             let name = format!("{}.{form}", figure.kind().name());
             if form == DXF.name {
                 let bytes = match figure {

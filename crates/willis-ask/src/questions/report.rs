@@ -3,17 +3,19 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::work::Work;
-use willis_figure::report::document::Document;
+use willis_figure::report::document::{Document, TitleBlock};
 use willis_figure::{ReportRequest, html};
 
 use crate::{File, Form, Given, Question, Refusal, quoted};
 
 /// Write the engineering report of a train: one file that explains itself, as web page or PDF.
 ///
-/// Question, train with schematic and teeth, results with verdict and certificate, power flow, losses and what to change
-/// first, maps, regimes and closed formulas, assumptions, warnings, laws with their sources, and how to do it again. The
-/// same input gives the same bytes.
+/// What was examined and what not, all gears with ratio, speeds and torques, warnings; train with schematic, data sheets of the
+/// wheels, results with verdict and certificate, power flow, forces on bearings, losses and what to change first, maps, regimes
+/// and closed formulas, assumptions, laws with their sources, and how to do it again. No text is smaller than 7 pt. The same
+/// input gives the same bytes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
@@ -21,6 +23,21 @@ pub struct Report {
     /// Only this operation.
     #[cfg_attr(feature = "clap", arg(long, value_name = "OPERATION"))]
     pub operation: Option<String>,
+    /// Project or customer, for the title block.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "WORDS"))]
+    pub project: Option<String>,
+    /// Who answers for the report, for the title block.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "WORDS"))]
+    pub author: Option<String>,
+    /// Date for the title block, in your own words; none is taken from a clock.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "WORDS"))]
+    pub date: Option<String>,
+    /// Revision of the report, for the title block.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "WORDS"))]
+    pub revision: Option<String>,
+    /// Add the train file as an appendix.
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub appendix: bool,
 }
 
 impl Report {
@@ -35,18 +52,61 @@ impl Report {
         let shown = quoted(name);
         let mut more: Vec<String> = given.changes.iter().map(|c| format!(" {c}")).collect();
         more.extend(self.operation.as_ref().map(|o| format!(" --operation {}", quoted(o))));
+        let analyze = more.concat();
+        let told = self.told().into_iter().filter(|(_, words)| !words.is_empty());
+        more.extend(told.map(|(name, words)| format!(" --{name} {}", quoted(words))));
+        more.extend(self.appendix.then(|| " --appendix".to_owned()));
         let more = more.concat();
         let commands =
-            vec![format!("willis analyze {shown}{more}"), format!("willis report {shown}{more} -o report.html")];
+            vec![format!("willis analyze {shown}{analyze}"), format!("willis report {shown}{more} -o report.html")];
         let version = format!("willis {}", env!("CARGO_PKG_VERSION"));
-        ReportRequest { operation: self.operation.clone(), file: name.to_owned(), hash, version, commands }
+        let [project, author, date, revision] = self.told().map(|(_, words)| words.to_owned());
+        ReportRequest {
+            operation: self.operation.clone(),
+            file: name.to_owned(),
+            hash,
+            version,
+            commands,
+            title_block: TitleBlock { project, author, date, revision },
+            appendix: self.appendix,
+        }
     }
+
+    /// What the title block says, by option; empty where nothing was given.
+    fn told(&self) -> [(&'static str, &str); 4] {
+        [
+            ("project", trimmed(&self.project)),
+            ("author", trimmed(&self.author)),
+            ("date", trimmed(&self.date)),
+            ("revision", trimmed(&self.revision)),
+        ]
+    }
+}
+
+/// Longest words of a title block, in characters.
+const LONGEST: usize = 200;
+
+fn trimmed(given: &Option<String>) -> &str {
+    given.as_deref().map_or("", str::trim)
 }
 
 impl Question for Report {
     const NAME: &'static str = "report";
     const FORMS: &'static [Form] = &[Form { name: "html", endings: &["html", "htm"], about: "one web page" }];
     type Answer = Document;
+
+    fn check(&self) -> Result<(), Diagnostics> {
+        for (name, words) in self.told() {
+            let wrong = match words {
+                w if w.chars().count() > LONGEST => format!("has more than {LONGEST} characters"),
+                w if w.chars().any(char::is_control) => "is more than one line of text".to_owned(),
+                _ => continue,
+            };
+            let d = Diagnostic::new(Code::OutOfRange, "", format!("the {name} of a report {wrong}"));
+            return Err(d.hint("a title block holds a few words on one line").into());
+        }
+        Ok(())
+    }
 
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<Document, Refusal> {
         Ok(willis_figure::report(&of[0].model, &self.request(&of[0]), work)?)

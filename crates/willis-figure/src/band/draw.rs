@@ -5,25 +5,33 @@ use svg::node::element::Group;
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{Anchor, BOLD, FAINT, INK, colour, digits, fit, line, lines, page, rectangle, text};
-use crate::{BandPoint, Bands};
+use crate::parts::words::spelled;
+use crate::{BandPoint, Bands, Drawing};
 
 const WIDTH: f64 = 900.0;
+/// The legend takes so much.
+const NARROWEST: f64 = 640.0;
 const LEFT: f64 = 100.0;
-const RIGHT: f64 = 872.0;
 const HEIGHT: f64 = 240.0;
 
 /// Efficiency and loss over a quantity: the middle half of the samples dark, nine tenths light, the median, and the file
 /// as written.
 pub fn draw(all: &Bands) -> String {
+    draw_on(all, Drawing::default())
+}
+
+pub(super) fn draw_on(all: &Bands, paper: Drawing) -> String {
+    let width = paper.page(WIDTH, NARROWEST);
+    let tall = HEIGHT * width / WIDTH;
     let mut top = 60.0;
     let mut body = Group::new().add(
-        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&all.title, (WIDTH - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
+        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&all.title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
     );
-    for l in lines(&all.basis, WIDTH - 56.0, 13.0) {
+    for l in lines(&all.basis, width - 56.0, 13.0) {
         body = body.add(text(28.0, top, 13.0, Anchor::Start, &l).set("fill", FAINT));
         top += 17.0;
     }
-    let (key, bottom) = legend(top + 4.0);
+    let (key, bottom) = legend(top + 4.0, width);
     body = body.add(key);
     top = bottom + 16.0;
     let most = all.points.iter().filter_map(|p| p.loss_w).fold(0.0f64, |a, q| a.max(q[4]));
@@ -31,19 +39,19 @@ pub fn draw(all: &Bands) -> String {
     let efficiency =
         |p: &BandPoint| (p.efficiency.map(|q| q.map(|e| 100.0 * e)), p.nominal_efficiency.map(|e| 100.0 * e));
     let loss = |p: &BandPoint| (p.loss_w.map(|q| q.map(|w| w / size)), p.nominal_loss_w.map(|w| w / size));
-    body = body.add(panel(all, top, String::new(), &efficiency));
-    top += HEIGHT + 64.0;
-    body = body.add(panel(all, top, format!("Losses, {unit}"), &loss));
-    top += HEIGHT + 62.0;
+    body = body.add(panel(all, [top, top + tall, width - 28.0], String::new(), &efficiency));
+    top += tall + 64.0;
+    body = body.add(panel(all, [top, top + tall, width - 28.0], format!("Losses, {unit}"), &loss));
+    top += tall + 62.0;
     let head = format!("Uncertain ({} samples at each of {} values)", all.samples, all.points.len());
     body = body.add(text(28.0, top, 13.0, Anchor::Start, &head).set("font-weight", "bold"));
     for q in &all.quantities {
-        for l in lines(q, WIDTH - 56.0, 11.0) {
+        for l in lines(&spelled(q), width - 56.0, 11.0) {
             top += 16.0;
             body = body.add(text(28.0, top, 11.0, Anchor::Start, &l).set("fill", FAINT));
         }
     }
-    page(WIDTH, top + 24.0, &format!("Uncertainty of {}", all.title), &words(all)).add(body).to_string()
+    page(width, top + 24.0, &format!("Uncertainty of {}", all.title), &words(all)).add(body).to_string()
 }
 
 fn words(all: &Bands) -> String {
@@ -63,11 +71,11 @@ fn words(all: &Bands) -> String {
     out.trim_end().to_owned()
 }
 
-fn legend(y: f64) -> (Group, f64) {
+fn legend(y: f64, width: f64) -> (Group, f64) {
     let entries = ["5 % to 95 %", "25 % to 75 %", "median", "as the file says"];
     let mut g = guide(Group::new());
     for (k, entry) in entries.iter().enumerate() {
-        let x = 28.0 + 170.0 * k as f64;
+        let x = 28.0 + f64::min(170.0, (width - 56.0) / 4.0) * k as f64;
         g = match k {
             0 => g.add(rectangle(x, y, 26.0, 14.0, &colour(Some(0), 0.2))),
             1 => g.add(rectangle(x, y, 26.0, 14.0, &colour(Some(0), 0.45))),
@@ -81,7 +89,7 @@ fn legend(y: f64) -> (Group, f64) {
 
 type Reading<'a> = &'a dyn Fn(&BandPoint) -> (Option<[f64; 5]>, Option<f64>);
 
-fn panel(all: &Bands, top: f64, name: String, reading: Reading<'_>) -> Group {
+fn panel(all: &Bands, [top, bottom, right]: [f64; 3], name: String, reading: Reading<'_>) -> Group {
     let what = if name.is_empty() { "efficiency" } else { "loss_w" };
     let values = all.points.iter().flat_map(|p| {
         let (band, nominal) = reading(p);
@@ -90,8 +98,8 @@ fn panel(all: &Bands, top: f64, name: String, reading: Reading<'_>) -> Group {
     let chart = Chart {
         left: LEFT,
         top,
-        right: RIGHT,
-        bottom: top + HEIGHT,
+        right,
+        bottom,
         x: Scale::of(all.x.values.iter().copied(), title(&all.x)),
         y: if name.is_empty() { Scale::efficiency(values) } else { Scale::of(values, name).rounded() },
     };

@@ -3,7 +3,7 @@
 use svg::node::element::{Circle, Group, Path};
 
 use super::{ContactPath, MeshPath, contact_path};
-use crate::kind::{self, Ask, Kind};
+use crate::kind::{self, Ask, Drawing, Kind};
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
@@ -16,12 +16,12 @@ pub(crate) const KIND: Kind<ContactPath> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
-    draw: |data, _| draw(data),
+    draw: draw_on,
 };
 
 const WIDTH: f64 = 1080.0;
+const NARROWEST: f64 = 640.0;
 const LEFT: f64 = 84.0;
-const RIGHT: f64 = 800.0;
 const TOP: f64 = 112.0;
 /// Distance of two labels at the curves.
 const LABEL: f64 = 34.0;
@@ -53,6 +53,13 @@ pub(crate) const DASHES: [&str; 4] = ["none", "8 3", "3 2", "10 3 2 3"];
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(path: &ContactPath) -> String {
+    draw_on(path, Drawing::default())
+}
+
+fn draw_on(path: &ContactPath, paper: Drawing) -> String {
+    let width = paper.page(WIDTH, NARROWEST);
+    // Beside the chart: the names of the meshes.
+    let right = width - (0.26 * width).max(210.0);
     let count = path.meshes.len() as f64;
     let bottom = TOP + (LABEL * count).max(400.0);
     let ratios = || path.meshes.iter().flat_map(|m| m.points.iter().filter_map(|p| p.film_ratio));
@@ -62,7 +69,7 @@ pub fn draw(path: &ContactPath) -> String {
     let (from, to) = (ends(0).fold(0.0, f64::min), ends(4).fold(0.0, f64::max));
     let margin = 0.04 * (to - from);
     let (from, to) = (from - margin, to + margin);
-    let x = |s: f64| LEFT + (s - from) / (to - from) * (RIGHT - LEFT);
+    let x = |s: f64| LEFT + (s - from) / (to - from) * (right - LEFT);
     let y = |ratio: f64| bottom - (ratio / low).ln() / (high / low).ln() * (bottom - TOP);
 
     let mut g = Group::new();
@@ -73,7 +80,7 @@ pub fn draw(path: &ContactPath) -> String {
         (full, high, 0.05, "full film"),
     ];
     for (a, b, strength, words) in bands {
-        let band = rectangle(LEFT, y(b), RIGHT - LEFT, y(a) - y(b), &colour(None, strength));
+        let band = rectangle(LEFT, y(b), right - LEFT, y(a) - y(b), &colour(None, strength));
         g = g.add(of(band, "band", &[Of::Quantity(&format!("film_ratio {words}"))]));
     }
     for t in log_ticks(low, high) {
@@ -87,7 +94,7 @@ pub fn draw(path: &ContactPath) -> String {
             .add(text(x(t), bottom + 17.0, 11.0, Anchor::Middle, &digits(t)).set("fill", FAINT));
     }
     for limit in path.limits {
-        g = g.add(guide(line((LEFT, y(limit)), (RIGHT, y(limit)), INK, 1.2)));
+        g = g.add(guide(line((LEFT, y(limit)), (right, y(limit)), INK, 1.2)));
     }
     g = g
         .add(guide(line((x(0.0), TOP), (x(0.0), bottom), FAINT, 1.0).set("stroke-dasharray", "10 3 2 3")))
@@ -107,25 +114,24 @@ pub fn draw(path: &ContactPath) -> String {
         g = g.add(halo(text(LEFT + 8.0, at, 12.0, Anchor::Start, words).set("fill", FAINT), PAPER, 3.0));
     }
     g = g
-        .add(guide(rectangle(LEFT, TOP, RIGHT - LEFT, bottom - TOP, "none").set("stroke", LINE).set("stroke-width", 1)))
-        .add(labels(path, &x, &y, bottom))
-        .add(text(LEFT, TOP - 24.0, 12.0, Anchor::Start, "film thickness over composite roughness λ"))
-        .add(text(
-            (LEFT + RIGHT) / 2.0,
-            bottom + 38.0,
-            12.0,
-            Anchor::Middle,
-            "distance s from the pitch point C along the line of action, mm; s > 0: addendum of the mesh's first gear",
-        ));
-    let mut end = bottom + 38.0;
+        .add(guide(rectangle(LEFT, TOP, right - LEFT, bottom - TOP, "none").set("stroke", LINE).set("stroke-width", 1)))
+        .add(labels(path, &x, &y, [right, width, bottom]))
+        .add(text(LEFT, TOP - 24.0, 12.0, Anchor::Start, "film thickness over composite roughness λ"));
+    let along =
+        "distance s from the pitch point C along the line of action, mm; s > 0: addendum of the mesh's first gear";
+    let mut end = bottom + 22.0;
+    for row in lines(along, (right - LEFT).max(width - 2.0 * LEFT).min(716.0), 12.0) {
+        end += 16.0;
+        g = g.add(text((LEFT + right) / 2.0, end, 12.0, Anchor::Middle, &row));
+    }
     for words in &path.left_out {
-        for row in lines(&format!("Not shown: {words}."), WIDTH - 56.0, 12.0) {
+        for row in lines(&format!("Not shown: {words}."), width - 56.0, 12.0) {
             end += 18.0;
             g = g.add(text(28.0, end, 12.0, Anchor::Start, &row).set("fill", FAINT));
         }
     }
-    page(WIDTH, end + 22.0, &format!("Oil film of {}", path.title), &description(path))
-        .add(heading(path, WIDTH, &format!("law of the film: {}", path.film_law)))
+    page(width, end + 22.0, &format!("Oil film of {}", path.title), &description(path))
+        .add(heading(path, width, &format!("law of the film: {}", path.film_law)))
         .add(g)
         .to_string()
 }
@@ -197,7 +203,12 @@ fn curve(m: &MeshPath, k: usize, x: &dyn Fn(f64) -> f64, y: &dyn Fn(f64) -> f64)
 }
 
 /// Names at the ends of the curves, spread so that none covers another.
-fn labels(path: &ContactPath, x: &dyn Fn(f64) -> f64, y: &dyn Fn(f64) -> f64, bottom: f64) -> Group {
+fn labels(
+    path: &ContactPath,
+    x: &dyn Fn(f64) -> f64,
+    y: &dyn Fn(f64) -> f64,
+    [right, width, bottom]: [f64; 3],
+) -> Group {
     let mut g = Group::new();
     let mut all: Vec<(usize, f64, f64)> = path
         .meshes
@@ -221,18 +232,18 @@ fn labels(path: &ContactPath, x: &dyn Fn(f64) -> f64, y: &dyn Fn(f64) -> f64, bo
     }
     for ((k, end, at), place) in all.into_iter().zip(places) {
         let m = &path.meshes[k];
-        let x = RIGHT + 24.0;
+        let x = right + 24.0;
         let least = m.least_film_ratio().unwrap_or(0.0);
         let words = format!("least λ {}: {}", digits(least), regime(path, least));
         let own = Group::new()
             .add(line((end, at), (x - 4.0, place), colour(Some(k), 1.0).as_str(), 0.8))
             .add(
-                text(x, place + 4.0, 13.0, Anchor::Start, &fit(&m.name, (WIDTH - 14.0 - x) / BOLD, 13.0))
+                text(x, place + 4.0, 13.0, Anchor::Start, &fit(&m.name, (width - 14.0 - x) / BOLD, 13.0))
                     .set("font-weight", "bold"),
             )
             .add(text(x, place + 19.0, 11.0, Anchor::Start, &words).set("fill", FAINT));
         g = g.add(of(own, "name", &[Of::Mesh(&m.name)]));
-        debug_assert!(wide(&words, 11.0) < WIDTH - x);
+        debug_assert!(wide(&words, 11.0) < width - x);
     }
     g
 }

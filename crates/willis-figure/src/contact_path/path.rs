@@ -4,7 +4,7 @@ use svg::node::element::{Group, Path};
 
 use super::film::heading;
 use super::{ContactPath, MeshPath, PathPoint, contact_path};
-use crate::kind::{self, Ask, Kind};
+use crate::kind::{self, Ask, Drawing, Kind};
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text, ticks,
@@ -16,7 +16,7 @@ pub(crate) const KIND: Kind<ContactPath> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
-    draw: |data, _| draw(data),
+    draw: draw_on,
 };
 
 const LEFT: f64 = 76.0;
@@ -27,6 +27,8 @@ const PANEL: f64 = 106.0;
 const STEP: f64 = 142.0;
 /// Between columns.
 const GAP: f64 = 26.0;
+/// The least width of a column.
+const NARROWEST: f64 = 250.0;
 /// Columns that are drawn.
 const MOST: usize = 4;
 
@@ -78,6 +80,10 @@ const ROWS: [Row; 5] = [
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(path: &ContactPath) -> String {
+    draw_on(path, Drawing::default())
+}
+
+fn draw_on(path: &ContactPath, paper: Drawing) -> String {
     let shown = &path.meshes[..path.meshes.len().min(MOST)];
     let n = shown.len().max(1) as f64;
     let column = match shown.len() {
@@ -86,7 +92,9 @@ pub fn draw(path: &ContactPath) -> String {
         3 => 390.0,
         _ => 300.0,
     };
-    let width = LEFT + n * column + (n - 1.0) * GAP + EDGE;
+    let beside = LEFT + (n - 1.0) * GAP + EDGE;
+    let width = paper.page(beside + n * column, beside + n * NARROWEST);
+    let column = (width - beside) / n;
     let ends = |k: usize| shown.iter().map(move |m| m.breakpoints_mm[k]);
     let (from, to) = (ends(0).fold(0.0, f64::min), ends(4).fold(0.0, f64::max));
     let margin = 0.04 * (to - from);

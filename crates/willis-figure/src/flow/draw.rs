@@ -19,7 +19,7 @@ use words::{SMALL, percent};
 
 const MARGIN: f64 = 28.0;
 /// Narrowest page.
-const NARROWEST: f64 = 760.0;
+const NARROWEST: f64 = 750.0;
 /// The power flows of a train: one figure for each equilibrium, below each other.
 ///
 /// Solid circles are components, hollow circles bearings, hollow triangles tooth contacts, hollow

@@ -12,7 +12,7 @@ use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, badge, colour, digits, fit, halo, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{Front, FrontMesh, FrontPlane, FrontWheel};
+use crate::{Drawing, Front, FrontMesh, FrontPlane, FrontWheel};
 use enlarged::{ENLARGED, enlarged, window};
 use view::{DASH_DOT, View, circle, own};
 
@@ -23,6 +23,8 @@ const TOP: f64 = 84.0;
 const MARGIN: f64 = 30.0;
 /// Table of wheels beside the panels.
 const SIDE: f64 = 420.0;
+/// The numbers, and a train that can still be seen.
+const NARROWEST: f64 = 920.0;
 /// Seconds in which one tooth of the first wheel passes, in the animated picture.
 const PASSING: f64 = 0.8;
 /// How far a drawn outline may leave the true one, px.
@@ -47,6 +49,10 @@ const ACCURACY: f64 = 0.06;
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(view: &Front, animated: bool) -> String {
+    draw_on(view, Drawing { animated, ..Drawing::default() })
+}
+
+pub(super) fn draw_on(view: &Front, how: Drawing) -> String {
     let reach = view
         .wheels
         .iter()
@@ -59,6 +65,8 @@ pub fn draw(view: &Front, animated: bool) -> String {
         2 => (2, 610.0),
         n => (n.min(3), 440.0),
     };
+    let beside = if several { 2.0 * EDGE } else { 2.0 * EDGE + 32.0 + SIDE };
+    let size = (how.page(beside + columns as f64 * size, NARROWEST) - beside) / columns as f64;
     let pair = view.kind == "pair";
     // A pair stands off the middle.
     let (middle, reach) = if pair { extent(view) } else { ([0.0, 0.0], reach) };
@@ -66,7 +74,7 @@ pub fn draw(view: &Front, animated: bool) -> String {
     let rows = view.planes.len().div_ceil(columns);
     let label = if several { 22.0 } else { 0.0 };
     let panels = (columns as f64 * size, rows as f64 * (size + label));
-    let width = if several { (2.0 * EDGE + panels.0).max(920.0) } else { 2.0 * EDGE + size + 32.0 + SIDE };
+    let width = if several { (2.0 * EDGE + panels.0).max(920.0) } else { beside + size };
     let mut page_body = Group::new();
     for (k, plane) in view.planes.iter().enumerate() {
         let corner = (EDGE + (k % columns) as f64 * size, TOP + (k / columns) as f64 * (size + label));
@@ -78,7 +86,7 @@ pub fn draw(view: &Front, animated: bool) -> String {
             page_body = page_body
                 .add(text(corner.0 + 4.0, corner.1 + 14.0, 13.0, Anchor::Start, &words).set("font-weight", "bold"));
         }
-        page_body = page_body.add(panel(view, plane, &at, k == 0, animated));
+        page_body = page_body.add(panel(view, plane, &at, k == 0, how.animated));
     }
     let (x, y) = if several { (EDGE, TOP + panels.1 + 16.0) } else { (EDGE + size + 32.0, TOP) };
     let mut bottom = y;
@@ -107,7 +115,7 @@ pub fn draw(view: &Front, animated: bool) -> String {
         )
         .add(text(EDGE, 60.0, 13.0, Anchor::Start, &fit(&caption, width - 2.0 * EDGE, 13.0)).set("fill", FAINT))
         .add(page_body);
-    if animated { document.add(Style::new(TURNING)).to_string() } else { document.to_string() }
+    if how.animated { document.add(Style::new(TURNING)).to_string() } else { document.to_string() }
 }
 
 /// Middle of all wheels, and half of the larger side of their box.

@@ -7,10 +7,12 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, figures, fit, halo, line, lines, number, page, rectangle,
     text, ticks, wide,
 };
-use crate::{Lever, LeverBar, LeverCase, LeverNode, LeverPull, LeverRole, LeverSet};
+use crate::{Drawing, Lever, LeverBar, LeverCase, LeverNode, LeverPull, LeverRole, LeverSet};
 
 const MARGIN: f64 = 28.0;
 const WIDEST: f64 = 1400.0;
+/// One lever takes so much.
+const NARROWEST: f64 = 640.0;
 /// Column of names and speeds.
 const NAMES: f64 = 100.0;
 /// Least width of the column of forces, one for each set.
@@ -34,6 +36,8 @@ const DASHES: [&str; 7] = ["none", "8 3", "3 3", "10 3 3 3", "14 4", "6 2 2 2 2 
 /// What all levers of a picture share.
 struct View<'a> {
     lever: &'a Lever,
+    /// The widest page.
+    widest: f64,
     /// Number of cases drawn.
     cases: usize,
     /// Units of the picture in one of the data.
@@ -69,13 +73,17 @@ struct View<'a> {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(lever: &Lever) -> String {
-    let v = View::new(lever);
+    draw_on(lever, Drawing::default())
+}
+
+pub(super) fn draw_on(lever: &Lever, paper: Drawing) -> String {
+    let v = View::new(lever, paper.page(WIDEST, NARROWEST));
     let rows = rows(&v);
     let content =
         rows.iter().map(|r| r.iter().map(|k| v.width(&lever.bars[*k]) + GAP).sum::<f64>()).fold(0.0, f64::max);
     // A long title may widen the page somewhat.
     let title = wide(&lever.title, 20.0) * BOLD;
-    let width = (content.max(title.min(1000.0)) + 2.0 * MARGIN).max(720.0);
+    let width = (content.max(title.min(1000.0).min(v.widest - 2.0 * MARGIN)) + 2.0 * MARGIN).max(720.0);
     let inner = width - 2.0 * MARGIN;
 
     let mut g = Group::new();
@@ -115,14 +123,14 @@ fn rows(v: &View<'_>) -> Vec<Vec<usize>> {
         }
         rows
     };
-    let widest = WIDEST - 2.0 * MARGIN;
+    let widest = v.widest - 2.0 * MARGIN;
     let first = broken(widest);
     // The narrowest page that needs no row more.
     (1..=20).map(|k| broken(widest * f64::from(k) / 20.0)).find(|r| r.len() == first.len()).unwrap_or(first)
 }
 
 impl<'a> View<'a> {
-    fn new(lever: &'a Lever) -> Self {
+    fn new(lever: &'a Lever, widest: f64) -> Self {
         let cases = lever.cases.len().min(MOST_CASES);
         let factor = if lever.unit.is_some() { 1.0 } else { RPM };
         let nodes = lever.bars.iter().flat_map(|b| &b.nodes).filter(|n| n.roles != [LeverRole::Planet]);
@@ -136,21 +144,23 @@ impl<'a> View<'a> {
         let largest = pulls().fold(0.0f64, |a, p| a.max(p.torque.abs()));
         let torque = if lever.unit.is_some() { (1.0, "") } else { unit_of_torques(largest) };
         // Values stand on both sides of the lever.
-        let values = pulls().map(|p| wide(&figures(p.torque * torque.0, 4), 10.0) + 9.0);
+        let values = pulls().map(|p| wide(&figures(p.torque * torque.0, 4), 11.0) + 9.0);
         let forces = values.fold(FORCES / 2.0, f64::max) * 2.0;
         let fixed = lever.bars.len() as f64 * (NAMES + 2.0 * PAD + GAP) + columns as f64 * forces;
         let letters = lever.cases[..cases].iter().map(|c| wide(&c.letter, 12.0) * BOLD + 4.0).fold(14.0, f64::max);
         let least = if cases > 1 { f64::max(letters * cases as f64, 150.0) } else { 80.0 };
-        let room = (WIDEST - 2.0 * MARGIN - fixed) / lever.bars.len() as f64;
+        let room = (widest - 2.0 * MARGIN - fixed) / lever.bars.len() as f64;
         let speeds = room.clamp(least, f64::max(least, if cases > 1 { 340.0 } else { 260.0 }));
         Self {
             lever,
+            widest,
             cases,
             factor,
             low,
             high,
             speeds,
-            height: (BLOCK * most as f64).max(360.0),
+            // No higher on narrow paper than it is wide.
+            height: (BLOCK * most as f64).max((0.23 * widest).min(360.0)),
             largest,
             torque,
             forces,
@@ -421,10 +431,10 @@ fn scale(v: &View<'_>, bar: &LeverBar) -> Group {
     let mut free = f64::NEG_INFINITY;
     for t in ticks(low, high, 5) {
         let label = digits(t);
-        let half = wide(&label, 10.0) / 2.0;
+        let half = wide(&label, 11.0) / 2.0;
         g = g.add(line((x(t), y), (x(t), y + 4.0), FAINT, 1.0));
         if x(t) - half > free {
-            g = g.add(text(x(t), y + 15.0, 10.0, Anchor::Middle, &label).set("fill", FAINT));
+            g = g.add(text(x(t), y + 15.0, 11.0, Anchor::Middle, &label).set("fill", FAINT));
             free = x(t) + half + 4.0;
         }
     }
@@ -537,9 +547,9 @@ fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool
     let (near, far): (Vec<&LeverPull>, Vec<&LeverPull>) = set.pulls.iter().partition(|p| range.contains(&p.point));
     for (k, p) in far.iter().enumerate() {
         let value = format!(": {}", v.pull(p));
-        let name = fit(&bar.nodes[p.node].member, v.forces - 6.0 - wide(&value, 10.0), 10.0);
+        let name = fit(&bar.nodes[p.node].member, v.forces - 6.0 - wide(&value, 11.0), 11.0);
         let label = format!("{name}{value}");
-        g = g.add(text(centre, y + 44.0 + 13.0 * k as f64, 10.0, Anchor::Middle, &label).set("fill", FAINT));
+        g = g.add(text(centre, y + 44.0 + 13.0 * k as f64, 11.0, Anchor::Middle, &label).set("fill", FAINT));
     }
     if set.pulls.is_empty() || v.largest == 0.0 {
         return g.add(text(centre, v.y(0.5), 11.0, Anchor::Middle, "no torque").set("fill", FAINT));
@@ -571,7 +581,7 @@ fn forces(v: &View<'_>, bar: &LeverBar, set: &LeverSet, centre: f64, named: bool
         if (at - y).abs() > 3.0 {
             g = g.add(guide(line((centre - side * 3.0, y), (x + side, at), LINE, 0.8)));
         }
-        g = g.add(halo(text(x, at + 3.5, 10.0, anchor, &v.pull(p)), PAPER, 5.0));
+        g = g.add(halo(text(x, at + 3.5, 11.0, anchor, &v.pull(p)), PAPER, 5.0));
     }
     for p in &near {
         let n = &bar.nodes[p.node];

@@ -11,32 +11,36 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, page, rectangle, text,
     titled, watts, wide,
 };
-use crate::{LossChart, LossSeries};
+use crate::{Drawing, LossChart, LossSeries};
 
 const WIDTH: f64 = 980.0;
+const NARROWEST: f64 = 680.0;
 const LEFT: f64 = 100.0;
-const RIGHT: f64 = 640.0;
-const KEY: f64 = 668.0;
 const HEIGHT: f64 = 340.0;
 
 /// Losses by source: stacked areas over a quantity, each with its letter, and bars with watts and shares at the operating
 /// point.
 pub fn draw(chart: &LossChart) -> String {
+    draw_on(chart, Drawing::default())
+}
+
+pub(super) fn draw_on(chart: &LossChart, paper: Drawing) -> String {
+    let width = paper.page(WIDTH, NARROWEST);
     let mut top = 60.0;
     let mut body = Group::new().add(
-        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&chart.title, (WIDTH - 56.0) / BOLD, 20.0))
+        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&chart.title, (width - 56.0) / BOLD, 20.0))
             .set("font-weight", "bold"),
     );
-    for l in lines(&chart.basis, WIDTH - 56.0, 13.0) {
+    for l in lines(&chart.basis, width - 56.0, 13.0) {
         body = body.add(text(28.0, top, 13.0, Anchor::Start, &l).set("fill", FAINT));
         top += 17.0;
     }
     top += 18.0;
-    let (stack, stack_bottom) = stacked(chart, top);
+    let (stack, stack_bottom) = stacked(chart, top, width);
     body = body.add(stack);
-    let (bars, bottom) = bars(chart, stack_bottom + 30.0);
+    let (bars, bottom) = bars(chart, stack_bottom + 30.0, width);
     body = body.add(bars);
-    page(WIDTH, bottom + 18.0, &format!("Losses of {}", chart.title), &words(chart)).add(body).to_string()
+    page(width, bottom + 18.0, &format!("Losses of {}", chart.title), &words(chart)).add(body).to_string()
 }
 
 fn words(chart: &LossChart) -> String {
@@ -121,7 +125,10 @@ fn law(s: &LossSeries) -> Option<String> {
     Some(title.unwrap_or_else(|| if id == "given" { "efficiency given".to_owned() } else { id.clone() }))
 }
 
-fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
+fn stacked(chart: &LossChart, top: f64, width: f64) -> (Group, f64) {
+    // The legend beside the chart.
+    let key = width - (0.32 * width).clamp(260.0, 312.0);
+    let right = key - 28.0;
     let count = chart.x.values.len();
     let mut total = vec![Some(0.0); count];
     let mut layers = vec![];
@@ -140,8 +147,8 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
     let axes = Chart {
         left: LEFT,
         top,
-        right: RIGHT,
-        bottom: top + HEIGHT,
+        right,
+        bottom: top + HEIGHT * (width / WIDTH).powi(2),
         x: Scale::of(chart.x.values.iter().copied(), title(&chart.x)),
         y: Scale::of(values.into_iter(), format!("Losses, {unit}")).rounded(),
     };
@@ -172,7 +179,7 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
         let Some(j) = (0..count).max_by(|a, b| thick(*a).total_cmp(&thick(*b)).then(b.cmp(a))) else { continue };
         let (Some(b), Some(a)) = (below[j], above[j]) else { continue };
         if axes.y(b / size) - axes.y(a / size) > 15.0 && thick(j) > 0.0 {
-            let x = axes.x(chart.x.values[j]).clamp(LEFT + 12.0, RIGHT - 12.0);
+            let x = axes.x(chart.x.values[j]).clamp(LEFT + 12.0, right - 12.0);
             let y = axes.y((a + b) / 2.0 / size) + 4.0;
             g = g.add(text(x, y, 12.0, Anchor::Middle, &letter(k)).set("font-weight", "bold"));
         }
@@ -181,7 +188,7 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
         let x = axes.x(at);
         let mark = line((x, axes.top), (x, axes.bottom), INK, 1.0).set("stroke-dasharray", "5 4");
         g = g.add(of(mark, "at", &[Of::Quantity(&chart.x.name)]));
-        let (place, anchor) = if x > (LEFT + RIGHT) / 2.0 { (x - 5.0, Anchor::End) } else { (x + 5.0, Anchor::Start) };
+        let (place, anchor) = if x > (LEFT + right) / 2.0 { (x - 5.0, Anchor::End) } else { (x + 5.0, Anchor::Start) };
         let label = text(place, axes.top + 14.0, 11.0, anchor, "operating point");
         g = g.add(halo(label, PAPER, 3.0));
     }
@@ -190,18 +197,18 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
         let x = (axes.x(chart.x.values[k]) + axes.x(chart.x.values[k + run - 1])) / 2.0;
         let word = chart.verdicts[k].name();
         let half = wide(word, 11.0) / 2.0 + 3.0;
-        let x = x.clamp(LEFT + half, RIGHT - half);
+        let x = x.clamp(LEFT + half, right - half);
         g = g.add(text(x, (axes.top + axes.bottom) / 2.0, 11.0, Anchor::Middle, word).set("fill", FAINT));
     }
     g = g.add(axes.frame());
     let mut y = top + 8.0;
     for (k, s) in chart.series.iter().enumerate().rev() {
-        let label = fit(&name(s), WIDTH - KEY - 60.0, 12.0);
-        let key = Group::new()
-            .add(rectangle(KEY, y, 22.0, 15.0, &fill(k, s)))
-            .add(text(KEY + 11.0, y + 12.0, 11.0, Anchor::Middle, &letter(k)).set("font-weight", "bold"))
-            .add(text(KEY + 32.0, y + 12.0, 12.0, Anchor::Start, &label));
-        g = g.add(of(key, "key", &source(s)));
+        let label = fit(&name(s), width - key - 60.0, 12.0);
+        let entry = Group::new()
+            .add(rectangle(key, y, 22.0, 15.0, &fill(k, s)))
+            .add(text(key + 11.0, y + 12.0, 11.0, Anchor::Middle, &letter(k)).set("font-weight", "bold"))
+            .add(text(key + 32.0, y + 12.0, 12.0, Anchor::Start, &label));
+        g = g.add(of(entry, "key", &source(s)));
         y += 22.0;
     }
     // Efficiency as a small chart of its own below the legend.
@@ -209,9 +216,9 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
     let axis_bottom = axes.bottom;
     if known().count() > 1 && axis_bottom - y > 130.0 {
         let small = Chart {
-            left: KEY + 56.0,
+            left: key + 56.0,
             top: y + 34.0,
-            right: WIDTH - 28.0,
+            right: width - 28.0,
             bottom: axis_bottom,
             x: Scale::of(chart.x.values.iter().copied(), title(&chart.x)),
             y: Scale::efficiency(known().map(|e| 100.0 * e)),
@@ -227,7 +234,7 @@ fn stacked(chart: &LossChart, top: f64) -> (Group, f64) {
     (g, axis_bottom + 40.0)
 }
 
-fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
+fn bars(chart: &LossChart, top: f64, width: f64) -> (Group, f64) {
     let mut g = Group::new();
     let Some(loss) = chart.loss_w else {
         let told = format!("The operating point itself is {}: it has no losses to show.", chart.verdict);
@@ -243,10 +250,11 @@ fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
     };
     g = g.add(text(28.0, top + 10.0, 13.0, Anchor::Start, &head).set("font-weight", "bold"));
     let mut y = top + 24.0;
-    let (start, most) = (330.0, chart.series.iter().filter_map(|s| s.at_operation_w).fold(0.0f64, f64::max));
+    let (start, most) =
+        (f64::min(330.0, 0.34 * width), chart.series.iter().filter_map(|s| s.at_operation_w).fold(0.0f64, f64::max));
     for (k, s) in chart.series.iter().enumerate() {
         let Some(w) = s.at_operation_w else { continue };
-        let length = if most > 0.0 { (WIDTH - start - 290.0) * w / most } else { 0.0 };
+        let length = if most > 0.0 { (width - start - f64::min(290.0, 0.3 * width)) * w / most } else { 0.0 };
         let said = match loss > 0.0 {
             true => format!("{}, {} %", power(w), digits(100.0 * w / loss)),
             false => power(w),
@@ -258,8 +266,8 @@ fn bars(chart: &LossChart, top: f64) -> (Group, f64) {
             .add(text(start + length + 8.0, y + 13.0, 12.0, Anchor::Start, &said));
         let from = start + length + 8.0 + wide(&said, 12.0);
         if let Some(law) = law(s) {
-            let shown = fit(&law, WIDTH - 28.0 - from - 8.0, 10.0);
-            let label = text(from + 8.0, y + 13.0, 10.0, Anchor::Start, &shown).set("fill", FAINT);
+            let shown = fit(&law, width - 28.0 - from - 8.0, 11.0);
+            let label = text(from + 8.0, y + 13.0, 11.0, Anchor::Start, &shown).set("fill", FAINT);
             bar = bar.add(titled(label, &law));
         }
         g = g.add(of(bar, "bar", &source(s)));

@@ -13,13 +13,15 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, number, page, rectangle,
     text, ticks, watts, wide,
 };
-use crate::{EfficiencyMap, MapVerdict};
+use crate::{Drawing, EfficiencyMap, MapVerdict};
 use mesh::{Height, Mesh, Place};
 
 const WIDTH: f64 = 940.0;
+const NARROWEST: f64 = 640.0;
 const LEFT: f64 = 92.0;
-const RIGHT: f64 = 690.0;
-const LEGEND: f64 = 716.0;
+/// The legend is so far from the chart, and so wide.
+const BESIDE: f64 = 26.0;
+const LEGEND: f64 = 224.0;
 const HEIGHT: f64 = 400.0;
 
 /// Losses in per cent at which colours change.
@@ -59,11 +61,19 @@ fn shade([low, high]: [f64; 2]) -> String {
 /// the operations of the file as points; of an automatic transmission below it the state that is best at every point. A
 /// map that is the same everywhere is a sentence.
 pub fn draw(map: &EfficiencyMap) -> String {
+    draw_on(map, Drawing::default())
+}
+
+pub(super) fn draw_on(map: &EfficiencyMap, paper: Drawing) -> String {
+    let width = paper.page(WIDTH, NARROWEST);
+    // Lower on narrow paper, twice so where two stand below each other.
+    let part = width / WIDTH;
+    let tall = HEIGHT * if map.states.is_empty() { part } else { part * part };
     let mut top = 64.0;
     let mut body = Group::new().add(
-        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&map.title, (WIDTH - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
+        text(28.0, 38.0, 20.0, Anchor::Start, &fit(&map.title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
     );
-    for l in lines(&map.basis, WIDTH - 56.0, 13.0) {
+    for l in lines(&map.basis, width - 56.0, 13.0) {
         body = body.add(text(28.0, top - 4.0, 13.0, Anchor::Start, &l).set("fill", FAINT));
         top += 17.0;
     }
@@ -80,20 +90,20 @@ pub fn draw(map: &EfficiencyMap) -> String {
     let chart = |top: f64| Chart {
         left: LEFT,
         top,
-        right: RIGHT,
-        bottom: top + HEIGHT,
+        right: width - LEGEND - BESIDE,
+        bottom: top + tall,
         x: outwards(Scale::of(map.x.values.iter().copied(), title(&map.x))),
         y: outwards(Scale::of(map.y.values.iter().copied(), title(&map.y))),
     };
     let own = chart(top);
     body = body.add(efficiency(map, &Mesh::new(map, &own), &own));
-    let mut bottom = top + HEIGHT + 60.0;
+    let mut bottom = top + tall + 60.0;
     if !map.states.is_empty() {
         let own = chart(bottom);
         body = body.add(states(map, &Mesh::new(map, &own), &own));
-        bottom += HEIGHT + 60.0;
+        bottom += tall + 60.0;
     }
-    page(WIDTH, bottom, &head, &words(map)).add(body).to_string()
+    page(width, bottom, &head, &words(map)).add(body).to_string()
 }
 
 /// What is negative grows away from the origin all the same, so that more load is always higher up.
@@ -338,7 +348,7 @@ fn powers(values: &[f64]) -> Vec<f64> {
 
 /// Words along the longest line on which there is room for them.
 fn label(all: &[Vec<Place>], name: &str, chart: &Chart, taken: &mut Vec<[f64; 4]>, ink: &str) -> Group {
-    let (width, height) = (wide(name, 10.5) + 8.0, 15.0);
+    let (width, height) = (wide(name, 11.0) + 8.0, 15.0);
     let mut ranked: Vec<&Vec<Place>> = all.iter().collect();
     ranked.sort_by(|a, b| length(b).total_cmp(&length(a)));
     for points in ranked.into_iter().take_while(|l| length(l) > 1.3 * width) {
@@ -363,7 +373,7 @@ fn label(all: &[Vec<Place>], name: &str, chart: &Chart, taken: &mut Vec<[f64; 4]
             if inside && taken.iter().all(|t| own[0] > t[2] || own[2] < t[0] || own[1] > t[3] || own[3] < t[1]) {
                 taken.push(own);
                 let turn = format!("rotate({} {} {})", number(steep.to_degrees()), number(x), number(y));
-                let words = text(x, y + 3.5, 10.5, Anchor::Middle, name).set("fill", ink).set("transform", turn);
+                let words = text(x, y + 3.5, 11.0, Anchor::Middle, name).set("fill", ink).set("transform", turn);
                 return halo(words, PAPER, 3.0);
             }
         }
@@ -442,13 +452,14 @@ fn range([low, high]: [f64; 2]) -> String {
 }
 
 fn legend(map: &EfficiencyMap, chart: &Chart, bands: &[[f64; 2]], power: bool) -> Group {
+    let key = chart.right + BESIDE;
     let mut y = chart.top + 10.0;
-    let mut g = Group::new().add(text(LEGEND, y, 13.0, Anchor::Start, "Efficiency").set("font-weight", "bold"));
+    let mut g = Group::new().add(text(key, y, 13.0, Anchor::Start, "Efficiency").set("font-weight", "bold"));
     y += 12.0;
     for band in bands.iter().filter(|b| b[0].is_finite()) {
         let label = range(*band);
-        let patch = rectangle(LEGEND, y, 26.0, 15.0, &shade(*band)).set("stroke", LINE).set("stroke-width", 0.6);
-        let words = text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, &label);
+        let patch = rectangle(key, y, 26.0, 15.0, &shade(*band)).set("stroke", LINE).set("stroke-width", 0.6);
+        let words = text(key + 34.0, y + 12.0, 11.0, Anchor::Start, &label);
         let own = Group::new().add(patch).add(words);
         g = g.add(of(own, "legend", &[Of::Quantity(&format!("efficiency {label}"))]));
         y += 18.0;
@@ -456,20 +467,20 @@ fn legend(map: &EfficiencyMap, chart: &Chart, bands: &[[f64; 2]], power: bool) -
     y += 6.0;
     for (verdict, _) in verdicts(map) {
         let patch = guide(Group::new())
-            .add(rectangle(LEGEND, y, 26.0, 15.0, PAPER).set("stroke", LINE).set("stroke-width", 0.6))
-            .add(strokes([LEGEND, y, LEGEND + 26.0, y + 15.0], verdict));
-        g = g.add(patch).add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, says(verdict)));
+            .add(rectangle(key, y, 26.0, 15.0, PAPER).set("stroke", LINE).set("stroke-width", 0.6))
+            .add(strokes([key, y, key + 26.0, y + 15.0], verdict));
+        g = g.add(patch).add(text(key + 34.0, y + 12.0, 11.0, Anchor::Start, says(verdict)));
         y += 20.0;
     }
     if power {
-        let dash = line((LEGEND, y + 8.0), (LEGEND + 26.0, y + 8.0), FAINT, 1.0).set("stroke-dasharray", "5 4");
-        g = g.add(guide(dash)).add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, "power into the train"));
+        let dash = line((key, y + 8.0), (key + 26.0, y + 8.0), FAINT, 1.0).set("stroke-dasharray", "5 4");
+        g = g.add(guide(dash)).add(text(key + 34.0, y + 12.0, 11.0, Anchor::Start, "power into the train"));
         y += 22.0;
     }
     for (k, m) in map.marks.iter().enumerate().take(9) {
-        let name = fit(&m.operation, WIDTH - LEGEND - 60.0, 11.0);
-        let own = Group::new().add(badge(LEGEND + 13.0, y + 9.0, &(k + 1).to_string())).add(text(
-            LEGEND + 34.0,
+        let name = fit(&m.operation, LEGEND - 60.0, 11.0);
+        let own = Group::new().add(badge(key + 13.0, y + 9.0, &(k + 1).to_string())).add(text(
+            key + 34.0,
             y + 13.0,
             11.0,
             Anchor::Start,
@@ -514,17 +525,18 @@ fn states(map: &EfficiencyMap, mesh: &Mesh<'_>, chart: &Chart) -> Group {
         }
     }
     let mut y = chart.top + 10.0;
-    g = g.add(text(LEGEND, y, 13.0, Anchor::Start, "Best state").set("font-weight", "bold"));
+    let key = chart.right + BESIDE;
+    g = g.add(text(key, y, 13.0, Anchor::Start, "Best state").set("font-weight", "bold"));
     y += 12.0;
     for state in used {
         let share = mesh.middle(|p| p.best == Some(state)).1;
         let label = format!("{} %", digits((1000.0 * share).round() / 10.0));
         let own = Group::new()
-            .add(rectangle(LEGEND, y, 26.0, 15.0, &shade(state)).set("stroke", LINE).set("stroke-width", 0.6))
-            .add(text(LEGEND + 34.0, y + 12.0, 11.0, Anchor::Start, &fit(&map.states[state], 110.0, 11.0)))
-            .add(text(WIDTH - 28.0, y + 12.0, 11.0, Anchor::End, &label).set("fill", FAINT));
+            .add(rectangle(key, y, 26.0, 15.0, &shade(state)).set("stroke", LINE).set("stroke-width", 0.6))
+            .add(text(key + 34.0, y + 12.0, 11.0, Anchor::Start, &fit(&map.states[state], 111.0, 11.0)))
+            .add(text(key + LEGEND - 28.0, y + 12.0, 11.0, Anchor::End, &label).set("fill", FAINT));
         g = g.add(of(own, "legend", &[Of::State(&map.states[state])]));
         y += 19.0;
     }
-    g.add(text(LEGEND, y + 14.0, 10.0, Anchor::Start, "share of the map").set("fill", FAINT))
+    g.add(text(key, y + 14.0, 11.0, Anchor::Start, "share of the map").set("fill", FAINT))
 }

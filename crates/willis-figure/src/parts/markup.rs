@@ -1,4 +1,6 @@
-//! Attributes of a figure's markup, changed where they stand.
+//! A figure's markup, changed where it stands.
+
+use crate::parts::style::number;
 
 /// Gives attributes another value, where `new` has one for a name and value. What is not an
 /// attribute stays byte for byte.
@@ -74,6 +76,29 @@ pub(crate) fn prefixed(svg: &str, prefix: &str) -> String {
     })
 }
 
+/// A figure without its heading, which stands above all else on its page: its caption says the same.
+pub(crate) fn untitled(svg: &str) -> String {
+    /// What the heading takes.
+    const HEADING: f64 = 42.0;
+    let shorter = || {
+        let at = svg.match_indices("<text").map(|(at, _)| at).find(|at| {
+            let tag = &svg[*at..*at + svg[*at..].find('>').unwrap_or(0)];
+            tag.contains(" font-size=\"20\"") && tag.contains(" y=\"38\"")
+        })?;
+        let end = at + svg[at..].find("</text>")? + "</text>".len();
+        let (open, close) = (svg.find("<svg")?, svg.find('>')?);
+        let head = &svg[open..=close];
+        let value = |name: &str| Some(head.split_once(&format!(" {name}=\""))?.1.split_once('"')?.0);
+        let (height, width) = (value("height")?, value("width")?);
+        let rest = number(height.parse::<f64>().ok()? - HEADING);
+        let new = head
+            .replace(&format!(" height=\"{height}\""), &format!(" height=\"{rest}\""))
+            .replace(value("viewBox")?, &format!("0 {HEADING} {width} {rest}"));
+        Some([&svg[..open], &new, &svg[close + 1..at], &svg[end..]].concat())
+    };
+    shorter().unwrap_or_else(|| svg.to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,11 +111,21 @@ mod tests {
     }
 
     #[test]
+    fn the_heading_goes_and_the_page_is_shorter() {
+        let words = r#"<text font-size="11" y="38">a</text><text fill="b" font-size="20" y="38">\nTitle\n</text>"#;
+        let svg = format!(r#"<svg height="100" viewBox="0 0 50 100" width="50"><desc>d</desc>{words}</svg>"#);
+        let expected = r#"<svg height="58" viewBox="0 42 50 58" width="50"><desc>d</desc><text font-size="11" y="38">a</text></svg>"#;
+        assert_eq!(untitled(&svg), expected);
+        assert_eq!(untitled(expected), expected);
+    }
+
+    #[test]
     fn broken_markup_is_copied() {
         for broken in
             ["<", "<a", "<a b", "<a b=", "<a b='", "<a b='c", "<!--", "<![CDATA[<a b='c'>", "a > b", "<é b='ü'"]
         {
             assert_eq!(rewrite(broken, |_, _| None), broken);
+            assert_eq!(untitled(broken), broken);
         }
     }
 }

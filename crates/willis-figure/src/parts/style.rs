@@ -154,6 +154,7 @@ pub fn fit(content: &str, width: f64, size: f64) -> String {
     if let Some(number) = number_across(&all, kept) {
         kept = number;
     }
+    kept = before_numbers(&all[..kept]);
     let mut shown: String = all[..kept].iter().collect();
     shown.truncate(shown.trim_end().len());
     shown.push('…');
@@ -188,6 +189,25 @@ fn number_across(all: &[char], cut: usize) -> Option<usize> {
     let to = cut + all[cut..].iter().take_while(|c| numeric(**c)).count();
     let free = from == 0 || all[from - 1].is_whitespace() || matches!(all[from - 1], '(' | '[' | '=' | '≈' | ':');
     (free && to - from <= LONGEST_NUMBER).then_some(from)
+}
+
+/// How much is left without numbers at the end: whether they are whole is not to be seen before an ellipsis.
+fn before_numbers(all: &[char]) -> usize {
+    let mut end = all.len();
+    loop {
+        let trimmed = all[..end].iter().rposition(|c| !c.is_whitespace()).map_or(0, |k| k + 1);
+        let from = all[..trimmed].iter().rposition(|c| c.is_whitespace() || "(=:".contains(*c)).map_or(0, |k| k + 1);
+        let token = &all[from..trimmed];
+        let digits = token.iter().skip_while(|c| sign(**c));
+        if from == 0 || token.len() > LONGEST_NUMBER || digits.clone().next().is_none() {
+            return end;
+        }
+        if !digits.clone().next().is_some_and(char::is_ascii_digit) || !digits.clone().all(|c| numeric(*c) || *c == ',')
+        {
+            return end;
+        }
+        end = from;
+    }
 }
 
 fn content_is_number(all: &[char]) -> bool {
@@ -350,6 +370,7 @@ mod tests {
         assert_eq!(fit("carrier-of-stage-2222b", 105.0, 10.0), "carrier-of-stage-22…");
         assert!(fit(&"7".repeat(100), 60.0, 10.0).ends_with('…'));
         assert_eq!(fit("97/35", 10.0, 10.0), "97/35");
+        assert_eq!(fit("Wolfrom drive 236:1, at 3000 rpm", 165.0, 10.0), "Wolfrom drive 236:1, at…");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use svg::node::element::{Group, Path};
 
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
-    Anchor, FAINT, INK, LINE, PAPER, badge, colour, digits, halo, line, number, page, rectangle, text, ticks,
+    Anchor, FAINT, INK, LINE, PAPER, badge, colour, digits, halo, line, number, page, rectangle, text, ticks, wide,
 };
 use crate::{MapCell, MapSector, RegimeMap};
 
@@ -194,7 +194,7 @@ fn label(map: &RegimeMap, s: &MapSector, c: &MapCell) -> Group {
     let (size, gap) = if thin { (13.0, 5.0) } else { (16.0, 1.0) };
     let letter = text(x, y + gap, size, Anchor::Middle, &map.patterns[c.pattern].letter).set("font-weight", "bold");
     let g = Group::new().add(halo(letter, PAPER, 3.0));
-    if thin { g } else { g.add(halo(text(x, y + 14.0, 10.0, Anchor::Middle, &c.regime), PAPER, 3.0)) }
+    if thin { g } else { g.add(halo(text(x, y + 14.0, 11.0, Anchor::Middle, &c.regime), PAPER, 3.0)) }
 }
 
 fn legend(map: &RegimeMap) -> Group {
@@ -257,6 +257,7 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
             .add(guide(line((left, y(t)), (right, y(t)), "#e4e4e4", 1.0)))
             .add(text(left - 6.0, y(t) + 4.0, 11.0, Anchor::End, &format!("{} %", percent(t))).set("fill", FAINT));
     }
+    let mut numbered: Vec<(f64, f64)> = vec![];
     for b in &map.boundaries {
         for a in b.angles.iter().flat_map(|a| [*a, a - 360.0]) {
             if a < map.half[0] - 1e-6 || a > map.half[1] + 1e-6 {
@@ -267,10 +268,13 @@ fn chart(map: &RegimeMap, top: f64, height: f64) -> Group {
                 l = l.set("stroke-dasharray", "4 3");
             }
             let ratio = b.ratio.map_or(if a > map.half[0] + 90.0 { "∞" } else { "−∞" }.to_owned(), digits);
-            let own = Group::new()
-                .add(l)
-                .add(text(x(a), bottom + 16.0, 10.0, Anchor::Middle, &ratio).set("fill", FAINT))
-                .add(badge(x(a), bottom + 32.0, &b.letter));
+            let mut own = Group::new().add(l).add(badge(x(a), bottom + 32.0, &b.letter));
+            // The list has every ratio: here none runs into another.
+            let half = wide(&ratio, 11.0) / 2.0 + 2.0;
+            if numbered.iter().all(|(at, other)| (x(a) - at).abs() >= half + other) {
+                numbered.push((x(a), half));
+                own = own.add(text(x(a), bottom + 16.0, 11.0, Anchor::Middle, &ratio).set("fill", FAINT));
+            }
             let word = format!("limit-{}{}", b.letter, if a > map.half[0] + 90.0 { "" } else { "-first" });
             g = g.add(of(own, &word, &[Of::Quantity(&b.label)]));
         }

@@ -18,10 +18,28 @@ pub struct Document {
     pub title: String,
     /// What kind of document it is, in a few words.
     pub subtitle: String,
+    /// Who made it for what, as they said.
+    #[serde(default)]
+    pub title_block: TitleBlock,
     /// What a reader looks for on the first page: a word and what it is.
     pub facts: Vec<[String; 2]>,
     /// The sections in their order.
     pub sections: Vec<Section>,
+}
+
+/// What a title block says; empty where nothing was given. Nothing of it comes from a clock.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default)]
+pub struct TitleBlock {
+    /// The project or customer.
+    pub project: String,
+    /// Who answers for the report.
+    pub author: String,
+    /// The date, in the words of the author.
+    pub date: String,
+    /// Which revision of the report it is.
+    pub revision: String,
 }
 
 /// A part of a report with a heading.
@@ -85,11 +103,41 @@ pub enum Block {
         /// When it holds, or what it is.
         note: String,
     },
+    /// Short formulas below each other, each with what it is: symbols, conditions.
+    Terms {
+        /// What they are.
+        head: String,
+        /// The formulas.
+        items: Vec<Term>,
+    },
     /// Text to be typed as it stands: commands, a train file.
     Code {
         /// The lines.
         text: String,
     },
+}
+
+/// A short formula and what it is.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Term {
+    /// LaTeX, without dollars.
+    pub latex: String,
+    /// What it is, in words.
+    pub text: String,
+}
+
+/// A figure alone, ready to be set as a page of its own size: the contract `willis-plate-1`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Plate {
+    /// `willis-plate-1`.
+    pub format: Format<Self>,
+    /// The picture as SVG in its light form, text as text.
+    pub svg: String,
+    /// How wide the page is, in mm; absent for three quarters of a point to a unit of the figure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width_mm: Option<f64>,
 }
 
 /// How serious a notice is.
@@ -120,6 +168,19 @@ pub struct Column {
 
 impl Contract for Document {
     const FORMAT: &'static str = "willis-report-1";
+}
+
+impl Contract for Plate {
+    const FORMAT: &'static str = "willis-plate-1";
+}
+
+impl TitleBlock {
+    /// What was given, each with its word.
+    pub fn entries(&self) -> impl Iterator<Item = [&str; 2]> {
+        let all =
+            [("Project", &self.project), ("Author", &self.author), ("Date", &self.date), ("Revision", &self.revision)];
+        all.into_iter().filter(|(_, given)| !given.is_empty()).map(|(word, given)| [word, given.as_str()])
+    }
 }
 
 impl Column {

@@ -8,9 +8,17 @@ use pulldown_latex::{Parser, Storage, push_mathml};
 
 use crate::parts::style::wide;
 
-/// A formula on a line of its own, and how wide it is in its own type sizes; none where LaTeX is not
-/// understood.
-pub(crate) fn mathml(latex: &str) -> Option<(String, f64)> {
+/// Where a formula stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Display {
+    /// On a line of its own.
+    Line,
+    /// Among words.
+    Text,
+}
+
+/// A formula, and how wide it is in its own type sizes; none where LaTeX is not understood.
+pub(crate) fn mathml(latex: &str, display: Display) -> Option<(String, f64)> {
     let storage = Storage::new();
     // Whole first: the writer would put the words of an error into the formula.
     let events = Parser::new(latex, &storage).collect::<Result<Vec<_>, _>>().ok()?;
@@ -20,7 +28,8 @@ pub(crate) fn mathml(latex: &str) -> Option<(String, f64)> {
         return None;
     }
     let width = row(&mut events.iter(), 1.0);
-    let config = RenderConfig { display_mode: DisplayMode::Block, xml: true, ..RenderConfig::default() };
+    let display_mode = if display == Display::Line { DisplayMode::Block } else { DisplayMode::Inline };
+    let config = RenderConfig { display_mode, xml: true, ..RenderConfig::default() };
     let mut out = String::new();
     push_mathml(&mut out, events.into_iter().map(Ok::<_, std::fmt::Error>), config).ok()?;
     Some((escaped(&out), width))
@@ -105,7 +114,7 @@ mod tests {
 
     #[test]
     fn widths_are_those_of_the_widest_line() {
-        let width = |latex| mathml(latex).expect("a formula").1;
+        let width = |latex| mathml(latex, Display::Line).expect("a formula").1;
         assert!((width(r"\frac{a + b}{c}") - width("a + b")).abs() < 0.5);
         assert_eq!(width(r"\begin{aligned}&a + b + c \\ &d\end{aligned}"), width("a + b + c"));
         assert!(width("x^{2}") < width("x 2"));
@@ -114,7 +123,7 @@ mod tests {
 
     #[test]
     fn signs_of_markup_are_escaped() {
-        let text = |latex| mathml(latex).expect("a formula").0;
+        let text = |latex| mathml(latex, Display::Text).expect("a formula").0;
         assert!(text("a < b").contains("<mo>&lt;</mo>"));
         assert!(text(r"a \not< b").contains("&lt;"));
         assert!(text(r"\mathrm{<b\&lt;}").contains(">&amp;</mi>"));
@@ -124,7 +133,7 @@ mod tests {
     #[test]
     fn what_is_no_formula_is_none() {
         for latex in [r"\nosuch", r"\operatorname{<b>}", "{", r"\frac", r"a & b", r"\left( a", "x^"] {
-            assert_eq!(mathml(latex), None, "{latex}");
+            assert_eq!(mathml(latex, Display::Line), None, "{latex}");
         }
     }
 }

@@ -7,11 +7,13 @@ use std::fmt::Write;
 
 use minijinja::{Environment, Value, context};
 
+use crate::Drawing;
 use crate::parts::markup::prefixed;
 use crate::parts::style::{self, FAINT, INK, LINE, PAPER, wide};
 use crate::parts::theme::{colours, dark, rules};
-use crate::report::document::{Block, Column, Document, Level, Section};
-use crate::report::formula::mathml;
+use crate::report::document::{Block, Column, Document, Level, Section, Term};
+use crate::report::formula::{Display, mathml};
+use crate::report::paper::{self, Extent, MM, Place};
 
 /// Colours of the page by the names that its style sheet uses.
 const PAGE: [(&str, &str); 10] = [
@@ -27,10 +29,10 @@ const PAGE: [(&str, &str); 10] = [
     ("stop", "#aa1122"),
 ];
 
-/// A4 between its margins, in points.
-const PRINTED: f64 = 490.0;
-/// Tables with smaller type than this, in points, break their words.
-const SMALLEST: f64 = 5.5;
+/// What a page has room for whether it is A4 or US Letter, in points.
+const PAPER_SIZE: [f64; 2] = [210.0 * MM, 279.4 * MM];
+/// A page between its margins, in points.
+const PRINTED: f64 = 174.0 * MM;
 
 /// A report as a web page in one file: light or dark as the screen is set, light in print.
 ///
@@ -45,6 +47,7 @@ const SMALLEST: f64 = 5.5;
 ///     format: Default::default(),
 ///     title: "P1 <ring & sun>".into(),
 ///     subtitle: "Engineering report".into(),
+///     title_block: Default::default(),
 ///     facts: vec![],
 ///     sections: vec![Section {
 ///         title: "Efficiency".into(),
@@ -60,11 +63,14 @@ pub fn html(document: &Document) -> String {
     let mut page = Page::default();
     let sections: Value = document.sections.iter().enumerate().map(|(k, s)| page.section(k + 1, s)).collect();
     let facts: Value = document.facts.iter().map(|[word, value]| context! { word, value }).collect();
+    let told: Value = document.title_block.entries().map(|[word, value]| context! { word, value }).collect();
     let template = environment.get_template("report.html").expect("just added");
     template
         .render(context! {
             title => &document.title,
             subtitle => &document.subtitle,
+            author => &document.title_block.author,
+            told,
             contents => document.sections.len() > 2,
             style => Value::from_safe_string(page.style()),
             facts,
@@ -78,6 +84,8 @@ pub fn html(document: &Document) -> String {
 struct Page {
     figures: usize,
     tables: usize,
+    /// Pages of their own that figures take, in mm.
+    pages: Vec<[u32; 2]>,
     /// Attribute and colour of all marks in figures.
     colours: BTreeSet<(String, String)>,
 }
@@ -106,7 +114,7 @@ impl Page {
                 self.tables += 1;
                 let (id, name) = (format!("table-{}", self.tables), format!("Table {}", self.tables));
                 let fit = print_size(columns, rows);
-                let (tight, fit) = (fit < SMALLEST, style::number(fit));
+                let (tight, fit) = (fit < paper::SMALLEST, style::number(fit));
                 let cells = |row: &Vec<String>| -> Value {
                     row.iter().zip(columns).map(|(text, c)| context! { text, number => c.number }).collect()
                 };
@@ -120,17 +128,42 @@ impl Page {
                 // Without what only a file of its own begins with.
                 let svg = &svg[svg.find("<svg").unwrap_or(0)..];
                 self.colours.append(&mut colours(svg));
+                let (wide, page) = self.printed(svg);
                 let svg = Value::from_safe_string(prefixed(svg, &format!("{id}-")));
-                context! { kind => "figure", id, name, caption, svg }
+                context! { kind => "figure", id, name, caption, svg, wide, page }
             }
             Block::Formula { latex, note } => {
-                let Some((mathml, width)) = mathml(latex) else {
+                let Some((mathml, width)) = mathml(latex, Display::Line) else {
                     return context! { kind => "formula", latex, note };
                 };
                 let fit = style::number(PRINTED / width.max(1.0));
                 context! { kind => "formula", mathml => Value::from_safe_string(mathml), fit, note }
             }
+            Block::Terms { head, items } => {
+                let item = |t: &Term| {
+                    let mathml = mathml(&t.latex, Display::Text).map(|(mathml, _)| Value::from_safe_string(mathml));
+                    context! { mathml, latex => &t.latex, text => &t.text }
+                };
+                context! { kind => "terms", head, items => items.iter().map(item).collect::<Value>() }
+            }
             Block::Code { text } => context! { kind => "code", text },
+        }
+    }
+
+    /// How wide a figure is printed, in points, and the class of the page where it takes one of its own.
+    fn printed(&mut self, svg: &str) -> (String, Option<String>) {
+        match place(svg) {
+            None => (style::number(PRINTED), None),
+            Some(Place::Text(wide)) => (style::number(wide), None),
+            Some(Place::Page(page, wide)) => {
+                let page = page.map(|x| (x / MM).ceil() as u32);
+                let known = self.pages.iter().position(|p| *p == page);
+                let k = known.unwrap_or_else(|| {
+                    self.pages.push(page);
+                    self.pages.len() - 1
+                });
+                (style::number(wide), Some(format!("plate-{}", k + 1)))
+            }
         }
     }
 
@@ -142,8 +175,14 @@ impl Page {
                 all
             })
         };
+        let pages = self.pages.iter().enumerate().fold(String::new(), |mut all, (k, [width, height])| {
+            let name = format!("plate-{}", k + 1);
+            let _ = writeln!(all, "@page {name} {{ size: {width}mm {height}mm; margin: 16mm 9mm 15mm; }}");
+            let _ = writeln!(all, ".{name} {{ page: {name}; }}");
+            all
+        });
         format!(
-            ":root {{ color-scheme: light dark;{} }}\n{}@media screen and (prefers-color-scheme: dark) {{\n\
+            ":root {{ color-scheme: light dark;{} }}\n{}{pages}@media screen and (prefers-color-scheme: dark) {{\n\
              :root {{{} }}\n{}}}\n",
             variables(&str::to_owned),
             include_str!("html/report.css"),
@@ -151,6 +190,21 @@ impl Page {
             rules(&self.colours, ".picture "),
         )
     }
+}
+
+/// Whether a figure is small enough for the text of a page.
+pub(super) fn fits_text(svg: &str) -> bool {
+    !matches!(place(svg), Some(Place::Page(..)))
+}
+
+/// Where a figure goes on paper; nothing is known of one without a size.
+fn place(svg: &str) -> Option<Place> {
+    let number = |name: &str| {
+        let (_, rest) = svg.split_once(&format!(" {name}=\""))?;
+        rest.split_once('"')?.0.parse::<f64>().ok().filter(|x| *x > 0.0)
+    };
+    let extent = Extent { size: [number("width")?, number("height")?], smallest: Some(Drawing::SMALLEST_TEXT) };
+    Some(extent.place(PAPER_SIZE))
 }
 
 /// The size in points at which a table fits the width of a printed page.

@@ -1,10 +1,12 @@
 //! What was assumed, which laws were in force with their sources and ranges, and how to do it all again.
 
-use willis::diagnostic::Severity;
+use willis::diagnostic::{Code, Diagnostic, Severity};
 use willis::losses::{Entry, Tag, Trust, entries};
+use willis::units::for_people;
 
 use super::Findings;
 use super::results::{significant, single};
+use crate::parts::words;
 use crate::report::document::{Block, Column, Level, Section};
 
 pub fn assumptions(all: &Findings<'_>) -> Section {
@@ -13,18 +15,24 @@ pub fn assumptions(all: &Findings<'_>) -> Section {
         true => blocks.push(Block::Text { text: "Nothing stands in for data that were not given.".into() }),
         false => blocks.push(Block::List { items: all.analysis.assumptions.clone() }),
     }
-    for d in &all.analysis.diagnostics {
+    // What friction at rest leaves open stands at its operating point.
+    for d in all.analysis.diagnostics.iter().filter(|d| d.code != Code::Stiction) {
         let level = match d.severity {
             Severity::Warning | Severity::Error => Level::Warning,
             _ => Level::Note,
         };
-        let place = if d.place.is_empty() { String::new() } else { format!(" ({})", d.place) };
-        blocks.push(Block::Notice { level, text: format!("{}: {}{place}", d.code.as_str(), d.message) });
+        blocks.push(Block::Notice { level, text: told(d) });
     }
     if all.analysis.diagnostics.is_empty() {
         blocks.push(Block::Text { text: "There are no warnings.".into() });
     }
     Section { title: "Assumptions and warnings".into(), blocks }
+}
+
+/// A warning or note, where it comes from, and the code under which it is explained.
+pub fn told(d: &Diagnostic) -> String {
+    let place = if d.place.is_empty() { String::new() } else { format!("{}; ", words::place(&d.place)) };
+    format!("{} ({place}{})", d.message, d.code.as_str())
 }
 
 /// Laws that computed a loss in an operating point.
@@ -44,23 +52,54 @@ pub fn in_force(all: &Findings<'_>) -> Option<Section> {
     let text = "Ratios are exact: speeds follow from whole numbers of teeth by elimination. Torques with friction are \
                 solved with the driving end of every mesh as unknown, and the answer carries its certificate. Published \
                 ratios, efficiencies and power flows, measured losses and trajectories of other programs are compared \
-                with this program's in every run of its tests; the pages under `validation/` list each with its source, \
+                with this program's in every run of its tests; the validation pages of Willis list each with its source, \
                 disagreements included.";
     blocks.push(Block::Text { text: text.into() });
     Some(Section { title: "Laws and validation".into(), blocks })
+}
+
+/// A source as it is cited in words: `niemann_winter2003` is Niemann and Winter 2003, `isotr14179_2` is ISO/TR 14179-2.
+fn cited(key: &str) -> String {
+    const NAMES: [(&str, &str); 6] = [
+        ("isotr", "ISO/TR"),
+        ("isots", "ISO/TS"),
+        ("agma", "AGMA"),
+        ("skf", "SKF"),
+        ("bilgenboulos", "Bilgen and Boulos"),
+        ("wilsonsheu", "Wilson and Sheu"),
+    ];
+    let Some(at) = key.find(|c: char| c.is_ascii_digit()) else { return key.replace('_', " ") };
+    let (letters, number) = key.split_at(at);
+    let capital = |word: &str| {
+        let mut letters = word.chars();
+        letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    };
+    let name = match NAMES.iter().find(|(key, _)| *key == letters) {
+        Some((_, name)) => (*name).to_owned(),
+        None => letters.split('_').filter(|w| !w.is_empty()).map(capital).collect::<Vec<String>>().join(" and "),
+    };
+    format!("{name} {}", number.replace('_', "-"))
 }
 
 fn row(e: &Entry) -> Vec<String> {
     let number = |x: f64| if x.is_finite() { significant(x, 4) } else { String::new() };
     let range = |r: &(&str, &str, f64, f64)| {
         let (symbol, unit, low, high) = *r;
-        let text = match (low.is_finite(), high.is_finite()) {
-            (true, true) => format!("{} ≤ {symbol} ≤ {}", number(low), number(high)),
-            (true, false) => format!("{symbol} ≥ {}", number(low)),
-            (false, true) => format!("{symbol} ≤ {}", number(high)),
-            (false, false) => return String::new(),
+        let symbol = symbol.replace('_', "");
+        // Each end in the unit that people use for it.
+        let end = |x: f64| {
+            let (x, unit) = match unit {
+                "N/m" => (x / 1e3, "N/mm"),
+                unit => for_people(x, unit),
+            };
+            format!("{} {unit}", number(x)).trim().to_owned()
         };
-        format!("{text} {unit}").trim().to_owned()
+        match (low.is_finite(), high.is_finite()) {
+            (true, true) => format!("{} ≤ {symbol} ≤ {}", end(low), end(high)),
+            (true, false) => format!("{symbol} ≥ {}", end(low)),
+            (false, true) => format!("{symbol} ≤ {}", end(high)),
+            (false, false) => String::new(),
+        }
     };
     let valid: Vec<String> = e.valid.iter().map(range).filter(|t| !t.is_empty()).collect();
     let mut checked = match e.trust {
@@ -75,9 +114,10 @@ fn row(e: &Entry) -> Vec<String> {
             _ => {}
         }
     }
-    let source = format!("{}, {}", e.source.0, e.source.1);
+    let source = format!("{}, {}", cited(e.source.0), e.source.1);
     let valid = if valid.is_empty() { "not told by the source".to_owned() } else { valid.join("; ") };
-    vec![e.family.replace('_', " "), format!("{} ({})", e.title, e.id), source, valid, checked]
+    let checked = words::plain(&checked, &|_| false);
+    vec![e.family.replace('_', " "), e.title.to_owned(), source, valid, checked]
 }
 
 pub fn again(all: &Findings<'_>) -> Section {
@@ -86,16 +126,39 @@ pub fn again(all: &Findings<'_>) -> Section {
         blocks.push(Block::Text { text: "These commands give the same numbers and the same bytes:".into() });
         blocks.push(Block::Code { text: all.request.commands.join("\n") });
     }
-    let file = if all.request.file.is_empty() { "The train file" } else { &all.request.file };
-    let hash = match all.request.hash.is_empty() {
-        true => String::new(),
-        false => format!(", SHA-256 {}", all.request.hash),
-    };
-    blocks.push(Block::Text { text: format!("{file}{hash}:") });
-    blocks.push(Block::Code { text: all.model.document().text() });
+    let file = if all.request.file.is_empty() { "the train file" } else { &all.request.file };
+    if !all.request.hash.is_empty() {
+        let place = if all.request.appendix { ", which is the appendix" } else { "" };
+        let text = format!("They read {file}{place}. Its SHA-256 is {}.", all.request.hash);
+        blocks.push(Block::Text { text });
+    }
     for (name, text) in all.model.files() {
         let lines = text.lines().count();
-        blocks.push(Block::Text { text: format!("It names {name}, a table of {lines} lines.") });
+        blocks.push(Block::Text { text: format!("The train file names {name}, a table of {lines} lines.") });
     }
     Section { title: "How to do it again".into(), blocks }
+}
+
+/// The train file.
+pub fn appendix(all: &Findings<'_>) -> Section {
+    let file = if all.request.file.is_empty() { "train file" } else { &all.request.file };
+    let blocks = vec![Block::Code { text: all.model.document().text() }];
+    Section { title: format!("Appendix: {file}"), blocks }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_source_is_cited_in_words() {
+        let of = |key| cited(key);
+        assert_eq!(of("niemann_winter2003"), "Niemann and Winter 2003");
+        assert_eq!([of("isotr14179_2"), of("isots6336_22")], ["ISO/TR 14179-2", "ISO/TS 6336-22"]);
+        assert_eq!(of("practice"), "practice");
+        for e in entries() {
+            let words = cited(e.source.0);
+            assert!(!words.contains('_') && !words.is_empty(), "{words}");
+        }
+    }
 }

@@ -1,23 +1,27 @@
 //! What came out: the shift table, the operating points, losses, maps, motion, formulas.
 
 use willis::analysis::{
-    CertificateReport, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport, Verdict,
+    CertificateReport, Direction, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport,
+    Verdict,
 };
-use willis::exact::Rational;
+use willis::losses::entries;
 use willis::operating_point::Regime;
-use willis::regimes::{FormulaRequest, formulas as closed};
+use willis::regimes::{ClosedFormula, FormulaRequest, formulas as closed};
 use willis::statics::Certificate;
 use willis::symbolic::Notation;
+use willis::train::AS_DRAWN;
 
 use super::{Findings, TOLD, and_more, notice};
 use crate::FigureKind;
-use crate::parts::style::watts;
-use crate::report::document::{Block, Column, Level, Section};
+use crate::parts::style::{figures, watts};
+use crate::parts::words::spelled;
+use crate::report::document::{Block, Column, Level, Section, Term};
+use crate::report::formula::{Display, mathml};
 
 /// Formulas that are printed.
-const FORMULAS: usize = 12;
-/// Longest formula that is printed, in characters of LaTeX.
-const LONGEST: usize = 1200;
+const FORMULAS: usize = 9;
+/// The width of a page in the type size of its formulas.
+const LINE: f64 = 47.0;
 /// Quantities in the table of what matters most.
 const RANKED: usize = 12;
 
@@ -33,12 +37,28 @@ pub fn significant(x: f64, digits: i32) -> String {
     }
     let size = x.abs().log10().floor() as i32;
     if !(-5..9).contains(&size) {
-        return format!("{x:.*e}", digits as usize - 1).replace('-', "−");
+        return figures(x, digits);
     }
     let decimals = (digits - 1 - size).clamp(0, 12) as usize;
     let text = format!("{x:.decimals$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     text.replace('-', "−")
+}
+
+/// So many decimals, so that numbers of a row stand below each other.
+pub fn fixed(x: f64, decimals: usize) -> String {
+    match x {
+        0.0 => "0".to_owned(),
+        x if x.is_finite() && (0.5 * 10f64.powi(-(decimals as i32))..1e5).contains(&x.abs()) => {
+            format!("{x:.decimals$}").replace('-', "−")
+        }
+        x => figures(x, 3),
+    }
+}
+
+/// A power with its sign.
+pub fn signed_watts(x: f64) -> String {
+    if x > 0.0 { format!("+{}", watts(x)) } else { watts(x) }
 }
 
 pub fn signed(x: f64) -> String {
@@ -82,14 +102,17 @@ pub fn single(o: &OperationReport) -> Option<&SolutionReport> {
 
 pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
     let mut blocks = vec![];
-    blocks.extend(all.figures.block(FigureKind::Shift, None, "States, ratios, steps and efficiencies"));
+    blocks.extend(all.figures.block(FigureKind::Shift, None, "States, ratios, steps and nominal efficiencies"));
     let columns = ["State", "From – to", "Ratio exactly"].map(Column::words).into_iter();
     let columns = columns
         .chain(["Ratio", "Step"].map(Column::numbers))
         .chain(["Nominal η driving", "Nominal η coasting"].map(Column::numbers))
         .chain([Column::words("Only solution")]);
     let rows: Vec<Vec<String>> = all.analysis.ratios.iter().map(|(name, s)| state(name, s)).collect();
-    if !rows.is_empty() {
+    // The figure has all of it but the proofs.
+    if matches!(blocks[..], [Block::Figure { .. }]) {
+        blocks.push(Block::Text { text: proofs(all) });
+    } else if !rows.is_empty() {
         let caption =
             "Ratio is the input's over the output's speed. Efficiencies are nominal: from those of the meshes as given or \
              assumed, whatever the operating point"
@@ -108,12 +131,31 @@ pub fn shift_table(all: &Findings<'_>) -> Option<Section> {
     (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
 }
 
+/// In which gears the solution is proved to be the only one.
+fn proofs(all: &Findings<'_>) -> String {
+    let open = |(name, s): &(String, StateReport)| {
+        let ways = [("driving", &s.drive), ("coasting", &s.coast)].into_iter();
+        let not: Vec<&str> = ways.filter(|(_, d)| !proved(d)).map(|(way, _)| way).collect();
+        (!not.is_empty()).then(|| format!("{name} ({})", not.join(", ")))
+    };
+    let open: Vec<String> = all.analysis.ratios.iter().filter_map(open).collect();
+    let exactly = "It is proved that the solution is the only one for every load, driving and coasting, with the nominal \
+                   efficiencies: from those of the meshes as given or assumed, whatever the operating point";
+    match open.is_empty() {
+        true => format!("{exactly}."),
+        false => format!("{exactly}. It is not proved of: {}.", open.join("; ")),
+    }
+}
+
+fn proved(d: &Direction) -> bool {
+    d.certificate.is_some_and(|c| c.unique_for_every_load)
+}
+
 fn state(name: &str, s: &StateReport) -> Vec<String> {
-    let way = |d: &willis::analysis::Direction| match d.efficiency {
+    let way = |d: &Direction| match d.efficiency {
         Some(e) => exact_percent(e),
         None => d.verdict.words().to_owned(),
     };
-    let proved = |d: &willis::analysis::Direction| d.certificate.is_some_and(|c| c.unique_for_every_load);
     let certain = match (proved(&s.drive), proved(&s.coast)) {
         (true, true) => "both ways",
         (true, false) => "driving",
@@ -123,7 +165,11 @@ fn state(name: &str, s: &StateReport) -> Vec<String> {
     vec![
         name.to_owned(),
         format!("{} – {}", s.input, s.output),
-        s.exact.as_ref().map(Rational::to_fraction).or(s.no_ratio.clone()).unwrap_or_else(|| "–".into()),
+        s.exact
+            .as_ref()
+            .map(|i| i.to_fraction().replace('-', "−"))
+            .or(s.no_ratio.clone())
+            .unwrap_or_else(|| "–".into()),
         s.value.map_or("–".into(), |v| significant(v, 6)),
         s.step.map_or(String::new(), |v| significant(v, 4)),
         way(&s.drive),
@@ -146,6 +192,7 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
             blocks.push(members(&format!("Members{which}"), s));
             blocks.push(Block::Text { text: balance(s) });
             blocks.extend(elements(s));
+            blocks.extend(bearings(&o.name, s));
             blocks.extend(variators(s));
             blocks.extend(stiction(s));
         }
@@ -160,6 +207,8 @@ pub fn operations(all: &Findings<'_>) -> Option<Section> {
         blocks.extend(all.figures.block(FigureKind::Lever, of, &lever));
     }
     if all.analysis.operations.is_empty() {
+        let text = "Speeds and torques for one unit of speed and torque at the input, as levers.";
+        blocks.push(Block::Text { text: text.into() });
         blocks.extend(all.figures.block(FigureKind::Lever, None, "Speeds on levers"));
     }
     blocks.extend(all.figures.block(FigureKind::Split, None, "The power split over its ratio"));
@@ -192,8 +241,8 @@ pub fn basis(s: &SolutionReport) -> &'static str {
 
 fn members(caption: &str, s: &SolutionReport) -> Block {
     let columns = ["Member", "Role"].map(Column::words).into_iter();
-    let columns = columns.chain(["Speed rpm", "Torque N m", "Power"].map(Column::numbers)).collect();
-    let number = |x: Option<f64>, scale: f64| x.map_or("–".into(), |x| significant(x * scale, 6));
+    let columns = columns.chain(["Speed, rpm", "Torque, N m", "Power"].map(Column::numbers)).collect();
+    let number = |x: Option<f64>, scale: f64| x.map_or("–".into(), |x| significant(x * scale, 5));
     let rows = (s.members.iter())
         .map(|(name, m)| {
             let role = match m.role {
@@ -213,13 +262,16 @@ fn members(caption: &str, s: &SolutionReport) -> Block {
 
 fn balance(s: &SolutionReport) -> String {
     let mut text = format!(
-        "{} in, {} out, {} lost: efficiency {}. The balance of power closes to {:.1e} W.",
+        "{} in, {} out, {} lost: efficiency {}.",
         watts(s.input_power_w),
         watts(s.output_power_w),
         watts(s.loss_w),
         efficiency(s),
-        s.power_residual_w.abs()
     );
+    // Round-off is nothing to tell.
+    if s.power_residual_w.abs() > 1e-9 * s.input_power_w.abs() {
+        text += &format!(" The balance of power closes to {}.", watts(s.power_residual_w.abs()));
+    }
     for c in &s.recirculation {
         text += &format!(
             " {} ({} % of the input) run in a circle: {}.",
@@ -231,7 +283,9 @@ fn balance(s: &SolutionReport) -> String {
     if let Some(c) = &s.convergence {
         text += &match c.converged {
             true => format!(" Losses and torques agree after {} rounds.", c.rounds),
-            false => format!(" NOT CONVERGED after {} rounds: {:.1e} of the loss is left.", c.rounds, c.error),
+            false => {
+                format!(" NOT CONVERGED after {} rounds: {} of the loss is left.", c.rounds, exact_percent(c.error))
+            }
         };
     }
     if let Some(l) = &s.margin.lock {
@@ -266,24 +320,52 @@ fn stiction(s: &SolutionReport) -> Option<Block> {
 
 fn elements(s: &SolutionReport) -> Option<Block> {
     let columns = ["Engaged", "Kind", "Joins"].map(Column::words).into_iter();
-    let columns = columns.chain([Column::numbers("Torque N m")]).collect();
+    let columns = columns.chain([Column::numbers("Torque, N m")]).collect();
     let rows: Vec<Vec<String>> = (s.shift_elements.iter())
         .map(|(name, e)| {
-            let torque = e.torque_n_m.map_or("not divided by statics".into(), |t| significant(t, 6));
+            let torque = e.torque_n_m.map_or("not divided by statics".into(), |t| significant(t, 5));
             vec![name.clone(), e.kind.to_string(), e.members.join(" – "), torque]
         })
         .collect();
     (!rows.is_empty()).then(|| Block::Table { caption: "Torques of engaged elements".into(), columns, rows })
 }
 
+/// The forces on bearings.
+fn bearings(operation: &str, s: &SolutionReport) -> Option<Block> {
+    let columns = ["Bearing", "Designation", "Joins"].map(Column::words).into_iter();
+    let numbers = ["Number", "Speed, rpm", "Radial force, N", "Axial force, N", "Friction, N m", "Loss of all"];
+    let columns = columns.chain(numbers.map(Column::numbers)).collect();
+    let rows: Vec<Vec<String>> = (s.bearings.iter())
+        .map(|(name, b)| {
+            let n = |x: f64| significant(if x.abs() < 1e-9 { 0.0 } else { x }, 4);
+            vec![
+                name.clone(),
+                b.designation.clone(),
+                b.members.join(" – "),
+                b.bearings.to_string(),
+                n(b.speed_rad_s.abs() * RPM),
+                n(b.radial_load_n),
+                n(b.axial_load_n),
+                significant(b.torque_n_m, 3),
+                watts(b.loss_w),
+            ]
+        })
+        .collect();
+    let caption = format!(
+        "Forces on bearings at {operation}, each of one bearing, the most loaded; the speed is that of one ring relative to the other"
+    );
+    (!rows.is_empty()).then_some(Block::Table { caption, columns, rows })
+}
+
 /// What each variator does, side by side or machine by machine.
 fn variators(s: &SolutionReport) -> Vec<Block> {
     let one = |(name, v): &(String, VariatorReport)| {
         let columns = ["Side", "On member"].map(Column::words).into_iter();
-        let columns = columns.chain(["Speed rpm", "Torque on it N m", "Power into it"].map(Column::numbers)).collect();
+        let columns =
+            columns.chain(["Speed, rpm", "Torque on it, N m", "Power into it"].map(Column::numbers)).collect();
         let row = |(side, m): &(String, MachineReport)| {
             let power = watts(m.power_w);
-            let [speed, torque] = [m.speed_rad_s * RPM, m.torque_n_m].map(|x| significant(x, 6));
+            let [speed, torque] = [m.speed_rad_s * RPM, m.torque_n_m].map(|x| significant(x, 5));
             vec![side.clone(), m.member.clone(), speed, torque, power]
         };
         let store = match v.store_w {
@@ -301,28 +383,54 @@ fn variators(s: &SolutionReport) -> Vec<Block> {
 
 pub fn losses(all: &Findings<'_>) -> Option<Section> {
     let mut blocks = vec![];
+    if let Some((o, s)) = all.analysis.operations.iter().find_map(|o| Some((o, single(o)?))) {
+        let from = format!("At {} {} of {} are lost", o.name, watts(s.loss_w), watts(s.input_power_w));
+        let most =
+            s.sources.first().map(|x| format!("; the most in {}, {}: {}", x.name, x.kind.words(), watts(x.loss_w)));
+        blocks.push(Block::Text { text: format!("{from}{}.", most.unwrap_or_default()) });
+    }
+    let told = blocks.len();
     blocks.extend(all.figures.block(FigureKind::Losses, None, "Losses by source"));
     for o in all.analysis.operations.iter().take(TOLD) {
         let Some(s) = single(o).filter(|s| !s.sources.is_empty()) else { continue };
         let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
         let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
-            .map(|x| {
-                vec![x.name.clone(), x.kind.words().into(), x.law.clone(), watts(x.loss_w), exact_percent(x.share)]
-            })
+            .map(|x| vec![x.name.clone(), x.kind.words().into(), title(&x.law), watts(x.loss_w), percent(x.share)])
             .collect();
         blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
         blocks.extend(contacts(&o.name, s));
     }
     blocks.extend(all.figures.block(FigureKind::Film, None, "Oil film over roughness along the path of contact"));
     blocks.extend(all.figures.block(FigureKind::Path, None, "Friction, sliding and load along the path of contact"));
-    blocks.extend(what_first(all));
-    blocks.extend(all.figures.block(FigureKind::Tornado, None, "What a step of each quantity changes"));
+    match all.figures.block(FigureKind::Tornado, None, "What to change first: what a step of each quantity changes") {
+        Some(picture @ Block::Figure { .. }) => blocks.push(picture),
+        other => blocks.extend(what_first(all).into_iter().chain(other)),
+    }
+    if told == 0 && !blocks.is_empty() {
+        let text = "The file has no operating point; this is at one by default, which the picture names.";
+        blocks.insert(0, Block::Text { text: text.into() });
+    }
+    // Nothing but the sum is in the summary already.
+    if blocks.len() == told {
+        blocks.clear();
+    }
     (!blocks.is_empty()).then(|| Section { title: "Losses, and what to change first".into(), blocks })
 }
 
+/// A law by its title rather than by its name in files.
+fn title(law: &str) -> String {
+    let known = entries().iter().find(|e| e.id == law).map(|e| e.title.to_owned());
+    known.unwrap_or_else(|| if law == "given" { "efficiency given".to_owned() } else { law.replace('_', " ") })
+}
+
+/// A share, with three digits.
+fn percent(x: f64) -> String {
+    format!("{} %", significant(100.0 * x, 3))
+}
+
 fn contacts(operation: &str, s: &SolutionReport) -> Option<Block> {
-    let heads = ["µ", "HV", "Fₜ N", "vₜ m/s", "slide m/s", "Hertz MPa", "h µm", "λ"];
+    let heads = ["µ", "HV", "Fₜ, N", "vₜ, m/s", "slide, m/s", "Hertz, MPa", "h, µm", "λ"];
     let columns = [Column::words("Tooth contact")].into_iter().chain(heads.map(Column::numbers));
     let columns = columns.chain([Column::words("Film")]).collect();
     let rows: Vec<Vec<String>> = (s.contacts.iter())
@@ -362,13 +470,13 @@ fn what_first(all: &Findings<'_>) -> Option<Block> {
     };
     let columns = [Column::words("Quantity")].into_iter();
     let columns = columns
-        .chain([Column::numbers("Step"), Column::numbers("η points"), Column::numbers("Losses W")])
+        .chain([Column::numbers("Step"), Column::numbers("η, points"), Column::numbers("Losses, W")])
         .chain([Column::words("Moves most")])
         .collect();
     let rows: Vec<Vec<String>> = (o.quantities.iter().take(RANKED))
         .map(|q| {
             let most = q.sources.first().map_or(String::new(), |x| format!("{} {} W", x.name, signed(x.change_w)));
-            let name = if q.assumed { format!("{} (not given)", q.name) } else { q.name.clone() };
+            let name = if q.assumed { format!("{} (not given)", spelled(&q.name)) } else { spelled(&q.name) };
             vec![
                 name,
                 q.step.label().to_owned(),
@@ -395,13 +503,23 @@ pub fn maps(all: &Findings<'_>) -> Option<Section> {
         None,
         "How sure efficiency and losses are; what counts as uncertain stands below the picture",
     ));
-    (!blocks.is_empty()).then(|| Section { title: "Maps".into(), blocks })
+    let text = match all.model.train().states().is_empty() {
+        true => "How the efficiency depends on the operating point.",
+        false => "How the efficiency depends on the operating point and the state.",
+    };
+    (!blocks.is_empty()).then(|| {
+        blocks.insert(0, Block::Text { text: text.into() });
+        Section { title: "Maps".into(), blocks }
+    })
 }
 
 pub fn motion(all: &Findings<'_>) -> Option<Section> {
     let scenario = all.model.train().scenarios().first()?;
     let figure = all.figures.block(FigureKind::Time, None, &format!("Scenario {}", scenario.name))?;
-    Some(Section { title: "Motion".into(), blocks: vec![figure] })
+    let others: Vec<&str> = all.model.train().scenarios().iter().skip(1).map(|s| s.name.as_str()).collect();
+    let more = if others.is_empty() { String::new() } else { format!(" The file has others: {}.", others.join(", ")) };
+    let text = format!("Speeds, torques and powers over time in the scenario {}.{more}", scenario.name);
+    Some(Section { title: "Motion".into(), blocks: vec![Block::Text { text }, figure] })
 }
 
 pub fn formulas(all: &Findings<'_>) -> Option<Section> {
@@ -414,48 +532,120 @@ pub fn formulas(all: &Findings<'_>) -> Option<Section> {
     ));
     let title = if blocks.is_empty() { "Closed formulas" } else { "Regimes and closed formulas" };
     if let Ok(sheet) = closed(train, &FormulaRequest::default()) {
-        let count = sheet.formulas.len();
-        let short = |latex: &String| latex.len() <= LONGEST;
-        let mut printed = 0;
+        // A gear in which all turn as one needs no formula.
+        let count = sheet.formulas.iter().filter(|f| !f.arguments.is_empty()).count();
+        let mut printed: Vec<&ClosedFormula> = vec![];
         for f in &sheet.formulas {
-            let latex = f.efficiency(Notation::Latex);
-            if printed == FORMULAS || !short(&latex) {
-                continue;
+            if printed.len() == FORMULAS {
+                break;
             }
-            printed += 1;
-            let heading = match f.state == willis::train::AS_DRAWN {
-                true => f.title.clone(),
-                false => format!("State {}: {}", f.state, f.title),
-            };
-            blocks.push(Block::Heading { text: heading });
-            blocks.push(Block::Formula { latex: format!("\\eta = {latex}"), note: String::new() });
-            if let ([from], [to], Some([speed, torque])) =
-                (&f.inputs[..], &f.outputs[..], f.ratios(Notation::Latex).filter(|r| r.iter().all(short)))
-            {
-                blocks.push(Block::Formula { latex: speed, note: format!("speed of {from} over speed of {to}") });
-                blocks.push(Block::Formula { latex: torque, note: format!("torque on {to} over torque on {from}") });
-            }
-            let mut items = vec![];
-            for a in &f.arguments {
-                // Speeds and torques are the reader's to give.
-                items.push(match a.fixed {
-                    true => format!("{} = {}: {}", a.name, significant(a.value, 7), a.meaning),
-                    false => format!("{}: {}", a.name, a.meaning),
-                });
-            }
-            for (condition, meaning) in f.conditions(Notation::Text) {
-                items.push(format!("holds where {condition} > 0 ({meaning})"));
-            }
-            blocks.push(Block::List { items });
+            let Some(own) = formula(f).filter(|_| !f.arguments.is_empty()) else { continue };
+            printed.push(f);
+            blocks.extend(own);
         }
-        if printed < count {
+        blocks.extend(symbols(&printed));
+        if printed.len() < count {
             let text = format!(
-                "{} of {count} formulas are not printed here, for their number or their length; `willis formula` gives \
-                 them all, also as code.",
-                count - printed
+                "{} of {count} formulas are not printed here, for their number or their length. The command willis formula \
+                 gives them all, also as code.",
+                count - printed.len()
             );
             blocks.push(Block::Text { text });
         }
     }
     (!blocks.is_empty()).then(|| Section { title: title.into(), blocks })
+}
+
+/// A formula with its left side and the conditions under which it holds; none where it is wider than a page.
+fn formula(f: &ClosedFormula) -> Option<Vec<Block>> {
+    let heading = match f.state == AS_DRAWN {
+        true => f.title.clone(),
+        false => format!("State {}: {}", f.state, f.title),
+    };
+    let mut lines = vec![format!("\\eta = {}", f.efficiency(Notation::Latex))];
+    if let ([from], [to], Some([speed, _])) = (&f.inputs[..], &f.outputs[..], f.ratios(Notation::Latex)) {
+        let (from, to) = (index(from), index(to));
+        lines.push(format!("i = \\frac{{\\omega_{{{from}}}}}{{\\omega_{{{to}}}}} = {speed}"));
+        // What enters less what is lost leaves.
+        lines.push(format!("\\frac{{T_{{{to}}}}}{{T_{{{from}}}}} = -\\eta\\,i"));
+    }
+    if !lines.iter().all(|latex| fits(latex)) {
+        return None;
+    }
+    let mut blocks = vec![Block::Heading { text: heading }];
+    // As many in a line as fit there.
+    let mut line = String::new();
+    for latex in lines {
+        let longer = format!("{line}, \\qquad {latex}");
+        match line.is_empty() {
+            true => line = latex,
+            false if fits(&longer) => line = longer,
+            false => blocks.push(Block::Formula { latex: std::mem::replace(&mut line, latex), note: String::new() }),
+        }
+    }
+    blocks.push(Block::Formula { latex: line, note: String::new() });
+    let items = conditions(f);
+    if !items.is_empty() {
+        blocks.push(Block::Terms { head: "It holds where".into(), items });
+    }
+    Some(blocks)
+}
+
+/// The conditions of a formula that fit the width of a page; the others are counted.
+fn conditions(f: &ClosedFormula) -> Vec<Term> {
+    let all =
+        f.conditions(Notation::Latex).into_iter().map(|(latex, text)| Term { latex: format!("{latex} > 0"), text });
+    let (short, long): (Vec<Term>, Vec<Term>) =
+        all.partition(|t| !t.latex.contains("\\begin") && width(&t.latex).is_some_and(|w| w < 0.6 * LINE));
+    let more = (!long.is_empty()).then(|| Term {
+        latex: format!("+ {}", long.len()),
+        text: "more, too long for this page; the command willis formula has them".to_owned(),
+    });
+    short.into_iter().chain(more).collect()
+}
+
+/// What the symbols of these formulas stand for, each once.
+fn symbols(formulas: &[&ClosedFormula]) -> Option<Block> {
+    let mut items: Vec<Term> = vec![];
+    for a in formulas.iter().flat_map(|f| &f.arguments) {
+        // Speeds and torques are the reader's to give.
+        let latex = match a.fixed {
+            true => format!("{} = {}", a.latex, significant(a.value, 6).replace('−', "-")),
+            false => a.latex.clone(),
+        };
+        let own = match a.meaning_latex() {
+            Some(formula) => Term { latex: format!("{latex} = {formula}"), text: "basic ratio".to_owned() },
+            None => Term { latex, text: a.meaning.clone() },
+        };
+        match items.iter_mut().find(|t| t.latex == own.latex) {
+            // Whichever wheel drives: of several gears each has its own words.
+            Some(same) if !same.text.contains(&own.text) => same.text = format!("{}; {}", same.text, own.text),
+            Some(_) => {}
+            None => items.push(own),
+        }
+    }
+    (!items.is_empty()).then(|| Block::Terms { head: "Symbols:".into(), items })
+}
+
+/// A name as an upright index.
+fn index(name: &str) -> String {
+    let escaped = name.chars().fold(String::new(), |mut out, c| {
+        match c {
+            '_' | '&' | '%' | '$' | '#' | '{' | '}' => out.extend(['\\', c]),
+            '\\' | '^' | '~' => out.push(' '),
+            c => out.push(c),
+        }
+        out
+    });
+    format!("\\text{{{escaped}}}")
+}
+
+/// How wide a formula is, in its type size.
+fn width(latex: &str) -> Option<f64> {
+    mathml(latex, Display::Line).map(|(_, width)| width)
+}
+
+/// Whether a formula fits the width of a page.
+fn fits(latex: &str) -> bool {
+    width(latex).is_some_and(|w| w <= LINE)
 }

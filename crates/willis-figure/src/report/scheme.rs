@@ -1,6 +1,6 @@
 //! The train: its schematic, its wheels, its teeth, its shift elements and bearings.
 
-use willis::train::{MemberId, Mesh, Train};
+use willis::train::{MemberId, Train};
 
 use super::Findings;
 use super::results::{exact_percent, significant};
@@ -22,7 +22,7 @@ pub fn section(all: &Findings<'_>) -> Section {
     };
     blocks.extend(all.figures.block(FigureKind::Stick, None, &caption));
     blocks.push(wheels(train));
-    blocks.extend(teeth(train));
+    blocks.extend(super::wheels::sheets(train));
     for set in train.sets() {
         let caption = format!("{} seen along its axis", set.name);
         blocks.extend(all.figures.block(FigureKind::Front, Some(&set.name), &caption));
@@ -35,10 +35,6 @@ pub fn section(all: &Findings<'_>) -> Section {
 
 fn name(train: &Train, m: MemberId) -> String {
     train.member_name(m).to_owned()
-}
-
-fn count(mesh: &Mesh) -> String {
-    if mesh.count > 1 { format!("{} ×", mesh.count) } else { String::new() }
 }
 
 fn wheels(train: &Train) -> Block {
@@ -64,36 +60,6 @@ fn wheels(train: &Train) -> Block {
         })
         .collect();
     Block::Table { caption: "Wheels and meshes; z is the number of teeth".into(), columns: heads, rows }
-}
-
-fn teeth(train: &Train) -> Option<Block> {
-    let numbers = ["mₙ mm", "αₙ °", "β °", "width mm", "x₁", "x₂", "a mm", "α′ °", "εα", "εβ", "Ra µm"];
-    let columns = [Column::words("Mesh")].into_iter().chain(numbers.map(Column::numbers)).collect();
-    let rows: Vec<Vec<String>> = (train.meshes().iter())
-        .filter_map(|m| {
-            let t = m.teeth.as_ref()?;
-            let (p, d) = (&t.pair, &t.pair.data);
-            let n = |x: f64| significant(x, 4);
-            let twice = if d.double_helical { "2 × " } else { "" };
-            Some(vec![
-                format!("{} {}", m.name, count(m)).trim().to_owned(),
-                n(d.module * 1e3),
-                n(d.pressure_angle.to_degrees()),
-                n(d.helix.to_degrees()),
-                format!("{twice}{}", n(d.width * 1e3)),
-                n(d.wheels[0].shift),
-                n(d.wheels[1].shift),
-                significant(p.centre_distance * 1e3, 6),
-                n(p.operating_pressure_angle.to_degrees()),
-                n(p.contact_ratio),
-                n(p.overlap_ratio),
-                n(t.roughness[0].max(t.roughness[1]) * 1e6),
-            ])
-        })
-        .collect();
-    let caption = "Teeth: normal module, pressure and helix angle, width, profile shifts, centre distance, operating \
-                   pressure angle α′, contact and overlap ratio, roughness";
-    (!rows.is_empty()).then(|| Block::Table { caption: caption.into(), columns, rows })
 }
 
 fn shift_elements(train: &Train) -> Option<Block> {

@@ -12,14 +12,14 @@ use crate::parts::alive::{Of, guide, of, part};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, PAPER, colour, fit, halo, line, lines, number, page, rectangle, text, watts, wide,
 };
-use crate::{Sankey, SankeyFlow, SankeyLink, SankeyNode};
+use crate::{Drawing, Sankey, SankeyFlow, SankeyLink, SankeyNode};
 use layout::{BAR, LINE_HEIGHT, Layout};
 use ribbon::Ribbon;
 use words::{SMALL, Words, losers, percent};
 
 const MARGIN: f64 = 28.0;
 /// Narrowest page.
-const NARROWEST: f64 = 760.0;
+const NARROWEST: f64 = 750.0;
 
 /// What a ribbon carries.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -79,7 +79,13 @@ impl Carries {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(data: &Sankey) -> String {
-    let drawings: Vec<Option<Layout<'_>>> = data.panels.iter().map(|p| p.flow.as_ref().map(Layout::new)).collect();
+    draw_on(data, Drawing::default())
+}
+
+pub(super) fn draw_on(data: &Sankey, paper: Drawing) -> String {
+    let room = paper.page(f64::INFINITY, NARROWEST) - 2.0 * MARGIN;
+    let drawings: Vec<Option<Layout<'_>>> =
+        data.panels.iter().map(|p| p.flow.as_ref().map(|flow| Layout::new(flow, room))).collect();
     let widest = drawings.iter().flatten().fold(0.0f64, |a, d| a.max(d.width));
     let width = (widest + 2.0 * MARGIN).max(NARROWEST).ceil();
     let room = width - 2.0 * MARGIN;

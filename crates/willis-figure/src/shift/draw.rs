@@ -7,13 +7,14 @@ use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{ShiftChange, ShiftEfficiency, ShiftRow, ShiftTable};
+use crate::{Drawing, ShiftChange, ShiftEfficiency, ShiftRow, ShiftTable};
 
 const MARGIN: f64 = 28.0;
 const ROW: f64 = 40.0;
-const RATIO: f64 = 96.0;
-const STEPS: f64 = 230.0;
-const EFFICIENCY: f64 = 128.0;
+/// Widths on a screen, and the least.
+const RATIO: [f64; 2] = [96.0, 78.0];
+const STEPS: [f64; 2] = [230.0, 136.0];
+const EFFICIENCY: [f64; 2] = [128.0, 80.0];
 /// Room for the letters of a vertical name.
 const TALLEST: f64 = 104.0;
 const BAND: &str = "#f6f6f6";
@@ -55,7 +56,11 @@ struct Columns {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(table: &ShiftTable) -> String {
-    let c = Columns::of(table);
+    draw_on(table, Drawing::default())
+}
+
+pub(super) fn draw_on(table: &ShiftTable, paper: Drawing) -> String {
+    let c = Columns::of(table, paper);
     let bottom = c.top + ROW * table.rows.len() as f64;
     let foot = foot(table);
     let foot: Vec<String> = foot.iter().flat_map(|f| lines(f, c.width - 2.0 * MARGIN, 13.0)).collect();
@@ -94,7 +99,16 @@ pub fn draw(table: &ShiftTable) -> String {
 }
 
 impl Columns {
-    fn of(table: &ShiftTable) -> Self {
+    fn of(table: &ShiftTable, paper: Drawing) -> Self {
+        let whole = Self::so_wide(table, 1.0);
+        let narrow = Self::so_wide(table, 0.0);
+        let width = paper.page(whole.width, narrow.width);
+        Self::so_wide(table, (width - narrow.width) / (whole.width - narrow.width))
+    }
+
+    /// With columns as wide as on a screen (1), as narrow as can be (0), or between.
+    fn so_wide(table: &ShiftTable, part: f64) -> Self {
+        let between = |[wide, narrow]: [f64; 2]| narrow + part * (wide - narrow);
         let longest = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0, f64::max);
         let names = longest(&mut table.rows.iter().map(|r| wide(&r.state, 14.0) * BOLD)).clamp(40.0, 180.0) + 16.0;
         let path = |r: &ShiftRow| r.path.as_ref().map_or(0.0, |p| wide(&arrow(p), 11.0));
@@ -104,7 +118,7 @@ impl Columns {
         };
         let broadest = longest(&mut table.elements.iter().map(|e| wide(&e.name, 12.0) * BOLD));
         // Long names stand upright, and short ones where there are many.
-        let element = if table.elements.len() > 8 { 36.0 } else { 48.0 };
+        let element = between(if table.elements.len() > 8 { [36.0, 24.0] } else { [48.0, 28.0] });
         let upright = broadest > element - 4.0;
         let top = 60.0 + 44.0 + if upright { broadest.min(TALLEST) + 20.0 } else { 34.0 };
         let mut at = MARGIN + names;
@@ -115,10 +129,10 @@ impl Columns {
         };
         let paths = next(paths);
         let elements = next(element * table.elements.len() as f64 + 10.0);
-        let ratio = next(RATIO);
-        let steps = next(STEPS);
-        let drive = next(EFFICIENCY);
-        let coast = next(EFFICIENCY);
+        let ratio = next(between(RATIO));
+        let steps = next(between(STEPS));
+        let drive = next(between(EFFICIENCY));
+        let coast = next(between(EFFICIENCY));
         let widest = longest(&mut table.changes.iter().map(|c| wide(&exchange(c), 12.0) * BOLD)).clamp(90.0, 300.0);
         let changes = next(widest + 34.0);
         Self { names, paths, element, elements, ratio, steps, drive, coast, changes, width: at + MARGIN, top, upright }
@@ -259,15 +273,18 @@ fn cells(table: &ShiftTable, c: &Columns, row: &ShiftRow, y: f64) -> Group {
         }
         return g;
     };
-    let exact =
-        row.exact.clone().filter(|e| e.contains('/') && wide(e, 10.0) < RATIO - 16.0).map(|e| e.replace('-', "−"));
+    let exact = row
+        .exact
+        .clone()
+        .filter(|e| e.contains('/') && wide(e, 11.0) < c.steps - c.ratio - 16.0)
+        .map(|e| e.replace('-', "−"));
     let up = if exact.is_some() { 2.0 } else { -4.0 };
     g = g.add(text(end, y - up, 13.0, Anchor::End, &decimals(ratio)).set("font-weight", "bold"));
     if let Some(exact) = exact {
-        g = g.add(text(end, y + 13.0, 10.0, Anchor::End, &exact).set("fill", FAINT));
+        g = g.add(text(end, y + 13.0, 11.0, Anchor::End, &exact).set("fill", FAINT));
     }
     let most = worst(table);
-    g.add(efficiency(c.drive + 8.0, y, &row.drive, most, 0)).add(efficiency(c.coast + 8.0, y, &row.coast, most, 1))
+    g.add(efficiency(c, y, &row.drive, most, 0)).add(efficiency(c, y, &row.coast, most, 1))
 }
 
 fn worst(table: &ShiftTable) -> f64 {
@@ -275,14 +292,14 @@ fn worst(table: &ShiftTable) -> f64 {
     all.fold(0.0, |a, e| a.max(1.0 - e))
 }
 
-fn efficiency(x: f64, y: f64, e: &ShiftEfficiency, worst: f64, way: usize) -> Group {
+fn efficiency(c: &Columns, y: f64, e: &ShiftEfficiency, worst: f64, way: usize) -> Group {
+    let (x, room) = ([c.drive, c.coast][way] + 8.0, c.coast - c.drive);
     let g = Group::new();
     let Some(value) = e.value else {
-        return g
-            .add(text(x, y + 4.0, 11.0, Anchor::Start, &fit(&e.words, EFFICIENCY - 14.0, 11.0)).set("fill", FAINT));
+        return g.add(text(x, y + 4.0, 11.0, Anchor::Start, &fit(&e.words, room - 14.0, 11.0)).set("fill", FAINT));
     };
     let g = g.add(text(x + 52.0, y + 4.0, 12.0, Anchor::End, &percent(value)));
-    let length = if worst > 0.0 { (1.0 - value) / worst * (EFFICIENCY - 82.0) } else { 0.0 };
+    let length = if worst > 0.0 { (1.0 - value) / worst * (room - 72.0) } else { 0.0 };
     if length < 0.3 {
         return g;
     }
@@ -299,7 +316,7 @@ fn staircase(table: &ShiftTable, c: &Columns) -> Group {
     if low > high {
         return g;
     }
-    let (left, right) = (c.steps + 14.0, c.steps + STEPS - 58.0);
+    let (left, right) = (c.steps + 14.0, c.drive - 58.0);
     let x = |size: f64| match high - low > 1e-9 {
         true => left + (size - low) / (high - low) * (right - left),
         false => (left + right) / 2.0,

@@ -5,13 +5,15 @@ use svg::node::element::{Circle, Group};
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::chart::{Chart, Scale};
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, number, page, rectangle, text, wide,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{Split, SplitMode, SplitPoint};
+use crate::{Drawing, Split, SplitMode, SplitPoint};
 
 const WIDTH: f64 = 1000.0;
+const NARROWEST: f64 = 640.0;
 const LEFT: f64 = 92.0;
-const RIGHT: f64 = 800.0;
+/// Right of the charts: the names of curves.
+const NAMES: f64 = 200.0;
 const TOP: f64 = 118.0;
 const GAP: f64 = 46.0;
 const HEIGHTS: [f64; 3] = [230.0, 150.0, 190.0];
@@ -19,6 +21,12 @@ const HEIGHTS: [f64; 3] = [230.0, 150.0, 190.0];
 /// Efficiency, share of the variator and powers of its machines over the ratio. Upright dashed lines are mechanical
 /// points; dots are equilibria beside the best.
 pub fn draw(split: &Split) -> String {
+    draw_on(split, Drawing::default())
+}
+
+pub(super) fn draw_on(split: &Split, paper: Drawing) -> String {
+    let width = paper.page(WIDTH, NARROWEST);
+    let right = width - NAMES;
     let x = &split.x.values;
     let mut body = Group::new();
     let mut top = TOP;
@@ -38,10 +46,10 @@ pub fn draw(split: &Split) -> String {
         };
         let title = if k == 2 { "Ratio: speed of the input over that of the output" } else { "" };
         let scale = Scale { low: x[0], high: x[x.len() - 1], title: title.into() };
-        let chart = Chart { left: LEFT, top, right: RIGHT, bottom: top + height, x: scale, y };
+        let chart = Chart { left: LEFT, top, right, bottom: top + height, x: scale, y };
         body = body.add(chart.grid());
         if k > 0 && chart.y.low < 0.0 && chart.y.high > 0.0 {
-            body = body.add(guide(line((LEFT, chart.y(0.0)), (RIGHT, chart.y(0.0)), LINE, 1.2)));
+            body = body.add(guide(line((LEFT, chart.y(0.0)), (right, chart.y(0.0)), LINE, 1.2)));
         }
         if k == 0 && several {
             body = body.add(best(split, &chart));
@@ -61,11 +69,14 @@ pub fn draw(split: &Split) -> String {
         body = body.add(chart.frame()).add(names(&curves, &chart, what));
         top += height + GAP;
     }
-    let (notes, bottom) = notes(split, top + 20.0);
+    let (notes, bottom) = notes(split, top + 20.0, width);
     let describe = describe(split);
-    page(WIDTH, bottom, &format!("Power split of {}", split.title), &describe)
-        .add(text(28.0, 38.0, 20.0, Anchor::Start, &fit(&split.title, 920.0 / BOLD, 20.0)).set("font-weight", "bold"))
-        .add(text(28.0, 60.0, 13.0, Anchor::Start, &fit(&split.basis, 920.0, 13.0)).set("fill", FAINT))
+    page(width, bottom, &format!("Power split of {}", split.title), &describe)
+        .add(
+            text(28.0, 38.0, 20.0, Anchor::Start, &fit(&split.title, (width - 80.0) / BOLD, 20.0))
+                .set("font-weight", "bold"),
+        )
+        .add(text(28.0, 60.0, 13.0, Anchor::Start, &fit(&split.basis, width - 80.0, 13.0)).set("fill", FAINT))
         .add(body)
         .add(notes)
         .to_string()
@@ -188,7 +199,7 @@ fn mechanical(split: &Split, chart: &Chart, named: bool) -> Group {
         if named {
             let label = format!("{} at rest, {}", sides.join(", "), digits(ratio));
             let half = wide(&label, 11.0) / 2.0;
-            let middle = x.clamp(LEFT + half, WIDTH - 20.0 - half);
+            let middle = x.clamp(LEFT + half, chart.right + NAMES - 20.0 - half);
             let row = usize::from(ends[0] > middle - half - 6.0);
             ends[row] = middle + half;
             g = g.add(text(middle, chart.top - 8.0 - 14.0 * row as f64, 11.0, Anchor::Middle, &label));
@@ -246,15 +257,15 @@ fn names(curves: &[Curve], chart: &Chart, what: &str) -> Group {
         last = l.0;
     }
     labels.into_iter().fold(Group::new(), |g, (y, c)| {
-        let name = fit(&c.name, WIDTH - RIGHT - 48.0, 12.0);
-        let mark = line((RIGHT + 8.0, y), (RIGHT + 26.0, y), &c.colour, 2.0);
+        let name = fit(&c.name, NAMES - 48.0, 12.0);
+        let mark = line((chart.right + 8.0, y), (chart.right + 26.0, y), &c.colour, 2.0);
         let mark = if c.dashed { mark.set("stroke-dasharray", "6 3") } else { mark };
-        let own = Group::new().add(mark).add(text(RIGHT + 32.0, y + 4.0, 12.0, Anchor::Start, &name));
+        let own = Group::new().add(mark).add(text(chart.right + 32.0, y + 4.0, 12.0, Anchor::Start, &name));
         g.add(of(own, "name", &[Of::Element(&c.name), Of::Quantity(what)]))
     })
 }
 
-fn notes(split: &Split, top: f64) -> (Group, f64) {
+fn notes(split: &Split, top: f64, width: f64) -> (Group, f64) {
     let mut all = vec!["A positive share runs from the first side of the variator to the second.".to_owned()];
     if split.modes.len() > 1 {
         all.push("The band at the foot of the first chart has the colour of the most efficient mode.".into());
@@ -271,9 +282,10 @@ fn notes(split: &Split, top: f64) -> (Group, f64) {
         all.push(format!("A limit of the variator is exceeded at {} of the points, {from_to}.", beyond.len()));
     }
     let mut g = Group::new();
+    let all: Vec<String> = all.iter().flat_map(|words| lines(words, width - 56.0, 12.0)).collect();
     for (k, words) in all.iter().enumerate() {
         let y = top + 16.0 * k as f64;
-        g = g.add(text(28.0, y, 12.0, Anchor::Start, &fit(words, WIDTH - 56.0, 12.0)).set("fill", FAINT));
+        g = g.add(text(28.0, y, 12.0, Anchor::Start, words).set("fill", FAINT));
     }
     (g, top + 16.0 * all.len() as f64 + 6.0)
 }

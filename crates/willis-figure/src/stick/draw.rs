@@ -6,12 +6,12 @@ mod sheet;
 use svg::node::element::{Circle, Group, Path, Polyline};
 
 use self::labels::Labels;
-use self::sheet::{LIST, MARGIN, PLATE, ROW, Sheet};
+use self::sheet::{PLATE, ROW, Sheet};
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{GearRole, JointKind, Place, Stick, StickGear, StickJoint, StickPiece, Way};
+use crate::{Drawing, GearRole, JointKind, Place, Stick, StickGear, StickJoint, StickPiece, Way};
 
 /// Length of a terminal's arrow.
 const ARROW: f64 = 40.0;
@@ -37,7 +37,11 @@ const THICK: f64 = 6.0;
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(data: &Stick) -> String {
-    let sheet = Sheet::new(data);
+    draw_on(data, Drawing::default())
+}
+
+pub(super) fn draw_on(data: &Stick, paper: Drawing) -> String {
+    let sheet = Sheet::new(data, paper);
     let mut page = page(sheet.width, sheet.height, &format!("Stick diagram of {}", data.title), &words(data)).add(
         text(28.0, 38.0, 20.0, Anchor::Start, &fit(&data.title, (sheet.width - 56.0) / BOLD, 20.0))
             .set("font-weight", "bold"),
@@ -390,7 +394,7 @@ impl Sheet<'_> {
             if !t.open {
                 g = g.add(line((x, y), (tip, y), &ink, width));
             }
-            let name = fit(&m.name, (MARGIN - ARROW - 18.0) / BOLD, 12.0);
+            let name = fit(&m.name, (self.margin - ARROW - 18.0) / BOLD, 12.0);
             let (tx, anchor) = (tip + side * 10.0, if t.left { Anchor::End } else { Anchor::Start });
             labels.texts.push(Labels::bounds(tx, y + 4.0, 12.0, anchor, wide(&name, 12.0) * BOLD));
             g = g.add(text(tx, y + 4.0, 12.0, anchor, &name).set("font-weight", "bold"));
@@ -428,28 +432,33 @@ impl Sheet<'_> {
         let top = self.list_top();
         let rows = self.list_rows() - 1;
         let speeds = self.speeds();
+        // Names, parts and speeds share a narrow column.
+        let parts = 182.0 - 0.45 * (430.0 - self.list);
         for column in 0..self.list_columns().min(self.listed().len().div_ceil(rows.max(1))) {
-            let x = 28.0 + LIST * column as f64;
+            let x = 28.0 + self.list * column as f64;
             g = g.add(text(x + 54.0, top, 11.0, Anchor::Start, "member").set("fill", FAINT));
-            g = g.add(text(x + 182.0, top, 11.0, Anchor::Start, "its parts").set("fill", FAINT));
+            g = g.add(text(x + parts, top, 11.0, Anchor::Start, "its parts").set("fill", FAINT));
             if speeds {
-                g = g.add(text(x + LIST - 24.0, top, 11.0, Anchor::End, "speed / input").set("fill", FAINT));
+                g = g.add(text(x + self.list - 24.0, top, 11.0, Anchor::End, "speed / input").set("fill", FAINT));
             }
         }
         for (row, k) in self.listed().into_iter().enumerate() {
             let m = &self.data.members[k];
-            let x = 28.0 + LIST * (row / rows) as f64;
+            let x = 28.0 + self.list * (row / rows) as f64;
             let y = top + ROW * (row % rows + 1) as f64;
             let width = if m.loaded == Some(true) { THICK } else { THIN };
             let number = self.category[k].map_or(0, |c| c + 1);
             let mut own = Group::new()
                 .add(text(x + 14.0, y, 11.0, Anchor::End, &number.to_string()).set("fill", FAINT))
                 .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
-                .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, 120.0, 12.0)))
-                .add(text(x + 182.0, y, 11.0, Anchor::Start, &fit(&self.parts(k), 150.0, 11.0)).set("fill", FAINT));
+                .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, parts - 62.0, 12.0)))
+                .add(
+                    text(x + parts, y, 11.0, Anchor::Start, &fit(&self.parts(k), self.list - 98.0 - parts, 11.0))
+                        .set("fill", FAINT),
+                );
             if let Some(speed) = m.speed_ratio.filter(|_| speeds) {
                 let shown = if speed == 0.0 { "stands still".to_owned() } else { digits(speed) };
-                own = own.add(text(x + LIST - 24.0, y, 11.0, Anchor::End, &shown));
+                own = own.add(text(x + self.list - 24.0, y, 11.0, Anchor::End, &shown));
             }
             g = g.add(of(own, "row", &[Of::Member(&m.name)]));
         }

@@ -185,7 +185,7 @@ fn written(s: &Section, x: f64) -> String {
 fn room(s: &Section, cell: &Cell) -> f64 {
     match cell {
         Cell::Number(x) => wide(&written(s, *x), 11.0),
-        Cell::Words(words) => wide(words, 10.0),
+        Cell::Words(words) => wide(words, 11.0),
         Cell::Closed | Cell::Unknown => 12.0,
     }
 }
@@ -196,8 +196,8 @@ fn drawn(s: &Section, cell: &Cell, [left, right]: [f64; 2], y: f64, most: f64) -
     match cell {
         Cell::Unknown => g.add(text(end, y + 14.0, 11.0, Anchor::End, UNKNOWN).set("fill", FAINT)),
         Cell::Words(words) => {
-            let shown = fit(words, right - left - 8.0, 10.0);
-            g.add(titled(text(end, y + 14.0, 10.0, Anchor::End, &shown).set("fill", FAINT), words))
+            let shown = fit(words, right - left - 8.0, 11.0);
+            g.add(titled(text(end, y + 14.0, 11.0, Anchor::End, &shown).set("fill", FAINT), words))
         }
         Cell::Closed => {
             let dot = Circle::new().set("cx", number(end - 6.0)).set("cy", number(y + ROW / 2.0)).set("r", 4.5);

@@ -5,17 +5,21 @@ use willis::dynamics::{ColumnUnit, ModeLabel, Outcome};
 
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
-    Anchor, FAINT, INK, LINE, PAPER, colour, figures, halo, line, number, page, rectangle, text, ticks,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, figures, fit, halo, line, number, page, rectangle, text, ticks,
 };
-use crate::{ModeRow, TimeLine, TimePanel, TimePlot};
+use crate::{Drawing, ModeRow, TimeLine, TimePanel, TimePlot};
 
 const WIDTH: f64 = 1060.0;
+const NARROWEST: f64 = 640.0;
 const LEFT: f64 = 84.0;
-const RIGHT: f64 = 850.0;
+/// Right of the panels: the names of curves.
+const NAMES: f64 = 210.0;
 const TOP: f64 = 112.0;
 const PANEL: f64 = 172.0;
 const GAP: f64 = 42.0;
 const ROW: f64 = 24.0;
+/// Width of a column of events, at most.
+const EVENTS: f64 = 510.0;
 /// Between the labels of two curves.
 const SPACING: f64 = 14.0;
 /// Pixels by which a curve may be simplified.
@@ -27,14 +31,21 @@ const ABSENT: &str = "#f4f4f4";
 ///
 /// Every curve is labelled at its end, and values that are not determined are gaps.
 pub fn draw(plot: &TimePlot) -> String {
-    let time = TimeAxis::new(plot.axis);
+    draw_on(plot, Drawing::default())
+}
+
+pub(super) fn draw_on(plot: &TimePlot, paper: Drawing) -> String {
+    let width = paper.page(WIDTH, NARROWEST);
+    // Lower on narrow paper.
+    let tall = PANEL * (width / WIDTH).powi(2);
+    let time = TimeAxis::new(plot.axis, width - NAMES);
     let mut body = Group::new();
     let mut y = TOP;
     let mut frames = Vec::new();
     for p in &plot.panels {
-        body = body.add(panel(plot, p, &time, y));
-        frames.push((y, y + PANEL));
-        y += PANEL + GAP;
+        body = body.add(panel(plot, p, &time, [y, y + tall]));
+        frames.push((y, y + tall));
+        y += tall + GAP;
     }
     if !plot.modes.is_empty() {
         body = body.add(modes(plot, &time, y));
@@ -56,9 +67,11 @@ pub fn draw(plot: &TimePlot) -> String {
     let list_top = bottom + 74.0;
     let (list, height) = told(plot, &time, list_top);
     let title = format!("{}: {}", plot.train, plot.scenario);
-    let (one, two) = subtitle(plot, &time);
-    page(WIDTH, height, &format!("Motion of {title}"), &description(plot))
-        .add(text(28.0, 38.0, 20.0, Anchor::Start, &short(&title, 84)).set("font-weight", "bold"))
+    let (one, two) = subtitle(plot, &time, width - 56.0);
+    page(width, height, &format!("Motion of {title}"), &description(plot))
+        .add(
+            text(28.0, 38.0, 20.0, Anchor::Start, &fit(&title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),
+        )
         .add(text(28.0, 58.0, 13.0, Anchor::Start, &one).set("fill", FAINT))
         .add(text(28.0, 75.0, 13.0, Anchor::Start, &two).set("fill", FAINT))
         .add(body)
@@ -66,10 +79,10 @@ pub fn draw(plot: &TimePlot) -> String {
         .to_string()
 }
 
-fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
+fn subtitle(plot: &TimePlot, time: &TimeAxis, room: f64) -> (String, String) {
     let words = plot.outcome.words();
     let [start, end] = plot.run;
-    let whole = TimeAxis::new(plot.run);
+    let whole = TimeAxis::new(plot.run, time.right);
     let mut one = format!("From {} to {}; the run {words}", whole.moment(start), whole.moment(end));
     if plot.axis[0] > start || plot.axis[1] < end {
         one += &format!("; shown from {} to {}", time.moment(plot.axis[0]), time.moment(plot.axis[1]));
@@ -104,7 +117,7 @@ fn subtitle(plot: &TimePlot, time: &TimeAxis) -> (String, String) {
     if let Some(first) = two.get(..1) {
         two = first.to_uppercase() + &two[1..];
     }
-    (short(&one, 160), short(&two, 160))
+    (fit(&one, room, 13.0), fit(&two, room, 13.0))
 }
 
 fn description(plot: &TimePlot) -> String {
@@ -125,13 +138,15 @@ fn description(plot: &TimePlot) -> String {
 struct TimeAxis {
     from: f64,
     to: f64,
+    /// Where the panels end.
+    right: f64,
     unit: &'static str,
     scale: f64,
     ticks: Vec<f64>,
 }
 
 impl TimeAxis {
-    fn new(axis: [f64; 2]) -> Self {
+    fn new(axis: [f64; 2], right: f64) -> Self {
         let [from, mut to] = axis;
         if to <= from {
             to = from + 1.0;
@@ -141,11 +156,12 @@ impl TimeAxis {
             d if d < 0.4 => ("ms", 1e-3),
             _ => ("s", 1.0),
         };
-        Self { from, to, unit, scale, ticks: ticks(from / scale, to / scale, 8) }
+        let about = (((right - LEFT) / 90.0) as usize).max(3);
+        Self { from, to, right, unit, scale, ticks: ticks(from / scale, to / scale, about) }
     }
 
     fn x(&self, t: f64) -> f64 {
-        LEFT + (t - self.from) / (self.to - self.from) * (RIGHT - LEFT)
+        LEFT + (t - self.from) / (self.to - self.from) * (self.right - LEFT)
     }
 
     /// A time with as many digits as tell it from its neighbours.
@@ -162,6 +178,10 @@ impl TimeAxis {
         at.fold(guide(Group::new()), |g, x| g.add(line((x, top), (x, bottom), GRID, 1.0)))
     }
 
+    fn frame(&self, top: f64, bottom: f64) -> svg::node::element::Rectangle {
+        guide(rectangle(LEFT, top, self.right - LEFT, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1))
+    }
+
     fn labels(&self, bottom: f64) -> Group {
         let names = tick_labels(&self.ticks);
         let mut g = Group::new();
@@ -169,7 +189,7 @@ impl TimeAxis {
             let x = self.x(t * self.scale);
             g = g.add(text(x, bottom + 16.0, 11.0, Anchor::Middle, &name).set("fill", FAINT));
         }
-        let middle = (LEFT + RIGHT) / 2.0;
+        let middle = (LEFT + self.right) / 2.0;
         g.add(text(middle, bottom + 36.0, 12.0, Anchor::Middle, &format!("Time, {}", self.unit)).set("fill", FAINT))
     }
 }
@@ -219,12 +239,11 @@ fn range(lines: &[TimeLine], scale: f64) -> (f64, f64) {
     (if low == 0.0 { low } else { low - room }, if high == 0.0 { high } else { high + room })
 }
 
-fn panel(plot: &TimePlot, p: &TimePanel, time: &TimeAxis, top: f64) -> Group {
-    let bottom = top + PANEL;
+fn panel(plot: &TimePlot, p: &TimePanel, time: &TimeAxis, [top, bottom]: [f64; 2]) -> Group {
     let most = p.lines.iter().flat_map(|l| l.pieces.iter().flatten()).fold(0.0f64, |m, v| m.max(v[1].abs()));
     let (unit, scale) = unit(p.unit, most);
     let (low, high) = range(&p.lines, scale);
-    let y = |v: f64| bottom - (v / scale - low) / (high - low) * PANEL;
+    let y = |v: f64| bottom - (v / scale - low) / (high - low) * (bottom - top);
     let head = if unit.is_empty() { p.quantity.clone() } else { format!("{}, {unit}", p.quantity) };
     let mut g = Group::new()
         .add(text(28.0, top - 10.0, 13.0, Anchor::Start, &head).set("font-weight", "bold"))
@@ -234,22 +253,18 @@ fn panel(plot: &TimePlot, p: &TimePanel, time: &TimeAxis, top: f64) -> Group {
     for (t, name) in at.iter().zip(tick_labels(&at)) {
         let y = y(t * scale);
         g = g
-            .add(guide(line((LEFT, y), (RIGHT, y), GRID, 1.0)))
+            .add(guide(line((LEFT, y), (time.right, y), GRID, 1.0)))
             .add(text(LEFT - 6.0, y + 4.0, 11.0, Anchor::End, &name).set("fill", FAINT));
     }
     if low < 0.0 && high > 0.0 {
-        g = g.add(guide(line((LEFT, y(0.0)), (RIGHT, y(0.0)), LINE, 1.0)));
+        g = g.add(guide(line((LEFT, y(0.0)), (time.right, y(0.0)), LINE, 1.0)));
     }
-    g = g.add(frame(top, bottom));
+    g = g.add(time.frame(top, bottom));
     // The first curve last, on top of the others.
     for (k, l) in p.lines.iter().enumerate().rev() {
         g = g.add(of(curve(l, k, time, &y), &format!("curve{k}"), &whose(p, l)));
     }
     g.add(names(p, time, &y, top, bottom))
-}
-
-fn frame(top: f64, bottom: f64) -> svg::node::element::Rectangle {
-    guide(rectangle(LEFT, top, RIGHT - LEFT, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1))
 }
 
 /// What a curve shows: speeds are of members, everything else of parts.
@@ -262,16 +277,17 @@ fn whose<'p>(p: &'p TimePanel, l: &'p TimeLine) -> [Of<'p>; 2] {
 /// The time that the run did not reach.
 fn absent(plot: &TimePlot, time: &TimeAxis, top: f64, bottom: f64) -> Group {
     let from = time.x(plot.run[1]).max(LEFT);
-    if RIGHT - from < 1.0 {
+    let right = time.right;
+    if right - from < 1.0 {
         return Group::new();
     }
-    let g = guide(Group::new()).add(rectangle(from, top, RIGHT - from, bottom - top, ABSENT));
+    let g = guide(Group::new()).add(rectangle(from, top, right - from, bottom - top, ABSENT));
     // One word of it is enough, above the first panel.
-    if top > TOP || RIGHT - from < 70.0 {
+    if top > TOP || right - from < 70.0 {
         return g;
     }
     let word = if plot.outcome == Outcome::Finished { "no rows" } else { "not reached" };
-    g.add(text(RIGHT, top - 4.0, 11.0, Anchor::End, word).set("fill", FAINT))
+    g.add(text(right, top - 4.0, 11.0, Anchor::End, word).set("fill", FAINT))
 }
 
 fn dashes(k: usize) -> &'static str {
@@ -347,25 +363,26 @@ fn names(p: &TimePanel, time: &TimeAxis, y: &impl Fn(f64) -> f64, top: f64, bott
     let wanted: Vec<f64> = ends.iter().map(|e| e.2).collect();
     let placed = spread(&wanted, top + 4.0, bottom - 4.0, SPACING);
     let mut g = Group::new();
+    let right = time.right;
     for ((k, x, end), at) in ends.iter().zip(placed) {
         let l = &p.lines[*k];
         let own = colour(l.colour.or(Some(*k)), 1.0);
         let mut row = Group::new();
-        let from = if RIGHT - x > 3.0 { (*x, *end) } else { (RIGHT, *end) };
+        let from = if right - x > 3.0 { (*x, *end) } else { (right, *end) };
         // From the end of the curve, level to the margin, then to the name.
-        if RIGHT - x > 3.0 {
-            row = row.add(line(from, (RIGHT, *end), &own, 0.8).set("stroke-dasharray", "1 3"));
+        if right - x > 3.0 {
+            row = row.add(line(from, (right, *end), &own, 0.8).set("stroke-dasharray", "1 3"));
         }
         let mut key = Path::new()
             .set(
                 "d",
                 format!(
                     "M{} {} L{} {} L{} {}",
-                    number(RIGHT + 1.0),
+                    number(right + 1.0),
                     number(*end),
-                    number(RIGHT + 12.0),
+                    number(right + 12.0),
                     number(at),
-                    number(RIGHT + 36.0),
+                    number(right + 36.0),
                     number(at)
                 ),
             )
@@ -375,7 +392,7 @@ fn names(p: &TimePanel, time: &TimeAxis, y: &impl Fn(f64) -> f64, top: f64, bott
         if dashes(*k) != "none" {
             key = key.set("stroke-dasharray", dashes(*k));
         }
-        row = row.add(key).add(text(RIGHT + 41.0, at + 4.0, 12.0, Anchor::Start, &together(&l.names, 24)));
+        row = row.add(key).add(text(right + 41.0, at + 4.0, 12.0, Anchor::Start, &together(&l.names, 24)));
         g = g.add(of(row, &format!("name{k}"), &whose(p, l)));
     }
     g
@@ -477,7 +494,7 @@ fn modes(plot: &TimePlot, time: &TimeAxis, top: f64) -> Group {
     for (k, r) in plot.modes.iter().enumerate() {
         g = g.add(of(mode_row(r, time, top + ROW * k as f64), "mode", &[Of::Element(&r.element)]));
     }
-    g.add(frame(top, bottom))
+    g.add(time.frame(top, bottom))
 }
 
 fn mode_row(r: &ModeRow, time: &TimeAxis, y: f64) -> Group {
@@ -502,7 +519,7 @@ fn mode_row(r: &ModeRow, time: &TimeAxis, y: f64) -> Group {
             });
         }
     }
-    g.add(text(RIGHT + 8.0, y + ROW / 2.0 + 4.0, 12.0, Anchor::Start, &short(&r.element, 29)))
+    g.add(text(time.right + 8.0, y + ROW / 2.0 + 4.0, 12.0, Anchor::Start, &short(&r.element, 29)))
 }
 
 /// Thin lines where modes changed; the first have numbers.
@@ -515,7 +532,7 @@ fn events(plot: &TimePlot, time: &TimeAxis, frames: &[(f64, f64)]) -> Group {
     for t in &plot.event_times {
         let x = time.x(*t);
         // No more than one line where two could not be told apart.
-        if x - last < 2.5 || !(LEFT..=RIGHT).contains(&x) {
+        if x - last < 2.5 || !(LEFT..=time.right).contains(&x) {
             continue;
         }
         last = x;
@@ -537,12 +554,12 @@ fn events(plot: &TimePlot, time: &TimeAxis, frames: &[(f64, f64)]) -> Group {
     for (k, m) in plot.marks.iter().enumerate() {
         let x = time.x(m.time);
         let name = (k + 1).to_string();
-        let half = 3.4 * name.len() as f64;
-        if x - half < free || !(LEFT..=RIGHT).contains(&x) {
+        let half = 3.7 * name.len() as f64;
+        if x - half < free || !(LEFT..=time.right).contains(&x) {
             continue;
         }
         free = x + half + 3.0;
-        g = g.add(text(x, first.0 - 4.0, 10.0, Anchor::Middle, &name).set("fill", FAINT));
+        g = g.add(text(x, first.0 - 4.0, 11.0, Anchor::Middle, &name).set("fill", FAINT));
     }
     g
 }
@@ -554,13 +571,14 @@ fn told(plot: &TimePlot, time: &TimeAxis, top: f64) -> (Group, f64) {
     }
     let mut g = Group::new().add(text(28.0, top, 13.0, Anchor::Start, "Changes of mode").set("font-weight", "bold"));
     let rows = plot.marks.len().div_ceil(2);
+    let column = EVENTS.min((time.right + NAMES - 40.0) / 2.0);
     for (k, m) in plot.marks.iter().enumerate() {
-        let x = 28.0 + (k / rows) as f64 * 510.0;
+        let x = 28.0 + (k / rows) as f64 * column;
         let y = top + 22.0 + 18.0 * (k % rows) as f64;
         g = g
             .add(text(x + 16.0, y, 12.0, Anchor::End, &(k + 1).to_string()).set("fill", FAINT))
             .add(text(x + 104.0, y, 12.0, Anchor::End, &time.moment(m.time)))
-            .add(text(x + 116.0, y, 12.0, Anchor::Start, &short(&m.cause, 58)));
+            .add(text(x + 116.0, y, 12.0, Anchor::Start, &fit(&m.cause, column - 124.0, 12.0)));
     }
     let mut height = top + 22.0 + 18.0 * rows as f64;
     let rest = plot.event_count.saturating_sub(plot.marks.len());

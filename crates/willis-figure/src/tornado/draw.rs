@@ -8,11 +8,13 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
     ticks, watts, wide,
 };
-use crate::{Tornado, TornadoBar};
+use crate::parts::words::spelled;
+use crate::{Drawing, Tornado, TornadoBar};
 
 const MARGIN: f64 = 28.0;
 const ROW: f64 = 30.0;
-const HALF: f64 = 200.0;
+/// The longest bar, and the least room for it.
+const HALF: [f64; 2] = [200.0, 70.0];
 const EFFECT: f64 = 130.0;
 const TOP: f64 = 122.0;
 
@@ -42,24 +44,32 @@ const TOP: f64 = 122.0;
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(t: &Tornado) -> String {
+    draw_on(t, Drawing::default())
+}
+
+pub(super) fn draw_on(t: &Tornado, paper: Drawing) -> String {
     let longest = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0, f64::max);
-    let names = longest(&mut t.bars.iter().map(|b| wide(&name(b), 12.0) * BOLD)).clamp(110.0, 290.0);
+    let names = longest(&mut t.bars.iter().map(|b| wide(&name(b), 12.0) * BOLD))
+        .clamp(110.0, (0.3 * paper.page(1000.0, 440.0)).min(290.0));
     let values = longest(&mut t.bars.iter().map(|b| wide(&value(b), 11.0).max(wide(b.step.label(), 11.0)))).max(60.0);
     // The change stands at the end of the bar, on both sides.
     let room = longest(&mut t.bars.iter().map(|b| wide(&signed(b.loss_change_w), 11.0))) + 10.0;
     let columns = [MARGIN, MARGIN + names + 12.0, MARGIN + names + values + 24.0];
     let left = columns[2] + wide("+0.1 mm", 11.0) + room;
-    let middle = left + HALF;
-    let right = middle + HALF + room;
+    let beside = left + room + EFFECT + MARGIN;
+    let half = (paper.page(beside + 2.0 * HALF[0], beside + 2.0 * HALF[1]) - beside) / 2.0;
+    let middle = left + half;
+    let right = middle + half + room;
     // A long title may widen the page somewhat.
-    let width = (right + EFFECT + MARGIN).max((wide(&t.title, 20.0) * BOLD + 2.0 * MARGIN).min(1200.0));
+    let width =
+        (right + EFFECT + MARGIN).max((wide(&t.title, 20.0) * BOLD + 2.0 * MARGIN).min(paper.page(1200.0, 0.0)));
     let bottom = TOP + ROW * t.bars.len() as f64;
 
     let inner = width - 2.0 * MARGIN;
     let most = longest(&mut t.bars.iter().map(|b| b.loss_change_w.abs())).max(f64::MIN_POSITIVE);
-    let x = |change: f64| middle + change / most * HALF;
+    let x = |change: f64| middle + change / most * half;
     let mut g = Group::new();
-    for tick in ticks(-most, most, 6) {
+    for tick in ticks(-most, most, ((half / 33.0) as usize).clamp(2, 6)) {
         let label = digits(tick);
         g = g
             .add(guide(line((x(tick), TOP), (x(tick), bottom), "#e4e4e4", 1.0)))
@@ -142,7 +152,8 @@ fn caption(t: &Tornado) -> String {
 }
 
 fn name(b: &TornadoBar) -> String {
-    if b.assumed { format!("{} *", b.name) } else { b.name.clone() }
+    let name = spelled(&b.name);
+    if b.assumed { format!("{name} *") } else { name }
 }
 
 /// With a sign and three digits.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use roxmltree::{Document as Xml, Node, ParsingOptions};
 use willis_figure::html;
-use willis_figure::report::document::{Block, Column, Document, Level, Section};
+use willis_figure::report::document::{Block, Column, Document, Level, Section, Term, TitleBlock};
 
 const EVIL: &str = "太阳轮 <b onload=\"x\">&amp;</b> {{ 7 * 7 }} {% if %} ]]> --> </style> 'q'";
 
@@ -35,13 +35,17 @@ fn document() -> Document {
         formula(r"\begin{aligned}&a + b \\ &{}- \frac{1}{2}\end{aligned}"),
         formula(r"a < b > c \text{ <b> } \mathrm{<\&>} \left\langle x \right\rangle"),
         formula(r"\text{<b>&} \nosuch{<i>}"),
+        Block::Terms { head: text(), items: vec![Term { latex: "i_{0} < 0".into(), text: text() }] },
+        Block::Terms { head: text(), items: vec![Term { latex: r"\nosuch{<i>}".into(), text: text() }] },
         Block::Code { text: text() },
     ];
     let notices =
         [Level::Good, Level::Note, Level::Warning, Level::Stop].map(|level| Block::Notice { level, text: text() });
     let sections = [blocks, notices.to_vec(), vec![]].map(|blocks| Section { title: text(), blocks });
     let facts = vec![[text(), text()]];
-    Document { format: Default::default(), title: text(), subtitle: text(), facts, sections: sections.to_vec() }
+    let title_block = TitleBlock { project: text(), author: text(), date: text(), revision: text() };
+    let sections = sections.to_vec();
+    Document { format: Default::default(), title: text(), subtitle: text(), title_block, facts, sections }
 }
 
 fn with_page(look: impl FnOnce(&str, &Xml<'_>)) {
@@ -101,7 +105,7 @@ fn nothing_is_loaded() {
 #[test]
 fn formulas_are_set_or_shown_as_written() {
     with_page(|_, xml| {
-        assert_eq!(named(xml, "math").count(), 3);
+        assert_eq!(named(xml, "math").count(), 4);
         assert!(named(xml, "code").any(|c| c.text() == Some(r"\text{<b>&} \nosuch{<i>}")));
     });
 }

@@ -80,6 +80,12 @@ fn faults(svg: &str, faces: &Arc<fontdb::Database>) -> Vec<String> {
         let own = n.ancestors().find_map(|a| a.attribute(what));
         own.map_or(what == "fill", |v| v != "none")
     };
+    for n in document.descendants().filter(|n| n.has_tag_name("text")) {
+        let size = n.ancestors().find_map(|a| a.attribute("font-size")).and_then(|s| s.parse::<f64>().ok());
+        if size.is_none_or(|s| s < Drawing::SMALLEST_TEXT) {
+            wrong.push(format!("a text of size {size:?}: {:?}", n.text()));
+        }
+    }
     let mut marks = 0;
     for n in document.descendants() {
         let number = |name: &str| n.attribute(name).and_then(|v| v.parse::<f64>().ok());
@@ -215,9 +221,12 @@ fn every_kind_of_every_example_is_fit_to_print() {
             let svg = draw(&figure, Drawing::default());
             assert_eq!(svg, draw(&figure, Drawing::default()), "the same figure, the same bytes");
             keep(&format!("{name}.{}", kind.name()), &svg, &faces);
-            let found = faults(&svg, &faces);
-            for fault in found.iter().take(5) {
-                let _ = writeln!(wrong, "{} {}: {fault}", name, kind.name());
+            // On a screen, on a page, on a page for figures alone.
+            for width in [None, Some(770), Some(1180)] {
+                let svg = draw(&figure, Drawing { width, ..Drawing::default() });
+                for fault in faults(&svg, &faces).iter().take(5) {
+                    let _ = writeln!(wrong, "{} {} {width:?}: {fault}", name, kind.name());
+                }
             }
         }
     }

@@ -76,6 +76,12 @@ pub struct Argument {
 }
 
 impl Argument {
+    /// What it is made of, as LaTeX, where that is a formula: of a basic ratio the speeds.
+    pub fn meaning_latex(&self) -> Option<&str> {
+        let (_, formula) = self.meaning_latex.as_deref()?.split_once("\\(")?;
+        formula.split_once("\\)").map(|(formula, _)| formula)
+    }
+
     /// What is wrong with a value that it can never have; `None` if it can have every value.
     pub(crate) fn range(&self) -> Option<Outside> {
         match self.kind {

@@ -20,6 +20,8 @@ pub const END: f64 = 30.0;
 const WIDEST: f64 = 92.0;
 /// The same where power is led back, and the rising ribbons widen the picture.
 const WIDEST_ROUND: f64 = 58.0;
+/// Least room beside a node and between columns, and the most that a ribbon takes to bend: usual, and tight.
+const SPACING: [[f64; 3]; 2] = [[16.0, 50.0, 120.0], [6.0, 22.0, 70.0]];
 /// Inner radius of what is led back.
 const ROUND: f64 = 8.0;
 /// Least room between nodes of a column.
@@ -93,7 +95,13 @@ struct Item {
 }
 
 impl<'f> Layout<'f> {
-    pub fn new(flow: &'f SankeyFlow) -> Self {
+    /// As wide as looks good, or tighter where there is less room than that.
+    pub fn new(flow: &'f SankeyFlow, room: f64) -> Self {
+        let usual = Self::spaced(flow, SPACING[0]);
+        if usual.width <= room { usual } else { Self::spaced(flow, SPACING[1]) }
+    }
+
+    fn spaced(flow: &'f SankeyFlow, spacing: [f64; 3]) -> Self {
         let largest = flow.nodes.iter().fold(f64::MIN_POSITIVE, |a, n| a.max(n.power_w));
         let round = flow.links.iter().any(|l| l.back);
         let scale = if round { WIDEST_ROUND } else { WIDEST } / largest;
@@ -114,7 +122,7 @@ impl<'f> Layout<'f> {
             rounds: vec![None; links],
         };
         own.stack_columns();
-        own.spread_columns();
+        own.spread_columns(spacing);
         own.lead_round();
         own.place_labels();
         own.move_to_corner();
@@ -251,10 +259,10 @@ impl<'f> Layout<'f> {
         if all.is_empty() { 0.0 } else { sum + ROUND + 4.0 }
     }
 
-    fn spread_columns(&mut self) {
+    fn spread_columns(&mut self, [beside, between, bend]: [f64; 3]) {
         let layers = self.flow.layers;
         let words = Words::of(self.flow);
-        let mut half = vec![BAR / 2.0 + 16.0; layers];
+        let mut half = vec![BAR / 2.0 + beside; layers];
         for n in &self.flow.nodes {
             let texts = words
                 .head(n)
@@ -268,14 +276,14 @@ impl<'f> Layout<'f> {
             let turn = if n.losses.is_empty() { 0.0 } else { BAR / 2.0 + TURN + lost + 6.0 };
             half[n.layer] = half[n.layer].max(texts / 2.0 + 4.0).max(ends).max(turn);
         }
-        let mut bends = vec![50.0f64; layers];
+        let mut bends = vec![between; layers];
         for (j, l) in self.flow.links.iter().enumerate().filter(|(_, l)| !l.back) {
             let first = self.flow.nodes[l.from].layer;
             let heights = self.heights(j);
             for (k, w) in heights.windows(2).enumerate() {
                 // Wide enough that the band does not look thin where it is steep.
                 let fall = (w[1] - w[0]).abs();
-                bends[first + k] = bends[first + k].max((0.5 * fall + 0.3 * self.thickness(j).min(fall)).min(120.0));
+                bends[first + k] = bends[first + k].max((0.5 * fall + 0.3 * self.thickness(j).min(fall)).min(bend));
             }
             if self.told(j) {
                 let texts = words.link(l).iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max);

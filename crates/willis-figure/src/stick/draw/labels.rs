@@ -91,8 +91,8 @@ impl Sheet<'_> {
             }
             let beside = 0.42 * self.unit;
             spots.extend([(x + beside, t.1 + 3.5, Anchor::Start), (x - beside, t.1 + 3.5, Anchor::End)]);
-            let shown = fit(&gear.teeth, 60.0, 10.0);
-            g = g.add(self.label(&shown, None, 10.0, FAINT, "normal", &spots, labels));
+            let shown = fit(&gear.teeth, 60.0, 11.0);
+            g = g.add(self.label(&shown, None, 11.0, FAINT, "normal", &spots, labels));
         }
         g
     }

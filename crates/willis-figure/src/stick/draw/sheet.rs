@@ -1,15 +1,17 @@
 //! The page of a stick diagram: where it is drawn, and which members are listed in which colour.
 
-use crate::parts::style::{INK, colour};
-use crate::{Place, Stick};
+use crate::parts::style::{BOLD, INK, colour, wide};
+use crate::{Drawing, Place, Stick};
 
-/// Left and right of the grid: names and arrows of the terminals.
-pub const MARGIN: f64 = 168.0;
+/// Left and right of the grid on a screen.
+const MARGIN: f64 = 168.0;
+/// The least of it, beside the longest name: an arrow.
+const ARROW_ROOM: f64 = 64.0;
 const TOP: f64 = 124.0;
 /// Half the length of a friction plate, of the line of the frame.
 pub const PLATE: f64 = 9.0;
-/// Width of one column of the list of members, and height of its rows.
-pub const LIST: f64 = 430.0;
+/// Width of one column of the list of members, and the least of it; height of its rows.
+const LIST: [f64; 2] = [430.0, 340.0];
 pub const ROW: f64 = 19.0;
 
 /// The page of a stick diagram.
@@ -17,6 +19,10 @@ pub struct Sheet<'a> {
     pub data: &'a Stick,
     pub width: f64,
     pub height: f64,
+    /// Left and right of the grid: names and arrows of the terminals.
+    pub margin: f64,
+    /// Width of a column of the list of members.
+    pub list: f64,
     pub left: f64,
     pub unit: f64,
     pub rise: f64,
@@ -25,11 +31,17 @@ pub struct Sheet<'a> {
 }
 
 impl<'a> Sheet<'a> {
-    pub fn new(data: &'a Stick) -> Self {
-        let unit = (1064.0 / data.width.max(1.0)).clamp(44.0, 80.0).floor();
+    pub fn new(data: &'a Stick, paper: Drawing) -> Self {
+        let names = data.terminals.iter().map(|t| wide(&data.members[t.member].name, 12.0) * BOLD);
+        let narrow = (names.fold(0.0, f64::max) + ARROW_ROOM).min(MARGIN);
+        let on_screen = 1064.0 + 2.0 * MARGIN;
+        let room = paper.page(on_screen, 560.0);
+        let [margin, least] = if room < on_screen { [narrow, 32.0] } else { [MARGIN, 44.0] };
+        let margins = 2.0 * margin;
+        let unit = ((room - margins) / data.width.max(1.0)).clamp(least, 80.0).floor();
         let rise = (420.0 / data.height.max(1.0)).clamp(46.0, 66.0).floor();
         let drawn = unit * data.width;
-        let width = (drawn + 2.0 * MARGIN).clamp(640.0, 4000.0).max(0.0);
+        let width = (drawn + margins).clamp(640.0, 4000.0).max(0.0);
         let left = (width - drawn) / 2.0;
         let led_out = |k: usize| {
             let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
@@ -37,7 +49,9 @@ impl<'a> Sheet<'a> {
         };
         let category =
             data.members.iter().enumerate().map(|(k, m)| (!m.planet || led_out(k)).then_some(m.colour)).collect();
-        let mut s = Self { data, width, height: 0.0, left, unit, rise, category };
+        let half = (width - 56.0) / 2.0;
+        let list = if room < on_screen && half >= LIST[1] { half.min(LIST[0]) } else { LIST[0] };
+        let mut s = Self { data, width, height: 0.0, margin, list, left, unit, rise, category };
         s.height = s.list_top() + s.list_rows() as f64 * ROW + 52.0;
         s
     }
@@ -64,7 +78,7 @@ impl<'a> Sheet<'a> {
     }
 
     pub fn list_columns(&self) -> usize {
-        (((self.width - 56.0) / LIST) as usize).max(1)
+        (((self.width - 56.0) / self.list + 1e-9) as usize).max(1)
     }
 
     pub fn list_rows(&self) -> usize {

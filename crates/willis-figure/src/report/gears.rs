@@ -1,0 +1,85 @@
+//! The first table: ratio, speeds and torques of every gear.
+
+use willis::analysis::{ShaftState, shaft_table};
+use willis::exact::Rational;
+use willis::train::{AS_DRAWN, MemberKind, Train};
+
+use super::results::{exact_percent, fixed};
+use crate::report::document::{Block, Column};
+
+/// Gears beside each other.
+const BESIDE: usize = 10;
+/// Shafts of a table.
+const SHAFTS: usize = 24;
+
+/// Ratio, efficiency, closed elements, speeds and torques of all gears: a column a gear. Nothing where the train has no input and
+/// output to count from.
+pub fn tables(train: &Train) -> Vec<Block> {
+    let Ok(table) = shaft_table(train, None, false) else { return vec![] };
+    let all = &table.states.0;
+    let blocks = all.len().div_ceil(BESIDE).max(1);
+    all.chunks(all.len().div_ceil(blocks).max(1)).map(|states| block(train, states)).collect()
+}
+
+fn block(train: &Train, states: &[(String, ShaftState)]) -> Block {
+    let mut rows: Vec<Vec<String>> = vec![];
+    let mut row = |quantity: &str, of: &str, cell: &dyn Fn(&ShaftState) -> String| {
+        let cells: Vec<String> = states.iter().map(|(_, s)| cell(s)).collect();
+        if cells.iter().any(|c| !c.is_empty()) {
+            rows.push([quantity.to_owned(), of.to_owned()].into_iter().chain(cells).collect());
+        }
+    };
+    row("Ratio", "input to output", &|s| s.ratio.as_ref().map_or("–".into(), |i| fixed(i.to_f64(), 3)));
+    row("Efficiency", "nominal, driving", &|s| s.efficiency.map_or("–".into(), exact_percent));
+    row("Closed", "", &|s| s.engaged.join(" "));
+    let ends: Vec<&str> = states.iter().flat_map(|(_, s)| [s.input.as_str(), s.output.as_str()]).collect();
+    let one_input = ends.iter().step_by(2).all(|i| *i == ends[0]);
+    if !one_input {
+        row("From", "", &|s| s.input.clone());
+    }
+    let one_output = ends.iter().skip(1).step_by(2).all(|o| *o == ends[1]);
+    if !one_output {
+        row("To", "", &|s| s.output.clone());
+    }
+    let shafts: Vec<&str> = (train.members().iter())
+        .filter(|m| m.kind == MemberKind::Shaft && !(one_input && m.name == ends[0]))
+        .map(|m| m.name.as_str())
+        .take(SHAFTS)
+        .collect();
+    for (k, name) in shafts.iter().enumerate() {
+        row(if k == 0 { "Speed" } else { "" }, name, &|s| {
+            let speed = s.members.get(name).and_then(|m| m.speed.as_ref());
+            speed.map_or("–".into(), |w: &Rational| fixed(w.to_f64(), 3))
+        });
+    }
+    let mut first = true;
+    let mut torque = |name: &str, cell: &dyn Fn(&ShaftState) -> String| {
+        row(if std::mem::take(&mut first) { "Torque" } else { "" }, name, cell);
+    };
+    let outputs: Vec<&str> = shafts.iter().copied().filter(|name| ends.contains(name)).collect();
+    for name in outputs {
+        torque(name, &|s| match s.members.get(name).and_then(|m| m.torque) {
+            Some(t) if t != 0.0 => fixed(t, 3),
+            Some(_) => String::new(),
+            None => "–".into(),
+        });
+    }
+    for e in train.shift_elements() {
+        torque(&format!("{} {}", e.kind, e.name), &|s| match s.shift_elements.get(&e.name) {
+            Some(own) if own.engaged => own.torque.map_or("–".into(), |t| fixed(t, 3)),
+            _ => String::new(),
+        });
+    }
+    let gear = |name: &String| if name == AS_DRAWN { "Value".to_owned() } else { name.clone() };
+    let columns = [Column::words("Quantity"), Column::words("Of")].into_iter();
+    let columns = columns.chain(states.iter().map(|(name, _)| Column::numbers(gear(name)))).collect();
+    let what =
+        if train.states().is_empty() { "Ratio, speeds and torques" } else { "Ratio, speeds and torques of all gears" };
+    let more = train.members().iter().filter(|m| m.kind == MemberKind::Shaft).count().saturating_sub(SHAFTS + 1);
+    let left_out = if more > 0 { format!("; {more} more shafts are not shown") } else { String::new() };
+    let caption = format!(
+        "{what}, the input driving. Speeds are over that of the input. Torques are over that of the input, with the nominal \
+         efficiencies of the meshes: external torques of shafts, torques that closed elements exert on their first shaft{left_out}"
+    );
+    Block::Table { caption, columns, rows }
+}
