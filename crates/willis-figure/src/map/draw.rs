@@ -293,7 +293,7 @@ fn level(map: &EfficiencyMap, mesh: &Mesh<'_>, state: usize, taken: &mut Vec<[f6
     let (least, most) = own.fold((f64::INFINITY, 0.0f64), |(l, m), e| (l.min(e), m.max(e)));
     let ((x, y), _) = mesh.middle(|p| p.best == Some(state));
     let name = percent((least + most) / 2.0);
-    let half = wide(&name, 10.5) / 2.0 + 2.0;
+    let half = wide(&name, 11.0) / 2.0 + 2.0;
     let place = [x - half, y - 8.0, x + half, y + 8.0];
     let inside = [(place[0], y), (place[2], y), (x, place[1]), (x, place[3])];
     let room = inside.iter().all(|p| mesh.holds(*p, |p| p.best == Some(state)));
@@ -302,7 +302,7 @@ fn level(map: &EfficiencyMap, mesh: &Mesh<'_>, state: usize, taken: &mut Vec<[f6
         return Group::new();
     }
     taken.push(place);
-    halo(text(x, y + 3.5, 10.5, Anchor::Middle, &name), PAPER, 3.0)
+    halo(text(x, y + 3.5, 11.0, Anchor::Middle, &name), PAPER, 3.0)
 }
 
 /// Lines of one level as one path.
