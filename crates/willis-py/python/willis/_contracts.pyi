@@ -3223,6 +3223,76 @@ class DrawLever(Record):
     def level(self) -> bool:
         """Whether a member stands equally high on all of its levers."""
 
+class DrawWolfMember(Record):
+    """A member."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def colour(self) -> int:
+        """Number of its colour: its place in the train."""
+    @property
+    def terminal(self) -> bool:
+        """Power from outside may enter or leave here."""
+
+class DrawWolfShaft(Record):
+    """A shaft of a set."""
+    @property
+    def member(self) -> int | None:
+        """Position in [``Wolf::members``]; absent for the frame."""
+    @property
+    def role(self) -> Literal["carrier", "sun", "ring", "gear", "planet"]:
+        """What it is in the set."""
+    @property
+    def sum(self) -> bool:
+        """Its torque is the sum of the other two, with the other sign, when losses are left out."""
+
+class DrawWolfSet(Record):
+    """Planets on one carrier with their central gears, or a pair of gears."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def shafts(self) -> list[DrawWolfShaft]:
+        """Its shafts, the carrier last."""
+    @property
+    def basic_ratio(self) -> str | None:
+        """Speed of the first over that of the second shaft, relative to the carrier, as a fraction; of sets with three
+        shafts."""
+
+class DrawWolfTie(Record):
+    """A shift element between two members, or a member and the frame."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def members(self) -> list[int | None]:
+        """Positions in [``Wolf::members``]; absent for the frame."""
+    @property
+    def one_way(self) -> bool:
+        """It locks in one direction only."""
+    @property
+    def engaged(self) -> bool:
+        """It is closed in the state."""
+
+class DrawWolf(Record):
+    """A train as Wolf's symbols."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def state(self) -> str | None:
+        """The state whose shift elements are closed."""
+    @property
+    def members(self) -> list[DrawWolfMember]:
+        """Members with a shaft in a set or a shift element, in the order of the train; without the frame."""
+    @property
+    def sets(self) -> list[DrawWolfSet]:
+        """The boxes."""
+    @property
+    def ties(self) -> list[DrawWolfTie]:
+        """Shift elements."""
+
 class DrawSankeyLoss(Record):
     """Power that turns into heat."""
     @property
@@ -3304,6 +3374,9 @@ class DrawSankeyLink(Record):
         """The part of it that runs in circles, W; the upper part of the ribbon."""
     @property
     def circulating(self) -> float: ...
+    @property
+    def framed(self) -> bool:
+        """That part goes round only as powers are counted in the frame of the housing: it never leaves its set."""
     @property
     def back(self) -> bool:
         """Whether it is led back to an earlier layer, above all nodes."""
@@ -3662,6 +3735,9 @@ class DrawFrontWheel(Record):
     def name(self) -> str:
         """The member it sits on."""
     @property
+    def colour(self) -> int | None:
+        """Number of its colour: the place of that member in the train; absent for the frame."""
+    @property
     def teeth(self) -> int:
         """Tooth count ``z``."""
     @property
@@ -3975,6 +4051,31 @@ class DrawMapPoint(Record):
     @property
     def best(self) -> int | None:
         """The best state, as position among [``EfficiencyMap::states``]."""
+    @property
+    def zone(self) -> int:
+        """Points of a zone have the same verdict and best state, power through each mesh in the same direction, and
+        the same inputs and outputs: within it the efficiency has neither jump nor kink."""
+
+class DrawMapBorder(Record):
+    """The border of two zones between two neighbouring points of the map."""
+    @property
+    def between(self) -> list[int]:
+        """The points, as positions among [``EfficiencyMap::points``]."""
+    @property
+    def at(self) -> float:
+        """Where it is: 0 at the first point, 1 at the second."""
+    @property
+    def sides(self) -> list[DrawMapPoint]:
+        """What holds right before and right behind it."""
+
+class DrawMapJoint(Record):
+    """Where several zones meet."""
+    @property
+    def cell(self) -> int:
+        """The lower left point of its cell, as position among [``EfficiencyMap::points``]."""
+    @property
+    def at(self) -> list[float]:
+        """Where it is in the cell: 0 at that point, 1 at the next along each axis."""
 
 class DrawMapMark(Record):
     """An operation of the file in a map."""
@@ -4002,6 +4103,12 @@ class DrawEfficiencyMap(Record):
     @property
     def points(self) -> list[DrawMapPoint]:
         """The points, row by row from the lowest ``y`` on, each row along ``x``."""
+    @property
+    def borders(self) -> list[DrawMapBorder]:
+        """Where one zone ends and the next begins: between all neighbours of different zones."""
+    @property
+    def joints(self) -> list[DrawMapJoint]:
+        """Where three zones or more meet within a cell of the grid."""
     @property
     def states(self) -> list[str]:
         """The states among which the best is chosen at every point; empty for a map of one state."""
@@ -4267,6 +4374,9 @@ class DrawTimeLine(Record):
     def names(self) -> list[str]:
         """Whose it is; several names where they agree throughout."""
     @property
+    def colour(self) -> int | None:
+        """Number of the colour of the first, of a speed: the place of the member in the train."""
+    @property
     def pieces(self) -> list[list[list[float]]]:
         """Its pieces between gaps: time, s, and value. First, least, greatest and last value of every short interval
         are kept, so that no spike is lost."""
@@ -4347,7 +4457,7 @@ class DrawTimePlot(Record):
         """When modes changed, s; of several within a thousandth of the run, the first."""
     @property
     def event_count(self) -> int:
-        """All changes of mode after the start."""
+        """All changes of mode after the start, of those that are shown."""
 
 class DrawShiftColumn(Record):
     """A shift element."""
@@ -4633,7 +4743,7 @@ class DrawBands(Record):
 class DrawMissing(Record):
     """A kind of figure that does not apply to a train."""
     @property
-    def kind(self) -> Literal["stick", "lever", "sankey", "flow", "front", "regimes", "map", "split", "losses", "film", "path", "time", "shift", "table", "tornado", "band"]:
+    def kind(self) -> Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "film", "path", "time", "shift", "table", "tornado", "band"]:
         """The kind."""
     @property
     def why(self) -> str:
@@ -4645,11 +4755,26 @@ class DrawAnswer(_answer.Drawing):
     def format(self) -> Literal["willis-figures-1"]:
         """``willis-figures-1``."""
     @property
-    def figures(self) -> list[DrawStick | DrawLever | DrawSankey | DrawFlowReport | DrawFront | DrawRegimeMap | DrawEfficiencyMap | DrawSplit | DrawLossChart | DrawContactPath | DrawTimePlot | DrawShiftTable | DrawShaftTable | DrawTornado | DrawBands]:
+    def figures(self) -> list[DrawStick | DrawLever | DrawWolf | DrawSankey | DrawFlowReport | DrawFront | DrawRegimeMap | DrawEfficiencyMap | DrawSplit | DrawLossChart | DrawContactPath | DrawTimePlot | DrawShiftTable | DrawShaftTable | DrawTornado | DrawBands]:
         """The figures, as data."""
     @property
     def missing(self) -> list[DrawMissing]:
         """Kinds that do not apply, and why."""
+
+class ReportTitleBlock(Record):
+    """What a title block says; empty where nothing was given. Nothing of it comes from a clock."""
+    @property
+    def project(self) -> str:
+        """The project or customer."""
+    @property
+    def author(self) -> str:
+        """Who answers for the report."""
+    @property
+    def date(self) -> str:
+        """The date, in the words of the author."""
+    @property
+    def revision(self) -> str:
+        """Which revision of the report it is."""
 
 class ReportSection(Record):
     """A part of a report with a heading."""
@@ -4671,6 +4796,9 @@ class ReportAnswer(_answer.Report):
     @property
     def subtitle(self) -> str:
         """What kind of document it is, in a few words."""
+    @property
+    def title_block(self) -> ReportTitleBlock:
+        """Who made it for what, as they said."""
     @property
     def facts(self) -> list[list[str]]:
         """What a reader looks for on the first page: a word and what it is."""

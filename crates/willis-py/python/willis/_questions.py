@@ -716,7 +716,7 @@ class Questions:
 
     def draw(
         self,
-        kind: Literal["stick", "lever", "sankey", "flow", "front", "regimes", "map", "split", "losses", "film", "path", "time", "shift", "table", "tornado", "band", "all"] | None = None,
+        kind: Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "film", "path", "time", "shift", "table", "tornado", "band", "all"] | None = None,
         *,
         state: str | None = None,
         operation: str | None = None,
@@ -725,9 +725,12 @@ class Questions:
         terminals: Sequence[str] | str | None = None,
         balance: Sequence[str] | str | None = None,
         nominal: bool | None = None,
+        from_: Quantity | None = None,
+        to: Quantity | None = None,
         animated: bool | None = None,
         theme: Literal["light", "dark", "auto"] | None = None,
         scale: float | None = None,
+        width: float | None = None,
         threads: int | None = None,
         yes: bool = False,
         progress: bool | Progress | None = None,
@@ -755,12 +758,18 @@ class Questions:
             Two terminals whose powers add to zero (regimes).
         nominal
             Draw teeth without geometry as nominal ones of module 1.
+        from_
+            From when a scenario is shown (time): "3 s".
+        to
+            Until when a scenario is shown (time): "3500 ms".
         animated
             Wheels turn (front, in SVG).
         theme
             Light or dark, or as the reader's screen is set.
         scale
             Pixels of a PNG to a unit of the figure, from 0.1 to 10.
+        width
+            Lay the figure out for paper so many mm wide, with no text below 7 pt; what cannot be so narrow is wider.
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
@@ -770,7 +779,7 @@ class Questions:
             _ask(
                 "draw",
                 [cast(Any, self)],
-                {"kind": kind, "state": state, "operation": operation, "part": part, "over": over, "terminals": terminals, "balance": balance, "nominal": nominal, "animated": animated, "theme": theme, "scale": scale},
+                {"kind": kind, "state": state, "operation": operation, "part": part, "over": over, "terminals": terminals, "balance": balance, "nominal": nominal, "from": from_, "to": to, "animated": animated, "theme": theme, "scale": scale, "width": width},
                 threads=threads,
                 yes=yes,
                 progress=progress,
@@ -781,20 +790,36 @@ class Questions:
         self,
         *,
         operation: str | None = None,
+        project: str | None = None,
+        author: str | None = None,
+        date: str | None = None,
+        revision: str | None = None,
+        appendix: bool | None = None,
         threads: int | None = None,
         yes: bool = False,
         progress: bool | Progress | None = None,
     ) -> "contracts.ReportAnswer":
         """Write the engineering report of a train: one file that explains itself, as web page or PDF.
 
-        Question, train with schematic and teeth, results with verdict and certificate, power flow, losses and what
-        to change first, maps, regimes and closed formulas, assumptions, warnings, laws with their sources, and how
-        to do it again. The same input gives the same bytes.
+        What was examined and what not, all gears with ratio, speeds and torques, warnings; train with schematic,
+        data sheets of the wheels, results with verdict and certificate, power flow, forces on bearings, losses and
+        what to change first, maps, regimes and closed formulas, assumptions, laws with their sources, and how to do
+        it again. No text is smaller than 7 pt. The same input gives the same bytes.
 
         Parameters
         ----------
         operation
             Only this operation.
+        project
+            Project or customer, for the title block.
+        author
+            Who answers for the report, for the title block.
+        date
+            Date for the title block, in your own words; none is taken from a clock.
+        revision
+            Revision of the report, for the title block.
+        appendix
+            Add the train file as an appendix.
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
@@ -804,7 +829,7 @@ class Questions:
             _ask(
                 "report",
                 [cast(Any, self)],
-                {"operation": operation},
+                {"operation": operation, "project": project, "author": author, "date": date, "revision": revision, "appendix": appendix},
                 threads=threads,
                 yes=yes,
                 progress=progress,
