@@ -42,6 +42,117 @@ KINDS = {
 
 ROWS = {"sweep", "cycle", "simulate"}
 
+#: An example of every question; they run in the tests, in the root of the repository.
+EXAMPLES = {
+    "analyze": """
+>>> train = willis.read("examples/zf-8hp70.toml")
+>>> row = train.analyze(state="3").state()
+>>> row.exact, round(row.drive.efficiency, 4), row.drive.verdict
+('162/77', 0.982, 'unique')
+""",
+    "table": """
+>>> table = willis.read("examples/zf-8hp70.toml").table(state="3", speed="1000 rpm")
+>>> table.tables["members"]["speed_rad_s"][:3].round(1)
+array([104.7, 104.7,   0. ])
+""",
+    "new": """
+>>> text = willis.new("set").files("toml").popitem()[1].decode()
+>>> willis.Train(text).analyze().state().drive.verdict
+'unique'
+""",
+    "check": """
+>>> willis.read("examples/zf-8hp70.toml").check().data.states
+9
+""",
+    "flow": """
+>>> flow = willis.read("examples/zf-8hp70.toml").flow(operation="motorway cruise")
+>>> flow.data.operations[0].name
+'motorway cruise'
+""",
+    "losses": """
+>>> stage = willis.read("examples/fva-planetary-stage.toml")
+>>> points = stage.losses(speeds=["500 rpm", "1000 rpm"]).tables["points"]
+>>> bool(points["loss_w"][1] > points["loss_w"][0])
+True
+""",
+    "sensitivity": """
+>>> stage = willis.read("examples/fva-planetary-stage.toml")
+>>> stage.sensitivity().tables["quantities"]["quantity"][0]
+'P1.geometry.pressure_angle'
+""",
+    "uncertainty": """
+>>> stage = willis.read("examples/fva-planetary-stage.toml")
+>>> band = stage.uncertainty(samples=128).tables["results"]
+>>> bool(band["p05"][0] < band["nominal"][0] < band["p95"][0])
+True
+""",
+    "sweep": """
+>>> train = willis.read("examples/zf-8hp70.toml")
+>>> points = train.sweep(over={"input.speed": "500..6000 rpm:12", "input.torque": [100.0, 200.0]}, state="3")
+>>> len(points), points["loss_w"].shape
+(24, (24,))
+""",
+    "cycle": """
+>>> train = willis.read("examples/zf-8hp70.toml")
+>>> day = {"state": ["3", "8"], "duration_s": [10, 20], "input.speed_rpm": [2000, 1800], "output.torque_n_m": [300, 100]}
+>>> train.cycle(profile=day).data.format
+'willis-cycle-1'
+""",
+    "compare": """
+>>> train = willis.read("examples/zf-8hp70.toml")
+>>> "b_less_a" in train.compare(train.with_(**{"P1.sun.teeth": 46})).tables["states"]
+True
+""",
+    "regimes": """
+>>> split = willis.read("examples/prius-p112.toml")
+>>> len(split.regimes(terminals=["engine", "ring", "mg1"]).tables["regimes"])
+28
+""",
+    "formula": """
+>>> willis.read("examples/zf-8hp70.toml").formula(state="3").data.formulas[0].speed_ratio.text
+'(1 - i_P1)*(1 - i_P4)/(1 - i_P1 - i_P4)'
+""",
+    "locate": """
+>>> split = willis.read("examples/prius-p112.toml")
+>>> split.locate(speeds={"engine": 200.0, "ring": 150.0}, torques={"engine": 80.0}).data.region
+2
+""",
+    "simulate": """
+>>> run = willis.read("examples/launch.toml").simulate(samples=11)
+>>> run.data.outcome.verdict, bool(run["wheels.speed"][-1] > 20)
+('finished', True)
+""",
+    "modes": """
+>>> modes = willis.read("examples/galvagno.toml").modes().tables["modes"]
+>>> "frequency_hz" in modes
+True
+""",
+    "draw": """
+>>> willis.read("examples/zf-8hp70.toml").draw("lever", state="3").svg[:4]
+'<svg'
+""",
+    "report": """
+>>> willis.read("examples/zf-8hp70.toml").report().html[:15]
+'<!DOCTYPE html>'
+""",
+    "export": """
+>>> list(willis.read("examples/zf-8hp70.toml").export("csv", state="3").files("files"))
+['zf-8hp70-3.csv']
+""",
+    "laws": """
+>>> willis.laws("film").tables["laws"]["family"][0]
+'film'
+""",
+    "validate": """
+>>> willis.validate().data.cases[0].name
+'wang-2020'
+""",
+    "explain": """
+>>> willis.explain("E207").text.splitlines()[0]
+'E207: there is no such state or operation'
+""",
+}
+
 UNITS = "_rad_s2 _n_per_m _rad_s _kg_m3 _kg_m2 _m2_s _n_m _m_s _rad _pa _hz _w _j _k _n _m _s".split()
 
 
@@ -182,6 +293,9 @@ def question(entry: dict[str, Any]) -> str:
     if docs_text:
         lines.append(docs_text)
     lines.append(shared)
+    lines.append("")
+    lines.append(f"{pad}    Examples\n{pad}    --------")
+    lines.append(textwrap.indent(EXAMPLES[name].strip(), pad + "    "))
     lines.append(f'{pad}    """')
     lines.append(f"{pad}    return cast(")
     lines.append(f'{pad}        "{result}",')

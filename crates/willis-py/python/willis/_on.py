@@ -131,19 +131,27 @@ def on(executor: Any, *, tries: int = 3) -> On:
 
 def _engine(executor: Any) -> tuple[Callable[..., Any], Callable[[Any], Any]]:
     """How to submit work to an engine, and how to get its result."""
+
+    def result(future: Any) -> Any:
+        return future.result()
+
     if getattr(executor, "__name__", "") == "ray":
         remote: dict[Callable[..., Any], Any] = {}
 
-        def submit(work: Callable[..., Any], *args: Any) -> Any:
+        def by_ray(work: Callable[..., Any], *args: Any) -> Any:
             if work not in remote:
                 remote[work] = executor.remote(max_retries=3)(work)
             return remote[work].remote(*args)
 
-        return submit, executor.get
+        return by_ray, executor.get
     if hasattr(executor, "scheduler_info") and hasattr(executor, "submit"):
-        return (lambda work, *args: executor.submit(work, *args, pure=False, retries=3)), lambda future: future.result()
+
+        def by_dask(work: Callable[..., Any], *args: Any) -> Any:
+            return executor.submit(work, *args, pure=False, retries=3)
+
+        return by_dask, result
     if hasattr(executor, "submit"):
-        return executor.submit, lambda future: future.result()
+        return executor.submit, result
     raise TypeError(
         f"{type(executor).__name__} is no engine: an executor of concurrent.futures, distributed.Client, or the module ray"
     )

@@ -49,6 +49,13 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> train = willis.read("examples/zf-8hp70.toml")
+        >>> row = train.analyze(state="3").state()
+        >>> row.exact, round(row.drive.efficiency, 4), row.drive.verdict
+        ('162/77', 0.982, 'unique')
         """
         return cast(
             "contracts.AnalyzeAnswer",
@@ -89,6 +96,12 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> table = willis.read("examples/zf-8hp70.toml").table(state="3", speed="1000 rpm")
+        >>> table.tables["members"]["speed_rad_s"][:3].round(1)
+        array([104.7, 104.7,   0. ])
         """
         return cast(
             "contracts.TableAnswer",
@@ -116,6 +129,11 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> willis.read("examples/zf-8hp70.toml").check().data.states
+        9
         """
         return cast(
             "contracts.CheckAnswer",
@@ -153,6 +171,12 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> flow = willis.read("examples/zf-8hp70.toml").flow(operation="motorway cruise")
+        >>> flow.data.operations[0].name
+        'motorway cruise'
         """
         return cast(
             "contracts.FlowAnswer",
@@ -201,6 +225,13 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> stage = willis.read("examples/fva-planetary-stage.toml")
+        >>> points = stage.losses(speeds=["500 rpm", "1000 rpm"]).tables["points"]
+        >>> bool(points["loss_w"][1] > points["loss_w"][0])
+        True
         """
         return cast(
             "contracts.LossesAnswer",
@@ -238,6 +269,12 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> stage = willis.read("examples/fva-planetary-stage.toml")
+        >>> stage.sensitivity().tables["quantities"]["quantity"][0]
+        'P1.geometry.pressure_angle'
         """
         return cast(
             "contracts.SensitivityAnswer",
@@ -291,6 +328,13 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> stage = willis.read("examples/fva-planetary-stage.toml")
+        >>> band = stage.uncertainty(samples=128).tables["results"]
+        >>> bool(band["p05"][0] < band["nominal"][0] < band["p95"][0])
+        True
         """
         return cast(
             "contracts.UncertaintyAnswer",
@@ -357,6 +401,13 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> train = willis.read("examples/zf-8hp70.toml")
+        >>> points = train.sweep(over={"input.speed": "500..6000 rpm:12", "input.torque": [100.0, 200.0]}, state="3")
+        >>> len(points), points["loss_w"].shape
+        (24, (24,))
         """
         return cast(
             "contracts.SweepAnswer",
@@ -405,6 +456,13 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> train = willis.read("examples/zf-8hp70.toml")
+        >>> day = {"state": ["3", "8"], "duration_s": [10, 20], "input.speed_rpm": [2000, 1800], "output.torque_n_m": [300, 100]}
+        >>> train.cycle(profile=day).data.format
+        'willis-cycle-1'
         """
         return cast(
             "contracts.CycleAnswer",
@@ -445,6 +503,12 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> train = willis.read("examples/zf-8hp70.toml")
+        >>> "b_less_a" in train.compare(train.with_(**{"P1.sun.teeth": 46})).tables["states"]
+        True
         """
         return cast(
             "contracts.CompareAnswer",
@@ -489,6 +553,12 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> split = willis.read("examples/prius-p112.toml")
+        >>> len(split.regimes(terminals=["engine", "ring", "mg1"]).tables["regimes"])
+        28
         """
         return cast(
             "contracts.RegimesAnswer",
@@ -549,6 +619,11 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> willis.read("examples/zf-8hp70.toml").formula(state="3").data.formulas[0].speed_ratio.text
+        '(1 - i_P1)*(1 - i_P4)/(1 - i_P1 - i_P4)'
         """
         return cast(
             "contracts.FormulaAnswer",
@@ -599,6 +674,12 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> split = willis.read("examples/prius-p112.toml")
+        >>> split.locate(speeds={"engine": 200.0, "ring": 150.0}, torques={"engine": 80.0}).data.region
+        2
         """
         return cast(
             "contracts.LocateAnswer",
@@ -666,6 +747,12 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> run = willis.read("examples/launch.toml").simulate(samples=11)
+        >>> run.data.outcome.verdict, bool(run["wheels.speed"][-1] > 20)
+        ('finished', True)
         """
         return cast(
             "contracts.SimulateAnswer",
@@ -701,6 +788,12 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> modes = willis.read("examples/galvagno.toml").modes().tables["modes"]
+        >>> "frequency_hz" in modes
+        True
         """
         return cast(
             "contracts.ModesAnswer",
@@ -773,6 +866,11 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> willis.read("examples/zf-8hp70.toml").draw("lever", state="3").svg[:4]
+        '<svg'
         """
         return cast(
             "contracts.DrawAnswer",
@@ -823,6 +921,11 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> willis.read("examples/zf-8hp70.toml").report().html[:15]
+        '<!DOCTYPE html>'
         """
         return cast(
             "contracts.ReportAnswer",
@@ -876,6 +979,11 @@ class Questions:
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> list(willis.read("examples/zf-8hp70.toml").export("csv", state="3").files("files"))
+        ['zf-8hp70-3.csv']
         """
         return cast(
             "contracts.ExportAnswer",
@@ -908,6 +1016,12 @@ def new(
     threads, yes, progress
         Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
         called with a word, how much is done and how much there is.
+
+    Examples
+    --------
+    >>> text = willis.new("set").files("toml").popitem()[1].decode()
+    >>> willis.Train(text).analyze().state().drive.verdict
+    'unique'
     """
     return cast(
         "contracts.NewAnswer",
@@ -944,6 +1058,11 @@ def laws(
     threads, yes, progress
         Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
         called with a word, how much is done and how much there is.
+
+    Examples
+    --------
+    >>> willis.laws("film").tables["laws"]["family"][0]
+    'film'
     """
     return cast(
         "contracts.LawsAnswer",
@@ -976,6 +1095,11 @@ def validate(
     threads, yes, progress
         Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
         called with a word, how much is done and how much there is.
+
+    Examples
+    --------
+    >>> willis.validate().data.cases[0].name
+    'wang-2020'
     """
     return cast(
         "contracts.ValidateAnswer",
@@ -1006,6 +1130,11 @@ def explain(
     threads, yes, progress
         Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
         called with a word, how much is done and how much there is.
+
+    Examples
+    --------
+    >>> willis.explain("E207").text.splitlines()[0]
+    'E207: there is no such state or operation'
     """
     return cast(
         "contracts.ExplainAnswer",
