@@ -36,7 +36,7 @@ fn scenario(train: &Train, name: Option<&str>, window: Option<[f64; 2]>) -> Resu
         }
     };
     let span = [scenario.start, scenario.end];
-    let mut plot = TimePlotBuilder::new(train, span);
+    let (mut plot, mut options) = (TimePlotBuilder::new(train, span), Options::default());
     if let Some([from, to]) = window {
         let [from, to] = [from.max(span[0]), to.min(span[1])];
         // Not numbers are no window either.
@@ -46,8 +46,10 @@ fn scenario(train: &Train, name: Option<&str>, window: Option<[f64; 2]>) -> Resu
             return Err(Diagnostic::new(Code::OutOfRange, "", message).hint(hint).into());
         }
         plot = plot.within([from, to]);
+        // All rows lie in the window; what comes after it is not run.
+        (options.from_s, options.to_s) = (Some(from), Some(to));
     }
-    let report = simulate(train, &scenario.name, &Options::default(), &mut plot)?;
+    let report = simulate(train, &scenario.name, &options, &mut plot)?;
     Ok(plot.finish(&report))
 }
 

@@ -14,7 +14,7 @@ import willis
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.mark.parametrize("page", ["book/src/python.md", "crates/willis-py/README.md"])
+@pytest.mark.parametrize("page", ["README.md", "book/src/python.md", "crates/willis-py/README.md"])
 def test_code_of_pages(page: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("polars")
     pytest.importorskip("sympy")

@@ -53,6 +53,19 @@ fn tag<'s>(mut rest: &'s str, out: &mut String, new: &mut impl FnMut(&str, &str)
     }
 }
 
+/// The value of an attribute of the tag with which a text begins.
+pub(crate) fn attribute(text: &str, wanted: &str) -> Option<String> {
+    let mut found = None;
+    let end = text.find('>').map_or(text.len(), |end| end + 1);
+    rewrite(&text[..end], |name, value| {
+        if name == wanted && found.is_none() {
+            found = Some(value.to_owned());
+        }
+        None
+    });
+    found
+}
+
 /// Whether an attribute is a colour written `#rrggbb`.
 pub(crate) fn is_colour(name: &str, value: &str) -> bool {
     matches!(name, "fill" | "stroke" | "stop-color" | "flood-color" | "color")
@@ -82,18 +95,19 @@ pub(crate) fn untitled(svg: &str) -> String {
     const HEADING: f64 = 42.0;
     let shorter = || {
         let at = svg.match_indices("<text").map(|(at, _)| at).find(|at| {
-            let tag = &svg[*at..*at + svg[*at..].find('>').unwrap_or(0)];
-            tag.contains(" font-size=\"20\"") && tag.contains(" y=\"38\"")
+            let is = |name: &str, value: &str| attribute(&svg[*at..], name).as_deref() == Some(value);
+            is("font-size", "20") && is("y", "38")
         })?;
         let end = at + svg[at..].find("</text>")? + "</text>".len();
         let (open, close) = (svg.find("<svg")?, svg.find('>')?);
-        let head = &svg[open..=close];
-        let value = |name: &str| Some(head.split_once(&format!(" {name}=\""))?.1.split_once('"')?.0);
-        let (height, width) = (value("height")?, value("width")?);
+        let head = svg.get(open..=close)?;
+        let (height, width) = (attribute(head, "height")?, attribute(head, "width")?);
         let rest = number(height.parse::<f64>().ok()? - HEADING);
-        let new = head
-            .replace(&format!(" height=\"{height}\""), &format!(" height=\"{rest}\""))
-            .replace(value("viewBox")?, &format!("0 {HEADING} {width} {rest}"));
+        let new = rewrite(head, |name, _| match name {
+            "height" => Some(rest.clone()),
+            "viewBox" => Some(format!("0 {HEADING} {width} {rest}")),
+            _ => None,
+        });
         Some([&svg[..open], &new, &svg[close + 1..at], &svg[end..]].concat())
     };
     shorter().unwrap_or_else(|| svg.to_owned())

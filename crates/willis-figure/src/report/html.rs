@@ -8,7 +8,7 @@ use std::fmt::Write;
 use minijinja::{Environment, Value, context};
 
 use crate::Drawing;
-use crate::parts::markup::prefixed;
+use crate::parts::markup::{attribute, prefixed};
 use crate::parts::style::{self, FAINT, INK, LINE, PAPER, wide};
 use crate::parts::theme::{colours, dark, rules};
 use crate::report::document::{Block, Column, Document, Level, Section, Term};
@@ -199,10 +199,7 @@ pub(super) fn fits_text(svg: &str) -> bool {
 
 /// Where a figure goes on paper; nothing is known of one without a size.
 fn place(svg: &str) -> Option<Place> {
-    let number = |name: &str| {
-        let (_, rest) = svg.split_once(&format!(" {name}=\""))?;
-        rest.split_once('"')?.0.parse::<f64>().ok().filter(|x| *x > 0.0)
-    };
+    let number = |name: &str| attribute(svg, name)?.parse::<f64>().ok().filter(|x| *x > 0.0);
     let extent = Extent { size: [number("width")?, number("height")?], smallest: Some(Drawing::SMALLEST_TEXT) };
     Some(extent.place(PAPER_SIZE))
 }
