@@ -83,7 +83,12 @@ fn subtitle(plot: &TimePlot, time: &TimeAxis, room: f64) -> (String, String) {
     let words = plot.outcome.words();
     let [start, end] = plot.run;
     let whole = TimeAxis::new(plot.run, time.right);
-    let mut one = format!("From {} to {}; the run {words}", whole.moment(start), whole.moment(end));
+    // A window ends the run where it ends.
+    let ended_here = plot.outcome == Outcome::Finished && plot.axis[0] > start && plot.axis[1] >= end;
+    let mut one = match ended_here {
+        true => format!("Run from {} to {}", whole.moment(start), whole.moment(end)),
+        false => format!("From {} to {}; the run {words}", whole.moment(start), whole.moment(end)),
+    };
     if plot.axis[0] > start || plot.axis[1] < end {
         one += &format!("; shown from {} to {}", time.moment(plot.axis[0]), time.moment(plot.axis[1]));
     }
