@@ -15,7 +15,7 @@ mod run;
 mod simulate;
 mod sweep;
 mod tools;
-mod work;
+pub mod work;
 
 use std::ffi::OsString;
 use std::io::Write;

@@ -19,7 +19,7 @@ pub fn cores() -> usize {
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// The terminal as the surroundings of work: its cores, its standard error, Ctrl-C.
-pub struct Terminal {
+pub(crate) struct Terminal {
     threads: usize,
     /// However long it takes.
     is_patient: bool,
@@ -88,21 +88,27 @@ impl Work for Terminal {
     }
 
     fn run(&self, parts: usize, job: &(dyn Fn(usize) + Sync)) {
-        let next = AtomicUsize::new(0);
-        let one = || {
-            loop {
-                let part = next.fetch_add(1, Ordering::Relaxed);
-                if part >= parts || self.cancelled() {
-                    return;
-                }
-                job(part);
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 1..self.threads.min(parts) {
-                scope.spawn(one);
-            }
-            one();
-        });
+        on_threads(self.threads, parts, &|| self.cancelled(), job);
     }
+}
+
+/// Calls `job` with every number below `parts` on so many threads, the caller's among them; no further part is begun after
+/// `cancelled` turned true.
+pub fn on_threads(threads: usize, parts: usize, cancelled: &(dyn Fn() -> bool + Sync), job: &(dyn Fn(usize) + Sync)) {
+    let next = AtomicUsize::new(0);
+    let one = || {
+        loop {
+            let part = next.fetch_add(1, Ordering::Relaxed);
+            if part >= parts || cancelled() {
+                return;
+            }
+            job(part);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads.min(parts) {
+            scope.spawn(one);
+        }
+        one();
+    });
 }

@@ -229,8 +229,8 @@ struct Arc {
 
 fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
     let coupled = |e: &Edge| {
-        let passes =
-            |l: &&Loop| l.nodes.iter().zip(l.nodes.iter().cycle().skip(1)).any(|(a, b)| *a == e.from && *b == e.to);
+        let next = |l: &Loop, k: usize| (k + 1) % l.nodes.len();
+        let passes = |l: &&Loop| (0..l.nodes.len()).any(|k| l.nodes[k] == e.from && l.nodes[next(l, k)] == e.to);
         g.loops.iter().filter(|l| l.within.is_none()).filter(passes).map(|l| l.power_w).sum()
     };
     let index = |id: &str| g.nodes.iter().position(|n| n.id == id).expect("edges join nodes of the graph");

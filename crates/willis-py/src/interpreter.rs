@@ -1,12 +1,13 @@
 //! Work under an interpreter: threads that do not hold it, Ctrl-C, progress.
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::ThreadId;
 use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
 use willis::work::Work;
+use willis_cli::work::{cores, on_threads};
 
 /// How often the interpreter is asked whether somebody pressed Ctrl-C, and told how far the work is.
 const BREATH: Duration = Duration::from_millis(50);
@@ -34,7 +35,6 @@ struct State {
 impl Interpreter {
     /// With so many threads, 0 for as many as there are cores.
     pub fn new(threads: usize, patience: f64, progress: Option<Py<PyAny>>) -> Self {
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         Self {
             threads: if threads == 0 { cores() } else { threads },
             patience,
@@ -110,21 +110,6 @@ impl Work for Interpreter {
     }
 
     fn run(&self, parts: usize, job: &(dyn Fn(usize) + Sync)) {
-        let next = AtomicUsize::new(0);
-        let one = || {
-            loop {
-                let part = next.fetch_add(1, Ordering::Relaxed);
-                if part >= parts || self.cancelled() {
-                    return;
-                }
-                job(part);
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 1..self.threads.min(parts) {
-                scope.spawn(one);
-            }
-            one();
-        });
+        on_threads(self.threads, parts, &|| self.cancelled(), job);
     }
 }

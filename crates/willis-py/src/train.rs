@@ -5,9 +5,10 @@ use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
+use willis::Diagnostics;
 use willis::model::Model;
 use willis::train::Train as Checked;
-use willis_ask::{Attachment, Given, Refusal};
+use willis_ask::{Attachment, Given, Refusal, quoted};
 
 use crate::compiled::{Compiled, Duty};
 use crate::refused::{refused, wrong};
@@ -34,6 +35,21 @@ impl Train {
             self.tolerance,
             self.given.changes.clone(),
         )
+    }
+
+    /// The same train as another model, with what was changed as the command line would say it.
+    fn changed(
+        &self,
+        py: Python<'_>,
+        model: Result<Model, Diagnostics>,
+        option: &str,
+        values: &[(String, String)],
+    ) -> PyResult<Self> {
+        let of = std::slice::from_ref(&self.given);
+        let model = model.map_err(|wrong| refused(py, &Refusal::Wrong(wrong, 0), of))?;
+        let said = |(name, value): &(String, String)| format!("--{option} {}", quoted(&format!("{name}={value}")));
+        let changes = self.given.changes.iter().cloned().chain(values.iter().map(said)).collect();
+        Ok(Self { given: Given { name: self.given.name.clone(), model, changes }, tolerance: self.tolerance })
     }
 
     fn train(&self) -> &Checked {
@@ -151,23 +167,13 @@ impl Train {
     }
 
     fn with_values(&self, py: Python<'_>, values: Vec<(String, String)>) -> PyResult<Self> {
-        let changed = py.detach(|| self.given.model.with(values.iter().map(|(path, value)| (path, value))));
-        let of = std::slice::from_ref(&self.given);
-        let model = changed.map_err(|wrong| refused(py, &Refusal::Wrong(wrong, 0), of))?;
-        let mut changes = self.given.changes.clone();
-        changes.extend(
-            values.iter().map(|(path, value)| format!("--set {}", willis_ask::quoted(&format!("{path}={value}")))),
-        );
-        Ok(Self { given: Given { name: self.given.name.clone(), model, changes }, tolerance: self.tolerance })
+        let model = py.detach(|| self.given.model.with(values.iter().map(|(path, value)| (path, value))));
+        self.changed(py, model, "set", &values)
     }
 
     fn with_laws(&self, py: Python<'_>, laws: Vec<(String, String)>) -> PyResult<Self> {
-        let changed = self.given.model.clone().with_laws(laws.iter().map(|(family, law)| (family, law)));
-        let of = std::slice::from_ref(&self.given);
-        let model = changed.map_err(|wrong| refused(py, &Refusal::Wrong(wrong, 0), of))?;
-        let mut changes = self.given.changes.clone();
-        changes.extend(laws.iter().map(|(family, law)| format!("--law {family}={law}")));
-        Ok(Self { given: Given { name: self.given.name.clone(), model, changes }, tolerance: self.tolerance })
+        let model = self.given.model.clone().with_laws(laws.iter().map(|(family, law)| (family, law)));
+        self.changed(py, model, "law", &laws)
     }
 
     fn compile(&self, py: Python<'_>, duty: Duty) -> PyResult<Compiled> {

@@ -47,14 +47,16 @@ def test_torques(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(25))
-def test_circulation(seed: int) -> None:
-    e = willis.exercise("circulation", seed)
+def test_sets_in_parallel(seed: int) -> None:
+    e = willis.exercise("parallel", seed)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", willis.TrainWarning)
         assert e.answer["ratio"] == pytest.approx(e.train.analyze().ratio, rel=1e-12)
-    assert 0 < e.answer["share"] < 1
+        flow = e.train.flow().data.operations[0].solutions[0]
+    (link,) = (n for n in flow.nodes if n.name == "link")
+    assert e.answer["share"] == pytest.approx(link.power_in_w / flow.output_power_w, rel=1e-12)
 
 
 def test_an_unknown_kind_is_told() -> None:
-    with pytest.raises(ValueError, match="circulation"):
+    with pytest.raises(ValueError, match="parallel"):
         willis.exercise("heat")  # type: ignore[arg-type]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import tempfile
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
@@ -91,6 +92,17 @@ def test_ray_makes_the_bytes_of_one(automatic: willis.Train, tmp_path: Path) -> 
     finally:
         ray.shutdown()
     assert [Path(f).read_bytes() for f in parts.files] == parts_of_one_machine(automatic, 3, "parquet")
+
+
+def test_a_worker_writes_nothing_outside_its_folder(
+    automatic: willis.Train, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name, text, _, *rest = automatic._core.parts()
+    files = {"beside.csv": "x\n1\n", "../above.csv": "x\n1\n", "../../sub/far.csv": "x\n1\n"}
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    words = [w for k, v in OVER.items() for w in ("--over", f"{k}={v}")]
+    assert _on.shard((name, text, files, *rest), [*words, "--state", "3"], 1, 2, "csv")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_many_trains(automatic: willis.Train) -> None:

@@ -46,6 +46,17 @@ def test_others_take_it(table: willis.Table) -> None:
     table.__arrow_c_stream__()
 
 
+def test_pandas_and_duckdb_take_it(table: willis.Table) -> None:
+    pandas = pytest.importorskip("pandas")
+    frame = table.to_pandas()
+    assert isinstance(frame, pandas.DataFrame) and list(frame.columns) == table.columns
+    assert list(frame["state"]) == table["state"] and np.array_equal(frame["ratio"], table["ratio"])
+    duckdb = pytest.importorskip("duckdb")
+    states = table
+    found = duckdb.sql("select state, ratio from states").fetchall()
+    assert found == list(zip(table["state"], table["ratio"].tolist(), strict=True)), states
+
+
 def test_units_go_along(automatic: willis.Train) -> None:
     pyarrow = pytest.importorskip("pyarrow")
     members = automatic.analyze().tables["members"]

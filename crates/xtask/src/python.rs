@@ -8,7 +8,7 @@ use crate::context::{Context, passes};
 use crate::step::{Outcome, outcome};
 
 /// What tests and type checkers need beside the package. NumPy comes with it.
-const TOOLS: &str = "maturin>=1.9,<2 pytest hypothesis mypy pyright pyarrow polars sympy pint distributed nbclient \
+const TOOLS: &str = "maturin>=1.9,<2 pytest hypothesis mypy pyright pyarrow polars pandas duckdb sympy pint distributed nbclient \
                      nbformat ipykernel matplotlib tqdm";
 
 const CRATE: &str = "crates/willis-py";
@@ -58,7 +58,6 @@ fn test(context: &Context, venv: &Path, wheels: &Path) -> Result<(), String> {
     let steps: &[(&str, &[&str])] = &[
         ("python", &[&script("generate.py"), "--check"]),
         ("python", &["-m", "pytest", "--quiet", "-p", "no:cacheprovider", &script("tests")]),
-        ("python", &["-m", "doctest", &script("python/willis/_quantity.py")]),
         (
             "mypy",
             &[

@@ -32,17 +32,18 @@ fn block(train: &Train, states: &[(String, ShaftState)]) -> Block {
     row("Ratio", "input to output", &|s| s.ratio.as_ref().map_or("–".into(), |i| fixed(i.to_f64(), 3)));
     row("Efficiency", "nominal, driving", &|s| s.efficiency.map_or("–".into(), exact_percent));
     row("Closed", "", &|s| s.engaged.join(" "));
-    let ends: Vec<&str> = states.iter().flat_map(|(_, s)| [s.input.as_str(), s.output.as_str()]).collect();
-    let one_input = ends.iter().step_by(2).all(|i| *i == ends[0]);
+    let inputs: Vec<&str> = states.iter().map(|(_, s)| s.input.as_str()).collect();
+    let outputs: Vec<&str> = states.iter().map(|(_, s)| s.output.as_str()).collect();
+    let one = |ends: &[&str]| ends.iter().all(|end| *end == ends[0]);
+    let one_input = one(&inputs);
     if !one_input {
         row("From", "", &|s| s.input.clone());
     }
-    let one_output = ends.iter().skip(1).step_by(2).all(|o| *o == ends[1]);
-    if !one_output {
+    if !one(&outputs) {
         row("To", "", &|s| s.output.clone());
     }
     let shafts: Vec<&str> = (train.members().iter())
-        .filter(|m| m.kind == MemberKind::Shaft && !(one_input && m.name == ends[0]))
+        .filter(|m| m.kind == MemberKind::Shaft && !(one_input && m.name == inputs[0]))
         .map(|m| m.name.as_str())
         .take(SHAFTS)
         .collect();
@@ -56,8 +57,7 @@ fn block(train: &Train, states: &[(String, ShaftState)]) -> Block {
     let mut torque = |name: &str, cell: &dyn Fn(&ShaftState) -> String| {
         row(if std::mem::take(&mut first) { "Torque" } else { "" }, name, cell);
     };
-    let outputs: Vec<&str> = shafts.iter().copied().filter(|name| ends.contains(name)).collect();
-    for name in outputs {
+    for name in shafts.iter().copied().filter(|name| inputs.contains(name) || outputs.contains(name)) {
         torque(name, &|s| match s.members.get(name).and_then(|m| m.torque) {
             Some(t) if t != 0.0 => fixed(t, 3),
             Some(_) => String::new(),

@@ -514,9 +514,9 @@ pub fn maps(all: &Findings<'_>) -> Option<Section> {
 }
 
 pub fn motion(all: &Findings<'_>) -> Option<Section> {
-    let scenario = all.model.train().scenarios().first()?;
+    let [scenario, others @ ..] = all.model.train().scenarios() else { return None };
     let figure = all.figures.block(FigureKind::Time, None, &format!("Scenario {}", scenario.name))?;
-    let others: Vec<&str> = all.model.train().scenarios().iter().skip(1).map(|s| s.name.as_str()).collect();
+    let others: Vec<&str> = others.iter().map(|s| s.name.as_str()).collect();
     let more = if others.is_empty() { String::new() } else { format!(" The file has others: {}.", others.join(", ")) };
     let text = format!("Speeds, torques and powers over time in the scenario {}.{more}", scenario.name);
     Some(Section { title: "Motion".into(), blocks: vec![Block::Text { text }, figure] })
@@ -613,7 +613,7 @@ fn symbols(formulas: &[&ClosedFormula]) -> Option<Block> {
             true => format!("{} = {}", a.latex, significant(a.value, 6).replace('−', "-")),
             false => a.latex.clone(),
         };
-        let own = match a.meaning_latex() {
+        let own = match &a.made_of {
             Some(formula) => Term { latex: format!("{latex} = {formula}"), text: "basic ratio".to_owned() },
             None => Term { latex, text: a.meaning.clone() },
         };

@@ -461,10 +461,10 @@ fn no_state_moves_anything() {
         let places = |state: &str| {
             let data = layout.show(&train, Some(state)).expect("a state");
             let svg = draw_stick(&data);
-            let ids: Vec<String> =
-                svg.split(" id=\"").skip(1).map(|p| p.split('"').next().unwrap_or("").into()).collect();
+            let document = roxmltree::Document::parse(&svg).expect("well-formed");
             // What is closed has a ground of its own, and what is loaded lies above the rest.
-            let ids: Vec<String> = ids.into_iter().filter(|id| !id.starts_with("closed-")).collect();
+            let ids = document.descendants().filter_map(|n| n.attribute("id")).filter(|id| !id.starts_with("closed-"));
+            let ids: Vec<String> = ids.map(str::to_owned).collect();
             let gears: Vec<_> = data.gears.iter().map(|g| (g.faces.clone(), g.stems.clone())).collect();
             let joints: Vec<_> = data.joints.iter().map(|j| (j.name.clone(), j.ends)).collect();
             (ids, gears, joints, data.axes.clone(), data.width)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _willis
 from ._errors import Diagnostic, TrainError
-from ._record import Record, wrap
+from ._record import Record
 from ._table import Table, html
 
 if TYPE_CHECKING:
@@ -179,8 +179,7 @@ class Answer:
         return self.text.rstrip("\n")
 
     def _repr_html_(self) -> str:
-        parts = [f"<pre style='line-height:1.25'>{escape(self.text)}</pre>"]
-        return "".join(parts)
+        return f"<pre style='line-height:1.25'>{escape(self.text)}</pre>"
 
 
 def _again(kind: type[Answer], trains: Sequence[Train], kept: dict[str, Any]) -> Answer:
@@ -242,10 +241,8 @@ class Analysis(Answer):
 
     @property
     def efficiency(self) -> float | None:
-        """Of the only operating point; else of the only state, driving."""
-        if len(self.data["operations"]) == 1:
-            return self.solution()["efficiency"]  # type: ignore[no-any-return]
-        if not self.data["operations"] or len(self.data["ratios"]) == 1:
+        """Of the only operating point; where there is none, of the only state, driving."""
+        if not self.data["operations"]:
             return self.state()["drive"]["efficiency"]  # type: ignore[no-any-return]
         return self.solution()["efficiency"]  # type: ignore[no-any-return]
 
@@ -285,7 +282,7 @@ class Analysis(Answer):
 
 def _stick(train: Train, state: str | None) -> str | None:
     try:
-        return train.draw("stick", state=state).svg
+        return train.draw("stick", state=state, theme="auto").svg
     except (TrainError, TypeError):
         return None
 
@@ -458,8 +455,3 @@ def ask(
         if note.severity == "warning" and note.message not in known:
             warnings.warn(str(note), TrainWarning, stacklevel=3)
     return answer
-
-
-__all__ = [
-    "Analysis", "Answer", "Cycle", "Drawing", "Formula", "Report", "Rows", "Simulation", "Sweep", "ask", "wrap",
-]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _willis
+from ._errors import TrainWarning
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -21,7 +23,8 @@ class CompiledTrain:
 
     Inputs are what the duty prescribes, in rad/s and N m, by position (speeds, then torques) or by name: ``speed`` and
     ``torque`` where there is one of each, else ``speed_sun`` or a mapping. They broadcast as numpy arrays do. Losses are those
-    of given efficiencies; a point that locks is NaN.
+    of given efficiencies. A point that locks is NaN, and one that does not have exactly one answer is told as a
+    :class:`TrainWarning`.
 
     >>> import numpy as np, willis
     >>> t = willis.read("examples/zf-8hp70.toml").compile(state="3")
@@ -81,6 +84,29 @@ class CompiledTrain:
             raise TypeError(f"what is prescribed is missing: {', '.join(missing)}")
         return [_floats(given[k], "_".join(names[k])) for k in range(len(names))]
 
+    def _flat(
+        self, args: Sequence[ArrayLike], named: Mapping[str, ArrayLike]
+    ) -> tuple[list[NDArray[np.float64]], tuple[int, ...], int]:
+        """Inputs one after the other, one of length one where it is the same everywhere; shape and number of points."""
+        inputs = self._inputs(args, named)
+        shape = np.broadcast_shapes(*(a.shape for a in inputs))
+        flat = [
+            a.reshape(1) if a.size == 1 else np.ascontiguousarray(np.broadcast_to(a, shape)).reshape(-1) for a in inputs
+        ]
+        return flat, shape, int(np.prod(shape))
+
+    def _tell(self, odd: int, points: int) -> None:
+        """Says that numbers stand for something else than the only answer."""
+        self.odd = odd
+        if odd:
+            warnings.warn(
+                f"{odd} of {points} points do not have exactly one answer: where the train locks the result is NaN, of several "
+                "equilibria it is one of them. `analyze` and `sweep` tell them apart; under a torque at the output there "
+                "is often one answer where a torque at the input leaves several: compile(torques=[...])",
+                TrainWarning,
+                stacklevel=4,
+            )
+
     def evaluate(
         self,
         *args: ArrayLike,
@@ -90,17 +116,14 @@ class CompiledTrain:
         """Several results at once: ``efficiency``, ``loss``, ``torque.ring``, ``speed.sun``, ``mesh.P1.sun-planet``,
         ``element.clutch``.
 
-        The result has an array for each, of the shape to which the inputs broadcast.
+        The result has an array for each, of the shape to which the inputs broadcast. Points that do not have exactly one
+        answer are counted in :attr:`odd` and told as :class:`TrainWarning`.
         """
         wanted = [outputs] if isinstance(outputs, str) else list(outputs)
-        kinds = tuple(_output(name) for name in wanted)
-        inputs = self._inputs(args, named)
-        shape = np.broadcast_shapes(*(a.shape for a in inputs))
-        points = int(np.prod(shape))
-        flat = [
-            a.reshape(1) if a.size == 1 else np.ascontiguousarray(np.broadcast_to(a, shape)).reshape(-1) for a in inputs
-        ]
-        arrays, self.odd = self._core(kinds).evaluate(flat, points, _threads(self.threads, points))
+        flat, shape, points = self._flat(args, named)
+        core = self._core(tuple(map(_output, wanted)))
+        arrays, odd = core.evaluate(flat, points, _threads(self.threads, points))
+        self._tell(odd, points)
         return {name: array.reshape(shape) for name, array in zip(wanted, arrays, strict=True)}
 
     def efficiency(self, *args: ArrayLike, **named: ArrayLike) -> NDArray[np.float64]:
@@ -122,13 +145,9 @@ class CompiledTrain:
     def mean(self, *args: ArrayLike, outputs: Sequence[str] | str = "efficiency", **named: ArrayLike) -> dict[str, float]:
         """The mean of results over all points, of which none is stored."""
         wanted = [outputs] if isinstance(outputs, str) else list(outputs)
-        inputs = self._inputs(args, named)
-        shape = np.broadcast_shapes(*(a.shape for a in inputs))
-        points = int(np.prod(shape))
-        flat = [
-            a.reshape(1) if a.size == 1 else np.ascontiguousarray(np.broadcast_to(a, shape)).reshape(-1) for a in inputs
-        ]
-        sums, self.odd = self._core(tuple(map(_output, wanted))).sum(flat, points)
+        flat, _, points = self._flat(args, named)
+        sums, odd = self._core(tuple(map(_output, wanted))).sum(flat, points)
+        self._tell(odd, points)
         return {name: s / points if points else float("nan") for name, s in zip(wanted, sums, strict=True)}
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 if TYPE_CHECKING:
     from ._train import Train
 
-Kind = Literal["ratio", "speeds", "torques", "efficiency", "circulation"]
+Kind = Literal["ratio", "speeds", "torques", "efficiency", "parallel"]
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,8 @@ def exercise(kind: Kind = "ratio", seed: int = 1) -> Exercise:
     """An exercise of a kind; each seed gives other numbers, the same one always the same.
 
     ``ratio``: of a simple set with one shaft held. ``speeds``: two shafts given. ``torques``: without loss.
-    ``efficiency``: from the efficiency of the meshes. ``circulation``: two sets in parallel, one of which returns power.
+    ``efficiency``: from the efficiency of the meshes. ``parallel``: two sets in parallel, and which part of the power runs
+    through the first.
 
     >>> import willis
     >>> e = willis.exercise("ratio", seed=3)
@@ -55,7 +56,7 @@ def exercise(kind: Kind = "ratio", seed: int = 1) -> Exercise:
         "speeds": _speeds,
         "torques": _torques,
         "efficiency": _efficiency,
-        "circulation": _circulation,
+        "parallel": _parallel,
     }
     if kind not in makers:
         raise ValueError(f"there is no exercise {kind!r}; there are: {', '.join(get_args(Kind))}")
@@ -180,7 +181,7 @@ def _efficiency(of: random.Random, seed: int) -> Exercise:
     )
 
 
-def _circulation(of: random.Random, seed: int) -> Exercise:
+def _parallel(of: random.Random, seed: int) -> Exercise:
     from ._train import Train
 
     while True:
@@ -214,7 +215,7 @@ ring = {{ member = "link", teeth = {r2} }}
 carrier = "output"
 """
     return Exercise(
-        "circulation",
+        "parallel",
         seed,
         f"Two planetary sets share the input at their suns. The first has {s1} teeth at the sun, {p1} at the planets and {r1} at "
         f"the ring, which is held; its carrier drives the ring of the second, with {s2}, {p2} and {r2} teeth. The carrier of the "

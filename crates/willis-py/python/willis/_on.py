@@ -167,13 +167,17 @@ def shard(parts: Sequence[Any], words: Sequence[str], k: int, n: int, form: str)
     """A shard of a sweep as the bytes of its file, by a worker: those of the command's ``--shard k/n``."""
     _, text, files, laws, tolerance, _ = parts
     with tempfile.TemporaryDirectory() as folder:
-        file, out = Path(folder, "train.toml"), Path(folder, f"part.{form}")
+        # Deep enough that tables beside or above the train file stay in this folder.
+        above = max((name.replace("\\", "/").split("/").count("..") for name in files), default=0)
+        home = Path(folder, *["in"] * above)
+        home.mkdir(parents=True, exist_ok=True)
+        file, out = home / "train.toml", Path(folder, f"part.{form}")
         file.write_text(text, encoding="utf-8")
         for name, table in files.items():
-            place = Path(folder, name)
+            place = Path(os.path.normpath(home / name))
             place.parent.mkdir(parents=True, exist_ok=True)
             place.write_text(table, encoding="utf-8")
-        own = [w for family, law in laws for w in ("--law", f"{family}={law}")]
+        own = ["--allow", folder] + [w for family, law in laws for w in ("--law", f"{family}={law}")]
         if tolerance is not None:
             own += ["--speed-tolerance", repr(tolerance)]
         own += ["--shard", f"{k}/{n}", "--threads", "1", "--yes", "-o", str(out)]

@@ -6,25 +6,38 @@ from typing import Any
 
 import numpy as np
 
-#: Units of SI by the last word of the name of a quantity.
+#: Units of SI by a word of the path of a quantity.
 UNITS = {
     "speed": "rad/s",
+    "speeds": "rad/s",
+    "initial_speeds": "rad/s",
     "torque": "N m",
+    "torques": "N m",
     "power": "W",
+    "powers": "W",
     "temperature": "K",
     "inertia": "kg m^2",
+    "inertias": "kg m^2",
     "stiffness": "N m/rad",
-    "damping": "N m s/rad",
     "module": "m",
-    "face_width": "m",
+    "width": "m",
+    "roughness": "m",
     "capacity": "N m",
     "duration": "s",
-    "time": "s",
     "pressure": "Pa",
 }
 
 
-def one(value: Any, unit: str = "") -> str:
+def unit(path: str) -> str:
+    """The unit of a number for a quantity, as its path says it; empty where the path does not say.
+
+    >>> unit("input.speed"), unit("rated.torques.sun"), unit("P1.sun.teeth")
+    ('rad/s', 'N m', '')
+    """
+    return next((UNITS[part] for part in reversed(path.split(".")) if part in UNITS), "")
+
+
+def one(value: Any, own: str = "") -> str:
     """A value as text: text as it is, a number in SI, a quantity of ``pint`` with its unit.
 
     >>> one(3), one("1500 rpm"), one(10.0, "N m")
@@ -35,24 +48,24 @@ def one(value: Any, unit: str = "") -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (int, np.integer)):
-        return f"{int(value)} {unit}".rstrip()
+        return f"{int(value)} {own}".rstrip()
     if isinstance(value, (float, np.floating)):
         number = float(value)
         if number != number or number in (float("inf"), float("-inf")):
             raise ValueError(f"{number} is no value")
-        return f"{number!r} {unit}".rstrip()
+        return f"{number!r} {own}".rstrip()
     if hasattr(value, "to_base_units") and hasattr(value, "magnitude"):
         return _of_pint(value)
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(one(v, unit) if not isinstance(v, str) else repr(v) for v in value) + "]"
+        return "[" + ", ".join(one(v, own) if not isinstance(v, str) else repr(v) for v in value) + "]"
     raise TypeError(f"{value!r} is no quantity: a number in SI units, text with a unit or a quantity of pint")
 
 
 def _of_pint(value: Any) -> str:
     """A quantity of ``pint``: in SI units whose names the library knows."""
-    for unit in dict.fromkeys(UNITS.values()):
+    for name in dict.fromkeys(UNITS.values()):
         try:
-            return f"{value.to(unit.replace('N m', 'N*m').replace('kg m', 'kg*m')).magnitude!r} {unit}"
+            return f"{value.to(name.replace('N m', 'N*m').replace('kg m', 'kg*m')).magnitude!r} {name}"
         except Exception:  # noqa: BLE001 - pint has its own family of errors
             continue
     if value.dimensionless:
@@ -60,17 +73,17 @@ def _of_pint(value: Any) -> str:
     raise ValueError(f"{value} has a unit that no quantity of a train has")
 
 
-def listed(values: Any, unit: str) -> list[str]:
+def listed(values: Any, own: str) -> list[str]:
     """Quantities as texts, of members as ``member=quantity``.
 
     >>> listed({"sun": 100.0}, "rad/s"), listed([1.0, "3 N m"], "N m"), listed("5 W", "W")
     (['sun=100.0 rad/s'], ['1.0 N m', '3 N m'], ['5 W'])
     """
     if hasattr(values, "items"):
-        return [f"{name}={one(value, unit)}" for name, value in values.items()]
+        return [f"{name}={one(value, own)}" for name, value in values.items()]
     if isinstance(values, str) or not hasattr(values, "__iter__") or hasattr(values, "magnitude"):
-        return [one(values, unit)]
-    return [one(value, unit) for value in values]
+        return [one(values, own)]
+    return [one(value, own) for value in values]
 
 
 def axis(name: str, values: Any) -> str:
@@ -83,9 +96,8 @@ def axis(name: str, values: Any) -> str:
     """
     if isinstance(values, str):
         return f"{name}={values}"
-    unit = UNITS.get(name.rsplit(".", 1)[-1], "")
     items = values if isinstance(values, (list, tuple, range)) else np.asarray(values).ravel().tolist()
-    texts = [one(v, unit) for v in items]
+    texts = [one(v, unit(name)) for v in items]
     if not texts:
         raise ValueError(f"the axis {name} has no values")
     return f"{name}=" + ",".join(texts)

@@ -15,8 +15,9 @@ from ._record import bare
 class Table:
     """A table of an answer: columns with names and units, SI values.
 
-    Columns are numpy arrays, not copied. Polars, pandas, pyarrow and DuckDB take the table as it is, through the Arrow C
-    interface: ``polars.DataFrame(table)``, ``pyarrow.table(table)``.
+    Columns of numbers are numpy arrays, not copied. Polars, pyarrow and DuckDB take the table as it is, through the Arrow C
+    interface: ``polars.DataFrame(table)``, ``pyarrow.table(table)``, ``duckdb.sql("from table")``. For pandas there is
+    :meth:`to_pandas`.
 
     >>> import willis
     >>> states = willis.read("examples/zf-8hp70.toml").analyze().tables["states"]

@@ -11,7 +11,7 @@ from typing import Any
 from . import _willis
 from ._compiled import CompiledTrain
 from ._errors import Diagnostic
-from ._quantity import UNITS, one
+from ._quantity import one, unit
 from ._questions import Questions
 
 
@@ -114,10 +114,11 @@ class Train(Questions):
     def with_(self, values: Mapping[str, Any] | None = None, /, **named: Any) -> Train:
         """The same train with other values, by their paths: ``train.with_(**{"P1.sun.teeth": 23})``.
 
-        Numbers are in SI units where the quantity has one; texts bring their unit.
+        A number is in SI units where the path says what it is (``rated.speeds.sun``, ``P1.geometry.module``); anything else
+        that has a unit comes as text that brings it, and without it is refused.
         """
         all_ = {**(values or {}), **named}
-        texts = [(path, one(value, UNITS.get(path.rsplit(".", 1)[-1], ""))) for path, value in all_.items()]
+        texts = [(path, one(value, unit(path))) for path, value in all_.items()]
         return Train._of(self._core.with_values(texts))
 
     def with_laws(self, laws: Mapping[str, str] | None = None, /, **named: str) -> Train:
@@ -140,6 +141,9 @@ class Train(Questions):
         ``speeds`` and ``torques`` are the members at which they are prescribed: without them the input of the state. ``fixed``
         are members held from outside, ``drag`` gives shafts a drag of two parts (N m, N m s), ``mesh_loss`` meshes or sets a
         loss that depends on load and speed (``coefficient``, ``exponent``, ``torque``, ``speed``, ``most``).
+
+        A train that locks when driven from its output has several equilibria under a torque at its input, and one under a
+        torque at its output: give ``torques`` there. Points without exactly one answer are told as a warning.
         """
         if state is not None:
             state = str(state)

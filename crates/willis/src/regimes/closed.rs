@@ -71,17 +71,12 @@ pub struct Argument {
     pub efficiency: bool,
     /// Whether the train fixes it (a ratio, a tooth number, an efficiency).
     pub fixed: bool,
-    pub(crate) meaning_latex: Option<String>,
+    /// Of a basic ratio the speeds that it is made of, as LaTeX.
+    pub made_of: Option<String>,
     pub(crate) symbol: Symbol,
 }
 
 impl Argument {
-    /// What it is made of, as LaTeX, where that is a formula: of a basic ratio the speeds.
-    pub fn meaning_latex(&self) -> Option<&str> {
-        let (_, formula) = self.meaning_latex.as_deref()?.split_once("\\(")?;
-        formula.split_once("\\)").map(|(formula, _)| formula)
-    }
-
     /// What is wrong with a value that it can never have; `None` if it can have every value.
     pub(crate) fn range(&self) -> Option<Outside> {
         match self.kind {
@@ -639,7 +634,7 @@ fn closed(
                 name: info.name.clone(),
                 latex: info.latex.clone(),
                 meaning: info.meaning.clone(),
-                meaning_latex: info.meaning_latex.clone(),
+                made_of: info.made_of.clone(),
                 value: number.to_f64(),
                 exact: number,
                 efficiency: info.kind == SymbolKind::Efficiency,

@@ -262,7 +262,7 @@ fn latex(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) 
         .iter()
         .map(|a| {
             let value = if a.fixed { format!(" = {}", number(a.value)) } else { String::new() };
-            let meaning = a.meaning_latex.clone().unwrap_or_else(|| plain(&a.meaning));
+            let meaning = a.made_of.as_ref().map_or_else(|| plain(&a.meaning), |speeds| format!("basic ratio \\({speeds}\\)"));
             format!("\\({}{value}\\) ({meaning})", a.latex)
         })
         .collect();

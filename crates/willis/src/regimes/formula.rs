@@ -28,8 +28,8 @@ pub(crate) struct SymbolInfo {
     pub kind: SymbolKind,
     /// What it stands for, in words.
     pub meaning: String,
-    /// The same in LaTeX, where it has formulas in it.
-    pub meaning_latex: Option<String>,
+    /// Of a basic ratio the speeds that it is made of, as LaTeX.
+    pub made_of: Option<String>,
 }
 
 /// What a quantity of a formula is.
@@ -167,7 +167,7 @@ impl Names {
             value: Some(Rational::ONE),
             kind,
             meaning: String::new(),
-            meaning_latex: None,
+            made_of: None,
         };
         for j in 0..k {
             let e = setup.element(j);
@@ -197,7 +197,7 @@ impl Names {
                     value: Some(hubs.ratio(setup, j)),
                     kind: SymbolKind::Ratio,
                     meaning: format!("basic ratio {seen}"),
-                    meaning_latex: Some(format!("basic ratio \\({seen_latex}\\)")),
+                    made_of: Some(seen_latex),
                 },
             });
             // Where the hub of its planet loses too, an arm has an efficiency of its own beside the one for both.
@@ -214,7 +214,7 @@ impl Names {
                 value: Some(value.clone()),
                 kind: SymbolKind::Efficiency,
                 meaning,
-                meaning_latex: None,
+                made_of: None,
             };
             if let Some(arm) = hubs.arm(j).filter(|_| hubs.shares(setup, j)) {
                 let [p, q, c] = ends(setup, &hubs, j, true);
@@ -251,7 +251,7 @@ impl Names {
             value: None,
             kind: SymbolKind::Ratio,
             meaning: String::new(),
-            meaning_latex: None,
+            made_of: None,
         }));
         for (letter, tex, kind, word) in
             [("T", "T", SymbolKind::Torque, "torque on"), ("w", "\\omega", SymbolKind::Speed, "speed of")]
@@ -264,7 +264,7 @@ impl Names {
                     value: None,
                     kind,
                     meaning: format!("{word} {member}"),
-                    meaning_latex: None,
+                    made_of: None,
                 });
             }
         }
@@ -284,7 +284,7 @@ impl Names {
                     value: Some(value.clone()),
                     kind: SymbolKind::Efficiency,
                     meaning: format!("efficiency of {variator}{way}"),
-                    meaning_latex: None,
+                    made_of: None,
                 });
                 Symbol(infos.len() - 1)
             };
@@ -326,7 +326,7 @@ impl Names {
                         value: Some(gear.teeth.clone()),
                         kind: SymbolKind::Teeth,
                         meaning: format!("teeth of {member} in {}", mesh.name),
-                        meaning_latex: None,
+                        made_of: None,
                     });
                     teeth.push((link.mesh.0, g, s));
                     s
@@ -387,7 +387,7 @@ impl Names {
                     value: Some(value.clone()),
                     kind: SymbolKind::Efficiency,
                     meaning: format!("efficiency of {}, {a} driving {b}", mesh.name),
-                    meaning_latex: None,
+                    made_of: None,
                 });
                 product = product.times(&Function::symbol(s));
             }
