@@ -44,6 +44,19 @@ def test_what_is_there_is_kept(automatic: willis.Train, tmp_path: Path) -> None:
     assert os.stat(first.files[0]).st_mtime_ns == before
 
 
+def test_shards_of_another_sweep_are_not_taken(automatic: willis.Train, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    other = automatic.with_(**{"P1.sun.teeth": 46})
+    with ThreadPoolExecutor(1) as pool:
+        willis.on(pool).sweep(automatic, over=OVER, state="3", shards=2, path=out)
+        for train, request in ((other, {"state": "3"}), (automatic, {"state": "4"})):
+            with pytest.raises(FileExistsError, match="another sweep"):
+                willis.on(pool).sweep(train, over=OVER, shards=2, path=out, **request)
+        (out / "sweep.json").unlink()
+        with pytest.raises(FileExistsError, match="of which sweep"):
+            willis.on(pool).sweep(automatic, over=OVER, state="3", shards=2, path=out)
+
+
 def test_a_wrong_request_is_told(automatic: willis.Train, tmp_path: Path) -> None:
     with ThreadPoolExecutor(1) as pool, pytest.raises(willis.TrainError, match="no state `33`"):
         willis.on(pool).sweep(automatic, over=OVER, state="33", shards=2, path=tmp_path / "out")

@@ -6,6 +6,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -57,9 +59,9 @@ class On:
     ) -> Parts:
         """A sweep of any size in so many shards, each a file in ``path``: a folder, or an address that ``fsspec`` knows.
 
-        Files that are there already are kept: the same call goes on where another one ended. A shard that fails is tried
-        again, three times in all; those that do not end well are named. What a shard holds depends on the train, the request
-        and its number only.
+        Files that are there already are kept: the same call goes on where another one ended, and ``sweep.json`` beside them says
+        which call that is; a folder of another one is refused. A shard that fails is tried again, three times in all; those
+        that do not end well are named. What a shard holds depends on the train, the request and its number only.
         """
         from ._quantity import axes
 
@@ -71,6 +73,15 @@ class On:
         parts, names = train._core.parts(), [f"part-{k:06}-of-{shards:06}.{form}" for k in range(1, shards + 1)]
         store = _Store(os.fspath(path))
         there = store.names()
+        study = json.dumps({"willis": _willis.__version__, "train": parts, "sweep": words, "shards": shards, "form": form})
+        own = json.dumps({"format": "willis-shards-1", "sha256": hashlib.sha256(study.encode()).hexdigest()}) + "\n"
+        if _STUDY in there:
+            if store.get(_STUDY) != own.encode():
+                raise FileExistsError(f"{store.address(_STUDY)}: the folder holds the shards of another sweep; take another one")
+        elif any(name.startswith("part-") for name in there):
+            raise FileExistsError(f"{store.address('part-…')}: nothing says of which sweep these are; take another folder")
+        else:
+            store.put(_STUDY, own.encode())
         todo = [k for k, name in enumerate(names) if name not in there]
         done = shards - len(todo)
         waiting = {k: self._submit(shard, parts, words, k + 1, shards, form) for k in todo}
@@ -187,6 +198,9 @@ def shard(parts: Sequence[Any], words: Sequence[str], k: int, n: int, form: str)
         return out.read_bytes()
 
 
+#: The file that says which sweep a folder holds.
+_STUDY = "sweep.json"
+
 #: Fields of the request that the command has as options of the same name.
 _OPTIONS = ("study", "operation", "state", "hold")
 
@@ -228,6 +242,11 @@ class _Store:
 
     def address(self, name: str) -> str:
         return f"{self._path}/{name}"
+
+    def get(self, name: str) -> bytes:
+        if self._far is not None:
+            return bytes(self._far.cat_file(self.address(name)))
+        return Path(self.address(name)).read_bytes()
 
     def put(self, name: str, data: bytes) -> None:
         """Whole or not at all."""
