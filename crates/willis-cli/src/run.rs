@@ -148,10 +148,8 @@ pub fn run_on(threads: usize, entry: &'static Entry, matches: &ArgMatches) -> Re
     for (extra, path) in &extras {
         asked.guard_extra(extra, path, &read)?;
     }
-    if asked.form == PDF {
-        // Before anything is computed for it.
-        pdf::Typesetter::find()?;
-    }
+    // Before anything is computed for it.
+    let typesetter = (asked.form == PDF).then(pdf::Typesetter::find).transpose()?;
     for file in request.attachments() {
         match input::table(&file.name) {
             Ok(text) => file.text = text,
@@ -166,7 +164,7 @@ pub fn run_on(threads: usize, entry: &'static Entry, matches: &ArgMatches) -> Re
         let files = answer.extra(extra.name).map_err(|refusal| asked.refused(&refusal, &of))?;
         deliver(files, Some(path), asked.force)?;
     }
-    let said = hand_out(&asked, &*answer, &of)?;
+    let said = hand_out(&asked, typesetter.as_ref(), &*answer, &of)?;
     Ok(match answer.is_partial() {
         true => Ended::Interrupted { out: said, told: String::new() },
         false => Ended::Answered(said),
@@ -174,7 +172,12 @@ pub fn run_on(threads: usize, entry: &'static Entry, matches: &ArgMatches) -> Re
 }
 
 /// The answer in the form that was asked for, at the place that was named.
-fn hand_out(asked: &Asked<'_>, answer: &dyn Answer, of: &[Given]) -> Result<String, Ended> {
+fn hand_out(
+    asked: &Asked<'_>,
+    typesetter: Option<&pdf::Typesetter>,
+    answer: &dyn Answer,
+    of: &[Given],
+) -> Result<String, Ended> {
     let file = match asked.form {
         TEXT => {
             let notes = notes(answer.notes(), of);
@@ -192,7 +195,7 @@ fn hand_out(asked: &Asked<'_>, answer: &dyn Answer, of: &[Given]) -> Result<Stri
         JSON => vec![File::text(format!("{}.json", asked.entry.name), answer.json())],
         CSV | JSON_LINES | PARQUET => vec![tables(asked, &answer.tables())?],
         PDF => {
-            let typesetter = pdf::Typesetter::find()?;
+            let typesetter = typesetter.expect("it was found before the question was asked");
             let paper = pdf::paper(asked.matches);
             if asked.entry.forms.iter().any(|f| f.name == pdf::PLATE) {
                 let plates = answer.write(pdf::PLATE).map_err(|refusal| asked.refused(&refusal, of))?;

@@ -6,6 +6,8 @@ use willis::diagnostic::Diagnostics;
 use willis::model::Model;
 use willis::work::Effort;
 
+use crate::report::paper;
+
 /// What a kind of figure says of itself. Each folder has one, as `KIND`.
 pub(crate) struct Kind<T> {
     /// The heading of its pictures.
@@ -137,6 +139,18 @@ pub struct Drawing {
 impl Drawing {
     /// The size of the smallest text of every figure, in units of the figure.
     pub const SMALLEST_TEXT: f64 = 11.0;
+
+    /// The width of paper of so many mm in units of the figure, so that its smallest text has 7 pt.
+    ///
+    /// ```
+    /// use willis_figure::Drawing;
+    ///
+    /// // The text of an A4 page.
+    /// assert_eq!(Drawing::units(174.0), 775);
+    /// ```
+    pub fn units(mm: f64) -> u32 {
+        (mm * paper::MM / paper::SMALLEST * Self::SMALLEST_TEXT) as u32
+    }
 
     /// The width of a page that is so wide on a screen; on narrow paper as wide as that is, but not below what it needs.
     pub(crate) fn page(self, usual: f64, needs: f64) -> f64 {

@@ -75,7 +75,7 @@ pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, Ti
 pub use tornado::draw::draw as draw_tornado;
 pub use tornado::{Tornado, TornadoBar, tornado};
 pub use wolf::draw::draw as draw_wolf;
-pub use wolf::{Wolf, WolfMember, WolfSet, WolfShaft, WolfTie, wolf};
+pub use wolf::{Wolf, WolfMember, WolfSet, WolfShaft, WolfTie, WolfVariator, wolf};
 
 /// The code of the page of this crate runs as a doctest.
 #[cfg(doctest)]

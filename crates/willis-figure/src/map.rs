@@ -143,11 +143,14 @@ fn effort(model: &Model, request: &FigureRequest) -> Effort {
             // Where neither is named, every state may be tried.
             let open = request.state.is_none() && request.operation.is_none();
             let states = if open { train.states().len().max(1) } else { 1 };
-            (COLUMNS * ROWS).max(FEWER[0] * FEWER[1] * states)
+            // The limits of every gear are lines of the grid.
+            let fewer = (FEWER[0] + 2 * states) * (FEWER[1] + 2 * states) * states;
+            if states > 1 { fewer } else { COLUMNS * ROWS }
         }
         over => axes::points(over, model),
     };
-    Effort::new("operating points", points as u64, one)
+    // Borders are looked for between points: as many evaluations again, and half as many more, on trains that have many.
+    Effort::new("operating points", points as u64 * 5 / 2, one)
 }
 
 /// Computes an efficiency map. Without axes it runs over the first speed of the operation and its load (of a train with
@@ -346,7 +349,7 @@ fn marks(question: &Question<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
                 _ => return None,
             };
             let unit = match axis.unit.as_str() {
-                "rpm" => std::f64::consts::PI / 30.0,
+                "rpm" => axes::RPM,
                 "kW" => 1e3,
                 "N m" | "W" | "rad/s" => 1.0,
                 _ => return None,

@@ -5,7 +5,7 @@ mod formula;
 mod gears;
 pub mod html;
 mod laws;
-mod paper;
+pub(crate) mod paper;
 mod results;
 mod scheme;
 mod wheels;
@@ -24,7 +24,7 @@ use willis::work::{self, Cancelled, Effort, Work};
 
 use crate::parts::markup::untitled;
 use crate::parts::style::watts;
-use crate::parts::words::{self, spelled};
+use crate::parts::words::{self, Names, spelled};
 use crate::report::document::{Block, Column, Document, Level, Section, TitleBlock};
 use crate::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
@@ -300,16 +300,18 @@ pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result
 
 /// A section without keys and marks of code in its sentences.
 fn in_words(train: &Train, mut section: Section) -> Section {
-    let is_name = |text: &str| {
-        train.member(text).is_some()
-            || train.mesh(text).is_some()
-            || train.state(text).is_some()
-            || train.scenario(text).is_some()
-            || train.sets().iter().any(|s| s.name == text)
-            || train.shift_elements().iter().any(|e| e.name == text)
-            || train.operations().iter().any(|o| o.name == text)
-    };
-    let plain = |text: &mut String| *text = words::plain(text, &is_name);
+    let names = Names::new(
+        (train.members().iter().map(|m| m.name.as_str()))
+            .chain(train.meshes().iter().map(|m| m.name.as_str()))
+            .chain(train.sets().iter().map(|s| s.name.as_str()))
+            .chain(train.shift_elements().iter().map(|e| e.name.as_str()))
+            .chain(train.variators().iter().map(|v| v.name.as_str()))
+            .chain(train.states().iter().map(|s| s.name.as_str()))
+            .chain(train.operations().iter().map(|o| o.name.as_str()))
+            .chain(train.scenarios().iter().map(|s| s.name.as_str()))
+            .chain([train.name()]),
+    );
+    let plain = |text: &mut String| *text = words::plain(text, &names);
     for block in &mut section.blocks {
         match block {
             Block::Text { text } | Block::Notice { text, .. } => plain(text),

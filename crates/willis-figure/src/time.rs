@@ -50,7 +50,7 @@ fn scenario(train: &Train, name: Option<&str>, window: Option<[f64; 2]>) -> Resu
         (options.from_s, options.to_s) = (Some(from), Some(to));
     }
     let report = simulate(train, &scenario.name, &options, &mut plot)?;
-    Ok(plot.finish(&report))
+    Ok(TimePlot { cut: options.to_s.is_some_and(|to| to < span[1]), ..plot.finish(&report) })
 }
 
 /// A run over time.
@@ -66,6 +66,9 @@ pub struct TimePlot {
     pub outcome: Outcome,
     /// Where it began and ended, s.
     pub run: [f64; 2],
+    /// The run was ended where the picture ends, before the end of the scenario.
+    #[serde(default)]
+    pub cut: bool,
     /// What the time axis shows, s: the whole scenario, unless the run ended in its first fifth.
     pub axis: [f64; 2],
     /// One a quantity.
@@ -307,6 +310,7 @@ impl TimePlotBuilder {
             scenario: report.scenario.clone(),
             outcome: report.outcome.clone(),
             run: [report.start_s, reached],
+            cut: false,
             axis,
             panels,
             modes_left_out: all - modes.len(),

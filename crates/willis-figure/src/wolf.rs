@@ -34,12 +34,15 @@ pub struct Wolf {
     pub title: String,
     /// The state whose shift elements are closed.
     pub state: Option<String>,
-    /// Members with a shaft in a set or a shift element, in the order of the train; without the frame.
+    /// Members with a shaft in a set, a shift element or a variator, in the order of the train; without the frame.
     pub members: Vec<WolfMember>,
     /// The boxes.
     pub sets: Vec<WolfSet>,
     /// Shift elements.
     pub ties: Vec<WolfTie>,
+    /// Variators: the second paths of a power split.
+    #[serde(default)]
+    pub variators: Vec<WolfVariator>,
 }
 
 /// A member.
@@ -96,6 +99,17 @@ pub struct WolfTie {
     pub engaged: bool,
 }
 
+/// A variator between members, directly or by machines on a bus.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct WolfVariator {
+    /// Its name.
+    pub name: String,
+    /// Positions in [`Wolf::members`].
+    pub members: Vec<usize>,
+}
+
 /// The boxes of a train and how their shafts are coupled; with a state also what is closed in it.
 ///
 /// # Errors
@@ -126,6 +140,7 @@ pub fn wolf(train: &Train, state: Option<&str>) -> Result<Wolf, Diagnostics> {
     }
     let mut used: Vec<MemberId> = families.iter().flat_map(|f| central(f).map(|p| p.0)).collect();
     used.extend(train.shift_elements().iter().flat_map(|e| e.members));
+    used.extend(train.variators().iter().flat_map(|v| v.members()));
     used.retain(|m| *m != FRAME);
     used.sort_unstable();
     used.dedup();
@@ -142,12 +157,17 @@ pub fn wolf(train: &Train, state: Option<&str>) -> Result<Wolf, Diagnostics> {
         one_way: e.kind == ShiftElementKind::OneWay,
         engaged: engaged.iter().any(|id| id.index() == k),
     });
+    let variators = train
+        .variators()
+        .iter()
+        .map(|v| WolfVariator { name: v.name.clone(), members: v.members().into_iter().filter_map(place).collect() });
     Ok(Wolf {
         title: train.name().to_owned(),
         state: state.map(|k| train.states()[k].name.clone()),
         members: members.collect(),
         sets: families.iter().map(|f| set(f, &place)).collect(),
         ties: ties.collect(),
+        variators: variators.collect(),
     })
 }
 

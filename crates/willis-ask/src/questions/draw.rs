@@ -203,10 +203,7 @@ impl Draw {
     }
 
     fn drawing(&self) -> Drawing {
-        /// Points to a millimetre, and the size of the smallest text in points.
-        const PRINTED: [f64; 2] = [72.0 / 25.4, 7.0];
-        let units = |mm: f64| (mm * PRINTED[0] / PRINTED[1] * Drawing::SMALLEST_TEXT) as u32;
-        Drawing { animated: self.animated, width: self.width.map(units) }
+        Drawing { animated: self.animated, width: self.width.map(Drawing::units) }
     }
 
     /// Refuses what would make no difference to this kind.
@@ -317,6 +314,14 @@ impl Question for Draw {
     fn write(&self, answer: &DrawAnswer, form: &str, _: &[Given]) -> Result<Vec<File>, Refusal> {
         let figures: Vec<&Figure> = match answer {
             DrawAnswer::One(figure) => vec![figure],
+            // Of all figures those that have the form.
+            DrawAnswer::All(all) if form == DXF.name => {
+                let own: Vec<&Figure> = all.figures.iter().filter(|f| matches!(f, Figure::Front(_))).collect();
+                if own.is_empty() {
+                    return Err(no_drawing(FigureKind::Stick).into());
+                }
+                own
+            }
             DrawAnswer::All(all) => all.figures.iter().collect(),
         };
         let picture = |figure: &Figure| -> Result<File, Refusal> {

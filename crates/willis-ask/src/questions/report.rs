@@ -51,10 +51,10 @@ impl Report {
         let name = if name.contains('.') { name } else { "train.toml" };
         let shown = quoted(name);
         let mut more: Vec<String> = given.changes.iter().map(|c| format!(" {c}")).collect();
-        more.extend(self.operation.as_ref().map(|o| format!(" --operation {}", quoted(o))));
+        more.extend(self.operation.as_ref().map(|o| format!(" --operation={}", quoted(o))));
         let analyze = more.concat();
         let told = self.told().into_iter().filter(|(_, words)| !words.is_empty());
-        more.extend(told.map(|(name, words)| format!(" --{name} {}", quoted(words))));
+        more.extend(told.map(|(name, words)| format!(" --{name}={}", quoted(words))));
         more.extend(self.appendix.then(|| " --appendix".to_owned()));
         let more = more.concat();
         let commands =

@@ -25,9 +25,14 @@ pub fn front_dxf(view: &Front) -> String {
     let mut file = Dxf::default();
     file.begin("HEADER");
     file.put(9, "$ACADVER").put(1, "AC1009");
-    // Millimetres.
-    file.put(9, "$INSUNITS").put(70, 4);
     file.end();
+    // Right of everything, from its top on.
+    let radius = |w: &FrontWheel| w.tip_radius_mm.max(w.root_radius_mm);
+    let reach = |axis: usize| {
+        let of = |w: &FrontWheel| w.bodies.iter().map(|b| b.centre_mm[axis] + radius(w)).fold(f64::MIN, f64::max);
+        view.wheels.iter().map(of).fold(0.0, f64::max)
+    };
+    let beside = [reach(0) + view.wheels.iter().map(|w| w.module_mm).fold(0.0, f64::max), reach(1)];
     file.begin("ENTITIES");
     for (k, w) in view.wheels.iter().enumerate() {
         let layer = format!("WHEEL_{}", k + 1);
@@ -46,7 +51,7 @@ pub fn front_dxf(view: &Front) -> String {
                 file.line("AXES", [x - dx, y - dy], [x + dx, y + dy]);
             }
         }
-        file.note(w, k);
+        file.note(w, k, beside);
     }
     for m in &view.meshes {
         let [a, b] = m.wheels.map(|k| view.wheels[k].bodies[0].centre_mm);
@@ -124,15 +129,15 @@ impl Dxf {
         let plain = |c: char| match c {
             ' '..='~' => c.to_string(),
             c if c.is_control() => " ".to_owned(),
-            c => format!("\\U+{:04X}", u32::from(c)),
+            // Four digits are all that the form has.
+            c => u16::try_from(u32::from(c)).map_or("?".to_owned(), |c| format!("\\U+{c:04X}")),
         };
         let words: String = words.chars().map(plain).collect();
         self.put(0, "TEXT").put(8, layer).at(10, at).put(40, format!("{size:.6}")).put(1, words);
     }
 
-    /// The numbers of a wheel, right of everything, a row below the other.
-    fn note(&mut self, w: &FrontWheel, row: usize) {
-        let [x, y] = w.bodies.first().map_or([0.0; 2], |b| b.centre_mm);
+    /// The numbers of a wheel, mm, in its row from a place on downwards.
+    fn note(&mut self, w: &FrontWheel, row: usize, [x, y]: [f64; 2]) {
         let size = 0.5 * w.module_mm;
         let words = format!(
             "{} {}: z = {}, mn = {}, x = {:.4}, d = {:.4}, da = {:.4}, df = {:.4}, db = {:.4}",
@@ -146,6 +151,6 @@ impl Dxf {
             2.0 * w.root_radius_mm,
             2.0 * w.base_radius_mm
         );
-        self.text("NUMBERS", [x + 0.2 * w.reference_radius_mm, y - 2.0 * size * row as f64], size, &words);
+        self.text("NUMBERS", [x, y - 2.0 * size * row as f64], size, &words);
     }
 }

@@ -80,11 +80,11 @@ pub(super) fn draw_on(map: &EfficiencyMap, paper: Drawing) -> String {
     let head = format!("Efficiency map of {}", map.title);
     if let Some(efficiency) = constant(map) {
         let said = everywhere(map, efficiency);
-        for l in lines(&said, WIDTH - 56.0, 15.0) {
+        for l in lines(&said, width - 56.0, 15.0) {
             top += 21.0;
             body = body.add(text(28.0, top, 15.0, Anchor::Start, &l));
         }
-        return page(WIDTH, top + 28.0, &head, &words(map)).add(body).to_string();
+        return page(width, top + 28.0, &head, &words(map)).add(body).to_string();
     }
     top += 22.0;
     let chart = |top: f64| Chart {
@@ -287,6 +287,11 @@ fn efficiency(map: &EfficiencyMap, mesh: &Mesh<'_>, chart: &Chart) -> Group {
     g.add(legend(map, chart, &bands, !powers.is_empty()))
 }
 
+/// Whether a rectangle touches none of others: left, top, right, bottom.
+fn is_free(own: &[f64; 4], taken: &[[f64; 4]]) -> bool {
+    taken.iter().all(|t| own[0] > t[2] || own[2] < t[0] || own[1] > t[3] || own[3] < t[1])
+}
+
 /// The efficiency of a state, where it is one number and has room.
 fn level(map: &EfficiencyMap, mesh: &Mesh<'_>, state: usize, taken: &mut Vec<[f64; 4]>) -> Group {
     let own = map.points.iter().filter(|p| p.best == Some(state)).filter_map(|p| p.efficiency);
@@ -297,8 +302,7 @@ fn level(map: &EfficiencyMap, mesh: &Mesh<'_>, state: usize, taken: &mut Vec<[f6
     let place = [x - half, y - 8.0, x + half, y + 8.0];
     let inside = [(place[0], y), (place[2], y), (x, place[1]), (x, place[3])];
     let room = inside.iter().all(|p| mesh.holds(*p, |p| p.best == Some(state)));
-    let free = taken.iter().all(|t| place[0] > t[2] || place[2] < t[0] || place[1] > t[3] || place[3] < t[1]);
-    if !(most - least < 5e-5 && room && free) {
+    if !(most - least < 5e-5 && room && is_free(&place, taken)) {
         return Group::new();
     }
     taken.push(place);
@@ -370,7 +374,7 @@ fn label(all: &[Vec<Place>], name: &str, chart: &Chart, taken: &mut Vec<[f64; 4]
                 && own[2] < chart.right - 2.0
                 && own[1] > chart.top + 2.0
                 && own[3] < chart.bottom - 2.0;
-            if inside && taken.iter().all(|t| own[0] > t[2] || own[2] < t[0] || own[1] > t[3] || own[3] < t[1]) {
+            if inside && is_free(&own, taken) {
                 taken.push(own);
                 let turn = format!("rotate({} {} {})", number(steep.to_degrees()), number(x), number(y));
                 let words = text(x, y + 3.5, 11.0, Anchor::Middle, name).set("fill", ink).set("transform", turn);
@@ -519,7 +523,7 @@ fn states(map: &EfficiencyMap, mesh: &Mesh<'_>, chart: &Chart) -> Group {
         let x = x.clamp(chart.left + half + 2.0, chart.right - half - 2.0);
         let y = y.clamp(chart.top + 10.0, chart.bottom - 8.0);
         let own = [x - half, y - 8.0, x + half, y + 8.0];
-        if taken.iter().all(|t| own[0] > t[2] || own[2] < t[0] || own[1] > t[3] || own[3] < t[1]) {
+        if is_free(&own, &taken) {
             taken.push(own);
             g = g.add(halo(text(x, y + 4.5, 13.0, Anchor::Middle, &name).set("font-weight", "bold"), PAPER, 3.0));
         }

@@ -8,9 +8,8 @@ use willis::model::Target;
 use willis::study::{Axis, PointAnswer, PointVerdict, Question, Trains};
 use willis::train::MemberId;
 
+use crate::parts::axes::RPM;
 use crate::{MapPoint, MapVerdict};
-
-const RPM: f64 = std::f64::consts::PI / 30.0;
 
 /// Within what the input of an automatic transmission stays.
 #[derive(Clone, Copy)]

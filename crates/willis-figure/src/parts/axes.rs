@@ -77,7 +77,8 @@ fn range(name: &str, most: f64, negative: bool, unit: &str, steps: usize) -> Str
     }
 }
 
-const RPM: f64 = std::f64::consts::PI / 30.0;
+/// rad/s to a rpm.
+pub const RPM: f64 = std::f64::consts::PI / 30.0;
 
 /// Speeds of a member in all operations, rpm.
 pub fn most_speed(question: &Question<'_>, member: MemberId) -> f64 {

@@ -2,36 +2,68 @@
 
 use crate::parts::style::{figures, watts};
 
+/// Names that a user gave, which stay as they are.
+pub struct Names<'n> {
+    all: Vec<&'n str>,
+    /// Those that would not stay: only these are looked for in a sentence, or a gear `1` would part a number 1.25.
+    changed: Vec<&'n str>,
+}
+
+impl<'n> Names<'n> {
+    pub fn new(all: impl IntoIterator<Item = &'n str>) -> Self {
+        let all: Vec<&str> = all.into_iter().collect();
+        let mut changed: Vec<&str> = all.iter().copied().filter(|name| told(name) != **name).collect();
+        // Of names that begin alike the longest is meant.
+        changed.sort_unstable_by_key(|name| std::cmp::Reverse(name.len()));
+        Self { all, changed }
+    }
+
+    fn has(&self, text: &str) -> bool {
+        self.all.contains(&text)
+    }
+
+    /// Where the first of them stands as words of its own.
+    fn first<'t>(&self, text: &'t str) -> Option<(usize, &'t str)> {
+        let ends = |c: Option<char>| c.is_none_or(|c| !c.is_alphanumeric() && c != '_');
+        let stands = |at: usize, name: &str| {
+            ends(text[..at].chars().next_back()) && ends(text[at + name.len()..].chars().next())
+        };
+        let place = |name: &&str| {
+            let at = text.match_indices(*name).map(|(at, _)| at).find(|at| stands(*at, name))?;
+            Some((at, &text[at..at + name.len()]))
+        };
+        // Of several in one place the first in the list: the longest.
+        self.changed.iter().filter_map(place).min_by_key(|found| found.0)
+    }
+}
+
 /// A message without marks of code. What stands between backticks is quoted; a key is written as words, a name as it is.
-pub fn plain(text: &str, is_name: &dyn Fn(&str) -> bool) -> String {
+pub fn plain(text: &str, names: &Names<'_>) -> String {
     let mut out = String::with_capacity(text.len());
     for (k, part) in text.split('`').enumerate() {
         match k % 2 {
-            0 => out.push_str(&numbers(&sentence(part, is_name))),
+            0 => prose(part, names, &mut out),
             _ if part.is_empty() => {}
-            _ if is_name(part) => out.push_str(&format!("“{part}”")),
+            _ if names.has(part) => out.push_str(&format!("“{part}”")),
             _ => out.push_str(&format!("“{}”", key(part))),
         }
     }
     out
 }
 
-/// A sentence without keys: what has underscores and is no name.
-fn sentence(text: &str, is_name: &dyn Fn(&str) -> bool) -> String {
-    let inside = |c: char| c.is_alphanumeric() || c == '_' || c == '.' || c == '-';
-    let mut out = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some(c) = rest.chars().next() {
-        let end = rest.find(|c| !inside(c)).unwrap_or(rest.len()).max(if inside(c) { 0 } else { c.len_utf8() });
-        let (word, behind) = rest.split_at(end);
-        let part = |name: &str| is_name(name) || name.split('.').any(is_name);
-        match word.contains('_') && !part(word) {
-            true => out.push_str(&word.replace('_', " ")),
-            false => out.push_str(word),
-        }
-        rest = behind;
+/// What stands between names, without keys and with numbers for people.
+fn prose(mut text: &str, names: &Names<'_>, out: &mut String) {
+    while let Some((at, name)) = names.first(text) {
+        out.push_str(&told(&text[..at]));
+        out.push_str(name);
+        text = &text[at + name.len()..];
     }
-    out
+    out.push_str(&told(text));
+}
+
+/// A sentence without keys, which have underscores, and with numbers for people.
+fn told(text: &str) -> String {
+    numbers(&text.replace('_', " "))
 }
 
 /// A key as words: `mesh_friction` is mesh friction.
@@ -139,12 +171,14 @@ mod tests {
 
     #[test]
     fn nothing_of_code_is_left() {
-        let names = |name: &str| name == "sun_1";
+        let names = Names::new(["sun_1", "1500 W at -5 N m", "1500 W", "1", "P1.2"]);
         let words = |text: &str| plain(text, &names);
         assert_eq!(words("set `mesh_friction`, not `sun_1`"), "set “mesh friction”, not “sun_1”");
         assert_eq!(words("teeth as (z_ring - z_sun)/2 of sun_1"), "teeth as (z ring − z sun)/2 of sun_1");
         assert_eq!(words("-14944 W at -3.5 N m, 12 W"), "−14.94 kW at −3.5 N m, 12 W");
         assert_eq!(words("error of 1.25e-7 of 2-4, 40-38, v1.2"), "error of 1.25·10⁻⁷ of 2-4, 40-38, v1.2");
+        assert_eq!(words("in 1500 W at -5 N m, 1500 W and 1600 W"), "in 1500 W at -5 N m, 1500 W and 1.6 kW");
+        assert_eq!(words("sun_12 and my_sun_1 of `1500 W`"), "sun 12 and my sun 1 of “1500 W”");
         assert_eq!(words("shift-element 8HP70, ISO VG-32, 3 W/K, P1.2"), "shift-element 8HP70, ISO VG-32, 3 W/K, P1.2");
     }
 

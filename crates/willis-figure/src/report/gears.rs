@@ -4,7 +4,7 @@ use willis::analysis::{ShaftState, shaft_table};
 use willis::exact::Rational;
 use willis::train::{AS_DRAWN, MemberKind, Train};
 
-use super::results::{exact_percent, fixed};
+use super::results::{exact_percent, fixed, significant};
 use crate::report::document::{Block, Column};
 
 /// Gears beside each other.
@@ -29,7 +29,7 @@ fn block(train: &Train, states: &[(String, ShaftState)]) -> Block {
             rows.push([quantity.to_owned(), of.to_owned()].into_iter().chain(cells).collect());
         }
     };
-    row("Ratio", "input to output", &|s| s.ratio.as_ref().map_or("–".into(), |i| fixed(i.to_f64(), 3)));
+    row("Ratio", "input to output", &|s| s.ratio.as_ref().map_or("–".into(), |i| significant(i.to_f64(), 5)));
     row("Efficiency", "nominal, driving", &|s| s.efficiency.map_or("–".into(), exact_percent));
     row("Closed", "", &|s| s.engaged.join(" "));
     let inputs: Vec<&str> = states.iter().map(|(_, s)| s.input.as_str()).collect();

@@ -49,10 +49,9 @@ pub fn significant(x: f64, digits: i32) -> String {
 pub fn fixed(x: f64, decimals: usize) -> String {
     match x {
         0.0 => "0".to_owned(),
-        x if x.is_finite() && (0.5 * 10f64.powi(-(decimals as i32))..1e5).contains(&x.abs()) => {
-            format!("{x:.decimals$}").replace('-', "−")
-        }
-        x => figures(x, 3),
+        // Of a small number that would leave too few digits.
+        x if x.is_finite() && (0.1..1e5).contains(&x.abs()) => format!("{x:.decimals$}").replace('-', "−"),
+        x => significant(x, 4),
     }
 }
 

@@ -80,15 +80,9 @@ pub(super) fn draw_on(plot: &TimePlot, paper: Drawing) -> String {
 }
 
 fn subtitle(plot: &TimePlot, time: &TimeAxis, room: f64) -> (String, String) {
-    let words = plot.outcome.words();
     let [start, end] = plot.run;
     let whole = TimeAxis::new(plot.run, time.right);
-    // A window ends the run where it ends.
-    let ended_here = plot.outcome == Outcome::Finished && plot.axis[0] > start && plot.axis[1] >= end;
-    let mut one = match ended_here {
-        true => format!("Run from {} to {}", whole.moment(start), whole.moment(end)),
-        false => format!("From {} to {}; the run {words}", whole.moment(start), whole.moment(end)),
-    };
+    let mut one = format!("From {} to {}; the run {}", whole.moment(start), whole.moment(end), ending(plot));
     if plot.axis[0] > start || plot.axis[1] < end {
         one += &format!("; shown from {} to {}", time.moment(plot.axis[0]), time.moment(plot.axis[1]));
     }
@@ -125,8 +119,16 @@ fn subtitle(plot: &TimePlot, time: &TimeAxis, room: f64) -> (String, String) {
     (fit(&one, room, 13.0), fit(&two, room, 13.0))
 }
 
+/// How the run ended.
+fn ending(plot: &TimePlot) -> &str {
+    match plot.outcome {
+        Outcome::Finished if plot.cut => "was ended there",
+        _ => plot.outcome.words(),
+    }
+}
+
 fn description(plot: &TimePlot) -> String {
-    let mut words = vec![format!("The run {}", plot.outcome.words())];
+    let mut words = vec![format!("The run {}", ending(plot))];
     for p in &plot.panels {
         // As drawn, but without prefixes.
         let (unit, scale) = unit(p.unit, 1.0);

@@ -5,7 +5,7 @@ use svg::node::element::{Circle, Group, Path};
 use crate::lever::LeverRole;
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{Anchor, BOLD, FAINT, INK, PAPER, colour, fit, line, number, page, rectangle, text, wide};
-use crate::{Wolf, WolfSet, WolfTie};
+use crate::{Wolf, WolfSet, WolfTie, WolfVariator};
 
 const MARGIN: f64 = 28.0;
 const TOP: f64 = 96.0;
@@ -14,7 +14,8 @@ const LANE: f64 = 30.0;
 const SHAFT: f64 = 34.0;
 const BOX: f64 = 58.0;
 const GAP: f64 = 40.0;
-const TIE: f64 = 46.0;
+/// Least room of a shift element or a variator, and the most that its name gets.
+const TIE: [f64; 2] = [46.0, 120.0];
 const PLATE: f64 = 8.0;
 
 /// Boxes with their shafts, the sum shaft a double line; a line for each member, a dot where a shaft is coupled to it; shift
@@ -34,11 +35,23 @@ pub fn draw(data: &Wolf) -> String {
             own
         })
         .collect();
-    let ties: Vec<f64> = (data.ties.iter().enumerate()).map(|(k, _)| x + TIE * (k as f64 + 0.5)).collect();
-    let right = x + TIE * data.ties.len() as f64 + 10.0;
-    let state = data.state.as_ref().map_or("no shift element closed".to_owned(), |s| format!("state {s}"));
-    let caption = format!("Sets as boxes with their shafts, a line for each member; {state}.");
-    let head = (wide(&data.title, 20.0) * BOLD).max(wide(&caption, 13.0)).min(900.0);
+    let mut room = |name: &str| {
+        let own = (wide(name, 11.0) + 8.0).clamp(TIE[0], TIE[1]);
+        x += own;
+        x - own / 2.0
+    };
+    let ties: Vec<f64> = data.ties.iter().map(|t| room(&t.name)).collect();
+    let variators: Vec<f64> = data.variators.iter().map(|v| room(&v.name)).collect();
+    let right = x + 10.0;
+    let state = match &data.state {
+        Some(state) => format!("; state {state}"),
+        None if data.ties.is_empty() => String::new(),
+        None => "; no shift element closed".to_owned(),
+    };
+    let caption = format!("Sets as boxes with their shafts, a line for each member{state}.");
+    let signs = signs(data);
+    let widest = signs.iter().map(|words| wide(words, 12.0)).fold(wide(&caption, 13.0), f64::max);
+    let head = (wide(&data.title, 20.0) * BOLD).max(widest).min(900.0);
     let page_width = right.max(MARGIN + head) + MARGIN;
 
     let mut body = Group::new();
@@ -63,7 +76,10 @@ pub fn draw(data: &Wolf) -> String {
     for (t, at) in data.ties.iter().zip(&ties) {
         body = body.add(of(tie(data, t, *at, ground, &lane), "tie", &[Of::Element(&t.name)]));
     }
-    let (key, bottom) = key(data, ground + 46.0);
+    for (v, at) in data.variators.iter().zip(&variators) {
+        body = body.add(of(variator(data, v, *at, ground, &lane), "variator", &[Of::Element(&v.name)]));
+    }
+    let (key, bottom) = key(&signs, ground + 46.0);
     page(page_width, bottom, &format!("Wolf diagram of {}", data.title), &words(data))
         .add(
             text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&data.title, (page_width - 2.0 * MARGIN) / BOLD, 20.0))
@@ -173,12 +189,39 @@ fn tie(data: &Wolf, t: &WolfTie, x: f64, ground: f64, lane: &dyn Fn(usize) -> f6
         // Down to its name.
         Some(_) => Group::new().add(guide(line((x, to), (x, ground + 8.0), "#dcdcdc", 1.0))).add(g),
     };
-    let name = fit(&t.name, TIE - 4.0, 11.0);
+    let name = fit(&t.name, TIE[1] - 4.0, 11.0);
     g.add(text(x, ground + 22.0, 11.0, Anchor::Middle, &name))
 }
 
-/// What the signs mean; and where the page ends.
-fn key(data: &Wolf, y: f64) -> (Group, f64) {
+/// Members that a variator couples at a ratio that is free: a dashed line, a box with an arrow across.
+fn variator(data: &Wolf, v: &WolfVariator, x: f64, ground: f64, lane: &dyn Fn(usize) -> f64) -> Group {
+    let ends = v.members.iter().map(|m| lane(*m));
+    let (top, end) = ends.fold((f64::MAX, f64::MIN), |(a, b), y| (a.min(y), b.max(y)));
+    let mut g = Group::new();
+    if top < end {
+        let middle = top + LANE / 2.0;
+        let r = PLATE + 1.0;
+        let d = format!("M{} {} l{} {} m-6 0.5 l6 -0.5 l-0.5 6", number(x - r), number(middle + r), 2.0 * r, -2.0 * r);
+        g = g
+            .add(line((x, top), (x, end), INK, 1.6).set("stroke-dasharray", "6 3"))
+            .add(rectangle(x - r, middle - r, 2.0 * r, 2.0 * r, PAPER).set("stroke", INK).set("stroke-width", 1.6))
+            .add(Path::new().set("d", d).set("fill", "none").set("stroke", INK).set("stroke-width", 1.4));
+    }
+    for m in &v.members {
+        g = g.add(dot(x, lane(*m), &colour(Some(data.members[*m].colour), 1.0)));
+    }
+    let below = if top < end { end } else { ground - 30.0 };
+    Group::new().add(guide(line((x, below), (x, ground + 8.0), "#dcdcdc", 1.0))).add(g).add(text(
+        x,
+        ground + 22.0,
+        11.0,
+        Anchor::Middle,
+        &fit(&v.name, TIE[1] - 4.0, 11.0),
+    ))
+}
+
+/// What the signs mean.
+fn signs(data: &Wolf) -> Vec<&'static str> {
     let mut entries = vec!["s sun, r ring, c carrier, g gear of a pair"];
     if data.sets.iter().flat_map(|s| &s.shafts).any(|s| s.sum) {
         entries.push("double line: sum shaft, its torque balances the other two");
@@ -186,6 +229,14 @@ fn key(data: &Wolf, y: f64) -> (Group, f64) {
     if data.sets.iter().any(|s| s.basic_ratio.is_some()) {
         entries.push("i₀: speed of the first over that of the second shaft, relative to the carrier");
     }
+    if !data.variators.is_empty() {
+        entries.push("box with an arrow: variator, whose ratio is free");
+    }
+    entries
+}
+
+/// That below the picture; and where the page ends.
+fn key(entries: &[&str], y: f64) -> (Group, f64) {
     let mut g = guide(Group::new());
     for (k, words) in entries.iter().enumerate() {
         g = g.add(text(MARGIN, y + 17.0 * k as f64, 12.0, Anchor::Start, words).set("fill", FAINT));
@@ -203,5 +254,9 @@ fn words(data: &Wolf) -> String {
             .collect();
         format!("Set {} has the shafts {}", s.name, all.join(", "))
     };
-    data.sets.iter().map(set).collect::<Vec<_>>().join(". ") + "."
+    let variator = |v: &WolfVariator| {
+        let all: Vec<&str> = v.members.iter().map(|m| data.members[*m].name.as_str()).collect();
+        format!("The variator {} couples {}", v.name, all.join(" and "))
+    };
+    data.sets.iter().map(set).chain(data.variators.iter().map(variator)).collect::<Vec<_>>().join(". ") + "."
 }

@@ -111,8 +111,13 @@ fn every_dxf_has_all_teeth_between_root_and_tip() {
                 }
             }
         }
-        let numbers = entities.iter().filter(|e| of(e, 8) == "NUMBERS").count();
-        assert_eq!(numbers, view.wheels.len(), "{name}");
+        let numbers = || entities.iter().filter(|e| of(e, 8) == "NUMBERS");
+        assert_eq!(numbers().count(), view.wheels.len(), "{name}");
+        // They stand in a column of their own, beside all wheels.
+        let x = |e: &[(u16, &str)]| of(e, 10).parse::<f64>().expect("a coordinate");
+        let teeth = entities.iter().filter(|e| of(e, 0) == "VERTEX").map(|e| x(e)).fold(f64::MIN, f64::max);
+        let columns: Vec<f64> = numbers().map(|e| x(e)).collect();
+        assert!(columns.iter().all(|c| *c == columns[0] && *c > teeth), "{name}: {columns:?} {teeth}");
     }
     assert!(seen > 5, "{seen}");
 }

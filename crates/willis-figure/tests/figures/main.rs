@@ -23,3 +23,4 @@ mod stick;
 mod table;
 mod time_drawn;
 mod tornado;
+mod wolf;

@@ -315,3 +315,18 @@ fn a_window_is_a_part_of_the_run() {
         }
     }
 }
+
+#[test]
+fn only_a_window_that_cuts_a_run_ends_it() {
+    let model = crate::trains::model("launch");
+    let end = model.train().scenarios()[0].end;
+    for (window, cut) in [(None, false), (Some([0.0, 0.2]), true), (Some([0.5, 1.0]), true), (Some([0.5, end]), false)]
+    {
+        let request = willis_figure::FigureRequest { window, ..Default::default() };
+        let figure = willis_figure::FigureKind::Time.make(&model, &request).unwrap();
+        let svg = willis_figure::draw(&figure, Default::default());
+        let willis_figure::Figure::Time(plot) = figure else { panic!("a run") };
+        assert_eq!((plot.cut, plot.run[1]), (cut, if cut { window.unwrap()[1] } else { end }));
+        assert_eq!(svg.matches("was ended there").count(), if cut { 2 } else { 0 }, "{window:?}");
+    }
+}

@@ -262,7 +262,8 @@ fn latex(out: &mut String, f: &ClosedFormula, heading: &str, derivatives: bool) 
         .iter()
         .map(|a| {
             let value = if a.fixed { format!(" = {}", number(a.value)) } else { String::new() };
-            let meaning = a.made_of.as_ref().map_or_else(|| plain(&a.meaning), |speeds| format!("basic ratio \\({speeds}\\)"));
+            let meaning =
+                a.made_of.as_ref().map_or_else(|| plain(&a.meaning), |speeds| format!("basic ratio \\({speeds}\\)"));
             format!("\\({}{value}\\) ({meaning})", a.latex)
         })
         .collect();

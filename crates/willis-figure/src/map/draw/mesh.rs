@@ -113,7 +113,8 @@ impl<'m> Mesh<'m> {
                 let centre = match joint {
                     None => middle(&ring),
                     Some((joint, true)) => joint,
-                    Some((joint, false)) => Corner { at: joint.at, ..middle(&[first[1], last[0]]) },
+                    // Where the map jumps every side has values of its own there: those of its plane.
+                    Some((joint, false)) => plane([ring[0], ring[ring.len() / 2], ring[ring.len() - 1]], joint.at),
                 };
                 // Round a joint the ring is open: its ends meet there.
                 pieces.push(Piece { point: around[own[0]], triangles: fan(&ring, centre, joint.is_some()) });
@@ -199,6 +200,19 @@ impl<'m> Mesh<'m> {
 fn middle(all: &[Corner]) -> Corner {
     let mean = |of: &dyn Fn(&Corner) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
     Corner { at: (mean(&|c| c.at.0), mean(&|c| c.at.1)), loss: mean(&|c| c.loss), power: mean(&|c| c.power) }
+}
+
+/// The values at a place on the plane through three corners; their mean where they lie on one line.
+fn plane([a, b, c]: [Corner; 3], at: Place) -> Corner {
+    let from = |p: Place| (p.0 - a.at.0, p.1 - a.at.1);
+    let (u, v, p) = (from(b.at), from(c.at), from(at));
+    let across = u.0 * v.1 - u.1 * v.0;
+    if across.abs() < 1e-9 {
+        return Corner { at, ..middle(&[a, b, c]) };
+    }
+    let (s, t) = ((p.0 * v.1 - p.1 * v.0) / across, (u.0 * p.1 - u.1 * p.0) / across);
+    let of = |f: fn(&Corner) -> f64| f(&a) + s * (f(&b) - f(&a)) + t * (f(&c) - f(&a));
+    Corner { at, loss: of(|c| c.loss), power: of(|c| c.power) }
 }
 
 /// The place of a level between two corners; the same to the last bit from both triangles that share them.
