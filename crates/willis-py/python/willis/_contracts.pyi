@@ -3275,6 +3275,15 @@ class DrawWolfTie(Record):
     def engaged(self) -> bool:
         """It is closed in the state."""
 
+class DrawWolfVariator(Record):
+    """A variator between members, directly or by machines on a bus."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def members(self) -> list[int]:
+        """Positions in [``Wolf::members``]."""
+
 class DrawWolf(Record):
     """A train as Wolf's symbols."""
     @property
@@ -3285,13 +3294,16 @@ class DrawWolf(Record):
         """The state whose shift elements are closed."""
     @property
     def members(self) -> list[DrawWolfMember]:
-        """Members with a shaft in a set or a shift element, in the order of the train; without the frame."""
+        """Members with a shaft in a set, a shift element or a variator, in the order of the train; without the frame."""
     @property
     def sets(self) -> list[DrawWolfSet]:
         """The boxes."""
     @property
     def ties(self) -> list[DrawWolfTie]:
         """Shift elements."""
+    @property
+    def variators(self) -> list[DrawWolfVariator]:
+        """Variators: the second paths of a power split."""
 
 class DrawSankeyLoss(Record):
     """Power that turns into heat."""
@@ -4437,6 +4449,9 @@ class DrawTimePlot(Record):
     @property
     def run(self) -> list[float]:
         """Where it began and ended, s."""
+    @property
+    def cut(self) -> bool:
+        """The run was ended where the picture ends, before the end of the scenario."""
     @property
     def axis(self) -> list[float]:
         """What the time axis shows, s: the whole scenario, unless the run ended in its first fifth."""
