@@ -12,7 +12,7 @@ use std::process::Command;
 
 use willis::analysis::{Selection, analyze};
 use willis::compiled::{CompiledTrain, Duty, Output, Points, PowerLoss, ShaftDrag};
-use willis::dynamics::{Batch, FixedStep, Options, simulate};
+use willis::dynamics::{Batch, FixedStep, Options, Simulation, simulate};
 use willis::train::{SetSpec, Train};
 
 /// More than this above the recorded count fails.
@@ -38,6 +38,8 @@ const TASKS: &[Task] = &[
     ("automatic-fixed-step-audited", 16_000, |n| steps(&trains::automatic(), "through the gears", 16_000, true, n)),
     ("set-adaptive", 1, |n| adaptive(&trains::set(), "pulses", n)),
     ("automatic-adaptive", 1, |n| adaptive(&trains::automatic(), "through the gears", n)),
+    ("set-adaptive-again", 1, |n| again(&trains::set(), "pulses", n)),
+    ("automatic-adaptive-again", 1, |n| again(&trains::automatic(), "through the gears", n)),
     ("set-batch", RUNS * BATCH_STEPS, |n| batch(&trains::set(), "pulses", n)),
     ("automatic-batch", RUNS * BATCH_STEPS, |n| batch(&trains::automatic(), "through the gears", n)),
 ];
@@ -146,11 +148,23 @@ fn steps(train: &Train, scenario: &str, steps: u64, audited: bool, n: usize) {
     }
 }
 
-/// Whole runs by error control, from the train to its end.
+fn options() -> Options {
+    Options { energies: false, tolerance: 1e-3, samples: Some(2), ..Options::default() }
+}
+
+/// By error control, from the train to the end of the run.
 fn adaptive(train: &Train, scenario: &str, n: usize) {
-    let options = Options { energies: false, tolerance: 1e-4, samples: Some(2), ..Options::default() };
     for _ in 0..n {
-        black_box(simulate(black_box(train), scenario, &options, &mut ()).unwrap());
+        black_box(simulate(black_box(train), scenario, &options(), &mut ()).unwrap());
+    }
+}
+
+/// The run alone, modes known.
+fn again(train: &Train, scenario: &str, n: usize) {
+    let mut run = Simulation::new(train, scenario, &options()).unwrap();
+    for _ in 0..n {
+        run.advance(f64::INFINITY, &mut ());
+        run = black_box(run.again().unwrap());
     }
 }
 

@@ -5,6 +5,7 @@
 //! a mode the right-hand side is smooth, and changes of mode are located as events. Source:
 //! Galvagno 2010 with corrected signs and its loop solved.
 
+mod affine;
 mod batch;
 mod bodies;
 mod choose;

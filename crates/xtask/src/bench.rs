@@ -55,8 +55,8 @@ const MOTION_RATIOS: &[(&str, &str, Option<f64>)] = &[
 
 /// Seconds of a scenario, or steps of fixed length, in a second: task, fewest.
 const RATES: &[(&str, f64)] = &[
-    ("set-adaptive", 5e4),
-    ("automatic-adaptive", 5e4),
+    ("set-adaptive-again", 5e4),
+    ("automatic-adaptive-again", 5e4),
     ("set-fixed-1e-3", 1.3e7),
     ("set-fixed-1e-4", 1.3e7),
     ("automatic-fixed-1e-3", 7e6),

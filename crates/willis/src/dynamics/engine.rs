@@ -125,14 +125,30 @@ pub(crate) struct Engine {
     /// the integrator leaves open.
     pub slack: f64,
     /// What all states of the present stretch have in common; none where that was not asked for.
-    pub steady: Option<Steady>,
+    pub steady: Option<Box<Steady>>,
+    /// The same of stretches that were.
+    pub stretches: Vec<Box<Steady>>,
 }
 
 impl Engine {
     pub fn new(system: System) -> Self {
+        let certificate = system.every_state_is_unique();
+        Self::with_certificate(system, certificate)
+    }
+
+    /// The engine of a new run, with what was learned about modes.
+    pub fn anew(mut self) -> Self {
+        self.leave_stretch();
+        let Self { mut system, maps, stills, halts, stretches, certificate, counts, slack, .. } = self;
+        if let Some(laws) = &mut system.laws {
+            laws.begin();
+        }
+        Self { maps, stills, halts, stretches, counts, slack, ..Self::with_certificate(system, certificate) }
+    }
+
+    fn with_certificate(system: System, certificate: Option<bool>) -> Self {
         let (groups, elements) = (system.groups.len(), system.elements.len());
         let mode = Mode { slip: vec![0; groups], side: vec![Side::Drive; elements] };
-        let certificate = system.every_state_is_unique();
         let mut scales = vec![LEAST_SCALE; system.free + system.all() + system.integrals];
         system.followers.iter().for_each(|(k, _)| scales[*k] = FOLLOWS);
         for path in &system.paths {
@@ -173,6 +189,7 @@ impl Engine {
             agrees: true,
             slack: 1.0,
             steady: None,
+            stretches: vec![],
             counts: true,
             certified: certificate == Some(true),
             certificate,
@@ -504,7 +521,7 @@ impl Engine {
         // Field by field: a derived `clone_from` would take new memory.
         self.mode.slip.clone_from(&mode.slip);
         self.mode.side.clone_from(&mode.side);
-        self.steady = None;
+        self.leave_stretch();
         self.varying = (0..self.system.elements.len())
             .any(|j| self.system.elements[j].varies() && mode.element_slip(&self.system, j) != 0);
         self.map = self.map_of(mode);

@@ -26,6 +26,8 @@ pub(super) struct Laws {
     pub step: Step,
     /// Torque by place, N m.
     pub torques: Vec<f64>,
+    /// Both without load.
+    at_rest: Box<(Flow, Step)>,
 }
 
 impl Laws {
@@ -45,7 +47,14 @@ impl Laws {
         let flow = Flow { speeds: vec![0.0; train.members().len()], meshes: meshes.collect(), ..Flow::default() };
         let step = physics.follow(&flow);
         let torques = places.iter().map(|p| step.drag(p)).collect();
-        Some(Self { physics: Arc::new(physics), places, first: 0, flow, step, torques })
+        let at_rest = Box::new((flow.clone(), step.clone()));
+        Some(Self { physics: Arc::new(physics), places, first: 0, flow, step, torques, at_rest })
+    }
+
+    /// As before a run.
+    pub fn begin(&mut self) {
+        (self.flow, self.step) = (*self.at_rest).clone();
+        self.torques = self.places.iter().map(|p| self.step.drag(p)).collect();
     }
 
     /// Amount of torque at a place, N m.

@@ -87,8 +87,25 @@ impl Engine {
         watches.collect()
     }
 
-    /// Margins of the present mode at a state, after [`Engine::solve`] there.
+    /// Margins of the present mode at a state.
     pub fn margins(&mut self, t: f64, x: &[f64], out: &mut Vec<Margin>) {
+        if !self.margins_affinely(t, x, out) {
+            self.solve(t, x);
+            self.margins_by_ports(t, x, out);
+        }
+    }
+
+    /// The same at the state whose rate was asked for last.
+    pub fn margins_after_rate(&mut self, t: f64, x: &[f64], out: &mut Vec<Margin>) {
+        if self.rates_by_ports() {
+            self.margins_by_ports(t, x, out);
+        } else {
+            self.margins(t, x, out);
+        }
+    }
+
+    /// Margins at the state solved last.
+    fn margins_by_ports(&mut self, t: f64, x: &[f64], out: &mut Vec<Margin>) {
         out.clear();
         let Some(map) = self.map.clone() else { return };
         let watches = match self.steady.as_mut().map(|steady| std::mem::take(&mut steady.watches)) {

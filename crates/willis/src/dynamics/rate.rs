@@ -15,7 +15,11 @@ impl Smooth for Engine {
     }
 
     fn rate(&mut self, t: f64, x: &[f64], rate: &mut [f64]) {
-        self.solve(t, x);
+        if self.rates_by_ports() {
+            self.solve(t, x);
+        } else {
+            self.solve_affinely(t, x);
+        }
         if !self.agrees {
             rate.fill(f64::NAN);
             return;
@@ -23,6 +27,9 @@ impl Smooth for Engine {
         let (free, all) = (self.system.free, self.system.all());
         rate[..free].copy_from_slice(&self.acceleration[..free]);
         rate[free..free + all].copy_from_slice(&self.speed);
+        if self.quadratures() == 0 && rate.len() == free + all {
+            return;
+        }
         let integrals = self.integrals();
         for (k, driver) in self.system.drivers.iter().enumerate() {
             if let (Some(i), SourceKind::Controller { setpoint, .. }) =

@@ -386,6 +386,12 @@ pub trait Recorder {
         ControlFlow::Continue(())
     }
 
+    /// Whether a row at that time, s, is of use. One that is not is never computed.
+    fn wants_row(&self, time: f64) -> bool {
+        let _ = time;
+        true
+    }
+
     /// A row, in rising time.
     fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
         let _ = sample;
@@ -405,7 +411,12 @@ pub trait Recorder {
     }
 }
 
-impl Recorder for () {}
+/// Records nothing.
+impl Recorder for () {
+    fn wants_row(&self, _: f64) -> bool {
+        false
+    }
+}
 
 /// How a run ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

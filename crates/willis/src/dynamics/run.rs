@@ -134,24 +134,65 @@ impl Simulation {
         engine.system.scenario.end = to;
         engine.counts = options.energies;
         engine.slack = (0.1 * options.tolerance / NOISE).max(1.0);
+        let columns = engine.columns();
+        Self::at_start(engine, columns, options.clone(), from)
+    }
+
+    /// Goes back to the start. What was learned about modes stays, so that the same run takes a fraction of the time; so do
+    /// inputs that were [set](Self::set).
+    ///
+    /// ```
+    /// # use willis::dynamics::{Options, Simulation};
+    /// # use willis::train::Train;
+    /// # let train = Train::from_toml(r#"
+    /// #     format = 1
+    /// #     name = "a rotor starts"
+    /// #     members = ["rotor"]
+    /// #     inertias = { rotor = "2 kg m^2" }
+    /// #     [[scenario]]
+    /// #     name = "start"
+    /// #     duration = "10 s"
+    /// #     [[scenario.source]]
+    /// #     name = "motor"
+    /// #     member = "rotor"
+    /// #     torque = "4 N m"
+    /// # "#)?;
+    /// let mut run = Simulation::new(&train, "start", &Options::default())?;
+    /// let motor = run.input("motor")?;
+    /// let mut speeds = vec![];
+    /// for torque in [4.0, 5.0, 6.0] {
+    ///     run.set(motor, torque).unwrap();
+    ///     run.advance(10.0, &mut ());
+    ///     speeds.push(run.speed("rotor").unwrap().round());
+    ///     run = run.again()?;
+    /// }
+    /// assert_eq!(speeds, [20.0, 25.0, 30.0]);
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Speeds at the start that contradict each other under inputs that were set.
+    pub fn again(self) -> Result<Self, Diagnostics> {
+        Self::at_start(self.engine.anew(), self.columns, self.options, self.from)
+    }
+
+    fn at_start(mut engine: Engine, columns: Vec<Column>, options: Options, from: f64) -> Result<Self, Diagnostics> {
         let start = engine.system.scenario.start;
         let x = initial_state(&mut engine)?;
         let stored_at_start = engine.stored(&x);
         engine.energy_scale = engine.energy_scale.max(stored_at_start);
-        let columns = engine.columns();
         let samples = options.samples.unwrap_or(engine.system.scenario.samples).max(2);
         let (states, quadratures) = (engine.states(), engine.quadratures());
         let (groups, accounts) = (engine.system.groups.len(), engine.system.accounts());
         let notes = uniqueness(&engine, options.method).into_iter().collect();
         Ok(Self {
-            options: options.clone(),
             explicit: Dopri5::new(states, quadratures),
             implicit: Implicit::new(states, quadratures),
             stiff: false,
             rolling: false,
             t: start,
             x,
-            came_in: vec![0.0; if options.energies { accounts } else { 0 }],
+            came_in: vec![0.0; if engine.counts { accounts } else { 0 }],
             segment: start,
             from,
             longest: f64::INFINITY,
@@ -166,6 +207,7 @@ impl Simulation {
             samples,
             recent: VecDeque::new(),
             pace: Pace::new([engine.system.all(), engine.system.nodes], start, options.patience_s),
+            options,
             last_step: None,
             steps: 0,
             events: 0,
@@ -233,7 +275,7 @@ impl Simulation {
             }
         }
         self.engine.system.set(input, value)?;
-        self.engine.steady = None;
+        self.engine.forget_stretches();
         (self.rolling, self.row_is_present) = (false, false);
         Ok(())
     }
@@ -314,7 +356,7 @@ impl Simulation {
     pub(super) fn choose(&mut self, recorder: &mut dyn Recorder) -> Result<(), Outcome> {
         self.pace.choice();
         self.start_is_known = false;
-        self.engine.steady = None;
+        self.engine.leave_stretch();
         let end = self.engine.system.scenario.end;
         let inside = self.engine.inside;
         let next = self.engine.system.signals().map(|s| s.next_break(self.t)).fold(f64::INFINITY, f64::min);
@@ -415,15 +457,14 @@ impl Simulation {
         self.at_rest = mode.slip.iter().map(|s| *s == 0).collect();
         self.engine.enter(&mode);
         self.engine.stand_still(&mode, &mut x);
-        self.engine.settle_down();
+        self.engine.settle_down(self.segment);
         let labels = self.engine.labels();
         if let Some(event) = event(&self.engine, self.t, self.why.take(), &self.labels, &labels) {
             self.labels = labels;
             self.events += 1;
             let mut flow = ControlFlow::Continue(());
             if self.events > 1 || self.next_sample > 0 {
-                self.engine.row(self.t, &x, &mut self.row);
-                flow = recorder.sample(Sample { time_s: self.t, values: &self.row });
+                flow = tell_row(&mut self.engine, self.t, &x, &mut self.row, recorder);
             }
             if flow.is_break() || recorder.event(&event).is_break() {
                 self.x = x;
@@ -579,10 +620,7 @@ impl Simulation {
 
     fn before_break(&mut self, recorder: &mut dyn Recorder) -> Stretch {
         // The row before a jump of the inputs.
-        let x = std::mem::take(&mut self.x);
-        self.engine.row(self.t, &x, &mut self.row);
-        self.x = x;
-        match recorder.sample(Sample { time_s: self.t, values: &self.row }) {
+        match tell_row(&mut self.engine, self.t, &self.x, &mut self.row, recorder) {
             ControlFlow::Break(()) => Stretch::Ended(Outcome::Interrupted),
             ControlFlow::Continue(()) => Stretch::Again,
         }
@@ -677,18 +715,13 @@ impl Simulation {
             if t > until || (until.is_infinite() && t > self.t) {
                 break;
             }
-            if t <= self.t || until.is_infinite() {
-                let x = std::mem::take(&mut self.x);
-                self.engine.row(self.t, &x, &mut self.row);
-                self.x = x;
-            } else {
-                self.interpolate(t);
-                let x = std::mem::take(&mut self.state);
-                self.engine.row(t, &x, &mut self.row);
-                self.state = x;
-            }
             self.next_sample += 1;
-            if recorder.sample(Sample { time_s: t, values: &self.row }).is_break() {
+            let here = t <= self.t || until.is_infinite();
+            if !here {
+                self.interpolate(t);
+            }
+            let x = if here { &self.x } else { &self.state };
+            if tell_row(&mut self.engine, t, x, &mut self.row, recorder).is_break() {
                 return ControlFlow::Break(t);
             }
         }
@@ -781,6 +814,21 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
         }
     };
     Some(format!("{what}: {done}"))
+}
+
+/// Hands a row to a recorder that wants it.
+fn tell_row(
+    engine: &mut Engine,
+    t: f64,
+    x: &[f64],
+    row: &mut Vec<f64>,
+    recorder: &mut dyn Recorder,
+) -> ControlFlow<()> {
+    if !recorder.wants_row(t) {
+        return ControlFlow::Continue(());
+    }
+    engine.row(t, x, row);
+    recorder.sample(Sample { time_s: t, values: row })
 }
 
 /// Adds what the sources put in during the last step. A power that changes its sign is parted where it does.

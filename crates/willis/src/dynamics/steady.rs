@@ -2,6 +2,7 @@
 
 use crate::train::SourceKind;
 
+use super::affine::Affine;
 use super::element::Element;
 use super::engine::Engine;
 use super::stretch::Steady;
@@ -15,9 +16,21 @@ impl Element {
 }
 
 impl Engine {
-    /// From now on the present mode and piece are those of all states, until a mode is entered.
-    pub fn settle_down(&mut self) {
-        self.steady = None;
+    /// From now on the present mode and piece are those of all states, until a mode is entered; `segment` is the time at
+    /// which the piece ends.
+    pub fn settle_down(&mut self, segment: f64) {
+        /// Stretches that are kept.
+        const MOST: usize = 32;
+        self.leave_stretch();
+        if let Some(k) = self.stretches.iter().position(|of| of.segment == segment && of.mode == self.mode) {
+            let mut steady = self.stretches.swap_remove(k);
+            steady.inside = self.inside;
+            self.steady = Some(steady);
+            return;
+        }
+        if self.stretches.len() >= MOST {
+            self.stretches.clear();
+        }
         // Laws and variators move with everything.
         if self.map.is_none() || self.system.laws.is_some() || !self.system.paths.is_empty() {
             return;
@@ -60,12 +73,27 @@ impl Engine {
         let engaged =
             s.frictions.iter().enumerate().map(|(k, f)| level(f).then(|| self.engagement(k, inside))).collect();
         let watches = self.watched();
-        self.steady = Some(Steady { inside, tau, sources, viscous, sliding, elements, engaged, watches });
+        let mode = self.mode.clone();
+        let mut steady =
+            Steady { mode, segment, inside, tau, sources, viscous, sliding, elements, engaged, watches, affine: None };
+        steady.affine = Affine::new(self, &steady);
+        self.steady = Some(Box::new(steady));
+    }
+
+    /// The present stretch is over; what it had in common may come again.
+    pub fn leave_stretch(&mut self) {
+        self.stretches.extend(self.steady.take());
+    }
+
+    /// What was common to stretches no longer is.
+    pub fn forget_stretches(&mut self) {
+        self.stretches.clear();
+        self.steady = None;
     }
 
     /// What the present stretch has in common, if that is known.
     pub fn steady(&self) -> Option<&Steady> {
-        self.steady.as_ref().filter(|steady| steady.inside == self.inside)
+        self.steady.as_deref().filter(|steady| steady.inside == self.inside)
     }
 
     /// How far a friction element is engaged, if that does not change in the present stretch.

@@ -3,6 +3,9 @@
 //! Most of what acts at a state then acts at every other one too, a constant torque or what rubs as hard at every speed.
 //! That is kept for the stretch, with the list of what else has to be asked and of what has to be watched.
 
+use super::affine::Affine;
+use super::mode::Mode;
+
 /// What is watched within a mode: it changes where a margin becomes negative.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(super) enum Watch {
@@ -25,6 +28,9 @@ pub(super) enum Watch {
 /// Torques of the ports that do not change, and where those come from that do.
 #[derive(Clone)]
 pub(super) struct Steady {
+    /// The mode, and the end of the piece.
+    pub mode: Mode,
+    pub segment: f64,
     /// The time that says which piece it is of.
     pub inside: f64,
     /// Torques of the ports; zero where they change.
@@ -38,4 +44,6 @@ pub(super) struct Steady {
     pub engaged: Vec<Option<f64>>,
     /// What is watched.
     pub watches: Vec<Watch>,
+    /// All of it as one map, where it is affine.
+    pub affine: Option<Affine>,
 }

@@ -21,6 +21,10 @@ impl Recorder for Window<'_> {
         self.to.columns(columns)
     }
 
+    fn wants_row(&self, time: f64) -> bool {
+        time >= self.from && self.to.wants_row(time)
+    }
+
     fn sample(&mut self, sample: Sample<'_>) -> ControlFlow<()> {
         if sample.time_s < self.from { ControlFlow::Continue(()) } else { self.to.sample(sample) }
     }

@@ -18,22 +18,15 @@ impl Simulation {
     /// Margins at a time within the last step.
     fn margins_at(&mut self, t: f64) {
         self.interpolate(t);
-        let x = std::mem::take(&mut self.state);
-        self.engine.solve(t, &x);
-        let mut margins = std::mem::take(&mut self.margins);
-        self.engine.margins(t, &x, &mut margins);
-        self.margins = margins;
-        self.state = x;
+        self.engine.margins(t, &self.state, &mut self.margins);
     }
 
-    /// Margins at the end of the last step, at which an explicit step has solved last.
+    /// Margins at the end of the last step.
     fn margins_at_end(&mut self, t_new: f64) {
         if self.stiff {
             return self.margins_at(t_new);
         }
-        let mut margins = std::mem::take(&mut self.margins);
-        self.engine.margins(t_new, self.explicit.x(), &mut margins);
-        self.margins = margins;
+        self.engine.margins_after_rate(t_new, self.explicit.x(), &mut self.margins);
     }
 
     /// The first event of the last step: just after it, and what it was.
