@@ -181,6 +181,8 @@ pub struct FixedStep {
     pub(super) present: Option<u32>,
     /// By mode before a step that was searched for, the fused step of the mode found; whether those may be used.
     followed: ByKey<Exactly>,
+    /// The mode to start a search with, likewise.
+    supposed: ByKey<Exactly, Exactly>,
     is_certain: bool,
     pub(super) base: Vec<f64>,
     pub(super) least: Vec<f64>,
@@ -349,6 +351,7 @@ impl FixedStep {
             by_exact_key: ByKey::with_capacity_and_hasher(64, Default::default()),
             present: None,
             followed: ByKey::with_capacity_and_hasher(256, Default::default()),
+            supposed: ByKey::default(),
             is_certain: Self::has_one_motion(&engine),
             base: vec![],
             least: vec![],

@@ -3,8 +3,10 @@
 //! The mode that followed on one before is looked at first. Its fused step says by how much each of its conditions holds.
 //! Where all hold by far more than their round-off, and every state of the train has one motion, the search would find
 //! the same mode; the step is solved as the search solves it, so that it ends in the same bits whether or not it was
-//! foreseen. What is nearer to the edge, or has teeth that may hold, is searched for.
+//! foreseen. What is nearer to the edge, or has teeth that may hold, is searched for; the search starts with what it, or the
+//! decision of all contacts together, found before.
 
+use crate::dynamics::decision::Verdict;
 use crate::dynamics::engine::Engine;
 use crate::dynamics::fused::Exactly;
 use crate::dynamics::mode::Side;
@@ -30,37 +32,74 @@ impl FixedStep {
         if !fused.holds_by_far([&self.v, &self.inputs], &self.varying, settled, &mut self.ends) {
             return false;
         }
-        let Exactly { held, forward, idle, coast, .. } = fused.mode;
-        let sign = |g: usize| -> i8 {
-            let is = |word: u64| word >> g & 1 == 1;
-            if is(held) { 0 } else { 2 * i8::from(is(forward) || is(idle)) - 1 }
-        };
+        let mode = fused.mode;
         // What is open, or locked, is so now as it was then.
         let differs = self.groups.iter().zip(&self.capacity).enumerate().any(|(g, (group, capacity))| {
             let is_open = *capacity == [0.0; 2] && group.elements.is_empty();
             let locks = |sign: i8| sign != 0 && capacity[usize::from(sign < 0)] >= LEAST_UNBOUNDED;
-            sign(g) != 0 && is_open != (idle >> g & 1 == 1) || !group.driven && locks(sign(g))
+            let sign = sign(&mode, g);
+            sign != 0 && is_open != (mode.idle >> g & 1 == 1) || !group.driven && locks(sign)
         });
         if differs {
             return false;
         }
-        for (g, _) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
-            self.sign[g] = sign(g);
-        }
-        for (j, side) in self.side.iter_mut().enumerate() {
-            *side = if coast >> j & 1 == 1 { Side::Coast } else { Side::Drive };
-        }
+        self.set_mode(&mode);
         self.solve_known();
         self.present = Some(k);
         true
     }
 
-    /// Remembers which mode followed on another.
-    pub(super) fn remember(&mut self, before: Exactly) {
-        let Some(k) = self.present.filter(|_| self.is_certain) else { return };
-        let has_still = self.last.is_some_and(|(_, map)| !self.maps[map as usize].still.is_empty());
-        if !has_still {
-            self.followed.insert(before, k);
+    /// Starts the search in the mode that was found after this one before. Whatever a search ends in is the one motion.
+    pub(super) fn suppose(&mut self, before: &Exactly) {
+        if let Some(mode) = self.supposed.get(before).copied() {
+            self.set_mode(&mode);
         }
     }
+
+    /// Decides the step, and solves it in the mode found if that agrees with itself: then a step that supposes this mode
+    /// has the same numbers, and takes a fraction of the time.
+    #[cold]
+    pub(super) fn decide_and_confirm(&mut self) -> Result<(), Verdict> {
+        self.decide()?;
+        if !self.is_certain {
+            return Ok(());
+        }
+        if !self.settle() {
+            return self.decide();
+        }
+        self.is_decided = false;
+        Ok(())
+    }
+
+    fn set_mode(&mut self, mode: &Exactly) {
+        for (g, _) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
+            self.sign[g] = sign(mode, g);
+        }
+        for (j, side) in self.side.iter_mut().enumerate() {
+            *side = if mode.coast >> j & 1 == 1 { Side::Coast } else { Side::Drive };
+        }
+    }
+
+    /// Remembers which mode followed on another: to be taken at once, or to start a search with.
+    pub(super) fn remember(&mut self, before: Exactly) {
+        if !self.is_certain || self.is_decided {
+            return;
+        }
+        let has_still = self.last.is_some_and(|(_, map)| !self.maps[map as usize].still.is_empty());
+        match self.present {
+            Some(k) if !has_still => {
+                self.followed.insert(before, k);
+            }
+            _ => {
+                let mode = self.exactly();
+                self.supposed.insert(before, mode);
+            }
+        }
+    }
+}
+
+/// What a group does in a mode: 0 where it is held, else the sign of its slip.
+fn sign(mode: &Exactly, g: usize) -> i8 {
+    let is = |word: u64| word >> g & 1 == 1;
+    if is(mode.held) { 0 } else { 2 * i8::from(is(mode.forward) || is(mode.idle)) - 1 }
 }

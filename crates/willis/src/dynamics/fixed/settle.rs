@@ -246,7 +246,7 @@ impl FixedStep {
 
     /// Finds the mode of the step and its end.
     #[inline(always)]
-    fn settle(&mut self, free: usize, cols: usize) -> bool {
+    fn search(&mut self, free: usize, cols: usize) -> bool {
         let trials = 4 * (self.groups.len() + self.side.len() + self.shafts.len()) + 4;
         // The group released last, and those that came to rest again at once.
         let (mut released, mut kept) = (None, 0u64);
@@ -295,9 +295,15 @@ impl FixedStep {
         let (free, cols) = (self.engine.system.free, self.tau.len());
         self.arch.dispatch(Solve { step: self, free, cols });
     }
+
+    /// Finds the mode of the step, from the present one on, and the end of the step; false if it was not found so.
+    pub(super) fn settle(&mut self) -> bool {
+        let (free, cols) = (self.engine.system.free, self.tau.len());
+        self.arch.dispatch(Search { step: self, free, cols })
+    }
 }
 
-/// [`FixedStep::solve`] likewise.
+/// [`FixedStep::solve`] with the widest registers there are.
 struct Solve<'a> {
     step: &'a mut FixedStep,
     free: usize,
@@ -313,19 +319,19 @@ impl pulp::WithSimd for Solve<'_> {
     }
 }
 
-/// [`FixedStep::settle`] with the widest registers there are.
-pub(super) struct Settle<'a> {
-    pub step: &'a mut FixedStep,
-    pub free: usize,
-    pub cols: usize,
+/// [`FixedStep::search`] likewise.
+struct Search<'a> {
+    step: &'a mut FixedStep,
+    free: usize,
+    cols: usize,
 }
 
-impl pulp::WithSimd for Settle<'_> {
+impl pulp::WithSimd for Search<'_> {
     type Output = bool;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> bool {
-        self.step.settle(self.free, self.cols)
+        self.step.search(self.free, self.cols)
     }
 }
 

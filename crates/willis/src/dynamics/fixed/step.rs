@@ -8,12 +8,11 @@ use crate::train::{MemberId, SourceKind};
 
 use super::FixedStep;
 use super::groups::UNBOUNDED;
-use super::settle::Settle;
 use super::shafts::word;
 
 impl FixedStep {
     /// The mode in every detail.
-    fn exactly(&self) -> Exactly {
+    pub(super) fn exactly(&self) -> Exactly {
         let mut key = Exactly::default();
         for (g, group) in self.groups.iter().enumerate() {
             let bit = 1 << g;
@@ -131,16 +130,17 @@ impl FixedStep {
         if !self.enters_finite(middle) {
             return false;
         }
-        let (free, cols) = (self.engine.system.free, self.tau.len());
         (self.is_decided, self.present) = (false, None);
         let before = self.exactly();
         let foreseen = self.is_certain && self.foresee(&before);
-        if !foreseen
-            && !self.arch.dispatch(Settle { step: self, free, cols })
-            && let Err(verdict) = self.decide()
-        {
-            self.stop_without_motion(verdict);
-            return false;
+        if !foreseen {
+            self.suppose(&before);
+            if !self.settle()
+                && let Err(verdict) = self.decide_and_confirm()
+            {
+                self.stop_without_motion(verdict);
+                return false;
+            }
         }
         if !self.stays_bounded() {
             return false;
