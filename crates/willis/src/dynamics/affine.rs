@@ -7,31 +7,8 @@
 use super::engine::Engine;
 use super::margins::{Margin, NOISE};
 use super::mode::{Map, Side};
-use super::stretch::{Steady, Watch};
+use super::stretch::{Affine, Line, Steady, Watch};
 use super::system::System;
-
-/// A margin, as a row of the map.
-#[derive(Clone, Copy, Debug)]
-struct Line {
-    watch: Watch,
-    /// Its round-off over the amounts of which it is the sum, and the amounts in its constant.
-    noise: f64,
-    constant: f64,
-}
-
-/// The map of a stretch.
-#[derive(Clone)]
-pub(super) struct Affine {
-    /// Sources whose torque changes.
-    sources: Vec<usize>,
-    /// One, speeds, torques of those sources.
-    given: Vec<f64>,
-    /// Rows over what is given: accelerations of the free coordinates, then margins.
-    rows: Vec<f64>,
-    free: usize,
-    /// None if something is watched that is no affine margin.
-    margins: Option<Vec<Line>>,
-}
 
 /// A row that is being added up, with the amounts in its constant.
 struct Row {
@@ -82,10 +59,6 @@ impl Affine {
         given[0] = 1.0;
         Some(Self { sources, given, rows, free: s.free, margins })
     }
-
-    fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        self.rows.chunks_exact(self.given.len())
-    }
 }
 
 /// A sum over the torques of the ports, as one over what is given.
@@ -134,7 +107,8 @@ impl Engine {
                     return None;
                 }
                 let capacity = self.capacity(g, true, steady.inside);
-                let both = [(1, capacity.forward), (-1, capacity.backward)].into_iter().filter(|(_, most)| most.is_finite());
+                let both =
+                    [(1, capacity.forward), (-1, capacity.backward)].into_iter().filter(|(_, most)| most.is_finite());
                 let margin = |(sign, most): (i8, f64)| {
                     let row = ports(&map.holding, g, f64::from(sign) * s.groups[g].lead.1).plus(most);
                     (Line { watch: Watch::Hold(g, sign), noise: self.slack * NOISE, constant: row.amount }, row.of)

@@ -14,6 +14,7 @@ mod energies;
 mod foresee;
 pub(super) mod groups;
 mod inputs;
+mod kept;
 mod look;
 pub(super) mod map;
 mod prepare;
@@ -42,6 +43,7 @@ use super::system::System;
 
 use decided::Decided;
 use groups::{GroupStep, Rub};
+use kept::Kept;
 use map::{Key, StepMap};
 use shafts::{MOST_SHAFTS, ShaftStep};
 use trail::Trail;
@@ -181,8 +183,9 @@ pub struct FixedStep {
     pub(super) present: Option<u32>,
     /// By mode before a step that was searched for, the fused step of the mode found; whether those may be used.
     followed: ByKey<Exactly>,
-    /// The mode to start a search with, likewise.
+    /// The mode found where it has no fused step, likewise; room for one that is tried.
     supposed: ByKey<Exactly, Exactly>,
+    kept: Kept,
     is_certain: bool,
     pub(super) base: Vec<f64>,
     pub(super) least: Vec<f64>,
@@ -351,7 +354,8 @@ impl FixedStep {
             by_exact_key: ByKey::with_capacity_and_hasher(64, Default::default()),
             present: None,
             followed: ByKey::with_capacity_and_hasher(256, Default::default()),
-            supposed: ByKey::default(),
+            kept: Kept::default(),
+            supposed: ByKey::with_capacity_and_hasher(256, Default::default()),
             is_certain: Self::has_one_motion(&engine),
             base: vec![],
             least: vec![],

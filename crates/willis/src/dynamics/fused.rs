@@ -249,7 +249,7 @@ impl Fused {
 }
 
 /// By how many times its round-off a margin is far from its edge.
-const FAR: f64 = 1e3;
+pub(super) const FAR: f64 = 1e3;
 
 impl Fused {
     /// Whether every margin is far from its edge at these speeds and inputs; what [`settle`](Self::settle) gave, and

@@ -92,6 +92,15 @@ impl Engine {
         if !self.margins_affinely(t, x, out) {
             self.solve(t, x);
             self.margins_by_ports(t, x, out);
+        } else if cfg!(debug_assertions) {
+            let mut by_ports = vec![];
+            self.solve(t, x);
+            self.margins_by_ports(t, x, &mut by_ports);
+            let near = |(a, b): (&Margin, &Margin)| {
+                a.watch == b.watch && (a.value - b.value).abs() <= 2.0 * (a.noise + b.noise) / self.slack.max(1.0)
+            };
+            let alike = out.len() == by_ports.len() && out.iter().zip(&by_ports).all(near);
+            assert!(alike, "at {t} s: {out:?}, not {by_ports:?}");
         }
     }
 

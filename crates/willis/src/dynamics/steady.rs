@@ -2,10 +2,9 @@
 
 use crate::train::SourceKind;
 
-use super::affine::Affine;
 use super::element::Element;
 use super::engine::Engine;
-use super::stretch::Steady;
+use super::stretch::{Affine, Steady};
 use super::system::Rubs;
 
 impl Element {

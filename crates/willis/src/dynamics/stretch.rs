@@ -3,7 +3,6 @@
 //! Most of what acts at a state then acts at every other one too, a constant torque or what rubs as hard at every speed.
 //! That is kept for the stretch, with the list of what else has to be asked and of what has to be watched.
 
-use super::affine::Affine;
 use super::mode::Mode;
 
 /// What is watched within a mode: it changes where a margin becomes negative.
@@ -46,4 +45,33 @@ pub(super) struct Steady {
     pub watches: Vec<Watch>,
     /// All of it as one map, where it is affine.
     pub affine: Option<Affine>,
+}
+
+/// A margin, as a row of the map.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub watch: Watch,
+    /// Its round-off over the amounts of which it is the sum, and the amounts in its constant.
+    pub noise: f64,
+    pub constant: f64,
+}
+
+/// A stretch as one affine map of the speeds and of what sources give.
+#[derive(Clone)]
+pub(super) struct Affine {
+    /// Sources whose torque changes.
+    pub sources: Vec<usize>,
+    /// One, speeds, torques of those sources.
+    pub given: Vec<f64>,
+    /// Rows over what is given: accelerations of the free coordinates, then margins.
+    pub rows: Vec<f64>,
+    pub free: usize,
+    /// None if something is watched that is no affine margin.
+    pub margins: Option<Vec<Line>>,
+}
+
+impl Affine {
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        self.rows.chunks_exact(self.given.len())
+    }
 }

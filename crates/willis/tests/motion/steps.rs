@@ -9,7 +9,7 @@ use willis::dynamics::{
 use willis::train::Train;
 
 #[path = "../../benches/trains/mod.rs"]
-mod trains;
+pub mod trains;
 
 /// Steps that allocate in a whole rehearsed run.
 fn steps_that_allocate(train: &Train, scenario: &str, steps: usize) -> Vec<usize> {

@@ -3,16 +3,16 @@
 //! The mode that followed on one before is looked at first. Its fused step says by how much each of its conditions holds.
 //! Where all hold by far more than their round-off, and every state of the train has one motion, the search would find
 //! the same mode; the step is solved as the search solves it, so that it ends in the same bits whether or not it was
-//! foreseen. What is nearer to the edge, or has teeth that may hold, is searched for; the search starts with what it, or the
-//! decision of all contacts together, found before.
+//! foreseen. So it is with a mode that has no fused step, since teeth share in holding: its step is solved and looked at as
+//! in the search. What is nearer to the edge is searched for.
 
 use crate::dynamics::decision::Verdict;
 use crate::dynamics::engine::Engine;
 use crate::dynamics::fused::Exactly;
-use crate::dynamics::mode::Side;
 
 use super::FixedStep;
 use super::groups::LEAST_UNBOUNDED;
+use super::kept::Kept;
 
 impl FixedStep {
     /// Whether modes may be foreseen at all: what breaks away at a peak holds or slides by what it did before, and a
@@ -49,38 +49,54 @@ impl FixedStep {
         true
     }
 
-    /// Starts the search in the mode that was found after this one before. Whatever a search ends in is the one motion.
-    pub(super) fn suppose(&mut self, before: &Exactly) {
-        if let Some(mode) = self.supposed.get(before).copied() {
-            self.set_mode(&mode);
-        }
+    /// Takes the step in the mode that was found after this one before, if it certainly is the one to be found; else the mode
+    /// is the one there was.
+    pub(super) fn suppose(&mut self, before: &Exactly) -> bool {
+        let Some(mode) = self.supposed.get(before).copied() else { return false };
+        self.keep();
+        self.set_mode(&mode);
+        self.solve_certain() || self.restore()
     }
 
-    /// Decides the step, and solves it in the mode found if that agrees with itself: then a step that supposes this mode
-    /// has the same numbers, and takes a fraction of the time.
+    /// Decides the step. Where the mode found is so by far, the step is solved in it as one that supposes it is: both have
+    /// the same numbers.
     #[cold]
-    pub(super) fn decide_and_confirm(&mut self) -> Result<(), Verdict> {
+    pub(super) fn decide_and_solve(&mut self) -> Result<(), Verdict> {
         self.decide()?;
-        if !self.is_certain {
-            return Ok(());
+        if self.is_certain {
+            self.keep();
+            self.is_decided = !(self.solve_certain() || self.restore());
         }
-        if !self.settle() {
-            return self.decide();
-        }
-        self.is_decided = false;
         Ok(())
+    }
+
+    /// Keeps the mode and the end of the step.
+    fn keep(&mut self) {
+        let Kept { sign, side, next, tau } = &mut self.kept;
+        sign.clone_from(&self.sign);
+        side.clone_from(&self.side);
+        next.clone_from(&self.next);
+        tau.clone_from(&self.tau);
+    }
+
+    /// Goes back to them; false.
+    fn restore(&mut self) -> bool {
+        let Kept { sign, side, next, tau } = &self.kept;
+        self.sign.copy_from_slice(sign);
+        self.side.copy_from_slice(side);
+        self.next.copy_from_slice(next);
+        self.tau.copy_from_slice(tau);
+        false
     }
 
     fn set_mode(&mut self, mode: &Exactly) {
         for (g, _) in self.groups.iter().enumerate().filter(|(_, group)| !group.driven) {
             self.sign[g] = sign(mode, g);
         }
-        for (j, side) in self.side.iter_mut().enumerate() {
-            *side = if mode.coast >> j & 1 == 1 { Side::Coast } else { Side::Drive };
-        }
+        self.set_coasting(mode.coast);
     }
 
-    /// Remembers which mode followed on another: to be taken at once, or to start a search with.
+    /// Remembers which mode followed on another: its fused step, or the mode alone.
     pub(super) fn remember(&mut self, before: Exactly) {
         if !self.is_certain || self.is_decided {
             return;

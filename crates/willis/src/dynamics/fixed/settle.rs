@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::dynamics::engine::Touch;
+use crate::dynamics::fused::FAR;
 use crate::dynamics::mode::{Side, dot, dot_size};
 use crate::dynamics::rounding::NOISE;
 
@@ -108,9 +109,11 @@ impl FixedStep {
     }
 
     /// The first thing in which the mode and the end of the step disagree. Groups in `kept` came to rest at once after
-    /// they were released: those that others hold as well go on sliding without moving, the rest is not released again.
+    /// they were released: those that others hold as well go on sliding without moving, the rest is not released again. With
+    /// `far`, what agrees by less than so many times its round-off disagrees, too.
     #[inline(always)]
-    fn disagreement(&self, map: &StepMap, free: usize, cols: usize, kept: u64) -> Option<Flip> {
+    fn disagreement(&self, map: &StepMap, free: usize, cols: usize, kept: u64, far: Option<f64>) -> Option<Flip> {
+        let least = |noise: f64| far.map_or(-noise, |far| far * noise);
         let mut rows = map.rows[free * cols..].chunks_exact(cols);
         let mut stuck = None;
         let mut teeth = map.still.iter();
@@ -122,7 +125,8 @@ impl FixedStep {
                 // What others hold as well has no slip whatever it does: it is held with them.
                 let stays = end <= noise && self.slip[g].abs() <= noise;
                 let slides_at_its_limit = kept >> g & 1 == 1 && end >= -noise;
-                if (end < 0.0 || stays) && may_hold && !slides_at_its_limit {
+                let nears = far.is_some_and(|far| end < far * noise);
+                if (end < 0.0 || stays || nears) && may_hold && !slides_at_its_limit {
                     return Some(Flip::Group(g, 0));
                 }
                 continue;
@@ -146,7 +150,7 @@ impl FixedStep {
                 backward += factor * against;
             }
             let noise = 1e-12 * (force.abs() + 1e-300);
-            let sign = match (forward + force < -noise, backward - force < -noise) {
+            let sign = match (forward + force < least(noise), backward - force < least(noise)) {
                 (true, _) => 1,
                 (_, true) => -1,
                 _ => continue,
@@ -170,16 +174,20 @@ impl FixedStep {
             let torque = dot(row, &self.tau);
             let value = sign * (loss.drive - loss.coast) * torque + loss.drive_torque - loss.coast_torque;
             let value = if self.side[j] == Side::Drive { value } else { -value };
+            let noise = NOISE * (loss.drive - loss.coast) * dot_size(row, &self.tau);
             // A mesh that carries nothing keeps its side.
-            if value < 0.0 && value < -NOISE * (loss.drive - loss.coast) * dot_size(row, &self.tau) {
+            if far.map_or(value < 0.0 && value < -noise, |far| value <= far * noise) {
                 return Some(Flip::Side(j));
             }
         }
         stuck
     }
 
-    /// Whether a held group whose parts share in holding would slide off: tried in both directions.
-    fn breaks_away(&mut self, g: usize) -> Option<i8> {
+    /// Whether a held group whose parts share in holding would slide off, or is so many times the round-off from it: tried in
+    /// both directions.
+    fn breaks_away(&mut self, g: usize, far: Option<f64>) -> Option<i8> {
+        const ROUND_OFF: f64 = 1e-11;
+        let least = far.map_or(ROUND_OFF, |far| -far * ROUND_OFF);
         let sides: u64 = self.coasting();
         let p = self.engine.system.ports;
         let (free, cols) = (self.engine.system.free, p + self.groups.len());
@@ -216,19 +224,23 @@ impl FixedStep {
             let end = self.slip[g] + self.h * rate;
             // Others may hold it as well: then nothing but round-off is left.
             let size = dot_size(&self.groups[g].row, &self.v) + self.slip[g].abs();
-            if end * f64::from(sign) > 1e-11 * size {
+            if end * f64::from(sign) > least * size {
                 return Some(sign);
             }
         }
         self.sign[g] = 0;
-        for (j, side) in self.side.iter_mut().enumerate() {
-            *side = if sides >> j & 1 == 1 { Side::Coast } else { Side::Drive };
-        }
+        self.set_coasting(sides);
         None
     }
 
     pub(super) fn coasting(&self) -> u64 {
         self.side.iter().enumerate().map(|(j, s)| u64::from(*s == Side::Coast) << j).sum()
+    }
+
+    pub(super) fn set_coasting(&mut self, coasting: u64) {
+        for (j, side) in self.side.iter_mut().enumerate() {
+            *side = if coasting >> j & 1 == 1 { Side::Coast } else { Side::Drive };
+        }
     }
 
     /// Solves the step in the present mode.
@@ -244,6 +256,26 @@ impl FixedStep {
         Some(map)
     }
 
+    /// Solves the step in the present mode; false if that is not the mode of the step by far.
+    #[inline(always)]
+    fn solve_if_far(&mut self, free: usize, cols: usize) -> bool {
+        let Some(map) = self.solve(free, cols) else { return false };
+        let map = &self.maps[map as usize];
+        // Of several that hold together, others than these may be taken to slide without moving.
+        if map.is_redundant || self.disagreement(map, free, cols, 0, Some(FAR)).is_some() {
+            return false;
+        }
+        if !self.shares {
+            return true;
+        }
+        for g in 0..self.groups.len() {
+            if self.sign[g] == 0 && self.groups[g].shares && self.breaks_away(g, Some(FAR)).is_some() {
+                return false;
+            }
+        }
+        self.solve(free, cols).is_some()
+    }
+
     /// Finds the mode of the step and its end.
     #[inline(always)]
     fn search(&mut self, free: usize, cols: usize) -> bool {
@@ -252,13 +284,13 @@ impl FixedStep {
         let (mut released, mut kept) = (None, 0u64);
         for _ in 0..trials {
             let Some(map) = self.solve(free, cols) else { return false };
-            let mut flip = self.disagreement(&self.maps[map as usize], free, cols, kept);
+            let mut flip = self.disagreement(&self.maps[map as usize], free, cols, kept, None);
             flip = self.turned().map(|(k, touch)| Flip::Shaft(k, touch)).or(flip);
             if flip.is_none() && self.shares && !self.maps[map as usize].is_redundant {
                 for g in 0..self.groups.len() {
                     if self.sign[g] == 0
                         && self.groups[g].shares
-                        && let Some(sign) = self.breaks_away(g)
+                        && let Some(sign) = self.breaks_away(g, None)
                     {
                         flip = Some(Flip::Group(g, sign));
                         break;
@@ -296,6 +328,12 @@ impl FixedStep {
         self.arch.dispatch(Solve { step: self, free, cols });
     }
 
+    /// Solves the step in the present mode; false if that is not its mode, or not by far more than rounding.
+    pub(super) fn solve_certain(&mut self) -> bool {
+        let (free, cols) = (self.engine.system.free, self.tau.len());
+        self.arch.dispatch(SolveIfFar { step: self, free, cols })
+    }
+
     /// Finds the mode of the step, from the present one on, and the end of the step; false if it was not found so.
     pub(super) fn settle(&mut self) -> bool {
         let (free, cols) = (self.engine.system.free, self.tau.len());
@@ -316,6 +354,22 @@ impl pulp::WithSimd for Solve<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
         self.step.solve(self.free, self.cols).expect("a mode with a fused step has a map");
+    }
+}
+
+/// [`FixedStep::solve_if_far`] likewise.
+struct SolveIfFar<'a> {
+    step: &'a mut FixedStep,
+    free: usize,
+    cols: usize,
+}
+
+impl pulp::WithSimd for SolveIfFar<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> bool {
+        self.step.solve_if_far(self.free, self.cols)
     }
 }
 

@@ -133,14 +133,13 @@ impl FixedStep {
         (self.is_decided, self.present) = (false, None);
         let before = self.exactly();
         let foreseen = self.is_certain && self.foresee(&before);
-        if !foreseen {
-            self.suppose(&before);
-            if !self.settle()
-                && let Err(verdict) = self.decide_and_confirm()
-            {
-                self.stop_without_motion(verdict);
-                return false;
-            }
+        if !foreseen
+            && !(self.is_certain && self.suppose(&before))
+            && !self.settle()
+            && let Err(verdict) = self.decide_and_solve()
+        {
+            self.stop_without_motion(verdict);
+            return false;
         }
         if !self.stays_bounded() {
             return false;
