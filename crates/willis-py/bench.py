@@ -59,7 +59,7 @@ def main() -> None:
     compiled = set_.compile(speeds=["sun", "carrier"], torques=["sun"], threads=1)
     rng = np.random.default_rng(1)
     w1, wc, t1 = rng.uniform(-300, 300, POINTS), rng.uniform(-300, 300, POINTS), rng.uniform(-100, 100, POINTS)
-    outputs = ["torque.ring", "torque.carrier", "loss", "efficiency"]
+    outputs = ["ring.torque", "carrier.torque", "loss", "efficiency"]
     ours = compiled.evaluate(w1, wc, t1, outputs=outputs)
     theirs = numpy_map(w1, wc, t1, -70 / 30, 0.99 * 0.99)
     for name, mine, other in zip(outputs, ours.values(), theirs, strict=True):

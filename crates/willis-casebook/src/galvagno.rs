@@ -11,7 +11,8 @@ use crate::{Cell, Gate, Report, Section, train};
 use willis::contract::Format;
 use willis::dynamics::offset::{Driver, external, internal};
 use willis::dynamics::{
-    Column, Event, HappeningKind, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample, simulate,
+    Column, ColumnKind, Event, HappeningKind, Method, ModeLabel, Options, Outcome, Recorder, RunReport, Sample,
+    simulate,
 };
 
 const CASES: &str = include_str!("../data/galvagno/cases.json");
@@ -263,7 +264,7 @@ impl Run {
     }
 
     fn at(&self, row: &[f64], column: &str) -> f64 {
-        self.columns.iter().position(|c| c.name == column).map_or(f64::NAN, |k| row[k])
+        self.columns.iter().position(|c| c.is_called(column)).map_or(f64::NAN, |k| row[k])
     }
 
     fn last(&self) -> &[f64] {
@@ -272,15 +273,16 @@ impl Run {
 
     /// All that acts on a member from outside.
     fn torque(&self, row: &[f64], member: usize) -> f64 {
-        let begin = format!("torque.{} ", MEMBERS[member]);
-        self.columns.iter().zip(row).filter(|(c, _)| c.name.starts_with(&begin)).map(|(_, x)| x).sum()
+        let begin = format!("{} ", MEMBERS[member]);
+        let acts = |c: &Column| c.kind == ColumnKind::Torque && c.of.starts_with(&begin);
+        self.columns.iter().zip(row).filter(|(c, _)| acts(c)).map(|(_, x)| x).sum()
     }
 
     /// F_trp and F_tps: of the ring on one planet, of one planet on the sun; with the offsets they act at.
     fn forces(&self, row: &[f64], body: &Body) -> [(f64, f64); 2] {
         let [(_, d_sp), (_, i_sp), (_, d_pr), (_, i_pr)] = body.offsets().map(|(k, d)| (k, d.unwrap_or(f64::NAN)));
         let [s, p, _] = body.radii();
-        let carrier = self.at(row, "speed.carrier");
+        let carrier = self.at(row, "carrier.speed");
         // The first gear drives where the torque it takes has the sign of its relative speed.
         let of = |torque: &str, first: &str, radius: f64, drives: f64, driven: f64| {
             let torque = self.at(row, torque);
@@ -289,8 +291,8 @@ impl Run {
             (-torque / (body.get("n_p") * (radius + offset)), offset)
         };
         [
-            of("torque.P.planet-ring", "speed.P.planet", p, d_pr, i_pr),
-            of("torque.P.sun-planet", "speed.sun", s, d_sp, i_sp),
+            of("P.planet-ring.torque", "P.planet.speed", p, d_pr, i_pr),
+            of("P.sun-planet.torque", "sun.speed", s, d_sp, i_sp),
         ]
     }
 }
@@ -454,7 +456,7 @@ fn settle(body: &Body, flow: &Flow, point: &Point) -> Found {
     let (run, report) = Run::of(&body.file(&point.laws, flow.held, &start, SETTLED), 2);
     let row = run.last();
     let size = point.speeds.iter().fold(0.0, |a: f64, w| a.max(w.abs()));
-    let speed = [0, 1, 2].map(|m| (run.at(row, &format!("speed.{}", MEMBERS[m])) - point.speeds[m]).abs() / size);
+    let speed = [0, 1, 2].map(|m| (run.at(row, &format!("{}.speed", MEMBERS[m])) - point.speeds[m]).abs() / size);
     let done = if report.outcome == Outcome::Finished { 0.0 } else { f64::NAN };
     Found {
         efficiency: (run.at(row, "efficiency") - point.efficiency).abs() + done,
@@ -545,7 +547,7 @@ fn steady(report: &mut Report) {
         let theirs = &case.steady;
         let names = ["ring", "sun", "carrier", "P.planet"];
         let speeds =
-            difference(&["r", "s", "c", "p"].map(|k| theirs.w[k]), &names.map(|n| run.at(row, &format!("speed.{n}"))));
+            difference(&["r", "s", "c", "p"].map(|k| theirs.w[k]), &names.map(|n| run.at(row, &format!("{n}.speed"))));
         let torques = difference(&KEYS.map(|k| theirs.torque[k]), &[0, 1, 2].map(|m| run.torque(row, m)));
         let [ring, sun] = run.forces(row, body);
         let forces = difference(&[theirs.ring_force, theirs.sun_force], &[ring.0, sun.0]);
@@ -634,12 +636,12 @@ fn transients(report: &mut Report) {
                 // The first of the rows of one time is that of the grid or before an event.
                 let row = run.rows.iter().find(|r| (r[0] - t).abs() < 1e-9);
                 let ours = row.map_or(f64::NAN, |row| match column.as_str() {
-                    "w_r" => run.at(row, "speed.ring"),
-                    "w_s" => run.at(row, "speed.sun"),
-                    "w_c" => run.at(row, "speed.carrier"),
-                    "w_p" => run.at(row, "speed.P.planet"),
-                    "phi_r" => run.at(row, "angle.ring"),
-                    "phi_s" => run.at(row, "angle.sun"),
+                    "w_r" => run.at(row, "ring.speed"),
+                    "w_s" => run.at(row, "sun.speed"),
+                    "w_c" => run.at(row, "carrier.speed"),
+                    "w_p" => run.at(row, "P.planet.speed"),
+                    "phi_r" => run.at(row, "ring.angle"),
+                    "phi_s" => run.at(row, "sun.angle"),
                     "F_trp" => run.forces(row, &case.train)[0].0,
                     _ => run.forces(row, &case.train)[1].0,
                 });
@@ -691,7 +693,7 @@ fn stepped_speeds(file: &str, step: f64, duration: f64, lagged: bool) -> Vec<[f6
     let mut speeds = vec![];
     for row in &run.rows {
         if row[0] >= next as f64 * step - 1e-9 {
-            speeds.push(MEMBERS.map(|m| run.at(row, &format!("speed.{m}"))));
+            speeds.push(MEMBERS.map(|m| run.at(row, &format!("{m}.speed"))));
             next += 1;
         }
     }

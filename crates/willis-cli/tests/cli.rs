@@ -1315,7 +1315,10 @@ fn regress_simulate_contract() {
     let columns = answer["columns"].as_array().expect("columns");
     columns.iter().for_each(|c| has(c, &["name", "unit", "kind", "of"]));
     let names: Vec<&str> = columns.iter().map(|c| c["name"].as_str().expect("a name")).collect();
-    assert_eq!(names, ["time_s", "speed.sun", "speed.ring", "speed.carrier", "speed.P.planet", "mode.B"]);
+    assert_eq!(
+        names,
+        ["time_s", "sun.speed_rad_s", "ring.speed_rad_s", "carrier.speed_rad_s", "P.planet.speed_rad_s", "B.mode"]
+    );
     let rows = answer["rows"].as_array().expect("rows");
     assert!(rows.iter().all(|r| r.as_array().expect("a row").len() == names.len()));
     let last: Vec<f64> = rows[rows.len() - 1].as_array().expect("a row")[1..5].iter().flat_map(Value::as_f64).collect();

@@ -55,9 +55,11 @@ impl Compiled {
         for (kind, name) in duty.outputs {
             own = own.output(match kind.as_str() {
                 "speed" => Output::Speed(name),
+                "torque" if train.meshes().iter().any(|m| m.name == name) => Output::MeshTorque(name),
+                "torque" if train.shift_elements().iter().any(|e| e.name == name) && train.member(&name).is_none() => {
+                    Output::ShiftElementTorque(name)
+                }
                 "torque" => Output::Torque(name),
-                "mesh" => Output::MeshTorque(name),
-                "element" => Output::ShiftElementTorque(name),
                 "loss" => Output::Loss,
                 _ => Output::Efficiency,
             });

@@ -120,7 +120,7 @@ def test_questions_take_numbers_texts_and_mappings(automatic: willis.Train, exam
 def test_a_simulation_gives_arrays_and_events(examples: Path) -> None:
     run = willis.read(examples / "launch.toml").simulate(samples=11)
     assert np.all(np.diff(run["time_s"]) >= 0)
-    assert np.array_equal(run["wheels.speed"], run["speed.wheels"])
+    assert np.array_equal(run["wheels.speed"], run["wheels.speed_rad_s"])
     assert run.events[0].cause == "start"
     assert run.energy is not None
 

@@ -27,9 +27,9 @@ def test_every_gear_is_that_of_the_analysis(automatic: willis.Train) -> None:
 def test_results_balance(automatic: willis.Train) -> None:
     compiled = automatic.compile("3")
     w, tau = np.linspace(50, 600, 7)[:, None], np.linspace(-200, 200, 5)
-    found = compiled.evaluate(w, tau, outputs=["loss", "torque.output", "speed.output", "torque.input"])
+    found = compiled.evaluate(w, tau, outputs=["loss", "output.torque", "output.speed", "input.torque"])
     assert found["loss"].shape == (7, 5)
-    power = tau * w + found["torque.output"] * found["speed.output"]
+    power = tau * w + found["output.torque"] * found["output.speed"]
     assert np.allclose(power, found["loss"], atol=1e-9)
     assert np.all(found["loss"] >= 0)
 
@@ -52,8 +52,8 @@ def test_two_freedoms_by_names(examples) -> None:  # type: ignore[no-untyped-def
         split = willis.read(examples / "prius-p112.toml")
     compiled = split.compile(speeds=["engine", "ring"], torques=["engine"])
     assert compiled.speeds == ["engine", "ring"]
-    by_name = compiled.evaluate(speed_engine=200.0, speed_ring=100.0, torque=80.0, outputs="torque.ring")
-    assert by_name["torque.ring"].shape == ()
+    by_name = compiled.evaluate(speed_engine=200.0, speed_ring=100.0, torque=80.0, outputs="ring.torque")
+    assert by_name["ring.torque"].shape == ()
     with pytest.raises(TypeError, match="speed_ring"):
         compiled.efficiency(speed_engine=200.0, torque=80.0)
     with pytest.raises(TypeError, match="none of what is prescribed"):

@@ -65,10 +65,10 @@ fn adaptive(c: &mut Criterion) {
         };
         let end = run();
         close(&task, end, exact, 1e-5);
-        record(&task, duration, &[(column.trim_start_matches("speed."), end)]);
+        record(&task, duration, &[(column.trim_end_matches(".speed_rad_s"), end)]);
         group.sample_size(50).bench_function(&task, |b| b.iter(run));
         let task = format!("{task}-again");
-        let member = column.trim_start_matches("speed.");
+        let member = column.trim_end_matches(".speed_rad_s");
         let mut prepared = Some(Simulation::new(train, scenario, &options).unwrap());
         let mut again = || {
             let mut run = prepared.take().expect("put back").again().unwrap();
@@ -83,8 +83,8 @@ fn adaptive(c: &mut Criterion) {
         record(&task, duration, &[(member, end)]);
         group.bench_function(&task, |b| b.iter(&mut again));
     };
-    measure("set", &trains::set(), "pulses", "speed.carrier", 20.0, SET_END);
-    measure("automatic", &trains::automatic(), "through the gears", "speed.output", 16.0, AUTOMATIC_END);
+    measure("set", &trains::set(), "pulses", "carrier.speed_rad_s", 20.0, SET_END);
+    measure("automatic", &trains::automatic(), "through the gears", "output.speed_rad_s", 16.0, AUTOMATIC_END);
     group.finish();
 }
 

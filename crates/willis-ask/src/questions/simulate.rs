@@ -157,7 +157,7 @@ impl Simulate {
         if self.columns.is_empty() {
             return Ok((0..columns.len()).collect());
         }
-        let named = |c: &Column, w: &str| c.kind.name() == w || c.name == w;
+        let named = |c: &Column, w: &str| c.kind.name() == w || c.is_called(w);
         for w in &self.columns {
             if !columns.iter().any(|c| named(c, w)) {
                 let mut kinds: Vec<&str> = Vec::new();

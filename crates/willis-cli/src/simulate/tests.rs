@@ -36,9 +36,9 @@ fn columns() -> Vec<Column> {
     };
     vec![
         column("time_s", ColumnKind::Time),
-        column("speed.sun", ColumnKind::Speed),
-        column("torque.P1,a", ColumnKind::Torque),
-        column("mode.B", ColumnKind::Mode),
+        column("sun.speed_rad_s", ColumnKind::Speed),
+        column("P1,a.torque_n_m", ColumnKind::Torque),
+        column("B.mode", ColumnKind::Mode),
     ]
 }
 
@@ -59,7 +59,7 @@ fn csv_is_whole_and_empty_where_nothing_is_determined() {
     rows.row(&[1.0, 1e-9, f64::NAN, -1.0]).unwrap();
     rows.finish(None).unwrap();
     let text = String::from_utf8(out).unwrap();
-    assert_eq!(text, "time_s,speed.sun,\"torque.P1,a\",mode.B\n0,0,0,1\n1,1e-9,,-1\n");
+    assert_eq!(text, "time_s,sun.speed_rad_s,\"P1,a.torque_n_m\",B.mode\n0,0,0,1\n1,1e-9,,-1\n");
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn parquet_reads_back_with_nulls_and_says_whether_it_is_complete() {
             let all: Vec<_> = row.get_column_iter().map(|(name, field)| (name.as_str(), field.clone())).collect();
             assert_eq!(all[0], ("time_s", Field::Double(k as f64)));
             let torque = if k % 3 == 1 { Field::Null } else { Field::Double(-0.1 * k as f64) };
-            assert_eq!(all[2], ("torque.P1,a", torque));
+            assert_eq!(all[2], ("P1,a.torque_n_m", torque));
         }
     }
     std::fs::remove_dir_all(folder).unwrap();

@@ -80,11 +80,13 @@ fn event(time: f64, cause: &str, modes: Value) -> Event {
 fn columns() -> Vec<Column> {
     let mut all = vec![column("time_s", ColumnKind::Time)];
     all.extend(
-        ["sun", "ring", "carrier", "P1.planet", "out"].map(|m| column(&format!("speed.{m}"), ColumnKind::Speed)),
+        ["sun", "ring", "carrier", "P1.planet", "out"].map(|m| column(&format!("{m}.speed_rad_s"), ColumnKind::Speed)),
     );
-    all.extend(["motor", "vehicle", "B", "P1.sun-planet"].map(|m| column(&format!("torque.{m}"), ColumnKind::Torque)));
-    all.extend(["motor", "vehicle", "B"].map(|m| column(&format!("power.{m}"), ColumnKind::Power)));
-    all.extend(["P1.sun-planet", "P1.planet-ring", "B"].map(|m| column(&format!("mode.{m}"), ColumnKind::Mode)));
+    all.extend(
+        ["motor", "vehicle", "B", "P1.sun-planet"].map(|m| column(&format!("{m}.torque_n_m"), ColumnKind::Torque)),
+    );
+    all.extend(["motor", "vehicle", "B"].map(|m| column(&format!("{m}.power_w"), ColumnKind::Power)));
+    all.extend(["P1.sun-planet", "P1.planet-ring", "B"].map(|m| column(&format!("{m}.mode"), ColumnKind::Mode)));
     all
 }
 
@@ -207,9 +209,9 @@ fn a_run_that_ends_early_says_so() {
 fn many_members_many_events_and_tiny_times() {
     let names: Vec<String> = (1..=14).map(|k| format!("a rather long member {k}")).collect();
     let mut all = vec![column("time_s", ColumnKind::Time)];
-    all.extend(names.iter().map(|n| column(&format!("speed.{n}"), ColumnKind::Speed)));
-    all.extend(names.iter().take(9).map(|n| column(&format!("twist.{n}"), ColumnKind::Twist)));
-    all.extend((1..=30).map(|k| column(&format!("mode.element {k}"), ColumnKind::Mode)));
+    all.extend(names.iter().map(|n| column(&format!("{n}.speed_rad_s"), ColumnKind::Speed)));
+    all.extend(names.iter().take(9).map(|n| column(&format!("{n}.twist_rad"), ColumnKind::Twist)));
+    all.extend((1..=30).map(|k| column(&format!("element {k}.mode"), ColumnKind::Mode)));
     let mut plot = TimePlotBuilder::new(&train(), [0.0, 2e-3]);
     let _ = plot.columns(&all);
     for k in 0..=20_000 {

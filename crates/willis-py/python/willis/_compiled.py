@@ -113,8 +113,8 @@ class CompiledTrain:
         outputs: Sequence[str] | str = ("efficiency",),
         **named: ArrayLike,
     ) -> dict[str, NDArray[np.float64]]:
-        """Several results at once: ``efficiency``, ``loss``, ``torque.ring``, ``speed.sun``, ``mesh.P1.sun-planet``,
-        ``element.clutch``.
+        """Several results at once: ``efficiency``, ``loss``, ``ring.torque``, ``sun.speed``; of meshes and shift elements
+        ``P1.sun-planet.torque``, ``clutch.torque``.
 
         The result has an array for each, of the shape to which the inputs broadcast. Points that do not have exactly one
         answer are counted in :attr:`odd` and told as :class:`TrainWarning`.
@@ -136,11 +136,11 @@ class CompiledTrain:
 
     def torque_of(self, member: str, *args: ArrayLike, **named: ArrayLike) -> NDArray[np.float64]:
         """External torque on a terminal, N m."""
-        return self.evaluate(*args, outputs=f"torque.{member}", **named)[f"torque.{member}"]
+        return self.evaluate(*args, outputs=f"{member}.torque", **named)[f"{member}.torque"]
 
     def speed_of(self, member: str, *args: ArrayLike, **named: ArrayLike) -> NDArray[np.float64]:
         """Speed of a member, rad/s."""
-        return self.evaluate(*args, outputs=f"speed.{member}", **named)[f"speed.{member}"]
+        return self.evaluate(*args, outputs=f"{member}.speed", **named)[f"{member}.speed"]
 
     def mean(self, *args: ArrayLike, outputs: Sequence[str] | str = "efficiency", **named: ArrayLike) -> dict[str, float]:
         """The mean of results over all points, of which none is stored."""
@@ -160,13 +160,13 @@ class CompiledTrain:
 
 
 def _output(name: str) -> tuple[str, str]:
-    kind, _, of = name.partition(".")
+    of, _, kind = name.rpartition(".")
     if name in ("efficiency", "loss"):
         return (name, "")
-    if kind in ("torque", "speed", "mesh", "element") and of:
+    if kind in ("torque", "speed") and of:
         return (kind, of)
     raise ValueError(
-        f"`{name}` is no result: efficiency, loss, torque.MEMBER, speed.MEMBER, mesh.MESH or element.ELEMENT"
+        f"`{name}` is no result: efficiency, loss, MEMBER.torque, MEMBER.speed, MESH.torque or ELEMENT.torque"
     )
 
 

@@ -144,9 +144,9 @@ def _spelt(name: str) -> str:
 
 
 def _spellings(column: str) -> set[str]:
-    """A column without its unit, and with what it is of behind: ``speed.sun`` is ``sun.speed`` too."""
+    """A column with its unit and without, dots and underscores alike: ``input.speed`` finds ``input_speed_rpm``."""
     of = bare(column)
-    return {_spelt(of), _spelt(".".join(reversed(of.split(".", 1)))), _spelt(column), _spelt(of.removesuffix("_rpm"))}
+    return {_spelt(of), _spelt(column), _spelt(of.removesuffix("_rpm"))}
 
 
 def html(table: Table, most: int = 40) -> str:

@@ -114,9 +114,9 @@ const MOST_ELEMENTS: usize = 64;
 /// "#)?;
 /// let mut run = FixedStep::new(&train, "drive", 1e-3)?;
 /// let motor = run.input("motor")?;
-/// let (speed, bearing) = (run.output("speed.rotor")?, run.output("mode.bearing")?);
-/// let wrong = run.output("speed.roter").unwrap_err();
-/// assert!(wrong.to_string().contains("did you mean `speed.rotor`?"));
+/// let (speed, bearing) = (run.output("rotor.speed")?, run.output("bearing.mode")?);
+/// let wrong = run.output("roter.speed").unwrap_err();
+/// assert!(wrong.to_string().contains("did you mean `rotor.speed_rad_s`?"));
 ///
 /// run.rehearse();
 /// let saved = run.clone();
@@ -440,8 +440,8 @@ impl FixedStep {
         self.engine.columns()
     }
 
-    /// The output of that name, as in `speed.sun`, `angle.sun`, `acceleration.sun`, `torque.motor`, `mode.B`,
-    /// `stored_energy`.
+    /// The output of that name, with its unit or without: `sun.speed_rad_s` or `sun.speed`, `sun.angle`,
+    /// `sun.acceleration`, `motor.torque`, `B.mode`, `stored_energy`.
     ///
     /// # Errors
     /// If there is none, with the nearest name.
@@ -473,7 +473,7 @@ impl FixedStep {
         }
     }
 
-    /// Begins to count where the energy goes: `lost_energy` can be read. Steps take up to half as long again.
+    /// Begins to count where the energy goes: `lost_energy_j` can be read. Steps take up to half as long again.
     pub fn with_energies(&mut self) {
         self.engine.counts = true;
         self.energies = vec![0.0; self.engine.energies()];

@@ -175,7 +175,7 @@ impl Output {
     pub(super) fn of(columns: &[Column], name: &str) -> Result<Self, Diagnostics> {
         let known = || columns.iter().map(|c| c.name.as_str());
         let wrong = || unknown(format!("the run has no output `{name}`"), name, known(), "outputs");
-        known().position(|n| n == name).map(Self).ok_or_else(wrong)
+        columns.iter().position(|c| c.is_called(name)).map(Self).ok_or_else(wrong)
     }
 
     /// What it shows.

@@ -10,6 +10,7 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::named::Named;
 use crate::power_flow::{BeyondLimit, LimitedQuantity};
 use crate::train::Scenario;
+use crate::units::without_unit;
 use crate::work::{Serial, Work as _};
 
 /// How to run a scenario.
@@ -131,7 +132,7 @@ pub enum Method {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Column {
-    /// `time_s`, `speed.sun`, `torque.P1.sun-planet`, …
+    /// Its name, with the unit at its end: `time_s`, `sun.speed_rad_s`, `P1.sun-planet.torque_n_m`, …
     pub name: String,
     /// In what the values are; nothing for modes and efficiencies.
     pub unit: ColumnUnit,
@@ -139,6 +140,13 @@ pub struct Column {
     pub kind: ColumnKind,
     /// The member, mesh, source, shaft or shift element, or `frame`; empty for the train as a whole.
     pub of: String,
+}
+
+impl Column {
+    /// Whether that is its name, or its name without the unit: `sun.speed_rad_s`, `sun.speed`.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || without_unit(&self.name, self.unit.symbol()) == name
+    }
 }
 
 /// What the values of a column are.

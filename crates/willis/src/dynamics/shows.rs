@@ -1,5 +1,7 @@
 //! What can be read of a run: the columns of its rows.
 
+use crate::units::with_unit;
+
 use super::element::element_name;
 use super::report::{Column, ColumnKind, EnergyLossKind};
 use super::system::{MachineDoes, PathKind, Rubs, System};
@@ -114,14 +116,16 @@ impl Shows {
             Self::Efficiency => (ColumnKind::Efficiency, String::new()),
             Self::Mode(moves) => (ColumnKind::Mode, moves.name(s)),
         };
-        let name = match self {
-            Self::Time => "time_s".to_owned(),
+        let quantity = match self {
+            Self::Time => "time".to_owned(),
             Self::Loss => "loss".to_owned(),
             Self::Stored => "stored_energy".to_owned(),
             Self::Lost => "lost_energy".to_owned(),
             Self::Efficiency => "efficiency".to_owned(),
-            _ => format!("{}.{of}", kind.name()),
+            Self::Store(k) => format!("{}.store", variator(k).name),
+            _ => format!("{of}.{}", kind.name()),
         };
+        let name = with_unit(&quantity, kind.unit().symbol());
         Column { name, unit: kind.unit(), kind, of }
     }
 }

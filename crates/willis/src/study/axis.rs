@@ -6,7 +6,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::exact::Rational;
 use crate::model::{Model, Target, Who, quantity};
 use crate::train::Measure;
-use crate::units::{Dimension, Quantity};
+use crate::units::{Dimension, Quantity, with_unit};
 
 /// Most values of an axis.
 const MOST: u64 = 1_000_000_000_000_000;
@@ -172,19 +172,6 @@ impl Axis {
             Values::Numbers(all) if all.len() <= 1000 => (0..all.len()).map(|k| self.setting(k)).collect(),
             _ => vec![self.setting(0), self.setting(self.len() - 1)],
         }
-    }
-}
-
-/// A name with the unit at its end, as columns are called: `sun.speed_rpm`.
-pub(super) fn with_unit(name: &str, unit: &str) -> String {
-    // `Nm` is the same unit as `N m`; of letters only M keeps its size, mega is not milli.
-    let unit = unit.replace("Nm", "N m");
-    let mega = unit.starts_with('M');
-    let unit: String = unit.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
-    let unit = if mega { unit } else { unit.to_lowercase() };
-    match unit.trim_matches('_') {
-        "" => name.to_owned(),
-        unit => format!("{name}_{}", unit.replace("__", "_")),
     }
 }
 

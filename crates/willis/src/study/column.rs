@@ -4,6 +4,8 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
+use crate::units::without_unit;
+
 use super::summary::Summary;
 
 /// What the values of a column are.
@@ -34,6 +36,11 @@ pub struct Column {
 }
 
 impl Column {
+    /// Whether that is its name, or its name without the unit: `sun.torque_n_m`, `sun.torque`.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || without_unit(&self.name, &self.unit) == name
+    }
+
     pub(super) fn number(name: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { name: name.into(), unit: unit.into(), kind: ColumnKind::Number }
     }

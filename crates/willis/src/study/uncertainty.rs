@@ -9,11 +9,10 @@ use crate::analysis::Losses;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target, Who};
 use crate::train::{Load, Measure, Store, Train, VariatorPath};
-use crate::units::{self, Quantity};
+use crate::units::{self, Quantity, with_unit};
 use crate::work::{self, Cancelled, Effort, Work};
 
 use super::answer::{LawChoice, PointAnswer, PointVerdict};
-use super::axis::with_unit;
 use super::column::{Column, ColumnTable};
 use super::design::Design;
 use super::distribution::{Distribution, Reader, fault, plain, rounded};
@@ -364,7 +363,7 @@ impl<'s> UncertaintyPlan<'s> {
         let train = self.question.model().train();
         self.outputs = vec![Column::number("efficiency", ""), Column::number("loss_w", "W")];
         self.outputs.extend(KINDS.iter().map(|kind| Column::number(format!("{kind}_loss_w"), "W")));
-        self.outputs.extend(sources(train).map(|name| Column::number(format!("loss.{name}_w"), "W")));
+        self.outputs.extend(sources(train).map(|name| Column::number(format!("{name}.loss_w"), "W")));
         let answer = PointAnswer::of(train, self.question.base());
         self.nominal = self.values(&answer);
         self.nominal_verdict = answer.verdict;

@@ -331,7 +331,7 @@ pub fn faults(g: &Gearbox, work: &Work, rigid: bool, rows: &Rows, report: &RunRe
     }
     faults.extend(frame_fault(g, rows));
     if rigid && work.states[0] == work.states[1] {
-        let column = |m: usize| rows.names.iter().position(|n| *n == format!("speed.{}", g.members[m]));
+        let column = |m: usize| rows.names.iter().position(|n| *n == format!("{}.speed_rad_s", g.members[m]));
         for &e in &g.states[work.states[0]].1 {
             let [a, b] = g.elements[e].1.map(column);
             if g.one_way[e] != 0 {
@@ -354,15 +354,16 @@ fn frame_fault(g: &Gearbox, rows: &Rows) -> Option<String> {
     }
     // What a run never engages has no column.
     let column = |name: &str| rows.names.iter().position(|n| n == name);
-    let frame = column("reaction.frame").unwrap();
-    let drags = g.drags.iter().enumerate().map(|(k, (bodies, ..))| (format!("torque.D{k}"), *bodies));
-    let shafts = g.shafts.iter().enumerate().map(|(k, (bodies, ..))| (format!("torque.S{k}"), *bodies));
-    let all = g.elements.iter().map(|(name, bodies)| (format!("torque.{name}"), *bodies)).chain(drags).chain(shafts);
+    let frame = column("frame.reaction_n_m").unwrap();
+    let drags = g.drags.iter().enumerate().map(|(k, (bodies, ..))| (format!("D{k}.torque_n_m"), *bodies));
+    let shafts = g.shafts.iter().enumerate().map(|(k, (bodies, ..))| (format!("S{k}.torque_n_m"), *bodies));
+    let all =
+        g.elements.iter().map(|(name, bodies)| (format!("{name}.torque_n_m"), *bodies)).chain(drags).chain(shafts);
     let borne: Vec<(usize, f64)> = all
         .filter(|(_, bodies)| bodies.contains(&0))
         .filter_map(|(name, bodies)| Some((column(&name)?, if bodies[0] == 0 { -1.0 } else { 1.0 })))
         .collect();
-    let torques: Vec<usize> = (0..rows.names.len()).filter(|&k| rows.names[k].starts_with("torque.")).collect();
+    let torques: Vec<usize> = (0..rows.names.len()).filter(|&k| rows.kinds[k] == "torque").collect();
     rows.rows.iter().find_map(|row| {
         let sum: f64 = borne.iter().map(|&(k, sign)| sign * row[k]).sum();
         let size = torques.iter().map(|&k| row[k].abs()).fold(0.0, f64::max);

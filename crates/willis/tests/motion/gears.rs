@@ -223,7 +223,7 @@ fn val_the_ford_c4_breaks_away_where_a_linear_programme_says() {
                 let (rows, report) = run(&g.text(mesh_by_mesh, capacity, output, &scenario), &Options::default());
                 assert_eq!(report.outcome, Outcome::Finished);
                 let of = |name: &str| rows.names.iter().position(|n| n == name).unwrap();
-                let (time, speed) = (of("time_s"), of("speed.output"));
+                let (time, speed) = (of("time_s"), of("output.speed_rad_s"));
                 let moves = rows.rows.iter().find(|row| row[speed] != 0.0).unwrap()[time];
                 // The event is a row; the one after it moves.
                 let at = rows.rows.iter().rev().find(|row| row[time] < moves).unwrap()[time];

@@ -35,7 +35,7 @@ fn between_a_spring_and_a_damper() {
     let rate = |t: f64| start * (fast * (-fast * t).exp() - slow * (-slow * t).exp()) / (fast - slow);
     for (method, within) in [(Method::Adaptive, 2e-5), (Method::Fixed { step_s: 1e-4 }, 2e-3)] {
         let (report, rows) = run_as(&text, method);
-        let (rotor, hub, times) = (rows.of("speed.rotor"), rows.of("speed.hub"), rows.of("time_s"));
+        let (rotor, hub, times) = (rows.of("rotor.speed_rad_s"), rows.of("hub.speed_rad_s"), rows.of("time_s"));
         for ((t, rotor), hub) in times.zip(rotor).zip(hub).skip(1) {
             let of_hub = k * theta(t) / d;
             let of_rotor = rate(t) + of_hub;
@@ -71,7 +71,7 @@ fn springs_in_series_are_one() {
         ", \"a\", \"b\"",
         &[("rotor", "a", 1e6), ("a", "b", 1.0 / (1.0 / 12.0 - 1e-6 - 1.0 / 40.0)), ("b", "wheel", 40.0)],
     );
-    for name in ["speed.rotor", "speed.wheel"] {
+    for name in ["rotor.speed_rad_s", "wheel.speed_rad_s"] {
         let most = one.of(name).zip(chain.of(name)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(most < 1e-4, "{name}: {most}");
     }
@@ -90,11 +90,11 @@ fn between_a_spring_and_a_clutch() {
     // Both sides under 80 N m: the clutch closes once 100 = (80/0.2 + 80/3) t, and the spring adds its swing.
     let closes = rows.events.iter().find(|e| e.cause.contains("C comes to rest")).expect("it closes");
     assert!((closes.time_s - 100.0 / (80.0 / 0.2 + 80.0 / 3.0)).abs() < 0.01, "{closes:?}");
-    let spring: Vec<f64> = rows.of("torque.damper spring").collect();
+    let spring: Vec<f64> = rows.of("damper spring.torque_n_m").collect();
     for (t, torque) in rows.of("time_s").zip(&spring).filter(|(t, _)| *t > 0.05 && *t < 0.9 * closes.time_s) {
         assert!((torque.abs() - 80.0).abs() < 1e-3, "{t}: {torque}");
     }
-    let at_end: Vec<f64> = ["speed.engine", "speed.car"].map(|n| rows.of(n).last().expect("rows")).to_vec();
+    let at_end: Vec<f64> = ["engine.speed_rad_s", "car.speed_rad_s"].map(|n| rows.of(n).last().expect("rows")).to_vec();
     let together = 0.2 * 100.0 / 3.2;
     assert!(at_end.iter().all(|w| (w - together).abs() < 1e-4), "{at_end:?}, not {together}");
 }
@@ -116,8 +116,8 @@ fn a_ring_in_a_brake_that_slips() {
     let closes = 300.0 / (4.0 * gain - rise);
     let rows: Vec<[f64; 3]> = rows
         .of("time_s")
-        .zip(rows.of("speed.sun"))
-        .zip(rows.of("speed.carrier"))
+        .zip(rows.of("sun.speed_rad_s"))
+        .zip(rows.of("carrier.speed_rad_s"))
         .map(|((t, s), c)| [t, s, c])
         .collect();
     assert!(closes > 0.5, "it slips all the time");
@@ -137,13 +137,13 @@ fn between_two_clutches() {
          [[scenario]]\nname = \"run\"\nduration = \"0.4 s\"\ninitial_speeds = {{ engine = \"100 rad/s\" }}\n\
          engagement = [{{ element = \"C\", value = 1 }}, {{ element = \"D\", value = 1 }}]\n"
     ));
-    for ((t, engine), car) in rows.of("time_s").zip(rows.of("speed.engine")).zip(rows.of("speed.car")) {
+    for ((t, engine), car) in rows.of("time_s").zip(rows.of("engine.speed_rad_s")).zip(rows.of("car.speed_rad_s")) {
         assert!((engine - 100.0 + 150.0 * t).abs() < 1e-3 && (car - 10.0 * t).abs() < 1e-3, "{t}: {engine}, {car}");
     }
     // To the last bit once C holds, which a trace of inertia puts off.
     let held = rows.events.iter().find(|e| e.cause.contains("C comes to rest")).expect("C holds").time_s;
     assert!(held < 1e-5, "C holds at {held}");
-    let drum = rows.of("speed.drum").zip(rows.of("speed.engine"));
+    let drum = rows.of("drum.speed_rad_s").zip(rows.of("engine.speed_rad_s"));
     for (_, (drum, engine)) in rows.of("time_s").zip(drum).filter(|(t, _)| *t > held) {
         assert_eq!(drum, engine);
     }
@@ -163,7 +163,7 @@ fn a_hub_that_turns_fast_and_long() {
             ),
             method,
         );
-        for name in ["speed.rotor", "speed.hub", "speed.wheel"] {
+        for name in ["rotor.speed_rad_s", "hub.speed_rad_s", "wheel.speed_rad_s"] {
             let speeds: Vec<f64> = rows.of(name).collect();
             assert!((speeds[0] - 600.0).abs() < 1e-9, "{method:?} {name}: {}", speeds[0]);
             let last = speeds.last().expect("rows");

@@ -61,22 +61,25 @@ fn a_member_in_fixed_is_held_with_the_torque_of_a_brake() {
     let braked = SET.to_owned() + brake + LOADS + "    engagement = [{ element = \"B\", value = 1 }]\n";
     let (held, _) = run(&held, &Options::default());
     let (braked, _) = run(&braked, &Options::default());
-    assert_same(&column(&held, "reaction.ring"), &column(&braked, "torque.B"));
-    assert_same(&column(&held, "reaction.frame"), &column(&braked, "reaction.frame"));
+    assert_same(&column(&held, "ring.reaction_n_m"), &column(&braked, "B.torque_n_m"));
+    assert_same(&column(&held, "frame.reaction_n_m"), &column(&braked, "frame.reaction_n_m"));
     // What the frame gives in all is what it gives to the ring and to the bearing.
-    let parts: Vec<f64> =
-        column(&held, "reaction.ring").iter().zip(column(&held, "torque.bearing")).map(|(a, b)| a + b).collect();
-    assert_same(&column(&held, "reaction.frame"), &parts);
+    let parts: Vec<f64> = column(&held, "ring.reaction_n_m")
+        .iter()
+        .zip(column(&held, "bearing.torque_n_m"))
+        .map(|(a, b)| a + b)
+        .collect();
+    assert_same(&column(&held, "frame.reaction_n_m"), &parts);
 }
 
 /// Newton for the whole: the rate of all angular momentum is what comes from outside.
 #[test]
 fn val_the_frame_gives_the_rate_of_angular_momentum_less_the_sources() {
     let (rows, _) = run(&(SET.to_owned() + LOADS + "    fixed = [\"ring\"]\n"), &Options::default());
-    let [sun, carrier] = ["acceleration.sun", "acceleration.carrier"].map(|n| column(&rows, n));
-    let [motor, load] = ["torque.motor", "torque.load"].map(|n| column(&rows, n));
+    let [sun, carrier] = ["sun.acceleration_rad_s2", "carrier.acceleration_rad_s2"].map(|n| column(&rows, n));
+    let [motor, load] = ["motor.torque_n_m", "load.torque_n_m"].map(|n| column(&rows, n));
     let expected: Vec<f64> = (0..sun.len()).map(|k| 0.02 * sun[k] + 0.3 * carrier[k] - motor[k] - load[k]).collect();
-    assert_same(&column(&rows, "reaction.frame"), &expected);
+    assert_same(&column(&rows, "frame.reaction_n_m"), &expected);
 }
 
 /// Steady and without losses the ring bears `z_r/z_s` times the torque of the sun; a vehicle and a speed from outside
@@ -104,8 +107,8 @@ fn val_a_steady_ring_bears_the_ratio_of_the_teeth() {
     "#;
     let (rows, report) = run(text, &Options::default());
     assert!(report.energy.is_some());
-    assert!(column(&rows, "reaction.ring").iter().all(|x| (x - 120.0).abs() < 1e-9));
-    assert!(column(&rows, "reaction.frame").iter().all(|x| (x - 120.0).abs() < 1e-9));
+    assert!(column(&rows, "ring.reaction_n_m").iter().all(|x| (x - 120.0).abs() < 1e-9));
+    assert!(column(&rows, "frame.reaction_n_m").iter().all(|x| (x - 120.0).abs() < 1e-9));
 }
 
 /// Two brakes of one set hold it together: how they share is open, and so is what lies between them. What the frame
@@ -123,11 +126,14 @@ fn what_two_brakes_share_is_open_and_their_sum_is_not() {
         let closed = ["sun", "ring"].map(|m| format!("{{ element = \"B {m}\", value = 1 }}"));
         let text = format!("{set}{brakes}{loads}    engagement = [{}]\n", closed.join(", "));
         let (rows, _) = run(&text, &Options::default());
-        for open in ["torque.B sun", "torque.B ring", "torque.P.sun-planet", "reaction.carrier"] {
+        for open in ["B sun.torque_n_m", "B ring.torque_n_m", "P.sun-planet.torque_n_m", "carrier.reaction_n_m"] {
             assert!(column(&rows, open).iter().all(|x| x.is_nan()), "{open}");
         }
-        let expected: Vec<f64> =
-            column(&rows, "torque.motor").iter().zip(column(&rows, "torque.load")).map(|(a, b)| -a - b).collect();
-        assert_same(&column(&rows, "reaction.frame"), &expected);
+        let expected: Vec<f64> = column(&rows, "motor.torque_n_m")
+            .iter()
+            .zip(column(&rows, "load.torque_n_m"))
+            .map(|(a, b)| -a - b)
+            .collect();
+        assert_same(&column(&rows, "frame.reaction_n_m"), &expected);
     }
 }

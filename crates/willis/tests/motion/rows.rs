@@ -9,25 +9,28 @@ use willis::train::Train;
 #[derive(Default)]
 pub struct Rows {
     pub names: Vec<String>,
+    pub kinds: Vec<&'static str>,
     pub rows: Vec<Vec<f64>>,
     pub events: Vec<Event>,
 }
 
 impl Rows {
-    /// All values of the columns that begin so.
-    pub fn of<'a>(&'a self, prefix: &'a str) -> impl Iterator<Item = f64> + 'a {
-        let columns: Vec<usize> = (0..self.names.len()).filter(|&k| self.names[k].starts_with(prefix)).collect();
+    /// All values of the columns of a kind, or that begin so.
+    pub fn of<'a>(&'a self, what: &'a str) -> impl Iterator<Item = f64> + 'a {
+        let is_meant = |k: &usize| self.kinds[*k] == what || self.names[*k].starts_with(what);
+        let columns: Vec<usize> = (0..self.names.len()).filter(is_meant).collect();
         self.rows.iter().flat_map(move |row| columns.iter().map(|&k| row[k]).collect::<Vec<_>>())
     }
 
-    pub fn greatest(&self, prefix: &str) -> f64 {
-        self.of(prefix).fold(0.0, |most, x| most.max(x.abs()))
+    pub fn greatest(&self, what: &str) -> f64 {
+        self.of(what).fold(0.0, |most, x| most.max(x.abs()))
     }
 }
 
 impl Recorder for Rows {
     fn columns(&mut self, columns: &[Column]) -> ControlFlow<()> {
         self.names = columns.iter().map(|c| c.name.clone()).collect();
+        self.kinds = columns.iter().map(|c| c.kind.name()).collect();
         ControlFlow::Continue(())
     }
 

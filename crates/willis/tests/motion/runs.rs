@@ -100,7 +100,7 @@ fn a_part_of_a_run_has_its_rows_and_events() {
         // The motion is that of the whole run.
         let (all, _) = of(&Options { samples: Some(11), ..whole.clone() });
         let at = |rows: &Rows, t: f64| rows.rows.iter().rev().find(|row| (row[0] - t).abs() < 1e-9).unwrap().clone();
-        let speeds = rows.names.iter().filter(|n| n.starts_with("speed.")).count();
+        let speeds = rows.kinds.iter().filter(|kind| **kind == "speed").count();
         for (a, b) in at(&rows, 0.8 * end).iter().zip(&at(&all, 0.8 * end)).skip(1).take(speeds) {
             assert!((a - b).abs() < 1e-6 * (1.0 + a.abs()), "{a} {b}");
         }
@@ -320,7 +320,7 @@ proptest! {
         let (rows, report) = run(&what.text(1.0, LISTED), &options);
         prop_assert_eq!(&report.outcome, &Outcome::Finished);
         prop_assert!(open_part(&report) <= 1e-9, "{:.2e}", open_part(&report));
-        let size = rows.greatest("speed.").max(1.0);
+        let size = rows.greatest("speed").max(1.0);
         let (mirrored, turned) = run(&what.text(-1.0, LISTED), &options);
         prop_assert!(speeds_differ(&report.final_speeds_rad_s, &turned.final_speeds_rad_s, -1.0) <= 1e-8 * size);
         prop_assert_eq!(rows.events.len(), mirrored.events.len());
@@ -337,7 +337,7 @@ proptest! {
             speeds_differ(&exact.final_speeds_rad_s, &report.final_speeds_rad_s, 1.0)
         };
         // A change of mode that is late by a step changes the speed by an acceleration times that step.
-        let change = rows.greatest("acceleration.") * rows.events.len() as f64;
+        let change = rows.greatest("acceleration") * rows.events.len() as f64;
         for h in [2e-3, 2e-4] {
             let error = fixed(h);
             prop_assert!(error <= 3.0 * h * change, "{error:.2e} at {h} s, {:.2e} allowed", 3.0 * h * change);
@@ -408,7 +408,7 @@ fn a_prescribed_formula_has_its_acceleration() {
         .replace("torque = \"0 N m\"", r#"speed = { type = "expression", formula = "100+sin(100*t)" }"#)
         .replace("duration = \"2 s\"", "start = \"1000 s\"\nend = \"1000.1 s\"");
     let (rows, report) = run(&text, &Options::default());
-    let torque = rows.of("torque.motor").next().unwrap();
+    let torque = rows.of("motor.torque_n_m").next().unwrap();
     let expected = 0.5 * 100.0 * (100.0 * 1000.0f64).cos();
     assert!((torque - expected).abs() < 1e-6 * expected.abs(), "{torque}, not {expected}");
     assert!(open_part(&report) < 1e-9, "{}", open_part(&report));
@@ -710,11 +710,11 @@ fn shafts_stiffer_than_a_fixed_step_stay_bounded_and_right_in_the_mean() {
         let rate = 10.0 / 0.201;
         let end = *report.final_speeds_rad_s.get("b").unwrap();
         assert!((end / (2.0 * rate) - 1.0).abs() < 2e-3, "{stiffness} {damping} {backlash}: {end}");
-        let torque = rows.names.iter().position(|n| n == "torque.S").unwrap();
+        let torque = rows.names.iter().position(|n| n == "S.torque_n_m").unwrap();
         let last = &rows.rows[rows.rows.len() / 2..];
         let mean = last.iter().map(|row| row[torque]).sum::<f64>() / last.len() as f64;
         assert!((mean.abs() / (20.0 - 1e-3 * rate) - 1.0).abs() < 2e-2, "{stiffness} {damping} {backlash}: {mean}");
-        assert!(rows.greatest("torque.S") < 2e4, "{}", rows.greatest("torque.S"));
+        assert!(rows.greatest("S.torque_n_m") < 2e4, "{}", rows.greatest("S.torque_n_m"));
     }
 }
 

@@ -70,11 +70,13 @@ fn val_a_belt_follows_the_rigid_equations() {
         let (rows, report) = run(&text);
         let ratio = |t: f64| [1.5 + 0.5 * (tau * 0.5 * t).sin(), 0.5 * tau * 0.5 * (tau * 0.5 * t).cos()];
         let expected = rigid(|_| motor, load, ratio, 0.0, 2.0);
-        let found = last(&rows, "speed.b");
+        let found = last(&rows, "b.speed_rad_s");
         assert!((found - expected).abs() < 2e-5 * expected.abs(), "{motor}, {load}: {found}, not {expected}");
         assert!(report.energy.unwrap().losses.iter().any(|l| l.kind == EnergyLossKind::Variator && l.energy_j > 0.0));
         // What the housing holds is what both shafts take from the belt.
-        for ((a, b), frame) in rows.of("torque.belt.a").zip(rows.of("torque.belt.b")).zip(rows.of("reaction.frame")) {
+        for ((a, b), frame) in
+            rows.of("belt.a.torque_n_m").zip(rows.of("belt.b.torque_n_m")).zip(rows.of("frame.reaction_n_m"))
+        {
             assert!((a + b - frame).abs() < 1e-7 * (a.abs() + b.abs()), "{a} + {b}, not {frame}");
         }
     }
@@ -88,7 +90,7 @@ fn a_ratio_is_what_its_rate_makes_of_it() {
             "duration = \"1 s\"\ninitial_speeds = {{ b = \"50 rad/s\" }}\nvariator = [{{ name = \"belt\", {control} }}]\n\
              source = [{{ member = \"a\", torque = \"10 N m\" }}, {{ member = \"b\", torque = \"-15 N m\" }}]\n"
         )));
-        (last(&rows, "speed.a"), last(&rows, "speed.b"))
+        (last(&rows, "a.speed_rad_s"), last(&rows, "b.speed_rad_s"))
     };
     let (a, b) = scenario("ratio = { type = \"ramp\", offset = 2.0, height = -0.5, duration = \"1 s\" }");
     assert!((a - 1.5 * b).abs() < 1e-6 * a);
@@ -113,11 +115,11 @@ fn val_it_breaks_away_where_its_friction_says() {
     let (rows, _) = run(&text);
     // 15 / (2 · 0.9) = 8.333 N m, reached at 2/3 s; the sum of inertias there is 0.4 + 0.1 · 4 · 0.9.
     let breaks = 2.0 / 3.0;
-    for (t, w) in rows.of("time_s").zip(rows.of("speed.b")) {
+    for (t, w) in rows.of("time_s").zip(rows.of("b.speed_rad_s")) {
         let expected = if t < breaks { 0.0 } else { (t - breaks).powi(2) * 2.0 * 1.8 / 2.0 / 0.76 };
         assert!((w - expected).abs() < 1e-3 * (1.0 + expected), "at {t}: {w}, not {expected}");
     }
-    let first = rows.of("torque.belt.b").next().unwrap();
+    let first = rows.of("belt.b.torque_n_m").next().unwrap();
     assert!((first - 15.0).abs() < 1e-6, "it holds the load: {first}");
 }
 
@@ -175,8 +177,8 @@ fn val_steady_motion_is_what_the_statics_say() {
                     "{{ name = \"load\", member = \"{}\", torque = \"{:e} N m\" }}",
                     ends[1].0, ends[1].1
                 ));
-                checks.push(("torque.driven".to_owned(), ends[0].1));
-                checks.extend(machines.iter().map(|(m, of)| (format!("torque.{path}.{m}"), of.torque_n_m)));
+                checks.push(("driven.torque_n_m".to_owned(), ends[0].1));
+                checks.extend(machines.iter().map(|(m, of)| (format!("{path}.{m}.torque_n_m"), of.torque_n_m)));
             } else {
                 // One speed, one torque, and that of a machine: the other torques follow.
                 let ([(driven, behind), (loaded, load)], rest) = (&ends[..2], &ends[2..]) else { continue };
@@ -189,7 +191,7 @@ fn val_steady_motion_is_what_the_statics_say() {
                         "{{ name = \"load on {member}\", member = \"{member}\", torque = \"{torque:e} N m\" }}"
                     ));
                 }
-                checks.push(("torque.driven".to_owned(), *behind));
+                checks.push(("driven.torque_n_m".to_owned(), *behind));
                 // The first machine is driven, the second balances: not where that one stands still.
                 if machines[1].1.speed_rad_s == 0.0 {
                     continue;
@@ -200,8 +202,8 @@ fn val_steady_motion_is_what_the_statics_say() {
                 ));
                 control =
                     format!("[[scenario.variator]]\nname = \"{path}\"\nstore = \"{:e} W\"\n", v.store_w.unwrap_or(0.0));
-                checks.push((format!("torque.{}", machines[1].0), machines[1].1.torque_n_m));
-                checks.push((format!("power.store of {path}"), v.store_w.unwrap_or(0.0)));
+                checks.push((format!("{}.torque_n_m", machines[1].0), machines[1].1.torque_n_m));
+                checks.push((format!("{path}.store_w"), v.store_w.unwrap_or(0.0)));
             }
             let state = o.state.as_ref().map_or(String::new(), |s| format!("state = \"{s}\"\n"));
             let moving = format!(
@@ -320,11 +322,11 @@ fn a_hybrid_accelerates_and_its_books_close() {
     let b = e.machines.iter().find(|s| s.name == "B").expect("it is told");
     assert!(store.energy_j > 0.0 && b.energy_j > 0.0 && e.machines.len() == 2, "{e:?}");
     assert!(report.assumptions.iter().any(|a| a.contains("store gives or takes")), "{:?}", report.assumptions);
-    assert!((last(&rows, "speed.engine") - 150.0).abs() < 1.0);
+    assert!((last(&rows, "engine.speed_rad_s") - 150.0).abs() < 1.0);
     // Power from the store at every instant, by hand.
-    let torques = rows.of("torque.A").zip(rows.of("torque.B"));
-    let speeds = rows.of("speed.mg1").zip(rows.of("speed.ring"));
-    for ((torques, speeds), store) in torques.zip(speeds).zip(rows.of("power.store of path")) {
+    let torques = rows.of("A.torque_n_m").zip(rows.of("B.torque_n_m"));
+    let speeds = rows.of("mg1.speed_rad_s").zip(rows.of("ring.speed_rad_s"));
+    for ((torques, speeds), store) in torques.zip(speeds).zip(rows.of("path.store_w")) {
         let taken = |p: f64, motoring: f64, generating: f64| if p > 0.0 { p / motoring } else { p * generating };
         let by_hand = 50.0 + taken(torques.0 * speeds.0, 0.9, 0.9) + taken(torques.1 * speeds.1, 0.92, 0.88);
         assert!((by_hand - store).abs() < 1e-9 * by_hand.abs().max(1e3), "{by_hand}, not {store}");
@@ -332,14 +334,14 @@ fn a_hybrid_accelerates_and_its_books_close() {
     // Without a battery the second machine takes what the first gives, within its limit of torque.
     let rolling = |text: String| text.replace("ring = \"20 rad/s\"", "ring = \"100 rad/s\"");
     let (rows, _) = run(&rolling(hybrid("", &format!("source = [{engine}, {control}]\n"))));
-    assert!(rows.of("power.store of path").all(|p| p.abs() < 1e-6));
-    assert!(last(&rows, "torque.B") > 0.0);
+    assert!(rows.of("path.store_w").all(|p| p.abs() < 1e-6));
+    assert!(last(&rows, "B.torque_n_m") > 0.0);
     // With 5 kW from a battery in place of nothing.
     let (rows, _) = run(&rolling(hybrid(
         "",
         &format!("source = [{engine}, {control}]\nvariator = [{{ name = \"path\", store = \"5 kW\" }}]\n"),
     )));
-    assert!(rows.of("power.store of path").all(|p| (p - 5e3).abs() < 1e-6 * 5e3), "5 kW");
+    assert!(rows.of("path.store_w").all(|p| (p - 5e3).abs() < 1e-6 * 5e3), "5 kW");
 }
 
 /// At standstill no torque passes power: the machine that balances stays within its limit, and the store takes the rest.
@@ -352,8 +354,8 @@ fn the_machine_that_balances_is_bounded_at_standstill() {
     )
     .replace("ring = \"20 rad/s\"", "ring = \"0 rad/s\"");
     let (rows, _) = run(&text);
-    assert!(rows.of("torque.B").all(|t| t.abs() <= 200.0 * (1.0 + 1e-12)));
-    let store: Vec<f64> = rows.of("power.store of path").collect();
+    assert!(rows.of("B.torque_n_m").all(|t| t.abs() <= 200.0 * (1.0 + 1e-12)));
+    let store: Vec<f64> = rows.of("path.store_w").collect();
     assert!(store[0] < -1e3, "what A generates at the start goes into the store: {}", store[0]);
 }
 
@@ -401,8 +403,8 @@ fn val_a_given_torque_passes_its_power() {
          variator = [{ name = \"belt\", torque = { type = \"sine\", offset = \"-5 N m\", amplitude = \"8 N m\", frequency = \"2 Hz\" } }]\n",
     );
     let (rows, _) = run(&text);
-    let torques = rows.of("torque.belt.a").zip(rows.of("torque.belt.b"));
-    let speeds = rows.of("speed.a").zip(rows.of("speed.b"));
+    let torques = rows.of("belt.a.torque_n_m").zip(rows.of("belt.b.torque_n_m"));
+    let speeds = rows.of("a.speed_rad_s").zip(rows.of("b.speed_rad_s"));
     for (torques, speeds) in torques.zip(speeds) {
         let (out, into) = (-torques.0 * speeds.0, torques.1 * speeds.1);
         let expected = if out > 0.0 { 0.9 * out } else { out / 0.85 };

@@ -112,7 +112,7 @@ fn offers(train: &Train) -> Vec<Offer> {
         .chain(train.rotors.iter().map(|b| &b.name))
         .chain(train.variators.iter().map(|v| &v.name));
     for s in sources {
-        offer("sources", format!("loss.{s}_w"), "W", What::SourceLoss(s.clone()));
+        offer("sources", format!("{s}.loss_w"), "W", What::SourceLoss(s.clone()));
     }
     for v in &train.variators {
         let name = &v.name;
@@ -181,9 +181,10 @@ impl Sweep<'_> {
         let mut wrong = Diagnostics::default();
         for name in asked {
             let name = name.trim();
-            let known = all.iter().any(|c| c.0.name == name);
+            let known = all.iter().any(|c| c.0.is_called(name));
             let in_group = |o: &Offer| o.group != SINGLY && (name == "all" || o.group == name);
-            let is_meant = |o: &&Offer| in_group(o) || o.column.name == name;
+            let is_meant =
+                |o: &&Offer| in_group(o) || o.column.name == name || o.group != SINGLY && o.column.is_called(name);
             let chosen: Vec<&Offer> = offers.iter().filter(is_meant).collect();
             if chosen.is_empty() && !known && !matches!(name, "elements" | "variators") {
                 let d = Diagnostic::new(Code::UnknownName, "", format!("there is no column `{name}`"));
