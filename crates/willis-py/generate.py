@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import keyword
+import re
 import sys
 import textwrap
 from pathlib import Path
@@ -225,9 +226,18 @@ def argument(name: str, schema: dict[str, Any], root: dict[str, Any]) -> tuple[s
     return "Any", null
 
 
+def by_name(option: re.Match[str]) -> str:
+    """An option with its value as an argument with its."""
+    value = option[2].strip('"')
+    return f'{python_name(option[1].replace("-", "_"))}="{value}"'
+
+
 def paragraphs(text: str, indent: int) -> str:
     """A text of the library in the width of this file; lines that are indented stay."""
     out = []
+    # Options of the command are arguments here: --over "A=B" is over="A=B", --vary is `vary`.
+    text = re.sub(r'(?<!`)--([a-z][a-z-]*) ("[^"]*"|[^\s`"]+=[^\s`"]+)', by_name, text)
+    text = re.sub(r"(?<!`)--([a-z][a-z-]*)", lambda option: f"`{python_name(option[1].replace('-', '_'))}`", text)
     text = text.replace("`", "``").replace("\\", "\\\\")
     for part in text.split("\n\n"):
         if part.startswith("  "):

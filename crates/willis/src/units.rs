@@ -626,7 +626,7 @@ pub fn for_people(x: f64, unit: &str) -> (f64, &str) {
 /// A name with the unit at its end, as columns are called: `sun.speed_rpm`; without a unit the name alone.
 pub(crate) fn with_unit(name: &str, unit: &str) -> String {
     // `Nm` is the same unit as `N m`; of letters only M keeps its size, mega is not milli.
-    let unit = unit.replace("Nm", "N m");
+    let unit = unit.replace("Nm", "N m").replace('^', "");
     let mega = unit.starts_with('M');
     let unit: String = unit.chars().map(|c| if c.is_alphanumeric() { c } else { '_' }).collect();
     let unit = if mega { unit } else { unit.to_lowercase() };

@@ -17,8 +17,7 @@ pub(super) use text::margins;
 /// Analyse a train: its shift table and its operating points.
 ///
 /// Gives for every state the exact ratio and the efficiency driving and coasting; for every operation speeds, torques,
-/// powers, losses, the verdict and its certificate. A train that locks is an answer: exit status 0. Status 1 means the
-/// input is wrong.
+/// powers, losses, the verdict and its certificate. A train that locks is an answer, and no error.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]

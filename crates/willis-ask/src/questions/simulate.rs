@@ -25,9 +25,8 @@ pub use text::MOST_EVENTS;
 
 /// Simulate a scenario: how the train accelerates, sticks, slips and shifts, and where the energy goes.
 ///
-/// A run that jams, has several solutions or ends otherwise before the scenario is an answer: exit status 0, and the
-/// outcome says so. Ctrl-C ends the run where it is, with exit status 130. In both cases what was computed is written and
-/// told.
+/// A run that jams, has several solutions or ends otherwise before the scenario is an answer, and the outcome
+/// says so. Ctrl-C ends the run where it is. In both cases what was computed is written and told.
 ///
 /// Rows are in SI units; where a value is not determined the field is empty (CSV) or null. Modes are 1 forward, -1
 /// backward, 0 stuck, 2 free. A CSV of a run that ended early has a last line that begins with `# ` and says when and

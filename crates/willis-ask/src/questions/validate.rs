@@ -14,7 +14,7 @@ use crate::{Extra, File, Given, Of, Question, Refusal};
 
 /// Compare published numbers with ours: what agrees, what does not, and why.
 ///
-/// Without a case it lists the cases. Exit status 0 also where a number differs: that is an answer.
+/// Without a case it lists the cases. A number that differs is an answer, and no error.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]
