@@ -11,7 +11,7 @@ use willis::model::Model;
 use willis_figure::{Drawing, Figure, FigureKind, FigureRequest, draw};
 
 use crate::common::examples;
-use crate::trains::{hard, model};
+use crate::trains::{code_in, hard, model, names};
 
 /// Only the face that every machine has, so that the same boxes are measured everywhere.
 fn faces() -> Arc<fontdb::Database> {
@@ -181,6 +181,15 @@ fn faults(svg: &str, faces: &Arc<fontdb::Database>) -> Vec<String> {
     wrong
 }
 
+/// Words of a picture that are keys of files or answers: what is seen, what a pointer is told, what is read aloud.
+fn keys(svg: &str, model: &Model) -> Vec<String> {
+    let names = names(model.train());
+    let document = roxmltree::Document::parse(svg).expect("well-formed");
+    let said = document.descendants().filter(|n| ["text", "tspan", "title", "desc"].contains(&n.tag_name().name()));
+    let found = said.filter_map(|n| n.text().and_then(|t| Some((t, code_in(t, &names)?))));
+    found.map(|(text, key)| format!("a reader sees `{key}` in `{text}`")).collect()
+}
+
 /// Writes a picture as PNG into the folder `WILLIS_LOOK`, where somebody wants to look at all of them.
 fn keep(name: &str, svg: &str, faces: &Arc<fontdb::Database>) {
     let Some(folder) = std::env::var_os("WILLIS_LOOK") else { return };
@@ -224,7 +233,8 @@ fn every_kind_of_every_example_is_fit_to_print() {
             // On a screen, on a page, on a page for figures alone.
             for width in [None, Some(770), Some(1180)] {
                 let svg = draw(&figure, Drawing { width, ..Drawing::default() });
-                for fault in faults(&svg, &faces).iter().take(5) {
+                let found = faults(&svg, &faces).into_iter().chain(keys(&svg, &model));
+                for fault in found.take(5) {
                     let _ = writeln!(wrong, "{} {} {width:?}: {fault}", name, kind.name());
                 }
             }
