@@ -33,6 +33,10 @@ const FEWER: [usize; 2] = [21, 16];
 const MOST_POINTS: usize = 100_000;
 /// Halvings of a step of the grid in which a border is looked for: a hundredth of a pixel.
 const HALVINGS: usize = 11;
+/// Lines that are added to each axis at most, so that no zone lies between two neighbours unseen.
+const MOST_LINES: usize = 24;
+/// Rounds in which lines are added: a new line has new neighbours.
+const ROUNDS: usize = 4;
 
 /// An efficiency map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -258,11 +262,11 @@ fn few_enough(points: usize) -> Result<(), Diagnostics> {
     Ok(())
 }
 
-/// The points of a map and the borders between them; no words yet.
-fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
+/// The points of a grid, row by row.
+fn gridded([x, y]: [&ChartAxis; 2], probe: &mut Probe<'_, '_>) -> Vec<MapPoint> {
     let width = x.values.len();
-    let place = |k: usize| [x.values[k % width], y.values[k / width]];
-    let mut found: Vec<_> = (0..width * y.values.len()).map(|k| probe.at(place(k))).collect();
+    let mut found: Vec<_> =
+        (0..width * y.values.len()).map(|k| probe.at([x.values[k % width], y.values[k / width]])).collect();
     // A point exactly on a border belongs to no zone: it is told as what lies a millionth of a step inwards of it.
     let plain = probe.loosest();
     let inwards = |values: &[f64], k: usize| match k + 1 < values.len() {
@@ -272,49 +276,124 @@ fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
     for (k, f) in found.iter_mut().enumerate().filter(|(_, f)| plain.on_border(f)) {
         *f = probe.at([inwards(&x.values, k % width), inwards(&y.values, k / width)]);
     }
-    let points: Vec<MapPoint> = found.into_iter().map(|f| f.point).collect();
-    let right = (0..points.len()).filter(|k| (k + 1) % width > 0).map(|k| [k, k + 1]);
-    let up = (0..points.len() - width).map(|k| [k, k + width]);
-    let parted = right.chain(up).filter(|[a, b]| points[*a].zone != points[*b].zone);
-    let mut border = |between: [usize; 2]| {
-        let [a, b] = between.map(place);
-        let on = |t: f64| [0, 1].map(|c| a[c] + t * (b[c] - a[c]));
-        let mut sides = between.map(|k| points[k].clone());
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = (low + high) / 2.0;
-            let there = probe.at(on(middle)).point;
-            match there.zone == sides[0].zone {
-                true => (low, sides[0]) = (middle, there),
-                false => (high, sides[1]) = (middle, there),
-            }
-        }
-        // What is narrower than a step goes to the zone beyond it.
-        if sides[1].zone != points[between[1]].zone {
-            sides[1] = points[between[1]].clone();
-        }
-        MapBorder { between, at: (low + high) / 2.0, sides }
-    };
-    let borders = parted.map(&mut border).collect();
-    let mut joints = vec![];
-    for cell in (0..points.len() - width).filter(|k| (k + 1) % width > 0) {
-        let corners = [cell, cell + 1, cell + 1 + width, cell + width].map(|k| points[k].zone);
-        if several(corners) > 2 {
-            let [a, b] = [cell, cell + 1 + width].map(place);
-            let zone = |at: [f64; 2]| probe.at([0, 1].map(|c| a[c] + at[c] * (b[c] - a[c]))).point.zone;
-            joints.push(MapJoint { cell, at: joint(corners, zone) });
+    found.into_iter().map(|f| f.point).collect()
+}
+
+/// The border between two points of different zones.
+fn border(between: [usize; 2], map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -> (MapBorder, Option<f64>) {
+    let [a, b] = between.map(|k| map.place(k));
+    let on = |t: f64| [0, 1].map(|c| a[c] + t * (b[c] - a[c]));
+    let ends = between.map(|k| map.points[k].zone);
+    let mut sides = between.map(|k| map.points[k].clone());
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = (low + high) / 2.0;
+        let there = probe.at(on(middle)).point;
+        match there.zone == ends[0] {
+            true => (low, sides[0]) = (middle, there),
+            false => (high, sides[1]) = (middle, there),
         }
     }
-    EfficiencyMap {
+    let at = (low + high) / 2.0;
+    // Another zone lies between: its middle is where its other border is as far as this one.
+    let mut skipped = None;
+    if sides[1].zone != ends[1] {
+        let (mut low, mut high) = (high, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = (low + high) / 2.0;
+            match probe.at(on(middle)).point.zone == ends[1] {
+                true => high = middle,
+                false => low = middle,
+            }
+        }
+        skipped = Some((at + low) / 2.0);
+        // Where no line of the grid finds room for it, it goes to the zone beyond it.
+        sides[1] = map.points[between[1]].clone();
+    }
+    (MapBorder { between, at, sides }, skipped)
+}
+
+/// The points of a map and the borders between them; no words yet.
+///
+/// A ridge of efficiency may lie between two neighbours: the zone on its one side is then seen at neither of them, and contours
+/// along it would break into islands. So a line is added to the grid wherever a border has a third zone within it.
+fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
+    let points = gridded([&x, &y], probe);
+    let mut map = EfficiencyMap {
         title: String::new(),
         basis: String::new(),
         x,
         y,
         points,
-        borders,
-        joints,
+        borders: vec![],
+        joints: vec![],
         states: vec![],
         marks: vec![],
+    };
+    let most = [&map.x, &map.y].map(|a| a.values.len() + MOST_LINES);
+    for round in 0..=ROUNDS {
+        let (borders, wanted) = borders(&map, probe);
+        map.borders = borders;
+        if round == ROUNDS || !map.refined(&wanted, most) {
+            break;
+        }
+        map.points = gridded([&map.x, &map.y], probe);
+    }
+    let width = map.x.values.len();
+    for cell in (0..map.points.len() - width).filter(|k| (k + 1) % width > 0) {
+        let corners = [cell, cell + 1, cell + 1 + width, cell + width].map(|k| map.points[k].zone);
+        if several(corners) > 2 {
+            let [a, b] = [cell, cell + 1 + width].map(|k| map.place(k));
+            let zone = |at: [f64; 2]| probe.at([0, 1].map(|c| a[c] + at[c] * (b[c] - a[c]))).point.zone;
+            map.joints.push(MapJoint { cell, at: joint(corners, zone) });
+        }
+    }
+    map
+}
+
+/// All borders of a map, and where lines of the grid are wanted, on each axis.
+fn borders(map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -> (Vec<MapBorder>, [Vec<f64>; 2]) {
+    let width = map.x.values.len();
+    let right = (0..map.points.len()).filter(|k| (k + 1) % width > 0).map(|k| ([k, k + 1], 0));
+    let up = (0..map.points.len() - width).map(|k| ([k, k + width], 1));
+    let (mut all, mut wanted) = (vec![], [vec![], vec![]]);
+    for (between, axis) in right.chain(up) {
+        let [a, b] = between;
+        if map.points[a].zone != map.points[b].zone {
+            let (found, skipped) = border(between, map, probe);
+            all.push(found);
+            if let Some(t) = skipped {
+                let [from, to] = between.map(|k| map.place(k)[axis]);
+                wanted[axis].push(from + t * (to - from));
+            }
+        }
+    }
+    (all, wanted)
+}
+
+impl EfficiencyMap {
+    /// Where a point of the grid is.
+    fn place(&self, k: usize) -> [f64; 2] {
+        let width = self.x.values.len();
+        [self.x.values[k % width], self.y.values[k / width]]
+    }
+
+    /// Adds lines to the grid where they are wanted, within what an axis may have; whether there is a new one.
+    fn refined(&mut self, wanted: &[Vec<f64>; 2], most: [usize; 2]) -> bool {
+        /// Lines nearer than this part of the axis are one.
+        const CLOSE: f64 = 1.0 / 400.0;
+        let mut any = false;
+        for (axis, (wanted, most)) in [&mut self.x, &mut self.y].into_iter().zip(wanted.iter().zip(most)) {
+            let [Some(first), Some(last)] = [axis.values.first().copied(), axis.values.last().copied()] else { continue };
+            for value in wanted {
+                let close = |v: &f64| (v - value).abs() < CLOSE * (last - first);
+                if axis.values.len() < most && !axis.values.iter().any(close) {
+                    axis.values.insert(axis.values.partition_point(|v| v < value), *value);
+                    any = true;
+                }
+            }
+        }
+        any
     }
 }
 

@@ -159,10 +159,14 @@ kinds! {
     "split": Split(Split) = split::KIND;
     /// Losses by source, stacked over a quantity and as bars.
     "losses": Losses(LossChart) = losses::KIND;
+    /// Losses without load of every gear, stacked by source.
+    "spin": Spin(SpinLosses) = spin::KIND;
     /// Oil film over roughness along the path of contact of a mesh.
     "film": Film(ContactPath) = contact_path::film::KIND;
     /// Friction, sliding and load along the path of contact of a mesh.
     "path": Path(ContactPath) = contact_path::path::KIND;
+    /// Natural modes of vibration on the stick diagram: amplitude and sign of each member.
+    "modes": Modes(Vibration) = vibration::KIND;
     /// A scenario over time.
     "time": Time(TimePlot) = time::KIND;
     /// The table of states with its steps.
