@@ -23,6 +23,7 @@ mod spin;
 mod split;
 mod stick;
 mod table;
+mod tikz;
 mod time;
 mod tornado;
 mod vibration;
@@ -74,8 +75,9 @@ pub use stick::{
     StickMesh, StickPiece, StickTerminal, Way, stick,
 };
 pub use table::draw::draw as draw_table;
+pub use tikz::tikz;
 pub use time::draw::draw as draw_time;
-pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder};
+pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, TimeShift};
 pub use tornado::draw::draw as draw_tornado;
 pub use tornado::{Tornado, TornadoBar, tornado};
 pub use vibration::draw::draw as draw_vibration;

@@ -342,7 +342,8 @@ fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
     let width = map.x.values.len();
     for cell in (0..map.points.len() - width).filter(|k| (k + 1) % width > 0) {
         let corners = [cell, cell + 1, cell + 1 + width, cell + width].map(|k| map.points[k].zone);
-        if several(corners) > 2 {
+        // Where two borders pass beside each other, nothing meets.
+        if several(corners) > 2 && map.through(cell).is_none() {
             let [a, b] = [cell, cell + 1 + width].map(|k| map.place(k));
             let zone = |at: [f64; 2]| probe.at([0, 1].map(|c| a[c] + at[c] * (b[c] - a[c]))).point.zone;
             map.joints.push(MapJoint { cell, at: joint(corners, zone) });
@@ -378,13 +379,27 @@ impl EfficiencyMap {
         [self.x.values[k % width], self.y.values[k / width]]
     }
 
+    /// Whether two borders pass each other in the cell with this lower left point: the first corner of the zone between them, counted
+    /// round the cell. Opposite corners have one zone then, and the other two are of two others.
+    pub(crate) fn through(&self, cell: usize) -> Option<usize> {
+        let width = self.x.values.len();
+        let [a, b, c, d] = [cell, cell + 1, cell + 1 + width, cell + width].map(|k| self.points[k].zone);
+        match (a == c && a != b && a != d, b == d && b != a && b != c) {
+            (true, false) if b != d => Some(0),
+            (false, true) if a != c => Some(1),
+            _ => None,
+        }
+    }
+
     /// Adds lines to the grid where they are wanted, within what an axis may have; whether there is a new one.
     fn refined(&mut self, wanted: &[Vec<f64>; 2], most: [usize; 2]) -> bool {
         /// Lines nearer than this part of the axis are one.
         const CLOSE: f64 = 1.0 / 400.0;
         let mut any = false;
         for (axis, (wanted, most)) in [&mut self.x, &mut self.y].into_iter().zip(wanted.iter().zip(most)) {
-            let [Some(first), Some(last)] = [axis.values.first().copied(), axis.values.last().copied()] else { continue };
+            let [Some(first), Some(last)] = [axis.values.first().copied(), axis.values.last().copied()] else {
+                continue;
+            };
             for value in wanted {
                 let close = |v: &f64| (v - value).abs() < CLOSE * (last - first);
                 if axis.values.len() < most && !axis.values.iter().any(close) {

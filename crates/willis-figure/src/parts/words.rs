@@ -311,7 +311,10 @@ mod tests {
     fn laws_have_authors_or_plain_words() {
         let names = Names::new(["grubin"]);
         assert_eq!(plain("tooth friction by `schlenk`, `grubin`", &names), "tooth friction by Schlenk, “grubin”");
-        assert_eq!(plain("mesh_friction = niemann-winter of grubin", &names), "mesh friction by Niemann–Winter of grubin");
+        assert_eq!(
+            plain("mesh_friction = niemann-winter of grubin", &names),
+            "mesh friction by Niemann–Winter of grubin"
+        );
         assert_eq!(spelled("law.mesh_friction schlenk, constant"), "law, mesh friction Schlenk, constant");
         assert_eq!(law_title(Some(LossKind::Windage), "anderson-loewenthal"), "Anderson and Loewenthal 1980");
         const PLAIN: [&str; 7] = ["constant", "none", "stiffness", "equal", "uniform", "integrated", "two-pair"];

@@ -394,7 +394,15 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
         let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
-            .map(|x| vec![x.name.clone(), x.kind.words().into(), law_title(Some(x.kind), &x.law), watts(x.loss_w), percent(x.share)])
+            .map(|x| {
+                vec![
+                    x.name.clone(),
+                    x.kind.words().into(),
+                    law_title(Some(x.kind), &x.law),
+                    watts(x.loss_w),
+                    percent(x.share),
+                ]
+            })
             .collect();
         blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
         blocks.extend(contacts(&o.name, s));

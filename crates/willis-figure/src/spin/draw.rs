@@ -47,9 +47,8 @@ struct Layer<'a> {
 pub(super) fn draw_on(data: &SpinLosses, paper: Drawing) -> String {
     let width = paper.page(1000.0, 560.0);
     let room = width - 2.0 * MARGIN;
-    let mut g = Group::new().add(
-        text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&data.title, room / BOLD, 20.0)).set("font-weight", "bold"),
-    );
+    let mut g = Group::new()
+        .add(text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&data.title, room / BOLD, 20.0)).set("font-weight", "bold"));
     let mut y = 60.0;
     for l in lines(&basis(data), room, 13.0) {
         g = g.add(text(MARGIN, y, 13.0, Anchor::Start, &l).set("fill", FAINT));
@@ -83,7 +82,10 @@ pub(super) fn draw_on(data: &SpinLosses, paper: Drawing) -> String {
     let full = marks.last().copied().unwrap_or(0.0).max(most / size);
     let x = |w: f64| left + (right - left) * w / size / full;
     let bottom = y + 18.0 + ROW * data.gears.len() as f64;
-    g = g.add(text(left, y + 4.0, 12.0, Anchor::Start, &format!("Losses, {unit}; torque at the input, N m")).set("fill", FAINT));
+    g = g.add(
+        text(left, y + 4.0, 12.0, Anchor::Start, &format!("Losses, {unit}; torque at the input, N m"))
+            .set("fill", FAINT),
+    );
     y += 18.0;
     for tick in &marks {
         let at = x(tick * size);

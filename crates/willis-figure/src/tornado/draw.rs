@@ -178,6 +178,10 @@ fn value(b: &TornadoBar) -> String {
 }
 
 fn words(t: &Tornado) -> String {
-    let first = t.bars.iter().take(5).map(|b| format!("{} {}: {} W", spelled(&b.name), b.step.label(), signed(b.loss_change_w)));
+    let first = t
+        .bars
+        .iter()
+        .take(5)
+        .map(|b| format!("{} {}: {} W", spelled(&b.name), b.step.label(), signed(b.loss_change_w)));
     format!("{} Largest effects on the loss: {}.", caption(t), first.collect::<Vec<_>>().join("; "))
 }

@@ -60,9 +60,8 @@ pub(super) fn draw_on(data: &Vibration, paper: Drawing) -> String {
     let rise = (200.0 / grid[1]).clamp(18.0, 40.0);
     let rows: Vec<usize> = data.modes.chunks(columns).map(|c| c.iter().map(listed).max().unwrap_or(0)).collect();
     let head = 58.0;
-    let mut page_body = Group::new().add(
-        text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&data.title, room / BOLD, 20.0)).set("font-weight", "bold"),
-    );
+    let mut page_body = Group::new()
+        .add(text(MARGIN, 38.0, 20.0, Anchor::Start, &fit(&data.title, room / BOLD, 20.0)).set("font-weight", "bold"));
     let mut top = head + 2.0;
     for l in lines(&subtitle(data), room, 13.0) {
         page_body = page_body.add(text(MARGIN, top, 13.0, Anchor::Start, &l).set("fill", FAINT));
@@ -72,8 +71,17 @@ pub(super) fn draw_on(data: &Vibration, paper: Drawing) -> String {
     for (r, modes) in data.modes.chunks(columns).enumerate() {
         for (c, mode) in modes.iter().enumerate() {
             let left = MARGIN + c as f64 * (cell + GAP);
-            let panel =
-                Panel { data, mode, place: r * columns + c, left, top, cell, unit, rise, bottom: top + 30.0 + grid[1] * rise };
+            let panel = Panel {
+                data,
+                mode,
+                place: r * columns + c,
+                left,
+                top,
+                cell,
+                unit,
+                rise,
+                bottom: top + 30.0 + grid[1] * rise,
+            };
             page_body = page_body.add(panel.draw());
         }
         top += 30.0 + grid[1] * rise + 26.0 + rows[r] as f64 * ROW + 36.0;
@@ -82,10 +90,12 @@ pub(super) fn draw_on(data: &Vibration, paper: Drawing) -> String {
 }
 
 fn subtitle(data: &Vibration) -> String {
-    let mut said = format!("State {}. ", data.state);
-    if data.state == "as drawn" {
-        said = "As drawn, no shift element engaged. ".to_owned();
-    }
+    let shifts = data.stick.joints.iter().any(|j| j.kind != JointKind::Shaft);
+    let mut said = match (&data.stick.state, shifts) {
+        (Some(state), _) => format!("State {state}. "),
+        (None, true) => "As drawn, no shift element engaged. ".to_owned(),
+        (None, false) => String::new(),
+    };
     said += "A line is as wide as its member swings, by its angle, relative to the largest of the mode; full lines swing one way, \
              broken lines the other. Springs are as wide as their share of the strain energy.";
     match data.left_out {
@@ -147,7 +157,13 @@ impl Panel<'_> {
     fn draw(&self) -> Group {
         let head = fit(&heading(self.mode), self.cell / BOLD, 13.0);
         let title = text(self.left, self.top, 13.0, Anchor::Start, &head).set("font-weight", "bold");
-        Group::new().add(title).add(self.frame()).add(self.members()).add(self.joints()).add(self.numbers()).add(self.list())
+        Group::new()
+            .add(title)
+            .add(self.frame())
+            .add(self.members())
+            .add(self.joints())
+            .add(self.numbers())
+            .add(self.list())
     }
 
     fn at(&self, p: Place) -> (f64, f64) {
@@ -301,9 +317,9 @@ impl Panel<'_> {
                 .collect();
             let length = |l: &[(f64, f64); 2]| (l[1].0 - l[0].0).hypot(l[1].1 - l[0].1);
             all.sort_by(|a, b| length(b).total_cmp(&length(a)));
-            let places = all.iter().flat_map(|[a, b]| {
-                [0.5, 0.3, 0.7, 0.15, 0.85].map(|t| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1)))
-            });
+            let places = all
+                .iter()
+                .flat_map(|[a, b]| [0.5, 0.3, 0.7, 0.15, 0.85].map(|t| (a.0 + t * (b.0 - a.0), a.1 + t * (b.1 - a.1))));
             let free = |p: &(f64, f64)| taken.iter().all(|t| (t.0 - p.0).abs() > 17.0 || (t.1 - p.1).abs() > 15.0);
             let Some(at) = places.into_iter().find(free) else { continue };
             taken.push(at);
@@ -324,7 +340,8 @@ impl Panel<'_> {
         // The number stands on the free side.
         let most = half - 4.0;
         let mode = format!("mode {}", self.place + 1);
-        let mut g = guide(Group::new()).add(line((middle, y), (middle, y + ROW * self.mode.shape.len() as f64), LINE, 1.0));
+        let mut g =
+            guide(Group::new()).add(line((middle, y), (middle, y + ROW * self.mode.shape.len() as f64), LINE, 1.0));
         g = Group::new().add(g);
         for (k, part) in self.mode.shape.iter().enumerate() {
             let name = format!("{} {}", k + 1, fit(&part.name, names - 28.0, 11.0));

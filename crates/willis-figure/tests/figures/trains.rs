@@ -44,7 +44,8 @@ pub fn code_in(text: &str, names: &[&str]) -> Option<String> {
     let law = |w: &str| !WORDS.contains(&w) && entries().iter().any(|e| e.id == w);
     let key = |w: &&str| {
         let mut parts = w.trim_matches('_').split('_');
-        law(w) || parts.clone().count() > 1 && parts.all(|p| !p.is_empty() && p.chars().all(|c| c.is_ascii_alphanumeric()))
+        law(w)
+            || parts.clone().count() > 1 && parts.all(|p| !p.is_empty() && p.chars().all(|c| c.is_ascii_alphanumeric()))
     };
     let named = |w: &&str| names.iter().any(|n| n.split(apart).any(|own| own == *w));
     text.split(apart).filter(key).find(|w| !named(w)).map(str::to_owned)
