@@ -9,9 +9,9 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Axis, Hold, PointVerdict, Question};
 use willis::train::{Load, MemberId, Operation, Train};
-use willis::work::Effort;
+use willis::work::{Cancelled, Effort, Serial, Work};
 
-use crate::kind::{Ask, FigureRequest, Kind};
+use crate::kind::{Ask, Detail, FigureRequest, Kind};
 use crate::parts::axes::{self, ChartAxis};
 use probe::{Limits, Probe};
 
@@ -20,9 +20,14 @@ pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
     takes: &[Ask::State, Ask::Operation, Ask::Over],
     effort,
     applies: Some(applies),
-    make: |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
+    make: |s, r| in_steps(s, r, &Serial, Detail::Fine),
+    steps: Some(in_steps),
     draw: draw::draw_on,
 };
+
+fn in_steps(model: &Model, r: &FigureRequest, work: &dyn Work, detail: Detail) -> Result<EfficiencyMap, Diagnostics> {
+    map_within(model, [r.state.as_deref(), r.operation.as_deref()], &r.over, work, detail)
+}
 
 /// Points along the axes where the caller does not say.
 const COLUMNS: usize = 41;
@@ -197,6 +202,16 @@ pub fn efficiency_map(
     operation: Option<&str>,
     over: &[String],
 ) -> Result<EfficiencyMap, Diagnostics> {
+    map_within(model, [state, operation], over, &Serial, Detail::Fine)
+}
+
+fn map_within(
+    model: &Model,
+    [state, operation]: [Option<&str>; 2],
+    over: &[String],
+    work: &dyn Work,
+    detail: Detail,
+) -> Result<EfficiencyMap, Diagnostics> {
     let train = model.train();
     // Without an operation that says so, a train with states is looked at in its first.
     let first = train.states().first().filter(|_| train.operations().is_empty()).map(|s| s.name.as_str());
@@ -204,12 +219,12 @@ pub fn efficiency_map(
     let open = state.is_none() && operation.is_none() && over.is_empty();
     if open
         && train.states().len() > 1
-        && let Some(map) = best_state(&question)?
+        && let Some(map) = best_state(&question, work, detail)?
     {
         return Ok(map);
     }
     let over = match over {
-        [] => vec![axes::usual_speed(&question, COLUMNS), axes::usual_load(&question, ROWS)],
+        [] => vec![axes::usual_speed(&question, detail.of(COLUMNS)), axes::usual_load(&question, detail.of(ROWS))],
         [_, _] => over.to_vec(),
         _ => {
             let message = format!("a map runs over two quantities, not {}", over.len());
@@ -222,7 +237,7 @@ pub fn efficiency_map(
     let marks = marks(&question, &x, &y);
     let mut probe = Probe::new(&question, [&x, &y], None)?;
     let own = [ChartAxis::of(&x), ChartAxis::of(&y)];
-    Ok(EfficiencyMap { title: train.name().to_owned(), basis, marks, ..mapped(own, &mut probe) })
+    Ok(EfficiencyMap { title: train.name().to_owned(), basis, marks, ..mapped(own, &mut probe, work)? })
 }
 
 /// How many different zones there are.
@@ -263,10 +278,15 @@ fn few_enough(points: usize) -> Result<(), Diagnostics> {
 }
 
 /// The points of a grid, row by row.
-fn gridded([x, y]: [&ChartAxis; 2], probe: &mut Probe<'_, '_>) -> Vec<MapPoint> {
+fn gridded([x, y]: [&ChartAxis; 2], probe: &mut Probe<'_, '_>, work: &dyn Work) -> Result<Vec<MapPoint>, Cancelled> {
     let width = x.values.len();
-    let mut found: Vec<_> =
-        (0..width * y.values.len()).map(|k| probe.at([x.values[k % width], y.values[k / width]])).collect();
+    work.begin("points", (width * y.values.len()) as u64);
+    let mut found = Vec::with_capacity(width * y.values.len());
+    for row in &y.values {
+        going(work)?;
+        found.extend(x.values.iter().map(|x| probe.at([*x, *row])));
+        work.advance(width as u64);
+    }
     // A point exactly on a border belongs to no zone: it is told as what lies a millionth of a step inwards of it.
     let plain = probe.loosest();
     let inwards = |values: &[f64], k: usize| match k + 1 < values.len() {
@@ -276,7 +296,12 @@ fn gridded([x, y]: [&ChartAxis; 2], probe: &mut Probe<'_, '_>) -> Vec<MapPoint> 
     for (k, f) in found.iter_mut().enumerate().filter(|(_, f)| plain.on_border(f)) {
         *f = probe.at([inwards(&x.values, k % width), inwards(&y.values, k / width)]);
     }
-    found.into_iter().map(|f| f.point).collect()
+    Ok(found.into_iter().map(|f| f.point).collect())
+}
+
+/// Refuses to go on where the work was cancelled.
+fn going(work: &dyn Work) -> Result<(), Cancelled> {
+    if work.cancelled() { Err(Cancelled) } else { Ok(()) }
 }
 
 /// The border between two points of different zones.
@@ -317,8 +342,8 @@ fn border(between: [usize; 2], map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -
 ///
 /// A ridge of efficiency may lie between two neighbours: the zone on its one side is then seen at neither of them, and contours
 /// along it would break into islands. So a line is added to the grid wherever a border has a third zone within it.
-fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
-    let points = gridded([&x, &y], probe);
+fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>, work: &dyn Work) -> Result<EfficiencyMap, Cancelled> {
+    let points = gridded([&x, &y], probe, work)?;
     let mut map = EfficiencyMap {
         title: String::new(),
         basis: String::new(),
@@ -332,12 +357,12 @@ fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
     };
     let most = [&map.x, &map.y].map(|a| a.values.len() + MOST_LINES);
     for round in 0..=ROUNDS {
-        let (borders, wanted) = borders(&map, probe);
+        let (borders, wanted) = borders(&map, probe, work)?;
         map.borders = borders;
         if round == ROUNDS || !map.refined(&wanted, most) {
             break;
         }
-        map.points = gridded([&map.x, &map.y], probe);
+        map.points = gridded([&map.x, &map.y], probe, work)?;
     }
     let width = map.x.values.len();
     for cell in (0..map.points.len() - width).filter(|k| (k + 1) % width > 0) {
@@ -349,11 +374,15 @@ fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
             map.joints.push(MapJoint { cell, at: joint(corners, zone) });
         }
     }
-    map
+    Ok(map)
 }
 
 /// All borders of a map, and where lines of the grid are wanted, on each axis.
-fn borders(map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -> (Vec<MapBorder>, [Vec<f64>; 2]) {
+fn borders(
+    map: &EfficiencyMap,
+    probe: &mut Probe<'_, '_>,
+    work: &dyn Work,
+) -> Result<(Vec<MapBorder>, [Vec<f64>; 2]), Cancelled> {
     let width = map.x.values.len();
     let right = (0..map.points.len()).filter(|k| (k + 1) % width > 0).map(|k| ([k, k + 1], 0));
     let up = (0..map.points.len() - width).map(|k| ([k, k + width], 1));
@@ -361,6 +390,7 @@ fn borders(map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -> (Vec<MapBorder>, [
     for (between, axis) in right.chain(up) {
         let [a, b] = between;
         if map.points[a].zone != map.points[b].zone {
+            going(work)?;
             let (found, skipped) = border(between, map, probe);
             all.push(found);
             if let Some(t) = skipped {
@@ -369,7 +399,7 @@ fn borders(map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -> (Vec<MapBorder>, [
             }
         }
     }
-    (all, wanted)
+    Ok((all, wanted))
 }
 
 impl EfficiencyMap {
@@ -459,7 +489,7 @@ fn marks(question: &Question<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
 }
 
 /// Over speed and torque of the output, at every point the best state.
-fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnostics> {
+fn best_state(question: &Question<'_>, work: &dyn Work, detail: Detail) -> Result<Option<EfficiencyMap>, Diagnostics> {
     let model = question.model();
     let train = model.train();
     let (Some(input), Some(output)) = (train.input(), train.output()) else { return Ok(None) };
@@ -480,7 +510,7 @@ fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnost
         format!("{:.12e}", (x / unit).ceil() * unit).parse::<f64>().unwrap_or(x)
     };
     let (speed, torque) = (digits(most_speed / low), digits(most_torque * high));
-    let [columns, rows] = FEWER;
+    let [columns, rows] = FEWER.map(|count| detail.of(count));
     let over = [
         format!("output.speed={} rpm..{speed} rpm:{columns}", speed / 40.0),
         format!("output.torque={} N m..{torque} N m:{rows}", torque / 30.0),
@@ -502,7 +532,7 @@ fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnost
             }
         }
     }
-    let map = mapped([own_x, own_y], &mut probe);
+    let map = mapped([own_x, own_y], &mut probe, work)?;
     if map.points.iter().filter_map(|p| p.best).collect::<std::collections::BTreeSet<_>>().len() < 2 {
         return Ok(None);
     }

@@ -22,6 +22,7 @@ pub(crate) const KIND: Kind<SpinLosses> = Kind {
     effort,
     applies: Some(|model| !gears(model.train(), None).is_empty()),
     make: |m, r| spin_losses(m.train(), r.state.as_deref(), r.operation.as_deref()),
+    steps: None,
     draw: draw::draw_on,
 };
 

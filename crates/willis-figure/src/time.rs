@@ -19,6 +19,7 @@ pub(crate) const KIND: Kind<TimePlot> = Kind {
     effort: kind::of_file,
     applies: Some(|model| !model.train().scenarios().is_empty()),
     make: |s, r| scenario(s.train(), r.part.as_deref(), r.window),
+    steps: None,
     draw: draw::draw_on,
 };
 

@@ -16,6 +16,7 @@ pub(crate) const KIND: Kind<Vibration> = Kind {
     effort: kind::of_file,
     applies: None,
     make: |s, r| vibration(s.train(), r.state.as_deref()),
+    steps: None,
     draw: draw::draw_on,
 };
 

@@ -289,7 +289,7 @@ impl Question for Draw {
         let narrows = |a: &Ask| matches!(a, Ask::State | Ask::Operation | Ask::Part | Ask::Over);
         let asked = request.asks().iter().any(narrows);
         work.afford(&kind.effort(model, &request))?;
-        match kind.make(model, &request) {
+        match kind.make_within(model, &request, work) {
             Ok(figure) => Ok(DrawAnswer::One(Box::new(figure))),
             // Where a kind does not apply to a train at all, those that do are told.
             Err(wrong) if !asked => {

@@ -17,6 +17,7 @@ pub(crate) const KIND: Kind<ContactPath> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
+    steps: None,
     draw: draw_on,
 };
 

@@ -77,8 +77,8 @@ fn gears_change_where_a_limit_is_reached() {
     assert_eq!(seen, map.borders.len());
 }
 
-/// Pieces of the contours of a map: what each is a line of, and its box on the page.
-fn contours(svg: &str) -> Vec<(String, [f64; 4])> {
+/// Pieces of the contours of a map: what each is a line of, its box on the page, and whether it is closed.
+fn contours(svg: &str) -> Vec<(String, [f64; 4], bool)> {
     let document = roxmltree::Document::parse(svg).expect("well-formed");
     let mut all = vec![];
     for path in document.descendants().filter(|n| n.attribute("id").is_some_and(|id| id.starts_with("contour-"))) {
@@ -90,13 +90,13 @@ fn contours(svg: &str) -> Vec<(String, [f64; 4])> {
             for p in numbers.chunks_exact(2) {
                 bounds = [bounds[0].min(p[0]), bounds[1].min(p[1]), bounds[2].max(p[0]), bounds[3].max(p[1])];
             }
-            all.push((name.to_owned(), bounds));
+            all.push((name.to_owned(), bounds, numbers.first_chunk::<2>() == numbers.last_chunk()));
         }
     }
     all
 }
 
-/// A line of a coarse map that is no longer than a few cells is one of a map with a grid four times as fine too.
+/// A closed line of a coarse map that is no longer than a few cells is one of a map with a grid four times as fine too.
 #[test]
 fn small_islands_are_there_on_a_finer_grid_too() {
     // The page of a map has about 600 by 400 units.
@@ -114,20 +114,38 @@ fn small_islands_are_there_on_a_finer_grid_too() {
             contours(&draw_map(&efficiency_map(&model(name), None, None, &over).expect("it has a map")))
         };
         let (coarse, fine) = (drawn(1), drawn(4));
-        for (line, [x0, y0, x1, y1]) in &coarse {
+        for (line, [x0, y0, x1, y1], closed) in &coarse {
             pieces += 1;
-            if x1 - x0 > 3.0 * cell || y1 - y0 > 3.0 * cell {
+            if !closed || x1 - x0 > 3.0 * cell || y1 - y0 > 3.0 * cell {
                 continue;
             }
             let near = |other: &[f64; 4]| {
                 let apart = (other[0] - x1).max(x0 - other[2]).max(other[1] - y1).max(y0 - other[3]);
                 apart < 2.0 * cell && other[2] - other[0] < 6.0 * cell && other[3] - other[1] < 6.0 * cell
             };
-            let known = fine.iter().any(|(own, other)| own == line && near(other));
+            let known = fine.iter().any(|(own, other, _)| own == line && near(other));
             assert!(known, "{name}: {line} at {x0} {y0} {x1} {y1}");
         }
     }
     assert!(pieces > 20, "{pieces}");
+}
+
+/// Two borders of the Prius pass each other in narrow wedges: where a machine stands, and where all turn together. Along them
+/// every line is whole, once on each side.
+#[test]
+fn lines_beside_a_ridge_are_whole() {
+    let map = map("prius-hybrid");
+    let all = contours(&draw_map(&map));
+    let efficiencies = all.iter().filter(|c| c.0.starts_with("efficiency"));
+    let mut pieces = std::collections::BTreeMap::new();
+    efficiencies.for_each(|c| *pieces.entry(&c.0).or_insert(0) += 1);
+    assert!(pieces.len() > 4 && pieces.values().all(|n| *n <= 2), "{pieces:?}");
+    // No zone lies unseen between two neighbours.
+    assert!(map.borders.iter().all(|b| {
+        let step = 1e-2 * b.between.map(|k| map.points[k].efficiency.unwrap_or(0.0))[0];
+        let [a, c] = [&b.sides[0], &b.sides[1]].map(|s| s.efficiency.unwrap_or(0.0));
+        (a - c).abs() < step
+    }));
 }
 
 #[test]
