@@ -457,6 +457,8 @@ fn regress_pictures() {
         ("fva-planetary-stage", "band"),
         ("galvagno", "stick"),
         ("simpson-ford-c4", "table"),
+        ("launch", "modes"),
+        ("fva-planetary-stage", "spin"),
     ];
     let mut changed = vec![];
     for (train, kind) in chosen {
