@@ -140,12 +140,12 @@ fn lines_beside_a_ridge_are_whole() {
     let mut pieces = std::collections::BTreeMap::new();
     efficiencies.for_each(|c| *pieces.entry(&c.0).or_insert(0) += 1);
     assert!(pieces.len() > 4 && pieces.values().all(|n| *n <= 2), "{pieces:?}");
-    // No zone lies unseen between two neighbours.
-    assert!(map.borders.iter().all(|b| {
-        let step = 1e-2 * b.between.map(|k| map.points[k].efficiency.unwrap_or(0.0))[0];
-        let [a, c] = [&b.sides[0], &b.sides[1]].map(|s| s.efficiency.unwrap_or(0.0));
-        (a - c).abs() < step
-    }));
+    // No zone lies unseen between two neighbours: over a border efficiency has a kink, or the small step of a machine that turns
+    // from motor to generator.
+    for b in &map.borders {
+        let [one, other] = [&b.sides[0], &b.sides[1]].map(|s| s.efficiency.unwrap_or(0.0));
+        assert!((one - other).abs() < 0.01, "{b:?}");
+    }
 }
 
 #[test]
