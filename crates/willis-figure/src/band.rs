@@ -23,12 +23,12 @@ pub(crate) const KIND: Kind<Bands> = Kind {
 
 fn in_steps(model: &Model, r: &FigureRequest, work: &dyn Work, detail: Detail) -> Result<Bands, Diagnostics> {
     let samples = match (detail, r.samples) {
-        (Detail::Coarse, _) => COARSE,
+        (Detail::Coarse, _) => DESIGN,
         (Detail::Fine, 0) => SAMPLES,
         (Detail::Fine, samples) => samples,
     };
     let (operation, state) = (r.operation.clone(), r.state.clone());
-    bands_within(model, &UncertaintyRequest { operation, state, samples, ..Default::default() }, &r.over, work)
+    bands_within(model, &UncertaintyRequest { operation, state, samples, ..Default::default() }, &r.over, work, detail)
 }
 
 /// The samples, each a train of its own, along the axis.
@@ -50,8 +50,9 @@ fn applies(model: &Model) -> bool {
 
 /// Samples where the caller does not say.
 const SAMPLES: usize = 256;
-/// Samples of a coarse figure.
+/// Samples of a coarse figure: the first of a design with so many, the fewest that there can be.
 const COARSE: usize = 32;
+const DESIGN: usize = 128;
 /// Samples that are computed as one part of the work.
 const PART: usize = 8;
 
@@ -105,7 +106,7 @@ pub struct BandPoint {
 /// # Errors
 /// What [`UncertaintyPlan::new`] says; an axis that is none, or that is itself among the uncertain quantities.
 pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Result<Bands, Diagnostics> {
-    bands_within(model, request, over, &Serial)
+    bands_within(model, request, over, &Serial, Detail::Fine)
 }
 
 fn bands_within(
@@ -113,11 +114,12 @@ fn bands_within(
     request: &UncertaintyRequest,
     over: &[String],
     work: &dyn Work,
+    detail: Detail,
 ) -> Result<Bands, Diagnostics> {
     let plan = UncertaintyPlan::new(model, request)?;
     let question = plan.question();
     let over = match over {
-        [] => vec![axes::usual_speed(question, STEPS)],
+        [] => vec![axes::usual_speed(question, detail.of(STEPS))],
         [_] => over.to_vec(),
         _ => {
             let message = format!("bands are drawn over one quantity, not {}", over.len());
@@ -126,7 +128,8 @@ fn bands_within(
     };
     let [x] = <[Axis; 1]>::try_from(axes::parse(&over, model)?).expect("one is parsed");
     let design = plan.design();
-    let samples: Vec<usize> = (0..plan.len()).filter(|k| design.is_sample(*k)).collect();
+    let most = if detail == Detail::Coarse { COARSE } else { usize::MAX };
+    let samples: Vec<usize> = (0..plan.len()).filter(|k| design.is_sample(*k)).take(most).collect();
     if samples.len() * x.len() > MOST_POINTS {
         let message = format!("{} values with {} samples each are too many for a picture", x.len(), samples.len());
         return Err(Diagnostic::new(Code::BadAxis, "", message).hint("take fewer of either").into());

@@ -54,6 +54,9 @@ fn a_coarse_figure_has_the_axes_and_the_values_of_the_fine_one() {
     let (Figure::Map(coarse), Figure::Map(fine)) = (coarse, kind.make(&model, &request).expect("it applies")) else {
         panic!("maps are maps")
     };
+    let kind = FigureKind::named("band").expect("a kind");
+    let bands = kind.make_coarse(&model, &request, &Serial).expect("it takes long").expect("it applies");
+    assert!(matches!(bands, Figure::Band(b) if b.samples == 32 && b.points.iter().all(|p| p.efficiency.is_some())));
     assert!(coarse.points.len() * 3 < fine.points.len());
     for (a, b) in [(&coarse.x, &fine.x), (&coarse.y, &fine.y)] {
         assert_eq!((&a.name, a.values.first(), a.values.last()), (&b.name, b.values.first(), b.values.last()));
