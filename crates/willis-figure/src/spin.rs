@@ -113,7 +113,8 @@ fn gears(train: &Train, state: Option<&str>) -> Vec<(Option<usize>, MemberId, Me
 ///     carrier = "c"
 ///     mesh_efficiency = 0.99
 ///     [oil]
-///     grade = "ISO VG 100"
+///     viscosity_40 = "100 mm^2/s"
+///     viscosity_100 = "11 mm^2/s"
 ///     temperature = "60 degC"
 ///     [[seal]]
 ///     name = "input seal"

@@ -41,7 +41,7 @@ const STILL: f64 = 5e-3;
 ///     stiffness = "100 N m/rad"
 /// "#;
 /// let model = Model::from_toml(text).unwrap();
-/// assert!(draw_vibration(&vibration(model.train(), None)?).contains("Mode 1: 1.592 Hz"));
+/// assert!(draw_vibration(&vibration(model.train(), None)?).contains("Mode 1: 1.59 Hz"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn draw(data: &Vibration) -> String {
