@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Axis, Hold, Question, UncertaintyPlan, UncertaintyRequest};
-use willis::work::Effort;
+use willis::work::{self, Effort, Serial, Work};
 
-use crate::kind::{Ask, FigureRequest, Kind};
+use crate::kind::{Ask, Detail, FigureRequest, Kind};
 use crate::parts::axes::{self, ChartAxis};
 
 pub(crate) const KIND: Kind<Bands> = Kind {
@@ -16,13 +16,20 @@ pub(crate) const KIND: Kind<Bands> = Kind {
     takes: &[Ask::State, Ask::Operation, Ask::Over],
     effort,
     applies: Some(applies),
-    make: |s, r| {
-        let samples = if r.samples == 0 { SAMPLES } else { r.samples };
-        let (operation, state) = (r.operation.clone(), r.state.clone());
-        bands(s, &UncertaintyRequest { operation, state, samples, ..Default::default() }, &r.over)
-    },
+    make: |s, r| in_steps(s, r, &Serial, Detail::Fine),
+    steps: Some(in_steps),
     draw: draw::draw_on,
 };
+
+fn in_steps(model: &Model, r: &FigureRequest, work: &dyn Work, detail: Detail) -> Result<Bands, Diagnostics> {
+    let samples = match (detail, r.samples) {
+        (Detail::Coarse, _) => DESIGN,
+        (Detail::Fine, 0) => SAMPLES,
+        (Detail::Fine, samples) => samples,
+    };
+    let (operation, state) = (r.operation.clone(), r.state.clone());
+    bands_within(model, &UncertaintyRequest { operation, state, samples, ..Default::default() }, &r.over, work, detail)
+}
 
 /// The samples, each a train of its own, along the axis.
 fn effort(model: &Model, request: &FigureRequest) -> Effort {
@@ -43,6 +50,11 @@ fn applies(model: &Model) -> bool {
 
 /// Samples where the caller does not say.
 const SAMPLES: usize = 256;
+/// Samples of a coarse figure: the first of a design with so many, the fewest that there can be.
+const COARSE: usize = 32;
+const DESIGN: usize = 128;
+/// Samples that are computed as one part of the work.
+const PART: usize = 8;
 
 /// Points along the axis where the caller does not say.
 const STEPS: usize = 9;
@@ -94,10 +106,20 @@ pub struct BandPoint {
 /// # Errors
 /// What [`UncertaintyPlan::new`] says; an axis that is none, or that is itself among the uncertain quantities.
 pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Result<Bands, Diagnostics> {
+    bands_within(model, request, over, &Serial, Detail::Fine)
+}
+
+fn bands_within(
+    model: &Model,
+    request: &UncertaintyRequest,
+    over: &[String],
+    work: &dyn Work,
+    detail: Detail,
+) -> Result<Bands, Diagnostics> {
     let plan = UncertaintyPlan::new(model, request)?;
     let question = plan.question();
     let over = match over {
-        [] => vec![axes::usual_speed(question, STEPS)],
+        [] => vec![axes::usual_speed(question, detail.of(STEPS))],
         [_] => over.to_vec(),
         _ => {
             let message = format!("bands are drawn over one quantity, not {}", over.len());
@@ -106,22 +128,30 @@ pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Re
     };
     let [x] = <[Axis; 1]>::try_from(axes::parse(&over, model)?).expect("one is parsed");
     let design = plan.design();
-    let samples: Vec<usize> = (0..plan.len()).filter(|k| design.is_sample(*k)).collect();
+    let most = if detail == Detail::Coarse { COARSE } else { usize::MAX };
+    let samples: Vec<usize> = (0..plan.len()).filter(|k| design.is_sample(*k)).take(most).collect();
     if samples.len() * x.len() > MOST_POINTS {
         let message = format!("{} values with {} samples each are too many for a picture", x.len(), samples.len());
         return Err(Diagnostic::new(Code::BadAxis, "", message).hint("take fewer of either").into());
     }
-    let mut trains = Default::default();
+    work.begin("samples", samples.len() as u64);
+    let parts: Vec<&[usize]> = samples.chunks(PART).collect();
     // One train after the other, so that each is built once.
-    let values: Vec<Vec<[f64; 2]>> = (samples.iter())
-        .map(|k| {
+    let part = |k: usize| -> Vec<Vec<[f64; 2]>> {
+        let mut trains = Default::default();
+        let mut along = |sample: &usize| {
             let one = |j| {
-                let answer = plan.answer_along(Some(*k), &x, j, &mut trains);
+                let answer = plan.answer_along(Some(*sample), &x, j, &mut trains);
                 if answer.is_unique() { [answer.efficiency(), answer.loss()] } else { [f64::NAN; 2] }
             };
             (0..x.len()).map(one).collect()
-        })
-        .collect();
+        };
+        let values = parts[k].iter().map(&mut along).collect();
+        work.advance(parts[k].len() as u64);
+        values
+    };
+    let values: Vec<Vec<[f64; 2]>> = work::map(work, parts.len(), part)?.into_iter().flatten().collect();
+    let mut trains = Default::default();
     let points = (0..x.len())
         .map(|j| {
             let sorted = |which: usize| {

@@ -16,6 +16,7 @@ pub(crate) const KIND: Kind<FlowReport> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: powers,
+    steps: None,
     draw: |data, _| draw::draw(data),
 };
 

@@ -20,6 +20,7 @@ pub(crate) const KIND: Kind<Front> = Kind {
     effort: kind::of_file,
     applies: None,
     make: |s, r| front(s.train(), r.part.as_deref(), r.nominal),
+    steps: None,
     draw: draw::draw_on,
 };
 

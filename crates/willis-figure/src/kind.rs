@@ -4,9 +4,31 @@ use serde::{Deserialize, Serialize};
 use willis::analysis::Selection;
 use willis::diagnostic::Diagnostics;
 use willis::model::Model;
-use willis::work::Effort;
+use willis::work::{Effort, Work};
 
 use crate::report::paper;
+
+/// How much of a figure is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Detail {
+    /// What can be seen within a moment: fewer points, fewer samples.
+    Coarse,
+    /// All.
+    Fine,
+}
+
+impl Detail {
+    /// Points along an axis, of so many in full.
+    pub fn of(self, points: usize) -> usize {
+        match self {
+            Self::Coarse => points.div_ceil(2),
+            Self::Fine => points,
+        }
+    }
+}
+
+/// See [`Kind::steps`].
+pub(crate) type InSteps<T> = fn(&Model, &FigureRequest, &dyn Work, Detail) -> Result<T, Diagnostics>;
 
 /// What a kind of figure says of itself. Each folder has one, as `KIND`.
 pub(crate) struct Kind<T> {
@@ -20,6 +42,8 @@ pub(crate) struct Kind<T> {
     pub applies: Option<fn(&Model) -> bool>,
     /// Makes the data.
     pub make: fn(&Model, &FigureRequest) -> Result<T, Diagnostics>,
+    /// Makes the data of a kind that takes long, coarsely or in full, within work that can be cancelled.
+    pub steps: Option<InSteps<T>>,
     /// Draws them as SVG in its light form.
     pub draw: fn(&T, Drawing) -> String,
 }

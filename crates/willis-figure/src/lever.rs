@@ -36,6 +36,7 @@ pub(crate) const KIND: Kind<Lever> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, r| lever(s.train(), &LeverRequest::of(r)),
+    steps: None,
     draw: draw::draw_on,
 };
 

@@ -19,11 +19,14 @@ mod registry;
 pub mod report;
 mod sankey;
 mod shift;
+mod spin;
 mod split;
 mod stick;
 mod table;
+mod tikz;
 mod time;
 mod tornado;
+mod vibration;
 mod wolf;
 
 // `report::document` looks for it here.
@@ -62,6 +65,8 @@ pub use sankey::draw::draw as draw_sankey;
 pub use sankey::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode, SankeyPanel, sankey};
 pub use shift::draw::draw as draw_shift;
 pub use shift::{ShiftChange, ShiftColumn, ShiftEfficiency, ShiftRow, ShiftSpread, ShiftTable, shift};
+pub use spin::draw::draw as draw_spin;
+pub use spin::{SpinGear, SpinLosses, SpinSource, spin_losses};
 pub use split::draw::draw as draw_split;
 pub use split::{MechanicalPoint, Split, SplitGear, SplitMode, SplitPoint, split};
 pub use stick::draw::draw as draw_stick;
@@ -70,10 +75,13 @@ pub use stick::{
     StickMesh, StickPiece, StickTerminal, Way, stick,
 };
 pub use table::draw::draw as draw_table;
+pub use tikz::tikz;
 pub use time::draw::draw as draw_time;
-pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder};
+pub use time::{ModeRow, ModeSegment, TimeLine, TimeMark, TimePanel, TimePlot, TimePlotBuilder, TimeShift};
 pub use tornado::draw::draw as draw_tornado;
 pub use tornado::{Tornado, TornadoBar, tornado};
+pub use vibration::draw::draw as draw_vibration;
+pub use vibration::{Vibration, VibrationMode, vibration};
 pub use wolf::draw::draw as draw_wolf;
 pub use wolf::{Wolf, WolfMember, WolfSet, WolfShaft, WolfTie, WolfVariator, wolf};
 

@@ -18,6 +18,7 @@ pub(crate) const KIND: Kind<LossChart> = Kind {
     effort,
     applies: None,
     make: |s, r| loss_chart(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
+    steps: None,
     draw: draw::draw_on,
 };
 

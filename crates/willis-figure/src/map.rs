@@ -9,9 +9,9 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Axis, Hold, PointVerdict, Question};
 use willis::train::{Load, MemberId, Operation, Train};
-use willis::work::Effort;
+use willis::work::{Cancelled, Effort, Serial, Work};
 
-use crate::kind::{Ask, FigureRequest, Kind};
+use crate::kind::{Ask, Detail, FigureRequest, Kind};
 use crate::parts::axes::{self, ChartAxis};
 use probe::{Limits, Probe};
 
@@ -20,9 +20,14 @@ pub(crate) const KIND: Kind<EfficiencyMap> = Kind {
     takes: &[Ask::State, Ask::Operation, Ask::Over],
     effort,
     applies: Some(applies),
-    make: |s, r| efficiency_map(s, r.state.as_deref(), r.operation.as_deref(), &r.over),
+    make: |s, r| in_steps(s, r, &Serial, Detail::Fine),
+    steps: Some(in_steps),
     draw: draw::draw_on,
 };
+
+fn in_steps(model: &Model, r: &FigureRequest, work: &dyn Work, detail: Detail) -> Result<EfficiencyMap, Diagnostics> {
+    map_within(model, [r.state.as_deref(), r.operation.as_deref()], &r.over, work, detail)
+}
 
 /// Points along the axes where the caller does not say.
 const COLUMNS: usize = 41;
@@ -33,6 +38,10 @@ const FEWER: [usize; 2] = [21, 16];
 const MOST_POINTS: usize = 100_000;
 /// Halvings of a step of the grid in which a border is looked for: a hundredth of a pixel.
 const HALVINGS: usize = 11;
+/// Lines that are added to each axis at most, so that no zone lies between two neighbours unseen.
+const MOST_LINES: usize = 24;
+/// Rounds in which lines are added: a new line has new neighbours.
+const ROUNDS: usize = 4;
 
 /// An efficiency map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -193,6 +202,16 @@ pub fn efficiency_map(
     operation: Option<&str>,
     over: &[String],
 ) -> Result<EfficiencyMap, Diagnostics> {
+    map_within(model, [state, operation], over, &Serial, Detail::Fine)
+}
+
+fn map_within(
+    model: &Model,
+    [state, operation]: [Option<&str>; 2],
+    over: &[String],
+    work: &dyn Work,
+    detail: Detail,
+) -> Result<EfficiencyMap, Diagnostics> {
     let train = model.train();
     // Without an operation that says so, a train with states is looked at in its first.
     let first = train.states().first().filter(|_| train.operations().is_empty()).map(|s| s.name.as_str());
@@ -200,12 +219,12 @@ pub fn efficiency_map(
     let open = state.is_none() && operation.is_none() && over.is_empty();
     if open
         && train.states().len() > 1
-        && let Some(map) = best_state(&question)?
+        && let Some(map) = best_state(&question, work, detail)?
     {
         return Ok(map);
     }
     let over = match over {
-        [] => vec![axes::usual_speed(&question, COLUMNS), axes::usual_load(&question, ROWS)],
+        [] => vec![axes::usual_speed(&question, detail.of(COLUMNS)), axes::usual_load(&question, detail.of(ROWS))],
         [_, _] => over.to_vec(),
         _ => {
             let message = format!("a map runs over two quantities, not {}", over.len());
@@ -218,7 +237,7 @@ pub fn efficiency_map(
     let marks = marks(&question, &x, &y);
     let mut probe = Probe::new(&question, [&x, &y], None)?;
     let own = [ChartAxis::of(&x), ChartAxis::of(&y)];
-    Ok(EfficiencyMap { title: train.name().to_owned(), basis, marks, ..mapped(own, &mut probe) })
+    Ok(EfficiencyMap { title: train.name().to_owned(), basis, marks, ..mapped(own, &mut probe, work)? })
 }
 
 /// How many different zones there are.
@@ -258,11 +277,16 @@ fn few_enough(points: usize) -> Result<(), Diagnostics> {
     Ok(())
 }
 
-/// The points of a map and the borders between them; no words yet.
-fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
+/// The points of a grid, row by row.
+fn gridded([x, y]: [&ChartAxis; 2], probe: &mut Probe<'_, '_>, work: &dyn Work) -> Result<Vec<MapPoint>, Cancelled> {
     let width = x.values.len();
-    let place = |k: usize| [x.values[k % width], y.values[k / width]];
-    let mut found: Vec<_> = (0..width * y.values.len()).map(|k| probe.at(place(k))).collect();
+    work.begin("points", (width * y.values.len()) as u64);
+    let mut found = Vec::with_capacity(width * y.values.len());
+    for row in &y.values {
+        going(work)?;
+        found.extend(x.values.iter().map(|x| probe.at([*x, *row])));
+        work.advance(width as u64);
+    }
     // A point exactly on a border belongs to no zone: it is told as what lies a millionth of a step inwards of it.
     let plain = probe.loosest();
     let inwards = |values: &[f64], k: usize| match k + 1 < values.len() {
@@ -272,49 +296,149 @@ fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>) -> EfficiencyMap {
     for (k, f) in found.iter_mut().enumerate().filter(|(_, f)| plain.on_border(f)) {
         *f = probe.at([inwards(&x.values, k % width), inwards(&y.values, k / width)]);
     }
-    let points: Vec<MapPoint> = found.into_iter().map(|f| f.point).collect();
-    let right = (0..points.len()).filter(|k| (k + 1) % width > 0).map(|k| [k, k + 1]);
-    let up = (0..points.len() - width).map(|k| [k, k + width]);
-    let parted = right.chain(up).filter(|[a, b]| points[*a].zone != points[*b].zone);
-    let mut border = |between: [usize; 2]| {
-        let [a, b] = between.map(place);
-        let on = |t: f64| [0, 1].map(|c| a[c] + t * (b[c] - a[c]));
-        let mut sides = between.map(|k| points[k].clone());
-        let (mut low, mut high) = (0.0, 1.0);
-        for _ in 0..HALVINGS {
-            let middle = (low + high) / 2.0;
-            let there = probe.at(on(middle)).point;
-            match there.zone == sides[0].zone {
-                true => (low, sides[0]) = (middle, there),
-                false => (high, sides[1]) = (middle, there),
-            }
-        }
-        // What is narrower than a step goes to the zone beyond it.
-        if sides[1].zone != points[between[1]].zone {
-            sides[1] = points[between[1]].clone();
-        }
-        MapBorder { between, at: (low + high) / 2.0, sides }
-    };
-    let borders = parted.map(&mut border).collect();
-    let mut joints = vec![];
-    for cell in (0..points.len() - width).filter(|k| (k + 1) % width > 0) {
-        let corners = [cell, cell + 1, cell + 1 + width, cell + width].map(|k| points[k].zone);
-        if several(corners) > 2 {
-            let [a, b] = [cell, cell + 1 + width].map(place);
-            let zone = |at: [f64; 2]| probe.at([0, 1].map(|c| a[c] + at[c] * (b[c] - a[c]))).point.zone;
-            joints.push(MapJoint { cell, at: joint(corners, zone) });
+    Ok(found.into_iter().map(|f| f.point).collect())
+}
+
+/// Refuses to go on where the work was cancelled.
+fn going(work: &dyn Work) -> Result<(), Cancelled> {
+    if work.cancelled() { Err(Cancelled) } else { Ok(()) }
+}
+
+/// The border between two points of different zones.
+fn border(between: [usize; 2], map: &EfficiencyMap, probe: &mut Probe<'_, '_>) -> (MapBorder, Option<f64>) {
+    let [a, b] = between.map(|k| map.place(k));
+    let on = |t: f64| [0, 1].map(|c| a[c] + t * (b[c] - a[c]));
+    let ends = between.map(|k| map.points[k].zone);
+    let mut sides = between.map(|k| map.points[k].clone());
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = (low + high) / 2.0;
+        let there = probe.at(on(middle)).point;
+        match there.zone == ends[0] {
+            true => (low, sides[0]) = (middle, there),
+            false => (high, sides[1]) = (middle, there),
         }
     }
-    EfficiencyMap {
+    let at = (low + high) / 2.0;
+    // Another zone lies between: its middle is where its other border is as far as this one.
+    let mut skipped = None;
+    if sides[1].zone != ends[1] {
+        let (mut low, mut high) = (high, 1.0);
+        for _ in 0..HALVINGS {
+            let middle = (low + high) / 2.0;
+            match probe.at(on(middle)).point.zone == ends[1] {
+                true => high = middle,
+                false => low = middle,
+            }
+        }
+        skipped = Some((at + low) / 2.0);
+        // Where no line of the grid finds room for it, it goes to the zone beyond it.
+        sides[1] = map.points[between[1]].clone();
+    }
+    (MapBorder { between, at, sides }, skipped)
+}
+
+/// The points of a map and the borders between them; no words yet.
+///
+/// A ridge of efficiency may lie between two neighbours: the zone on its one side is then seen at neither of them, and contours
+/// along it would break into islands. So a line is added to the grid wherever a border has a third zone within it.
+fn mapped([x, y]: [ChartAxis; 2], probe: &mut Probe<'_, '_>, work: &dyn Work) -> Result<EfficiencyMap, Cancelled> {
+    let points = gridded([&x, &y], probe, work)?;
+    let mut map = EfficiencyMap {
         title: String::new(),
         basis: String::new(),
         x,
         y,
         points,
-        borders,
-        joints,
+        borders: vec![],
+        joints: vec![],
         states: vec![],
         marks: vec![],
+    };
+    let most = [&map.x, &map.y].map(|a| a.values.len() + MOST_LINES);
+    for round in 0..=ROUNDS {
+        let (borders, wanted) = borders(&map, probe, work)?;
+        map.borders = borders;
+        if round == ROUNDS || !map.refined(&wanted, most) {
+            break;
+        }
+        map.points = gridded([&map.x, &map.y], probe, work)?;
+    }
+    let width = map.x.values.len();
+    for cell in (0..map.points.len() - width).filter(|k| (k + 1) % width > 0) {
+        let corners = [cell, cell + 1, cell + 1 + width, cell + width].map(|k| map.points[k].zone);
+        // Where two borders pass beside each other, nothing meets.
+        if several(corners) > 2 && map.through(cell).is_none() {
+            let [a, b] = [cell, cell + 1 + width].map(|k| map.place(k));
+            let zone = |at: [f64; 2]| probe.at([0, 1].map(|c| a[c] + at[c] * (b[c] - a[c]))).point.zone;
+            map.joints.push(MapJoint { cell, at: joint(corners, zone) });
+        }
+    }
+    Ok(map)
+}
+
+/// All borders of a map, and where lines of the grid are wanted, on each axis.
+fn borders(
+    map: &EfficiencyMap,
+    probe: &mut Probe<'_, '_>,
+    work: &dyn Work,
+) -> Result<(Vec<MapBorder>, [Vec<f64>; 2]), Cancelled> {
+    let width = map.x.values.len();
+    let right = (0..map.points.len()).filter(|k| (k + 1) % width > 0).map(|k| ([k, k + 1], 0));
+    let up = (0..map.points.len() - width).map(|k| ([k, k + width], 1));
+    let (mut all, mut wanted) = (vec![], [vec![], vec![]]);
+    for (between, axis) in right.chain(up) {
+        let [a, b] = between;
+        if map.points[a].zone != map.points[b].zone {
+            going(work)?;
+            let (found, skipped) = border(between, map, probe);
+            all.push(found);
+            if let Some(t) = skipped {
+                let [from, to] = between.map(|k| map.place(k)[axis]);
+                wanted[axis].push(from + t * (to - from));
+            }
+        }
+    }
+    Ok((all, wanted))
+}
+
+impl EfficiencyMap {
+    /// Where a point of the grid is.
+    fn place(&self, k: usize) -> [f64; 2] {
+        let width = self.x.values.len();
+        [self.x.values[k % width], self.y.values[k / width]]
+    }
+
+    /// Whether two borders pass each other in the cell with this lower left point: the first corner of the zone between them, counted
+    /// round the cell. Opposite corners have one zone then, and the other two are of two others.
+    pub(crate) fn through(&self, cell: usize) -> Option<usize> {
+        let width = self.x.values.len();
+        let [a, b, c, d] = [cell, cell + 1, cell + 1 + width, cell + width].map(|k| self.points[k].zone);
+        match (a == c && a != b && a != d, b == d && b != a && b != c) {
+            (true, false) if b != d => Some(0),
+            (false, true) if a != c => Some(1),
+            _ => None,
+        }
+    }
+
+    /// Adds lines to the grid where they are wanted, within what an axis may have; whether there is a new one.
+    fn refined(&mut self, wanted: &[Vec<f64>; 2], most: [usize; 2]) -> bool {
+        /// Lines nearer than this part of the axis are one.
+        const CLOSE: f64 = 1.0 / 400.0;
+        let mut any = false;
+        for (axis, (wanted, most)) in [&mut self.x, &mut self.y].into_iter().zip(wanted.iter().zip(most)) {
+            let [Some(first), Some(last)] = [axis.values.first().copied(), axis.values.last().copied()] else {
+                continue;
+            };
+            for value in wanted {
+                let close = |v: &f64| (v - value).abs() < CLOSE * (last - first);
+                if axis.values.len() < most && !axis.values.iter().any(close) {
+                    axis.values.insert(axis.values.partition_point(|v| v < value), *value);
+                    any = true;
+                }
+            }
+        }
+        any
     }
 }
 
@@ -365,7 +489,7 @@ fn marks(question: &Question<'_>, x: &Axis, y: &Axis) -> Vec<MapMark> {
 }
 
 /// Over speed and torque of the output, at every point the best state.
-fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnostics> {
+fn best_state(question: &Question<'_>, work: &dyn Work, detail: Detail) -> Result<Option<EfficiencyMap>, Diagnostics> {
     let model = question.model();
     let train = model.train();
     let (Some(input), Some(output)) = (train.input(), train.output()) else { return Ok(None) };
@@ -386,7 +510,7 @@ fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnost
         format!("{:.12e}", (x / unit).ceil() * unit).parse::<f64>().unwrap_or(x)
     };
     let (speed, torque) = (digits(most_speed / low), digits(most_torque * high));
-    let [columns, rows] = FEWER;
+    let [columns, rows] = FEWER.map(|count| detail.of(count));
     let over = [
         format!("output.speed={} rpm..{speed} rpm:{columns}", speed / 40.0),
         format!("output.torque={} N m..{torque} N m:{rows}", torque / 30.0),
@@ -408,7 +532,7 @@ fn best_state(question: &Question<'_>) -> Result<Option<EfficiencyMap>, Diagnost
             }
         }
     }
-    let map = mapped([own_x, own_y], &mut probe);
+    let map = mapped([own_x, own_y], &mut probe, work)?;
     if map.points.iter().filter_map(|p| p.best).collect::<std::collections::BTreeSet<_>>().len() < 2 {
         return Ok(None);
     }

@@ -19,6 +19,7 @@ pub(crate) const KIND: Kind<RegimeMap> = Kind {
         let (state, terminals, balance) = (r.state.clone(), r.terminals.clone(), r.balance.clone());
         regime_map(s.train(), &RegimeSelection { state, terminals, balance })
     },
+    steps: None,
     draw: |data, _| draw::draw(data),
 };
 

@@ -8,6 +8,7 @@ use willis::hypergraph::FlowReport;
 use willis::model::Model;
 use willis::work::{Effort, TooLong, Work};
 
+use crate::kind::Detail;
 use crate::*;
 
 macro_rules! kinds {
@@ -119,6 +120,82 @@ macro_rules! kinds {
             }
         }
 
+        impl FigureKind {
+            /// Makes the figure of a train as [`FigureKind::make`] does, within work: kinds that take long stop soon after they are
+            /// cancelled.
+            ///
+            /// # Errors
+            /// What [`FigureKind::make`] says; the work was cancelled.
+            pub fn make_within(
+                self,
+                model: &Model,
+                request: &FigureRequest,
+                work: &dyn Work,
+            ) -> Result<Figure, Diagnostics> {
+                match self {
+                    $(Self::$kind => match $entry.steps {
+                        Some(make) => make(model, request, work, Detail::Fine),
+                        None => ($entry.make)(model, request),
+                    }
+                    .map(Figure::$kind),)*
+                }
+            }
+
+            /// A coarser figure to show until [`FigureKind::make_within`] is done: fewer points, fewer samples. None for a kind
+            /// that is made at once.
+            ///
+            /// # Errors
+            /// What [`FigureKind::make_within`] says.
+            ///
+            /// # Example
+            /// ```
+            /// use willis::model::Model;
+            /// use willis::work::Serial;
+            /// use willis_figure::{Figure, FigureKind};
+            ///
+            /// let text = r#"
+            ///     format = 1
+            ///     name = "one set"
+            ///     members = ["s", "c"]
+            ///     terminals = ["s", "c"]
+            ///     [[set]]
+            ///     name = "P1"
+            ///     sun = { member = "s", teeth = 30 }
+            ///     ring = { member = "frame", teeth = 70 }
+            ///     carrier = "c"
+            ///     mesh_efficiency = 0.99
+            ///     [[operation]]
+            ///     name = "full load"
+            ///     speeds = { s = "1000 rpm" }
+            ///     torques = { s = "10 N m" }
+            /// "#;
+            /// let model = Model::from_toml(text).unwrap();
+            /// let request = Default::default();
+            /// let points = |figure: Figure| match figure {
+            ///     Figure::Map(map) => map.points.len(),
+            ///     _ => 0,
+            /// };
+            /// let coarse = FigureKind::Map.make_coarse(&model, &request, &Serial).unwrap()?;
+            /// let fine = FigureKind::Map.make_within(&model, &request, &Serial)?;
+            /// assert!(points(coarse) * 3 < points(fine));
+            /// assert!(FigureKind::Stick.make_coarse(&model, &request, &Serial).is_none());
+            /// # Ok::<(), willis::Diagnostics>(())
+            /// ```
+            pub fn make_coarse(
+                self,
+                model: &Model,
+                request: &FigureRequest,
+                work: &dyn Work,
+            ) -> Option<Result<Figure, Diagnostics>> {
+                match self {
+                    $(Self::$kind => {
+                        let make = $entry.steps?;
+                        Some(make(model, request, work, Detail::Coarse).map(Figure::$kind))
+                    })*
+                }
+            }
+        }
+
         impl Figure {
             /// What kind it is.
             pub fn kind(&self) -> FigureKind {
@@ -159,10 +236,14 @@ kinds! {
     "split": Split(Split) = split::KIND;
     /// Losses by source, stacked over a quantity and as bars.
     "losses": Losses(LossChart) = losses::KIND;
+    /// Losses without load of every gear, stacked by source.
+    "spin": Spin(SpinLosses) = spin::KIND;
     /// Oil film over roughness along the path of contact of a mesh.
     "film": Film(ContactPath) = contact_path::film::KIND;
     /// Friction, sliding and load along the path of contact of a mesh.
     "path": Path(ContactPath) = contact_path::path::KIND;
+    /// Natural modes of vibration on the stick diagram: amplitude and sign of each member.
+    "modes": Modes(Vibration) = vibration::KIND;
     /// A scenario over time.
     "time": Time(TimePlot) = time::KIND;
     /// The table of states with its steps.
@@ -211,7 +292,7 @@ impl FigureKind {
         const SHARE: f64 = 1.0 / 6.0;
         match self.effort(model, request) {
             long if long.seconds > SHARE * work.patience() => Err(TooLong(long).into()),
-            _ => self.make(model, request),
+            _ => self.make_within(model, request, work),
         }
     }
 

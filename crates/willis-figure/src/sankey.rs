@@ -26,6 +26,7 @@ pub(crate) const KIND: Kind<Sankey> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, r| Ok(sankey(&powers(s, r)?)),
+    steps: None,
     draw: draw::draw_on,
 };
 

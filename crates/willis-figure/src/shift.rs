@@ -18,6 +18,7 @@ pub(crate) const KIND: Kind<ShiftTable> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, _| shift(s.train()),
+    steps: None,
     draw: draw::draw_on,
 };
 

@@ -25,6 +25,7 @@ pub(crate) const KIND: Kind<Split> = Kind {
     },
     applies: None,
     make: split,
+    steps: None,
     draw: draw::draw_on,
 };
 

@@ -29,6 +29,7 @@ pub(crate) const KIND: Kind<Stick> = Kind {
     effort: kind::of_file,
     applies: None,
     make: |s, r| stick(s.train(), r.state.as_deref()),
+    steps: None,
     draw: draw::draw_on,
 };
 

@@ -13,5 +13,6 @@ pub(crate) const KIND: Kind<ShaftTable> = Kind {
     effort: kind::of_file,
     applies: None,
     make: |s, r| shaft_table(s.train(), r.state.as_deref(), false),
+    steps: None,
     draw: |data, _| draw::draw(data),
 };

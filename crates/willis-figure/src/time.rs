@@ -19,6 +19,7 @@ pub(crate) const KIND: Kind<TimePlot> = Kind {
     effort: kind::of_file,
     applies: Some(|model| !model.train().scenarios().is_empty()),
     make: |s, r| scenario(s.train(), r.part.as_deref(), r.window),
+    steps: None,
     draw: draw::draw_on,
 };
 
@@ -83,6 +84,22 @@ pub struct TimePlot {
     pub event_times: Vec<f64>,
     /// All changes of mode after the start, of those that are shown.
     pub event_count: usize,
+    /// Where changes of mode lie together in several short times, such as the shifts of an automatic: each of them closely.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shifts: Vec<TimeShift>,
+}
+
+/// A short time in which modes change, seen closely.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct TimeShift {
+    /// From when to when, s; equally long for all shifts of a run.
+    pub window: [f64; 2],
+    /// The first and the last change of mode in it, s.
+    pub events: [f64; 2],
+    /// The curves of the first panels, in the same order.
+    pub panels: Vec<TimePanel>,
 }
 
 /// Curves that share an axis.
@@ -173,6 +190,14 @@ const MOST_MODES: usize = 24;
 const MOST_MARKS: usize = 10;
 /// Intervals kept of a curve; twice as many before neighbours are joined.
 const INTERVALS: usize = 450;
+/// The same for the curves of single shifts, which are a small part of the run.
+const FINE: usize = 7200;
+/// Shifts are apart when nothing changes for this part of the run, and short when all of them take less than the other part.
+const APART: f64 = 0.05;
+const SHORT_SHIFTS: f64 = 0.5;
+/// Panels that are shown of a shift, and shifts that are shown.
+const SHIFT_PANELS: usize = 2;
+const MOST_SHIFTS: usize = 12;
 /// Segments or times kept before short ones are joined.
 const MOST_SEGMENTS: usize = 4096;
 /// The shortest that stays itself then, as a part of the run.
@@ -205,6 +230,8 @@ pub struct TimePlotBuilder {
     planets: Vec<String>,
     meshes: Vec<String>,
     curves: Vec<(usize, Column, Decimated)>,
+    /// The same curves, for what is seen closely.
+    fine: Vec<Decimated>,
     modes: Vec<(usize, String, Modes)>,
     marks: Vec<TimeMark>,
     event_times: Vec<f64>,
@@ -223,6 +250,7 @@ impl TimePlotBuilder {
             planets: train.members().iter().filter(planet).map(|m| m.name.clone()).collect(),
             meshes: train.meshes().iter().map(|m| m.name.clone()).collect(),
             curves: vec![],
+            fine: vec![],
             modes: vec![],
             marks: vec![],
             event_times: vec![],
@@ -237,8 +265,9 @@ impl TimePlotBuilder {
 
     /// Takes a row into curves and modes.
     fn take(&mut self, time: f64, values: &[f64]) {
-        for (k, _, curve) in &mut self.curves {
+        for ((k, _, curve), fine) in self.curves.iter_mut().zip(&mut self.fine) {
             curve.push(time, values[*k]);
+            fine.push(time, values[*k]);
         }
         for (k, _, modes) in &mut self.modes {
             modes.push(time, values[*k]);
@@ -286,7 +315,14 @@ impl TimePlotBuilder {
             }
             Some(panel)
         });
-        let panels = panels.collect();
+        let panels: Vec<TimePanel> = panels.collect();
+        let windows = shifts(&self.event_times, axis);
+        let shifts = windows.iter().map(|(window, events)| TimeShift {
+            window: *window,
+            events: *events,
+            panels: panels.iter().take(SHIFT_PANELS).map(|p| self.closely(p, *window)).collect(),
+        });
+        let shifts = shifts.collect();
         let mut modes: Vec<_> = self
             .modes
             .into_iter()
@@ -318,8 +354,65 @@ impl TimePlotBuilder {
             marks: self.marks,
             event_times: self.event_times,
             event_count: self.event_count,
+            shifts,
         }
     }
+
+    /// The curves of a panel within a window.
+    fn closely(&self, panel: &TimePanel, window: [f64; 2]) -> TimePanel {
+        let kind = KINDS.iter().find(|k| k.1 == panel.quantity).map(|k| k.0);
+        let own = || self.curves.iter().zip(&self.fine).filter(|((_, c, _), _)| Some(c.kind) == kind);
+        let line = |l: &TimeLine| {
+            let curve = own().find(|((_, c, _), _)| l.names.first() == Some(&label(c)));
+            let pieces = curve.map_or(vec![], |(_, fine)| fine.pieces());
+            TimeLine {
+                pieces: pieces.iter().map(|p| clipped(p, window)).filter(|p| !p.is_empty()).collect(),
+                ..l.clone()
+            }
+        };
+        TimePanel { lines: panel.lines.iter().map(line).collect(), ..panel.clone() }
+    }
+}
+
+/// The part of a curve within a window, with its values at the ends of it.
+fn clipped(piece: &[[f64; 2]], [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut all: Vec<[f64; 2]> = vec![];
+    for (k, p) in piece.iter().enumerate() {
+        let before = k.checked_sub(1).map(|k| piece[k]).filter(|b| b[0] < p[0]);
+        for end in [from, to] {
+            if let Some(b) = before.filter(|b| b[0] < end && end < p[0]) {
+                all.push([end, b[1] + (end - b[0]) / (p[0] - b[0]) * (p[1] - b[1])]);
+            }
+        }
+        if (from..=to).contains(&p[0]) {
+            all.push(*p);
+        }
+    }
+    all
+}
+
+/// Windows of the shifts of a run, all equally long, with the first and last event of each; none where there are fewer than two, or
+/// where they are no short parts of the run.
+fn shifts(events: &[f64], [from, to]: [f64; 2]) -> Vec<([f64; 2], [f64; 2])> {
+    let mut groups: Vec<[f64; 2]> = vec![];
+    for t in events.iter().filter(|t| (from..=to).contains(*t)) {
+        match groups.last_mut() {
+            Some(last) if t - last[1] < APART * (to - from) => last[1] = *t,
+            _ => groups.push([*t, *t]),
+        }
+    }
+    let longest = groups.iter().map(|g| g[1] - g[0]).fold(0.0, f64::max);
+    // A little before and behind.
+    let width = 1.5 * longest;
+    let short = width > 0.0 && width * groups.len() as f64 <= SHORT_SHIFTS * (to - from);
+    if groups.len() < 2 || !short {
+        return vec![];
+    }
+    let window = |g: &[f64; 2]| {
+        let start = (g[0] - width / 6.0).clamp(from, to - width);
+        ([start, start + width], *g)
+    };
+    groups.iter().take(MOST_SHIFTS).map(window).collect()
 }
 
 fn label(c: &Column) -> String {
@@ -386,7 +479,8 @@ impl Recorder for TimePlotBuilder {
                 kind => usual(c) || (!some && KINDS.iter().any(|(k, _)| *k == kind)),
             };
             if drawn {
-                self.curves.push((k, c.clone(), Decimated::new(self.span)));
+                self.curves.push((k, c.clone(), Decimated::new(self.span, INTERVALS)));
+                self.fine.push(Decimated::new(self.span, FINE));
             }
         }
         ControlFlow::Continue(())
@@ -431,6 +525,8 @@ struct Decimated {
     start: f64,
     width: f64,
     intervals: Vec<Interval>,
+    /// How many are kept; twice as many before neighbours are joined.
+    most: usize,
     gap: bool,
 }
 
@@ -464,10 +560,10 @@ impl Interval {
 }
 
 impl Decimated {
-    fn new(span: [f64; 2]) -> Self {
+    fn new(span: [f64; 2], most: usize) -> Self {
         // Fine at first: a run may end early.
-        let width = ((span[1] - span[0]) / INTERVALS as f64 / 4096.0).max(f64::MIN_POSITIVE);
-        Self { start: span[0], width, intervals: vec![], gap: true }
+        let width = ((span[1] - span[0]) / most as f64 / 4096.0).max(f64::MIN_POSITIVE);
+        Self { start: span[0], width, intervals: vec![], most, gap: true }
     }
 
     fn push(&mut self, time: f64, value: f64) {
@@ -487,7 +583,7 @@ impl Decimated {
             }
         }
         self.gap = false;
-        while self.intervals.len() > 2 * INTERVALS {
+        while self.intervals.len() > 2 * self.most {
             self.width *= 2.0;
             for i in &mut self.intervals {
                 i.index /= 2;
@@ -575,7 +671,7 @@ mod tests {
 
     #[test]
     fn a_spike_survives_a_million_rows() {
-        let mut d = Decimated::new([0.0, 1.0]);
+        let mut d = Decimated::new([0.0, 1.0], INTERVALS);
         for k in 0..1_000_000 {
             let value = if k == 654_321 { 50.0 } else { (k as f64 * 1e-3).sin() };
             d.push(k as f64 * 1e-6, value);
@@ -591,7 +687,7 @@ mod tests {
 
     #[test]
     fn few_rows_are_kept_as_they_are_also_of_a_run_that_ends_early() {
-        let mut d = Decimated::new([0.0, 100.0]);
+        let mut d = Decimated::new([0.0, 100.0], INTERVALS);
         let rows: Vec<[f64; 2]> = (0..400).map(|k| [k as f64 * 1e-3, f64::from(k % 7)]).collect();
         rows.iter().for_each(|r| d.push(r[0], r[1]));
         assert_eq!(d.pieces(), [rows]);
@@ -599,11 +695,34 @@ mod tests {
 
     #[test]
     fn a_jump_keeps_both_its_values_and_a_gap_stays_open() {
-        let mut d = Decimated::new([0.0, 1.0]);
+        let mut d = Decimated::new([0.0, 1.0], INTERVALS);
         for (t, v) in [(0.0, 1.0), (0.5, 1.0), (0.5, 3.0), (0.6, f64::NAN), (0.7, f64::NAN), (0.8, 2.0), (1.0, 2.0)] {
             d.push(t, v);
         }
         assert_eq!(d.pieces(), [vec![[0.0, 1.0], [0.5, 1.0], [0.5, 3.0]], vec![[0.8, 2.0], [1.0, 2.0]]]);
+    }
+
+    #[test]
+    fn shifts_are_short_times_with_events_of_one_width() {
+        let found = shifts(&[3.0, 3.1, 3.2, 6.0, 6.4, 9.0], [0.0, 20.0]);
+        assert_eq!(found.iter().map(|s| s.1).collect::<Vec<_>>(), [[3.0, 3.2], [6.0, 6.4], [9.0, 9.0]]);
+        for ([from, to], [first, last]) in &found {
+            assert!((to - from - 0.6).abs() < 1e-9 && from < first && last < to);
+        }
+        // One shift, no time at all, and events all the time.
+        assert!(shifts(&[3.0, 3.2], [0.0, 20.0]).is_empty());
+        assert!(shifts(&[3.0, 6.0], [0.0, 20.0]).is_empty());
+        assert!(shifts(&[3.0, 7.0, 9.0], [0.0, 20.0]).is_empty());
+        let all: Vec<f64> = (0..200).map(|k| 0.1 * f64::from(k)).collect();
+        assert!(shifts(&all, [0.0, 20.0]).is_empty());
+    }
+
+    #[test]
+    fn a_window_keeps_the_values_at_its_ends() {
+        let piece = [[0.0, 0.0], [1.0, 10.0], [1.0, 20.0], [3.0, 40.0]];
+        assert_eq!(clipped(&piece, [0.5, 2.0]), [[0.5, 5.0], [1.0, 10.0], [1.0, 20.0], [2.0, 30.0]]);
+        assert_eq!(clipped(&piece, [1.5, 2.0]), [[1.5, 25.0], [2.0, 30.0]]);
+        assert_eq!(clipped(&piece, [3.5, 4.0]), [] as [[f64; 2]; 0]);
     }
 
     #[test]

@@ -16,6 +16,7 @@ pub(crate) const KIND: Kind<Tornado> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: ranking,
+    steps: None,
     draw: draw::draw_on,
 };
 

@@ -22,6 +22,7 @@ pub(crate) const KIND: Kind<Wolf> = Kind {
     effort: kind::of_file,
     applies: None,
     make: |s, r| wolf(s.train(), r.state.as_deref()),
+    steps: None,
     draw: |data, _| draw::draw(data),
 };
 

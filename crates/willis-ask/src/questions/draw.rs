@@ -234,6 +234,9 @@ fn no_drawing(kind: FigureKind) -> Diagnostic {
     Diagnostic::new(Code::Unfit, "", message).hint("`draw front` has one; other pictures are SVG or PNG")
 }
 
+/// A picture for papers in LaTeX.
+const TIKZ: Form = Form { name: "tex", endings: &["tex"], about: "a TikZ picture for papers in LaTeX" };
+
 /// The form of which a typesetter makes a page.
 const PLATE: Form = Form { name: "plate", endings: &[], about: "a picture with its paper, which willis-pdf sets" };
 
@@ -244,11 +247,12 @@ impl Question for Draw {
         Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" },
         Form { name: "png", endings: &["png"], about: "a picture of pixels" },
         DXF,
+        TIKZ,
         PLATE,
     ];
     #[cfg(not(feature = "png"))]
     const FORMS: &'static [Form] =
-        &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }, DXF, PLATE];
+        &[Form { name: "svg", endings: &["svg"], about: "a picture that stays sharp" }, DXF, TIKZ, PLATE];
     type Answer = DrawAnswer;
 
     fn check(&self) -> Result<(), Diagnostics> {
@@ -285,7 +289,7 @@ impl Question for Draw {
         let narrows = |a: &Ask| matches!(a, Ask::State | Ask::Operation | Ask::Part | Ask::Over);
         let asked = request.asks().iter().any(narrows);
         work.afford(&kind.effort(model, &request))?;
-        match kind.make(model, &request) {
+        match kind.make_within(model, &request, work) {
             Ok(figure) => Ok(DrawAnswer::One(Box::new(figure))),
             // Where a kind does not apply to a train at all, those that do are told.
             Err(wrong) if !asked => {
@@ -339,6 +343,12 @@ impl Question for Draw {
                     Figure::Front(view) => willis_figure::front_dxf(view).into_bytes(),
                     _ => return Err(no_drawing(figure.kind()).into()),
                 };
+                return Ok(File { name, bytes, about: figure.title().to_owned() });
+            }
+            if form == TIKZ.name {
+                // Paper is light, and nothing on it moves.
+                let still = Drawing { animated: false, ..self.drawing() };
+                let bytes = willis_figure::tikz(&draw(figure, still)).into_bytes();
                 return Ok(File { name, bytes, about: figure.title().to_owned() });
             }
             let svg = self.svg(figure);

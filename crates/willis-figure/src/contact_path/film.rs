@@ -9,6 +9,7 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
     ticks, wide,
 };
+use crate::parts::words::law;
 
 pub(crate) const KIND: Kind<ContactPath> = Kind {
     title: "Oil film along the path of contact",
@@ -16,6 +17,7 @@ pub(crate) const KIND: Kind<ContactPath> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
+    steps: None,
     draw: draw_on,
 };
 
@@ -131,7 +133,7 @@ fn draw_on(path: &ContactPath, paper: Drawing) -> String {
         }
     }
     page(width, end + 22.0, &format!("Oil film of {}", path.title), &description(path))
-        .add(heading(path, width, &format!("law of the film: {}", path.film_law)))
+        .add(heading(path, width, &format!("law of the film: {}", law(&path.film_law))))
         .add(g)
         .to_string()
 }

@@ -9,6 +9,7 @@ use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text, ticks,
 };
+use crate::parts::words::law;
 
 pub(crate) const KIND: Kind<ContactPath> = Kind {
     title: "Contact along its path",
@@ -16,6 +17,7 @@ pub(crate) const KIND: Kind<ContactPath> = Kind {
     effort: kind::of_operations,
     applies: None,
     make: |s, r| contact_path(s.train(), r.operation.as_deref(), r.part.as_deref()),
+    steps: None,
     draw: draw_on,
 };
 
@@ -138,7 +140,7 @@ fn draw_on(path: &ContactPath, paper: Drawing) -> String {
         }
     }
     page(width, end + 22.0, &format!("Paths of contact of {}", path.title), &description(path, shown))
-        .add(heading(path, width, &format!("friction: {}, film: {}", path.friction_law, path.film_law)))
+        .add(heading(path, width, &format!("friction: {}, film: {}", law(&path.friction_law), law(&path.film_law))))
         .add(g)
         .to_string()
 }
@@ -189,10 +191,10 @@ fn balance(m: &MeshPath) -> String {
 fn remarks(path: &ContactPath, shown: usize) -> Vec<String> {
     let mut all = Vec::new();
     all.push(match path.local {
-        true => format!("The law {} gives friction for each place of the path.", path.friction_law),
+        true => format!("The law of {} gives friction for each place of the path.", law(&path.friction_law)),
         false => format!(
-            "The law {} gives one mean coefficient for the mesh; what friction is at each place is not known.",
-            path.friction_law
+            "The law of {} gives one mean coefficient for the mesh; what friction is at each place is not known.",
+            law(&path.friction_law)
         ),
     });
     all.push(

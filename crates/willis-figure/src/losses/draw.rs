@@ -1,16 +1,16 @@
 //! Losses by source: stacked over a quantity, and as bars at the operating point.
 
 use svg::node::element::Group;
-use willis::losses::entries;
 use willis::operating_point::LossKind;
 use willis::study::PointVerdict;
 
-use crate::parts::alive::{Of, guide, of};
+use crate::parts::alive::{Of, guide, of, told};
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, page, rectangle, text,
     titled, watts, wide,
 };
+use crate::parts::words::{along, law_title};
 use crate::{Drawing, LossChart, LossSeries};
 
 const WIDTH: f64 = 980.0;
@@ -121,8 +121,7 @@ fn unit(chart: &LossChart) -> (f64, &'static str) {
 /// A law by its title rather than its name in files.
 fn law(s: &LossSeries) -> Option<String> {
     let id = s.law.as_ref().filter(|_| s.kind.is_some())?;
-    let title = entries().iter().find(|e| e.id == id).map(|e| e.title.to_owned());
-    Some(title.unwrap_or_else(|| if id == "given" { "efficiency given".to_owned() } else { id.clone() }))
+    Some(law_title(s.kind, id))
 }
 
 fn stacked(chart: &LossChart, top: f64, width: f64) -> (Group, f64) {
@@ -187,7 +186,7 @@ fn stacked(chart: &LossChart, top: f64, width: f64) -> (Group, f64) {
     if let Some(at) = chart.at {
         let x = axes.x(at);
         let mark = line((x, axes.top), (x, axes.bottom), INK, 1.0).set("stroke-dasharray", "5 4");
-        g = g.add(of(mark, "at", &[Of::Quantity(&chart.x.name)]));
+        g = g.add(told(mark, "at", &[Of::Quantity(&chart.x.name)], along(&chart.x.name)));
         let (place, anchor) = if x > (LEFT + right) / 2.0 { (x - 5.0, Anchor::End) } else { (x + 5.0, Anchor::Start) };
         let label = text(place, axes.top + 14.0, 11.0, anchor, "operating point");
         g = g.add(halo(label, PAPER, 3.0));

@@ -13,6 +13,7 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, number, page, rectangle,
     text, ticks, watts, wide,
 };
+use crate::parts::words;
 use crate::{Drawing, EfficiencyMap, MapVerdict};
 use mesh::{Height, Mesh, Place};
 
@@ -141,7 +142,8 @@ fn everywhere(map: &EfficiencyMap, efficiency: f64) -> String {
 fn words(map: &EfficiencyMap) -> String {
     let known = || map.points.iter().filter_map(|p| p.efficiency);
     let (least, most) = known().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), e| (l.min(e), m.max(e)));
-    let mut out = format!("Efficiency over {} and {}. {}. ", map.x.name, map.y.name, map.basis);
+    let mut out =
+        format!("Efficiency over {} and {}. {}. ", words::along(&map.x.name), words::along(&map.y.name), map.basis);
     match known().count() {
         0 => out += "No point has an efficiency. ",
         _ => {
@@ -155,7 +157,8 @@ fn words(map: &EfficiencyMap) -> String {
 }
 
 fn percent(x: f64) -> String {
-    let text = format!("{:.2}", 100.0 * x);
+    // Nothing, whatever the sign of its round-off.
+    let text = format!("{:.2}", if x.abs() < 5e-5 { 0.0 } else { 100.0 * x });
     format!("{} %", text.trim_end_matches('0').trim_end_matches('.'))
 }
 

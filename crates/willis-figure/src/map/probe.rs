@@ -41,9 +41,37 @@ pub struct Probe<'q, 's> {
     /// Of an automatic transmission: what limits the choice.
     choice: Option<Choice>,
     trains: Trains,
-    /// The zones that were met, by what tells them apart.
-    zones: BTreeMap<(&'static str, Option<usize>, String), usize>,
+    /// The zones that were met; a zone's number is its place here.
+    zones: Vec<Zone>,
     loosest: Loosest,
+}
+
+/// What all points of a zone have in common.
+#[derive(PartialEq)]
+struct Zone {
+    verdict: MapVerdict,
+    best: Option<usize>,
+    /// Empty where there is no efficiency: there power goes nowhere.
+    ways: Vec<Way>,
+}
+
+/// Which way power goes through a part.
+#[derive(PartialEq)]
+enum Way {
+    /// It neither gives nor takes power.
+    Idle,
+    /// A member at which power comes in.
+    Input,
+    /// A member at which power goes out.
+    Output,
+    /// A member that only passes power on, or is held.
+    Passes,
+    /// A mesh that this member drives.
+    Driver(String),
+    /// A machine of a variator that gives power.
+    Motors,
+    /// A machine of a variator that takes power.
+    Generates,
 }
 
 /// A point of a map as it was found.
@@ -89,7 +117,7 @@ impl<'q, 's> Probe<'q, 's> {
         let (point, ways) = match self.choice.take() {
             None => {
                 let answer = self.answer(place, None);
-                (MapPoint::of(&answer, None), Ways::of(&answer))
+                (MapPoint::of(&answer, None), ways(&answer))
             }
             Some(choice) => {
                 let best = self.best(place, &choice);
@@ -97,27 +125,25 @@ impl<'q, 's> Probe<'q, 's> {
                 best
             }
         };
-        let idle = ways.idle;
+        let idle = ways.iter().filter(|w| **w == Way::Idle).count();
         if point.verdict == MapVerdict::Point(PointVerdict::Unique) {
             let least = self.loosest.0.entry(point.best).or_insert(idle);
             *least = idle.min(*least);
         }
-        let word = match point.verdict {
-            MapVerdict::Beyond => "",
-            MapVerdict::Point(verdict) => verdict.name(),
-        };
-        // Where there is no answer, no power goes anywhere.
-        let own = point.efficiency.map_or("", |_| &ways.word);
-        let next = self.zones.len();
-        let zone = *self.zones.entry((word, point.best, own.to_owned())).or_insert(next);
+        let ways = if point.efficiency.is_some() { ways } else { vec![] };
+        let own = Zone { verdict: point.verdict, best: point.best, ways };
+        let zone = self.zones.iter().position(|z| *z == own).unwrap_or_else(|| {
+            self.zones.push(own);
+            self.zones.len() - 1
+        });
         Found { point: MapPoint { zone, ..point }, idle }
     }
 
     /// The state that loses least of those within the limits.
-    fn best(&mut self, place: [f64; 2], (limits, states): &Choice) -> (MapPoint, Ways) {
+    fn best(&mut self, place: [f64; 2], (limits, states): &Choice) -> (MapPoint, Vec<Way>) {
         /// Efficiencies that differ by less are the same: the first state stays.
         const SAME: f64 = 1e-12;
-        let mut best = (MapPoint::beyond(), Ways::default());
+        let mut best = (MapPoint::beyond(), vec![]);
         for (k, (state, ratio)) in states.iter().enumerate() {
             // Without any loss the input needs the least torque.
             let within = |r: f64| limits.hold(place[0] * r, place[1] / r);
@@ -128,7 +154,7 @@ impl<'q, 's> Probe<'q, 's> {
             let Some([speed, torque]) = self.input(&answer, limits.input) else { continue };
             let new = MapPoint::of(&answer, Some(k));
             if limits.hold(speed, torque) && new.efficiency > best.0.efficiency.map(|e| e + SAME) {
-                best = (new, Ways::of(&answer));
+                best = (new, ways(&answer));
             }
         }
         best
@@ -187,43 +213,20 @@ impl MapPoint {
     }
 }
 
-/// Which way power goes through every part that can change it, and through how many it does not go.
-#[derive(Default)]
-struct Ways {
-    word: String,
-    idle: usize,
-}
-
-impl Ways {
-    fn of(answer: &PointAnswer) -> Self {
-        let mut ways = Self::default();
-        let Some(s) = &answer.solution else { return ways };
-        for (_, m) in s.members.iter() {
-            ways.add(match m.role {
-                Role::Input => "in",
-                Role::Output => "out",
-                Role::Idle => "",
-                _ => "held",
-            });
-        }
-        for (_, m) in s.meshes.iter() {
-            ways.add(m.driver.as_deref().unwrap_or(""));
-        }
-        for (_, m) in s.variators.iter().flat_map(|(_, v)| v.machines.iter()) {
-            ways.add(if m.power_w > 0.0 {
-                "motors"
-            } else if m.power_w < 0.0 {
-                "generates"
-            } else {
-                ""
-            });
-        }
-        ways
-    }
-
-    fn add(&mut self, way: &str) {
-        self.word.push_str(way);
-        self.word.push('\0');
-        self.idle += usize::from(way.is_empty());
-    }
+/// Which way power goes through every part that can change it.
+fn ways(answer: &PointAnswer) -> Vec<Way> {
+    let Some(s) = &answer.solution else { return vec![] };
+    let members = s.members.iter().map(|(_, m)| match m.role {
+        Role::Input => Way::Input,
+        Role::Output => Way::Output,
+        Role::Idle => Way::Idle,
+        _ => Way::Passes,
+    });
+    let meshes = s.meshes.iter().map(|(_, m)| m.driver.clone().map_or(Way::Idle, Way::Driver));
+    let machines = s.variators.iter().flat_map(|(_, v)| v.machines.iter()).map(|(_, m)| match m.power_w {
+        w if w > 0.0 => Way::Motors,
+        w if w < 0.0 => Way::Generates,
+        _ => Way::Idle,
+    });
+    members.chain(meshes).chain(machines).collect()
 }

@@ -3,6 +3,8 @@
 use svg::Node;
 use svg::node::element::Element;
 
+use super::words;
+
 /// What a mark stands for, by its name in the train.
 #[derive(Clone, Copy)]
 pub enum Of<'n> {
@@ -28,14 +30,28 @@ impl<'n> Of<'n> {
             Self::Quantity(name) => ("quantity", name),
         }
     }
+
+    /// What a reader is told of it: names as they are, quantities in words.
+    fn words(self) -> String {
+        match self {
+            Self::Quantity(name) => words::quantity(name),
+            _ => self.parts().1.to_owned(),
+        }
+    }
 }
 
 /// A mark with what it stands for. Its id is made of the same names, behind a word that tells it from other marks of them. A
 /// pointer that rests on it shows the names in full.
-pub fn of<T: Node>(mut mark: T, word: &str, all: &[Of<'_>]) -> T {
+pub fn of<T: Node>(mark: T, word: &str, all: &[Of<'_>]) -> T {
+    let title = all.iter().map(|one| one.words()).collect::<Vec<_>>().join(", ");
+    told(mark, word, all, title)
+}
+
+/// The same, with other words for a pointer that rests on it.
+pub fn told<T: Node>(mut mark: T, word: &str, all: &[Of<'_>], words: String) -> T {
     let mut id = word.to_owned();
     let mut title = Element::new("title");
-    title.append(svg::node::Text::new(all.iter().map(|one| one.parts().1).collect::<Vec<_>>().join(", ")));
+    title.append(svg::node::Text::new(words));
     mark.append(title);
     for one in all {
         let (kind, name) = one.parts();

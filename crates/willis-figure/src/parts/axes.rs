@@ -7,6 +7,8 @@ use willis::study::{Axis, Question};
 use willis::train::{Load, MemberId};
 use willis::units::Quantity;
 
+use super::words::along;
+
 /// A quantity along an axis of a chart.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -142,7 +144,7 @@ pub fn basis(question: &Question<'_>, over: &[&Axis]) -> String {
     let train = question.model().train();
     let base = question.base();
     let state = base.state.map(|k| format!(", state {}", train.states()[k].name)).unwrap_or_default();
-    let varies: Vec<&str> = over.iter().map(|a| a.name.as_str()).collect();
+    let varies: Vec<String> = over.iter().map(|a| along(&a.name)).collect();
     match train.operations().is_empty() {
         false => {
             let verb = if varies.len() == 1 { "varies" } else { "vary" };

@@ -4,6 +4,7 @@ use svg::node::element::{Group, Path};
 
 use crate::parts::alive::guide;
 use crate::parts::style::{Anchor, FAINT, LINE, fit, line, number, rectangle, text, ticks, wide};
+use crate::parts::words::along;
 
 /// Grid lines.
 pub const GRID: &str = "#e4e4e4";
@@ -171,15 +172,12 @@ fn labels(all: &[f64]) -> Vec<String> {
 
 /// `sun.speed` and its unit as the title of an axis.
 pub fn title(axis: &crate::ChartAxis) -> String {
-    let name = match axis.name.rsplit_once('.') {
-        Some(("oil", "temperature")) => "Oil temperature".to_owned(),
-        Some((who, what @ ("speed" | "torque" | "power"))) => {
-            let mut letters = what.chars();
-            let first = letters.next().map(|c| c.to_ascii_uppercase()).into_iter();
-            format!("{} of {who}", first.chain(letters).collect::<String>())
-        }
-        _ => axis.name.clone(),
-    };
+    // A name of the file keeps its letters.
+    let named = ["speed", "torque", "power", "temperature"].iter().any(|what| axis.name.ends_with(what));
+    let words = along(&axis.name);
+    let mut letters = words.chars();
+    let first = letters.next().map(|c| if named { c.to_ascii_uppercase() } else { c }).into_iter();
+    let name: String = first.chain(letters).collect();
     match axis.unit.as_str() {
         "" => name,
         "degC" => format!("{name}, °C"),

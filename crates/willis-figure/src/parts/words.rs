@@ -1,5 +1,8 @@
 //! Messages and names of quantities in words: no keys, no marks of code, numbers in fitting units.
 
+use willis::losses::entries;
+use willis::operating_point::LossKind;
+
 use crate::parts::style::{figures, watts};
 
 /// Names that a user gave, which stay as they are.
@@ -45,6 +48,7 @@ pub fn plain(text: &str, names: &Names<'_>) -> String {
             0 => prose(part, names, &mut out),
             _ if part.is_empty() => {}
             _ if names.has(part) => out.push_str(&format!("“{part}”")),
+            _ if AUTHORS.iter().any(|a| a.0 == part) => out.push_str(&law(part)),
             _ => out.push_str(&format!("“{}”", key(part))),
         }
     }
@@ -63,7 +67,95 @@ fn prose(mut text: &str, names: &Names<'_>, out: &mut String) {
 
 /// A sentence without keys, which have underscores, and with numbers for people.
 fn told(text: &str) -> String {
-    numbers(&text.replace('_', " "))
+    numbers(&by_authors(text).replace('_', " "))
+}
+
+/// Laws whose name in files is that of authors or of a standard, and how these are written. All others have plain words.
+const AUTHORS: [(&str, &str); 31] = [
+    ("agma-6011", "AGMA 6011"),
+    ("agma-6011-per-planet", "AGMA 6011 for every planet"),
+    ("anderson-loewenthal", "Anderson–Loewenthal"),
+    ("benedict-kelley", "Benedict–Kelley"),
+    ("bilgen-boulos-daily-nece", "Bilgen–Boulos and Daily–Nece"),
+    ("buckingham-merritt", "Buckingham and Merritt"),
+    ("changenet-2011", "Changenet 2011"),
+    ("coulomb-by-regime", "Coulomb by film ratio"),
+    ("dawson-1984", "Dawson 1984"),
+    ("diab", "Diab"),
+    ("dowson-higginson", "Dowson–Higginson"),
+    ("dowson-higginson-1966", "Dowson–Higginson 1966"),
+    ("dowson-toyoda", "Dowson–Toyoda"),
+    ("fernandes", "Fernandes"),
+    ("goksem-hargreaves", "Goksem–Hargreaves"),
+    ("grubin", "Grubin"),
+    ("gupta-cheng", "Gupta–Cheng"),
+    ("harris", "Harris"),
+    ("iso-14179-1", "ISO/TR 14179-1"),
+    ("iso-14179-2", "ISO/TR 14179-2"),
+    ("matsumoto", "Matsumoto"),
+    ("murch-wilson", "Murch–Wilson"),
+    ("niemann", "Niemann"),
+    ("niemann-winter", "Niemann–Winter"),
+    ("ohlendorf", "Ohlendorf"),
+    ("palmgren", "Palmgren"),
+    ("schlenk", "Schlenk"),
+    ("simrit", "Simrit"),
+    ("skf", "SKF"),
+    ("skf-6000", "SKF 6000"),
+    ("xu-kahraman", "Xu–Kahraman"),
+];
+
+/// A law by its authors: `schlenk` is Schlenk, `two-pair` is two pair.
+pub fn law(id: &str) -> String {
+    let known = AUTHORS.iter().find(|a| a.0 == id);
+    known.map_or_else(|| id.replace(['-', '_'], " "), |a| a.1.to_owned())
+}
+
+/// A law that causes a loss of some kind, by its title; a law of one name stands in several families.
+pub fn law_title(kind: Option<LossKind>, id: &str) -> String {
+    if id == "given" {
+        return "efficiency given".to_owned();
+    }
+    let families: &[&str] = match kind {
+        Some(LossKind::Sliding) => &["mesh_friction"],
+        Some(LossKind::Rolling) => &["rolling"],
+        Some(LossKind::Bearing) => &["bearing"],
+        Some(LossKind::Windage) => &["windage", "rotor_drag"],
+        Some(LossKind::Churning) => &["churning", "rotor_drag"],
+        Some(LossKind::Seal) => &["seal"],
+        _ => &[],
+    };
+    let all = entries();
+    let own = families.iter().find_map(|f| all.iter().find(|e| e.family == *f && e.id == id));
+    own.map_or_else(|| law(id), |e| e.title.to_owned())
+}
+
+/// A sentence in which laws have the names of their authors: `friction = schlenk` is friction by Schlenk.
+fn by_authors(text: &str) -> String {
+    let within = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let end = rest.find(|c| !within(c)).unwrap_or(rest.len());
+        let word = &rest[..end];
+        if word.is_empty() {
+            out.push(c);
+            rest = &rest[c.len_utf8()..];
+            continue;
+        }
+        match AUTHORS.iter().find(|a| a.0 == word) {
+            Some((_, authors)) => {
+                if out.ends_with(" = ") {
+                    out.truncate(out.len() - "= ".len());
+                    out.push_str("by ");
+                }
+                out.push_str(authors);
+            }
+            None => out.push_str(word),
+        }
+        rest = &rest[end..];
+    }
+    out
 }
 
 /// A key as words: `mesh_friction` is mesh friction.
@@ -76,7 +168,11 @@ fn key(text: &str) -> String {
 /// The name of a quantity and what follows it, in words: `P1.mesh_efficiency.external 0.97..0.99` is
 /// P1, mesh efficiency, external 0.97 to 0.99.
 pub fn spelled(quantity: &str) -> String {
-    let (path, rest) = quantity.split_once(' ').map_or((quantity, ""), |(path, rest)| (path, rest));
+    // A name may have blanks; a path ends at the first behind its first key.
+    let key = |at: &usize| quantity[at + 1..].starts_with(|c: char| c.is_ascii_lowercase());
+    let first = quantity.match_indices('.').map(|found| found.0).find(key).unwrap_or(0);
+    let end = quantity[first..].find(' ').map_or(quantity.len(), |at| first + at);
+    let (path, rest) = quantity.split_at(end);
     let mut parts = path.split('.');
     // The first is a name, which stays.
     let mut words = parts.next().unwrap_or_default().to_owned();
@@ -89,7 +185,36 @@ pub fn spelled(quantity: &str) -> String {
         "degC" => word.replace("degC", "°C"),
         _ => word.replace("..", " to "),
     };
+    let rest = by_authors(rest);
     rest.split(' ').filter(|w| !w.is_empty()).fold(words, |all, word| all + " " + &units(word))
+}
+
+/// Fields of answers, and what people call them.
+const FIELDS: [(&str, &str); 5] = [
+    ("event_times", "times of events"),
+    ("film_ratio", "film ratio"),
+    ("input_power_w", "input power"),
+    ("loss_w", "loss"),
+    ("power_w", "power"),
+];
+
+/// A quantity that a mark stands for, in words: `input_power_w 5 kW` is input power 5 kW. What is no field stays, because it may
+/// be a name.
+pub fn quantity(name: &str) -> String {
+    let (first, rest) = name.split_once(' ').map_or((name, ""), |(first, rest)| (first, rest));
+    match FIELDS.iter().find(|f| f.0 == first) {
+        Some((_, field)) => format!("{field} {rest}").trim_end().to_owned(),
+        None => name.to_owned(),
+    }
+}
+
+/// What a chart runs over: `sun.speed` is speed of sun, `P1.mesh_efficiency` is P1, mesh efficiency.
+pub fn along(name: &str) -> String {
+    match name.rsplit_once('.') {
+        Some(("oil", "temperature")) => "oil temperature".to_owned(),
+        Some((who, what @ ("speed" | "torque" | "power"))) => format!("{what} of {who}"),
+        _ => spelled(name),
+    }
 }
 
 /// Where something stands in a train file, in words: `set[0].geometry.profile_shift` is set 1, geometry, profile shift.
@@ -183,10 +308,30 @@ mod tests {
     }
 
     #[test]
+    fn laws_have_authors_or_plain_words() {
+        let names = Names::new(["grubin"]);
+        assert_eq!(plain("tooth friction by `schlenk`, `grubin`", &names), "tooth friction by Schlenk, “grubin”");
+        assert_eq!(
+            plain("mesh_friction = niemann-winter of grubin", &names),
+            "mesh friction by Niemann–Winter of grubin"
+        );
+        assert_eq!(spelled("law.mesh_friction schlenk, constant"), "law, mesh friction Schlenk, constant");
+        assert_eq!(law_title(Some(LossKind::Windage), "anderson-loewenthal"), "Anderson and Loewenthal 1980");
+        const PLAIN: [&str; 7] = ["constant", "none", "stiffness", "equal", "uniform", "integrated", "two-pair"];
+        for e in entries() {
+            assert!(AUTHORS.iter().any(|a| a.0 == e.id) != PLAIN.contains(&e.id), "{}", e.id);
+        }
+    }
+
+    #[test]
     fn places_are_words() {
         assert_eq!(spelled("P4.mesh_efficiency.external 0.976..0.984"), "P4, mesh efficiency, external 0.976 to 0.984");
         assert_eq!(spelled("sun_1.speed 55..65 degC; x"), "sun_1, speed 55 to 65 °C; x");
         assert_eq!(spelled("load"), "load");
+        assert_eq!(quantity("input_power_w 5 kW"), "input power 5 kW");
+        assert_eq!(quantity("loss_w"), "loss");
+        assert_eq!(spelled("stage 2.mesh_efficiency 0.9..0.95"), "stage 2, mesh efficiency 0.9 to 0.95");
+        assert_eq!(quantity("sun_1 at rest"), "sun_1 at rest");
         assert_eq!(place("set[0].geometry.profile_shift"), "set 1, geometry, profile shift");
         assert_eq!(place("operation[11]"), "operation 12");
         assert_eq!(place("oil"), "oil");

@@ -4,7 +4,6 @@ use willis::analysis::{
     CertificateReport, Direction, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport,
     Verdict,
 };
-use willis::losses::entries;
 use willis::operating_point::Regime;
 use willis::regimes::{ClosedFormula, FormulaRequest, formulas as closed};
 use willis::statics::Certificate;
@@ -14,7 +13,7 @@ use willis::train::AS_DRAWN;
 use super::{Findings, TOLD, and_more, notice};
 use crate::FigureKind;
 use crate::parts::style::{figures, watts};
-use crate::parts::words::spelled;
+use crate::parts::words::{law_title, spelled};
 use crate::report::document::{Block, Column, Level, Section, Term};
 use crate::report::formula::{Display, mathml};
 
@@ -395,7 +394,15 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         let columns = ["Loss", "Kind", "Law"].map(Column::words).into_iter();
         let columns = columns.chain(["Loss", "Share"].map(Column::numbers)).collect();
         let rows = (s.sources.iter().filter(|x| x.loss_w > 0.0))
-            .map(|x| vec![x.name.clone(), x.kind.words().into(), title(&x.law), watts(x.loss_w), percent(x.share)])
+            .map(|x| {
+                vec![
+                    x.name.clone(),
+                    x.kind.words().into(),
+                    law_title(Some(x.kind), &x.law),
+                    watts(x.loss_w),
+                    percent(x.share),
+                ]
+            })
             .collect();
         blocks.push(Block::Table { caption: format!("Losses at {}", o.name), columns, rows });
         blocks.extend(contacts(&o.name, s));
@@ -415,12 +422,6 @@ pub fn losses(all: &Findings<'_>) -> Option<Section> {
         blocks.clear();
     }
     (!blocks.is_empty()).then(|| Section { title: "Losses, and what to change first".into(), blocks })
-}
-
-/// A law by its title rather than by its name in files.
-fn title(law: &str) -> String {
-    let known = entries().iter().find(|e| e.id == law).map(|e| e.title.to_owned());
-    known.unwrap_or_else(|| if law == "given" { "efficiency given".to_owned() } else { law.replace('_', " ") })
 }
 
 /// A share, with three digits.

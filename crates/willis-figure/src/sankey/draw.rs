@@ -4,11 +4,10 @@ mod layout;
 mod ribbon;
 mod words;
 
-use svg::Node as _;
-use svg::node::element::{Element, Group, Path, Polygon};
+use svg::node::element::{Group, Path, Polygon};
 use willis::hypergraph::NodeKind;
 
-use crate::parts::alive::{Of, guide, of, part};
+use crate::parts::alive::{Of, guide, of, part, told};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, PAPER, colour, fit, halo, line, lines, number, page, rectangle, text, watts, wide,
 };
@@ -223,15 +222,13 @@ fn filled(path: String, fill: &str) -> Path {
 /// A ribbon, its circulating part hatched.
 fn link(d: &Layout<'_>, k: usize, l: &SankeyLink, panel: &str) -> Group {
     let name = |k: usize| &d.flow.nodes[k].name;
-    let mut about = Element::new("title");
-    let mut told = format!("{} to {}: {}", name(l.from), name(l.to), watts(l.power_w));
+    let mut words = format!("{} to {}: {}", name(l.from), name(l.to), watts(l.power_w));
     if l.circulating_w > 0.0 {
-        told += &format!(", {} of it in a circle", watts(l.circulating_w));
+        words += &format!(", {} of it in a circle", watts(l.circulating_w));
     }
-    about.append(svg::node::Text::new(told));
     let [from, to] = [l.from, l.to].map(|k| &d.flow.nodes[k]);
     let link = format!("power_w {:?} {} to {:?} {} {}", from.kind, from.name, to.kind, to.name, l.via.join(" "));
-    let mut g = of(Group::new().add(about), "ribbon", &[Of::Quantity(link.trim_end()), Of::State(panel)]);
+    let mut g = told(Group::new(), "ribbon", &[Of::Quantity(link.trim_end()), Of::State(panel)], words);
     let whole = d.ribbon(k, [0.0, l.power_w]);
     if l.back {
         g = g.add(

@@ -64,7 +64,12 @@ pub(super) fn draw_on(plot: &TimePlot, paper: Drawing) -> String {
     if !frames.is_empty() {
         body = body.add(time.labels(bottom));
     }
-    let list_top = bottom + 74.0;
+    let mut list_top = bottom + 74.0;
+    if !plot.shifts.is_empty() {
+        let (close, height) = shifts(plot, width, list_top);
+        body = body.add(close);
+        list_top = height + 34.0;
+    }
     let (list, height) = told(plot, &time, list_top);
     let title = format!("{}: {}", plot.train, plot.scenario);
     let (one, two) = subtitle(plot, &time, width - 56.0);
@@ -145,6 +150,8 @@ fn description(plot: &TimePlot) -> String {
 struct TimeAxis {
     from: f64,
     to: f64,
+    /// Where the panels begin.
+    left: f64,
     /// Where the panels end.
     right: f64,
     unit: &'static str,
@@ -154,21 +161,31 @@ struct TimeAxis {
 
 impl TimeAxis {
     fn new(axis: [f64; 2], right: f64) -> Self {
+        Self::between(axis, LEFT, right)
+    }
+
+    /// For panels between two places.
+    fn between(axis: [f64; 2], left: f64, right: f64) -> Self {
         let [from, mut to] = axis;
         if to <= from {
             to = from + 1.0;
         }
-        let (unit, scale) = match to - from {
+        let (unit, scale) = Self::unit(to - from);
+        let about = (((right - left) / 90.0) as usize).max(3);
+        Self { from, to, left, right, unit, scale, ticks: ticks(from / scale, to / scale, about) }
+    }
+
+    /// The unit of times within a span, s, and its seconds.
+    fn unit(span: f64) -> (&'static str, f64) {
+        match span {
             d if d < 0.4e-3 => ("µs", 1e-6),
             d if d < 0.4 => ("ms", 1e-3),
             _ => ("s", 1.0),
-        };
-        let about = (((right - LEFT) / 90.0) as usize).max(3);
-        Self { from, to, right, unit, scale, ticks: ticks(from / scale, to / scale, about) }
+        }
     }
 
     fn x(&self, t: f64) -> f64 {
-        LEFT + (t - self.from) / (self.to - self.from) * (self.right - LEFT)
+        self.left + (t - self.from) / (self.to - self.from) * (self.right - self.left)
     }
 
     /// A time with as many digits as tell it from its neighbours.
@@ -186,7 +203,11 @@ impl TimeAxis {
     }
 
     fn frame(&self, top: f64, bottom: f64) -> svg::node::element::Rectangle {
-        guide(rectangle(LEFT, top, self.right - LEFT, bottom - top, "none").set("stroke", LINE).set("stroke-width", 1))
+        guide(
+            rectangle(self.left, top, self.right - self.left, bottom - top, "none")
+                .set("stroke", LINE)
+                .set("stroke-width", 1),
+        )
     }
 
     fn labels(&self, bottom: f64) -> Group {
@@ -279,6 +300,84 @@ fn whose<'p>(p: &'p TimePanel, l: &'p TimeLine) -> [Of<'p>; 2] {
     let name = l.names.first().map_or("", String::as_str);
     let part = if p.unit == ColumnUnit::RadianPerSecond { Of::Member(name) } else { Of::Element(name) };
     [part, Of::Quantity(&p.quantity)]
+}
+
+/// Each shift by itself, side by side on the same scales: a row a panel.
+fn shifts(plot: &TimePlot, width: f64, top: f64) -> (Group, f64) {
+    const APART: f64 = 14.0;
+    const TALL: f64 = 110.0;
+    const LEAST: f64 = 116.0;
+    let right = width - 28.0;
+    let fits = (((right - LEFT + APART) / (LEAST + APART)) as usize).max(1);
+    let count = plot.shifts.len();
+    let rows = count.div_ceil(fits);
+    let columns = count.div_ceil(rows);
+    let cell = ((right - LEFT + APART) / columns as f64 - APART).min(260.0);
+    let span = plot.shifts[0].window[1] - plot.shifts[0].window[0];
+    let (unit_of_time, scale) = TimeAxis::unit(span);
+    let head = format!(
+        "Each shift closely: {count} windows of {} {unit_of_time}, on the same scales",
+        figures(span / scale, 3)
+    );
+    let mut y = top;
+    let mut g = Group::new().add(text(28.0, y, 13.0, Anchor::Start, &head).set("font-weight", "bold"));
+    y += 30.0;
+    for (r, shown) in plot.shifts.chunks(columns).enumerate() {
+        let panels = shown.first().map_or(0, |s| s.panels.len());
+        for k in 0..panels {
+            // One scale for all shifts, of all rows.
+            let lines: Vec<TimeLine> = plot.shifts.iter().flat_map(|s| s.panels[k].lines.clone()).collect();
+            let most = lines.iter().flat_map(|l| l.pieces.iter().flatten()).fold(0.0f64, |m, v| m.max(v[1].abs()));
+            let (unit, size) = unit(shown[0].panels[k].unit, most);
+            let (low, high) = range(&lines, size);
+            let [above, below] = [y, y + TALL];
+            let level = |v: f64| below - (v / size - low) / (high - low) * TALL;
+            let name = &shown[0].panels[k].quantity;
+            let name = if unit.is_empty() { name.clone() } else { format!("{name}, {unit}") };
+            g = g.add(text(28.0, above - 8.0, 11.0, Anchor::Start, &name).set("fill", FAINT));
+            let at = ticks(low, high, 4);
+            for (t, name) in at.iter().zip(tick_labels(&at)) {
+                let y = level(t * size);
+                g = g.add(text(LEFT - 6.0, y + 4.0, 11.0, Anchor::End, &name).set("fill", FAINT));
+            }
+            for (c, shift) in shown.iter().enumerate() {
+                let left = LEFT + c as f64 * (cell + APART);
+                let time = TimeAxis::between(shift.window, left, left + cell);
+                let number_of = r * columns + c + 1;
+                for t in &at {
+                    let y = level(t * size);
+                    g = g.add(guide(line((left, y), (left + cell, y), GRID, 1.0)));
+                }
+                let mut d = String::new();
+                let mut last = f64::NEG_INFINITY;
+                for t in plot.event_times.iter().filter(|t| (shift.window[0]..=shift.window[1]).contains(*t)) {
+                    let x = time.x(*t);
+                    if x - last >= 2.5 {
+                        d += &format!("M{} {} V{} ", number(x), number(above), number(below));
+                        last = x;
+                    }
+                }
+                if !d.is_empty() {
+                    let path = Path::new().set("d", d.trim_end()).set("fill", "none").set("stroke", INK);
+                    let path = path.set("stroke-width", 0.6).set("stroke-opacity", 0.5);
+                    g = g.add(of(path, &format!("events{number_of}-{k}"), &[Of::Quantity("event_times")]));
+                }
+                g = g.add(time.frame(above, below));
+                for (n, l) in shift.panels[k].lines.iter().enumerate().rev().filter(|(_, l)| !l.pieces.is_empty()) {
+                    let word = format!("shift{number_of}-{n}");
+                    g = g.add(of(curve(l, n, &time, &level), &word, &whose(&shift.panels[k], l)));
+                }
+                if k + 1 == panels {
+                    // Where it begins.
+                    let from = format!("from {} s", figures(shift.window[0], 4));
+                    g = g.add(text(left, below + 16.0, 11.0, Anchor::Start, &from).set("fill", FAINT));
+                }
+            }
+            y = below + 26.0;
+        }
+        y += 18.0;
+    }
+    (g, y)
 }
 
 /// The time that the run did not reach.

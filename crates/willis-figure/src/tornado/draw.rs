@@ -3,7 +3,7 @@
 use svg::node::element::Group;
 use willis::units;
 
-use crate::parts::alive::{Of, guide, of};
+use crate::parts::alive::{Of, guide, told};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
     ticks, watts, wide,
@@ -104,7 +104,7 @@ pub(super) fn draw_on(t: &Tornado, paper: Drawing) -> String {
             let points = if eta.abs() < 1e-10 { 0.0 } else { 100.0 * eta };
             row = row.add(text(width - MARGIN, y + 4.0, 11.0, Anchor::End, &signed(points)));
         }
-        g = g.add(of(row, "row", &[Of::Quantity(&b.name)]));
+        g = g.add(told(row, "row", &[Of::Quantity(&b.name)], spelled(&b.name)));
     }
     g = g.add(guide(line((middle, TOP - 4.0), (middle, bottom), INK, 1.2))).add(guide(line(
         (left - room, bottom),
@@ -178,6 +178,10 @@ fn value(b: &TornadoBar) -> String {
 }
 
 fn words(t: &Tornado) -> String {
-    let first = t.bars.iter().take(5).map(|b| format!("{} {}: {} W", b.name, b.step.label(), signed(b.loss_change_w)));
+    let first = t
+        .bars
+        .iter()
+        .take(5)
+        .map(|b| format!("{} {}: {} W", spelled(&b.name), b.step.label(), signed(b.loss_change_w)));
     format!("{} Largest effects on the loss: {}.", caption(t), first.collect::<Vec<_>>().join("; "))
 }

@@ -77,6 +77,77 @@ fn gears_change_where_a_limit_is_reached() {
     assert_eq!(seen, map.borders.len());
 }
 
+/// Pieces of the contours of a map: what each is a line of, its box on the page, and whether it is closed.
+fn contours(svg: &str) -> Vec<(String, [f64; 4], bool)> {
+    let document = roxmltree::Document::parse(svg).expect("well-formed");
+    let mut all = vec![];
+    for path in document.descendants().filter(|n| n.attribute("id").is_some_and(|id| id.starts_with("contour-"))) {
+        let name = path.attribute("data-quantity").unwrap_or_default();
+        for piece in path.attribute("d").unwrap_or_default().split('M').filter(|p| !p.trim().is_empty()) {
+            let numbers: Vec<f64> =
+                piece.split(|c: char| c == 'L' || c.is_whitespace()).filter_map(|n| n.parse().ok()).collect();
+            let mut bounds = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+            for p in numbers.chunks_exact(2) {
+                bounds = [bounds[0].min(p[0]), bounds[1].min(p[1]), bounds[2].max(p[0]), bounds[3].max(p[1])];
+            }
+            all.push((name.to_owned(), bounds, numbers.first_chunk::<2>() == numbers.last_chunk()));
+        }
+    }
+    all
+}
+
+/// A closed line of a coarse map that is no longer than a few cells is one of a map with a grid four times as fine too.
+#[test]
+fn small_islands_are_there_on_a_finer_grid_too() {
+    // The page of a map has about 600 by 400 units.
+    const COARSE: [usize; 2] = [21, 16];
+    let cell = 600.0 / (COARSE[0] - 1) as f64;
+    let mut pieces = 0;
+    for name in ["prius-hybrid", "prius-p112", "two-mode-split", "tractor-hydrostat", "belt-ivt", "compound-split"] {
+        let usual = efficiency_map(&model(name), None, None, &[]).expect("it has a map");
+        let drawn = |part: usize| {
+            let axis = |a: &willis_figure::ChartAxis, count: usize| {
+                let (first, last, unit) = (a.values[0], a.values[a.values.len() - 1], &a.unit);
+                format!("{}={first} {unit}..{last} {unit}:{}", a.name, (count - 1) * part + 1)
+            };
+            let over = [axis(&usual.x, COARSE[0]), axis(&usual.y, COARSE[1])];
+            contours(&draw_map(&efficiency_map(&model(name), None, None, &over).expect("it has a map")))
+        };
+        let (coarse, fine) = (drawn(1), drawn(4));
+        for (line, [x0, y0, x1, y1], closed) in &coarse {
+            pieces += 1;
+            if !closed || x1 - x0 > 3.0 * cell || y1 - y0 > 3.0 * cell {
+                continue;
+            }
+            let near = |other: &[f64; 4]| {
+                let apart = (other[0] - x1).max(x0 - other[2]).max(other[1] - y1).max(y0 - other[3]);
+                apart < 2.0 * cell && other[2] - other[0] < 6.0 * cell && other[3] - other[1] < 6.0 * cell
+            };
+            let known = fine.iter().any(|(own, other, _)| own == line && near(other));
+            assert!(known, "{name}: {line} at {x0} {y0} {x1} {y1}");
+        }
+    }
+    assert!(pieces > 20, "{pieces}");
+}
+
+/// Two borders of the Prius pass each other in narrow wedges: where a machine stands, and where all turn together. Along them
+/// every line is whole, once on each side.
+#[test]
+fn lines_beside_a_ridge_are_whole() {
+    let map = map("prius-hybrid");
+    let all = contours(&draw_map(&map));
+    let efficiencies = all.iter().filter(|c| c.0.starts_with("efficiency"));
+    let mut pieces = std::collections::BTreeMap::new();
+    efficiencies.for_each(|c| *pieces.entry(&c.0).or_insert(0) += 1);
+    assert!(pieces.len() > 4 && pieces.values().all(|n| *n <= 2), "{pieces:?}");
+    // No zone lies unseen between two neighbours: over a border efficiency has a kink, or the small step of a machine that turns
+    // from motor to generator.
+    for b in &map.borders {
+        let [one, other] = [&b.sides[0], &b.sides[1]].map(|s| s.efficiency.unwrap_or(0.0));
+        assert!((one - other).abs() < 0.01, "{b:?}");
+    }
+}
+
 #[test]
 fn a_constant_map_is_a_sentence() {
     let svg = draw_map(&map("wolfrom-236"));

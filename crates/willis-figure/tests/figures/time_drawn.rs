@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use willis::dynamics::{Column, ColumnKind, Event, Outcome, Recorder, RunReport, Sample};
 use willis::train::{SetSpec, ShiftElementSpec, Train};
-use willis_figure::{TimePlot, TimePlotBuilder};
+use willis_figure::{Figure, FigureKind, FigureRequest, TimePlot, TimePlotBuilder};
 
 type Label = (String, [f64; 4]);
 
@@ -331,4 +331,41 @@ fn only_a_window_that_cuts_a_run_ends_it() {
         assert_eq!((plot.cut, plot.run[1]), (cut, if cut { window.unwrap()[1] } else { end }));
         assert_eq!(svg.matches("was ended there").count(), if cut { 2 } else { 0 }, "{window:?}");
     }
+}
+
+/// Seven shifts of an automatic: each in a window of the same length, with the values of the whole run.
+#[test]
+fn each_shift_is_shown_closely_with_the_same_values() {
+    let kind = FigureKind::named("time").expect("a kind");
+    let figure = kind.make(&crate::trains::model("shift-8hp70"), &FigureRequest::default()).expect("it runs");
+    let Figure::Time(plot) = figure else { panic!("a run over time") };
+    assert_eq!(plot.shifts.len(), 7);
+    let mut compared = 0;
+    for shift in &plot.shifts {
+        let [from, to] = shift.window;
+        assert!((to - from - (plot.shifts[0].window[1] - plot.shifts[0].window[0])).abs() < 1e-9);
+        assert!(from <= shift.events[0] && shift.events[1] <= to);
+        for (whole, closely) in plot.panels.iter().zip(&shift.panels) {
+            assert_eq!(whole.quantity, closely.quantity);
+            for (line, close) in whole.lines.iter().zip(&closely.lines) {
+                assert_eq!(line.names, close.names);
+                assert!(close.pieces.iter().flatten().all(|p| (from..=to).contains(&p[0])));
+                // The finer curve passes every point of the coarser one.
+                for p in line.pieces.iter().flatten().filter(|p| (from..=to).contains(&p[0])) {
+                    let size = 1e-6 * p[1].abs().max(1.0);
+                    let passes = |w: &[[f64; 2]]| {
+                        let (low, high) = (w[0][1].min(w[1][1]) - size, w[0][1].max(w[1][1]) + size);
+                        w[0][0] <= p[0] && p[0] <= w[1][0] && low <= p[1] && p[1] <= high
+                    };
+                    let on = close.pieces.iter().any(|piece| piece.windows(2).any(passes) || piece.contains(p));
+                    assert!(on, "{} at {} s", line.names[0], p[0]);
+                    compared += 1;
+                }
+            }
+        }
+    }
+    assert!(compared > 100, "{compared}");
+    // One change in a run is no row of shifts.
+    let figure = kind.make(&crate::trains::model("ivt-drive-away"), &FigureRequest::default()).expect("it runs");
+    assert!(matches!(figure, Figure::Time(plot) if plot.shifts.is_empty()));
 }

@@ -1,5 +1,6 @@
 //! Trains of which figures are made.
 
+use willis::losses::entries;
 use willis::model::Model;
 use willis::train::{OperationSpec, SetSpec, Train};
 use willis::units::{AngularSpeed, Torque};
@@ -16,6 +17,38 @@ pub fn model(name: &str) -> Model {
 pub fn examples() -> Vec<(String, Train)> {
     let all = crate::common::examples().into_iter().map(|(name, _)| name);
     all.map(|name| (name.clone(), model(&name).train().clone())).collect()
+}
+
+/// Every name that the file of a train gives to something.
+pub fn names(train: &Train) -> Vec<&str> {
+    (train.members().iter().map(|m| m.name.as_str()))
+        .chain(train.meshes().iter().map(|m| m.name.as_str()))
+        .chain(train.sets().iter().map(|s| s.name.as_str()))
+        .chain(train.shift_elements().iter().map(|e| e.name.as_str()))
+        .chain(train.variators().iter().map(|v| v.name.as_str()))
+        .chain(train.states().iter().map(|s| s.name.as_str()))
+        .chain(train.operations().iter().map(|o| o.name.as_str()))
+        .chain(train.scenarios().iter().map(|s| s.name.as_str()))
+        .chain([train.name()])
+        .collect()
+}
+
+/// What of a text for readers is a key of files or answers, or a mark of code.
+pub fn code_in(text: &str, names: &[&str]) -> Option<String> {
+    if text.contains('`') {
+        return Some("`".to_owned());
+    }
+    let apart = |c: char| !(c.is_alphanumeric() || c == '_' || c == '-');
+    // Names of laws in files are those of people, written small.
+    const WORDS: [&str; 6] = ["constant", "none", "stiffness", "equal", "uniform", "integrated"];
+    let law = |w: &str| !WORDS.contains(&w) && entries().iter().any(|e| e.id == w);
+    let key = |w: &&str| {
+        let mut parts = w.trim_matches('_').split('_');
+        law(w)
+            || parts.clone().count() > 1 && parts.all(|p| !p.is_empty() && p.chars().all(|c| c.is_ascii_alphanumeric()))
+    };
+    let named = |w: &&str| names.iter().any(|n| n.split(apart).any(|own| own == *w));
+    text.split(apart).filter(key).find(|w| !named(w)).map(str::to_owned)
 }
 
 /// Up to four stepped sets on a few shafts under one load, the same for the same seed; many of them recirculate. None

@@ -1,11 +1,10 @@
 //! Symbols and lines of a power flow.
 
-use svg::Node as _;
-use svg::node::element::{Circle, Element, Group, Path, Polygon};
+use svg::node::element::{Circle, Group, Path, Polygon};
 use willis::hypergraph::{Hypergraph, Node, NodeKind};
 
 use super::words::{GROUND, R, ROW, SMALL, name, values};
-use crate::parts::alive::{Of, of, part};
+use crate::parts::alive::{Of, of, part, told};
 use crate::parts::style::{Anchor, FAINT, INK, LINE, PAPER, colour, halo, line, number, rectangle, text, watts};
 
 /// Whether power runs in a circle.
@@ -66,11 +65,11 @@ pub struct Line {
 pub fn draw(l: &Line, g: &Hypergraph, panel: &str) -> Group {
     let e = &g.edges[l.edge];
     let p = &l.points;
-    let mut words = Element::new("title");
     let name = |id: &str| g.node(id).map_or(String::new(), |n| n.name.clone());
-    words.append(svg::node::Text::new(format!("{} to {}: {}", name(&e.from), name(&e.to), watts(e.power_w))));
+    let words = format!("{} to {}: {}", name(&e.from), name(&e.to), watts(e.power_w));
     let link = format!("power_w {} to {}", e.from, e.to);
-    let mut group = of(Group::new().add(words), &format!("line{}", l.edge), &[Of::Quantity(&link), Of::State(panel)]);
+    let own = [Of::Quantity(&link), Of::State(panel)];
+    let mut group = told(Group::new(), &format!("line{}", l.edge), &own, words);
     // Where a symbol's outline is met.
     let reach = |y: f64| (R * R - y * y).max(0.0).sqrt().max(R * 0.5);
     let last = p.len() - 1;

@@ -83,7 +83,8 @@ impl<'m> Mesh<'m> {
             let crossings = [0, 1, 2, 3].map(|k| crossing(around[k], around[(k + 1) % 4]));
             let corners = around.map(|k| corner(place(k), &map.points[k]));
             let cuts: Vec<usize> = (0..4).filter(|k| crossings[*k].is_some()).collect();
-            let joint = (cuts.len() > 2).then(|| {
+            let apart = map.through(cell);
+            let joint = (cuts.len() > 2 && apart.is_none()).then(|| {
                 let all = cuts.iter().filter_map(|k| crossings[*k]);
                 let smooth = all.clone().all(|c| !c.1);
                 let all: Vec<Corner> = all.map(|c| c.0[0]).collect();
@@ -100,6 +101,19 @@ impl<'m> Mesh<'m> {
             };
             if cuts.is_empty() {
                 pieces.push(Piece { point: cell, triangles: fan(&corners, middle(&corners), false) });
+            }
+            if let (Some(first), [Some(a), Some(b), Some(c), Some(d)]) = (apart, crossings) {
+                // Two borders cross the cell beside each other: a zone lies between them, and each other has a corner.
+                let sides = [a, b, c, d].map(|crossing| crossing.0);
+                let edge = |k: usize, side: usize| sides[(first + k) % 4][side];
+                let corner = |k: usize| corners[(first + k) % 4];
+                let between = [corner(0), edge(0, 0), edge(1, 1), corner(2), edge(2, 0), edge(3, 1)];
+                pieces.push(Piece { point: around[first], triangles: fan(&between, middle(&between), false) });
+                for k in [1, 3] {
+                    let own = [edge(k - 1, 1), corner(k), edge(k, 0)];
+                    pieces.push(Piece { point: around[(first + k) % 4], triangles: vec![own] });
+                }
+                continue;
             }
             for (n, from) in cuts.iter().enumerate() {
                 let to = cuts[(n + 1) % cuts.len()];
