@@ -125,9 +125,9 @@ pub(crate) struct Engine {
     /// the integrator leaves open.
     pub slack: f64,
     /// What all states of the present stretch have in common; none where that was not asked for.
-    pub steady: Option<Box<Steady>>,
+    pub steady: Option<Steady>,
     /// The same of stretches that were.
-    pub stretches: Vec<Box<Steady>>,
+    pub stretches: Vec<Steady>,
 }
 
 impl Engine {

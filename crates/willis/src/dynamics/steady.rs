@@ -76,7 +76,7 @@ impl Engine {
         let mut steady =
             Steady { mode, segment, inside, tau, sources, viscous, sliding, elements, engaged, watches, affine: None };
         steady.affine = Affine::new(self, &steady);
-        self.steady = Some(Box::new(steady));
+        self.steady = Some(steady);
     }
 
     /// The present stretch is over; what it had in common may come again.
@@ -92,7 +92,7 @@ impl Engine {
 
     /// What the present stretch has in common, if that is known.
     pub fn steady(&self) -> Option<&Steady> {
-        self.steady.as_deref().filter(|steady| steady.inside == self.inside)
+        self.steady.as_ref().filter(|steady| steady.inside == self.inside)
     }
 
     /// How far a friction element is engaged, if that does not change in the present stretch.
