@@ -133,8 +133,8 @@ impl FixedStep {
         (self.is_decided, self.present) = (false, None);
         let before = self.exactly();
         let foreseen = self.is_certain && self.foresee(&before);
-        if !foreseen
-            && !(self.is_certain && self.suppose(&before))
+        let is_known = foreseen || self.is_certain && self.suppose(&before);
+        if !is_known
             && !self.settle()
             && let Err(verdict) = self.decide_and_solve()
         {
