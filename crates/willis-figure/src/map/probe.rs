@@ -1,6 +1,6 @@
 //! What holds at any place of a map, between the points of its grid too.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use willis::analysis::Role;
 use willis::diagnostic::Diagnostics;
@@ -44,6 +44,8 @@ pub struct Probe<'q, 's> {
     /// The zones that were met; a zone's number is its place here.
     zones: Vec<Zone>,
     loosest: Loosest,
+    /// Answers by the bits of their places: lines that are added to a grid leave most of it as it was.
+    seen: HashMap<[u64; 2], Found>,
 }
 
 /// What all points of a zone have in common.
@@ -75,6 +77,7 @@ enum Way {
 }
 
 /// A point of a map as it was found.
+#[derive(Clone)]
 pub struct Found {
     pub point: MapPoint,
     /// How many parts neither give nor take power.
@@ -103,8 +106,8 @@ impl<'q, 's> Probe<'q, 's> {
         let target = |a: &Axis| Target::parse(&a.name, question.model()).map(|t| (t, a.unit.clone()));
         let targets = axes.map(target);
         let [x, y] = targets.map(|t| t.map_err(|d| Diagnostics::from_iter([*d])));
-        let (trains, zones, loosest) = Default::default();
-        Ok(Self { question, axes: [x?, y?], choice, trains, zones, loosest })
+        let (trains, zones, loosest, seen) = Default::default();
+        Ok(Self { question, axes: [x?, y?], choice, trains, zones, loosest, seen })
     }
 
     /// The least count of idle parts in what was found so far.
@@ -114,6 +117,16 @@ impl<'q, 's> Probe<'q, 's> {
 
     /// What holds at a place.
     pub fn at(&mut self, place: [f64; 2]) -> Found {
+        let key = place.map(f64::to_bits);
+        if let Some(found) = self.seen.get(&key) {
+            return found.clone();
+        }
+        let found = self.ask(place);
+        self.seen.insert(key, found.clone());
+        found
+    }
+
+    fn ask(&mut self, place: [f64; 2]) -> Found {
         let (point, ways) = match self.choice.take() {
             None => {
                 let answer = self.answer(place, None);
