@@ -416,7 +416,7 @@ fn shifts(events: &[f64], [from, to]: [f64; 2]) -> Vec<([f64; 2], [f64; 2])> {
 }
 
 fn label(c: &Column) -> String {
-    if c.of.is_empty() { c.name.clone() } else { c.of.clone() }
+    if c.of.is_empty() { c.quantity().replace('_', " ") } else { c.of.clone() }
 }
 
 fn panel(

@@ -143,9 +143,14 @@ pub struct Column {
 }
 
 impl Column {
+    /// Its name without the unit: `sun.speed`.
+    pub fn quantity(&self) -> &str {
+        without_unit(&self.name, self.unit.symbol())
+    }
+
     /// Whether that is its name, or its name without the unit: `sun.speed_rad_s`, `sun.speed`.
     pub fn is_called(&self, name: &str) -> bool {
-        self.name == name || without_unit(&self.name, self.unit.symbol()) == name
+        self.name == name || self.quantity() == name
     }
 }
 
