@@ -1270,7 +1270,7 @@ fn regress_simulate_verdicts() {
 /// `willis-simulation-1`: objects by name, units in the names, rows beside their columns.
 #[test]
 fn regress_simulate_contract() {
-    let output = piped(&["simulate", "-", "--format", "json", "--columns", "speed,mode.B"], BRAKED.as_bytes());
+    let output = piped(&["simulate", "-", "--format", "json", "--columns", "speed,B.mode"], BRAKED.as_bytes());
     let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     has(
         &answer,

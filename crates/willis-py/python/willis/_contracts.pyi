@@ -4033,7 +4033,7 @@ class DrawChartAxis(Record):
     """A quantity along an axis of a chart."""
     @property
     def name(self) -> str:
-        """Its name, as ``sweep --over`` takes it: ``sun.speed``."""
+        """Its name, as ``sweep ``over```` takes it: ``sun.speed``."""
     @property
     def unit(self) -> str:
         """The unit of its values; empty for plain numbers."""
@@ -4264,6 +4264,60 @@ class DrawLossChart(Record):
     @property
     def loss(self) -> float | None: ...
 
+class DrawSpinSource(Record):
+    """A loss of a gear without load."""
+    @property
+    def name(self) -> str:
+        """What loses it."""
+    @property
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"]:
+        """What kind of loss it is."""
+    @property
+    def loss_w(self) -> float:
+        """W."""
+    @property
+    def loss(self) -> float: ...
+
+class DrawSpinGear(Record):
+    """A gear without load."""
+    @property
+    def state(self) -> str:
+        """The state."""
+    @property
+    def input(self) -> str:
+        """The member that is driven."""
+    @property
+    def verdict(self) -> Literal["locked", "multiple", "refused", "undetermined", "unique", "unloaded"]:
+        """What can be said of it: ``unloaded`` where nothing is lost."""
+    @property
+    def torque_n_m(self) -> float | None:
+        """Torque that turns the input, N m; absent where there is no single answer."""
+    @property
+    def torque(self) -> float | None: ...
+    @property
+    def loss_w(self) -> float | None:
+        """All losses, W; absent where there is no single answer."""
+    @property
+    def loss(self) -> float | None: ...
+    @property
+    def sources(self) -> list[DrawSpinSource]:
+        """The losses by source, the largest first."""
+
+class DrawSpinLosses(Record):
+    """What each gear loses while its output is free of torque."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def speed_rpm(self) -> float:
+        """Speed of the input in all gears, rpm."""
+    @property
+    def of_operation(self) -> str | None:
+        """The operating point of the file that has this speed; absent where it was chosen here."""
+    @property
+    def gears(self) -> list[DrawSpinGear]:
+        """The gears, in the order of the file; one named ``as drawn`` of a train without states."""
+
 class DrawPathPoint(Record):
     """A tooth pair at one place."""
     @property
@@ -4380,6 +4434,54 @@ class DrawContactPath(Record):
     def left_out(self) -> list[str]:
         """Meshes that were asked for and are not shown, with the reason."""
 
+class DrawPart(Record):
+    """A number that belongs to a member, a shaft or a mesh."""
+    @property
+    def name(self) -> str:
+        """The member, shaft or mesh."""
+    @property
+    def value(self) -> float:
+        """Its number."""
+
+class DrawVibrationMode(Record):
+    """One mode, as the question ``modes`` has it."""
+    @property
+    def number(self) -> int | None:
+        """Its number among the vibrations, from 1 on; absent for a motion without strain."""
+    @property
+    def frequency_hz(self) -> float:
+        """Undamped natural frequency, Hz; 0 for a motion without strain."""
+    @property
+    def frequency(self) -> float: ...
+    @property
+    def damping_ratio(self) -> float | None:
+        """Damping ratio; absent where nothing damps it."""
+    @property
+    def shape(self) -> list[DrawPart]:
+        """Angle amplitude of each member whose motion is settled, relative to the largest, which is 1. Opposite signs
+        swing in opposite directions."""
+    @property
+    def strain_energy(self) -> list[DrawPart]:
+        """Share of the strain energy by shaft and elastic mesh; 1 in all, empty for a motion without strain."""
+
+class DrawVibration(Record):
+    """The stick diagram of a train, and the modes that are drawn on it."""
+    @property
+    def title(self) -> str:
+        """The train."""
+    @property
+    def state(self) -> str:
+        """The state of the shift table, or ``as drawn``."""
+    @property
+    def stick(self) -> DrawStick:
+        """The schematic, the same under all modes."""
+    @property
+    def modes(self) -> list[DrawVibrationMode]:
+        """Motions without strain first, then vibrations by rising frequency."""
+    @property
+    def left_out(self) -> int:
+        """How many more vibrations there are."""
+
 class DrawTimeLine(Record):
     """A curve."""
     @property
@@ -4435,6 +4537,18 @@ class DrawTimeMark(Record):
     def cause(self) -> str:
         """Why."""
 
+class DrawTimeShift(Record):
+    """A short time in which modes change, seen closely."""
+    @property
+    def window(self) -> list[float]:
+        """From when to when, s; equally long for all shifts of a run."""
+    @property
+    def events(self) -> list[float]:
+        """The first and the last change of mode in it, s."""
+    @property
+    def panels(self) -> list[DrawTimePanel]:
+        """The curves of the first panels, in the same order."""
+
 class DrawTimePlot(Record):
     """A run over time."""
     @property
@@ -4473,6 +4587,10 @@ class DrawTimePlot(Record):
     @property
     def event_count(self) -> int:
         """All changes of mode after the start, of those that are shown."""
+    @property
+    def shifts(self) -> list[DrawTimeShift]:
+        """Where changes of mode lie together in several short times, such as the shifts of an automatic: each of them
+        closely."""
 
 class DrawShiftColumn(Record):
     """A shift element."""
@@ -4758,7 +4876,7 @@ class DrawBands(Record):
 class DrawMissing(Record):
     """A kind of figure that does not apply to a train."""
     @property
-    def kind(self) -> Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "film", "path", "time", "shift", "table", "tornado", "band"]:
+    def kind(self) -> Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "spin", "film", "path", "modes", "time", "shift", "table", "tornado", "band"]:
         """The kind."""
     @property
     def why(self) -> str:
@@ -4770,7 +4888,7 @@ class DrawAnswer(_answer.Drawing):
     def format(self) -> Literal["willis-figures-1"]:
         """``willis-figures-1``."""
     @property
-    def figures(self) -> list[DrawStick | DrawLever | DrawWolf | DrawSankey | DrawFlowReport | DrawFront | DrawRegimeMap | DrawEfficiencyMap | DrawSplit | DrawLossChart | DrawContactPath | DrawTimePlot | DrawShiftTable | DrawShaftTable | DrawTornado | DrawBands]:
+    def figures(self) -> list[DrawStick | DrawLever | DrawWolf | DrawSankey | DrawFlowReport | DrawFront | DrawRegimeMap | DrawEfficiencyMap | DrawSplit | DrawLossChart | DrawSpinLosses | DrawContactPath | DrawVibration | DrawTimePlot | DrawShiftTable | DrawShaftTable | DrawTornado | DrawBands]:
         """The figures, as data."""
     @property
     def missing(self) -> list[DrawMissing]:

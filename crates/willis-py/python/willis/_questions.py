@@ -37,8 +37,7 @@ class Questions:
         """Analyse a train: its shift table and its operating points.
 
         Gives for every state the exact ratio and the efficiency driving and coasting; for every operation speeds,
-        torques, powers, losses, the verdict and its certificate. A train that locks is an answer: exit status 0.
-        Status 1 means the input is wrong.
+        torques, powers, losses, the verdict and its certificate. A train that locks is an answer, and no error.
 
         Parameters
         ----------
@@ -308,8 +307,8 @@ class Questions:
         three standard deviations), ``triangular(0.2, 0.4, 0.8 um)``; sets of equally likely values: ``3,4``, laws:
         ``all``, ``inside`` (their range), or names.
 
-        Without --vary and --laws: given losses 1 - efficiency by 20 %, roughness by 20 %, the oil's temperature by
-        5 K each way, and the laws of tooth friction inside their range; each is listed as an assumption.
+        Without ``vary`` and ``laws``: given losses 1 - efficiency by 20 %, roughness by 20 %, the oil's temperature
+        by 5 K each way, and the laws of tooth friction inside their range; each is listed as an assumption.
 
         Parameters
         ----------
@@ -368,16 +367,16 @@ class Questions:
 
         ::
 
-              --over "input.speed=500 rpm..12000 rpm:100"   --over "output.torque=10..400 N m:80"
+              over="input.speed=500 rpm..12000 rpm:100"   over="output.torque=10..400 N m:80"
 
         ::
 
-              --over state=all   --over P1.planet.count=3,4,6   --over "oil.temperature=20..100 degC:9"
+              over="state=all"   over="P1.planet.count=3,4,6"   over="oil.temperature=20..100 degC:9"
 
         ``…:100`` are so many values, ends included; ``…:31:log`` a constant ratio; ``…:step 500 rpm`` every so
         much. Torque and power of ``input`` and ``output`` are positive where they drive; of a member called by its
         name they are those ON it, as in the train file. Every point is that of ``analyze``; a point that is locked
-        or has several solutions is a row that says so. Without --output a summary is all there is. An interrupted
+        or has several solutions is a row that says so. Without ``output`` a summary is all there is. An interrupted
         sweep goes on when the same command is given again.
 
         Parameters
@@ -489,7 +488,7 @@ class Questions:
         """Lay variants of a train side by side: what the files differ in, and what that changes.
 
         Keys that differ come first, then states and operations by the size of their differences, then in a line
-        what is equal. Operations of one name that prescribe different things are compared and marked. With --over
+        what is equal. Operations of one name that prescribe different things are compared and marked. With ``over``
         the same axes are applied to every variant: where which is better, and by how much.
 
         Parameters
@@ -712,9 +711,8 @@ class Questions:
     ) -> "contracts.SimulateAnswer":
         """Simulate a scenario: how the train accelerates, sticks, slips and shifts, and where the energy goes.
 
-        A run that jams, has several solutions or ends otherwise before the scenario is an answer: exit status 0,
-        and the outcome says so. Ctrl-C ends the run where it is, with exit status 130. In both cases what was
-        computed is written and told.
+        A run that jams, has several solutions or ends otherwise before the scenario is an answer, and the outcome
+        says so. Ctrl-C ends the run where it is. In both cases what was computed is written and told.
 
         Rows are in SI units; where a value is not determined the field is empty (CSV) or null. Modes are 1 forward,
         -1 backward, 0 stuck, 2 free. A CSV of a run that ended early has a last line that begins with ``# `` and
@@ -809,7 +807,7 @@ class Questions:
 
     def draw(
         self,
-        kind: Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "film", "path", "time", "shift", "table", "tornado", "band", "all"] | None = None,
+        kind: Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "spin", "film", "path", "modes", "time", "shift", "table", "tornado", "band", "all"] | None = None,
         *,
         state: str | None = None,
         operation: str | None = None,
@@ -1086,7 +1084,7 @@ def validate(
 ) -> "contracts.ValidateAnswer":
     """Compare published numbers with ours: what agrees, what does not, and why.
 
-    Without a case it lists the cases. Exit status 0 also where a number differs: that is an answer.
+    Without a case it lists the cases. A number that differs is an answer, and no error.
 
     Parameters
     ----------

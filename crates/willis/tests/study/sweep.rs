@@ -362,7 +362,7 @@ fn axes_take_the_values_that_are_written() {
     assert_eq!(Axis::parse("sun.speed=1..2 rad/s:2", &subject).unwrap().column(), "sun.speed_rad_s");
     assert_eq!(Axis::parse("sun.torque=1..2 Nm:2", &subject).unwrap().column(), "sun.torque_n_m");
     assert_eq!(Axis::parse("sun.power=1..2 MW:2", &subject).unwrap().column(), "sun.power_MW");
-    assert_eq!(Axis::parse("oil.viscosity_40=80..120 mm^2/s:2", &subject).unwrap().column(), "oil.viscosity_40_mm_2_s");
+    assert_eq!(Axis::parse("oil.viscosity_40=80..120 mm^2/s:2", &subject).unwrap().column(), "oil.viscosity_40_mm2_s");
 }
 
 /// Work that is stopped at its first piece.
