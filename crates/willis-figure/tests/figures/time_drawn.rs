@@ -67,7 +67,7 @@ fn train() -> Train {
 }
 
 fn column(name: &str, kind: ColumnKind) -> Column {
-    let of = name.split_once('.').map_or("", |n| n.1);
+    let of = name.rsplit_once('.').map_or("", |n| n.0);
     serde_json::from_value(json!({ "name": name, "unit": kind.unit(), "kind": kind, "of": of })).expect("a column")
 }
 

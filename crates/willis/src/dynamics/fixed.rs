@@ -116,7 +116,7 @@ const MOST_ELEMENTS: usize = 64;
 /// let motor = run.input("motor")?;
 /// let (speed, bearing) = (run.output("rotor.speed")?, run.output("bearing.mode")?);
 /// let wrong = run.output("roter.speed").unwrap_err();
-/// assert!(wrong.to_string().contains("did you mean `rotor.speed_rad_s`?"));
+/// assert!(wrong.to_string().contains("did you mean `rotor.speed`?"));
 ///
 /// run.rehearse();
 /// let saved = run.clone();

@@ -173,7 +173,7 @@ impl System {
 impl Output {
     /// The output of that name among columns.
     pub(super) fn of(columns: &[Column], name: &str) -> Result<Self, Diagnostics> {
-        let known = || columns.iter().map(|c| c.name.as_str());
+        let known = || columns.iter().map(Column::quantity);
         let wrong = || unknown(format!("the run has no output `{name}`"), name, known(), "outputs");
         columns.iter().position(|c| c.is_called(name)).map(Self).ok_or_else(wrong)
     }

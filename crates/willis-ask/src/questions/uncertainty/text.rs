@@ -29,8 +29,8 @@ impl<'a> Shown<'a> {
         match self.of.name.as_str() {
             "efficiency" => "efficiency".into(),
             "loss_w" => "loss".into(),
-            name => match name.strip_prefix("loss.") {
-                Some(source) => format!("  {}", source.strip_suffix("_w").unwrap_or(source)),
+            name => match name.strip_suffix(".loss_w") {
+                Some(source) => format!("  {source}"),
                 None => name.replace("_loss_w", " loss"),
             },
         }
