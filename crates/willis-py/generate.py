@@ -232,11 +232,18 @@ def by_name(option: re.Match[str]) -> str:
     return f'{python_name(option[1].replace("-", "_"))}="{value}"'
 
 
+def listed(same: re.Match[str]) -> str:
+    """An argument that is given several times, once with all its values."""
+    return f"{same[1]}=[{', '.join(value for value in same.groups()[1:] if value)}]"
+
+
 def paragraphs(text: str, indent: int) -> str:
     """A text of the library in the width of this file; lines that are indented stay."""
     out = []
     # Options of the command are arguments here: --over "A=B" is over="A=B", --vary is `vary`.
     text = re.sub(r'(?<!`)--([a-z][a-z-]*) ("[^"]*"|[^\s`"]+=[^\s`"]+)', by_name, text)
+    # One name with several values is a list.
+    text = re.sub(r'\b([a-z_]+)=("[^"\n]*")[ ]+\1=("[^"\n]*")(?:[ ]+\1=("[^"\n]*"))?', listed, text)
     text = re.sub(r"(?<!`)--([a-z][a-z-]*)", lambda option: f"`{python_name(option[1].replace('-', '_'))}`", text)
     text = text.replace("`", "``").replace("\\", "\\\\")
     for part in text.split("\n\n"):

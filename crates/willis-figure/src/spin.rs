@@ -14,6 +14,7 @@ use willis::unstable;
 use willis::work::Effort;
 
 use crate::kind::{Ask, FigureRequest, Kind};
+use crate::parts::axes::RPM;
 use crate::parts::point::ends;
 
 pub(crate) const KIND: Kind<SpinLosses> = Kind {
@@ -171,7 +172,7 @@ pub fn spin_losses(train: &Train, state: Option<&str>, operation: Option<&str>) 
     };
     Ok(SpinLosses {
         title: train.name().to_owned(),
-        speed_rpm: speed.si() * 30.0 / std::f64::consts::PI,
+        speed_rpm: speed.si() / RPM,
         of_operation,
         gears: all.iter().map(gear).collect(),
     })

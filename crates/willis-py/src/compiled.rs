@@ -55,10 +55,10 @@ impl Compiled {
         for (kind, name) in duty.outputs {
             own = own.output(match kind.as_str() {
                 "speed" => Output::Speed(name),
-                "torque" if train.meshes().iter().any(|m| m.name == name) => Output::MeshTorque(name),
-                "torque" if train.shift_elements().iter().any(|e| e.name == name) && train.member(&name).is_none() => {
-                    Output::ShiftElementTorque(name)
-                }
+                // What is no mesh and no shift element is refused as a member.
+                "torque" if train.member(&name).is_some() => Output::Torque(name),
+                "torque" if train.mesh(&name).is_some() => Output::MeshTorque(name),
+                "torque" if train.shift_elements().iter().any(|e| e.name == name) => Output::ShiftElementTorque(name),
                 "torque" => Output::Torque(name),
                 "loss" => Output::Loss,
                 _ => Output::Efficiency,

@@ -17,6 +17,8 @@ use crate::diagnostic::{Code, Diagnostic};
 pub struct Meta<S: 'static> {
     /// Name in files and on the command line, `schlenk`.
     pub id: &'static str,
+    /// Whose it is, as readers say it: `Schlenk`, `Dowson–Higginson`; empty where it goes by what it does.
+    pub by: &'static str,
     /// Title for people.
     pub title: &'static str,
     /// Key in `data/references.bib`, and the place in that work.
@@ -114,6 +116,8 @@ pub struct Entry {
     pub gives: (&'static str, &'static str),
     /// Name of the law.
     pub id: &'static str,
+    /// Whose it is, as readers say it: `Schlenk`, `Dowson–Higginson`; empty where it goes by what it does.
+    pub by: &'static str,
     /// Title for people.
     pub title: &'static str,
     /// Key in the list of references, and the place in that work.
@@ -189,7 +193,7 @@ macro_rules! family {
                 Self::ALL.iter().enumerate().map(|(k, l)| {
                     let m = l.meta();
                     crate::losses::Entry {
-                        family: Self::FAMILY, gives: Self::GIVES, id: m.id, title: m.title, source: m.source,
+                        family: Self::FAMILY, gives: Self::GIVES, id: m.id, by: m.by, title: m.title, source: m.source,
                         trust: m.trust, tags: m.tags, default: k == 0,
                         valid: m.valid.iter().map(|r| (r.symbol, r.unit, r.min, r.max)).collect(),
                     }

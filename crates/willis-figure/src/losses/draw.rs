@@ -7,8 +7,8 @@ use willis::study::PointVerdict;
 use crate::parts::alive::{Of, guide, of, told};
 use crate::parts::chart::{Chart, Scale, title};
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, page, rectangle, text,
-    titled, watts, wide,
+    Anchor, BOLD, FAINT, INK, LINE, PAPER, badge, colour, digits, fit, halo, line, lines, page, power_unit, rectangle,
+    text, titled, watts, wide,
 };
 use crate::parts::words::{along, law_title};
 use crate::{Drawing, LossChart, LossSeries};
@@ -106,16 +106,10 @@ fn fill(k: usize, s: &LossSeries) -> String {
     }
 }
 
-/// One unit for all losses of the picture, by the largest of them: its watts, and its name.
+/// One unit for all losses of the picture: its watts, and its name.
 fn unit(chart: &LossChart) -> (f64, &'static str) {
     let totals = (0..chart.x.values.len()).map(|k| chart.series.iter().filter_map(|s| s.loss_w[k]).sum());
-    let most = totals.chain(chart.loss_w).fold(0.0f64, f64::max);
-    match most {
-        w if w >= 5e6 => (1e6, "MW"),
-        w if w >= 5e3 => (1e3, "kW"),
-        w if w > 0.0 && w < 0.05 => (1e-3, "mW"),
-        _ => (1.0, "W"),
-    }
+    power_unit(totals.chain(chart.loss_w).fold(0.0f64, f64::max))
 }
 
 /// A law by its title rather than its name in files.

@@ -270,6 +270,16 @@ pub fn figures(x: f64, count: i32) -> String {
     trimmed(format!("{x:.decimals$}"))
 }
 
+/// One unit for all powers of a picture, by the largest of them: its watts, and its name.
+pub fn power_unit(most: f64) -> (f64, &'static str) {
+    match most {
+        w if w >= 5e6 => (1e6, "MW"),
+        w if w >= 5e3 => (1e3, "kW"),
+        w if w > 0.0 && w < 0.05 => (1e-3, "mW"),
+        _ => (1.0, "W"),
+    }
+}
+
 /// A power: four digits, in the unit that suits it.
 pub fn watts(power: f64) -> String {
     let (scale, unit) = match power.abs() {

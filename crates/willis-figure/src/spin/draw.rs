@@ -7,7 +7,7 @@ use super::{SpinGear, SpinLosses, SpinSource};
 use crate::Drawing;
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
-    Anchor, BOLD, FAINT, LINE, PAPER, colour, digits, fit, line, lines, page, rectangle, text, ticks, wide,
+    Anchor, BOLD, FAINT, LINE, PAPER, colour, digits, fit, line, lines, page, power_unit, rectangle, text, ticks, wide,
 };
 
 const MARGIN: f64 = 28.0;
@@ -67,7 +67,7 @@ pub(super) fn draw_on(data: &SpinLosses, paper: Drawing) -> String {
     y += 14.0;
     // The largest sum gives the scale, and the unit of all numbers.
     let most = data.gears.iter().filter_map(|g| g.loss_w).fold(0.0f64, f64::max);
-    let (size, unit) = unit(most);
+    let (size, unit) = power_unit(most);
     let value = |gear: &SpinGear| match (gear.loss_w, gear.torque_n_m) {
         (Some(w), Some(t)) => format!("{} {unit}, {} N m", digits(w / size), digits(t)),
         (Some(w), None) => format!("{} {unit}", digits(w / size)),
@@ -216,14 +216,4 @@ fn fill(n: usize, layer: &Layer<'_>) -> String {
 
 fn letter(n: usize) -> String {
     char::from(b'A' + n as u8).to_string()
-}
-
-/// One unit for all losses: its watts, and its name.
-fn unit(most: f64) -> (f64, &'static str) {
-    match most {
-        w if w >= 5e6 => (1e6, "MW"),
-        w if w >= 5e3 => (1e3, "kW"),
-        w if w > 0.0 && w < 0.05 => (1e-3, "mW"),
-        _ => (1.0, "W"),
-    }
 }

@@ -123,7 +123,7 @@ class Answer:
             if len(self.tables) > 1:
                 raise ValueError(f"an answer of several tables: {', '.join(self.tables)}; take one of .tables")
             return _csv(next(iter(self.tables.values()))).encode()
-        forms = ["txt", "json", *(["csv"] if entry["tables"] else []), *(f for f in entry["forms"] if f != "plate")]
+        forms = ["txt", "json", *(["csv"] if entry["tables"] else []), *entry["forms"]]
         raise ValueError(f"`{self.question}` has no form {form!r}; it has {', '.join(forms)}")
 
     def _alive(self) -> _willis.Answer:

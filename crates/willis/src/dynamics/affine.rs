@@ -37,27 +37,17 @@ impl Affine {
         if other {
             return None;
         }
-        let mut rows = vec![];
-        for i in 0..s.free {
-            rows.extend(widen(s, steady, &map.response[i * map.ports..][..map.ports], 1.0).of);
-        }
-        let mut margins = Some(vec![]);
-        for &watch in &steady.watches {
-            let Some(lines) = &mut margins else { break };
-            match engine.affine_margins(steady, map, watch) {
-                Some(more) => {
-                    for (line, row) in more {
-                        lines.push(line);
-                        rows.extend(row);
-                    }
-                }
-                None => margins = None,
-            }
-        }
+        let rates =
+            (map.response.chunks_exact(map.ports).take(s.free)).flat_map(|row| widen(s, steady, row, 1.0).of).collect();
+        let each = steady.watches.iter().map(|watch| engine.affine_margins(steady, map, *watch));
+        let margins = each.collect::<Option<Vec<_>>>().map(|all| {
+            let (lines, rows): (Vec<Line>, Vec<Vec<f64>>) = all.into_iter().flatten().unzip();
+            (lines, rows.concat())
+        });
         let sources: Vec<usize> = steady.sources.iter().map(|(_, k)| *k).collect();
         let mut given = vec![0.0; 1 + s.all() + sources.len()];
         given[0] = 1.0;
-        Some(Self { sources, given, rows, free: s.free, margins })
+        Some(Self { sources, given, rates, margins })
     }
 }
 
@@ -145,7 +135,7 @@ impl Engine {
     pub fn solve_affinely(&mut self, t: f64, x: &[f64]) {
         let mut acceleration = std::mem::take(&mut self.acceleration);
         if let Some(affine) = self.affine(t, x) {
-            for (a, row) in acceleration[..affine.free].iter_mut().zip(affine.rows()) {
+            for (a, row) in acceleration.iter_mut().zip(affine.rates.chunks_exact(affine.given.len())) {
                 *a = row.iter().zip(&affine.given).map(|(r, x)| r * x).sum();
             }
         }
@@ -158,9 +148,9 @@ impl Engine {
     /// Margins at a state in the present stretch; false where only its ports tell them.
     pub fn margins_affinely(&mut self, t: f64, x: &[f64], out: &mut Vec<Margin>) -> bool {
         let Some(affine) = self.affine(t, x) else { return false };
-        let Some(lines) = &affine.margins else { return false };
+        let Some((lines, rows)) = &affine.margins else { return false };
         out.clear();
-        for (line, row) in lines.iter().zip(affine.rows().skip(affine.free)) {
+        for (line, row) in lines.iter().zip(rows.chunks_exact(affine.given.len())) {
             let (mut value, mut amounts) = (row[0], line.constant);
             for (r, x) in row[1..].iter().zip(&affine.given[1..]) {
                 value += r * x;

@@ -4,8 +4,8 @@ use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::Train;
 
 use super::integrator::Smooth;
-use super::report::{Options, Outcome, Recorder, RunReport, Sample};
-use super::run::Simulation;
+use super::report::{Options, Outcome, Recorder, RunReport};
+use super::run::{Simulation, tell_row};
 use super::window::Window;
 
 /// The method of the paper: classical Runge–Kutta steps in which the side of each tooth force is that of
@@ -53,8 +53,7 @@ pub(super) fn lagged(
         let t = start + step as f64 * h;
         run.t = t;
         if run.is_row_due(t, h) {
-            run.engine.row(t, &x, &mut run.row);
-            if recorder.sample(Sample { time_s: t, values: &run.row }).is_break() {
+            if tell_row(&mut run.engine, t, &x, &mut run.row, recorder).is_break() {
                 run.outcome = Some(Outcome::Interrupted);
             }
         }

@@ -399,7 +399,7 @@ pub trait Recorder {
         ControlFlow::Continue(())
     }
 
-    /// Whether a row at that time, s, is of use. One that is not is never computed.
+    /// Whether a row at that time, s, is of use. One that is not is not handed over, and not computed for it.
     fn wants_row(&self, time: f64) -> bool {
         let _ = time;
         true

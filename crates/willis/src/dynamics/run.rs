@@ -817,7 +817,7 @@ fn uniqueness(engine: &Engine, method: Method) -> Option<String> {
 }
 
 /// Hands a row to a recorder that wants it.
-fn tell_row(
+pub(super) fn tell_row(
     engine: &mut Engine,
     t: f64,
     x: &[f64],

@@ -63,15 +63,8 @@ pub(super) struct Affine {
     pub sources: Vec<usize>,
     /// One, speeds, torques of those sources.
     pub given: Vec<f64>,
-    /// Rows over what is given: accelerations of the free coordinates, then margins.
-    pub rows: Vec<f64>,
-    pub free: usize,
-    /// None if something is watched that is no affine margin.
-    pub margins: Option<Vec<Line>>,
-}
-
-impl Affine {
-    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        self.rows.chunks_exact(self.given.len())
-    }
+    /// Rows over what is given: accelerations of the free coordinates.
+    pub rates: Vec<f64>,
+    /// Margins, and their rows; none if something is watched that is no affine margin.
+    pub margins: Option<(Vec<Line>, Vec<f64>)>,
 }

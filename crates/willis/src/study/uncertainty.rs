@@ -363,7 +363,7 @@ impl<'s> UncertaintyPlan<'s> {
         let train = self.question.model().train();
         self.outputs = vec![Column::number("efficiency", ""), Column::number("loss_w", "W")];
         self.outputs.extend(KINDS.iter().map(|kind| Column::number(format!("{kind}_loss_w"), "W")));
-        self.outputs.extend(sources(train).map(|name| Column::number(format!("{name}.loss_w"), "W")));
+        self.outputs.extend(sources(train).map(|name| Column::number(format!("{name}.total_loss_w"), "W")));
         let answer = PointAnswer::of(train, self.question.base());
         self.nominal = self.values(&answer);
         self.nominal_verdict = answer.verdict;

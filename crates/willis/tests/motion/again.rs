@@ -34,6 +34,8 @@ fn a_run_again_is_the_same_run() {
             for energies in [true, false] {
                 let options = Options { energies, samples: Some(50), ..Options::default() };
                 let Ok(mut run) = Simulation::new(&train, &scenario.name, &options) else { continue };
+                let names: Vec<&str> = run.columns().iter().map(|c| c.name.as_str()).collect();
+                assert!((1..names.len()).all(|k| !names[..k].contains(&names[k])), "a name twice: {names:?}");
                 let (first, report) = advance(&mut run);
                 run = run.again().expect("it started before");
                 let (second, again) = advance(&mut run);
@@ -100,4 +102,31 @@ fn regress_a_wide_tolerance_still_sees_a_sine() {
             assert!(error.abs() <= most, "at {tolerance}: {error:.1e}");
         }
     }
+}
+
+/// Rates by the affine map of a stretch, which are those of runs without energies, and rates by the torques of the ports, from
+/// which energies follow, are two ways to one motion.
+#[test]
+fn both_ways_to_the_rates_lead_to_one_end() {
+    let mut runs = 0;
+    for train in moving() {
+        for scenario in train.scenarios() {
+            let run = |energies: bool| {
+                let options = Options { energies, tolerance: 1e-9, samples: Some(2), ..Options::default() };
+                let mut run = Simulation::new(&train, &scenario.name, &options).ok()?;
+                let outcome = run.advance(f64::INFINITY, &mut ())?;
+                let speeds = train.members().iter().filter_map(|m| run.speed(&m.name)).collect::<Vec<_>>();
+                Some((outcome, speeds))
+            };
+            let (Some((a, by_ports)), Some((b, by_map))) = (run(true), run(false)) else { continue };
+            let what = format!("{}, {}", train.name(), scenario.name);
+            assert_eq!(a, b, "{what}");
+            let size = by_ports.iter().fold(1.0, |most: f64, w| most.max(w.abs()));
+            for (a, b) in by_ports.iter().zip(&by_map) {
+                assert!((a - b).abs() <= 1e-6 * size, "{what}: {by_ports:?} and {by_map:?}");
+            }
+            runs += 1;
+        }
+    }
+    assert!(runs > 15, "{runs} runs");
 }

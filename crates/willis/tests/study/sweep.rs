@@ -475,3 +475,33 @@ proptest::proptest! {
         }
     }
 }
+
+/// A column has one meaning: no two groups have one of the same name, of which a table could have but one.
+#[test]
+fn groups_of_columns_share_no_name() {
+    const GROUPS: [&str; 5] = ["members", "meshes", "elements", "sources", "variators"];
+    let mut files = 0;
+    for (file, text) in common::examples() {
+        let subject = subject(&text);
+        let of = |columns: &[&str]| -> Option<Vec<String>> {
+            let question = Question::new(&subject, None, None, Hold::AsGiven).ok()?;
+            let axis = Axis::parse("input.speed=100,200 rpm", &subject).ok()?;
+            let columns: Vec<String> = columns.iter().map(|c| (*c).to_owned()).collect();
+            let sweep = Sweep::new(question, vec![axis], &columns).ok()?;
+            Some(sweep.columns().map(|c| c.name.clone()).collect())
+        };
+        let Some(usual) = of(&[]) else { continue };
+        let own: Vec<Vec<String>> =
+            GROUPS.map(|group| of(&[group]).expect(group).into_iter().filter(|n| !usual.contains(n)).collect()).into();
+        for (k, names) in own.iter().enumerate() {
+            for (j, others) in own.iter().enumerate().filter(|(j, _)| *j > k) {
+                let both: Vec<&String> = names.iter().filter(|n| others.contains(n)).collect();
+                assert!(both.is_empty(), "{file}: {} and {} have {both:?}", GROUPS[k], GROUPS[j]);
+            }
+        }
+        let together = of(&GROUPS).expect("all groups").len();
+        assert_eq!(together, usual.len() + own.iter().map(Vec::len).sum::<usize>(), "{file}");
+        files += 1;
+    }
+    assert!(files > 20, "{files} files");
+}

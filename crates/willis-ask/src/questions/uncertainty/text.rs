@@ -29,7 +29,7 @@ impl<'a> Shown<'a> {
         match self.of.name.as_str() {
             "efficiency" => "efficiency".into(),
             "loss_w" => "loss".into(),
-            name => match name.strip_suffix(".loss_w") {
+            name => match name.strip_suffix(".total_loss_w") {
                 Some(source) => format!("  {source}"),
                 None => name.replace("_loss_w", " loss"),
             },

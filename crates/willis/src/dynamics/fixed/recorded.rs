@@ -1,5 +1,7 @@
 //! A run in steps of fixed length that is recorded.
 
+use std::ops::ControlFlow;
+
 use crate::diagnostic::Diagnostics;
 use crate::dynamics::event::event;
 use crate::dynamics::report::{Options, Outcome, Recorder, RunReport, Sample};
@@ -62,7 +64,7 @@ pub(in crate::dynamics) fn fixed(
                 }
             } else {
                 run.row();
-                if recorder.sample(Sample { time_s: t, values: &run.row }).is_break() {
+                if tell(recorder, t, &run.row).is_break() {
                     run.outcome = Some(Outcome::Interrupted);
                 }
             }
@@ -88,7 +90,7 @@ pub(in crate::dynamics) fn fixed(
                 run.outcome.clone_from(&stepper.verdict);
                 break;
             }
-            if recorder.sample(Sample { time_s: t, values: &run.row }).is_break() {
+            if tell(recorder, t, &run.row).is_break() {
                 run.outcome = Some(Outcome::Interrupted);
             }
         }
@@ -124,6 +126,11 @@ pub(in crate::dynamics) fn fixed(
     run.came_in = stepper.came_in;
     run.engine = stepper.engine;
     Ok(run.report())
+}
+
+/// Hands a row to a recorder that wants it; the row was needed anyway, to see whether its forces are finite.
+fn tell(recorder: &mut dyn Recorder, t: f64, row: &[f64]) -> ControlFlow<()> {
+    if recorder.wants_row(t) { recorder.sample(Sample { time_s: t, values: row }) } else { ControlFlow::Continue(()) }
 }
 
 impl FixedStep {

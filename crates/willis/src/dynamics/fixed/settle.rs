@@ -324,68 +324,50 @@ impl FixedStep {
 impl FixedStep {
     /// Solves the step in a mode that is known to be that of it.
     pub(super) fn solve_known(&mut self) {
-        let (free, cols) = (self.engine.system.free, self.tau.len());
-        self.arch.dispatch(Solve { step: self, free, cols });
+        let is_solved = self.widely(Task::Solve);
+        debug_assert!(is_solved, "a mode with a fused step has a map");
     }
 
     /// Solves the step in the present mode; false if that is not its mode, or not by far more than rounding.
     pub(super) fn solve_certain(&mut self) -> bool {
-        let (free, cols) = (self.engine.system.free, self.tau.len());
-        self.arch.dispatch(SolveIfFar { step: self, free, cols })
+        self.widely(Task::SolveIfFar)
     }
 
     /// Finds the mode of the step, from the present one on, and the end of the step; false if it was not found so.
     pub(super) fn settle(&mut self) -> bool {
-        let (free, cols) = (self.engine.system.free, self.tau.len());
-        self.arch.dispatch(Search { step: self, free, cols })
+        self.widely(Task::Search)
+    }
+
+    /// Does a task with the widest registers there are; false if it found no end of the step.
+    fn widely(&mut self, task: Task) -> bool {
+        self.arch.dispatch(Widely { step: self, task })
     }
 }
 
-/// [`FixedStep::solve`] with the widest registers there are.
-struct Solve<'a> {
+/// What is done with the widest registers there are.
+enum Task {
+    Solve,
+    SolveIfFar,
+    Search,
+}
+
+struct Widely<'a> {
     step: &'a mut FixedStep,
-    free: usize,
-    cols: usize,
+    task: Task,
 }
 
-impl pulp::WithSimd for Solve<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.step.solve(self.free, self.cols).expect("a mode with a fused step has a map");
-    }
-}
-
-/// [`FixedStep::solve_if_far`] likewise.
-struct SolveIfFar<'a> {
-    step: &'a mut FixedStep,
-    free: usize,
-    cols: usize,
-}
-
-impl pulp::WithSimd for SolveIfFar<'_> {
+impl pulp::WithSimd for Widely<'_> {
     type Output = bool;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> bool {
-        self.step.solve_if_far(self.free, self.cols)
-    }
-}
-
-/// [`FixedStep::search`] likewise.
-struct Search<'a> {
-    step: &'a mut FixedStep,
-    free: usize,
-    cols: usize,
-}
-
-impl pulp::WithSimd for Search<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> bool {
-        self.step.search(self.free, self.cols)
+        let Self { step, task } = self;
+        let (free, cols) = (step.engine.system.free, step.tau.len());
+        match task {
+            Task::Solve => step.solve(free, cols).is_some(),
+            Task::SolveIfFar => step.solve_if_far(free, cols),
+            Task::Search => step.search(free, cols),
+        }
     }
 }
 

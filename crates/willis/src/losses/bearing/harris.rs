@@ -48,6 +48,7 @@ impl Harris {
 impl Law for Harris {
     const META: Meta<BearingDuty<f64>> = Meta {
         id: "harris",
+        by: "Harris",
         title: "Harris, Palmgren with flange friction",
         source: ("harris2001", "bearing friction torque"),
         trust: Trust::Confirm("f_f, tables of f0 and f1"),

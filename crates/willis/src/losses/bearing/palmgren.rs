@@ -67,6 +67,7 @@ impl Palmgren {
 impl Law for Palmgren {
     const META: Meta<BearingDuty<f64>> = Meta {
         id: "palmgren",
+        by: "Palmgren",
         title: "Palmgren (Eschmann, ISO/TR 14179-2, ISO 15312)",
         source: ("eschmann1985", "frictional moment"),
         trust: Trust::Confirm("tables of f0 and f1"),

@@ -145,6 +145,7 @@ impl Skf {
 impl Law for Skf {
     const META: Meta<BearingDuty<f64>> = Meta {
         id: "skf",
+        by: "SKF",
         title: "SKF model of 2013 and 2018",
         source: ("skf2018", "frictional moment; tables 2 and 3 of the note on the model"),
         trust: Trust::Seen,

@@ -86,6 +86,7 @@ impl Skf6000 {
 impl Law for Skf6000 {
     const META: Meta<BearingDuty<f64>> = Meta {
         id: "skf-6000",
+        by: "SKF 6000",
         title: "SKF general catalogue 6000, superseded",
         source: ("skf2008", "friction, pages 89 to 100; drag on page 98"),
         trust: Trust::Confirm("drag of ball bearings"),

@@ -63,6 +63,7 @@ impl Changenet2011 {
 impl Law for Changenet2011 {
     const META: Meta<Dip<f64>> = Meta {
         id: "changenet-2011",
+        by: "Changenet 2011",
         title: "Changenet and others 2011, four regimes",
         source: ("changenet2011", "four regimes"),
         trust: Trust::Seen,

@@ -58,6 +58,7 @@ impl Iso14179p1 {
 impl Law for Iso14179p1 {
     const META: Meta<Dip<f64>> = Meta {
         id: "iso-14179-1",
+        by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1, oil churning",
         source: ("isotr14179_1", "oil churning loss"),
         trust: Trust::Confirm("R_f and A_g"),

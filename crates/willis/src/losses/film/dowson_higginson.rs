@@ -60,6 +60,7 @@ impl DowsonHigginson {
 impl Law for DowsonHigginson {
     const META: Meta<FilmContact<f64>> = Meta {
         id: "dowson-higginson",
+        by: "Dowson–Higginson",
         title: "Dowson–Higginson, smallest thickness",
         source: ("dowson1977", "line contact, smallest film thickness"),
         trust: Trust::Seen,

@@ -60,6 +60,7 @@ impl DowsonHigginson1966 {
 impl Law for DowsonHigginson1966 {
     const META: Meta<FilmContact<f64>> = Meta {
         id: "dowson-higginson-1966",
+        by: "Dowson–Higginson 1966",
         title: "Dowson–Higginson, smallest thickness, early form",
         source: ("dowson1966", "line contact, smallest film thickness, as printed in Wang 2020, section 3.2.1"),
         trust: Trust::Derived,

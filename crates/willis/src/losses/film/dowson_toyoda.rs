@@ -58,6 +58,7 @@ impl DowsonToyoda {
 impl Law for DowsonToyoda {
     const META: Meta<FilmContact<f64>> = Meta {
         id: "dowson-toyoda",
+        by: "Dowson–Toyoda",
         title: "Dowson–Toyoda, central thickness",
         source: ("dowson_toyoda1979", "central film thickness"),
         trust: Trust::Confirm("3.06 and the exponents 0.69, 0.56, −0.10"),

@@ -58,6 +58,7 @@ impl Grubin {
 impl Law for Grubin {
     const META: Meta<FilmContact<f64>> = Meta {
         id: "grubin",
+        by: "Grubin",
         title: "Grubin, central thickness",
         source: ("grubin1949", "central film thickness, as coded in GEARpie"),
         trust: Trust::Seen,

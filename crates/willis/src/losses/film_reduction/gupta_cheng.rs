@@ -64,6 +64,7 @@ fn pressed<D: Real>(s: &Inlet<D>) -> D {
 impl Law for GuptaCheng {
     const META: Meta<Inlet<f64>> = Meta {
         id: "gupta-cheng",
+        by: "Gupta–Cheng",
         title: "Gupta–Cheng, shear heating of the inlet",
         source: ("gupta1992", "thermal reduction, as printed in Arana 2019, Eq. (24)"),
         trust: Trust::Seen,

@@ -58,6 +58,7 @@ impl MurchWilson {
 impl Law for MurchWilson {
     const META: Meta<Inlet<f64>> = Meta {
         id: "murch-wilson",
+        by: "Murch–Wilson",
         title: "Murch–Wilson, shear heating of the inlet",
         source: ("wilsonsheu1983", "Eq. (7), with 0.1 for its 0.241"),
         trust: Trust::Confirm("the factor 0.1 with the mean speed, and SRR over the mean speed"),

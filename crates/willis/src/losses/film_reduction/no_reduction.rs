@@ -40,6 +40,7 @@ impl NoReduction {
 impl Law for NoReduction {
     const META: Meta<Inlet<f64>> = Meta {
         id: "none",
+        by: "",
         title: "No thermal reduction",
         source: ("practice", "limit of no heating"),
         trust: Trust::Derived,

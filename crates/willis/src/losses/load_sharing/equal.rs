@@ -57,6 +57,7 @@ impl Equal {
 impl Law for Equal {
     const META: Meta<ToothLoad<f64>> = Meta {
         id: "equal",
+        by: "",
         title: "Equal load per length of contact line (50/50)",
         source: ("wimmer2006", "rigid plane of action"),
         trust: Trust::Derived,

@@ -51,6 +51,7 @@ impl Stiffness {
 impl Law for Stiffness {
     const META: Meta<ToothLoad<f64>> = Meta {
         id: "stiffness",
+        by: "",
         title: "By stiffness, trapezoid 1/3 to 2/3",
         source: ("isotr13989_1", "clause 9.2, equations (57) to (60)"),
         trust: Trust::Confirm("the bounds 1/3 and 2/3"),

@@ -44,6 +44,7 @@ impl Uniform {
 impl Law for Uniform {
     const META: Meta<ToothLoad<f64>> = Meta {
         id: "uniform",
+        by: "",
         title: "Uniform along the path",
         source: ("niemann_winter2003", "helical gears"),
         trust: Trust::Derived,

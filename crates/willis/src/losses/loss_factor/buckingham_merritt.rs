@@ -51,6 +51,7 @@ impl BuckinghamMerritt {
 impl Law for BuckinghamMerritt {
     const META: Meta<Path<f64>> = Meta {
         id: "buckingham-merritt",
+        by: "Buckingham and Merritt",
         title: "Buckingham and Merritt (AGMA, UTS)",
         source: ("buckingham1949", "efficiency of gears"),
         trust: Trust::Seen,

@@ -70,6 +70,7 @@ const GAUSS: [(f64, f64); 5] = [
 impl Law for Integrated {
     const META: Meta<Path<f64>> = Meta {
         id: "integrated",
+        by: "",
         title: "Integrated along the path of contact",
         source: ("wimmer2006", "local loss factor H_VL"),
         trust: Trust::Derived,

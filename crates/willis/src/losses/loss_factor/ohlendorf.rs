@@ -50,6 +50,7 @@ impl Ohlendorf {
 impl Law for Ohlendorf {
     const META: Meta<Path<f64>> = Meta {
         id: "ohlendorf",
+        by: "Ohlendorf",
         title: "Ohlendorf (ISO/TR 14179-2)",
         source: ("ohlendorf1958", "loss factor; formula (91) of ISO/TR 15144-1"),
         trust: Trust::Seen,

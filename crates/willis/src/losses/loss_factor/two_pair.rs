@@ -50,6 +50,7 @@ impl TwoPair {
 impl Law for TwoPair {
     const META: Meta<Path<f64>> = Meta {
         id: "two-pair",
+        by: "",
         title: "Closed form for 50/50, any addendum contact ratios",
         source: ("ohlendorf1958", "loss factor, extended; formula (91) of ISO/TR 15144-1"),
         trust: Trust::Derived,

@@ -54,6 +54,7 @@ impl Uniform {
 impl Law for Uniform {
     const META: Meta<Path<f64>> = Meta {
         id: "uniform",
+        by: "",
         title: "Uniform load along the path, helical gears",
         source: ("niemann_winter2003", "helical gears"),
         trust: Trust::Derived,

@@ -66,6 +66,7 @@ pub(super) const ANGLE: Range<MeshContact<f64>> = Range {
 impl Law for Agma6011 {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "agma-6011",
+        by: "AGMA 6011",
         title: "Estimate of ANSI/AGMA 6011",
         source: ("agma6011", "mesh loss, as printed in Wang 2020, section 3.2.2"),
         trust: Trust::Confirm("the range of the angle"),

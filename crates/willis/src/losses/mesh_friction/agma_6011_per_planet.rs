@@ -57,6 +57,7 @@ impl Agma6011PerPlanet {
 impl Law for Agma6011PerPlanet {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "agma-6011-per-planet",
+        by: "AGMA 6011 for every planet",
         title: "AGMA 6011 with the whole power at every planet (Wang 2020)",
         source: ("wang2020", "section 3.2.2 and Table 4"),
         trust: Trust::Derived,

@@ -56,6 +56,7 @@ impl AndersonLoewenthal {
 impl Law for AndersonLoewenthal {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "anderson-loewenthal",
+        by: "Anderson–Loewenthal",
         title: "Anderson–Loewenthal (NASA TP-1622), smooth teeth",
         source: ("anderson1980", "sliding loss"),
         trust: Trust::Confirm("0.0127 and 29.66"),

@@ -73,6 +73,7 @@ pub(super) fn logarithm<D: Real>(s: &MeshContact<D>) -> D {
 impl Law for BenedictKelley {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "benedict-kelley",
+        by: "Benedict–Kelley",
         title: "Benedict–Kelley, twin discs in mineral oil",
         source: ("benedict1961", "closing formula"),
         trust: Trust::Confirm("0.0127, 3.17e8 and 50 µin in the imperial form, and the end of S"),

@@ -45,6 +45,7 @@ impl Constant {
 impl Law for Constant {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "constant",
+        by: "",
         title: "Constant coefficient",
         source: ("practice", "hand value for ground steel teeth in mineral oil"),
         trust: Trust::Confirm("the default 0.05"),

@@ -54,6 +54,7 @@ impl CoulombByRegime {
 impl Law for CoulombByRegime {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "coulomb-by-regime",
+        by: "Coulomb by film ratio",
         title: "Boundary, mixed or full film by film ratio",
         source: ("wang2020", "section 3.2.1, limits of the regimes of lubrication"),
         trust: Trust::Confirm("both coefficients"),

@@ -65,6 +65,7 @@ impl Fernandes {
 impl Law for Fernandes {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "fernandes",
+        by: "Fernandes",
         title: "Fernandes, Stribeck and roughness parameters",
         source: ("fernandes2015", "friction losses in gears"),
         trust: Trust::Seen,

@@ -51,6 +51,7 @@ impl Iso14179Part1 {
 impl Law for Iso14179Part1 {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "iso-14179-1",
+        by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1 (AGMA)",
         source: ("isotr14179_1", "mesh coefficient of friction"),
         trust: Trust::Confirm("the exponents 0.223, 0.40, 0.70, the divisor 3.239 and the range"),

@@ -54,6 +54,7 @@ impl Matsumoto {
 impl Law for Matsumoto {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "matsumoto",
+        by: "Matsumoto",
         title: "Matsumoto, mixed lubrication",
         source: ("matsumoto2014", "share of the asperities, as printed in Arana 2019, Table 1 and Eq. (5)"),
         trust: Trust::Seen,

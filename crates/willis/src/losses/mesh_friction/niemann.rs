@@ -69,6 +69,7 @@ pub(super) fn smooth<D: Real>(s: &MeshContact<D>) -> D {
 impl Law for Niemann {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "niemann",
+        by: "Niemann",
         title: "Höhn–Michaelis, roughness factor of ISO/TS 6336-22",
         source: ("isots6336_22", "mean coefficient of friction; formulae (86), (87) of ISO/TR 15144-1"),
         trust: Trust::Seen,

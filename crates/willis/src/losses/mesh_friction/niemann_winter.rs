@@ -60,6 +60,7 @@ impl NiemannWinter {
 impl Law for NiemannWinter {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "niemann-winter",
+        by: "Niemann–Winter",
         title: "Niemann–Winter",
         source: ("niemann1989", "mean coefficient of friction"),
         trust: Trust::Confirm("X_R = 3.8 (Ra/d1)^0.25"),

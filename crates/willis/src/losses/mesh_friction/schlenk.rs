@@ -60,6 +60,7 @@ impl Schlenk {
 impl Law for Schlenk {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "schlenk",
+        by: "Schlenk",
         title: "Schlenk, oil-lubricated steel (ISO/TR 14179-2)",
         source: ("isotr14179_2", "mean coefficient of friction"),
         trust: Trust::Seen,

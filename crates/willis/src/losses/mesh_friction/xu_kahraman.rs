@@ -66,6 +66,7 @@ impl XuKahraman {
 impl Law for XuKahraman {
     const META: Meta<MeshContact<f64>> = Meta {
         id: "xu-kahraman",
+        by: "Xu–Kahraman",
         title: "Xu–Kahraman, EHL regression for 75W90",
         source: ("xu2007", "regression formula"),
         trust: Trust::Seen,

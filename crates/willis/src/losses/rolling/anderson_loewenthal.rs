@@ -66,6 +66,7 @@ fn film<D: Real>(s: &RollingContact<D>) -> D {
 impl Law for AndersonLoewenthal {
     const META: Meta<RollingContact<f64>> = Meta {
         id: "anderson-loewenthal",
+        by: "Anderson–Loewenthal",
         title: "Anderson–Loewenthal (NASA TP-1622)",
         source: ("anderson1980", "rolling loss"),
         trust: Trust::Confirm("2.051e-7 and the exponents 0.67, −0.067, 0.464"),

@@ -64,6 +64,7 @@ impl GoksemHargreaves {
 impl Law for GoksemHargreaves {
     const META: Meta<RollingContact<f64>> = Meta {
         id: "goksem-hargreaves",
+        by: "Goksem–Hargreaves",
         title: "Goksem–Hargreaves, rolling traction",
         source: ("goksem1978", "rolling traction; Eq. (19) of Aihara 1987"),
         trust: Trust::Confirm("4.318 and the exponents 0.658, 0.0126, and the sum of the speeds in the power"),

@@ -40,6 +40,7 @@ impl NoRolling {
 impl Law for NoRolling {
     const META: Meta<RollingContact<f64>> = Meta {
         id: "none",
+        by: "",
         title: "No rolling loss",
         source: ("practice", "no rolling loss on top"),
         trust: Trust::Derived,

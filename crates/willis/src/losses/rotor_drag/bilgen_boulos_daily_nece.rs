@@ -57,6 +57,7 @@ impl BilgenBoulosDailyNece {
 impl Law for BilgenBoulosDailyNece {
     const META: Meta<Drum<f64>> = Meta {
         id: "bilgen-boulos-daily-nece",
+        by: "Bilgen–Boulos and Daily–Nece",
         title: "Bilgen and Boulos (rim), Daily and Nece (faces)",
         source: ("bilgenboulos1973", "torque coefficients; faces: dailynece1960, as (38) to (41) of Harmand 2013"),
         trust: Trust::Confirm("Daily and Nece's constants; rim below Re_t = 500"),

@@ -43,6 +43,7 @@ impl Iso14179p1 {
 impl Law for Iso14179p1 {
     const META: Meta<Lip<f64>> = Meta {
         id: "iso-14179-1",
+        by: "ISO/TR 14179-1",
         title: "ISO/TR 14179-1",
         source: ("isotr14179_1", "oil seal losses"),
         trust: Trust::Confirm("both constants"),

@@ -43,6 +43,7 @@ impl Iso14179p2 {
 impl Law for Iso14179p2 {
     const META: Meta<Lip<f64>> = Meta {
         id: "iso-14179-2",
+        by: "ISO/TR 14179-2",
         title: "Linke (ISO/TR 14179-2)",
         source: ("isotr14179_2", "radial lip seals"),
         trust: Trust::Seen,

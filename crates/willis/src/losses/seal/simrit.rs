@@ -44,6 +44,7 @@ impl Simrit {
 impl Law for Simrit {
     const META: Meta<Lip<f64>> = Meta {
         id: "simrit",
+        by: "Simrit",
         title: "Simrit (ISO/TR 14179-2)",
         source: ("isotr14179_2", "radial lip seals"),
         trust: Trust::Confirm("145, 1.6 and 350"),

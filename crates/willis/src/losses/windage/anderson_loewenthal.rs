@@ -59,6 +59,7 @@ impl AndersonLoewenthal {
 impl Law for AndersonLoewenthal {
     const META: Meta<Disc<f64>> = Meta {
         id: "anderson-loewenthal",
+        by: "Anderson–Loewenthal",
         title: "Anderson and Loewenthal 1980",
         source: ("anderson1980", "windage loss, as printed in Wang 2020, section 3.2.3"),
         trust: Trust::Seen,

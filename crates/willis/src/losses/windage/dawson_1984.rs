@@ -53,6 +53,7 @@ impl Dawson1984 {
 impl Law for Dawson1984 {
     const META: Meta<Disc<f64>> = Meta {
         id: "dawson-1984",
+        by: "Dawson 1984",
         title: "Dawson 1984, large gears in air",
         source: ("dawson1984", "windage formula"),
         trust: Trust::Seen,

@@ -51,6 +51,7 @@ impl Diab {
 impl Law for Diab {
     const META: Meta<Disc<f64>> = Meta {
         id: "diab",
+        by: "Diab",
         title: "Diab, Ville and Velex 2004",
         source: ("diab2004", "dimensional analysis"),
         trust: Trust::Confirm("all constants and exponents"),

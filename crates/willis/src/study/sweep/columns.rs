@@ -112,7 +112,8 @@ fn offers(train: &Train) -> Vec<Offer> {
         .chain(train.rotors.iter().map(|b| &b.name))
         .chain(train.variators.iter().map(|v| &v.name));
     for s in sources {
-        offer("sources", format!("{s}.loss_w"), "W", What::SourceLoss(s.clone()));
+        // A mesh has a loss of its own by sliding; this is all that is lost under a name.
+        offer("sources", format!("{s}.total_loss_w"), "W", What::SourceLoss(s.clone()));
     }
     for v in &train.variators {
         let name = &v.name;

@@ -46,7 +46,7 @@ pub struct Influence {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct UncertainResult {
-    /// `efficiency`, `loss_w`, `mesh_loss_w`, …, `NAME.loss_w`.
+    /// `efficiency`, `loss_w`, `mesh_loss_w`, …, `NAME.total_loss_w`.
     pub name: String,
     /// Its unit; empty for the efficiency.
     pub unit: String,
