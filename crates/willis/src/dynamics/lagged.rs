@@ -52,10 +52,8 @@ pub(super) fn lagged(
     for step in 0..=steps {
         let t = start + step as f64 * h;
         run.t = t;
-        if run.is_row_due(t, h) {
-            if tell_row(&mut run.engine, t, &x, &mut run.row, recorder).is_break() {
-                run.outcome = Some(Outcome::Interrupted);
-            }
+        if run.is_row_due(t, h) && tell_row(&mut run.engine, t, &x, &mut run.row, recorder).is_break() {
+            run.outcome = Some(Outcome::Interrupted);
         }
         if recorder.progress(t).is_break() {
             run.outcome = Some(Outcome::Interrupted);
