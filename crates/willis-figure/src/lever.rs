@@ -13,6 +13,7 @@
 pub mod draw;
 pub(crate) mod family;
 mod layout;
+pub mod panel;
 mod role;
 
 use serde::{Deserialize, Serialize};
@@ -116,6 +117,13 @@ pub struct LeverBar {
     pub sets: Vec<LeverSet>,
     /// Its points, highest first.
     pub nodes: Vec<LeverNode>,
+}
+
+impl LeverBar {
+    /// The names of its sets, with plus signs between them.
+    pub fn name(&self) -> String {
+        self.sets.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" + ")
+    }
 }
 
 /// The forces of one set on its lever.

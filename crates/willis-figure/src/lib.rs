@@ -5,6 +5,7 @@
 //! carries a letter. A kind of figure is a file with its data and a folder with its drawing.
 
 mod band;
+mod columns;
 mod contact_path;
 mod flow;
 mod front;
@@ -34,6 +35,7 @@ use willis::contract;
 
 pub use band::draw::draw as draw_band;
 pub use band::{BandPoint, Bands, QUANTILES, bands};
+pub use columns::{Column, Columns};
 pub use contact_path::film::draw as draw_film;
 pub use contact_path::path::draw as draw_path;
 pub use contact_path::{ContactPath, MeshPath, PathPoint, contact_path};
@@ -44,6 +46,7 @@ pub use front::dxf::front_dxf;
 pub use front::{Front, FrontBody, FrontMesh, FrontPlane, FrontSpacing, FrontWheel, front};
 pub use kind::{Ask, Drawing, FigureRequest};
 pub use lever::draw::draw as draw_lever;
+pub use lever::panel::{LeverScale, draw as lever_panel};
 pub use lever::{
     Lever, LeverBar, LeverCase, LeverLayout, LeverLink, LeverNode, LeverPull, LeverRequest, LeverRole, LeverSet, lever,
 };
@@ -69,7 +72,7 @@ pub use spin::draw::draw as draw_spin;
 pub use spin::{SpinGear, SpinLosses, SpinSource, spin_losses};
 pub use split::draw::draw as draw_split;
 pub use split::{MechanicalPoint, Split, SplitGear, SplitMode, SplitPoint, split};
-pub use stick::draw::draw as draw_stick;
+pub use stick::draw::{draw as draw_stick, in_columns as stick_panel};
 pub use stick::{
     GearRole, JointKind, Place, Stick, StickBlock, StickGear, StickGround, StickJoint, StickLayout, StickMember,
     StickMesh, StickPiece, StickTerminal, Way, stick,

@@ -29,7 +29,7 @@ const BELOW: f64 = 88.0;
 /// Planets are drawn this far beyond the ends of their lever, in parts of the picture.
 const BEYOND: f64 = 0.06;
 const MOST_CASES: usize = 14;
-const RPM: f64 = 30.0 / std::f64::consts::PI;
+pub(super) const RPM: f64 = 30.0 / std::f64::consts::PI;
 const GUIDE: &str = "#ececec";
 const DASHES: [&str; 7] = ["none", "8 3", "3 3", "10 3 3 3", "14 4", "6 2 2 2 2 2", "2 5"];
 
@@ -217,7 +217,7 @@ impl<'a> View<'a> {
 }
 
 /// One unit for all torques of a picture, by the largest of them in N m.
-fn unit_of_torques(largest: f64) -> (f64, &'static str) {
+pub(super) fn unit_of_torques(largest: f64) -> (f64, &'static str) {
     match largest {
         x if x >= 1e7 => (1e-6, "MN m"),
         x if x >= 1e4 => (1e-3, "kN m"),
@@ -227,25 +227,25 @@ fn unit_of_torques(largest: f64) -> (f64, &'static str) {
 }
 
 /// Points that are drawn: planets only where they stand about where the others do.
-fn shown(bar: &LeverBar) -> impl Iterator<Item = &LeverNode> {
+pub(super) fn shown(bar: &LeverBar) -> impl Iterator<Item = &LeverNode> {
     let (low, high) = ends(bar);
     let range = low.position - BEYOND..=high.position + BEYOND;
     bar.nodes.iter().filter(move |n| !planet(n) || range.contains(&n.position))
 }
 
 /// Lowest and highest point of a lever.
-fn ends(bar: &LeverBar) -> (&LeverNode, &LeverNode) {
+pub(super) fn ends(bar: &LeverBar) -> (&LeverNode, &LeverNode) {
     let mut own = bar.nodes.iter().filter(|n| !planet(n));
     let high = own.next().expect("a lever has a carrier");
     (own.next_back().unwrap_or(high), high)
 }
 
-fn planet(node: &LeverNode) -> bool {
+pub(super) fn planet(node: &LeverNode) -> bool {
     node.roles == [LeverRole::Planet]
 }
 
 /// Numbers as near as can be to the wished ones, at least so far apart, within limits.
-fn spread(wished: &[f64], gap: f64, limits: (f64, f64)) -> Vec<f64> {
+pub(super) fn spread(wished: &[f64], gap: f64, limits: (f64, f64)) -> Vec<f64> {
     let mut order: Vec<usize> = (0..wished.len()).collect();
     order.sort_by(|a, b| wished[*a].total_cmp(&wished[*b]));
     // Groups that touch move as one: their mean stays.
@@ -274,7 +274,7 @@ fn case_colour(v: &View<'_>, k: usize) -> String {
 }
 
 /// The colour of a member in every kind of figure.
-fn own_colour(n: &LeverNode) -> String {
+pub(super) fn own_colour(n: &LeverNode) -> String {
     n.colour.map_or(INK.to_owned(), |c| colour(Some(c), 1.0))
 }
 
@@ -365,7 +365,7 @@ fn across(v: &View<'_>, rows: &[Vec<usize>], top: f64, content: f64) -> Group {
 
 fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
     let width = v.width(bar);
-    let name = bar.sets.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" + ");
+    let name = bar.name();
     let head = fit(&name, (width - 8.0) / BOLD, 14.0);
     let mut g = Group::new()
         .add(
@@ -451,7 +451,7 @@ fn scale(v: &View<'_>, bar: &LeverBar) -> Group {
 }
 
 /// What a point is, by its shape: disc sun, circle ring, square carrier.
-fn mark(x: f64, y: f64, roles: &[LeverRole]) -> Group {
+pub(super) fn mark(x: f64, y: f64, roles: &[LeverRole]) -> Group {
     let circle = |r: f64, fill: &str, stroke: f64| {
         let c = Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", number(r)).set("fill", fill);
         c.set("stroke", INK).set("stroke-width", number(stroke))
@@ -476,7 +476,7 @@ fn mark(x: f64, y: f64, roles: &[LeverRole]) -> Group {
 }
 
 /// The sign of a member at rest, its tip at the point.
-fn ground(x: f64, y: f64) -> Group {
+pub(super) fn ground(x: f64, y: f64) -> Group {
     let n = |x: f64, y: f64| format!("{} {}", number(x), number(y));
     let triangle = format!("M{} L{} L{} Z", n(x, y), n(x - 8.0, y - 5.0), n(x - 8.0, y + 5.0));
     Group::new()
@@ -499,7 +499,7 @@ fn letters(v: &View<'_>, bar: &LeverBar, first: &LeverNode) -> Group {
             PAPER,
             3.0,
         ));
-        let name = bar.sets.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" + ");
+        let name = bar.name();
         g = g.add(of(own, "letter", &[Of::Mesh(&name), Of::State(&v.lever.cases[case].name)]));
     }
     g

@@ -3,6 +3,7 @@
 mod labels;
 mod sheet;
 
+use svg::Document;
 use svg::node::element::{Circle, Group, Path, Polyline};
 
 use self::labels::Labels;
@@ -11,7 +12,7 @@ use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{Drawing, GearRole, JointKind, Place, Stick, StickGear, StickJoint, StickPiece, Way};
+use crate::{Columns, Drawing, GearRole, JointKind, Place, Stick, StickGear, StickJoint, StickPiece, Way};
 
 /// Length of a terminal's arrow.
 const ARROW: f64 = 40.0;
@@ -49,22 +50,18 @@ pub(super) fn draw_on(data: &Stick, paper: Drawing) -> String {
     for (k, l) in lines(&subtitle(data), sheet.width - 56.0, 13.0).iter().take(2).enumerate() {
         page = page.add(text(28.0, 60.0 + 18.0 * k as f64, 13.0, Anchor::Start, l).set("fill", FAINT));
     }
-    let mut labels = Labels::default();
-    page = page
-        .add(sheet.axes())
-        .add(sheet.highlights())
-        .add(sheet.member_lines(&mut labels))
-        .add(sheet.gears(&mut labels))
-        .add(sheet.joints(&mut labels))
-        .add(sheet.grounds(&mut labels))
-        .add(sheet.terminals(&mut labels))
-        .add(sheet.block_names())
-        .add(sheet.joint_names(&mut labels))
-        .add(sheet.teeth(&mut labels))
-        .add(sheet.member_names(&mut labels))
-        .add(sheet.list())
-        .add(sheet.key());
-    page.to_string()
+    sheet.scheme(true).into_iter().fold(page, Document::add).add(sheet.list()).add(sheet.key()).to_string()
+}
+
+/// The schematic alone for a panel of a screen that is so many px high, its sets in columns. Texts have 11 and 12 px. Where the
+/// height does not suffice it is drawn higher.
+pub fn in_columns(data: &Stick, columns: &Columns, height: f64) -> String {
+    let sheet = Sheet::in_columns(data, columns, height);
+    let mut page = page(sheet.width, sheet.height, &format!("Stick diagram of {}", data.title), &words(data));
+    if columns.aligned() {
+        page = page.add(columns.zones(sheet.height));
+    }
+    sheet.scheme(false).into_iter().fold(page, Document::add).to_string()
 }
 
 fn subtitle(data: &Stick) -> String {
@@ -112,6 +109,23 @@ fn role(g: &StickGear) -> &'static str {
 }
 
 impl Sheet<'_> {
+    /// Everything but the words around it; sets with their names where these do not stand elsewhere.
+    fn scheme(&self, named: bool) -> Vec<Group> {
+        let mut labels = Labels::default();
+        let mut all = vec![
+            self.axes(),
+            self.highlights(),
+            self.member_lines(&mut labels),
+            self.gears(&mut labels),
+            self.joints(&mut labels),
+            self.grounds(&mut labels),
+            self.terminals(&mut labels),
+        ];
+        all.extend(named.then(|| self.block_names()));
+        all.extend([self.joint_names(&mut labels), self.teeth(&mut labels), self.member_names(&mut labels)]);
+        all
+    }
+
     fn axes(&self) -> Group {
         let mut g = guide(Group::new());
         for y in &self.data.axes {

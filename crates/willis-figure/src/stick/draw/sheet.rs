@@ -1,7 +1,7 @@
 //! The page of a stick diagram: where it is drawn, and which members are listed in which colour.
 
 use crate::parts::style::{BOLD, INK, colour, wide};
-use crate::{Drawing, Place, Stick};
+use crate::{Columns, Drawing, Place, Stick};
 
 /// Left and right of the grid on a screen.
 const MARGIN: f64 = 168.0;
@@ -24,6 +24,12 @@ pub struct Sheet<'a> {
     /// Width of a column of the list of members.
     pub list: f64,
     pub left: f64,
+    /// Where the grid begins below the upper edge.
+    top: f64,
+    /// No label stands higher.
+    pub ceiling: f64,
+    /// Instead of one scale along the axis, where a panel has columns.
+    columns: Option<&'a Columns>,
     pub unit: f64,
     pub rise: f64,
     /// Colour number of each member that has lines.
@@ -43,23 +49,43 @@ impl<'a> Sheet<'a> {
         let drawn = unit * data.width;
         let width = (drawn + margins).clamp(640.0, 4000.0).max(0.0);
         let left = (width - drawn) / 2.0;
-        let led_out = |k: usize| {
-            let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
-            joined || data.terminals.iter().any(|t| t.member == k) || !data.members[k].carries.is_empty()
-        };
-        let category =
-            data.members.iter().enumerate().map(|(k, m)| (!m.planet || led_out(k)).then_some(m.colour)).collect();
         let half = (width - 56.0) / 2.0;
         let list = if room < on_screen && half >= LIST[1] { half.min(LIST[0]) } else { LIST[0] };
-        let mut s = Self { data, width, height: 0.0, margin, list, left, unit, rise, category };
+        let category = categories(data);
+        let (top, ceiling, columns) = (TOP, 82.0, None);
+        let mut s = Self { data, width, height: 0.0, margin, list, left, top, ceiling, columns, unit, rise, category };
         s.height = s.list_top() + s.list_rows() as f64 * ROW + 52.0;
         s
     }
 
+    /// Nothing but the schematic, in the columns of a panel that is so high.
+    pub fn in_columns(data: &'a Stick, columns: &'a Columns, height: f64) -> Self {
+        // Above: the frame of the highest brake. Below: the lowest axis.
+        let (above, below) = (18.0, 18.0);
+        let steps = data.height.max(1.0);
+        let rise = ((height - above - below) / steps).clamp(22.0, 66.0);
+        let drawn = rise * steps;
+        let height = height.max(drawn + above + below);
+        Self {
+            data,
+            width: columns.width,
+            height,
+            margin: columns.margin(),
+            list: 0.0,
+            left: columns.margin(),
+            top: above + (height - above - below - drawn) / 2.0,
+            ceiling: 4.0,
+            columns: Some(columns),
+            unit: (columns.width - 2.0 * columns.margin()) / data.width.max(1.0),
+            rise,
+            category: categories(data),
+        }
+    }
+
     pub fn at(&self, p: Place) -> (f64, f64) {
         // Whole pixels: lines of one width meet without a seam.
-        let x = self.left + p[0] * self.unit;
-        let y = TOP + (self.data.height - p[1]) * self.rise;
+        let x = self.columns.map_or(self.left + p[0] * self.unit, |c| c.across(p[0]));
+        let y = self.top + (self.data.height - p[1]) * self.rise;
         (x.round(), y.round())
     }
 
@@ -91,4 +117,13 @@ impl<'a> Sheet<'a> {
             _ => INK.to_owned(),
         }
     }
+}
+
+/// The colour number of each member that has lines: planets have none, unless something joins them from outside.
+fn categories(data: &Stick) -> Vec<Option<usize>> {
+    let led_out = |k: usize| {
+        let joined = data.joints.iter().any(|j| j.members.contains(&Some(k)));
+        joined || data.terminals.iter().any(|t| t.member == k) || !data.members[k].carries.is_empty()
+    };
+    data.members.iter().enumerate().map(|(k, m)| (!m.planet || led_out(k)).then_some(m.colour)).collect()
 }
