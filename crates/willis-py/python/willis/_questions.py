@@ -367,11 +367,11 @@ class Questions:
 
         ::
 
-              over="input.speed=500 rpm..12000 rpm:100"   over="output.torque=10..400 N m:80"
+              over=["input.speed=500 rpm..12000 rpm:100", "output.torque=10..400 N m:80"]
 
         ::
 
-              over="state=all"   over="P1.planet.count=3,4,6"   over="oil.temperature=20..100 degC:9"
+              over=["state=all", "P1.planet.count=3,4,6", "oil.temperature=20..100 degC:9"]
 
         ``…:100`` are so many values, ends included; ``…:31:log`` a constant ratio; ``…:step 500 rpm`` every so
         much. Torque and power of ``input`` and ``output`` are positive where they drive; of a member called by its

@@ -1,5 +1,7 @@
 //! Quantities of a train file by their path, and other values for them.
 
+mod parts;
+
 use toml_edit::{Array, DocumentMut, Formatted, InlineTable, Item, TableLike, Value};
 
 use crate::diagnostic::{Code, Diagnostic};

@@ -1,0 +1,398 @@
+//! A train in the studio: read once, laid out once, shown at many points.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+use wasm_bindgen::prelude::wasm_bindgen;
+use willis::diagnostic::Diagnostics;
+use willis::model::Model;
+use willis::train::AS_DRAWN;
+use willis_ask::{Attachment, Given, Refusal};
+use willis_figure::{
+    Columns, Drawing, FigureKind, FigureRequest, LeverLayout, LeverRequest, LeverScale, StickLayout, lever_panel,
+    stick_panel,
+};
+
+use crate::point::{Entries, Point};
+use crate::refused;
+use crate::surroundings::Browser;
+
+/// A train file with its tables, read and laid out.
+#[wasm_bindgen]
+pub struct Session {
+    name: String,
+    files: BTreeMap<String, String>,
+    model: Model,
+    stick: Result<StickLayout, Diagnostics>,
+    lever: Result<LeverLayout, Diagnostics>,
+    /// The last point with the train file that it makes.
+    shown: Option<(Point, Given, Entries)>,
+}
+
+/// Sizes of the panels, px, and scales that are kept.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Boxes {
+    /// The width of schematic and levers.
+    pub width: f64,
+    /// The height of the schematic; 0 where it is not seen.
+    pub stick: f64,
+    /// The height of the levers; 0 where they are not seen.
+    pub lever: f64,
+    /// Width of the flow of power; 0 where it is not seen.
+    pub power: f64,
+    /// Least and greatest speed of the levers' scale, rad/s, and torque of the longest arrow, N m.
+    pub scale: Option<[f64; 3]>,
+}
+
+/// What all panels show of one point.
+#[wasm_bindgen(getter_with_clone)]
+pub struct Shown {
+    /// The answer to `analyze` of this point, or the refusal, as JSON.
+    pub analysis: String,
+    /// The operation's name, where there is one.
+    pub operation: Option<String>,
+    /// The state's name, where there is one.
+    pub state: Option<String>,
+    /// The schematic as SVG, or a refusal as JSON; empty where it is not seen.
+    pub stick: String,
+    /// The levers, likewise.
+    pub lever: String,
+    /// The flow of power, likewise.
+    pub power: String,
+    /// Columns and scale of the levers as JSON.
+    pub frame: String,
+}
+
+#[wasm_bindgen]
+impl Session {
+    /// Reads a train file. `files` are the tables that it names, as a JSON object of names and texts.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it, as a refusal in JSON.
+    #[wasm_bindgen(constructor)]
+    pub fn new(name: &str, text: &str, files: &str) -> Result<Session, String> {
+        let files: BTreeMap<String, String> = serde_json::from_str(files).unwrap_or_default();
+        let model = read(name, text, &files)?;
+        let stick = StickLayout::new(model.train());
+        let lever = LeverLayout::new(model.train());
+        Ok(Self { name: name.to_owned(), files, model, stick, lever, shown: None })
+    }
+
+    /// What the page needs to know of the train, as JSON: members, sets, elements, states, operations, quantities.
+    pub fn facts(&self) -> String {
+        let train = self.model.train();
+        let specification = serde_json::to_value(self.model.specification()).unwrap_or_default();
+        let name = |m: &willis::train::MemberId| train.member_name(*m).to_owned();
+        let end = |state: Option<usize>| train.ends(state).map(|m| m.map(|m| train.member_name(m).to_owned()));
+        let state = |(k, s): (usize, &willis::train::State)| {
+            let engaged: Vec<&str> = s.engaged.iter().map(|e| train.shift_elements()[e.index()].name.as_str()).collect();
+            json!({ "name": s.name, "engaged": engaged, "ends": end(Some(k)) })
+        };
+        let element = |e: &willis::train::ShiftElement| {
+            let members: Vec<String> = e.members.iter().map(name).collect();
+            json!({ "name": e.name, "kind": specification_kind(&specification, &e.name), "members": members })
+        };
+        let quantity = |(path, key): (String, willis::train::Key)| {
+            json!({ "path": path, "value": self.model.document().value(&key) })
+        };
+        json!({
+            "name": train.name(),
+            "asDrawn": AS_DRAWN,
+            "members": train.members().iter().skip(1).map(|m| m.name.clone()).collect::<Vec<_>>(),
+            "terminals": train.terminals().iter().map(name).collect::<Vec<_>>(),
+            "ends": end(None),
+            "states": train.states().iter().enumerate().map(state).collect::<Vec<_>>(),
+            "elements": train.shift_elements().iter().map(element).collect::<Vec<_>>(),
+            "sets": specification.get("set").cloned().unwrap_or(Value::Array(vec![])),
+            "operations": specification.get("operation").cloned().unwrap_or(Value::Array(vec![])),
+            "scenarios": train.scenarios().iter().map(|s| s.name.clone()).collect::<Vec<_>>(),
+            "quantities": self.model.document().quantities().into_iter().map(quantity).collect::<Vec<_>>(),
+            "warnings": self.model.warnings(),
+        })
+        .to_string()
+    }
+
+    /// The train file with the entries that a point stands for, the text for which the command line gives the same answers.
+    ///
+    /// # Errors
+    /// The point is no JSON of one.
+    pub fn text(&self, point: &str) -> Result<String, String> {
+        Ok(with_entries(self.model.to_toml(), &parsed::<Point>(point)?.entries(&self.model)))
+    }
+
+    /// Shows a point in all panels.
+    ///
+    /// # Errors
+    /// The point or the boxes are no JSON of such. What is wrong with the train at this point stands in the answer.
+    pub fn show(&mut self, point: &str, boxes: &str) -> Result<Shown, String> {
+        let boxes: Boxes = parsed(boxes)?;
+        if let Err(refusal) = self.at(point)? {
+            let (stick, lever, power, frame) = <(String, String, String, String)>::default();
+            return Ok(Shown { analysis: refusal, operation: None, state: None, stick, lever, power, frame });
+        }
+        let (_, given, entries) = self.shown.as_ref().expect("just put there");
+        let request = match (&entries.operation, &entries.state) {
+            (Some(operation), _) => json!({ "operation": operation }),
+            (None, Some(state)) => json!({ "state": state }),
+            (None, None) => json!({}),
+        };
+        let analysis = answer(given, "analyze", request).unwrap_or_else(|refusal| refusal);
+        let (stick, lever, frame) = self.columns(given, entries, &boxes);
+        let power = if boxes.power > 0.0 { power(given, entries, boxes.power) } else { String::new() };
+        Ok(Shown {
+            analysis,
+            operation: entries.operation.clone(),
+            state: entries.state.clone(),
+            stick,
+            lever,
+            power,
+            frame,
+        })
+    }
+
+    /// Answers a question about the train at a point, as JSON.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    pub fn ask(&mut self, question: &str, request: &str, point: &str) -> Result<String, String> {
+        self.at(point)??;
+        let (_, given, _) = self.shown.as_ref().expect("just put there");
+        answer(given, question, parsed(request)?)
+    }
+
+    /// The same in another form: `text`, `csv`, or one of the question's own. A JSON list of files with name and text.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    pub fn tell(&mut self, question: &str, request: &str, form: &str, point: &str) -> Result<String, String> {
+        self.at(point)??;
+        let (_, given, _) = self.shown.as_ref().expect("just put there");
+        told(given, question, parsed(request)?, form, &self.files)
+    }
+
+    /// The train file with another value of a quantity.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    pub fn set(&self, path: &str, value: &str) -> Result<String, String> {
+        let changed = self.model.with([(path, value)]);
+        changed.map(|m| m.to_toml().to_owned()).map_err(|wrong| self.refused(wrong))
+    }
+
+    /// The train file with two members made one, which has the name of the first.
+    ///
+    /// # Errors
+    /// The refusal as JSON: there is no such member, or the train cannot be then.
+    pub fn join(&self, one: &str, other: &str) -> Result<String, String> {
+        self.edited(|document| document.join(one, other))
+    }
+
+    /// The train file with another name of a member.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    pub fn rename(&self, from: &str, to: &str) -> Result<String, String> {
+        self.edited(|document| document.rename(from, to))
+    }
+
+    /// The train file without an entry of a list, such as `set` or `shift_element`; what names it goes with it.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    pub fn remove(&self, list: &str, name: &str) -> Result<String, String> {
+        self.edited(|document| document.remove(list, name))
+    }
+
+    /// The train file with a set more, whose members are new.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    #[wasm_bindgen(js_name = addSet)]
+    pub fn add_set(&self, name: &str, sun: u32, ring: u32) -> Result<String, String> {
+        self.edited(|document| document.add_set(name, sun, ring))
+    }
+
+    /// The train file with a clutch between two members, or a brake on one.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    #[wasm_bindgen(js_name = addElement)]
+    pub fn add_element(&self, name: &str, members: Vec<String>) -> Result<String, String> {
+        self.edited(|document| document.add_element(name, &members))
+    }
+
+    /// The train file with a state more.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    #[wasm_bindgen(js_name = addState)]
+    pub fn add_state(&self, name: &str, engaged: Vec<String>) -> Result<String, String> {
+        self.edited(|document| document.add_state(name, &engaged))
+    }
+}
+
+impl Session {
+    /// The train file at a point, read unless it is what was shown last. The outer error is about the request, the inner one
+    /// about the train.
+    fn at(&mut self, point: &str) -> Result<Result<(), String>, String> {
+        let point: Point = parsed(point)?;
+        if self.shown.as_ref().is_some_and(|s| s.0 == point) {
+            return Ok(Ok(()));
+        }
+        let entries = point.entries(&self.model);
+        let given = match entries.text.is_empty() {
+            true => Given::new(self.name.clone(), self.model.clone()),
+            false => match read(&self.name, &with_entries(self.model.to_toml(), &entries), &self.files) {
+                Ok(model) => Given::new(self.name.clone(), model),
+                Err(refusal) => return Ok(Err(refusal)),
+            },
+        };
+        self.shown = Some((point, given, entries));
+        Ok(Ok(()))
+    }
+
+    /// Schematic and levers, and where their columns are.
+    fn columns(&self, given: &Given, entries: &Entries, boxes: &Boxes) -> (String, String, String) {
+        let train = given.model.train();
+        let unfit = |wrong: &Diagnostics| self.refused(wrong.clone());
+        let stick = match &self.stick {
+            Ok(layout) => layout.show(train, entries.state.as_deref()).map_err(|w| unfit(&w)),
+            Err(wrong) => Err(unfit(wrong)),
+        };
+        let request = match (&entries.operation, &entries.state) {
+            (Some(operation), _) => LeverRequest::Operation(operation.clone()),
+            (None, Some(state)) => LeverRequest::State(state.clone()),
+            (None, None) => LeverRequest::First,
+        };
+        let lever = match &self.lever {
+            // Where the point has no motion, the lever of the state has.
+            Ok(layout) => layout.show(train, &request).map_err(|w| unfit(&w)),
+            Err(wrong) => Err(unfit(wrong)),
+        };
+        let (stick, lever) = match (stick, lever) {
+            (Ok(stick), Ok(lever)) => (stick, lever),
+            (stick, lever) => {
+                let told = |e: Option<String>| e.unwrap_or_default();
+                return (told(stick.err()), told(lever.err()), "null".into());
+            }
+        };
+        let columns = Columns::new(&stick, &lever, boxes.width);
+        let scale = boxes.scale.map(|[low, high, torque]| LeverScale { speeds: [low, high], torque });
+        let scale = scale.unwrap_or_else(|| LeverScale::of(&lever));
+        let seen = |height: f64, draw: &dyn Fn() -> String| if height > 0.0 { draw() } else { String::new() };
+        let sets: Vec<Value> =
+            columns.all().iter().map(|c| json!({ "name": c.name, "x": c.x, "span": c.span })).collect();
+        let frame = json!({
+            "width": columns.width,
+            "aligned": columns.aligned(),
+            "columns": sets,
+            "scale": [scale.speeds[0], scale.speeds[1], scale.torque],
+        });
+        (
+            seen(boxes.stick, &|| stick_panel(&stick, &columns, boxes.stick)),
+            seen(boxes.lever, &|| lever_panel(&lever, &columns, boxes.lever, Some(scale))),
+            frame.to_string(),
+        )
+    }
+
+    fn refused(&self, wrong: Diagnostics) -> String {
+        let of = [Given::new(self.name.clone(), self.model.clone())];
+        refused(&Refusal::Wrong(wrong, 0), &of)
+    }
+
+    /// The text after an edit; the train must be one then.
+    fn edited(
+        &self,
+        edit: impl FnOnce(&mut willis::train::Document) -> Result<(), Diagnostics>,
+    ) -> Result<String, String> {
+        let mut document = self.model.document().clone();
+        edit(&mut document).map_err(|wrong| self.refused(wrong))?;
+        let text = document.text();
+        read(&self.name, &text, &self.files)?;
+        Ok(text)
+    }
+}
+
+/// What kind of shift element an entry of the file is.
+fn specification_kind(specification: &Value, name: &str) -> Value {
+    let all = specification.get("shift_element").and_then(Value::as_array);
+    let own = all.into_iter().flatten().find(|e| e["name"] == name);
+    own.map_or(Value::Null, |e| e["kind"].clone())
+}
+
+/// JSON from the page.
+fn parsed<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, String> {
+    serde_json::from_str(text).map_err(|e| {
+        let wrong = willis::diagnostic::Diagnostic::new(willis::diagnostic::Code::WrongType, "", format!("the page asks wrongly: {e}"));
+        refused(&wrong.into(), &[])
+    })
+}
+
+fn read(name: &str, text: &str, files: &BTreeMap<String, String>) -> Result<Model, String> {
+    let mut load = |file: &str| files.get(file).cloned().ok_or_else(|| "it is not among the files of the page".to_owned());
+    Model::read(text, &mut load).map_err(|wrong| {
+        let file = Attachment { name: name.to_owned(), text: text.to_owned() };
+        refused(&Refusal::File(wrong, file), &[])
+    })
+}
+
+/// A train file and what follows it.
+fn with_entries(text: &str, entries: &Entries) -> String {
+    let end = if text.is_empty() || text.ends_with('\n') { "" } else { "\n" };
+    format!("{text}{end}{}", entries.text)
+}
+
+fn answer(given: &Given, question: &str, request: Value) -> Result<String, String> {
+    let of = std::slice::from_ref(given);
+    let ask = || -> Result<String, Refusal> {
+        let request = entry(question)?.request(request)?;
+        let answer = request.ask(of, &Browser)?;
+        Ok(answer.json())
+    };
+    ask().map_err(|refusal| refused(&refusal, of))
+}
+
+fn told(given: &Given, question: &str, request: Value, form: &str, files: &BTreeMap<String, String>) -> Result<String, String> {
+    let of = std::slice::from_ref(given);
+    let ask = || -> Result<String, Refusal> {
+        let mut request = entry(question)?.request(request)?;
+        for file in request.attachments().into_iter().filter(|f| f.text.is_empty()) {
+            if let Some(text) = files.get(&file.name) {
+                file.text = text.clone();
+            }
+        }
+        let answer = request.ask(of, &Browser)?;
+        let one = |name: String, text: String| json!([{ "name": name, "text": text }]);
+        let files = match form {
+            "json" => one(format!("{question}.json"), answer.json()),
+            "text" => one(format!("{question}.txt"), willis_ask::style::plain(&answer.text())),
+            "csv" => one(format!("{question}.csv"), willis_ask::table::csv(&answer.tables())),
+            other => {
+                let file = |f: willis_ask::File| json!({ "name": f.name, "text": String::from_utf8_lossy(&f.bytes) });
+                answer.write(other)?.into_iter().map(file).collect()
+            }
+        };
+        Ok(files.to_string())
+    };
+    ask().map_err(|refusal| refused(&refusal, of))
+}
+
+fn entry(question: &str) -> Result<&'static willis_ask::Entry, Refusal> {
+    use willis::diagnostic::{Code, Diagnostic};
+    willis_ask::question(question)
+        .ok_or_else(|| Diagnostic::new(Code::UnknownSelection, "", format!("there is no question `{question}`")).into())
+}
+
+/// The flow of power of a point.
+fn power(given: &Given, entries: &Entries, width: f64) -> String {
+    let request =
+        FigureRequest { operation: entries.operation.clone(), state: entries.state.clone(), ..FigureRequest::default() };
+    let made = FigureKind::Sankey.make(&given.model, &request);
+    let width = (width.clamp(200.0, 4000.0)) as u32;
+    match made {
+        Ok(figure) => willis_figure::draw(&figure, Drawing { width: Some(width), ..Drawing::default() }),
+        Err(wrong) => refused(&Refusal::Wrong(wrong, 0), std::slice::from_ref(given)),
+    }
+}

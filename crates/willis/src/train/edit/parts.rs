@@ -1,0 +1,313 @@
+//! Parts of a train file that come, go and get other names; what is written beside them stays.
+
+use toml_edit::{Array, ArrayOfTables, InlineTable, Item, Table, TableLike, Value};
+
+use super::Document;
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
+use crate::train::words::clip;
+
+/// Keys whose values are names of members.
+const MEMBERS: [&str; 7] = ["member", "members", "carrier", "input", "output", "fixed", "terminals"];
+/// Keys of tables whose own keys are names of members.
+const BY_MEMBER: [&str; 3] = ["speeds", "torques", "powers"];
+/// The member that every train has.
+const FRAME: &str = "frame";
+
+/// # Example
+/// ```
+/// use willis::train::{Document, Train};
+///
+/// let mut document = Document::parse(r#"
+///     format = 1
+///     name = "two shafts"
+///     members = ["s", "r", "c"]   # in this order
+///     terminals = ["s", "c"]
+/// "#)?;
+/// document.add_set("P1", 30, 70).unwrap();
+/// document.join("s", "P1.sun").unwrap();
+/// document.join("c", "P1.carrier").unwrap();
+/// document.join("frame", "P1.ring").unwrap();
+/// let text = document.text();
+/// assert!(text.contains("# in this order") && !text.contains("P1.sun"));
+/// assert!(Train::from_toml(&text).is_ok(), "{text}");
+/// # Ok::<(), String>(())
+/// ```
+impl Document {
+    /// Makes two members one, under the name of the first. Its place in operations is that of the first too.
+    ///
+    /// # Errors
+    /// There are no such two members; the second is the frame.
+    pub fn join(&mut self, one: &str, other: &str) -> Result<(), Diagnostics> {
+        if one == other {
+            return Err(wrong(one, format!("`{}` is one member already", clip(one))));
+        }
+        self.known(one)?;
+        if other == FRAME {
+            return self.join(FRAME, one);
+        }
+        self.known(other)?;
+        let members = self.0.get_mut("members").and_then(Item::as_array_mut);
+        if let Some(all) = members {
+            all.retain(|v| v.as_str() != Some(other));
+        }
+        if one == FRAME {
+            // The frame is no terminal, and nothing is prescribed for it.
+            forget(self.0.as_table_mut(), other);
+        }
+        renamed(self.0.as_table_mut(), other, one);
+        Ok(())
+    }
+
+    /// Gives a member another name.
+    ///
+    /// # Errors
+    /// There is no such member, or there is one of the new name.
+    pub fn rename(&mut self, from: &str, to: &str) -> Result<(), Diagnostics> {
+        self.known(from)?;
+        if from == FRAME {
+            return Err(wrong(from, "the frame is always called so".to_owned()));
+        }
+        if self.known(to).is_ok() {
+            return Err(wrong(to, format!("there is a member `{}` already", clip(to))));
+        }
+        renamed(self.0.as_table_mut(), from, to);
+        Ok(())
+    }
+
+    /// Takes the entry of a list away, such as a `set`, `shift_element`, `state` or `operation`. States lose an element that
+    /// is no more, and members that belonged to nothing but a set go with it.
+    ///
+    /// # Errors
+    /// There is no such entry.
+    pub fn remove(&mut self, list: &str, name: &str) -> Result<(), Diagnostics> {
+        let is = |t: &dyn TableLike| t.get("name").and_then(Item::as_str) == Some(name);
+        let gone = match self.0.get_mut(list) {
+            Some(Item::ArrayOfTables(all)) => {
+                let at = all.iter().position(|t| is(t));
+                at.map(|k| all.remove(k)).is_some()
+            }
+            Some(Item::Value(Value::Array(all))) => {
+                let at = all.iter().position(|v| v.as_inline_table().is_some_and(|t| is(t)));
+                at.map(|k| all.remove(k)).is_some()
+            }
+            _ => false,
+        };
+        if !gone {
+            return Err(wrong(name, format!("there is no `{}` in `{list}`", clip(name))));
+        }
+        if list == "shift_element"
+            && let Some(Item::ArrayOfTables(states)) = self.0.get_mut("state")
+        {
+            for state in states.iter_mut() {
+                if let Some(engaged) = state.get_mut("engaged").and_then(Item::as_array_mut) {
+                    engaged.retain(|v| v.as_str() != Some(name));
+                }
+            }
+        }
+        if list == "set" {
+            self.drop_unused();
+        }
+        Ok(())
+    }
+
+    /// Adds a simple set whose members are new: `NAME.sun`, `NAME.ring` and `NAME.carrier`.
+    ///
+    /// # Errors
+    /// There is something of that name.
+    pub fn add_set(&mut self, name: &str, sun: u32, ring: u32) -> Result<(), Diagnostics> {
+        self.unused("set", name)?;
+        let members = ["sun", "ring", "carrier"].map(|part| format!("{name}.{part}"));
+        for member in &members {
+            if self.known(member).is_ok() {
+                return Err(wrong(member, format!("there is a member `{}` already", clip(member))));
+            }
+        }
+        let all = self.0.entry("members").or_insert(Item::Value(Value::Array(Array::new())));
+        if let Some(all) = all.as_array_mut() {
+            members.iter().for_each(|m| all.push(m.as_str()));
+        }
+        let gear = |member: &str, teeth: u32| {
+            let mut gear = InlineTable::new();
+            gear.insert("member", member.into());
+            gear.insert("teeth", i64::from(teeth).into());
+            Item::Value(Value::InlineTable(gear))
+        };
+        let mut set = Table::new();
+        set.insert("name", toml_edit::value(name));
+        set.insert("sun", gear(&members[0], sun));
+        set.insert("ring", gear(&members[1], ring));
+        set.insert("carrier", toml_edit::value(members[2].as_str()));
+        set.insert("mesh_efficiency", toml_edit::value(0.99));
+        self.push("set", set);
+        Ok(())
+    }
+
+    /// Adds a clutch between two members, or a brake on one.
+    ///
+    /// # Errors
+    /// There is something of that name, no such member, or neither one nor two of them.
+    pub fn add_element(&mut self, name: &str, members: &[String]) -> Result<(), Diagnostics> {
+        self.unused("shift_element", name)?;
+        members.iter().try_for_each(|m| self.known(m))?;
+        let kind = match members {
+            [_] => "brake",
+            [_, _] => "clutch",
+            _ => return Err(wrong(name, "a brake has one member, a clutch has two".to_owned())),
+        };
+        let mut element = Table::new();
+        element.insert("name", toml_edit::value(name));
+        element.insert("kind", toml_edit::value(kind));
+        element.insert("members", toml_edit::value(members.iter().map(String::as_str).collect::<Array>()));
+        self.push("shift_element", element);
+        Ok(())
+    }
+
+    /// Adds a state in which these elements are closed.
+    ///
+    /// # Errors
+    /// There is a state of that name.
+    pub fn add_state(&mut self, name: &str, engaged: &[String]) -> Result<(), Diagnostics> {
+        self.unused("state", name)?;
+        let mut state = Table::new();
+        state.insert("name", toml_edit::value(name));
+        state.insert("engaged", toml_edit::value(engaged.iter().map(String::as_str).collect::<Array>()));
+        self.push("state", state);
+        Ok(())
+    }
+
+    /// Adds an entry to a list of tables, whichever way it is written.
+    fn push(&mut self, list: &str, entry: Table) {
+        let item = self.0.entry(list).or_insert(Item::ArrayOfTables(ArrayOfTables::new()));
+        match item {
+            Item::ArrayOfTables(all) => all.push(entry),
+            Item::Value(Value::Array(all)) => all.push(entry.into_inline_table()),
+            _ => {}
+        }
+    }
+
+    fn known(&self, member: &str) -> Result<(), Diagnostics> {
+        let listed = self.0.get("members").and_then(Item::as_array).into_iter().flatten().filter_map(Value::as_str);
+        let all: Vec<&str> = listed.chain([FRAME]).collect();
+        if all.contains(&member) {
+            return Ok(());
+        }
+        let message = format!("there is no member `{}`", clip(member));
+        Err(Diagnostic::new(Code::UnknownName, "members", message).suggest(member, all.into_iter()).into())
+    }
+
+    fn unused(&self, list: &str, name: &str) -> Result<(), Diagnostics> {
+        let is = |t: &dyn TableLike| t.get("name").and_then(Item::as_str) == Some(name);
+        let there = match self.0.get(list) {
+            Some(Item::ArrayOfTables(all)) => all.iter().any(|t| is(t)),
+            Some(Item::Value(Value::Array(all))) => all.iter().any(|v| v.as_inline_table().is_some_and(|t| is(t))),
+            _ => false,
+        };
+        if there { Err(wrong(name, format!("there is a `{}` in `{list}` already", clip(name)))) } else { Ok(()) }
+    }
+
+    /// Takes members out of the list that nothing else names.
+    fn drop_unused(&mut self) {
+        let mut used = vec![];
+        for (key, item) in self.0.as_table().iter().filter(|(key, _)| *key != "members") {
+            names(key, item, &mut used);
+        }
+        if let Some(all) = self.0.get_mut("members").and_then(Item::as_array_mut) {
+            all.retain(|v| v.as_str().is_some_and(|m| used.iter().any(|u| u == m)));
+        }
+    }
+}
+
+fn wrong(place: &str, message: String) -> Diagnostics {
+    Diagnostic::new(Code::UnknownSelection, place, message).into()
+}
+
+/// Names of members in an item.
+fn names(key: &str, item: &Item, all: &mut Vec<String>) {
+    let value = |v: &Value, all: &mut Vec<String>| match v {
+        Value::String(s) if MEMBERS.contains(&key) => all.push(s.value().clone()),
+        Value::InlineTable(t) => inside(key, t, all),
+        _ => {}
+    };
+    match item {
+        Item::Value(Value::Array(array)) => array.iter().for_each(|v| value(v, all)),
+        Item::Value(one) => value(one, all),
+        Item::Table(t) => inside(key, t, all),
+        Item::ArrayOfTables(tables) => tables.iter().for_each(|t| inside(key, t, all)),
+        Item::None => {}
+    }
+}
+
+fn inside(key: &str, table: &dyn TableLike, all: &mut Vec<String>) {
+    for (inner, item) in table.iter() {
+        if BY_MEMBER.contains(&key) {
+            all.push(inner.to_owned());
+        }
+        names(inner, item, all);
+    }
+}
+
+/// Puts another name in the place of a member's, everywhere below a table.
+fn renamed(table: &mut dyn TableLike, from: &str, to: &str) {
+    let keys: Vec<String> = table.iter().map(|(k, _)| k.to_owned()).collect();
+    for key in keys {
+        let Some(item) = table.get_mut(&key) else { continue };
+        match item {
+            Item::ArrayOfTables(all) => all.iter_mut().for_each(|t| renamed(t, from, to)),
+            Item::Table(t) => renamed_in(&key, t, from, to),
+            Item::Value(value) => renamed_value(&key, value, from, to),
+            Item::None => {}
+        }
+    }
+}
+
+fn renamed_in(key: &str, table: &mut dyn TableLike, from: &str, to: &str) {
+    if BY_MEMBER.contains(&key) && table.contains_key(from) {
+        let value = table.remove(from);
+        // What is prescribed for the name that stays holds.
+        if let Some(value) = value.filter(|_| !table.contains_key(to)) {
+            table.insert(to, value);
+        }
+    }
+    renamed(table, from, to);
+}
+
+fn renamed_value(key: &str, value: &mut Value, from: &str, to: &str) {
+    match value {
+        Value::String(s) if MEMBERS.contains(&key) && s.value() == from => {
+            let decor = s.decor().clone();
+            *value = Value::from(to);
+            *value.decor_mut() = decor;
+        }
+        Value::Array(all) => {
+            all.iter_mut().for_each(|v| renamed_value(key, v, from, to));
+            // A list of names holds each once.
+            let mut seen = vec![];
+            all.retain(|v| match v.as_str() {
+                Some(s) if seen.contains(&s.to_owned()) && MEMBERS.contains(&key) => false,
+                Some(s) => {
+                    seen.push(s.to_owned());
+                    true
+                }
+                None => true,
+            });
+        }
+        Value::InlineTable(t) => renamed_in(key, t, from, to),
+        _ => {}
+    }
+}
+
+/// Takes a member out of the terminals and out of what operations prescribe.
+fn forget(table: &mut Table, member: &str) {
+    if let Some(all) = table.get_mut("terminals").and_then(Item::as_array_mut) {
+        all.retain(|v| v.as_str() != Some(member));
+    }
+    if let Some(Item::ArrayOfTables(all)) = table.get_mut("operation") {
+        for operation in all.iter_mut() {
+            for key in BY_MEMBER {
+                if let Some(t) = operation.get_mut(key).and_then(Item::as_table_like_mut) {
+                    t.remove(member);
+                }
+            }
+        }
+    }
+}
