@@ -6,7 +6,9 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator};
+use schemars::JsonSchema;
+#[cfg(feature = "schemas")]
+use schemars::{Schema, SchemaGenerator};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -402,8 +404,11 @@ pub struct Entry {
     /// See [`Question::NOTES_FIRST`].
     pub notes_first: bool,
     request: fn(Value) -> Result<Box<dyn Request>, serde_json::Error>,
+    #[cfg(feature = "schemas")]
     request_schema: fn(&mut SchemaGenerator) -> Schema,
+    #[cfg(feature = "schemas")]
     answer_schema: fn(&mut SchemaGenerator) -> Schema,
+    #[cfg(feature = "schemas")]
     reread: fn(&str) -> Result<String, serde_json::Error>,
     #[cfg(feature = "clap")]
     options: fn(clap::Command) -> clap::Command,
@@ -423,8 +428,11 @@ impl Entry {
             extras: Q::EXTRAS,
             notes_first: Q::NOTES_FIRST,
             request: |value| Ok(Box::new(serde_json::from_value::<Q>(value)?)),
+            #[cfg(feature = "schemas")]
             request_schema: |generator| generator.root_schema_for::<Q>(),
+            #[cfg(feature = "schemas")]
             answer_schema: |generator| generator.root_schema_for::<Q::Answer>(),
+            #[cfg(feature = "schemas")]
             reread: |text| serde_json::to_string_pretty(&serde_json::from_str::<Q::Answer>(text)?),
             #[cfg(feature = "clap")]
             options: |command| Q::augment_args(command),
@@ -454,12 +462,14 @@ impl Entry {
     }
 
     /// One paragraph about it: the documentation of its request.
+    #[cfg(feature = "schemas")]
     pub fn about(&self) -> String {
         let schema = self.request_schema();
         schema.get("description").and_then(Value::as_str).unwrap_or_default().to_owned()
     }
 
     /// What a list of questions tells of it: name, what it is asked of, what it is about, contract, tables, forms.
+    #[cfg(feature = "schemas")]
     pub fn told(&self) -> Value {
         let forms: Vec<&str> = self.forms.iter().map(|f| f.name).collect();
         serde_json::json!({
@@ -473,11 +483,13 @@ impl Entry {
     }
 
     /// JSON Schema of its request.
+    #[cfg(feature = "schemas")]
     pub fn request_schema(&self) -> Schema {
         (self.request_schema)(&mut generator())
     }
 
     /// JSON Schema of its answer.
+    #[cfg(feature = "schemas")]
     pub fn answer_schema(&self) -> Schema {
         let mut schema = (self.answer_schema)(&mut generator());
         schema.insert("title".into(), self.contract.into());
@@ -488,6 +500,7 @@ impl Entry {
     ///
     /// # Errors
     /// Why it is no answer to this question.
+    #[cfg(feature = "schemas")]
     pub fn reread(&self, json: &str) -> Result<String, serde_json::Error> {
         (self.reread)(json)
     }
@@ -514,6 +527,7 @@ impl fmt::Debug for Entry {
     }
 }
 
+#[cfg(feature = "schemas")]
 pub(crate) fn generator() -> SchemaGenerator {
     schemars::generate::SchemaSettings::draft2020_12().into_generator()
 }

@@ -47,6 +47,7 @@ impl Contract for RefusalReport {
 
 impl RefusalReport {
     /// Its JSON Schema.
+    #[cfg(feature = "schemas")]
     pub fn schema() -> schemars::Schema {
         crate::question::generator().root_schema_for::<Self>()
     }

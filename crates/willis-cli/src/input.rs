@@ -66,6 +66,11 @@ pub fn read(file: &str, allowed: &[&Path]) -> Result<Given, Refusal> {
     Ok(Given::new(name, model.map_err(refused)?))
 }
 
+/// The text of a train file, whatever it says.
+pub(crate) fn train_text(file: &str) -> Result<String, Diagnostics> {
+    of_kind(file, &TRAIN)
+}
+
 /// Reads a train file, with the laws and values that the command line puts in.
 pub(crate) fn train(file: &str, matches: &ArgMatches) -> Result<Given, Refusal> {
     let allowed = matches.try_get_many::<PathBuf>("allow").ok().flatten().into_iter().flatten();
@@ -136,7 +141,7 @@ fn neighbours(file: &Path, kind: &Kind) -> Vec<String> {
 
 /// Reads the tables that a train file names: files in its folder, or in one of these. Says nothing of what is anywhere
 /// else, not even whether it is there.
-fn tables_of(file: &str, allowed: &[&Path]) -> impl FnMut(&str) -> Result<String, String> {
+pub(crate) fn tables_of(file: &str, allowed: &[&Path]) -> impl FnMut(&str) -> Result<String, String> {
     let folder = Path::new(file).parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_owned();
     let allowed: Vec<PathBuf> = std::iter::once(&*folder).chain(allowed.iter().copied()).map(PathBuf::from).collect();
     let mut left = MOST_TABLES_MIB << 20;

@@ -13,6 +13,7 @@ mod parquet;
 mod pdf;
 mod run;
 mod simulate;
+mod studio;
 mod sweep;
 mod tools;
 pub mod work;

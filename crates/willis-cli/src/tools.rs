@@ -1,4 +1,4 @@
-//! What only a command line has: schemas, completions, manual pages, shards put together.
+//! What only a command line has: the studio, schemas, completions, manual pages, shards put together.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use willis_ask::{File, QUESTIONS, RefusalReport};
 
 use crate::run::deliver;
-use crate::{Ended, sweep};
+use crate::{Ended, studio, sweep};
 
 /// A command that asks no question.
 pub struct Tool {
@@ -19,6 +19,7 @@ pub struct Tool {
 /// All of them.
 pub const TOOLS: &[Tool] = &[
     Tool { name: "merge", command: sweep::merge_command, run: |own, _| sweep::run_merge(own) },
+    Tool { name: "studio", command: studio::command, run: |own, _| studio::run(own) },
     Tool { name: "schema", command: schema_command, run: schema },
     Tool { name: "completions", command: completions_command, run: completions },
     Tool { name: "man", command: man_command, run: man },

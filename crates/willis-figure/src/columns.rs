@@ -21,7 +21,7 @@ const ENDS: [f64; 2] = [84.0, 62.0];
 /// A step of the grid in a gap: two lines side by side can be told apart, px.
 const STEP: f64 = 11.0;
 /// An arrow of a terminal with the gap to its name, px.
-const ARROW: f64 = 36.0;
+const ARROW: f64 = 50.0;
 
 /// A set across a panel.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,9 +7,9 @@ mod point;
 mod session;
 mod surroundings;
 
-use serde_json::{Value, json};
+use serde_json::json;
 use wasm_bindgen::prelude::wasm_bindgen;
-use willis_ask::{QUESTIONS, Refusal};
+use willis_ask::Refusal;
 
 pub use point::Point;
 pub use session::{Session, Shown};
@@ -18,17 +18,6 @@ pub use session::{Session, Shown};
 #[wasm_bindgen]
 pub fn version() -> String {
     env!("CARGO_PKG_VERSION").to_owned()
-}
-
-/// Every question as JSON: what it is called, what it is about, and the schema of its request.
-#[wasm_bindgen]
-pub fn questions() -> String {
-    let one = |entry: &willis_ask::Entry| {
-        let mut told = entry.told();
-        told["request"] = serde_json::to_value(entry.request_schema()).expect("a schema is plain data");
-        told
-    };
-    Value::Array(QUESTIONS.iter().map(one).collect()).to_string()
 }
 
 /// The JSON Schema of train files: an editor completes with it.

@@ -288,6 +288,7 @@ impl Session {
             "width": columns.width,
             "aligned": columns.aligned(),
             "columns": sets,
+            "reach": scale.reach(&columns),
             "scale": [scale.speeds[0], scale.speeds[1], scale.torque],
         });
         (

@@ -14,6 +14,8 @@ pub(crate) struct Options {
     pub(crate) seconds: Option<u64>,
     /// Whether fuzzing takes its time.
     pub(crate) long: bool,
+    /// Whether the studio is built and not tested.
+    pub(crate) no_tests: bool,
     /// A folder with whole reference trajectories of Modelica's examples.
     pub(crate) modelica: Option<PathBuf>,
     /// Whether the program is built from nothing and timed.

@@ -15,8 +15,8 @@ mod package;
 mod pdf;
 mod python;
 mod step;
+mod studio;
 mod tested;
-mod wasm;
 
 use std::env;
 use std::process::ExitCode;
@@ -56,7 +56,12 @@ const STEPS: &[Step] = &[
     Step::new("book", "what README and book say the program prints is what it prints", Action::Call(book::book)),
     Step::new("pages", "the book as web pages", Action::Call(book::pages)).may_skip(),
     Step::new("bench-gate", "work counts have not grown", Action::Call(bench::bench_gate)).may_skip(),
-    Step::new("wasm", "the library answers as WebAssembly", Action::Call(wasm::wasm)).may_skip(),
+    Step::new(
+        "studio",
+        "the library answers as WebAssembly, and the page around it works in a browser; [--no-tests] builds the page only",
+        Action::Call(studio::studio),
+    )
+    .may_skip(),
     Step::new("python", "the Python package: wheel, tests, types, notebooks", Action::Call(python::python)).may_skip(),
     Step::new("pdf", "reports as PDF, by a typesetter that is built for nobody else", Action::Call(pdf::pdf)),
     Step::new(
@@ -110,6 +115,10 @@ fn read(words: &[String]) -> Option<(&str, Options)> {
             }
             ("fuzz", "--long", more) => {
                 options.long = true;
+                more
+            }
+            ("studio", "--no-tests", more) => {
+                options.no_tests = true;
                 more
             }
             ("validate", "--modelica", [folder, more @ ..]) => {

@@ -1,6 +1,6 @@
 /** Questions that take longer than a frame, each in a worker of its own kind; a new one of a kind cancels the one before. */
 
-import { module } from "./willis";
+import { module } from "./module";
 import type { Doc, Point, Refusal } from "./types";
 import type { Job, Told } from "./worker";
 import LongWork from "./worker?worker&inline";

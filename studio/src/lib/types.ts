@@ -28,6 +28,8 @@ export interface Boxes {
 export interface Frame {
   width: number;
   aligned: boolean;
+  /** How far 1 rad/s reaches on a lever, px. */
+  reach: number;
   columns: { name: string; x: number; span: [number, number] }[];
   scale: [number, number, number];
 }

@@ -1,38 +1,19 @@
-/** The library as WebAssembly: loaded once, here and in every worker. */
+/** The library as WebAssembly, on the page and in its workers. */
 
-import init, { Session, initSync, newTrain, questions, version } from "../wasm/willis_web.js";
-import packed from "../wasm/willis_web_bg.wasm.gz?inline";
+import init, { Session, newTrain, version } from "../wasm/willis_web.js";
 import type { Refusal } from "./types";
 
-export { Session, newTrain, questions, version };
+export { Session, newTrain, version };
 
 declare global {
   // What the library calls while it works on something long.
   var willisProgress: (what: string, steps: number, begins: boolean) => void;
 }
 
-let compiled: Promise<WebAssembly.Module> | null = null;
-
-/** The module, unpacked from the page: no request is made for it. */
-export function module(): Promise<WebAssembly.Module> {
-  compiled ??= (async () => {
-    const text = atob(packed.slice(packed.indexOf(",") + 1));
-    const bytes = Uint8Array.from(text, (c) => c.charCodeAt(0));
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-    return WebAssembly.compile(await new Response(stream).arrayBuffer());
-  })();
-  return compiled;
-}
-
-export async function load(): Promise<void> {
+/** Starts the library from its compiled module. */
+export async function loadWith(given: WebAssembly.Module): Promise<void> {
   globalThis.willisProgress ??= () => {};
-  await init({ module_or_path: await module() });
-}
-
-/** In a worker, which is given the module. */
-export function loadWith(given: WebAssembly.Module): void {
-  globalThis.willisProgress ??= () => {};
-  initSync({ module: given });
+  await init({ module_or_path: given });
 }
 
 /** A refusal of the library, thrown as JSON; anything else is a fault of ours. */

@@ -25,11 +25,14 @@ function same(a: Doc, b: Doc): boolean {
   return a.name === b.name && a.text === b.text && JSON.stringify(a.files) === JSON.stringify(b.files);
 }
 
-onmessage = (event: MessageEvent<{ module: WebAssembly.Module } | Job>) => {
+let loaded: Promise<void> = Promise.resolve();
+
+onmessage = async (event: MessageEvent<{ module: WebAssembly.Module } | Job>) => {
   if ("module" in event.data) {
-    loadWith(event.data.module);
+    loaded = loadWith(event.data.module);
     return;
   }
+  await loaded;
   const { id, doc, point, question, request, form } = event.data;
   job = id;
   globalThis.willisProgress = (what, steps, begins) => {

@@ -38,6 +38,15 @@ impl LeverScale {
         let torque = pulls.map(|p| p.torque.abs()).filter(|t| t.is_finite()).fold(0.0, f64::max);
         Self { speeds: if low == high { [0.0, 1.0] } else { [low, high] }, torque }
     }
+
+    /// How far a unit of speed reaches on the levers of a panel, px.
+    pub fn reach(&self, columns: &Columns) -> f64 {
+        let least = |room: &dyn Fn(&Column) -> f64| columns.all().iter().map(room).fold(f64::INFINITY, f64::min);
+        let right = (least(&|c| c.span[1] - c.x) - 16.0).clamp(20.0, REACH);
+        let left = (0.38 * least(&|c| c.x - c.span[0])).clamp(12.0, REACH);
+        let [low, high] = self.speeds;
+        (right / high.max(f64::MIN_POSITIVE)).min(left / (-low).max(f64::MIN_POSITIVE))
+    }
 }
 
 /// The levers in columns of a panel that is so many px high: the picture is never less than 150 px high. Without a scale they have
@@ -68,11 +77,7 @@ struct View<'a> {
 
 impl<'a> View<'a> {
     fn new(lever: &'a Lever, columns: &'a Columns, height: f64, scale: LeverScale) -> Self {
-        let least = |room: &dyn Fn(&Column) -> f64| columns.all().iter().map(room).fold(f64::INFINITY, f64::min);
-        let right = (least(&|c| c.span[1] - c.x) - 16.0).clamp(20.0, REACH);
-        let left = (0.38 * least(&|c| c.x - c.span[0])).clamp(12.0, REACH);
-        let [low, high] = scale.speeds;
-        let per_speed = (right / high.max(f64::MIN_POSITIVE)).min(left / (-low).max(f64::MIN_POSITIVE));
+        let per_speed = scale.reach(columns);
         let factor = if lever.unit.is_some() { 1.0 } else { RPM };
         let torque = if lever.unit.is_some() { (1.0, "") } else { unit_of_torques(scale.torque) };
         Self { lever, columns, height, scale, per_speed, factor, torque }
@@ -228,8 +233,7 @@ impl<'a> View<'a> {
 
     fn speed(&self, n: &LeverNode) -> String {
         match n.speeds.first().copied().flatten() {
-            Some(w) if self.lever.unit.is_none() => format!("{} rpm", figures(rested(w * self.factor), 4)),
-            Some(w) => figures(rested(w), 4),
+            Some(w) => figures(rested(w * self.factor), 4),
             None => "not settled".to_owned(),
         }
     }

@@ -1,0 +1,37 @@
+// Chores of the studio's build: `pack FOLDER` packs the WebAssembly; `answers FOLDER WILLIS` asks for the analysis of every
+// example, there and of the program: the two must agree to the last byte.
+import { execFileSync } from "node:child_process";
+import { readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { gunzipSync, gzipSync } from "node:zlib";
+
+const [chore, folder, willis] = process.argv.slice(-(process.argv.includes("answers") ? 3 : 2));
+const packed = join(folder, "willis_web_bg.wasm.gz");
+
+if (chore === "pack") {
+  const plain = join(folder, "willis_web_bg.wasm");
+  writeFileSync(packed, gzipSync(readFileSync(plain), { level: 9 }));
+  // Nothing else reads it, and a bundler would take it for a file of the page.
+  rmSync(plain);
+} else {
+  const { initSync, Session } = await import(pathToFileURL(join(folder, "willis_web.js")).href);
+  globalThis.willisProgress = () => {};
+  initSync({ module: gunzipSync(readFileSync(packed)) });
+  const names = readdirSync("examples");
+  const text = (name) => readFileSync(join("examples", name), "utf8");
+  const tables = Object.fromEntries(names.filter((n) => n.endsWith(".csv")).map((n) => [n, text(n)]));
+  const trains = names.filter((n) => n.endsWith(".toml"));
+  for (const name of trains) {
+    const file = `examples/${name}`;
+    const here = execFileSync(willis, ["analyze", file, "--format", "json"], { encoding: "utf8", maxBuffer: 1 << 28 });
+    const session = new Session(file, text(name), JSON.stringify(tables));
+    const there = session.ask("analyze", "{}", "{}");
+    session.free();
+    if (here !== there) {
+      console.error(`${file}: WebAssembly gives another answer`);
+      process.exit(1);
+    }
+  }
+  console.log(`${trains.length} examples have the same answer as WebAssembly`);
+}
