@@ -8,10 +8,14 @@
 use std::path::Path;
 use std::time::Instant;
 
+use willis::analysis::Selection;
+use willis::hypergraph::flows;
 use willis::model::Model;
 use willis::train::Train;
 use willis::work::Serial;
-use willis_figure::{Drawing, Figure, FigureKind, FigureRequest, LeverLayout, LeverRequest, StickLayout, draw};
+use willis_figure::{
+    Drawing, Figure, FigureKind, FigureRequest, LeverLayout, LeverRequest, SankeyLayout, SankeyPaper, StickLayout, draw,
+};
 
 /// The least time of a few runs, ms: what else a machine does only adds to it.
 fn least(mut run: impl FnMut()) -> f64 {
@@ -37,7 +41,7 @@ fn read(folder: &Path, name: &str) -> Model {
     Model::read(&text, &mut load).unwrap_or_else(|wrong| panic!("{name}: {wrong}"))
 }
 
-/// What a program does that keeps the layout of stick diagram and levers: one state after the other.
+/// What a program does that keeps the layout of stick diagram, levers and Sankey diagram: one state after the other.
 fn kept(name: &str, train: &Train) {
     let states: Vec<&str> = train.states().iter().map(|s| s.name.as_str()).collect();
     let [Some(first), Some(last)] = [states.first(), states.last()] else { return };
@@ -62,6 +66,16 @@ fn kept(name: &str, train: &Train) {
             let _ = layout.show(train, &LeverRequest::State(state.to_string()));
         });
         told.push(format!("lever {show:.2} ms"));
+    }
+    if let Ok(layout) = SankeyLayout::new(train)
+        && let Ok(report) = flows(train, &Selection { state: Some(first.to_string()), operation: None })
+        && !report.operations.is_empty()
+    {
+        told.push(format!("sankey {:.2} ms", least(|| drop(layout.show(&report)))));
+        let figure = layout.show(&report);
+        let mut paper = SankeyPaper::new([&figure], Drawing::default());
+        told.push(format!("its drawing on kept paper {:.2} ms", least(|| drop(paper.draw(&figure)))));
+        told.push(format!("its layout once {:.2} ms", least(|| drop(SankeyLayout::new(train)))));
     }
     println!("{name:28} {}", told.join(", "));
 }

@@ -64,8 +64,8 @@ pub use regimes::{Curve, MapBoundary, MapCell, MapPattern, MapSector, RegimeMap,
 pub use registry::{Figure, FigureKind, draw};
 pub use report::html::html;
 pub use report::{ReportRequest, report};
-pub use sankey::draw::draw as draw_sankey;
-pub use sankey::{Sankey, SankeyFlow, SankeyLink, SankeyLoss, SankeyNode, SankeyPanel, sankey};
+pub use sankey::draw::{SankeyPaper, draw as draw_sankey};
+pub use sankey::{Sankey, SankeyFlow, SankeyLayout, SankeyLink, SankeyLoss, SankeyNode, SankeyPanel, sankey};
 pub use shift::draw::draw as draw_shift;
 pub use shift::{ShiftChange, ShiftColumn, ShiftEfficiency, ShiftRow, ShiftSpread, ShiftTable, shift};
 pub use spin::draw::draw as draw_spin;

@@ -1,5 +1,6 @@
 //! Efficiency over two quantities, with what has no answer, and the gear that loses least.
 
+mod compiled;
 pub mod draw;
 mod probe;
 

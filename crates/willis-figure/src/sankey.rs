@@ -12,13 +12,17 @@
 
 pub mod draw;
 mod layers;
+mod seats;
 
 use serde::{Deserialize, Serialize};
-use willis::analysis::Verdict;
-use willis::hypergraph::{Edge, FlowReport, Hypergraph, Loop, Node, NodeKind};
+use willis::analysis::{Selection, Verdict};
+use willis::diagnostic::Diagnostics;
+use willis::hypergraph::{Edge, FlowReport, Hypergraph, Loop, Node, NodeKind, flows};
+use willis::train::Train;
 
 use crate::flow::powers;
 use crate::kind::{self, Ask, Kind};
+use crate::parts::point::pointed;
 
 pub(crate) const KIND: Kind<Sankey> = Kind {
     title: "Power flow to scale",
@@ -182,6 +186,15 @@ pub struct SankeyLink {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn sankey(report: &FlowReport) -> Sankey {
+    shown(report, &layers::arrange)
+}
+
+fn shown(report: &FlowReport, arrange: &dyn Fn(&mut [SankeyNode], &mut [SankeyLink]) -> usize) -> Sankey {
+    let flow = |g: &Hypergraph| {
+        let mut flow = flow(g)?;
+        flow.layers = arrange(&mut flow.nodes, &mut flow.links);
+        Some(flow)
+    };
     let mut panels = Vec::new();
     for o in &report.operations {
         let state = o.state.as_ref().map(|s| format!(", state {s}")).unwrap_or_default();
@@ -207,6 +220,72 @@ pub fn sankey(report: &FlowReport) -> Sankey {
     Sankey { train: report.train.clone(), panels }
 }
 
+/// Where every node of a train stands in its Sankey diagrams, whatever the gear: found once from the flows of all gears and
+/// operating points, so that powers change without moving a node to another column, or past another node of its own.
+///
+/// A gear in which most of the power runs the other way, as when the vehicle drives the engine, stands in the mirror. Where
+/// a part of the power runs against the order of the train it is led back above.
+///
+/// ```
+/// use willis::analysis::Selection;
+/// use willis::hypergraph::flows;
+/// use willis::train::{SetSpec, ShiftElementSpec, StateSpec, Train};
+/// use willis_figure::SankeyLayout;
+///
+/// let train = Train::builder("two speeds")
+///     .members(["s", "r", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("r", 70), "c").planet(20, 4).mesh_efficiency(0.99))
+///     .shift_element(ShiftElementSpec::brake("B", "r"))
+///     .shift_element(ShiftElementSpec::clutch("C", "s", "c"))
+///     .state(StateSpec::new("low", ["B"]))
+///     .state(StateSpec::new("direct", ["C"]))
+///     .build()?;
+/// let layout = SankeyLayout::new(&train)?;
+/// let all = layout.show(&flows(&train, &Selection::default())?);
+/// let column = |k: usize| all.panels[k].flow.as_ref().unwrap().nodes.iter().find(|n| n.id == "member:c").unwrap().layer;
+/// assert_eq!(column(0), column(1));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SankeyLayout {
+    seats: seats::Seats,
+}
+
+impl SankeyLayout {
+    /// Lays out a train: its operating points, and of states without any the default one.
+    ///
+    /// # Errors
+    /// No power flows, in no operation and no state.
+    pub fn new(train: &Train) -> Result<Self, Diagnostics> {
+        let of = |state: Option<String>| {
+            let selection = Selection { state, operation: None };
+            flows(&pointed(train, &selection), &selection)
+        };
+        let first = of(None);
+        let told = |k: usize| train.operations().iter().any(|o| o.state == Some(k));
+        let silent = train.states().iter().enumerate().filter(|(k, _)| !told(*k));
+        let others: Vec<FlowReport> = silent.filter_map(|(_, s)| of(Some(s.name.clone())).ok()).collect();
+        match first {
+            Err(why) if others.is_empty() => Err(why),
+            first => Ok(Self::of(first.iter().chain(&others))),
+        }
+    }
+
+    /// Lays out what all of these show together.
+    pub fn of<'r>(reports: impl IntoIterator<Item = &'r FlowReport>) -> Self {
+        let operations = reports.into_iter().flat_map(|r| &r.operations);
+        let graphs = operations.flat_map(|o| o.solutions.iter().chain(&o.dissipative_solutions));
+        Self { seats: seats::Seats::of(&graphs.filter_map(flow).collect::<Vec<_>>()) }
+    }
+
+    /// The power flows, with their nodes where they stand in every gear. The train must be the one that was laid out, perhaps
+    /// with other numbers.
+    pub fn show(&self, report: &FlowReport) -> Sankey {
+        shown(report, &|nodes, links| self.seats.arrange(nodes, links))
+    }
+}
+
 /// A node of the hypergraph while the graph is simplified.
 struct Stop<'g> {
     node: &'g Node,
@@ -228,6 +307,7 @@ struct Arc {
     coupled: f64,
 }
 
+/// The flow, not laid out yet.
 fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
     let coupled = |e: &Edge| {
         let next = |l: &Loop, k: usize| (k + 1) % l.nodes.len();
@@ -285,7 +365,7 @@ fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
             row: 0,
         });
     }
-    let mut links: Vec<SankeyLink> = arcs
+    let links: Vec<SankeyLink> = arcs
         .into_iter()
         .map(|a| SankeyLink {
             from: place(a.from),
@@ -300,7 +380,6 @@ fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
             rows: vec![],
         })
         .collect();
-    let layers = layers::arrange(&mut nodes, &mut links);
     Some(SankeyFlow {
         input_w: g.input_power_w,
         output_w: g.output_power_w,
@@ -309,7 +388,7 @@ fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
         circles: g.recirculation(),
         nodes,
         links,
-        layers,
+        layers: 0,
     })
 }
 

@@ -173,16 +173,24 @@ impl Scene {
         if name == "clipPath" {
             self.clip = own.get("id").map(|id| id.to_string());
         }
-        let clip = own.get("clip-path").and_then(|url| {
-            let id = url.strip_prefix("url(#")?.strip_suffix(')')?;
-            self.clips.get(id)
-        });
-        if let Some(path) = clip {
-            let _ = writeln!(self.body, "\\begin{{scope}}\n\\path[clip,even odd rule] {path};");
+        // A shape has its own around itself.
+        if name == "g" && self.clipped(own) {
             style.scopes = 1;
         }
         self.names.push(name.to_owned());
         self.stack.push(style);
+    }
+
+    /// Begins a scope in which a mark is cut off, if it says so.
+    fn clipped(&mut self, own: &Attributes) -> bool {
+        let path = own.get("clip-path").and_then(|url| {
+            let id = url.strip_prefix("url(#")?.strip_suffix(')')?;
+            self.clips.get(id)
+        });
+        if let Some(path) = path {
+            let _ = writeln!(self.body, "\\begin{{scope}}\n\\path[clip,even odd rule] {path};");
+        }
+        path.is_some()
     }
 
     fn close(&mut self, name: &str) {
@@ -238,7 +246,11 @@ impl Scene {
         self.marks += 1;
         // The first mark is the paper.
         if self.marks > 1 {
+            let clipped = self.clipped(own);
             self.painted(&style, name, options, &path);
+            if clipped {
+                self.body += "\\end{scope}\n";
+            }
         }
     }
 
@@ -532,7 +544,7 @@ fn unescaped(text: &str) -> String {
 
 /// A text as LaTeX sets it: nothing in it is a command, and signs of mathematics are set as such.
 fn latex(text: &str) -> String {
-    const SIGNS: [(char, &str); 44] = [
+    const SIGNS: [(char, &str); 65] = [
         ('\\', "\\textbackslash{}"),
         ('{', "\\{"),
         ('}', "\\}"),
@@ -545,7 +557,8 @@ fn latex(text: &str) -> String {
         ('~', "\\textasciitilde{}"),
         ('<', "\\textless{}"),
         ('>', "\\textgreater{}"),
-        ('"', "\\textquotedbl{}"),
+        // The command for straight ones is missing in the encoding that LaTeX begins with.
+        ('"', "''"),
         ('−', "$-$"),
         ('±', "$\\pm$"),
         ('·', "$\\cdot$"),
@@ -558,14 +571,35 @@ fn latex(text: &str) -> String {
         ('↔', "$\\leftrightarrow$"),
         ('°', "$^\\circ$"),
         ('µ', "$\\mu$"),
-        ('μ', "$\\mu$"),
-        ('η', "$\\eta$"),
-        ('ω', "$\\omega$"),
+        ('α', "$\\alpha$"),
+        ('β', "$\\beta$"),
+        ('γ', "$\\gamma$"),
+        ('δ', "$\\delta$"),
+        ('ε', "$\\varepsilon$"),
         ('ζ', "$\\zeta$"),
+        ('η', "$\\eta$"),
+        ('θ', "$\\theta$"),
+        ('κ', "$\\kappa$"),
         ('λ', "$\\lambda$"),
+        ('μ', "$\\mu$"),
+        ('ν', "$\\nu$"),
+        ('π', "$\\pi$"),
+        ('ρ', "$\\rho$"),
+        ('σ', "$\\sigma$"),
+        ('τ', "$\\tau$"),
+        ('φ', "$\\varphi$"),
+        ('ψ', "$\\psi$"),
+        ('ω', "$\\omega$"),
+        ('Δ', "$\\Delta$"),
         ('Σ', "$\\Sigma$"),
+        ('Ω', "$\\Omega$"),
         ('√', "$\\surd$"),
         ('∞', "$\\infty$"),
+        ('∫', "$\\int$"),
+        ('′', "$'$"),
+        ('✓', "$\\surd$"),
+        ('ₙ', "$_n$"),
+        ('ₜ', "$_t$"),
         ('…', "\\ldots{}"),
         ('–', "--"),
         ('—', "---"),
@@ -579,6 +613,8 @@ fn latex(text: &str) -> String {
         ('\u{a0}', "~"),
     ];
     const HIGH: [char; 8] = ['⁰', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹', '⁺'];
+    /// The digits below the line stand in order.
+    const LOW: std::ops::RangeInclusive<char> = '₀'..='₉';
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match SIGNS.iter().find(|s| s.0 == c) {
@@ -588,6 +624,9 @@ fn latex(text: &str) -> String {
                 Some(7) => out.push_str("$^+$"),
                 Some(k) => {
                     let _ = write!(out, "$^{}$", k + 3);
+                }
+                None if LOW.contains(&c) => {
+                    let _ = write!(out, "$_{}$", c as u32 - *LOW.start() as u32);
                 }
                 None => out.push(c),
             },
@@ -607,6 +646,7 @@ mod tests {
             r"\textbackslash{}input\{a\_b\} 50 \% \& \$x\textasciicircum{}2\$ \#\textasciitilde{}"
         );
         assert_eq!(latex("−1.5·10⁻⁴ → η"), r"$-$1.5$\cdot$10$^-$$^4$ $\rightarrow$ $\eta$");
+        assert_eq!(latex("i₀ = Δφ, \"x\""), r"i$_0$ = $\Delta$$\varphi$, ''x''");
         assert_eq!(unescaped("a &lt;b&gt; &amp;lt; &#955; &x"), "a <b> &lt; λ &x");
     }
 
@@ -632,6 +672,19 @@ mod tests {
         assert!((x - 10.0).abs() < 1e-12 && (y - 21.0).abs() < 1e-12);
         let (x, y) = transformed("rotate(180 5 5)").at(0.0, 0.0);
         assert!((x - 10.0).abs() < 1e-12 && (y - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_mark_with_a_clip_of_its_own_is_cut_off() {
+        let svg = concat!(
+            r##"<svg><rect width="100" height="100" fill="#ffffff"/><defs><clipPath id="c"><path d="M0 0 H11 V11 Z"/></clipPath>"##,
+            r##"</defs><path d="M0 0 L22 22" clip-path="url(#c)" stroke="#1a1a1a" fill="none"><title>t</title></path></svg>"##
+        );
+        let cut = concat!(
+            "\\begin{scope}\n\\path[clip,even odd rule] (0,0) -- (7,0) -- (7,7) -- cycle;\n",
+            "\\path[draw=willis1a1a1a,line width=0.636bp] (0,0) -- (14,14);\n\\end{scope}\n"
+        );
+        assert!(tikz(svg).contains(cut), "{}", tikz(svg));
     }
 
     #[test]

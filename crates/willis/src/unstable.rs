@@ -5,7 +5,7 @@
 use crate::analysis::MeshReport;
 use crate::diagnostic::Diagnostics;
 use crate::exact::{self, Rational};
-use crate::kinematics::Configuration;
+use crate::kinematics::{Configuration, Element};
 use crate::operating_point::Physics;
 use crate::power_flow::MeshFlow;
 use crate::regimes::setup::Setup;
@@ -47,6 +47,15 @@ pub fn without_operations(train: &Train) -> Train {
     let mut alone = train.clone();
     alone.operations.clear();
     alone
+}
+
+/// Meshes in a row, in which power runs one way: those of an operation, each row from the mesh that the first gear of it enters.
+pub fn chains(train: &Train, operation: &Operation) -> Vec<Vec<MeshId>> {
+    let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
+    let prescribed: Vec<MemberId> = operation.speeds.iter().map(|s| s.0).collect();
+    let c = Configuration::new(train, engaged, &operation.fixed, &prescribed);
+    let meshes = |e: &Element| e.links.iter().map(|l| l.mesh).collect();
+    c.elements.iter().filter(|e| e.links.first().is_some_and(|l| l.along)).map(meshes).collect()
 }
 
 /// An operation that stands in no file.

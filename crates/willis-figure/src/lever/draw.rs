@@ -1,5 +1,7 @@
 //! The nomograph of a train: levers side by side.
 
+mod detail;
+
 use svg::node::element::{Circle, Group, Path};
 
 use crate::parts::alive::{Of, guide, of};
@@ -146,29 +148,26 @@ impl<'a> View<'a> {
         // Values stand on both sides of the lever.
         let values = pulls().map(|p| wide(&figures(p.torque * torque.0, 4), 11.0) + 9.0);
         let forces = values.fold(FORCES / 2.0, f64::max) * 2.0;
-        let fixed = lever.bars.len() as f64 * (NAMES + 2.0 * PAD + GAP) + columns as f64 * forces;
+        // No higher on narrow paper than it is wide.
+        let height = (BLOCK * most as f64).max((0.23 * widest).min(360.0));
+        let details = |b: &LeverBar| detail::groups(b, height).len();
+        let height = lever.bars.iter().map(|b| detail::height(details(b))).fold(height, f64::max);
+        let detailed = lever.bars.iter().filter(|b| details(b) > 0).count() as f64 * detail::ROOM;
+        let fixed = lever.bars.len() as f64 * (NAMES + 2.0 * PAD + GAP) + columns as f64 * forces + detailed;
         let letters = lever.cases[..cases].iter().map(|c| wide(&c.letter, 12.0) * BOLD + 4.0).fold(14.0, f64::max);
         let least = if cases > 1 { f64::max(letters * cases as f64, 150.0) } else { 80.0 };
         let room = (widest - 2.0 * MARGIN - fixed) / lever.bars.len() as f64;
         let speeds = room.clamp(least, f64::max(least, if cases > 1 { 340.0 } else { 260.0 }));
-        Self {
-            lever,
-            widest,
-            cases,
-            factor,
-            low,
-            high,
-            speeds,
-            // No higher on narrow paper than it is wide.
-            height: (BLOCK * most as f64).max((0.23 * widest).min(360.0)),
-            largest,
-            torque,
-            forces,
-            letters,
-        }
+        Self { lever, widest, cases, factor, low, high, speeds, height, largest, torque, forces, letters }
     }
 
     fn width(&self, bar: &LeverBar) -> f64 {
+        let detail = if detail::groups(bar, self.height).is_empty() { 0.0 } else { detail::ROOM };
+        self.plain_width(bar) + detail
+    }
+
+    /// Without details.
+    fn plain_width(&self, bar: &LeverBar) -> f64 {
         NAMES + 2.0 * PAD + self.speeds + if self.lever.torques { self.forces * bar.sets.len() as f64 } else { 0.0 }
     }
 
@@ -293,7 +292,7 @@ fn levers(v: &View<'_>, row: &[usize], top: f64) -> Group {
         let left = lefts[k].expect("just placed");
         for n in shown(bar) {
             let y = top + v.y(n.position);
-            under = under.add(guide(line((left + NAMES, y), (left + v.width(bar), y), GUIDE, 1.0)));
+            under = under.add(guide(line((left + NAMES, y), (left + v.plain_width(bar), y), GUIDE, 1.0)));
         }
     }
     for (nth, link) in v.lever.links.iter().enumerate() {
@@ -418,7 +417,10 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
             g = g.add(forces(v, bar, set, centre, bar.sets.len() > 1));
         }
     }
-    g
+    match detail::groups(bar, v.height).is_empty() {
+        true => g,
+        false => g.add(detail::draw(v, bar, v.plain_width(bar) + 8.0)),
+    }
 }
 
 /// The scale of speeds below a lever.

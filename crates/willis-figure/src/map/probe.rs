@@ -8,6 +8,7 @@ use willis::model::Target;
 use willis::study::{Axis, PointAnswer, PointVerdict, Question, Trains};
 use willis::train::MemberId;
 
+use super::compiled::CompiledProbe;
 use crate::parts::axes::RPM;
 use crate::{MapPoint, MapVerdict};
 
@@ -41,6 +42,8 @@ pub struct Probe<'q, 's> {
     /// Of an automatic transmission: what limits the choice.
     choice: Option<Choice>,
     trains: Trains,
+    /// Compiled trains by state and quadrant of the map, and how often none was possible.
+    compiled: HashMap<(Option<usize>, [bool; 2]), Result<CompiledProbe, usize>>,
     /// The zones that were met; a zone's number is its place here.
     zones: Vec<Zone>,
     loosest: Loosest,
@@ -58,8 +61,8 @@ struct Zone {
 }
 
 /// Which way power goes through a part.
-#[derive(PartialEq)]
-enum Way {
+#[derive(Clone, PartialEq)]
+pub enum Way {
     /// It neither gives nor takes power.
     Idle,
     /// A member at which power comes in.
@@ -74,6 +77,36 @@ enum Way {
     Motors,
     /// A machine of a variator that takes power.
     Generates,
+}
+
+/// What a map needs to know of an operating point.
+pub struct Told {
+    pub verdict: PointVerdict,
+    pub efficiency: Option<f64>,
+    pub input_power_w: Option<f64>,
+    pub loss_w: Option<f64>,
+    /// Speed and torque of the input that was asked for, rad/s and N m.
+    pub input: Option<[f64; 2]>,
+    pub ways: Vec<Way>,
+}
+
+impl Told {
+    fn of(answer: &PointAnswer, input: Option<&str>) -> Self {
+        let s = answer.solution.as_ref();
+        let unique = s.filter(|_| answer.is_unique());
+        let input = input.zip(s).and_then(|(name, s)| {
+            let m = s.members.get(name)?;
+            Some([m.speed_rad_s?, m.torque_n_m?])
+        });
+        Self {
+            verdict: answer.verdict,
+            efficiency: unique.and_then(|s| s.efficiency),
+            input_power_w: unique.map(|s| s.input_power_w),
+            loss_w: unique.map(|s| s.loss_w),
+            input,
+            ways: ways(answer),
+        }
+    }
 }
 
 /// A point of a map as it was found.
@@ -106,8 +139,8 @@ impl<'q, 's> Probe<'q, 's> {
         let target = |a: &Axis| Target::parse(&a.name, question.model()).map(|t| (t, a.unit.clone()));
         let targets = axes.map(target);
         let [x, y] = targets.map(|t| t.map_err(|d| Diagnostics::from_iter([*d])));
-        let (trains, zones, loosest, seen) = Default::default();
-        Ok(Self { question, axes: [x?, y?], choice, trains, zones, loosest, seen })
+        let (trains, compiled, zones, loosest, seen) = Default::default();
+        Ok(Self { question, axes: [x?, y?], choice, trains, compiled, zones, loosest, seen })
     }
 
     /// The least count of idle parts in what was found so far.
@@ -129,8 +162,8 @@ impl<'q, 's> Probe<'q, 's> {
     fn ask(&mut self, place: [f64; 2]) -> Found {
         let (point, ways) = match self.choice.take() {
             None => {
-                let answer = self.answer(place, None);
-                (MapPoint::of(&answer, None), ways(&answer))
+                let told = self.told(place, None, None);
+                (MapPoint::of(&told, None), told.ways)
             }
             Some(choice) => {
                 let best = self.best(place, &choice);
@@ -163,11 +196,11 @@ impl<'q, 's> Probe<'q, 's> {
             if !ratio.is_none_or(within) {
                 continue;
             }
-            let answer = self.answer(place, Some(state));
-            let Some([speed, torque]) = self.input(&answer, limits.input) else { continue };
-            let new = MapPoint::of(&answer, Some(k));
-            if limits.hold(speed, torque) && new.efficiency > best.0.efficiency.map(|e| e + SAME) {
-                best = (new, ways(&answer));
+            let told = self.told(place, Some((k, state)), Some(limits.input));
+            let Some([speed, torque]) = told.input else { continue };
+            let new = MapPoint::of(&told, Some(k));
+            if limits.hold(speed / RPM, torque) && new.efficiency > best.0.efficiency.map(|e| e + SAME) {
+                best = (new, told.ways);
             }
         }
         best
@@ -178,9 +211,9 @@ impl<'q, 's> Probe<'q, 's> {
     pub fn corners(&mut self, near: [f64; 2]) -> Vec<[f64; 2]> {
         let Some((limits, states)) = self.choice.clone() else { return vec![] };
         let mut all = vec![];
-        for (state, _) in &states {
-            let answer = self.answer(near, Some(state));
-            let Some([speed, torque]) = self.input(&answer, limits.input) else { continue };
+        for (k, (state, _)) in states.iter().enumerate() {
+            let told = self.told(near, Some((k, state)), Some(limits.input));
+            let Some([speed, torque]) = told.input.map(|[w, t]| [w / RPM, t]) else { continue };
             if speed > 0.0 && torque > 0.0 {
                 let at = |w: f64| [near[0] * w / speed, near[1] * limits.torque / torque];
                 all.extend(limits.speed.map(at));
@@ -189,21 +222,36 @@ impl<'q, 's> Probe<'q, 's> {
         all
     }
 
-    /// Speed and torque of the input, rpm and N m.
-    fn input(&self, answer: &PointAnswer, input: MemberId) -> Option<[f64; 2]> {
-        let name = self.question.model().train().member_name(input);
-        let m = answer.solution.as_ref()?.members.get(name)?;
-        Some([m.speed_rad_s? / RPM, m.torque_n_m?])
-    }
-
-    fn answer(&mut self, place: [f64; 2], state: Option<&str>) -> PointAnswer {
+    /// What is to be known of a place in a state, and of that input.
+    fn told(&mut self, place: [f64; 2], state: Option<(usize, &str)>, input: Option<MemberId>) -> Told {
+        /// Places at which it is tried to compile: the first may lie on a border.
+        const TRIES: usize = 3;
+        let key = (state.map(|s| s.0), place.map(|x| x > 0.0));
+        let plain = place.iter().all(|x| *x != 0.0);
+        let tries = match self.compiled.get_mut(&key) {
+            Some(Ok(compiled)) if plain => match compiled.at(place) {
+                Some(told) => return told,
+                None => TRIES,
+            },
+            Some(Err(tries)) if plain => *tries,
+            None if plain => 0,
+            _ => TRIES,
+        };
         let along = self.axes.iter().zip(place).map(|((target, unit), value)| (target, format!("{value} {unit}")));
         let mut settings: Vec<(&Target, String)> = along.map(|(t, v)| (t, v.trim_end().to_owned())).collect();
-        settings.extend(state.map(|s| (&Target::State, s.to_owned())));
-        match self.question.at(&settings, &mut self.trains) {
-            Ok((train, operation)) => PointAnswer::of(&train, &operation),
-            Err(wrong) => PointAnswer::refused(wrong),
+        settings.extend(state.map(|s| (&Target::State, s.1.to_owned())));
+        let name = input.map(|m| self.question.model().train().member_name(m));
+        let (train, operation) = match self.question.at(&settings, &mut self.trains) {
+            Ok(asked) => asked,
+            Err(wrong) => return Told::of(&PointAnswer::refused(wrong), name),
+        };
+        let answer = PointAnswer::of(&train, &operation);
+        if tries < TRIES && answer.is_unique() {
+            let axes = self.axes.each_ref().map(|a| &a.0);
+            let compiled = CompiledProbe::new(&train, &operation, axes, place, &answer, input);
+            self.compiled.insert(key, compiled.ok_or(tries + 1));
         }
+        Told::of(&answer, name)
     }
 }
 
@@ -213,13 +261,12 @@ impl MapPoint {
         Self { verdict: MapVerdict::Beyond, efficiency: none, input_power_w: none, loss_w: none, best: None, zone: 0 }
     }
 
-    fn of(answer: &PointAnswer, best: Option<usize>) -> Self {
-        let s = answer.solution.as_ref().filter(|_| answer.is_unique());
+    fn of(told: &Told, best: Option<usize>) -> Self {
         Self {
-            verdict: MapVerdict::Point(answer.verdict),
-            efficiency: s.and_then(|s| s.efficiency),
-            input_power_w: s.map(|s| s.input_power_w),
-            loss_w: s.map(|s| s.loss_w),
+            verdict: MapVerdict::Point(told.verdict),
+            efficiency: told.efficiency,
+            input_power_w: told.input_power_w,
+            loss_w: told.loss_w,
             best,
             zone: 0,
         }
@@ -227,7 +274,7 @@ impl MapPoint {
 }
 
 /// Which way power goes through every part that can change it.
-fn ways(answer: &PointAnswer) -> Vec<Way> {
+pub fn ways(answer: &PointAnswer) -> Vec<Way> {
     let Some(s) = &answer.solution else { return vec![] };
     let members = s.members.iter().map(|(_, m)| match m.role {
         Role::Input => Way::Input,

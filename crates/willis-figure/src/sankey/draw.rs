@@ -4,6 +4,8 @@ mod layout;
 mod ribbon;
 mod words;
 
+use std::collections::BTreeMap;
+
 use svg::node::element::{Group, Path, Polygon};
 use willis::hypergraph::NodeKind;
 
@@ -12,7 +14,7 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, PAPER, colour, fit, halo, line, lines, number, page, rectangle, text, watts, wide,
 };
 use crate::{Drawing, Sankey, SankeyFlow, SankeyLink, SankeyNode};
-use layout::{BAR, LINE_HEIGHT, Layout};
+use layout::{BAR, Frame, LINE_HEIGHT, Layout};
 use ribbon::Ribbon;
 use words::{SMALL, Words, losers, percent};
 
@@ -83,8 +85,54 @@ pub fn draw(data: &Sankey) -> String {
 
 pub(super) fn draw_on(data: &Sankey, paper: Drawing) -> String {
     let room = paper.page(f64::INFINITY, NARROWEST) - 2.0 * MARGIN;
-    let drawings: Vec<Option<Layout<'_>>> =
-        data.panels.iter().map(|p| p.flow.as_ref().map(|flow| Layout::new(flow, room))).collect();
+    let drawings = data.panels.iter().map(|p| p.flow.as_ref().map(|flow| Layout::new(flow, room))).collect();
+    drawn(data, drawings)
+}
+
+/// Paper that is kept while powers change: scales and columns stay, nodes grow and move in their column, and words stay at their
+/// place along the ribbons. Made anew, it settles to what there is then.
+///
+/// Scale and columns suit every flow that it is made for, such as those of all gears; larger powers later become wider than that.
+///
+/// ```
+/// use willis::analysis::Selection;
+/// use willis::hypergraph::flows;
+/// use willis::train::{SetSpec, Train};
+/// use willis_figure::{Drawing, SankeyLayout, SankeyPaper};
+///
+/// let train = Train::builder("one set")
+///     .members(["s", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).mesh_efficiency(0.99))
+///     .build()?;
+/// let figure = SankeyLayout::new(&train)?.show(&flows(&train, &Selection::default())?);
+/// let mut paper = SankeyPaper::new([&figure], Drawing::default());
+/// assert_eq!(paper.draw(&figure), paper.draw(&figure));
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct SankeyPaper {
+    frame: Frame,
+    spots: BTreeMap<(String, String), layout::Spot>,
+}
+
+impl SankeyPaper {
+    /// For all of these.
+    pub fn new<'d>(all: impl IntoIterator<Item = &'d Sankey>, paper: Drawing) -> Self {
+        let room = paper.page(f64::INFINITY, NARROWEST) - 2.0 * MARGIN;
+        let flows: Vec<&SankeyFlow> = all.into_iter().flat_map(|s| &s.panels).filter_map(|p| p.flow.as_ref()).collect();
+        Self { frame: Frame::of(&flows, room), spots: BTreeMap::new() }
+    }
+
+    /// The power flows as SVG, like [`draw_sankey`](crate::draw_sankey).
+    pub fn draw(&mut self, data: &Sankey) -> String {
+        let Self { frame, spots } = self;
+        let panels = data.panels.iter().map(|p| p.flow.as_ref().map(|flow| Layout::within(flow, frame, spots)));
+        drawn(data, panels.collect())
+    }
+}
+
+fn drawn(data: &Sankey, drawings: Vec<Option<Layout<'_>>>) -> String {
     let widest = drawings.iter().flatten().fold(0.0f64, |a, d| a.max(d.width));
     let width = (widest + 2.0 * MARGIN).max(NARROWEST).ceil();
     let room = width - 2.0 * MARGIN;

@@ -1,5 +1,6 @@
 //! Layers by the longest path, rows by barycentres and exchanges, offsets by stacking.
 
+use super::seats::Seat;
 use super::{SankeyLink, SankeyNode};
 
 /// Powers below this part of the largest do not decide what runs forward.
@@ -11,7 +12,48 @@ const SWEEPS: usize = 12;
 pub(super) fn arrange(nodes: &mut [SankeyNode], links: &mut [SankeyLink]) -> usize {
     lead_back(nodes.len(), links);
     let layers = assign_layers(nodes, links);
-    assign_rows(nodes, links, layers);
+    assign_rows(nodes, links, layers, None);
+    stack(nodes, links);
+    layers
+}
+
+/// The same with places that are given, as far as they are; what has none stands behind what gives to it.
+pub(super) fn arrange_at(
+    nodes: &mut [SankeyNode],
+    links: &mut [SankeyLink],
+    seat: &dyn Fn(&SankeyNode) -> Option<Seat>,
+    layers: usize,
+) -> usize {
+    let seats: Vec<Option<Seat>> = nodes.iter().map(seat).collect();
+    for (n, s) in nodes.iter_mut().zip(&seats) {
+        n.layer = s.map_or(usize::MAX, |s| s.layer);
+    }
+    for _ in 0..nodes.len() {
+        for l in links.iter() {
+            if nodes[l.to].layer == usize::MAX && nodes[l.from].layer != usize::MAX {
+                nodes[l.to].layer = (nodes[l.from].layer + 1).min(layers.saturating_sub(1));
+            }
+        }
+    }
+    for n in nodes.iter_mut().filter(|n| n.layer == usize::MAX) {
+        n.layer = 0;
+    }
+    // Two in one column need another: only where one of them has no place of its own.
+    let mut layers = layers;
+    for _ in 0..nodes.len() {
+        for l in links.iter() {
+            if nodes[l.to].layer == nodes[l.from].layer {
+                let moved = if seats[l.from].is_none() { l.from } else { l.to };
+                nodes[moved].layer += 1;
+                layers = layers.max(nodes[moved].layer + 1);
+            }
+        }
+    }
+    for l in links.iter_mut() {
+        l.back = nodes[l.to].layer < nodes[l.from].layer;
+    }
+    let rank = |k: usize| seats[k].map_or(usize::MAX, |s| s.rank);
+    assign_rows(nodes, links, layers, Some(&rank));
     stack(nodes, links);
     layers
 }
@@ -57,11 +99,11 @@ fn assign_layers(nodes: &mut [SankeyNode], links: &[SankeyLink]) -> usize {
 }
 
 /// What stands in a layer: a node, or a link that passes.
-struct Columns {
+pub(super) struct Columns {
     /// How many items are nodes; they are the first, in the order in which the train has them.
     nodes: usize,
     /// By layer, items from the top.
-    rows: Vec<Vec<usize>>,
+    pub rows: Vec<Vec<usize>>,
     /// By item.
     layer: Vec<usize>,
     /// Steps of links from one layer to the next: items, and power.
@@ -72,6 +114,74 @@ struct Columns {
 }
 
 impl Columns {
+    /// Nodes by their columns, and what passes columns on its way from node to node with a power: items for each of them.
+    pub fn of(
+        mut layer: Vec<usize>,
+        layers: usize,
+        links: &[(usize, usize, f64)],
+        backs: Vec<(usize, usize, f64)>,
+    ) -> (Self, Vec<Vec<usize>>) {
+        let nodes = layer.len();
+        let mut steps = Vec::new();
+        let mut passing: Vec<Vec<usize>> = Vec::with_capacity(links.len());
+        for &(from, to, power) in links {
+            let mut items = vec![from];
+            for between in layer[from] + 1..layer[to] {
+                layer.push(between);
+                items.push(layer.len() - 1);
+            }
+            items.push(to);
+            steps.extend(items.windows(2).map(|w| (w[0], w[1], power)));
+            items.pop();
+            passing.push(items.split_off(1));
+        }
+        let mut rows = vec![vec![]; layers];
+        (0..layer.len()).for_each(|item| rows[layer[item]].push(item));
+        (Self { nodes, rows, layer, steps, backs }, passing)
+    }
+
+    fn largest(&self) -> f64 {
+        self.steps.iter().chain(&self.backs).fold(0.0f64, |a, s| a.max(s.2))
+    }
+
+    /// Orders all columns so that little crosses.
+    pub fn order(&mut self) {
+        let (largest, layers) = (self.largest(), self.rows.len());
+        self.exchange(largest, false);
+        let mut best = (self.cost(largest), self.rows.clone());
+        for round in 0..SWEEPS {
+            let from_left = round % 2 == 0;
+            for k in 0..layers {
+                self.sweep(if from_left { k } else { layers - 1 - k }, from_left);
+            }
+            let swept = self.rows.clone();
+            self.exchange(largest, false);
+            let cost = self.cost(largest);
+            if cost < best.0 {
+                best = (cost, self.rows.clone());
+            }
+            self.rows = swept;
+        }
+        self.rows = best.1;
+    }
+
+    /// Nodes stay in the order of their ranks, and what passes finds its way between them.
+    fn fit_between(&mut self, rank: &dyn Fn(usize) -> usize) {
+        let (largest, layers) = (self.largest(), self.rows.len());
+        for layer in 0..layers {
+            // From the left, where all have their place already.
+            self.sweep(layer, true);
+            let mut nodes: Vec<usize> = self.rows[layer].iter().copied().filter(|i| *i < self.nodes).collect();
+            nodes.sort_by_key(|&k| rank(k));
+            let mut next = nodes.into_iter();
+            let own = self.nodes;
+            for item in self.rows[layer].iter_mut().filter(|i| **i < own) {
+                *item = next.next().unwrap_or(*item);
+            }
+        }
+        self.exchange(largest, true);
+    }
+
     fn places(&self) -> Vec<usize> {
         let mut place = vec![0; self.layer.len()];
         for column in &self.rows {
@@ -145,12 +255,15 @@ impl Columns {
     }
 
     /// Exchanges neighbours as long as that helps.
-    fn exchange(&mut self, largest: f64) {
+    fn exchange(&mut self, largest: f64, nodes_stay: bool) {
         let mut cost = self.cost(largest);
         for _ in 0..SWEEPS {
             let before = cost;
             for layer in 0..self.rows.len() {
                 for k in 1..self.rows[layer].len() {
+                    if nodes_stay && self.rows[layer][k - 1..=k].iter().all(|item| *item < self.nodes) {
+                        continue;
+                    }
                     self.rows[layer].swap(k - 1, k);
                     let now = self.cost(largest);
                     if now < cost {
@@ -167,48 +280,26 @@ impl Columns {
     }
 }
 
-fn assign_rows(nodes: &mut [SankeyNode], links: &mut [SankeyLink], layers: usize) {
-    let mut layer: Vec<usize> = nodes.iter().map(|n| n.layer).collect();
-    let mut steps = Vec::new();
-    let mut passing: Vec<Vec<usize>> = Vec::with_capacity(links.len());
-    for l in links.iter() {
-        let mut items = vec![l.from];
-        if !l.back {
-            for between in nodes[l.from].layer + 1..nodes[l.to].layer {
-                layer.push(between);
-                items.push(layer.len() - 1);
-            }
-            items.push(l.to);
-            steps.extend(items.windows(2).map(|w| (w[0], w[1], l.power_w)));
-            items.pop();
-        }
-        passing.push(items.split_off(1));
+fn assign_rows(
+    nodes: &mut [SankeyNode],
+    links: &mut [SankeyLink],
+    layers: usize,
+    rank: Option<&dyn Fn(usize) -> usize>,
+) {
+    let (ahead, backs): (Vec<usize>, Vec<usize>) = (0..links.len()).partition(|&j| !links[j].back);
+    let arc = |j: &usize| (links[*j].from, links[*j].to, links[*j].power_w);
+    let steps: Vec<(usize, usize, f64)> = ahead.iter().map(arc).collect();
+    let backs = backs.iter().map(arc).collect();
+    let (mut columns, passing) = Columns::of(nodes.iter().map(|n| n.layer).collect(), layers, &steps, backs);
+    match rank {
+        None => columns.order(),
+        Some(rank) => columns.fit_between(rank),
     }
-    let backs = links.iter().filter(|l| l.back).map(|l| (l.from, l.to, l.power_w)).collect();
-    let mut rows = vec![vec![]; layers];
-    (0..layer.len()).for_each(|item| rows[layer[item]].push(item));
-    let largest = links.iter().fold(0.0f64, |a, l| a.max(l.power_w));
-    let mut columns = Columns { nodes: nodes.len(), rows, layer, steps, backs };
-    columns.exchange(largest);
-    let mut best = (columns.cost(largest), columns.rows.clone());
-    for round in 0..SWEEPS {
-        let from_left = round % 2 == 0;
-        for k in 0..layers {
-            columns.sweep(if from_left { k } else { layers - 1 - k }, from_left);
-        }
-        let swept = columns.rows.clone();
-        columns.exchange(largest);
-        let cost = columns.cost(largest);
-        if cost < best.0 {
-            best = (cost, columns.rows.clone());
-        }
-        columns.rows = swept;
-    }
-    columns.rows = best.1;
     let place = columns.places();
     nodes.iter_mut().enumerate().for_each(|(k, n)| n.row = place[k]);
-    for (l, items) in links.iter_mut().zip(passing) {
-        l.rows = items.into_iter().map(|item| place[item]).collect();
+    links.iter_mut().for_each(|l| l.rows.clear());
+    for (j, items) in ahead.into_iter().zip(passing) {
+        links[j].rows = items.into_iter().map(|item| place[item]).collect();
     }
 }
 

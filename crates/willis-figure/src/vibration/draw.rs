@@ -14,6 +14,9 @@ const MARGIN: f64 = 28.0;
 const GAP: f64 = 34.0;
 /// Height of a row of the list.
 const ROW: f64 = 18.0;
+/// Width of a list, at least beside its diagram, and at most.
+const LIST: f64 = 250.0;
+const WIDEST_LIST: f64 = 380.0;
 /// Half the length of a friction plate.
 const PLATE: f64 = 7.0;
 /// What swings less, relative to the largest, is drawn at rest.
@@ -58,6 +61,8 @@ pub(super) fn draw_on(data: &Vibration, paper: Drawing) -> String {
     let cell = ((room + GAP) / columns as f64 - GAP).min(620.0);
     let unit = ((cell - 2.0 * PLATE - 8.0) / grid[0]).min(60.0);
     let rise = (200.0 / grid[1]).clamp(18.0, 40.0);
+    // A single column leaves half a wide page free: there the list stands beside its diagram.
+    let beside = columns == 1 && room - cell - GAP >= LIST;
     let rows: Vec<usize> = data.modes.chunks(columns).map(|c| c.iter().map(listed).max().unwrap_or(0)).collect();
     let head = 58.0;
     let mut page_body = Group::new()
@@ -71,20 +76,16 @@ pub(super) fn draw_on(data: &Vibration, paper: Drawing) -> String {
     for (r, modes) in data.modes.chunks(columns).enumerate() {
         for (c, mode) in modes.iter().enumerate() {
             let left = MARGIN + c as f64 * (cell + GAP);
-            let panel = Panel {
-                data,
-                mode,
-                place: r * columns + c,
-                left,
-                top,
-                cell,
-                unit,
-                rise,
-                bottom: top + 30.0 + grid[1] * rise,
+            let bottom = top + 30.0 + grid[1] * rise;
+            let list = match beside {
+                true => [left + cell + GAP, top + 12.0, (room - cell - GAP).min(WIDEST_LIST)],
+                false => [left, bottom + 26.0, cell.min(WIDEST_LIST)],
             };
+            let panel = Panel { data, mode, place: r * columns + c, left, top, cell, unit, rise, bottom, list };
             page_body = page_body.add(panel.draw());
         }
-        top += 30.0 + grid[1] * rise + 26.0 + rows[r] as f64 * ROW + 36.0;
+        let (diagram, list) = (30.0 + grid[1] * rise, rows[r] as f64 * ROW);
+        top += if beside { diagram.max(12.0 + list) + 50.0 } else { diagram + 26.0 + list + 36.0 };
     }
     page(width, top, &format!("Modes of vibration of {}", data.title), &words(data)).add(page_body).to_string()
 }
@@ -144,6 +145,8 @@ struct Panel<'a> {
     rise: f64,
     /// Of the stick diagram.
     bottom: f64,
+    /// Left edge, top and width of the list.
+    list: [f64; 3],
 }
 
 /// How a line is drawn.
@@ -331,12 +334,11 @@ impl Panel<'_> {
 
     /// Amplitudes of members to the right and left of a line, then shares of the strain energy.
     fn list(&self) -> Group {
-        let mut y = self.bottom + 26.0;
-        let right = self.left + self.cell.min(380.0);
+        let [left, mut y, width] = self.list;
         let longest = self.mode.shape.iter().chain(&self.mode.strain_energy).map(|p| wide(&p.name, 11.0));
-        let names = (longest.fold(0.0, f64::max) + 34.0).min(0.5 * (right - self.left));
-        let half = (right - self.left - names) / 2.0;
-        let middle = self.left + names + half;
+        let names = (longest.fold(0.0, f64::max) + 34.0).min(0.5 * width);
+        let half = (width - names) / 2.0;
+        let middle = left + names + half;
         // The number stands on the free side.
         let most = half - 4.0;
         let mode = format!("mode {}", self.place + 1);
@@ -352,23 +354,23 @@ impl Panel<'_> {
             let fill = colour(Some(usize::from(negative)), 0.75);
             let (at, anchor) = if negative { (middle + 5.0, Anchor::Start) } else { (middle - 5.0, Anchor::End) };
             let row = Group::new()
-                .add(text(self.left, y + 13.0, 11.0, Anchor::Start, &name))
+                .add(text(left, y + 13.0, 11.0, Anchor::Start, &name))
                 .add(rectangle(from, y + 4.0, length, ROW - 8.0, &fill))
                 .add(text(at, y + 13.0, 11.0, anchor, &digits(value)).set("fill", FAINT));
             g = g.add(of(row, "amplitude", &[Of::Member(&part.name), Of::Quantity(&mode)]));
             y += ROW;
         }
         if strained(self.mode).next().is_some() {
-            g = g.add(text(self.left, y + 13.0, 11.0, Anchor::Start, "strain energy, %").set("fill", FAINT));
+            g = g.add(text(left, y + 13.0, 11.0, Anchor::Start, "strain energy, %").set("fill", FAINT));
             y += ROW;
         }
         for part in strained(self.mode) {
             let share = digits((1000.0 * part.value).round() / 10.0);
             let length = ((half * 2.0 - 52.0) * part.value.min(1.0)).max(0.8);
             let row = Group::new()
-                .add(text(self.left, y + 13.0, 11.0, Anchor::Start, &fit(&part.name, names - 10.0, 11.0)))
-                .add(rectangle(self.left + names, y + 4.0, length, ROW - 8.0, &colour(None, 0.75)))
-                .add(text(self.left + names + length + 5.0, y + 13.0, 11.0, Anchor::Start, &share).set("fill", FAINT));
+                .add(text(left, y + 13.0, 11.0, Anchor::Start, &fit(&part.name, names - 10.0, 11.0)))
+                .add(rectangle(left + names, y + 4.0, length, ROW - 8.0, &colour(None, 0.75)))
+                .add(text(left + names + length + 5.0, y + 13.0, 11.0, Anchor::Start, &share).set("fill", FAINT));
             g = g.add(of(row, "strain", &[Of::Element(&part.name), Of::Quantity(&mode)]));
             y += ROW;
         }

@@ -187,3 +187,53 @@ fn every_example_has_levers() {
         }
     }
 }
+
+/// Two rings of 60 and 59 teeth stand 0.3 % of the lever apart: their marks cover each other, and only enlarged they are two.
+#[test]
+fn points_that_cover_each_other_are_drawn_apart_as_well() {
+    use std::collections::BTreeMap;
+    let (mut apart, mut enlarged) = (0, 0);
+    for (name, train) in examples() {
+        let Ok(l) = lever(&train, &LeverRequest::First) else { continue };
+        let svg = willis_figure::draw_lever(&l);
+        let document = roxmltree::Document::parse(&svg).expect("well-formed");
+        // The heights of marks, by lever and word.
+        let heights = |word: &str| {
+            let mut all: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+            let marks = document.descendants().filter(|n| n.attribute("id").is_some_and(|id| id.starts_with(word)));
+            for m in marks {
+                let number = |n: roxmltree::Node<'_, '_>, key: &str| n.attribute(key)?.parse::<f64>().ok();
+                let round = m.descendants().find_map(|d| number(d, "cy"));
+                let square = m.descendants().find_map(|d| Some(number(d, "y")? + number(d, "height")? / 2.0));
+                let mesh = m.attribute("data-mesh").expect("whose").to_owned();
+                all.entry(mesh).or_default().extend(round.or(square));
+            }
+            all.values_mut().for_each(|v| v.sort_by(f64::total_cmp));
+            all
+        };
+        let details = heights("detail-speed");
+        for (mesh, all) in heights("speed") {
+            let bar =
+                l.bars.iter().find(|b| b.sets.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" + ") == mesh);
+            let mut places: Vec<f64> = bar
+                .expect("its lever")
+                .nodes
+                .iter()
+                .filter(|n| n.roles != [LeverRole::Planet])
+                .map(|n| n.position)
+                .collect();
+            places.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
+            let covered = all.windows(2).any(|w| w[1] - w[0] < 8.0) && places.len() > 1;
+            let close = places.windows(2).any(|w| (w[0] - w[1]).abs() < 0.02);
+            if covered && close {
+                let own = details.get(&mesh).unwrap_or_else(|| panic!("{name}: {mesh} covers points of its own"));
+                assert!(own.len() >= 2, "{name}: {mesh}");
+                assert!(own.last().unwrap() - own[0] > 25.0, "{name}: {mesh}: {own:?}");
+                enlarged += 1;
+            } else {
+                apart += 1;
+            }
+        }
+    }
+    assert!(enlarged >= 3 && apart > 40, "{enlarged} {apart}");
+}

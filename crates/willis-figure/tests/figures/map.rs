@@ -153,3 +153,61 @@ fn a_constant_map_is_a_sentence() {
     let svg = draw_map(&map("wolfrom-236"));
     assert!(svg.contains("everywhere") && !svg.contains("<path"), "{svg}");
 }
+
+/// Most points are answered by a compiled train; the expected ones are those of the analysis, asked one at a time.
+#[test]
+fn points_are_those_of_the_analysis() {
+    use willis::model::Target;
+    use willis::study::{Hold, PointAnswer, Question};
+    let (mut points, mut verdicts) = (0, std::collections::BTreeSet::new());
+    for (name, _) in examples() {
+        let own = model(&name);
+        let Ok(map) = efficiency_map(&own, None, None, &[]) else { continue };
+        let first = own.train().states().first().filter(|_| own.train().operations().is_empty());
+        let question = Question::new(&own, None, first.map(|s| s.name.as_str()), Hold::AsGiven).expect("it has a map");
+        let [x, y] = [&map.x, &map.y].map(|a| Target::parse(&a.name, &own).expect("a quantity"));
+        let width = map.x.values.len();
+        let mut trains = willis::study::Trains::default();
+        let inner = |k: &usize| k % width > 0 && (k + 1) % width > 0;
+        for k in (0..map.points.len()).filter(inner).step_by(41) {
+            let p = &map.points[k];
+            let state = (!map.states.is_empty()).then(|| p.best.map(|k| map.states[k].clone()));
+            if state == Some(None) {
+                continue;
+            }
+            let mut ask = |x_at: f64, y_at: f64| {
+                let mut settings = vec![(&x, format!("{x_at} {}", map.x.unit)), (&y, format!("{y_at} {}", map.y.unit))];
+                settings.extend(state.clone().flatten().map(|s| (&Target::State, s)));
+                let (train, operation) = question.at(&settings, &mut trains).expect("an operating point");
+                PointAnswer::of(&train, &operation)
+            };
+            let same = |answer: &PointAnswer| {
+                let s = answer.solution.as_ref().filter(|_| answer.is_unique());
+                let close = |ours: Option<f64>, theirs: Option<f64>, size: Option<f64>| match (ours, theirs, size) {
+                    (Some(a), Some(b), Some(size)) => (a - b).abs() <= 1e-11 * size.abs(),
+                    (a, b, _) => a == b,
+                };
+                let power = s.map(|s| s.input_power_w);
+                let efficiency = s.and_then(|s| s.efficiency);
+                p.verdict == MapVerdict::Point(answer.verdict)
+                    && close(p.efficiency, efficiency, efficiency)
+                    && close(p.input_power_w, power, power)
+                    // A difference of powers.
+                    && close(p.loss_w, s.map(|s| s.loss_w), power)
+            };
+            let [u, v] = [map.x.values[k % width], map.y.values[k / width]];
+            let answer = ask(u, v);
+            // A point on a border is told as what lies a millionth of a step inwards of it.
+            let inwards = |values: &[f64], k: usize| values[k] + 1e-6 * (values[k + 1] - values[k]);
+            let beside = || [inwards(&map.x.values, k % width), inwards(&map.y.values, k / width)];
+            if !same(&answer) {
+                let [u, v] = beside();
+                let answer = ask(u, v);
+                assert!(same(&answer), "{name}, {u} and {v}: {p:?}, {:?}", answer.solution.map(|s| s.efficiency));
+            }
+            verdicts.insert(answer.verdict);
+            points += 1;
+        }
+    }
+    assert!(points > 500 && verdicts.len() >= 2, "{points} {verdicts:?}");
+}

@@ -193,7 +193,7 @@ fn keys(svg: &str, model: &Model) -> Vec<String> {
 /// What of a picture LaTeX would not set: groups that stay open, statements without an end, text that would be a command.
 fn misset(picture: &str) -> Vec<String> {
     /// What a picture may say beside text.
-    const COMMANDS: [&str; 44] = [
+    const COMMANDS: [&str; 66] = [
         "definecolor",
         "begin",
         "end",
@@ -210,7 +210,6 @@ fn misset(picture: &str) -> Vec<String> {
         "textasciitilde",
         "textless",
         "textgreater",
-        "textquotedbl",
         "pm",
         "cdot",
         "times",
@@ -228,6 +227,29 @@ fn misset(picture: &str) -> Vec<String> {
         "lambda",
         "Sigma",
         "surd",
+        "Delta",
+        "Omega",
+        "Sigma",
+        "alpha",
+        "beta",
+        "delta",
+        "eta",
+        "gamma",
+        "int",
+        "kappa",
+        "lambda",
+        "mu",
+        "nu",
+        "omega",
+        "pi",
+        "psi",
+        "rho",
+        "sigma",
+        "tau",
+        "theta",
+        "varepsilon",
+        "varphi",
+        "zeta",
         "infty",
         "ldots",
         "{",
@@ -256,6 +278,10 @@ fn misset(picture: &str) -> Vec<String> {
                         wrong.push(format!("a command `{name}` in `{line}`"));
                     }
                     rest = &rest[length..];
+                }
+                // Names may have letters of any language; signs and Greek letters are ours, and LaTeX does not know them as such.
+                c if !c.is_ascii() && (!c.is_alphabetic() || ('Ͱ'..='Ͽ').contains(&c)) => {
+                    wrong.push(format!("a bare `{c}` in `{line}`"));
                 }
                 '{' => depth += 1,
                 '}' => depth -= 1,
@@ -332,9 +358,12 @@ fn every_kind_of_every_example_is_fit_to_print() {
             let svg = draw(&figure, Drawing::default());
             assert_eq!(svg, draw(&figure, Drawing::default()), "the same figure, the same bytes");
             keep(&format!("{name}.{}", kind.name()), &svg, &faces);
-            for fault in misset(&tikz(&svg)) {
+            let set = tikz(&svg);
+            for fault in misset(&set) {
                 let _ = writeln!(wrong, "{} {} as TikZ: {fault}", name, kind.name());
             }
+            let cut = [svg.matches("clip-path=").count(), set.matches("\\path[clip").count()];
+            assert_eq!(cut[0], cut[1], "{name} {}: what is cut off in the picture is so in TikZ", kind.name());
             // On a screen, on a page, on a page for figures alone.
             for width in [None, Some(770), Some(1180)] {
                 let svg = draw(&figure, Drawing { width, ..Drawing::default() });

@@ -3,7 +3,7 @@
 
 use willis::analysis::Selection;
 use willis::hypergraph::{FlowReport, Hypergraph, NodeKind, flows};
-use willis_figure::{SankeyFlow, SankeyLink, sankey};
+use willis_figure::{Drawing, SankeyFlow, SankeyLayout, SankeyLink, SankeyPaper, sankey};
 
 use crate::trains::{self, stepped};
 
@@ -172,4 +172,96 @@ fn a_locked_operation_says_so_in_words() {
     assert!(panel.remark.as_ref().unwrap().starts_with("The train is locked, no power flows: "), "{panel:?}");
     let pushed = sankey(&example("wolfrom-498-self-locking.toml"));
     assert!(pushed.panels.iter().any(|p| p.flow.is_some() && p.remark.as_ref().is_some_and(|r| r.contains("Locked"))));
+}
+
+/// The flows of every gear of a train: at its operating points, and of states without any at the default one.
+fn gears(train: &willis::Train) -> Vec<FlowReport> {
+    let alone = willis::unstable::without_operations(train);
+    [flows(train, &Selection::default()), flows(&alone, &Selection::default())].into_iter().flatten().collect()
+}
+
+/// A node stands in one column and at one place among its neighbours, whatever the gear; in the mirror where the train is
+/// driven from the other side.
+#[test]
+fn nodes_stand_at_one_place_in_every_gear() {
+    use std::collections::BTreeMap;
+    let (mut shared, mut mirrored) = (0, 0);
+    for (name, train) in trains::examples() {
+        let Ok(layout) = SankeyLayout::new(&train) else { continue };
+        let mut seats: BTreeMap<String, usize> = BTreeMap::new();
+        let mut pairs: BTreeMap<[String; 2], bool> = BTreeMap::new();
+        for report in gears(&train) {
+            let (alone, kept) = (sankey(&report), layout.show(&report));
+            assert_eq!(kept, layout.show(&report), "{name}: not the same twice");
+            for (own, panel) in alone.panels.iter().zip(&kept.panels) {
+                let (Some(own), Some(f)) = (&own.flow, &panel.flow) else { continue };
+                let at = format!("{name}, {}", panel.title);
+                // Only places differ.
+                assert_eq!(
+                    own.links.iter().map(|l| l.power_w).sum::<f64>(),
+                    f.links.iter().map(|l| l.power_w).sum::<f64>()
+                );
+                for l in &f.links {
+                    let [a, b] = [l.from, l.to].map(|k| f.nodes[k].layer);
+                    assert!(if l.back { b < a } else { a < b && l.rows.len() == b - a - 1 }, "{at}: {l:?}");
+                }
+                let places: std::collections::BTreeSet<_> = f.nodes.iter().map(|n| (n.layer, n.row)).collect();
+                assert_eq!(places.len(), f.nodes.len(), "{at}: two nodes at one place");
+                let known: Vec<_> = f.nodes.iter().filter_map(|n| Some((n.layer, *seats.get(&n.id)?))).collect();
+                let turned = |layer: usize| f.layers - 1 - layer;
+                let straight = known.iter().all(|(a, b)| a == b);
+                assert!(straight || known.iter().all(|(a, b)| turned(*a) == *b), "{at}: {known:?}");
+                mirrored += usize::from(!straight);
+                shared += known.len();
+                for n in &f.nodes {
+                    seats.entry(n.id.clone()).or_insert(if straight { n.layer } else { turned(n.layer) });
+                    for o in f.nodes.iter().filter(|o| o.layer == n.layer && o.id < n.id) {
+                        let above = *pairs.entry([o.id.clone(), n.id.clone()]).or_insert(o.row < n.row);
+                        assert_eq!(above, o.row < n.row, "{at}: {} and {} change places", o.id, n.id);
+                    }
+                }
+            }
+        }
+    }
+    assert!(shared > 1000 && mirrored > 0, "{shared} {mirrored}");
+}
+
+/// More torque: nodes stay in their columns and become higher in proportion, words stay where they were along the way.
+#[test]
+fn kept_paper_moves_nothing_sideways() {
+    let train = |torque: f64| {
+        use willis::train::{OperationSpec, SetSpec, Train};
+        use willis::units::{AngularSpeed, Torque};
+        let load = OperationSpec::new("load").speed("s", AngularSpeed::rpm(1000.0)).torque("s", Torque::n_m(torque));
+        let set = SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).mesh_efficiency(0.99);
+        let all = Train::builder("one set").members(["s", "c"]).terminals(["s", "c"]).set(set);
+        all.operation(load).build().expect("a train")
+    };
+    let layout = SankeyLayout::new(&train(10.0)).expect("it has an operation");
+    let of = |torque: f64| layout.show(&flows(&train(torque), &Selection::default()).expect("it flows"));
+    let mut paper = SankeyPaper::new([&of(10.0)], Drawing::default());
+    let mut places = |torque: f64| {
+        let svg = paper.draw(&of(torque));
+        let document = roxmltree::Document::parse(&svg).expect("well-formed");
+        let number = |n: &roxmltree::Node<'_, '_>, key: &str| n.attribute(key).and_then(|v| v.parse::<f64>().ok());
+        let bars = document.descendants().filter(|n| n.attribute("id").is_some_and(|id| id.starts_with("nodeMember")));
+        let bar = |n: roxmltree::Node<'_, '_>| {
+            let r = n.descendants().find(|d| d.has_tag_name("rect")).expect("a bar");
+            (number(&r, "x").unwrap(), number(&r, "height").unwrap())
+        };
+        let bars: Vec<(f64, f64)> = bars.map(bar).collect();
+        let words = document.descendants().filter(|n| n.has_tag_name("text") && n.attribute("aria-hidden").is_none());
+        let shares = words.filter(|n| n.text().is_some_and(|t| t.trim().ends_with('%') && !t.contains('·')));
+        (bars, shares.filter_map(|n| number(&n, "x")).collect::<Vec<_>>())
+    };
+    let [few, more] = [10.0, 12.0].map(&mut places);
+    assert!(few.0.len() == 2 && !few.1.is_empty(), "{few:?}");
+    // Words that end where a gap ends move by half of what they become wider.
+    assert_eq!(few.1.len(), more.1.len());
+    assert!(few.1.iter().zip(&more.1).all(|(a, b)| (a - b).abs() < 3.0), "{few:?} {more:?}");
+    for ((x, height), (other, higher)) in few.0.iter().zip(&more.0) {
+        // A bar stands out by 1.5 beyond its power at each end.
+        assert_eq!(x, other);
+        assert!(((higher - 3.0) / (height - 3.0) - 1.2).abs() < 1e-2, "{height} {higher}");
+    }
 }

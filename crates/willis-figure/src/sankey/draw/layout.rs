@@ -4,6 +4,8 @@
 //! Ribbons bend, rise and come down only in the gaps between columns, where their words stand too.
 //! So nothing crosses a node or its words.
 
+use std::collections::BTreeMap;
+
 use super::ribbon::Ribbon;
 use super::words::{SMALL, Words};
 use crate::parts::style::{BOLD, wide};
@@ -41,9 +43,170 @@ pub fn pad(height: f64) -> f64 {
     ((8.0 - height) / 2.0).max(1.5)
 }
 
+#[derive(Clone, Copy, Debug)]
 struct Column {
     left: f64,
     right: f64,
+}
+
+/// The room that a column takes.
+#[derive(Clone, Copy, Debug, Default)]
+struct Room {
+    /// For ribbons that come down before it, and rise behind it.
+    channels: [f64; 2],
+    /// Half its width.
+    half: f64,
+    /// To the next, for ribbons to bend.
+    bend: f64,
+}
+
+/// What stays while powers change: pixels for a watt, and the columns.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    scale: f64,
+    widened: f64,
+    columns: Vec<Column>,
+    width: f64,
+}
+
+impl Frame {
+    /// That has room for all of these flows, at the scale of the one that needs most.
+    pub fn of(flows: &[&SankeyFlow], room: f64) -> Self {
+        let scale = flows.iter().map(|f| Layout::scale_of(f)).fold(f64::INFINITY, f64::min);
+        let widened = flows.iter().map(|f| Layout::widening(f, scale)).fold(WIDER[WIDER.len() - 1], f64::min);
+        let of = |spacing: [f64; 3]| {
+            let mut rooms: Vec<Room> = Vec::new();
+            for flow in flows {
+                let mut own = Layout::blank(flow, scale, widened);
+                own.stack_columns();
+                for (k, r) in own.rooms_of_columns(spacing).into_iter().enumerate() {
+                    if k == rooms.len() {
+                        rooms.push(Room::default());
+                    }
+                    let all = &mut rooms[k];
+                    all.channels = [0, 1].map(|c| all.channels[c].max(r.channels[c]));
+                    all.half = all.half.max(r.half);
+                    all.bend = all.bend.max(r.bend);
+                }
+            }
+            let (columns, width) = spread(&rooms);
+            Self { scale, widened, columns, width }
+        };
+        let usual = of(SPACING[0]);
+        if usual.width <= room { usual } else { of(SPACING[1]) }
+    }
+
+    /// The columns of a flow that has more of them go on behind.
+    fn columns(&self, layers: usize) -> Vec<Column> {
+        let mut all = self.columns.clone();
+        while all.len() < layers {
+            let left = all.last().map_or(0.0, |c| c.right + SPACING[0][1]);
+            all.push(Column { left, right: left + 2.0 * (BAR / 2.0 + END) });
+        }
+        all
+    }
+}
+
+/// Columns beside each other; and how wide they are together.
+fn spread(rooms: &[Room]) -> (Vec<Column>, f64) {
+    let mut x = 0.0;
+    let mut columns = Vec::with_capacity(rooms.len());
+    for (k, r) in rooms.iter().enumerate() {
+        x += r.channels[0];
+        columns.push(Column { left: x, right: x + 2.0 * r.half });
+        x += 2.0 * r.half + r.channels[1];
+        if k + 1 < rooms.len() {
+            x += r.bend;
+        }
+    }
+    (columns, x)
+}
+
+/// Where the words of a link stand on its way: in which gap, at which part of it, and how far beside it, in steps.
+pub type Spot = (usize, f64, usize);
+
+/// Steps that words may stand beside their ribbon; at none they stand on it.
+const STEPS: usize = 40;
+
+/// How wide a ribbon is, and points of its middle.
+type Band = (f64, Vec<(f64, f64)>);
+
+/// Places for the words of a link in a gap.
+struct Spots<'a, 'f> {
+    layout: &'a Layout<'f>,
+    link: usize,
+    gap: usize,
+    /// Width and height of the words.
+    size: [f64; 2],
+    /// Where the gap begins and ends.
+    sides: [f64; 2],
+    /// Points of the link within it.
+    way: Vec<(f64, f64)>,
+    ribbons: &'a [Band],
+}
+
+impl Spots<'_, '_> {
+    /// Words at a part of the way, so many steps beside it; and what that place costs. None where other words stand.
+    fn at(&self, part: f64, step: usize) -> Option<(f64, Label)> {
+        let [wide, tall] = self.size;
+        let [left, right] = self.sides;
+        let spot = self.way.get((part * self.way.len() as f64) as usize)?;
+        let x = spot.0.clamp(left + wide / 2.0, (right - wide / 2.0).max(left + wide / 2.0));
+        let thick = self.layout.thickness(self.link);
+        let beside = (thick + tall) / 2.0 + 1.0;
+        // How far the words would stick out of their own ribbon: letters are lower than their rows.
+        let stray = |y: f64| {
+            let near = self.way.iter().filter(|p| (p.0 - x).abs() <= wide / 2.0);
+            let far = near.fold(0.0f64, |a, p| a.max((p.1 - y).abs()));
+            (far + tall / 2.0 - 3.0 - thick / 2.0).max(0.0)
+        };
+        let (dy, far) = match step.checked_sub(1) {
+            // On a narrow ribbon words still belong to it more clearly than beyond another.
+            None => (0.0, (2.5 * stray(spot.1)).min(12.0)),
+            Some(k) => {
+                let far = 5.0 * (k / 2) as f64;
+                (if k % 2 == 0 { -beside - far } else { beside + far }, far + 2.0)
+            }
+        };
+        let y = spot.1 + dy;
+        let place = Label {
+            link: self.link,
+            x: [x - wide / 2.0, x + wide / 2.0],
+            y: [y - tall / 2.0, y + tall / 2.0],
+            clear: false,
+        };
+        if self.layout.labels.iter().any(|o| o.meets(&place)) {
+            return None;
+        }
+        let others = || self.ribbons.iter().enumerate().filter(|(k, _)| *k != self.link).map(|(_, r)| r);
+        let within = |p: &(f64, f64)| place.x[0] <= p.0 && p.0 <= place.x[1];
+        // How much of a ribbon the words would cover, in rows and points.
+        let covered = |(thick, points): &Band| -> f64 {
+            let one = |p: &(f64, f64)| {
+                let [low, high] = [p.1 - thick / 2.0, p.1 + thick / 2.0];
+                let both = high.min(place.y[1]) - low.max(place.y[0]);
+                (both / LINE_HEIGHT).max(0.0)
+            };
+            points.iter().filter(|p| within(p)).map(one).sum()
+        };
+        let crossed: f64 = others().map(covered).sum();
+        let beyond = |(thick, points): &Band| {
+            let [low, high] = [spot.1.min(y), spot.1.max(y)];
+            let lies = |p: &&(f64, f64)| within(p) && low < p.1 - thick / 2.0 && p.1 + thick / 2.0 < high;
+            points.iter().filter(lies).count()
+        };
+        let behind: usize = others().map(beyond).sum();
+        let own = if step == 0 { 0.0 } else { covered(&self.ribbons[self.link]) };
+        let l = &self.layout.flow.links[self.link];
+        let cost = far
+            + 2.0 * crossed
+            + 4.0 * behind as f64
+            + 2.0 * own
+            + 12.0 * (part - 0.5f64).abs()
+            + 2.0 * (self.gap - self.layout.flow.nodes[l.from].layer) as f64;
+        let clear = step == 0 && stray(y) == 0.0 && crossed == 0.0 && l.circulating_w == 0.0;
+        Some((cost, Label { clear, ..place }))
+    }
 }
 
 /// Words at a link.
@@ -102,14 +265,40 @@ impl<'f> Layout<'f> {
     }
 
     fn spaced(flow: &'f SankeyFlow, spacing: [f64; 3]) -> Self {
+        let scale = Self::scale_of(flow);
+        let mut own = Self::blank(flow, scale, Self::widening(flow, scale));
+        own.stack_columns();
+        (own.columns, own.width) = spread(&own.rooms_of_columns(spacing));
+        own.finish(&mut BTreeMap::new());
+        own
+    }
+
+    /// Within a frame that stays, with words where they stood.
+    pub fn within(flow: &'f SankeyFlow, frame: &Frame, spots: &mut BTreeMap<(String, String), Spot>) -> Self {
+        let mut own = Self::blank(flow, frame.scale, frame.widened);
+        own.stack_columns();
+        own.columns = frame.columns(flow.layers);
+        own.width = own.columns.last().map_or(0.0, |c| c.right).max(frame.width);
+        own.finish(spots);
+        own
+    }
+
+    /// Pixels for a watt of a picture by itself.
+    fn scale_of(flow: &SankeyFlow) -> f64 {
         let largest = flow.nodes.iter().fold(f64::MIN_POSITIVE, |a, n| a.max(n.power_w));
         let round = flow.links.iter().any(|l| l.back);
-        let scale = if round { WIDEST_ROUND } else { WIDEST } / largest;
-        let links = flow.links.len();
+        let widest = if round { WIDEST_ROUND } else { WIDEST };
+        widest / largest
+    }
+
+    fn widening(flow: &SankeyFlow, scale: f64) -> f64 {
         let lost = |n: &SankeyNode| n.losses.iter().map(|l| l.power_w).sum::<f64>();
         let most = flow.nodes.iter().map(lost).fold(f64::MIN_POSITIVE, f64::max);
-        let widened = WIDER.into_iter().rev().find(|times| times * most * scale <= WIDEST_LOSS).unwrap_or(1.0);
-        let mut own = Self {
+        WIDER.into_iter().rev().find(|times| times * most * scale <= WIDEST_LOSS).unwrap_or(1.0)
+    }
+
+    fn blank(flow: &'f SankeyFlow, scale: f64, widened: f64) -> Self {
+        Self {
             flow,
             scale,
             widened,
@@ -119,14 +308,14 @@ impl<'f> Layout<'f> {
             labels: vec![],
             columns: vec![],
             passes: flow.links.iter().map(|l| vec![0.0; l.rows.len()]).collect(),
-            rounds: vec![None; links],
-        };
-        own.stack_columns();
-        own.spread_columns(spacing);
-        own.lead_round();
-        own.place_labels();
-        own.move_to_corner();
-        own
+            rounds: vec![None; flow.links.len()],
+        }
+    }
+
+    fn finish(&mut self, spots: &mut BTreeMap<(String, String), Spot>) {
+        self.lead_round();
+        self.place_labels(spots);
+        self.move_to_corner();
     }
 
     pub fn middle(&self, layer: usize) -> f64 {
@@ -259,7 +448,7 @@ impl<'f> Layout<'f> {
         if all.is_empty() { 0.0 } else { sum + ROUND + 4.0 }
     }
 
-    fn spread_columns(&mut self, [beside, between, bend]: [f64; 3]) {
+    fn rooms_of_columns(&self, [beside, between, bend]: [f64; 3]) -> Vec<Room> {
         let layers = self.flow.layers;
         let words = Words::of(self.flow);
         let mut half = vec![BAR / 2.0 + beside; layers];
@@ -290,15 +479,13 @@ impl<'f> Layout<'f> {
                 bends[first] = bends[first].max(texts + 8.0);
             }
         }
-        let mut x = self.channel(0, false);
-        for k in 0..layers {
-            self.columns.push(Column { left: x, right: x + 2.0 * half[k] });
-            x += 2.0 * half[k] + self.channel(k, true);
-            if k + 1 < layers {
-                x += bends[k] + self.channel(k + 1, false);
-            }
-        }
-        self.width = x;
+        (0..layers)
+            .map(|k| Room {
+                channels: [false, true].map(|right| self.channel(k, right)),
+                half: half[k],
+                bend: bends[k],
+            })
+            .collect()
     }
 
     /// Lanes above all, the shortest way lowest.
@@ -391,12 +578,13 @@ impl<'f> Layout<'f> {
         Ribbon::across(&columns, width)
     }
 
-    /// Words of links, the strongest first: on the ribbon where it is wide enough, beside it else.
-    fn place_labels(&mut self) {
+    /// Words of links, the strongest first: on the ribbon where it is wide enough, beside it else; where they stood before, as
+    /// long as nothing else stands there.
+    fn place_labels(&mut self, kept: &mut BTreeMap<(String, String), Spot>) {
         let mut order: Vec<usize> =
             (0..self.flow.links.len()).filter(|&k| !self.flow.links[k].back && self.told(k)).collect();
         order.sort_by(|&a, &b| self.flow.links[b].power_w.total_cmp(&self.flow.links[a].power_w));
-        let ribbons: Vec<(f64, Vec<(f64, f64)>)> = (0..self.flow.links.len())
+        let ribbons: Vec<Band> = (0..self.flow.links.len())
             .map(|k| {
                 let r = self.ribbon(k, [0.0, self.flow.links[k].power_w]);
                 (self.thickness(k), r.points())
@@ -408,94 +596,48 @@ impl<'f> Layout<'f> {
             let tall = LINE_HEIGHT * rows.len() as f64;
             let wide = rows.iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max) + 2.0;
             let first = self.flow.nodes[l.from].layer;
-            let mut best: Option<(f64, Label)> = None;
-            for gap in first..self.flow.nodes[l.to].layer {
-                let left = self.columns[gap].right + self.channel(gap, true);
-                let right = self.columns[gap + 1].left - self.channel(gap + 1, false);
-                // The first gap of a link has room for its words.
-                if right - left < wide {
-                    continue;
-                }
-                let spots: Vec<(f64, f64)> =
-                    ribbons[j].1.iter().copied().filter(|p| left <= p.0 && p.0 <= right).collect();
-                for part in [0.5, 0.35, 0.65, 0.2, 0.8] {
-                    let Some(spot) = spots.get((part * spots.len() as f64) as usize) else { continue };
-                    let x = spot.0.clamp(left + wide / 2.0, (right - wide / 2.0).max(left + wide / 2.0));
-                    let thick = self.thickness(j);
-                    let beside = (thick + tall) / 2.0 + 1.0;
-                    // How far the words would stick out of their own ribbon: letters are lower than their rows.
-                    let stray = |y: f64| {
-                        let near = spots.iter().filter(|p| (p.0 - x).abs() <= wide / 2.0);
-                        let far = near.fold(0.0f64, |a, p| a.max((p.1 - y).abs()));
-                        (far + tall / 2.0 - 3.0 - thick / 2.0).max(0.0)
-                    };
-                    // On a narrow ribbon words still belong to it more clearly than beyond another.
-                    let inside = (0.0, (2.5 * stray(spot.1)).min(12.0));
-                    let shifts = (0..40).map(|k| {
-                        let far = 5.0 * f64::from(k / 2);
-                        (if k % 2 == 0 { -beside - far } else { beside + far }, far + 2.0)
-                    });
-                    for (dy, far) in std::iter::once(inside).chain(shifts) {
-                        let y = spot.1 + dy;
-                        let place = Label {
-                            link: j,
-                            x: [x - wide / 2.0, x + wide / 2.0],
-                            y: [y - tall / 2.0, y + tall / 2.0],
-                            clear: false,
-                        };
-                        if self.labels.iter().any(|o| o.meets(&place)) {
-                            continue;
-                        }
-                        // How much of other ribbons the words would cover, in rows and points.
-                        let covered = |k: usize| {
-                            let (thick, points) = &ribbons[k];
-                            let one = |p: &(f64, f64)| {
-                                let within = place.x[0] <= p.0 && p.0 <= place.x[1];
-                                let [low, high] = [p.1 - thick / 2.0, p.1 + thick / 2.0];
-                                let both = high.min(place.y[1]) - low.max(place.y[0]);
-                                if within { (both / LINE_HEIGHT).max(0.0) } else { 0.0 }
-                            };
-                            points.iter().map(one).sum::<f64>()
-                        };
-                        let crossed: f64 = (0..ribbons.len()).filter(|&k| k != j).map(covered).sum();
-                        let beyond = |k: usize| {
-                            let (thick, points) = &ribbons[k];
-                            let [low, high] = [spot.1.min(y), spot.1.max(y)];
-                            let lies = |p: &&(f64, f64)| {
-                                place.x[0] <= p.0
-                                    && p.0 <= place.x[1]
-                                    && low < p.1 - thick / 2.0
-                                    && p.1 + thick / 2.0 < high
-                            };
-                            points.iter().filter(lies).count()
-                        };
-                        let behind: usize = (0..ribbons.len()).filter(|&k| k != j).map(beyond).sum();
-                        let own = if dy == 0.0 { 0.0 } else { covered(j) };
-                        let cost = far
-                            + 2.0 * crossed
-                            + 4.0 * behind as f64
-                            + 2.0 * own
-                            + 12.0 * (part - 0.5f64).abs()
-                            + 2.0 * (gap - first) as f64;
-                        if best.as_ref().is_none_or(|b| cost < b.0) {
-                            let clear = dy == 0.0 && stray(y) == 0.0 && crossed == 0.0 && l.circulating_w == 0.0;
-                            best = Some((cost, Label { clear, ..place }));
+            let size = [wide, tall];
+            let key = [l.from, l.to].map(|k| self.flow.nodes[k].id.clone()).into();
+            let old = kept.get(&key).filter(|spot| (first..self.flow.nodes[l.to].layer).contains(&spot.0));
+            let mut best =
+                old.and_then(|spot| Some((*spot, self.spot(j, spot.0, size, &ribbons)?.at(spot.1, spot.2)?)));
+            if best.is_none() {
+                for gap in first..self.flow.nodes[l.to].layer {
+                    let Some(spots) = self.spot(j, gap, size, &ribbons) else { continue };
+                    for part in [0.5, 0.35, 0.65, 0.2, 0.8] {
+                        for step in 0..=STEPS {
+                            let Some((cost, label)) = spots.at(part, step) else { continue };
+                            if best.as_ref().is_none_or(|b| cost < b.1.0) {
+                                best = Some(((gap, part, step), (cost, label)));
+                            }
                         }
                     }
                 }
             }
             // Nothing vanishes: where no gap has room, below everything.
-            let place = best.map_or_else(
-                || {
+            let place = match best {
+                Some((spot, (_, label))) => {
+                    kept.insert(key, spot);
+                    label
+                }
+                None => {
                     let rooms = self.flow.nodes.iter().enumerate().map(|(k, n)| self.top[k] + self.rooms(n)[1]);
                     let low = rooms.chain(self.labels.iter().map(|o| o.y[1])).fold(0.0, f64::max) + 8.0;
                     let x = self.middle(first).max(wide / 2.0);
                     Label { link: j, x: [x - wide / 2.0, x + wide / 2.0], y: [low, low + tall], clear: false }
-                },
-                |b| b.1,
-            );
+                }
+            };
             self.labels.push(place);
         }
+    }
+
+    /// The places for words of that size along a link in a gap between columns, if they fit in there: the first gap of a link
+    /// has room for them.
+    fn spot<'a>(&'a self, link: usize, gap: usize, size: [f64; 2], ribbons: &'a [Band]) -> Option<Spots<'a, 'f>> {
+        let left = self.columns[gap].right + self.channel(gap, true);
+        let right = self.columns[gap + 1].left - self.channel(gap + 1, false);
+        let way = ribbons[link].1.iter().copied().filter(|p| left <= p.0 && p.0 <= right).collect();
+        (right - left >= size[0]).then_some(Spots { layout: self, link, gap, size, sides: [left, right], way, ribbons })
     }
 
     /// The upper left corner becomes the origin.
