@@ -436,13 +436,14 @@ impl Server {
             Ok(page) => page,
             Err(why) => return Reply::told(500, why.trim_end()),
         };
-        let served = self.file.as_ref().map(|file| match file.text() {
+        let Some(file) = &self.file else { return Reply::new("text/html", None, page) };
+        let held = match file.text() {
             Ok(text) => file.told(&text),
-            Err(why) => json!({ "name": file.name, "error": why }),
-        });
+            Err(why) => json!({ "name": file.name, "text": "", "files": {}, "error": why }),
+        };
         // As data: a browser runs no script of this type, and nothing in it can end it.
-        let data = served.unwrap_or(Value::Null).to_string().replace('<', "\\u003c");
-        let script = format!("<head>\n<script type=\"application/json\" id=\"served\">{data}</script>");
+        let data = held.to_string().replace('<', "\\u003c");
+        let script = format!("<head>\n<script type=\"application/json\" id=\"willis-file\">{data}</script>");
         Reply::new("text/html", None, page.replacen("<head>", &script, 1))
     }
 

@@ -6,6 +6,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use willis::model::Model;
+use willis::train::{Load, Train};
+use willis::units::{self, Dimension};
+use willis::unstable;
 
 /// What is shown, as the page has it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -87,5 +90,30 @@ impl Point {
             operation = Some(name);
         }
         Entries { text, operation, state }
+    }
+
+    /// The train with an operation that has these numbers, and what it is called: the same as from [`Point::entries`], without
+    /// reading a text. None where the point is more than numbers, or something about it is wrong.
+    pub fn moved(&self, train: &Train) -> Option<(Train, String)> {
+        if self.engaged.is_some() || !self.fixed.is_empty() || self.speeds.is_empty() {
+            return None;
+        }
+        let state = self.state.as_deref().map(|name| train.find_state(name)).transpose().ok()?;
+        let member = |name: &str| train.member(name);
+        let quantity = |text: &str, of: Dimension| units::parse(text, of).ok();
+        let mut speeds = vec![];
+        for (name, text) in &self.speeds {
+            speeds.push((member(name)?, quantity(text, Dimension::ANGULAR_SPEED)?));
+        }
+        let mut loads = vec![];
+        for (name, text) in &self.torques {
+            loads.push((member(name)?, Load::Torque(quantity(text, Dimension::TORQUE)?)));
+        }
+        for (name, text) in &self.powers {
+            loads.push((member(name)?, Load::Power(quantity(text, Dimension::POWER)?)));
+        }
+        let name = unused("point", train.operations().iter().map(|o| o.name.as_str()));
+        let operation = unstable::operation(name.clone(), state, speeds, loads);
+        Some((unstable::with_operation(train, operation), name))
     }
 }

@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::wasm_bindgen;
-use willis::diagnostic::Diagnostics;
+use willis::analysis::{self, Selection};
+use willis::diagnostic::{Code, Diagnostic, Diagnostics};
+use willis::hypergraph::flows;
 use willis::model::Model;
-use willis::train::AS_DRAWN;
+use willis::train::{AS_DRAWN, Train};
 use willis_ask::{Attachment, Given, Refusal};
 use willis_figure::{
-    Columns, Drawing, FigureKind, FigureRequest, LeverLayout, LeverRequest, LeverScale, StickLayout, lever_panel,
-    stick_panel,
+    Columns, LeverLayout, LeverRequest, LeverScale, SankeyPaper, Stick, StickLayout, lever_panel, sankey, stick_panel,
 };
 
 use crate::point::{Entries, Point};
@@ -28,6 +29,10 @@ pub struct Session {
     lever: Result<LeverLayout, Diagnostics>,
     /// The last point with the train file that it makes.
     shown: Option<(Point, Given, Entries)>,
+    /// The schematic, for which state and closed elements it is, and the size in which the page has it.
+    scheme: Option<((Option<String>, Option<Vec<String>>), Stick, [f64; 2])>,
+    /// Where the flow of power is drawn, kept while something is dragged.
+    paper: Option<SankeyPaper>,
 }
 
 /// Sizes of the panels, px, and scales that are kept.
@@ -40,13 +45,14 @@ pub struct Boxes {
     pub stick: f64,
     /// The height of the levers; 0 where they are not seen.
     pub lever: f64,
-    /// Width of the flow of power; 0 where it is not seen.
-    pub power: f64,
+    /// Width and height of the flow of power; 0 where it is not seen.
+    pub power: [f64; 2],
     /// Least and greatest speed of the levers' scale, rad/s, and torque of the longest arrow, N m.
     pub scale: Option<[f64; 3]>,
 }
 
 /// What all panels show of one point.
+#[derive(Clone, Debug, Default)]
 #[wasm_bindgen(getter_with_clone)]
 pub struct Shown {
     /// The answer to `analyze` of this point, or the refusal, as JSON.
@@ -55,7 +61,7 @@ pub struct Shown {
     pub operation: Option<String>,
     /// The state's name, where there is one.
     pub state: Option<String>,
-    /// The schematic as SVG, or a refusal as JSON; empty where it is not seen.
+    /// The schematic as SVG, or a refusal as JSON; empty where it is not seen, or as it was before.
     pub stick: String,
     /// The levers, likewise.
     pub lever: String,
@@ -77,7 +83,7 @@ impl Session {
         let model = read(name, text, &files)?;
         let stick = StickLayout::new(model.train());
         let lever = LeverLayout::new(model.train());
-        Ok(Self { name: name.to_owned(), files, model, stick, lever, shown: None })
+        Ok(Self { name: name.to_owned(), files, model, stick, lever, shown: None, scheme: None, paper: None })
     }
 
     /// What the page needs to know of the train, as JSON: members, sets, elements, states, operations, quantities.
@@ -122,34 +128,39 @@ impl Session {
         Ok(with_entries(self.model.to_toml(), &parsed::<Point>(point)?.entries(&self.model)))
     }
 
-    /// Shows a point in all panels.
+    /// Shows a point in all panels. A schematic that is as it was before is left out.
     ///
     /// # Errors
     /// The point or the boxes are no JSON of such. What is wrong with the train at this point stands in the answer.
     pub fn show(&mut self, point: &str, boxes: &str) -> Result<Shown, String> {
         let boxes: Boxes = parsed(boxes)?;
-        if let Err(refusal) = self.at(point)? {
-            let (stick, lever, power, frame) = <(String, String, String, String)>::default();
-            return Ok(Shown { analysis: refusal, operation: None, state: None, stick, lever, power, frame });
-        }
-        let (_, given, entries) = self.shown.as_ref().expect("just put there");
-        let request = match (&entries.operation, &entries.state) {
-            (Some(operation), _) => json!({ "operation": operation }),
-            (None, Some(state)) => json!({ "state": state }),
-            (None, None) => json!({}),
+        let at: Point = parsed(point)?;
+        let moved = boxes.scale.and_then(|_| at.moved(self.model.train()));
+        let (train, state, operation, engaged) = match moved {
+            Some((train, operation)) => (train, at.state.clone(), Some(operation), None),
+            None => match self.at(point)? {
+                Ok(()) => {
+                    let (at, given, entries) = self.shown.as_ref().expect("just put there");
+                    let train = given.model.train().clone();
+                    (train, entries.state.clone(), entries.operation.clone(), at.engaged.clone())
+                }
+                Err(refusal) => return Ok(Shown { analysis: refusal, ..Shown::default() }),
+            },
         };
-        let analysis = answer(given, "analyze", request).unwrap_or_else(|refusal| refusal);
-        let (stick, lever, frame) = self.columns(given, entries, &boxes);
-        let power = if boxes.power > 0.0 { power(given, entries, boxes.power) } else { String::new() };
-        Ok(Shown {
-            analysis,
-            operation: entries.operation.clone(),
-            state: entries.state.clone(),
-            stick,
-            lever,
-            power,
-            frame,
-        })
+        let selection = match (&operation, &state) {
+            (Some(_), _) => Selection { state: None, operation: operation.clone() },
+            (None, _) => Selection { state: state.clone(), operation: None },
+        };
+        let analysis = match analysis::analyze(&train, &selection) {
+            Ok(analysis) => willis_ask::json(&analysis),
+            Err(wrong) => self.refused(wrong),
+        };
+        let mut shown = Shown { analysis, operation, state, ..Shown::default() };
+        self.columns(&train, engaged, &boxes, &mut shown);
+        if boxes.power[0] > 0.0 {
+            shown.power = self.power(&train, &selection, &boxes);
+        }
+        Ok(shown)
     }
 
     /// Answers a question about the train at a point, as JSON.
@@ -254,34 +265,38 @@ impl Session {
     }
 
     /// Schematic and levers, and where their columns are.
-    fn columns(&self, given: &Given, entries: &Entries, boxes: &Boxes) -> (String, String, String) {
-        let train = given.model.train();
+    fn columns(&mut self, train: &Train, engaged: Option<Vec<String>>, boxes: &Boxes, shown: &mut Shown) {
+        let key = (shown.state.clone(), engaged);
+        let kept = self.scheme.take().filter(|s| s.0 == key);
         let unfit = |wrong: &Diagnostics| self.refused(wrong.clone());
-        let stick = match &self.stick {
-            Ok(layout) => layout.show(train, entries.state.as_deref()).map_err(|w| unfit(&w)),
-            Err(wrong) => Err(unfit(wrong)),
+        let stick = match (kept, &self.stick) {
+            (Some((_, stick, drawn)), _) => Ok((stick, drawn)),
+            (None, Ok(layout)) => {
+                layout.show(train, shown.state.as_deref()).map(|s| (s, [0.0; 2])).map_err(|w| unfit(&w))
+            }
+            (None, Err(wrong)) => Err(unfit(wrong)),
         };
-        let request = match (&entries.operation, &entries.state) {
+        let request = match (&shown.operation, &shown.state) {
             (Some(operation), _) => LeverRequest::Operation(operation.clone()),
             (None, Some(state)) => LeverRequest::State(state.clone()),
             (None, None) => LeverRequest::First,
         };
         let lever = match &self.lever {
-            // Where the point has no motion, the lever of the state has.
             Ok(layout) => layout.show(train, &request).map_err(|w| unfit(&w)),
             Err(wrong) => Err(unfit(wrong)),
         };
-        let (stick, lever) = match (stick, lever) {
+        shown.frame = "null".into();
+        let ((stick, drawn), lever) = match (stick, lever) {
             (Ok(stick), Ok(lever)) => (stick, lever),
             (stick, lever) => {
-                let told = |e: Option<String>| e.unwrap_or_default();
-                return (told(stick.err()), told(lever.err()), "null".into());
+                shown.stick = stick.err().unwrap_or_default();
+                shown.lever = lever.err().unwrap_or_default();
+                return;
             }
         };
         let columns = Columns::new(&stick, &lever, boxes.width);
         let scale = boxes.scale.map(|[low, high, torque]| LeverScale { speeds: [low, high], torque });
         let scale = scale.unwrap_or_else(|| LeverScale::of(&lever));
-        let seen = |height: f64, draw: &dyn Fn() -> String| if height > 0.0 { draw() } else { String::new() };
         let sets: Vec<Value> =
             columns.all().iter().map(|c| json!({ "name": c.name, "x": c.x, "span": c.span })).collect();
         let frame = json!({
@@ -291,11 +306,32 @@ impl Session {
             "reach": scale.reach(&columns),
             "scale": [scale.speeds[0], scale.speeds[1], scale.torque],
         });
-        (
-            seen(boxes.stick, &|| stick_panel(&stick, &columns, boxes.stick)),
-            seen(boxes.lever, &|| lever_panel(&lever, &columns, boxes.lever, Some(scale))),
-            frame.to_string(),
-        )
+        shown.frame = frame.to_string();
+        let size = [boxes.width, boxes.stick];
+        if boxes.stick > 0.0 && drawn != size {
+            shown.stick = stick_panel(&stick, &columns, boxes.stick);
+        }
+        if boxes.lever > 0.0 {
+            shown.lever = lever_panel(&lever, &columns, boxes.lever, Some(scale));
+        }
+        self.scheme = Some((key, stick, size));
+    }
+
+    /// The flow of power of a point. Its scale and columns are kept while something is dragged.
+    fn power(&mut self, train: &Train, selection: &Selection, boxes: &Boxes) -> String {
+        let flows = match flows(train, selection) {
+            Ok(flows) => flows,
+            Err(wrong) => return self.refused(wrong),
+        };
+        let figure = sankey(&flows);
+        let size = boxes.power.map(|x| x.clamp(120.0, 4000.0));
+        if boxes.scale.is_none() || self.paper.is_none() {
+            self.paper = Some(SankeyPaper::of_panel([&figure], size));
+        }
+        let drawn = self.paper.as_mut().and_then(|p| p.draw_alone(&figure, 0, size));
+        drawn.unwrap_or_else(|| {
+            self.refused(Diagnostic::new(Code::Unfit, "", "no power flows at this point").into())
+        })
     }
 
     fn refused(&self, wrong: Diagnostics) -> String {
@@ -326,7 +362,7 @@ fn specification_kind(specification: &Value, name: &str) -> Value {
 /// JSON from the page.
 fn parsed<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, String> {
     serde_json::from_str(text).map_err(|e| {
-        let wrong = willis::diagnostic::Diagnostic::new(willis::diagnostic::Code::WrongType, "", format!("the page asks wrongly: {e}"));
+        let wrong = Diagnostic::new(Code::WrongType, "", format!("the page asks wrongly: {e}"));
         refused(&wrong.into(), &[])
     })
 }
@@ -346,28 +382,42 @@ fn with_entries(text: &str, entries: &Entries) -> String {
 }
 
 fn answer(given: &Given, question: &str, request: Value) -> Result<String, String> {
-    let of = std::slice::from_ref(given);
+    let all = std::slice::from_ref(given);
     let ask = || -> Result<String, Refusal> {
-        let request = entry(question)?.request(request)?;
-        let answer = request.ask(of, &Browser)?;
+        let entry = entry(question)?;
+        let request = entry.request(request)?;
+        let answer = request.ask(asked_of(entry, all), &Browser)?;
         Ok(answer.json())
     };
-    ask().map_err(|refusal| refused(&refusal, of))
+    ask().map_err(|refusal| refused(&refusal, all))
+}
+
+/// A question about Willis itself is asked of no train.
+fn asked_of<'g>(entry: &willis_ask::Entry, all: &'g [Given]) -> &'g [Given] {
+    if entry.of == willis_ask::Of::Nothing { &[] } else { all }
 }
 
 fn told(given: &Given, question: &str, request: Value, form: &str, files: &BTreeMap<String, String>) -> Result<String, String> {
-    let of = std::slice::from_ref(given);
+    let all = std::slice::from_ref(given);
     let ask = || -> Result<String, Refusal> {
-        let mut request = entry(question)?.request(request)?;
+        let entry = entry(question)?;
+        let mut request = entry.request(request)?;
         for file in request.attachments().into_iter().filter(|f| f.text.is_empty()) {
             if let Some(text) = files.get(&file.name) {
                 file.text = text.clone();
             }
         }
-        let answer = request.ask(of, &Browser)?;
+        let answer = request.ask(asked_of(entry, all), &Browser)?;
         let one = |name: String, text: String| json!([{ "name": name, "text": text }]);
         let files = match form {
             "json" => one(format!("{question}.json"), answer.json()),
+            // A picture and its data, for a page that has handles on it.
+            "svg+json" => {
+                let mut all = one(format!("{question}.json"), answer.json());
+                let svg = answer.write("svg")?.into_iter().next().map(|f| String::from_utf8_lossy(&f.bytes).into_owned());
+                all.as_array_mut().expect("a list").insert(0, json!({ "name": format!("{question}.svg"), "text": svg }));
+                all
+            }
             "text" => one(format!("{question}.txt"), willis_ask::style::plain(&answer.text())),
             "csv" => one(format!("{question}.csv"), willis_ask::table::csv(&answer.tables())),
             other => {
@@ -377,23 +427,10 @@ fn told(given: &Given, question: &str, request: Value, form: &str, files: &BTree
         };
         Ok(files.to_string())
     };
-    ask().map_err(|refusal| refused(&refusal, of))
+    ask().map_err(|refusal| refused(&refusal, all))
 }
 
 fn entry(question: &str) -> Result<&'static willis_ask::Entry, Refusal> {
-    use willis::diagnostic::{Code, Diagnostic};
     willis_ask::question(question)
         .ok_or_else(|| Diagnostic::new(Code::UnknownSelection, "", format!("there is no question `{question}`")).into())
-}
-
-/// The flow of power of a point.
-fn power(given: &Given, entries: &Entries, width: f64) -> String {
-    let request =
-        FigureRequest { operation: entries.operation.clone(), state: entries.state.clone(), ..FigureRequest::default() };
-    let made = FigureKind::Sankey.make(&given.model, &request);
-    let width = (width.clamp(200.0, 4000.0)) as u32;
-    match made {
-        Ok(figure) => willis_figure::draw(&figure, Drawing { width: Some(width), ..Drawing::default() }),
-        Err(wrong) => refused(&Refusal::Wrong(wrong, 0), std::slice::from_ref(given)),
-    }
 }

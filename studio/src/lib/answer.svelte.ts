@@ -18,6 +18,8 @@ export const SIDE = "side";
 
 export class Answer {
   text = $state.raw<string | null>(null);
+  /** What the text answers, which may be what was asked before. */
+  of = $state.raw<Asking | null>(null);
   refusal = $state.raw<Refusal | null>(null);
   /** Why there is no answer, where that is not the train's fault. */
   stopped = $state("");
@@ -71,6 +73,7 @@ export class Answer {
       const text = await (form === "json" ? ask : tell)(this.#lane, { ...given, form }, progress);
       if (turn !== this.#turn) return;
       this.text = text;
+      this.of = given;
       this.refusal = null;
     } catch (why) {
       if (turn !== this.#turn) return;

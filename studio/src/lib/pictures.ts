@@ -2,14 +2,18 @@
 
 export interface Drawn {
   svg: SVGSVGElement;
+  /** Of what is shown, px; marks over the figure take the same. */
   width: number;
   height: number;
+  viewBox: string;
 }
 
 /** Elements that a figure has; whatever else stood in one would not be ours. */
 const KNOWN = new Set(
   "svg g path rect line circle ellipse polygon polyline text tspan title desc defs clipPath pattern marker style linearGradient stop use mask animateTransform animate".split(" "),
 );
+
+const n = (e: Element, name: string) => Number(e.getAttribute(name));
 
 /**
  * The SVG of a figure as an element. It is parsed as XML of its own, never as markup of the page; ids get a prefix, so that two
@@ -42,7 +46,21 @@ export function drawn(text: string, prefix: string): Drawn | null {
     svg.setAttribute("aria-label", title.textContent ?? "");
     title.remove();
   }
-  return { svg, width, height };
+  // Nor is there room for a heading that the page has already; a line below it stays.
+  const heading = svg.querySelector(':scope > text[font-size="20"], :scope > g > text[font-size="20"]');
+  const top = heading && n(heading, "y") < 50 ? n(heading, "y") + 6 : 0;
+  if (top > 0) heading!.remove();
+  const viewBox = `0 ${top} ${width} ${height - top}`;
+  svg.setAttribute("viewBox", viewBox);
+  svg.setAttribute("height", String(height - top));
+  return { svg, width, height: height - top, viewBox };
+}
+
+/** Where a pointer is, in the figure's own px. */
+export function pointer(e: PointerEvent): [number, number] {
+  const over = (e.currentTarget as SVGElement).ownerSVGElement!;
+  const box = over.getBoundingClientRect();
+  return [e.clientX - box.left + over.viewBox.baseVal.x, e.clientY - box.top + over.viewBox.baseVal.y];
 }
 
 export interface Box {
@@ -51,8 +69,6 @@ export interface Box {
   right: number;
   bottom: number;
 }
-
-const n = (e: Element, name: string) => Number(e.getAttribute(name));
 
 /** Frames of the charts in a figure, from top to bottom. */
 export function frames(svg: SVGSVGElement): Box[] {

@@ -39,7 +39,7 @@ class Store {
   /** What is wrong with the text; panels keep the last good train. */
   broken = $state.raw<Refusal | null>(null);
   view = $state.raw<View | null>(null);
-  boxes = $state.raw<Boxes>({ width: 700, stick: 300, lever: 260, power: 640, scale: null });
+  boxes = $state.raw<Boxes>({ width: 700, stick: 300, lever: 260, power: [640, 280], scale: null });
   hovered = $state<string | null>(null);
   /** Something is dragged: scales stay. */
   dragging = $state(false);
@@ -283,7 +283,7 @@ class Store {
         refused: wrong,
         operation: shown.operation ?? null,
         state: shown.state ?? null,
-        stick: wrong ? (this.view?.stick ?? "") : shown.stick,
+        stick: shown.stick || (this.view?.stick ?? ""),
         lever: wrong ? (this.view?.lever ?? "") : shown.lever,
         power: wrong ? (this.view?.power ?? "") : shown.power,
         frame: wrong ? (this.view?.frame ?? null) : (JSON.parse(shown.frame) as Frame),

@@ -21,7 +21,7 @@ export interface Boxes {
   width: number;
   stick: number;
   lever: number;
-  power: number;
+  power: [number, number];
   scale: [number, number, number] | null;
 }
 

@@ -16,7 +16,7 @@ use crate::parts::style::{
 use crate::{Drawing, Sankey, SankeyFlow, SankeyLink, SankeyNode};
 use layout::{BAR, Frame, LINE_HEIGHT, Layout};
 use ribbon::Ribbon;
-use words::{SMALL, Words, losers, percent};
+use words::{SMALL, losers, percent};
 
 const MARGIN: f64 = 28.0;
 /// Narrowest page.
@@ -122,6 +122,29 @@ impl SankeyPaper {
         let room = paper.page(f64::INFINITY, NARROWEST) - 2.0 * MARGIN;
         let flows: Vec<&SankeyFlow> = all.into_iter().flat_map(|s| &s.panels).filter_map(|p| p.flow.as_ref()).collect();
         Self { frame: Frame::of(&flows, room), spots: BTreeMap::new() }
+    }
+
+    /// For a panel of a screen that is so many px wide and high: the flow alone with names, losses and what goes round. Other
+    /// powers are the titles of their ribbons.
+    pub fn of_panel<'d>(all: impl IntoIterator<Item = &'d Sankey>, size: [f64; 2]) -> Self {
+        let flows: Vec<&SankeyFlow> = all.into_iter().flat_map(|s| &s.panels).filter_map(|p| p.flow.as_ref()).collect();
+        Self { frame: Frame::of_panel(&flows, size), spots: BTreeMap::new() }
+    }
+
+    /// One of the flows alone in its panel, of at least that size; none where no power flows.
+    pub fn draw_alone(&mut self, data: &Sankey, panel: usize, [width, height]: [f64; 2]) -> Option<String> {
+        let told = data.panels.get(panel)?;
+        let flow = Layout::within(told.flow.as_ref()?, &self.frame, &mut self.spots);
+        let (width, height) = (width.max(flow.width + 8.0), height.max(flow.height + 8.0));
+        let at = format!("translate({} {})", number((width - flow.width) / 2.0), number((height - flow.height) / 2.0));
+        let words = caption(flow.flow).join(" ");
+        let page = page(width, height, &format!("Power flow of {}", data.train), &words);
+        Some(page.add(picture(&flow, &told.title).set("transform", at)).to_string())
+    }
+
+    /// How many times wider losses are drawn than power.
+    pub fn widened(&self) -> f64 {
+        self.frame.widened()
     }
 
     /// The power flows as SVG, like [`draw_sankey`](crate::draw_sankey).
@@ -254,7 +277,7 @@ fn picture(d: &Layout<'_>, panel: &str) -> Group {
     }
     for label in &d.labels {
         let power = &d.flow.links[label.link];
-        for (row, words) in Words::of(d.flow).link(power).iter().enumerate() {
+        for (row, words) in d.words.link(power).iter().enumerate() {
             let y = label.y[0] + LINE_HEIGHT * row as f64 + 0.82 * SMALL;
             let t = text(label.middle(), y, SMALL, Anchor::Middle, words);
             g = g.add(if label.clear { Group::new().add(t) } else { halo(t, PAPER, 3.0) });
@@ -375,7 +398,7 @@ fn losses(d: &Layout<'_>, k: usize, n: &SankeyNode) -> Group {
     let (middle, half) = (inner + width.max(0.0) / 2.0, layout::head_of(width));
     let tip = low + 4.0 + half;
     g = g.add(triangle([(middle - half, low + 4.0), (middle + half, low + 4.0), (middle, tip)], &fill));
-    for (row, words) in Words::of(d.flow).foot(n).iter().enumerate() {
+    for (row, words) in d.words.foot(n).iter().enumerate() {
         let y = tip + LINE_HEIGHT * (row as f64 + 0.95);
         g = g.add(text(d.middle(n.layer), y, SMALL, Anchor::Middle, words));
     }
@@ -443,7 +466,7 @@ fn node(d: &Layout<'_>, k: usize, n: &SankeyNode) -> Group {
     }
     let pad = layout::pad(height);
     g = g.add(bar(n.kind, x, top - pad, height + 2.0 * pad));
-    let head = Words::of(d.flow).head(n);
+    let head = d.words.head(n);
     for (row, words) in head.iter().enumerate() {
         let y = top - pad - 5.0 - LINE_HEIGHT * (head.len() - 1 - row) as f64;
         let t = text(x, y, SMALL, Anchor::Middle, words);

@@ -24,6 +24,11 @@ const WIDEST: f64 = 92.0;
 const WIDEST_ROUND: f64 = 58.0;
 /// Least room beside a node and between columns, and the most that a ribbon takes to bend: usual, and tight.
 const SPACING: [[f64; 3]; 2] = [[16.0, 50.0, 120.0], [6.0, 22.0, 70.0]];
+/// The same in a panel, where words of neighbours may stand over each other's columns.
+const BRIEF: [f64; 3] = [2.0, 7.0, 28.0];
+/// Half the width of the words that a column of a panel has room for; and the most that a panel adds to a gap.
+const BRIEF_WORDS: f64 = 13.0;
+const BRIEF_GAP: f64 = 90.0;
 /// Inner radius of what is led back.
 const ROUND: f64 = 8.0;
 /// Least room between nodes of a column.
@@ -67,33 +72,71 @@ pub struct Frame {
     widened: f64,
     columns: Vec<Column>,
     width: f64,
+    brief: bool,
 }
 
 impl Frame {
+    /// For a panel of a screen: names, losses and what goes round, as wide as the panel if that suffices, and no higher than it
+    /// where the powers can be drawn that small.
+    pub fn of_panel(flows: &[&SankeyFlow], [width, height]: [f64; 2]) -> Self {
+        let full = flows.iter().map(|f| Layout::scale_of(f)).fold(f64::INFINITY, f64::min);
+        let mut frame = Self::brief(flows, full, width);
+        for part in [0.8, 0.64, 0.5, 0.4, 0.3, 0.22] {
+            let tall = flows.iter().map(|f| Layout::within(f, &frame, &mut BTreeMap::new()).height).fold(0.0, f64::max);
+            if tall <= height {
+                break;
+            }
+            frame = Self::brief(flows, part * full, width);
+        }
+        frame
+    }
+
+    fn brief(flows: &[&SankeyFlow], scale: f64, width: f64) -> Self {
+        let widened = flows.iter().map(|f| Layout::widening(f, scale)).fold(WIDER[WIDER.len() - 1], f64::min);
+        let mut rooms = Self::rooms(flows, scale, widened, BRIEF, true);
+        let narrow = spread(&rooms).1;
+        let gaps = rooms.len().saturating_sub(1).max(1) as f64;
+        let more = ((width - narrow) / gaps).clamp(0.0, BRIEF_GAP);
+        rooms.iter_mut().for_each(|r| r.bend += more);
+        let (columns, width) = spread(&rooms);
+        Self { scale, widened, columns, width, brief: true }
+    }
+
+    /// The room that each column takes in all of these flows.
+    fn rooms(flows: &[&SankeyFlow], scale: f64, widened: f64, spacing: [f64; 3], brief: bool) -> Vec<Room> {
+        let mut rooms: Vec<Room> = Vec::new();
+        for flow in flows {
+            let mut own = Layout::blank(flow, scale, widened, brief);
+            own.stack_columns();
+            for (k, r) in own.rooms_of_columns(spacing).into_iter().enumerate() {
+                if k == rooms.len() {
+                    rooms.push(Room::default());
+                }
+                let all = &mut rooms[k];
+                all.channels = [0, 1].map(|c| all.channels[c].max(r.channels[c]));
+                all.half = all.half.max(r.half);
+                all.bend = all.bend.max(r.bend);
+            }
+        }
+        rooms
+    }
+
     /// That has room for all of these flows, at the scale of the one that needs most.
     pub fn of(flows: &[&SankeyFlow], room: f64) -> Self {
         let scale = flows.iter().map(|f| Layout::scale_of(f)).fold(f64::INFINITY, f64::min);
         let widened = flows.iter().map(|f| Layout::widening(f, scale)).fold(WIDER[WIDER.len() - 1], f64::min);
         let of = |spacing: [f64; 3]| {
-            let mut rooms: Vec<Room> = Vec::new();
-            for flow in flows {
-                let mut own = Layout::blank(flow, scale, widened);
-                own.stack_columns();
-                for (k, r) in own.rooms_of_columns(spacing).into_iter().enumerate() {
-                    if k == rooms.len() {
-                        rooms.push(Room::default());
-                    }
-                    let all = &mut rooms[k];
-                    all.channels = [0, 1].map(|c| all.channels[c].max(r.channels[c]));
-                    all.half = all.half.max(r.half);
-                    all.bend = all.bend.max(r.bend);
-                }
-            }
+            let rooms = Self::rooms(flows, scale, widened, spacing, false);
             let (columns, width) = spread(&rooms);
-            Self { scale, widened, columns, width }
+            Self { scale, widened, columns, width, brief: false }
         };
         let usual = of(SPACING[0]);
         if usual.width <= room { usual } else { of(SPACING[1]) }
+    }
+
+    /// How many times wider losses are than power.
+    pub fn widened(&self) -> f64 {
+        self.widened
     }
 
     /// The columns of a flow that has more of them go on behind.
@@ -231,6 +274,8 @@ impl Label {
 
 pub struct Layout<'f> {
     pub flow: &'f SankeyFlow,
+    pub words: Words,
+    brief: bool,
     /// Pixels for a watt.
     pub scale: f64,
     /// So many times wider losses are drawn: what is lost is little, and would not be seen.
@@ -266,7 +311,7 @@ impl<'f> Layout<'f> {
 
     fn spaced(flow: &'f SankeyFlow, spacing: [f64; 3]) -> Self {
         let scale = Self::scale_of(flow);
-        let mut own = Self::blank(flow, scale, Self::widening(flow, scale));
+        let mut own = Self::blank(flow, scale, Self::widening(flow, scale), false);
         own.stack_columns();
         (own.columns, own.width) = spread(&own.rooms_of_columns(spacing));
         own.finish(&mut BTreeMap::new());
@@ -275,7 +320,7 @@ impl<'f> Layout<'f> {
 
     /// Within a frame that stays, with words where they stood.
     pub fn within(flow: &'f SankeyFlow, frame: &Frame, spots: &mut BTreeMap<(String, String), Spot>) -> Self {
-        let mut own = Self::blank(flow, frame.scale, frame.widened);
+        let mut own = Self::blank(flow, frame.scale, frame.widened, frame.brief);
         own.stack_columns();
         own.columns = frame.columns(flow.layers);
         own.width = own.columns.last().map_or(0.0, |c| c.right).max(frame.width);
@@ -297,9 +342,11 @@ impl<'f> Layout<'f> {
         WIDER.into_iter().rev().find(|times| times * most * scale <= WIDEST_LOSS).unwrap_or(1.0)
     }
 
-    fn blank(flow: &'f SankeyFlow, scale: f64, widened: f64) -> Self {
+    fn blank(flow: &'f SankeyFlow, scale: f64, widened: f64, brief: bool) -> Self {
         Self {
             flow,
+            words: Words::of(flow, brief),
+            brief,
             scale,
             widened,
             width: 0.0,
@@ -325,6 +372,9 @@ impl<'f> Layout<'f> {
     /// Whether a link has words of its own: not where an input or output says the same.
     fn told(&self, k: usize) -> bool {
         let l = &self.flow.links[k];
+        if self.brief {
+            return false;
+        }
         let (from, to) = (&self.flow.nodes[l.from], &self.flow.nodes[l.to]);
         let same = |end: f64| (end - l.power_w).abs() <= 1e-9 * l.power_w;
         !(l.via.is_empty() && (same(from.input_w) || same(to.output_w)))
@@ -333,11 +383,11 @@ impl<'f> Layout<'f> {
     /// Rooms above and below the upper end of a node's power.
     fn rooms(&self, n: &SankeyNode) -> [f64; 2] {
         let height = n.power_w * self.scale;
-        let head = Words::of(self.flow).head(n).len() as f64;
+        let head = self.words.head(n).len() as f64;
         let mut below = height + pad(height) + 2.0;
         if let Some(first) = n.losses.first() {
             let width = (n.power_w - first.offset_w) * self.scale * self.widened;
-            let rows = Words::of(self.flow).foot(n).len() as f64;
+            let rows = self.words.foot(n).len() as f64;
             below = height + TURN + 4.0 + head_of(width) + LINE_HEIGHT * (rows + 0.2);
         }
         if n.output_w > 0.0 {
@@ -450,20 +500,21 @@ impl<'f> Layout<'f> {
 
     fn rooms_of_columns(&self, [beside, between, bend]: [f64; 3]) -> Vec<Room> {
         let layers = self.flow.layers;
-        let words = Words::of(self.flow);
         let mut half = vec![BAR / 2.0 + beside; layers];
         for n in &self.flow.nodes {
-            let texts = words
+            let texts = self
+                .words
                 .head(n)
                 .iter()
                 .enumerate()
                 .map(|(k, t)| wide(t, SMALL) * if k == 0 { BOLD } else { 1.0 })
-                .chain(words.foot(n).iter().map(|t| wide(t, SMALL)))
+                .chain(self.words.foot(n).iter().map(|t| wide(t, SMALL)))
                 .fold(0.0f64, f64::max);
             let lost: f64 = n.losses.iter().map(|l| l.power_w * self.scale * self.widened).sum();
             let ends = if n.input_w > 0.0 || n.output_w > 0.0 { BAR / 2.0 + END } else { 0.0 };
             let turn = if n.losses.is_empty() { 0.0 } else { BAR / 2.0 + TURN + lost + 6.0 };
-            half[n.layer] = half[n.layer].max(texts / 2.0 + 4.0).max(ends).max(turn);
+            let texts = if self.brief { (texts / 2.0).min(BRIEF_WORDS) } else { texts / 2.0 + 4.0 };
+            half[n.layer] = half[n.layer].max(texts).max(ends).max(turn);
         }
         let mut bends = vec![between; layers];
         for (j, l) in self.flow.links.iter().enumerate().filter(|(_, l)| !l.back) {
@@ -475,7 +526,7 @@ impl<'f> Layout<'f> {
                 bends[first + k] = bends[first + k].max((0.5 * fall + 0.3 * self.thickness(j).min(fall)).min(bend));
             }
             if self.told(j) {
-                let texts = words.link(l).iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max);
+                let texts = self.words.link(l).iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max);
                 bends[first] = bends[first].max(texts + 8.0);
             }
         }
@@ -530,7 +581,7 @@ impl<'f> Layout<'f> {
             let end = self.top[l.to] + l.to_offset_w * self.scale - 2.0 * ROUND;
             let lane = below.chain(others).map(|y| y - 8.0).fold(start.min(end), f64::min);
             self.rounds[j] = Some([rise, fall, lane]);
-            let rows = Words::of(self.flow).link(l);
+            let rows = self.words.link(l);
             let tall = LINE_HEIGHT * rows.len() as f64;
             let inside = thick >= tall - 2.0;
             let half = rows.iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max) / 2.0 + 1.0;
@@ -592,7 +643,7 @@ impl<'f> Layout<'f> {
             .collect();
         for j in order {
             let l = &self.flow.links[j];
-            let rows = Words::of(self.flow).link(l);
+            let rows = self.words.link(l);
             let tall = LINE_HEIGHT * rows.len() as f64;
             let wide = rows.iter().map(|t| wide(t, SMALL)).fold(0.0f64, f64::max) + 2.0;
             let first = self.flow.nodes[l.from].layer;

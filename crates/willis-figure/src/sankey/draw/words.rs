@@ -37,14 +37,19 @@ pub struct Words {
     input: f64,
     /// Narrow columns, for a picture of many layers.
     narrow: bool,
+    /// Names, losses and what goes round only, for a panel of a screen.
+    brief: bool,
 }
 
 impl Words {
-    pub fn of(f: &SankeyFlow) -> Self {
-        Self { input: f.input_w, narrow: f.layers >= 8 }
+    pub fn of(f: &SankeyFlow, brief: bool) -> Self {
+        Self { input: f.input_w, narrow: f.layers >= 8 || brief, brief }
     }
 
     fn most(self) -> f64 {
+        if self.brief {
+            return 66.0;
+        }
         if self.narrow { 96.0 } else { 128.0 }
     }
 
@@ -74,6 +79,9 @@ impl Words {
             }
             _ => vec![fit(&n.name, self.most() - wide(&times, SMALL * BOLD), SMALL * BOLD) + &times],
         };
+        if self.brief {
+            return all;
+        }
         if let (NodeKind::Member, Some(w)) = (n.kind, n.speed_rad_s) {
             all.push(format!("{} rpm", digits(w * 30.0 / std::f64::consts::PI)));
         }
@@ -90,6 +98,10 @@ impl Words {
 
     /// Below a node: its losses.
     pub fn foot(self, n: &SankeyNode) -> Vec<String> {
+        if self.brief {
+            let lost: f64 = n.losses.iter().map(|l| l.power_w).sum();
+            return if n.losses.is_empty() { vec![] } else { vec![watts(lost)] };
+        }
         let one = |l: &SankeyLoss| {
             let amount = self.amount(format!("lost {}", watts(l.power_w)), percent(l.power_w, self.input));
             let what = match l.names.as_slice() {
@@ -107,6 +119,9 @@ impl Words {
     pub fn link(self, l: &SankeyLink) -> Vec<String> {
         let mut all = vec![watts(l.power_w), percent(l.power_w, self.input)];
         all.retain(|t| !t.is_empty());
+        if self.brief {
+            return vec![all.join(" · ")];
+        }
         if !l.via.is_empty() {
             all.push(fit(&format!("via {}", l.via.join(", ")), if self.narrow { 76.0 } else { 120.0 }, SMALL));
         }
