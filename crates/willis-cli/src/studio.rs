@@ -273,11 +273,10 @@ impl Request {
         let begin = Instant::now();
         let (mut bytes, mut part) = (vec![], [0; 1 << 13]);
         let end = loop {
-            if let Some(end) = bytes.windows(4).position(|w| w == b"\r\n\r\n") {
-                break end;
-            }
-            if bytes.len() > MOST_HEAD {
-                return Err(Reply::told(431, "the head of the request is too long"));
+            match bytes.windows(4).position(|w| w == b"\r\n\r\n") {
+                Some(end) if end <= MOST_HEAD => break end,
+                None if bytes.len() <= MOST_HEAD => {}
+                _ => return Err(Reply::told(431, "the head of the request is too long")),
             }
             if begin.elapsed() > PATIENCE {
                 return Err(Reply::told(408, "the request took too long"));
@@ -490,9 +489,7 @@ fn changes(file: &Served, query: &str) -> Reply {
         std::thread::sleep(LOOK);
     }
     match read.and_then(|_| file.text()) {
-        Ok(text) if tag(&text) == since => {
-            Reply { status: 204, ..Reply::new("application/json", Some(since), "") }
-        }
+        Ok(text) if tag(&text) == since => Reply { status: 204, ..Reply::new("application/json", Some(since), "") },
         Ok(text) => Reply::new("application/json", Some(tag(&text)), file.told(&text).to_string()),
         // An editor that replaces a file takes it away for a moment; this was longer.
         Err(why) => Reply::told(404, &why),

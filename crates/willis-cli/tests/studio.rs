@@ -179,7 +179,8 @@ fn strangers_are_refused() {
     for place in ["../", "studio.html", "file/../file", "..%2ftrain.toml", "train.toml"] {
         assert_eq!(studio.get(place).status(), 404, "{place}");
     }
-    for (method, place) in [("DELETE", "file"), ("POST", "file"), ("PUT", ""), ("PUT", "changes"), ("OPTIONS", "file")] {
+    for (method, place) in [("DELETE", "file"), ("POST", "file"), ("PUT", ""), ("PUT", "changes"), ("OPTIONS", "file")]
+    {
         assert_eq!(studio.ask(method, place, &[], "").status(), 405, "{method} {place}");
     }
 }

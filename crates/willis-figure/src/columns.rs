@@ -12,10 +12,10 @@ use crate::{Lever, LeverBar, Stick};
 
 /// The ground of a column.
 const GROUND: &str = "#f7f7f3";
-/// What a lever needs at least, px.
+/// What a lever needs at least, px, and from what on more is worth nothing; between them a part of what there is.
 const NARROWEST: f64 = 128.0;
-/// Wider columns are worth nothing.
-const WIDEST: f64 = 300.0;
+const WIDEST: f64 = 260.0;
+const PART: f64 = 0.7;
 /// Left of the first lever stand its names, right of the last its speeds, px.
 const ENDS: [f64; 2] = [84.0, 62.0];
 /// A step of the grid in a gap: two lines side by side can be told apart, px.
@@ -172,13 +172,14 @@ impl Blocks {
         let even = (width - 2.0 * margin) / self.grid.max(1.0);
         let unit = even.clamp(2.0 * STEP, 0.62 * NARROWEST / widest).max(STEP);
         let half = |k: usize| 0.5 * unit * lengths[k];
+        let column = (PART * width / self.of.len().max(1) as f64).clamp(NARROWEST, WIDEST);
         let needs = |gap: usize| {
             let lines = STEP * gaps[gap];
             let has_lever = |k: usize| self.of.contains(&k);
             match gap {
                 0 if has_lever(0) => lines.max(ENDS[0] - margin - half(0)),
                 g if g == n && has_lever(n - 1) => lines.max(ENDS[1] - margin - half(n - 1)),
-                g if g > 0 && g < n && has_lever(g - 1) && has_lever(g) => lines.max(NARROWEST - half(g - 1) - half(g)),
+                g if g > 0 && g < n && has_lever(g - 1) && has_lever(g) => lines.max(column - half(g - 1) - half(g)),
                 _ => lines,
             }
         };

@@ -18,7 +18,8 @@ fn main() {
     for (what, boxes) in panels {
         let mut best = f64::INFINITY;
         for k in 0..200 {
-            let point = format!(r#"{{"state":"3","speeds":{{"input":"{} rpm"}},"torques":{{"input":"300 N m"}}}}"#, 1000 + k);
+            let point =
+                format!(r#"{{"state":"3","speeds":{{"input":"{} rpm"}},"torques":{{"input":"300 N m"}}}}"#, 1000 + k);
             let start = Instant::now();
             session.show(&point, boxes).expect("a frame");
             best = best.min(1e3 * start.elapsed().as_secs_f64());

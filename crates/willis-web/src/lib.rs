@@ -36,7 +36,12 @@ pub fn new_train(kind: &str) -> Result<String, String> {
         let entry = willis_ask::question("new").expect("in the list");
         let request = entry.request(json!({ "kind": kind }))?;
         let answer = request.ask(&[], &surroundings::Browser)?;
-        Ok(answer.write("toml")?.into_iter().next().map(|f| String::from_utf8_lossy(&f.bytes).into_owned()).unwrap_or_default())
+        Ok(answer
+            .write("toml")?
+            .into_iter()
+            .next()
+            .map(|f| String::from_utf8_lossy(&f.bytes).into_owned())
+            .unwrap_or_default())
     };
     ask().map_err(|refusal| refused(&refusal, &[]))
 }

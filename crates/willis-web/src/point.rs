@@ -42,7 +42,10 @@ pub struct Entries {
 fn unused<'a>(wanted: &str, others: impl Iterator<Item = &'a str>) -> String {
     let others: Vec<&str> = others.collect();
     let numbered = (2..).map(|k| format!("{wanted} {k}"));
-    std::iter::once(wanted.to_owned()).chain(numbered).find(|n| !others.contains(&n.as_str())).expect("numbers do not end")
+    std::iter::once(wanted.to_owned())
+        .chain(numbered)
+        .find(|n| !others.contains(&n.as_str()))
+        .expect("numbers do not end")
 }
 
 /// JSON's quotes are TOML's.

@@ -93,16 +93,15 @@ impl Session {
         let name = |m: &willis::train::MemberId| train.member_name(*m).to_owned();
         let end = |state: Option<usize>| train.ends(state).map(|m| m.map(|m| train.member_name(m).to_owned()));
         let state = |(k, s): (usize, &willis::train::State)| {
-            let engaged: Vec<&str> = s.engaged.iter().map(|e| train.shift_elements()[e.index()].name.as_str()).collect();
+            let engaged: Vec<&str> =
+                s.engaged.iter().map(|e| train.shift_elements()[e.index()].name.as_str()).collect();
             json!({ "name": s.name, "engaged": engaged, "ends": end(Some(k)) })
         };
         let element = |e: &willis::train::ShiftElement| {
             let members: Vec<String> = e.members.iter().map(name).collect();
             json!({ "name": e.name, "kind": specification_kind(&specification, &e.name), "members": members })
         };
-        let quantity = |(path, key): (String, willis::train::Key)| {
-            json!({ "path": path, "value": self.model.document().value(&key) })
-        };
+        let quantity = |(path, key): (String, willis::train::Key)| json!({ "path": path, "value": self.model.document().value(&key) });
         json!({
             "name": train.name(),
             "asDrawn": AS_DRAWN,
@@ -329,9 +328,7 @@ impl Session {
             self.paper = Some(SankeyPaper::of_panel([&figure], size));
         }
         let drawn = self.paper.as_mut().and_then(|p| p.draw_alone(&figure, 0, size));
-        drawn.unwrap_or_else(|| {
-            self.refused(Diagnostic::new(Code::Unfit, "", "no power flows at this point").into())
-        })
+        drawn.unwrap_or_else(|| self.refused(Diagnostic::new(Code::Unfit, "", "no power flows at this point").into()))
     }
 
     fn refused(&self, wrong: Diagnostics) -> String {
@@ -368,7 +365,8 @@ fn parsed<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, String> {
 }
 
 fn read(name: &str, text: &str, files: &BTreeMap<String, String>) -> Result<Model, String> {
-    let mut load = |file: &str| files.get(file).cloned().ok_or_else(|| "it is not among the files of the page".to_owned());
+    let mut load =
+        |file: &str| files.get(file).cloned().ok_or_else(|| "it is not among the files of the page".to_owned());
     Model::read(text, &mut load).map_err(|wrong| {
         let file = Attachment { name: name.to_owned(), text: text.to_owned() };
         refused(&Refusal::File(wrong, file), &[])
@@ -397,7 +395,13 @@ fn asked_of<'g>(entry: &willis_ask::Entry, all: &'g [Given]) -> &'g [Given] {
     if entry.of == willis_ask::Of::Nothing { &[] } else { all }
 }
 
-fn told(given: &Given, question: &str, request: Value, form: &str, files: &BTreeMap<String, String>) -> Result<String, String> {
+fn told(
+    given: &Given,
+    question: &str,
+    request: Value,
+    form: &str,
+    files: &BTreeMap<String, String>,
+) -> Result<String, String> {
     let all = std::slice::from_ref(given);
     let ask = || -> Result<String, Refusal> {
         let entry = entry(question)?;
@@ -414,8 +418,11 @@ fn told(given: &Given, question: &str, request: Value, form: &str, files: &BTree
             // A picture and its data, for a page that has handles on it.
             "svg+json" => {
                 let mut all = one(format!("{question}.json"), answer.json());
-                let svg = answer.write("svg")?.into_iter().next().map(|f| String::from_utf8_lossy(&f.bytes).into_owned());
-                all.as_array_mut().expect("a list").insert(0, json!({ "name": format!("{question}.svg"), "text": svg }));
+                let svg =
+                    answer.write("svg")?.into_iter().next().map(|f| String::from_utf8_lossy(&f.bytes).into_owned());
+                all.as_array_mut()
+                    .expect("a list")
+                    .insert(0, json!({ "name": format!("{question}.svg"), "text": svg }));
                 all
             }
             "text" => one(format!("{question}.txt"), willis_ask::style::plain(&answer.text())),

@@ -52,7 +52,12 @@ fn all(context: &Context) -> Result<(), Stop> {
         node(context, &["answers", path(&wasm)?, path(Path::new(&willis(context)))?])?;
     }
     let page = page(context)?;
-    println!("{}: {:.2} MB, in it {:.2} MB of packed WebAssembly", page.display(), megabytes(&page)?, packed as f64 / 1e6);
+    println!(
+        "{}: {:.2} MB, in it {:.2} MB of packed WebAssembly",
+        page.display(),
+        megabytes(&page)?,
+        packed as f64 / 1e6
+    );
     if tested {
         in_a_browser(context, &page)?;
     }
@@ -149,7 +154,9 @@ fn in_a_browser(context: &Context, page: &Path) -> Result<(), Stop> {
 /// The browser, installed where this may install and it is missing.
 fn chromium(context: &Context) -> Option<String> {
     let find = || {
-        ["chromium", "chromium-browser", "google-chrome"].into_iter().find(|name| context.succeeds(&format!("which {name}")))
+        ["chromium", "chromium-browser", "google-chrome"]
+            .into_iter()
+            .find(|name| context.succeeds(&format!("which {name}")))
     };
     let is_root = || context.words("id -u").output().is_ok_and(|o| o.stdout.trim_ascii() == b"0");
     if find().is_none() && is_root() {

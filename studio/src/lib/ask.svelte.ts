@@ -7,6 +7,8 @@ import LongWork from "./worker?worker&inline";
 
 /** After this time a job is ended. */
 export const BUDGET_MS = 20_000;
+/** After this time without a job a worker is ended: it holds the whole library. */
+const IDLE_MS = 60_000;
 
 export class Stopped extends Error {}
 export class Refused extends Error {
@@ -18,6 +20,7 @@ export class Refused extends Error {
 interface Lane {
   worker: Worker;
   job: { id: number; settle: (told: Told) => void; fail: (why: Error) => void; timer: number } | null;
+  idle: number;
 }
 
 const lanes = new Map<string, Lane>();
@@ -27,7 +30,7 @@ async function lane(name: string): Promise<Lane> {
   const given = await module();
   const there = lanes.get(name);
   if (there) return there;
-  const made: Lane = { worker: new LongWork(), job: null };
+  const made: Lane = { worker: new LongWork(), job: null, idle: 0 };
   made.worker.onmessage = (event: MessageEvent<Told>) => {
     if (made.job && event.data.id === made.job.id) made.job.settle(event.data);
   };
@@ -45,6 +48,7 @@ function end(name: string, why: Error): void {
   if (!there) return;
   lanes.delete(name);
   there.worker.terminate();
+  clearTimeout(there.idle);
   if (there.job) {
     clearTimeout(there.job.timer);
     there.job.fail(why);
@@ -74,9 +78,11 @@ export async function ask(
       if (!told.done) return progress(told.what, told.part);
       clearTimeout(timer);
       now.job = null;
+      now.idle = window.setTimeout(() => end(name, new Stopped("nobody asks")), IDLE_MS);
       if (told.refused) reject(new Refused(told.refused));
       else resolve(told.answer ?? "");
     };
+    clearTimeout(now.idle);
     now.job = { id, settle, fail, timer };
     const job: Job = {
       id,

@@ -335,36 +335,36 @@ class Store {
   toggle(element: string): void {
     const facts = this.facts;
     if (!facts) return;
-    const closed = this.engaged.includes(element) ? this.engaged.filter((e) => e !== element) : [...this.engaged, element];
+    const opens = this.engaged.includes(element);
+    const closed = opens ? this.engaged.filter((e) => e !== element) : [...this.engaged, element];
     const same = facts.states.find((s) => s.engaged.length === closed.length && s.engaged.every((e) => closed.includes(e)));
-    if (same) this.move({ ...this.point, state: same.name, engaged: null }, `gear ${same.name}`);
-    else this.move({ ...this.point, state: null, engaged: closed }, `${element} ${closed.includes(element) ? "closes" : "opens"}`);
-    // Another number of freedoms takes another number of speeds.
+    this.#remember(this.#step(same ? `gear ${same.name}` : `${element} ${opens ? "opens" : "closes"}`));
+    const before = this.operation;
+    this.point = { ...NOTHING, state: same?.name ?? null, engaged: same ? null : closed };
     this.refresh();
-    this.#complete();
-  }
-
-  /** Gives as many speeds as there are freedoms, from what turned before. */
-  #complete(): void {
-    const op = this.operation;
-    const before = this.view;
-    const dof = op?.degrees_of_freedom ?? this.view?.analysis?.degrees_of_freedom;
-    if (dof === undefined || !this.facts) return;
-    const speeds = { ...this.point.speeds };
-    const wanted = Math.max(1, dof);
-    const names = Object.keys(speeds);
-    if (names.length > wanted) for (const name of names.slice(0, names.length - wanted)) delete speeds[name];
-    const order = [...this.facts.terminals, ...this.facts.members];
+    // Without an operating point the answer tells how many freedoms there are: so many speeds are given.
+    const dof = Object.values(this.view?.analysis?.ratios ?? {})[0]?.degrees_of_freedom ?? 0;
+    if (dof === 0) return;
+    const [input] = same?.ends ?? facts.ends;
+    const order = [...new Set([...(input ? [input] : []), ...facts.terminals, ...facts.members])];
+    const told = (w: number | null | undefined) => `${plain(rounded((w ?? 0) * RPM, 4000))} rpm`;
+    const load = input ? `${plain(Number((before?.solutions[0]?.members[input]?.torque_n_m ?? 100).toPrecision(6)))} N m` : null;
+    // Speeds that are independent of each other: members are tried in order until the library takes them.
+    const speeds: Record<string, string> = {};
     for (const m of order) {
-      if (Object.keys(speeds).length >= wanted) break;
-      if (m in speeds) continue;
-      const w = before?.analysis?.operations[0]?.speeds_rad_s[m];
-      speeds[m] = `${plain(rounded((w ?? 0) * RPM, 4000))} rpm`;
-    }
-    if (Object.keys(speeds).length !== names.length) {
-      this.point = { ...this.point, speeds };
+      if (Object.keys(speeds).length >= dof) break;
+      speeds[m] = told(before?.speeds_rad_s[m] || (m === input ? 1000 / RPM : 0));
+      this.point = { ...this.point, speeds: { ...speeds } };
       this.refresh();
+      if (this.view?.refused) delete speeds[m];
     }
+    // As many terminals as there are freedoms balance the train; only the others have a torque given.
+    const given = facts.terminals.length - dof;
+    const torques: Record<string, string> = input && load && given > 0 ? { [input]: load } : {};
+    const others = facts.terminals.filter((m) => m !== input && m !== facts.ends[1]);
+    for (const m of others.slice(0, Math.max(0, given - 1))) torques[m] = "0 N m";
+    this.point = { ...this.point, speeds, torques };
+    this.refresh();
   }
 
   say(text: string): void {

@@ -114,7 +114,8 @@ impl<'a> View<'a> {
     fn lever(&self, bar: &LeverBar, column: &Column) -> Group {
         let name = bar.name();
         let room = column.span[1] - column.span[0] - 8.0;
-        let head = text(column.x, 15.0, 12.0, Anchor::Middle, &fit(&name, room / BOLD, 12.0)).set("font-weight", "bold");
+        let head =
+            text(column.x, 15.0, 12.0, Anchor::Middle, &fit(&name, room / BOLD, 12.0)).set("font-weight", "bold");
         let mut g = Group::new().add(of(head, "set", &[Of::Mesh(&name)])).add(self.axis(column));
         let (last, first) = ends(bar);
         let (top, bottom) = (self.y(first.position), self.y(last.position));
@@ -200,8 +201,9 @@ impl<'a> View<'a> {
         // On one line where that has room on every point, else over each other.
         let one_line = nodes.iter().zip(&told).all(|(n, t)| both(n, t) <= room);
         let gap = if one_line { 15.0 } else { 26.0 };
-        let wished: Vec<f64> = nodes.iter().map(|n| self.y(n.position) + if one_line { 0.0 } else { -2.0 }).collect();
-        let at = spread(&wished, gap, (ABOVE - 6.0, self.height - BELOW + 6.0));
+        // Above the point, whose own height belongs to the arrow of its torque.
+        let wished: Vec<f64> = nodes.iter().map(|n| self.y(n.position) - if one_line { 9.0 } else { 16.0 }).collect();
+        let at = spread(&wished, gap, (ABOVE - 12.0, self.height - BELOW + 6.0));
         let mut g = Group::new();
         for ((n, values), y) in nodes.iter().zip(&told).zip(at) {
             let right = if self.is_held(n) { right - 12.0 } else { right };
@@ -215,9 +217,11 @@ impl<'a> View<'a> {
                 for (value, class) in values.iter().zip(["speed", "torque"]) {
                     let value_x = right - wide(value, 11.0) - 5.0;
                     let value = text(right, y + 4.0, 11.0, Anchor::End, value).set("fill", FAINT);
-                    own = own.add(
-                        Group::new().set("class", class).add(halo(value, PAPER, 3.0)).add(name(value_x, y + 4.0, room)),
-                    );
+                    own = own.add(Group::new().set("class", class).add(halo(value, PAPER, 3.0)).add(name(
+                        value_x,
+                        y + 4.0,
+                        room,
+                    )));
                 }
             } else {
                 own = own.add(name(right, y - 1.0, room));

@@ -170,7 +170,8 @@ impl Sheet<'_> {
             let width = wide(&shown, size) * factor;
             for (x, y, anchor) in spots {
                 let b = Labels::bounds(*x, *y, size, *anchor, width);
-                let inside = b[0] >= 4.0 && b[1] <= self.width - 4.0 && b[2] >= self.ceiling && b[3] <= self.bottom() + 20.0;
+                let inside =
+                    b[0] >= 4.0 && b[1] <= self.width - 4.0 && b[2] >= self.ceiling && b[3] <= self.bottom() + 20.0;
                 if !inside || !labels.free(&b, marks) {
                     continue;
                 }

@@ -1,0 +1,147 @@
+//! A frame of the studio says what the command line says, however it was made.
+
+use serde_json::{Value, json};
+use willis_web::Session;
+
+/// Every example that names no tables, with its text.
+fn examples() -> Vec<(String, String)> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
+    let files = std::fs::read_dir(folder).expect("the folder of examples").flatten().map(|e| e.path());
+    let trains = files.filter(|p| p.extension().is_some_and(|e| e == "toml"));
+    let read = |p: std::path::PathBuf| {
+        let text = std::fs::read_to_string(&p).ok()?;
+        let name = p.file_name()?.to_string_lossy().into_owned();
+        Some((name, text)).filter(|(_, text)| text.lines().any(|l| l.starts_with("members")))
+    };
+    trains.filter_map(read).collect()
+}
+
+fn sessions() -> Vec<(String, Session)> {
+    let all = examples().into_iter();
+    let sessions: Vec<_> =
+        all.filter_map(|(name, text)| Some((name.clone(), Session::new(&name, &text, "{}").ok()?))).collect();
+    assert!(sessions.len() > 25, "{}", sessions.len());
+    sessions
+}
+
+/// The operations of a file as points of the page.
+fn points(session: &Session) -> Vec<Value> {
+    let facts: Value = serde_json::from_str(&session.facts()).expect("JSON");
+    let point = |o: &Value| {
+        let given = |key: &str| o.get(key).filter(|t| t.is_object()).cloned().unwrap_or(json!({}));
+        json!({
+            "state": o.get("state").cloned().unwrap_or(Value::Null),
+            "speeds": given("speeds"), "torques": given("torques"), "powers": given("powers"),
+            "fixed": o.get("fixed").cloned().unwrap_or(json!([])),
+        })
+    };
+    facts["operations"].as_array().expect("a list").iter().map(point).collect()
+}
+
+#[test]
+fn a_drag_gives_the_answer_of_the_text() {
+    let mut compared = 0;
+    for (name, mut session) in sessions() {
+        for point in points(&session) {
+            let at = point.to_string();
+            let rests = session.show(&at, r#"{"width":600}"#).expect("a frame").analysis;
+            let moves = session.show(&at, r#"{"width":600,"scale":[0,300,100]}"#).expect("a frame").analysis;
+            assert_eq!(rests, moves, "{name}: {at}");
+            compared += usize::from(rests.contains("willis-analysis-1"));
+        }
+    }
+    assert!(compared > 30, "{compared}");
+}
+
+#[test]
+fn a_point_is_an_operation_of_the_text() {
+    for (name, mut session) in sessions() {
+        for point in points(&session) {
+            let at = point.to_string();
+            let shown = session.show(&at, r#"{"width":600}"#).expect("a frame");
+            let Some(operation) = shown.operation else { continue };
+            let text = session.text(&at).expect("a text");
+            let mut other = Session::new(&name, &text, "{}").unwrap_or_else(|w| panic!("{name}: {w}\n{text}"));
+            let asked = other.ask("analyze", &json!({ "operation": operation }).to_string(), "{}");
+            assert_eq!(asked.unwrap_or_else(|w| w), shown.analysis, "{name}: {at}");
+        }
+    }
+}
+
+#[test]
+fn every_state_and_every_pair_of_closed_elements_is_shown() {
+    for (name, mut session) in sessions() {
+        let facts: Value = serde_json::from_str(&session.facts()).expect("JSON");
+        let boxes = r#"{"width":600,"stick":240,"lever":240,"power":[500,240]}"#;
+        for state in facts["states"].as_array().expect("a list") {
+            let at = json!({ "state": state["name"] }).to_string();
+            let shown = session.show(&at, boxes).expect("a frame");
+            assert!(
+                shown.stick.is_empty() || shown.stick.starts_with("<svg") || shown.stick.contains("willis-refusal-1"),
+                "{name}"
+            );
+            assert!(shown.analysis.contains("willis-analysis-1"), "{name}: {}", shown.analysis);
+        }
+        let elements: Vec<&Value> = facts["elements"].as_array().expect("a list").iter().map(|e| &e["name"]).collect();
+        for (k, one) in elements.iter().enumerate() {
+            for other in &elements[k + 1..] {
+                let at = json!({ "engaged": [one, other] }).to_string();
+                let shown = session.show(&at, boxes).expect("a frame");
+                assert!(shown.analysis.contains("willis-"), "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn wrong_requests_are_refused_in_words() {
+    let (name, text) = examples().swap_remove(0);
+    let mut session = Session::new(&name, &text, "{}").expect("a train");
+    for (point, boxes) in [("{", "{}"), ("[]", "{}"), (r#"{"gear": 3}"#, "{}"), ("{}", r#"{"width": "wide"}"#)] {
+        let Err(refusal) = session.show(point, boxes) else { panic!("{point} {boxes}") };
+        assert!(refusal.contains("willis-refusal-1"), "{refusal}");
+    }
+    for (speed, at) in [("fast", "no number"), ("12 kg", "no speed"), ("1e999 rpm", "too large")] {
+        let point = json!({ "speeds": { "input": speed } }).to_string();
+        let shown = session.show(&point, r#"{"width":600}"#).expect("a frame");
+        assert!(shown.analysis.contains("willis-refusal-1"), "{at}: {}", shown.analysis);
+    }
+    assert!(session.ask("no such question", "{}", "{}").is_err_and(|w| w.contains("willis-refusal-1")));
+    assert!(Session::new("x", "members = [", "{}").is_err_and(|w| w.contains("willis-refusal-1")));
+}
+
+#[test]
+fn edits_keep_comments_and_give_trains() {
+    let (name, text) = examples().into_iter().find(|(name, _)| name == "zf-8hp70.toml").expect("the example");
+    let session = Session::new(&name, &text, "{}").expect("a train");
+    let comments = |text: &str| text.lines().filter(|l| l.trim_start().starts_with('#')).count();
+    let all = [
+        session.rename("c3", "third carrier"),
+        session.join("input", "s12"),
+        session.add_set("P9", 30, 70),
+        session.add_element("X", vec!["c3".into()]),
+        session.add_element("Y", vec!["c3".into(), "s12".into()]),
+        session.add_state("9", vec!["A".into(), "C".into(), "E".into()]),
+        session.remove("state", "8"),
+        session.set("P1.sun.teeth", "50"),
+    ];
+    for (k, edited) in all.into_iter().enumerate() {
+        let edited = edited.unwrap_or_else(|w| panic!("{k}: {w}"));
+        assert_ne!(edited, text, "{k}");
+        // Those that stand above an entry go with it.
+        assert!(comments(&edited) + 2 >= comments(&text), "{k}");
+        assert!(Session::new(&name, &edited, "{}").is_ok(), "{k}: {edited}");
+    }
+    for refused in [
+        session.rename("no such", "x"),
+        session.rename("c3", "input"),
+        session.join("input", "input"),
+        session.add_element("A", vec!["c3".into()]),
+        session.add_element("Z", vec![]),
+        session.add_set("P1", 30, 70),
+        session.remove("state", "99"),
+        session.set("P1.sun.teeth", "many"),
+    ] {
+        assert!(refused.is_err_and(|w| w.contains("willis-refusal-1")));
+    }
+}
