@@ -89,7 +89,7 @@ impl Words {
                 );
                 rows
             }
-            _ => vec![fit(&n.name, self.most() - wide(&times, SMALL * BOLD), SMALL * BOLD) + &times],
+            _ => vec![fit(&spoken(&n.name), self.most() - wide(&times, SMALL * BOLD), SMALL * BOLD) + &times],
         };
         if let (NodeKind::Member, Some(w)) = (n.kind, n.speed_rad_s) {
             all.push(format!("{} rpm", digits(w * 30.0 / std::f64::consts::PI)));
