@@ -175,7 +175,7 @@ impl Scene {
         }
         // A shape has its own around itself.
         if name == "g" && self.clipped(own) {
-            style.scopes = 1;
+            style.scopes = 2;
         }
         self.names.push(name.to_owned());
         self.stack.push(style);
@@ -188,7 +188,10 @@ impl Scene {
             self.clips.get(id)
         });
         if let Some(path) = path {
-            let _ = writeln!(self.body, "\\begin{{scope}}\n\\path[clip,even odd rule] {path};");
+            // TikZ takes no rule at the path itself, and what is cut off keeps its own.
+            self.body += "\\begin{scope}[even odd rule]\n";
+            let _ = writeln!(self.body, "\\path[clip] {path};");
+            self.body += "\\begin{scope}[nonzero rule]\n";
         }
         path.is_some()
     }
@@ -249,7 +252,7 @@ impl Scene {
             let clipped = self.clipped(own);
             self.painted(&style, name, options, &path);
             if clipped {
-                self.body += "\\end{scope}\n";
+                self.body += "\\end{scope}\n\\end{scope}\n";
             }
         }
     }
@@ -681,8 +684,8 @@ mod tests {
             r##"</defs><path d="M0 0 L22 22" clip-path="url(#c)" stroke="#1a1a1a" fill="none"><title>t</title></path></svg>"##
         );
         let cut = concat!(
-            "\\begin{scope}\n\\path[clip,even odd rule] (0,0) -- (7,0) -- (7,7) -- cycle;\n",
-            "\\path[draw=willis1a1a1a,line width=0.636bp] (0,0) -- (14,14);\n\\end{scope}\n"
+            "\\begin{scope}[even odd rule]\n\\path[clip] (0,0) -- (7,0) -- (7,7) -- cycle;\n\\begin{scope}[nonzero rule]\n",
+            "\\path[draw=willis1a1a1a,line width=0.636bp] (0,0) -- (14,14);\n\\end{scope}\n\\end{scope}\n"
         );
         assert!(tikz(svg).contains(cut), "{}", tikz(svg));
     }
@@ -697,8 +700,9 @@ mod tests {
         );
         let expected = concat!(
             "% a % b\n\\definecolor{willis1a1a1a}{HTML}{1A1A1A}\n\\begin{tikzpicture}[x=1bp,y=-1bp]\n",
-            "\\begin{scope}\n\\path[clip,even odd rule] (0,0) -- (7,0) -- (7,7) -- cycle;\n",
-            "\\path[draw=willis1a1a1a,line width=0.636bp,dash pattern=on 7bp off 3.5bp] (0,0) -- (7,14);\n\\end{scope}\n",
+            "\\begin{scope}[even odd rule]\n\\path[clip] (0,0) -- (7,0) -- (7,7) -- cycle;\n\\begin{scope}[nonzero rule]\n",
+            "\\path[draw=willis1a1a1a,line width=0.636bp,dash pattern=on 7bp off 3.5bp] (0,0) -- (7,14);\n",
+            "\\end{scope}\n\\end{scope}\n",
             "\\node[anchor=base east,inner sep=0,text=willis1a1a1a] at (7,7) ",
             "{\\fontsize{7bp}{8.4bp}\\selectfont\\sffamily x\\_1 \\textless{} 2};\n\\end{tikzpicture}\n"
         );

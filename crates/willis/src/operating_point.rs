@@ -27,6 +27,7 @@ mod motion;
 mod numbers;
 
 use std::borrow::Cow;
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
@@ -198,6 +199,8 @@ pub(crate) struct Physics<'t, R: Real = f64> {
     friction: MeshFriction,
     rolling: Option<Rolling>,
     bodies: Vec<body::Body>,
+    /// By mesh: its tooth loss factor, which follows from the geometry alone.
+    loss_factors: Vec<OnceLock<R>>,
     /// Amounts of relative speed below it count as this, rad/s.
     least_speed: f64,
 }
@@ -304,7 +307,8 @@ impl<'t, R: Real> Physics<'t, R> {
         let friction = train.laws.mesh_friction(oil.is_some());
         let rolling = train.laws.rolling(&friction).filter(|_| oil.is_some());
         let bodies = body::bodies(&train);
-        Self { train, numbers, oil, friction, rolling, bodies, least_speed: 0.0 }
+        let loss_factors = train.meshes.iter().map(|_| OnceLock::new()).collect();
+        Self { train, numbers, oil, friction, rolling, bodies, loss_factors, least_speed: 0.0 }
     }
 
     /// Members on which a drag acts: the statics must see them, planets too.

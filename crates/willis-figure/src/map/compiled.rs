@@ -160,10 +160,7 @@ impl CompiledProbe {
         if parts.len() != terminals + train.meshes().len() {
             return None;
         }
-        let input = match input {
-            None => None,
-            Some(m) => Some([column(Output::Speed(name(m))), column(Output::Torque(name(m)))]),
-        };
+        let input = input.map(|m| [column(Output::Speed(name(m))), column(Output::Torque(name(m)))]);
         let names = |all: Vec<MemberId>| all.into_iter().map(name).collect::<Vec<_>>();
         let given = [
             names(operation.speeds.iter().map(|s| s.0).collect()),

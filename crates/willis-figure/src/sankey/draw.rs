@@ -294,6 +294,9 @@ fn filled(path: String, fill: &str) -> Path {
 fn link(d: &Layout<'_>, k: usize, l: &SankeyLink, panel: &str) -> Group {
     let name = |k: usize| &d.flow.nodes[k].name;
     let mut words = format!("{} to {}: {}", name(l.from), name(l.to), watts(l.power_w));
+    if !l.via.is_empty() {
+        words += &format!(", via {}", l.via.join(", "));
+    }
     if l.circulating_w > 0.0 {
         words += &format!(", {} of it in a circle", watts(l.circulating_w));
     }

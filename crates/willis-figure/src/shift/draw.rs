@@ -299,11 +299,11 @@ fn efficiency(c: &Columns, y: f64, e: &ShiftEfficiency, worst: f64, way: usize) 
         return g.add(text(x, y + 4.0, 11.0, Anchor::Start, &fit(&e.words, room - 14.0, 11.0)).set("fill", FAINT));
     };
     let g = g.add(text(x + 52.0, y + 4.0, 12.0, Anchor::End, &percent(value)));
-    let length = if worst > 0.0 { (1.0 - value) / worst * (room - 72.0) } else { 0.0 };
+    let length = if worst > 0.0 { (1.0 - value) / worst * (room - 74.0) } else { 0.0 };
     if length < 0.3 {
         return g;
     }
-    let bar: Rectangle = rectangle(x + 58.0, y - 5.0, length, 10.0, &colour(Some(1 - way), 0.8));
+    let bar: Rectangle = rectangle(x + 56.0, y - 5.0, length, 10.0, &colour(Some(1 - way), 0.8));
     g.add(bar)
 }
 

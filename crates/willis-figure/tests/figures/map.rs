@@ -168,7 +168,7 @@ fn points_are_those_of_the_analysis() {
         let [x, y] = [&map.x, &map.y].map(|a| Target::parse(&a.name, &own).expect("a quantity"));
         let width = map.x.values.len();
         let mut trains = willis::study::Trains::default();
-        let inner = |k: &usize| k % width > 0 && (k + 1) % width > 0;
+        let inner = |k: &usize| (1..width - 1).contains(&(k % width));
         for k in (0..map.points.len()).filter(inner).step_by(41) {
             let p = &map.points[k];
             let state = (!map.states.is_empty()).then(|| p.best.map(|k| map.states[k].clone()));

@@ -307,6 +307,9 @@ fn misset(picture: &str) -> Vec<String> {
         } else if !(line.starts_with("\\definecolor{") || open.last().is_some() && line.ends_with(';')) {
             wrong.push(format!("no statement: `{line}`"));
         }
+        if line.contains("[clip,") {
+            wrong.push(format!("TikZ takes no option beside `clip`: `{line}`"));
+        }
         if line.contains("NaN") || line.contains("inf,") {
             wrong.push(format!("a place that is none: `{line}`"));
         }

@@ -118,3 +118,27 @@ fn no_change_is_drawn_across_a_sign() {
     }
     assert!(across >= 5, "{across}");
 }
+
+/// Bars of losses end within the rows of the table, on a screen and on paper.
+#[test]
+fn no_bar_sticks_out_of_the_table() {
+    use willis_figure::{Drawing, Figure, draw};
+    let mut bars = 0;
+    for (name, train) in crate::trains::examples() {
+        let Ok(table) = shift(&train) else { continue };
+        let figure = Figure::Shift(table);
+        for width in [None, Some(770)] {
+            let svg = draw(&figure, Drawing { width, ..Drawing::default() });
+            let document = roxmltree::Document::parse(&svg).expect("well-formed");
+            let number = |n: &roxmltree::Node<'_, '_>, key: &str| n.attribute(key).and_then(|v| v.parse::<f64>().ok());
+            let end = |n: roxmltree::Node<'_, '_>| number(&n, "x").unwrap_or(0.0) + number(&n, "width").unwrap_or(0.0);
+            let of = |wanted: fn(&roxmltree::Node<'_, '_>) -> bool| document.descendants().filter(wanted).map(end);
+            let rows = of(|n| n.attribute("fill") == Some("#f6f6f6")).fold(0.0, f64::max);
+            for bar in of(|n| n.has_tag_name("rect") && n.attribute("height") == Some("10")) {
+                assert!(bar <= rows, "{name}: a bar ends at {bar}, the rows at {rows}");
+                bars += 1;
+            }
+        }
+    }
+    assert!(bars > 100, "{bars}");
+}

@@ -297,10 +297,15 @@ impl<R: Real> Physics<'_, R> {
         }
     }
 
+    /// The tooth loss factor of a mesh: an integral over the path of contact, worked out once.
+    fn loss_factor(&self, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> R {
+        *self.loss_factors[flow.mesh.0].get_or_init(|| self.train.laws.loss_factor.eval(&Path::of(&teeth.pair)))
+    }
+
     /// Friction and rolling loss of a mesh.
     pub(super) fn tooth(&self, mesh: &Mesh, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> Tooth<R> {
         let pair = &teeth.pair;
-        let loss_factor = self.train.laws.loss_factor.eval(&Path::of(pair));
+        let loss_factor = self.loss_factor(teeth, flow);
         let loaded = self.loaded(mesh, teeth, flow);
         let none = R::from(0.0);
         let mut tooth = Tooth { friction: None, loss_factor, rolling: none };
@@ -416,7 +421,7 @@ impl Physics<'_> {
         if !loaded.works() {
             return None;
         }
-        let loss_factor = self.train.laws.loss_factor.eval(&Path::of(pair));
+        let loss_factor = self.loss_factor(teeth, flow);
         let local = self.friction.meta().tags.contains(&Tag::Local);
         let mean = self.tooth(mesh, teeth, flow).friction;
         let composite = composite(teeth);
@@ -475,7 +480,7 @@ impl Physics<'_> {
         let pair = &teeth.pair;
         let laws = &self.train.laws;
         let path = Path::of(pair);
-        let loss_factor = laws.loss_factor.eval(&path);
+        let loss_factor = self.loss_factor(teeth, flow);
         let loaded = self.loaded(mesh, teeth, flow);
         let driver = flow.driver.unwrap_or(0);
         let pitch = loaded.point(0.0);

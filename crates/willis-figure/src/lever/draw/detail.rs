@@ -11,10 +11,10 @@ use crate::{LeverBar, LeverNode};
 const NEAR: f64 = 9.0;
 /// Width and height of a detail, and the room that it takes beside the lever.
 const WIDTH: f64 = 132.0;
-const HEIGHT: f64 = 104.0;
+const HEIGHT: f64 = 110.0;
 pub const ROOM: f64 = WIDTH + 14.0;
 /// Room for its heading, and below its lowest point.
-const HEAD: f64 = 22.0;
+const HEAD: f64 = 28.0;
 const FOOT: f64 = 14.0;
 
 /// Groups of points that cover each other on a picture of that height, the highest first. What stands at one place exactly

@@ -2,7 +2,7 @@
 
 use willis::hypergraph::NodeKind;
 
-use crate::parts::style::{BOLD, digits, fit, watts, wide};
+use crate::parts::style::{BOLD, digits, fit, lines, watts, wide};
 use crate::{SankeyFlow, SankeyLink, SankeyLoss, SankeyNode};
 
 /// Size of words.
@@ -28,6 +28,19 @@ pub fn losers(kind: NodeKind) -> &'static str {
         NodeKind::Variator => "variators",
         _ => "others",
     }
+}
+
+/// The name that a set gives to its own parts, as words: `outer_planet` is an outer planet. Other names are those of the user.
+fn spoken(name: &str) -> String {
+    match name.split_once('.') {
+        Some((set, part)) => format!("{set}.{}", part.replace('_', " ")),
+        None => name.to_owned(),
+    }
+}
+
+/// A row without the blanks at which it was broken.
+fn close_up(row: String) -> String {
+    row.replace("- ", "-")
 }
 
 /// The words of a picture, and how wide they may be.
@@ -75,9 +88,13 @@ impl Words {
             (NodeKind::Output, _) => vec![bold(&format!("out of {}", n.name))],
             // The set, and below it which of its contacts.
             (NodeKind::Teeth, Some((set, contact))) if self.narrow || bold(&whole) != whole => {
-                vec![bold(set), fit(contact, self.most(), SMALL)]
+                let mut rows = vec![bold(set)];
+                rows.extend(
+                    lines(&contact.replace('_', " ").replace('-', "- "), self.most(), SMALL).into_iter().map(close_up),
+                );
+                rows
             }
-            _ => vec![fit(&n.name, self.most() - wide(&times, SMALL * BOLD), SMALL * BOLD) + &times],
+            _ => vec![fit(&spoken(&n.name), self.most() - wide(&times, SMALL * BOLD), SMALL * BOLD) + &times],
         };
         if self.brief {
             return all;
@@ -123,7 +140,9 @@ impl Words {
             return vec![all.join(" · ")];
         }
         if !l.via.is_empty() {
-            all.push(fit(&format!("via {}", l.via.join(", ")), if self.narrow { 76.0 } else { 120.0 }, SMALL));
+            let via = format!("via {}", l.via.iter().map(|n| spoken(n)).collect::<Vec<_>>().join(", "));
+            // What a long way passes is told by its tooltip.
+            all.extend(lines(&via, if self.narrow { 76.0 } else { 120.0 }, SMALL).into_iter().take(3));
         }
         all
     }
