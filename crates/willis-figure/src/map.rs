@@ -3,6 +3,7 @@
 mod compiled;
 pub mod draw;
 mod probe;
+mod told;
 
 use serde::{Deserialize, Serialize};
 use willis::analysis::{self, Selection};

@@ -150,7 +150,7 @@ impl<'a> View<'a> {
         let forces = values.fold(FORCES / 2.0, f64::max) * 2.0;
         // No higher on narrow paper than it is wide.
         let height = (BLOCK * most as f64).max((0.23 * widest).min(360.0));
-        let details = |b: &LeverBar| detail::groups(b, height).len();
+        let details = |b: &LeverBar| near(b, height).len();
         let height = lever.bars.iter().map(|b| detail::height(details(b))).fold(height, f64::max);
         let detailed = lever.bars.iter().filter(|b| details(b) > 0).count() as f64 * detail::ROOM;
         let fixed = lever.bars.len() as f64 * (NAMES + 2.0 * PAD + GAP) + columns as f64 * forces + detailed;
@@ -162,7 +162,7 @@ impl<'a> View<'a> {
     }
 
     fn width(&self, bar: &LeverBar) -> f64 {
-        let detail = if detail::groups(bar, self.height).is_empty() { 0.0 } else { detail::ROOM };
+        let detail = if near(bar, self.height).is_empty() { 0.0 } else { detail::ROOM };
         self.plain_width(bar) + detail
     }
 
@@ -417,10 +417,29 @@ fn panel(v: &View<'_>, bar: &LeverBar) -> Group {
             g = g.add(forces(v, bar, set, centre, bar.sets.len() > 1));
         }
     }
-    match detail::groups(bar, v.height).is_empty() {
-        true => g,
-        false => g.add(detail::draw(v, bar, v.plain_width(bar) + 8.0)),
+    let near = near(bar, v.height);
+    if near.is_empty() {
+        return g;
     }
+    let detailed = detail::Lever {
+        name: &name,
+        cases: &v.lever.cases[..v.cases],
+        height: v.height,
+        offset: &|n, case| Some(v.x(bar, v.speed(n, case)?) - rest),
+        rest,
+        y: &|position| v.y(position),
+        case_colour: &|case| case_colour(v, case),
+        own_colour,
+        dashed,
+        mark,
+        spread,
+    };
+    g.add(detail::draw(&detailed, &near, v.plain_width(bar) + 8.0))
+}
+
+/// Groups of points of a lever that would cover each other.
+fn near(bar: &LeverBar, height: f64) -> Vec<Vec<&LeverNode>> {
+    detail::groups(shown(bar).filter(|n| !planet(n)), height)
 }
 
 /// The scale of speeds below a lever.

@@ -10,7 +10,7 @@ use willis::study::{PointAnswer, PointVerdict};
 use willis::train::{FRAME, Load, MemberId, Operation, Train};
 use willis::unstable;
 
-use super::probe::{Told, Way, ways};
+use super::told::{Told, Way, ways};
 
 /// Powers below this part of the largest may be round-off.
 const ROUND_OFF: f64 = 1e-9;

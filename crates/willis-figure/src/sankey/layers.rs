@@ -1,7 +1,14 @@
 //! Layers by the longest path, rows by barycentres and exchanges, offsets by stacking.
 
-use super::seats::Seat;
 use super::{SankeyLink, SankeyNode};
+
+/// Where a node stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Seat {
+    pub layer: usize,
+    /// Among the nodes of its column, from the top.
+    pub rank: usize,
+}
 
 /// Powers below this part of the largest do not decide what runs forward.
 const ROUND_OFF: f64 = 1e-9;

@@ -6,19 +6,11 @@
 
 use std::collections::BTreeMap;
 
-use super::layers::{self, Columns};
+use super::layers::{self, Columns, Seat};
 use super::{SankeyFlow, SankeyLink, SankeyNode};
 
 /// How much power that goes round counts in the order: it has to turn back somewhere, wherever that is.
 const ROUND: f64 = 0.25;
-
-/// Where a node stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Seat {
-    pub layer: usize,
-    /// Among the nodes of its column, from the top.
-    pub rank: usize,
-}
 
 /// The places of all nodes.
 #[derive(Clone, Debug, PartialEq)]

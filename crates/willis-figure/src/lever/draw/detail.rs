@@ -1,11 +1,10 @@
 //! Points of a lever that stand so close together that they cover each other, enlarged beside it.
 
-use svg::node::element::{Circle, Group};
+use svg::node::element::{Circle, Group, Line};
 
-use super::{View, case_colour, dashed, mark, own_colour, planet, shown};
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{Anchor, FAINT, LINE, PAPER, digits, fit, halo, line, number, rectangle, text};
-use crate::{LeverBar, LeverNode};
+use crate::{LeverCase, LeverNode, LeverRole};
 
 /// Points nearer than this cover each other.
 const NEAR: f64 = 9.0;
@@ -19,9 +18,9 @@ const FOOT: f64 = 14.0;
 
 /// Groups of points that cover each other on a picture of that height, the highest first. What stands at one place exactly
 /// is one point, however much it is enlarged.
-pub fn groups(bar: &LeverBar, height: f64) -> Vec<Vec<&LeverNode>> {
+pub fn groups<'n>(nodes: impl Iterator<Item = &'n LeverNode>, height: f64) -> Vec<Vec<&'n LeverNode>> {
     let mut all: Vec<Vec<&LeverNode>> = vec![];
-    for n in shown(bar).filter(|n| !planet(n)) {
+    for n in nodes {
         match all.last_mut().filter(|g| (g[g.len() - 1].position - n.position).abs() * height < NEAR) {
             Some(group) => group.push(n),
             None => all.push(vec![n]),
@@ -47,25 +46,47 @@ fn factor(group: &[&LeverNode], height: f64) -> f64 {
     [5.0, 2.0, 1.0].into_iter().map(|s| s * size).find(|f| *f <= most * (1.0 + 1e-12)).unwrap_or(size)
 }
 
+/// Numbers as near as can be to the wished ones, at least so far apart, within limits.
+type Spread = fn(&[f64], f64, (f64, f64)) -> Vec<f64>;
+
+/// What a detail takes over from its lever.
+pub struct Lever<'a> {
+    /// Its sets.
+    pub name: &'a str,
+    /// The cases drawn.
+    pub cases: &'a [LeverCase],
+    /// Height of the picture.
+    pub height: f64,
+    /// Where the speed of a point in a case lies right of the rest line, and where that is.
+    pub offset: &'a dyn Fn(&LeverNode, usize) -> Option<f64>,
+    pub rest: f64,
+    /// The height of a position.
+    pub y: &'a dyn Fn(f64) -> f64,
+    pub case_colour: &'a dyn Fn(usize) -> String,
+    pub own_colour: fn(&LeverNode) -> String,
+    pub dashed: fn(Line, usize) -> Line,
+    pub mark: fn(f64, f64, &[LeverRole]) -> Group,
+    pub spread: Spread,
+}
+
 /// The details of a lever, at the right end of its panel: heights and speeds are enlarged alike, so that lines keep their slope.
-pub fn draw(v: &View<'_>, bar: &LeverBar, left: f64) -> Group {
-    let all = groups(bar, v.height);
-    let middle = |g: &Vec<&LeverNode>| v.y((g[0].position + g[g.len() - 1].position) / 2.0);
+pub fn draw(v: &Lever<'_>, all: &[Vec<&LeverNode>], left: f64) -> Group {
+    let middle = |g: &Vec<&LeverNode>| (v.y)((g[0].position + g[g.len() - 1].position) / 2.0);
     let wished: Vec<f64> = all.iter().map(middle).collect();
-    let limits = (v.y(1.0) + HEIGHT / 2.0 - 30.0, v.y(0.0) - HEIGHT / 2.0 + 30.0);
-    let at = super::spread(&wished, HEIGHT + 12.0, limits);
+    let limits = ((v.y)(1.0) + HEIGHT / 2.0 - 30.0, (v.y)(0.0) - HEIGHT / 2.0 + 30.0);
+    let at = (v.spread)(&wished, HEIGHT + 12.0, limits);
     let mut drawing = Group::new();
     for ((group, y), from) in all.iter().zip(at).zip(wished) {
-        drawing = drawing.add(one(v, bar, group, [left, y - HEIGHT / 2.0], from));
+        drawing = drawing.add(one(v, group, [left, y - HEIGHT / 2.0], from));
     }
     drawing
 }
 
-fn one(v: &View<'_>, bar: &LeverBar, group: &[&LeverNode], [left, top]: [f64; 2], from: f64) -> Group {
-    let name = bar.sets.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(" + ");
+fn one(v: &Lever<'_>, group: &[&LeverNode], [left, top]: [f64; 2], from: f64) -> Group {
+    let name = v.name;
     let times = factor(group, v.height);
     let frame = rectangle(left, top, WIDTH, HEIGHT, PAPER).set("stroke", LINE).set("stroke-width", 0.8);
-    let rest = v.x(bar, 0.0);
+    let rest = v.rest;
     let circle = Circle::new().set("cx", number(rest)).set("cy", number(from)).set("r", 10.5);
     let lead = line((left - 8.0, from), (left, top + HEIGHT / 2.0), LINE, 0.8);
     let mut g = Group::new()
@@ -80,10 +101,10 @@ fn one(v: &View<'_>, bar: &LeverBar, group: &[&LeverNode], [left, top]: [f64; 2]
     let bottom = top + HEIGHT - FOOT;
     let height_of = |n: &LeverNode| bottom - (n.position - low) * v.height * times;
     let offsets = |n: &LeverNode| -> Vec<(usize, f64)> {
-        (0..v.cases).filter_map(|k| Some((k, (v.x(bar, v.speed(n, k)?) - rest) * times))).collect()
+        (0..v.cases.len()).filter_map(|k| Some((k, (v.offset)(n, k)? * times))).collect()
     };
     let far = |o: f64| !(-10.0..=b - a - 48.0).contains(&o);
-    let with_rest = v.cases > 1 || group.iter().all(|n| offsets(n).iter().all(|(_, o)| !far(*o)));
+    let with_rest = v.cases.len() > 1 || group.iter().all(|n| offsets(n).iter().all(|(_, o)| !far(*o)));
     let centre = match with_rest {
         true => 0.0,
         false => {
@@ -97,7 +118,7 @@ fn one(v: &View<'_>, bar: &LeverBar, group: &[&LeverNode], [left, top]: [f64; 2]
         let ends = [group[0], group[group.len() - 1]].map(height_of);
         g = g.add(guide(line((place(0.0), ends[0]), (place(0.0), ends[1]), LINE, 3.5)));
     }
-    for case in 0..v.cases {
+    for case in 0..v.cases.len() {
         let points: Vec<(f64, f64)> = group
             .iter()
             .filter_map(|n| {
@@ -107,8 +128,8 @@ fn one(v: &View<'_>, bar: &LeverBar, group: &[&LeverNode], [left, top]: [f64; 2]
             .filter(|p| inside(p.0))
             .collect();
         if let (Some(p), Some(q), true) = (points.first(), points.last(), points.len() == group.len()) {
-            let about = [Of::Mesh(&name), Of::State(&v.lever.cases[case].name)];
-            let l = dashed(line(*p, *q, &case_colour(v, case), 2.2), case);
+            let about = [Of::Mesh(name), Of::State(&v.cases[case].name)];
+            let l = (v.dashed)(line(*p, *q, &(v.case_colour)(case), 2.2), case);
             g = g.add(of(l, &format!("detail-lever-{}", group[0].member), &about));
         }
     }
@@ -118,15 +139,15 @@ fn one(v: &View<'_>, bar: &LeverBar, group: &[&LeverNode], [left, top]: [f64; 2]
         for (case, offset) in offsets(n) {
             let x = place(offset);
             if inside(x) {
-                let ink = if v.cases > 1 { case_colour(v, case) } else { own_colour(n) };
+                let ink = if v.cases.len() > 1 { (v.case_colour)(case) } else { (v.own_colour)(n) };
                 let dot = Circle::new().set("cx", number(x)).set("cy", number(y)).set("r", 3.4).set("fill", ink);
-                let about = [Of::Member(&n.member), Of::Mesh(&name), Of::State(&v.lever.cases[case].name)];
+                let about = [Of::Member(&n.member), Of::Mesh(name), Of::State(&v.cases[case].name)];
                 g = g.add(of(dot, "detail-speed", &about));
-                end = if v.cases > 1 { end } else { end.max(x) };
+                end = if v.cases.len() > 1 { end } else { end.max(x) };
             }
         }
         if with_rest {
-            g = g.add(of(mark(place(0.0), y, &n.roles), "detail-point", &[Of::Member(&n.member), Of::Mesh(&name)]));
+            g = g.add(of((v.mark)(place(0.0), y, &n.roles), "detail-point", &[Of::Member(&n.member), Of::Mesh(name)]));
         }
         let words = fit(&n.member, b - end - 9.0, 11.0);
         g = g.add(halo(text(end + 9.0, y + 3.5, 11.0, Anchor::Start, &words), PAPER, 3.0));
