@@ -1,4 +1,5 @@
-// The numbers are those of the command line, bit for bit.
+// The numbers are those of the command line: bit for bit, or to 1e-12 where laws of loss take powers and exponentials, which a
+// browser's build has from another library than the program.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { browser, command_line, dots, open, shelf, shown, state, studio } from "./studio.mjs";
@@ -10,9 +11,13 @@ before(async () => {
 });
 after(() => at?.close());
 
+/** Whether the answer that is compared has losses by laws. */
+let lawful = false;
+
 /** Where two answers differ first. */
 function difference(a, b, place = "") {
   if (Object.is(a, b)) return null;
+  if (lawful && typeof a === "number" && typeof b === "number" && Math.abs(a - b) <= 1e-12 * Math.max(Math.abs(a), Math.abs(b), 1)) return null;
   if (a && b && typeof a === "object" && typeof b === "object") {
     for (const key of new Set([...Object.keys(a), ...Object.keys(b)])) {
       const found = difference(a[key], b[key], `${place}.${key}`);
@@ -27,12 +32,13 @@ async function compare(what) {
   const held = await state(page);
   if (!held.analysis) return `${what}: ${held.refused?.diagnostics[0]?.message ?? held.broken?.diagnostics[0]?.message ?? "no answer"}`;
   const there = await command_line(page);
+  lawful = there.operations.some((o) => o.solutions.some((s) => s.sources?.length));
   const wrong = difference(held.analysis, there);
   if (wrong) return `${what}: ${wrong}`;
   const speeds = there.operations[0]?.speeds_rad_s;
   if (!speeds) return null;
   for (const [member, value] of await dots(page)) {
-    if (member in speeds && speeds[member] !== null && value !== speeds[member]) return `${what}: dot of ${member}: ${value}, command line ${speeds[member]}`;
+    if (member in speeds && speeds[member] !== null && difference(value, speeds[member])) return `${what}: dot of ${member}: ${value}, command line ${speeds[member]}`;
   }
   return null;
 }

@@ -26,6 +26,8 @@ pub struct Point {
     pub powers: BTreeMap<String, String>,
     /// Members that are held.
     pub fixed: Vec<String>,
+    /// What else an operation of the file says, such as the power of a store.
+    pub more: BTreeMap<String, Value>,
 }
 
 /// The entries of a train file that a point stands for, and what they are called.
@@ -62,6 +64,18 @@ fn table(all: &BTreeMap<String, String>) -> String {
     all.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
+/// A value of JSON as one of TOML.
+fn inline(value: &Value) -> String {
+    match value {
+        Value::Array(all) => format!("[{}]", all.iter().map(inline).collect::<Vec<_>>().join(", ")),
+        Value::Object(all) => {
+            let one = |(key, value): (&String, &Value)| format!("{} = {}", quoted(key), inline(value));
+            format!("{{ {} }}", all.iter().map(one).collect::<Vec<_>>().join(", "))
+        }
+        other => other.to_string(),
+    }
+}
+
 impl Point {
     /// The entries that it stands for in the file of a train.
     pub fn entries(&self, model: &Model) -> Entries {
@@ -90,6 +104,9 @@ impl Point {
                     text += &format!("{key} = {{ {} }}\n", table(all));
                 }
             }
+            for (key, value) in &self.more {
+                text += &format!("{key} = {}\n", inline(value));
+            }
             operation = Some(name);
         }
         Entries { text, operation, state }
@@ -98,7 +115,7 @@ impl Point {
     /// The train with an operation that has these numbers, and what it is called: the same as from [`Point::entries`], without
     /// reading a text. None where the point is more than numbers, or something about it is wrong.
     pub fn moved(&self, train: &Train) -> Option<(Train, String)> {
-        if self.engaged.is_some() || !self.fixed.is_empty() || self.speeds.is_empty() {
+        if self.engaged.is_some() || !self.fixed.is_empty() || !self.more.is_empty() || self.speeds.is_empty() {
             return None;
         }
         let state = self.state.as_deref().map(|name| train.find_state(name)).transpose().ok()?;

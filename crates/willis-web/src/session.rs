@@ -29,10 +29,18 @@ pub struct Session {
     lever: Result<LeverLayout, Diagnostics>,
     /// The last point with the train file that it makes.
     shown: Option<(Point, Given, Entries)>,
-    /// The schematic, for which state and closed elements it is, and the size in which the page has it.
-    scheme: Option<((Option<String>, Option<Vec<String>>), Stick, [f64; 2])>,
+    /// The schematic that the page has.
+    scheme: Option<Scheme>,
     /// Where the flow of power is drawn, kept while something is dragged.
     paper: Option<SankeyPaper>,
+}
+
+/// A schematic that the page has: it depends on what is closed, and not on speeds and torques.
+struct Scheme {
+    state: Option<String>,
+    engaged: Option<Vec<String>>,
+    stick: Stick,
+    size: [f64; 2],
 }
 
 /// Sizes of the panels, px, and scales that are kept.
@@ -265,11 +273,10 @@ impl Session {
 
     /// Schematic and levers, and where their columns are.
     fn columns(&mut self, train: &Train, engaged: Option<Vec<String>>, boxes: &Boxes, shown: &mut Shown) {
-        let key = (shown.state.clone(), engaged);
-        let kept = self.scheme.take().filter(|s| s.0 == key);
+        let kept = self.scheme.take().filter(|s| s.state == shown.state && s.engaged == engaged);
         let unfit = |wrong: &Diagnostics| self.refused(wrong.clone());
         let stick = match (kept, &self.stick) {
-            (Some((_, stick, drawn)), _) => Ok((stick, drawn)),
+            (Some(kept), _) => Ok((kept.stick, kept.size)),
             (None, Ok(layout)) => {
                 layout.show(train, shown.state.as_deref()).map(|s| (s, [0.0; 2])).map_err(|w| unfit(&w))
             }
@@ -313,7 +320,7 @@ impl Session {
         if boxes.lever > 0.0 {
             shown.lever = lever_panel(&lever, &columns, boxes.lever, Some(scale));
         }
-        self.scheme = Some((key, stick, size));
+        self.scheme = Some(Scheme { state: shown.state.clone(), engaged, stick, size });
     }
 
     /// The flow of power of a point. Its scale and columns are kept while something is dragged.

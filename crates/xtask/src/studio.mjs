@@ -1,5 +1,6 @@
 // Chores of the studio's build: `pack FOLDER` packs the WebAssembly; `answers FOLDER WILLIS` asks for the analysis of every
-// example, there and of the program: the two must agree to the last byte.
+// example, there and of the program: the two must agree to the last byte, or, where laws of loss take powers and exponentials,
+// which every platform has from another library, to 1e-12.
 import { execFileSync } from "node:child_process";
 import { readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
@@ -22,16 +23,24 @@ if (chore === "pack") {
   const text = (name) => readFileSync(join("examples", name), "utf8");
   const tables = Object.fromEntries(names.filter((n) => n.endsWith(".csv")).map((n) => [n, text(n)]));
   const trains = names.filter((n) => n.endsWith(".toml"));
+  const NUMBER = /-?\d+(?:\.\d+)?(?:e[-+]?\d+)?/gi;
+  const near = (a, b) => Math.abs(a - b) <= 1e-12 * Math.max(Math.abs(a), Math.abs(b), 1);
+  const alike = (here, there) => {
+    const [ours, theirs] = [here, there].map((t) => [...t.matchAll(NUMBER)].map((m) => Number(m[0])));
+    return here.replace(NUMBER, "#") === there.replace(NUMBER, "#") && ours.every((x, k) => near(x, theirs[k]));
+  };
+  let same = 0;
   for (const name of trains) {
     const file = `examples/${name}`;
     const here = execFileSync(willis, ["analyze", file, "--format", "json"], { encoding: "utf8", maxBuffer: 1 << 28 });
     const session = new Session(file, text(name), JSON.stringify(tables));
     const there = session.ask("analyze", "{}", "{}");
     session.free();
-    if (here !== there) {
+    same += here === there;
+    if (here !== there && !alike(here, there)) {
       console.error(`${file}: WebAssembly gives another answer`);
       process.exit(1);
     }
   }
-  console.log(`${trains.length} examples have the same answer as WebAssembly`);
+  console.log(`${trains.length} examples: ${same} have the same bytes as WebAssembly, the others the same to 1e-12`);
 }

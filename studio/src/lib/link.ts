@@ -53,6 +53,7 @@ export async function opened(hash: string): Promise<{ doc: Doc; point: Point; vi
       torques: p.torques ?? {},
       powers: p.powers ?? {},
       fixed: p.fixed ?? [],
+      more: p.more ?? {},
     };
     const own = version();
     return { doc: { name: doc.name, text: doc.text, files: doc.files ?? {} }, point, view: held.v ?? {}, other: held.w === own ? null : held.w };

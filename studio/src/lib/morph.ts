@@ -9,6 +9,8 @@ const SVG = "http://www.w3.org/2000/svg";
 export function parsed(text: string, prefix: string): SVGSVGElement | null {
   const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
   if (root.namespaceURI !== SVG || root.localName !== "svg") return null;
+  // There are handles in it.
+  root.setAttribute("role", "group");
   for (const one of root.querySelectorAll("[id]")) one.id = `${prefix}-${one.id}`;
   // References to marks that now have other ids.
   for (const one of root.querySelectorAll("[fill^='url(#'],[stroke^='url(#'],[clip-path^='url(#'],[mask^='url(#'],[href^='#']")) {
@@ -85,7 +87,13 @@ export function show(box: HTMLElement, text: string, prefix: string): SVGSVGElem
   }
   const made = document.importNode(from, true);
   made.classList.add("fig");
-  made.setAttribute("role", "group");
   box.append(made);
   return made;
+}
+
+/** Schematic and levers stand under each other and are moved together. */
+export function pan(box: HTMLElement): void {
+  for (const other of document.querySelectorAll<HTMLElement>("#train > .body, #levers > .body")) {
+    if (other !== box && other.scrollLeft !== box.scrollLeft) other.scrollLeft = box.scrollLeft;
+  }
 }

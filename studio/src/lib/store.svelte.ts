@@ -3,7 +3,7 @@
  * be taken back; a drag is one step.
  */
 
-import { RPM, plain, rounded } from "./numbers";
+import { RPM, figures, plain, rounded } from "./numbers";
 import { Session, refusal, refused } from "./willis";
 import type { Analysis, Boxes, Doc, Facts, Frame, OperationReport, Point, Refusal, Solution } from "./types";
 
@@ -30,7 +30,11 @@ export interface View {
 }
 
 const MOST_STEPS = 200;
-export const NOTHING: Point = { state: null, engaged: null, speeds: {}, torques: {}, powers: {}, fixed: [] };
+/** What a point says of an operation in fields of its own. */
+const OWN_KEYS = ["name", "state", "speeds", "torques", "powers", "fixed"];
+/** As the command line. */
+const MOST_TEXT = 4 * 2 ** 20;
+export const NOTHING: Point = { state: null, engaged: null, speeds: {}, torques: {}, powers: {}, fixed: [], more: {} };
 
 class Store {
   doc = $state.raw<Doc>({ name: "", text: "", files: {} });
@@ -111,6 +115,12 @@ class Store {
 
   #read(doc: Doc): boolean {
     this.doc = doc;
+    if (doc.text.length > MOST_TEXT) {
+      const message = `the file has ${figures(doc.text.length / 2 ** 20, 3)} MiB, more than 4 MiB`;
+      const diagnostic = { code: "", severity: "error" as const, place: "", message, hints: ["a train file is a few kB: leave out what is no train"] };
+      this.broken = { format: "willis-refusal-1", file: doc.name, diagnostics: [diagnostic] };
+      return false;
+    }
     try {
       const session = new Session(doc.name, doc.text, JSON.stringify(doc.files));
       this.#session?.free();
@@ -141,6 +151,7 @@ class Store {
       torques: table(operation.torques),
       powers: table(operation.powers),
       fixed: operation.fixed ?? [],
+      more: Object.fromEntries(Object.entries(operation).filter(([key, value]) => !OWN_KEYS.includes(key) && value !== null)),
     };
   }
 
@@ -199,6 +210,13 @@ class Store {
     this.refresh();
   }
 
+  /** The file was changed on disk: a step like any other. */
+  reread(doc: Doc): void {
+    this.#remember(this.#step("changed on disk"));
+    if (this.#read({ name: doc.name, text: doc.text, files: doc.files })) this.#fit();
+    this.refresh();
+  }
+
   /** An edit of the file by the library; it throws a refusal where the train cannot be so. */
   edit(what: string, change: (session: Session) => string): Refusal | null {
     const session = this.#session;
@@ -226,7 +244,7 @@ class Store {
     const state = facts.states.some((s) => s.name === p.state) ? p.state : null;
     const engaged = p.engaged?.filter((e) => facts.elements.some((x) => x.name === e)) ?? null;
     const fixed = p.fixed.filter((m) => facts.members.includes(m));
-    this.point = { state, engaged, speeds: known(p.speeds), torques: known(p.torques), powers: known(p.powers), fixed };
+    this.point = { state, engaged, speeds: known(p.speeds), torques: known(p.torques), powers: known(p.powers), fixed, more: p.more };
     if (Object.keys(this.point.speeds).length === 0 && !engaged) {
       this.point = this.inState(state ?? facts.states[0]?.name ?? null, facts, this.point);
     }

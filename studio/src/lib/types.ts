@@ -15,6 +15,8 @@ export interface Point {
   torques: Record<string, string>;
   powers: Record<string, string>;
   fixed: string[];
+  /** What else an operation of the file says, such as the power of a store. */
+  more: Record<string, unknown>;
 }
 
 export interface Boxes {

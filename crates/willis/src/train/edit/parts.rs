@@ -192,7 +192,7 @@ impl Document {
             return Ok(());
         }
         let message = format!("there is no member `{}`", clip(member));
-        Err(Diagnostic::new(Code::UnknownName, "members", message).suggest(member, all.into_iter()).into())
+        Err(Diagnostic::new(Code::UnknownName, "members", message).suggest(member, all).into())
     }
 
     fn unused(&self, list: &str, name: &str) -> Result<(), Diagnostics> {
