@@ -25,7 +25,7 @@ const WIDEST_ROUND: f64 = 58.0;
 /// Least room beside a node and between columns, and the most that a ribbon takes to bend: usual, and tight.
 const SPACING: [[f64; 3]; 2] = [[16.0, 50.0, 120.0], [6.0, 22.0, 70.0]];
 /// The same in a panel, where words of neighbours may stand over each other's columns.
-const BRIEF: [f64; 3] = [2.0, 7.0, 28.0];
+const BRIEF: [[f64; 3]; 2] = [[2.0, 7.0, 28.0], [0.0, 3.0, 12.0]];
 /// Half the width of the words that a column of a panel has room for; and the most that a panel adds to a gap.
 const BRIEF_WORDS: f64 = 13.0;
 const BRIEF_GAP: f64 = 90.0;
@@ -93,7 +93,10 @@ impl Frame {
 
     fn brief(flows: &[&SankeyFlow], scale: f64, width: f64) -> Self {
         let widened = flows.iter().map(|f| Layout::widening(f, scale)).fold(WIDER[WIDER.len() - 1], f64::min);
-        let mut rooms = Self::rooms(flows, scale, widened, BRIEF, true);
+        let [mut rooms, tight] = BRIEF.map(|spacing| Self::rooms(flows, scale, widened, spacing, true));
+        if spread(&rooms).1 > width {
+            rooms = tight;
+        }
         let narrow = spread(&rooms).1;
         let gaps = rooms.len().saturating_sub(1).max(1) as f64;
         let more = ((width - narrow) / gaps).clamp(0.0, BRIEF_GAP);
