@@ -8,7 +8,7 @@ import { chromium } from "playwright-core";
 const [page_file, folder] = process.argv.slice(2);
 mkdirSync(folder, { recursive: true });
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
-const page = await browser.newPage({ viewport: { width: 1180, height: 664 } });
+const page = await browser.newPage({ viewport: { width: 1366, height: 768 } });
 await page.goto(pathToFileURL(resolve(page_file)).href);
 await page.waitForFunction(() => window.__ready === true);
 await page.evaluate(() => {

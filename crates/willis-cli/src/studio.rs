@@ -392,7 +392,7 @@ impl Server {
         if !own.iter().any(|own| own == host) {
             return Err(Reply::told(403, "this host is not served"));
         }
-        if request.header("origin").is_some_and(|origin| origin.strip_prefix("http://") != Some(host)) {
+        if request.header("origin").is_some_and(|origin| origin != format!("http://{host}")) {
             return Err(Reply::told(403, "other pages are not served"));
         }
         match self.place(request) {
