@@ -24,11 +24,11 @@ const FRAME: &str = "frame";
 ///     terminals = ["s", "c"]
 /// "#)?;
 /// document.add_set("P1", 30, 70).unwrap();
-/// document.join("s", "P1.sun").unwrap();
-/// document.join("c", "P1.carrier").unwrap();
-/// document.join("frame", "P1.ring").unwrap();
+/// document.join("s", "sun P1").unwrap();
+/// document.join("c", "carrier P1").unwrap();
+/// document.join("frame", "ring P1").unwrap();
 /// let text = document.text();
-/// assert!(text.contains("# in this order") && !text.contains("P1.sun"));
+/// assert!(text.contains("# in this order") && !text.contains("sun P1"));
 /// assert!(Train::from_toml(&text).is_ok(), "{text}");
 /// # Ok::<(), String>(())
 /// ```
@@ -75,7 +75,7 @@ impl Document {
     }
 
     /// Takes the entry of a list away, such as a `set`, `shift_element`, `state` or `operation`. States lose an element that
-    /// is no more, and members that belonged to nothing but a set go with it.
+    /// is no more, operations in a state go with it, and members that belonged to nothing but a set go with that.
     ///
     /// # Errors
     /// There is no such entry.
@@ -104,19 +104,24 @@ impl Document {
                 }
             }
         }
+        if list == "state"
+            && let Some(Item::ArrayOfTables(operations)) = self.0.get_mut("operation")
+        {
+            operations.retain(|o| o.get("state").and_then(Item::as_str) != Some(name));
+        }
         if list == "set" {
             self.drop_unused();
         }
         Ok(())
     }
 
-    /// Adds a simple set whose members are new: `NAME.sun`, `NAME.ring` and `NAME.carrier`.
+    /// Adds a simple set whose members are new: `sun NAME`, `ring NAME` and `carrier NAME`.
     ///
     /// # Errors
     /// There is something of that name.
     pub fn add_set(&mut self, name: &str, sun: u32, ring: u32) -> Result<(), Diagnostics> {
         self.unused("set", name)?;
-        let members = ["sun", "ring", "carrier"].map(|part| format!("{name}.{part}"));
+        let members = ["sun", "ring", "carrier"].map(|part| format!("{part} {name}"));
         for member in &members {
             if self.known(member).is_ok() {
                 return Err(wrong(member, format!("there is a member `{}` already", clip(member))));
