@@ -55,22 +55,24 @@ fn a_set_stands_above_its_lever() {
         let drawn = stick_panel(&stick, &columns, 300.0);
         let svg = roxmltree::Document::parse(&drawn).expect("SVG");
         for (bar, column) in lever.bars.iter().zip(columns.all()) {
-            let set = &bar.sets[0].name;
-            // Pins of planets are circles at the middle of their set.
-            let own = |n: &roxmltree::Node<'_, '_>| n.attribute("data-mesh") == Some(set) && n.tag_name().name() == "g";
-            let lines = svg.descendants().filter(own).flat_map(|g| g.descendants()).filter(|n| n.has_tag_name("line"));
-            let xs: Vec<f64> = lines
-                .flat_map(|l| ["x1", "x2"].map(|k| l.attribute(k).and_then(|x| x.parse::<f64>().ok())))
-                .flatten()
-                .collect();
-            if let (Some(low), Some(high)) = (xs.iter().copied().reduce(f64::min), xs.iter().copied().reduce(f64::max))
-            {
-                assert!(
-                    (0.5 * (low + high) - column.x).abs() <= 1.5,
-                    "{name}, {set}: {low} to {high}, lever at {}",
-                    column.x
-                );
-            }
+            // The middle of a set: its gears lie evenly on both sides of it.
+            let middle = |set: &str| {
+                let own = |n: &roxmltree::Node<'_, '_>| n.attribute("data-mesh") == Some(set) && n.has_tag_name("g");
+                let lines =
+                    svg.descendants().filter(own).flat_map(|g| g.descendants()).filter(|n| n.has_tag_name("line"));
+                let ends = lines.flat_map(|l| ["x1", "x2"].map(|k| l.attribute(k).and_then(|x| x.parse::<f64>().ok())));
+                let xs: Vec<f64> = ends.flatten().collect();
+                Some(0.5 * (xs.iter().copied().reduce(f64::min)? + xs.iter().copied().reduce(f64::max)?))
+            };
+            // Of several sets on one lever it stands under the first.
+            let middles: Vec<f64> = bar.sets.iter().filter_map(|s| middle(&s.name)).collect();
+            let under = |x: &f64| (x - column.x).abs() <= 1.5;
+            assert!(
+                middles.is_empty() || middles.iter().any(under),
+                "{name}, {}: {middles:?}, lever at {}",
+                bar.name(),
+                column.x
+            );
         }
     }
 }
