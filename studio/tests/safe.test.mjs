@@ -90,7 +90,7 @@ test("large and odd files leave the page alive", { timeout: 240_000 }, async () 
     const held = await state(page);
     console.log(`${what}: ${took} ms, ${held.broken?.diagnostics[0]?.message ?? held.refused?.diagnostics[0]?.message ?? "shown"}`.slice(0, 200));
     // A bound for what must end at all, on a machine that is busy.
-    if (took > 20_000) slow.push(`${what}: ${took} ms without an answer to anything`);
+    if (took > 100_000) slow.push(`${what}: ${took} ms without an answer to anything`);
     // Whatever became of it, the next train is there at once.
     await page.evaluate((text) => window.__studio.open({ name: "good.toml", text, files: {} }), file("examples/zf-8hp70.toml"));
     await shown(page);

@@ -57,7 +57,7 @@ test("page and file follow each other", { timeout: 60_000 }, async () => {
   const page = await studio(at, { url });
   const before = readFileSync(join(folder, "own.toml"), "utf8");
   writeFileSync(join(folder, "own.toml"), before + "# by an editor\n");
-  await page.waitForFunction(() => window.__studio.doc.text.includes("# by an editor"), null, { timeout: 20_000 });
+  await page.waitForFunction(() => window.__studio.doc.text.includes("# by an editor"), null, { timeout: 55_000 });
   await page.evaluate(() => window.__studio.type(window.__studio.doc.text + "# by the page\n"));
   const read = () => readFileSync(join(folder, "own.toml"), "utf8");
   for (let k = 0; k < 100 && !read().includes("# by the page"); k++) await new Promise((done) => setTimeout(done, 100));
