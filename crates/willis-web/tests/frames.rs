@@ -165,3 +165,57 @@ fn edits_keep_comments_and_give_trains() {
         assert!(refused.is_err_and(|w| w.contains("willis-refusal-1")));
     }
 }
+
+/// What an answer says of members by other names.
+fn renamed(answer: &str, from: &str, to: &str) -> Value {
+    fn walk(value: &mut Value, from: &str, to: &str) {
+        match value {
+            Value::String(s) if s == from => *s = to.to_owned(),
+            Value::Array(all) => all.iter_mut().for_each(|v| walk(v, from, to)),
+            Value::Object(all) => {
+                // Sentences have names within; the data beside them are compared.
+                let own =
+                    std::mem::take(all).into_iter().filter(|(key, _)| !["reason", "no_ratio"].contains(&key.as_str()));
+                for (key, mut value) in own {
+                    walk(&mut value, from, to);
+                    all.insert(if key == from { to.to_owned() } else { key }, value);
+                }
+            }
+            _ => {}
+        }
+    }
+    let mut answer: Value = serde_json::from_str(answer).expect("JSON");
+    walk(&mut answer, from, to);
+    answer
+}
+
+#[test]
+fn a_member_may_have_another_name_in_every_example() {
+    let mut compared = 0;
+    for (name, mut session) in sessions() {
+        let facts: Value = serde_json::from_str(&session.facts()).expect("JSON");
+        let before = session.ask("analyze", "{}", "{}").unwrap_or_else(|w| panic!("{name}: {w}"));
+        let listed = facts["members"].as_array().expect("a list").iter().filter_map(Value::as_str);
+        for member in listed.filter(|m| !m.contains('.')) {
+            let text = session.rename(member, "renamed").unwrap_or_else(|w| panic!("{name}, {member}: {w}"));
+            let mut other = Session::new(&name, &text, "{}").unwrap_or_else(|w| panic!("{name}, {member}: {w}"));
+            let after = other.ask("analyze", "{}", "{}").unwrap_or_else(|w| panic!("{name}, {member}: {w}"));
+            let (before, after) = (renamed(&before, member, "renamed"), renamed(&after, member, "renamed"));
+            for key in ["ratios", "degrees_of_freedom"] {
+                assert!(before[key] == after[key], "{name}, {member}: {key}");
+            }
+            let all = before["operations"].as_array().into_iter().flatten();
+            for (one, other) in all.zip(after["operations"].as_array().expect("as many")) {
+                assert!(one["verdict"] == other["verdict"], "{name}, {member}");
+                // Meshes without a name have one made of their members.
+                let numbers = |o: &Value| {
+                    let all = o["solutions"].as_array().expect("a list").iter();
+                    all.map(|s| json!([s["efficiency"], s["loss_w"], s["members"]])).collect::<Vec<_>>()
+                };
+                assert_eq!(numbers(one), numbers(other), "{name}, {member}");
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 150, "{compared}");
+}

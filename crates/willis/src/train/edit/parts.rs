@@ -9,7 +9,7 @@ use crate::train::words::clip;
 /// Keys whose values are names of members.
 const MEMBERS: [&str; 7] = ["member", "members", "carrier", "input", "output", "fixed", "terminals"];
 /// Keys of tables whose own keys are names of members.
-const BY_MEMBER: [&str; 3] = ["speeds", "torques", "powers"];
+const BY_MEMBER: [&str; 5] = ["speeds", "torques", "powers", "inertias", "initial_speeds"];
 /// The member that every train has.
 const FRAME: &str = "frame";
 
@@ -52,7 +52,7 @@ impl Document {
         }
         if one == FRAME {
             // The frame is no terminal, and nothing is prescribed for it.
-            forget(self.0.as_table_mut(), other);
+            self.forget(other);
         }
         renamed(self.0.as_table_mut(), other, one);
         Ok(())
@@ -80,37 +80,19 @@ impl Document {
     /// # Errors
     /// There is no such entry.
     pub fn remove(&mut self, list: &str, name: &str) -> Result<(), Diagnostics> {
-        let is = |t: &dyn TableLike| t.get("name").and_then(Item::as_str) == Some(name);
-        let gone = match self.0.get_mut(list) {
-            Some(Item::ArrayOfTables(all)) => {
-                let at = all.iter().position(|t| is(t));
-                at.map(|k| all.remove(k)).is_some()
-            }
-            Some(Item::Value(Value::Array(all))) => {
-                let at = all.iter().position(|v| v.as_inline_table().is_some_and(|t| is(t)));
-                at.map(|k| all.remove(k)).is_some()
-            }
-            _ => false,
-        };
-        if !gone {
+        if !self.has(list, name) {
             return Err(wrong(name, format!("there is no `{}` in `{list}`", clip(name))));
         }
-        if list == "shift_element"
-            && let Some(Item::ArrayOfTables(states)) = self.0.get_mut("state")
-        {
-            for state in states.iter_mut() {
+        self.keep(list, |t| !is_called(t, "name", name));
+        match list {
+            "shift_element" => self.each("state", |state| {
                 if let Some(engaged) = state.get_mut("engaged").and_then(Item::as_array_mut) {
                     engaged.retain(|v| v.as_str() != Some(name));
                 }
-            }
-        }
-        if list == "state"
-            && let Some(Item::ArrayOfTables(operations)) = self.0.get_mut("operation")
-        {
-            operations.retain(|o| o.get("state").and_then(Item::as_str) != Some(name));
-        }
-        if list == "set" {
-            self.drop_unused();
+            }),
+            "state" => self.keep("operation", |o| !is_called(o, "state", name)),
+            "set" => self.drop_unused(),
+            _ => {}
         }
         Ok(())
     }
@@ -201,13 +183,54 @@ impl Document {
     }
 
     fn unused(&self, list: &str, name: &str) -> Result<(), Diagnostics> {
-        let is = |t: &dyn TableLike| t.get("name").and_then(Item::as_str) == Some(name);
-        let there = match self.0.get(list) {
+        match self.has(list, name) {
+            true => Err(wrong(name, format!("there is a `{}` in `{list}` already", clip(name)))),
+            false => Ok(()),
+        }
+    }
+
+    /// Whether a list has an entry of a name.
+    fn has(&self, list: &str, name: &str) -> bool {
+        let is = |t: &dyn TableLike| is_called(t, "name", name);
+        match self.0.get(list) {
             Some(Item::ArrayOfTables(all)) => all.iter().any(|t| is(t)),
-            Some(Item::Value(Value::Array(all))) => all.iter().any(|v| v.as_inline_table().is_some_and(|t| is(t))),
+            Some(Item::Value(Value::Array(all))) => all.iter().filter_map(Value::as_inline_table).any(|t| is(t)),
             _ => false,
-        };
-        if there { Err(wrong(name, format!("there is a `{}` in `{list}` already", clip(name)))) } else { Ok(()) }
+        }
+    }
+
+    /// Keeps the entries of a list that are wanted, whichever way it is written.
+    fn keep(&mut self, list: &str, wanted: impl Fn(&dyn TableLike) -> bool) {
+        match self.0.get_mut(list) {
+            Some(Item::ArrayOfTables(all)) => all.retain(|t| wanted(t)),
+            Some(Item::Value(Value::Array(all))) => all.retain(|v| v.as_inline_table().is_none_or(|t| wanted(t))),
+            _ => {}
+        }
+    }
+
+    /// Changes the entries of a list, whichever way it is written.
+    fn each(&mut self, list: &str, change: impl Fn(&mut dyn TableLike)) {
+        match self.0.get_mut(list) {
+            Some(Item::ArrayOfTables(all)) => all.iter_mut().for_each(|t| change(t)),
+            Some(Item::Value(Value::Array(all))) => {
+                all.iter_mut().filter_map(Value::as_inline_table_mut).for_each(|t| change(t));
+            }
+            _ => {}
+        }
+    }
+
+    /// Takes a member out of the terminals and out of what operations prescribe.
+    fn forget(&mut self, member: &str) {
+        if let Some(all) = self.0.get_mut("terminals").and_then(Item::as_array_mut) {
+            all.retain(|v| v.as_str() != Some(member));
+        }
+        self.each("operation", |operation| {
+            for key in BY_MEMBER {
+                if let Some(t) = operation.get_mut(key).and_then(Item::as_table_like_mut) {
+                    t.remove(member);
+                }
+            }
+        });
     }
 
     /// Takes members out of the list that nothing else names.
@@ -220,6 +243,10 @@ impl Document {
             all.retain(|v| v.as_str().is_some_and(|m| used.iter().any(|u| u == m)));
         }
     }
+}
+
+fn is_called(table: &dyn TableLike, key: &str, name: &str) -> bool {
+    table.get(key).and_then(Item::as_str) == Some(name)
 }
 
 fn wrong(place: &str, message: String) -> Diagnostics {
@@ -283,6 +310,11 @@ fn renamed_value(key: &str, value: &mut Value, from: &str, to: &str) {
             *value = Value::from(to);
             *value.decor_mut() = decor;
         }
+        Value::String(s) if key == "formula" => {
+            let decor = s.decor().clone();
+            *value = Value::from(in_formula(s.value(), &format!("w_{from}"), &format!("w_{to}")));
+            *value.decor_mut() = decor;
+        }
         Value::Array(all) => {
             all.iter_mut().for_each(|v| renamed_value(key, v, from, to));
             // A list of names holds each once.
@@ -301,18 +333,17 @@ fn renamed_value(key: &str, value: &mut Value, from: &str, to: &str) {
     }
 }
 
-/// Takes a member out of the terminals and out of what operations prescribe.
-fn forget(table: &mut Table, member: &str) {
-    if let Some(all) = table.get_mut("terminals").and_then(Item::as_array_mut) {
-        all.retain(|v| v.as_str() != Some(member));
+/// Another name for a variable of a formula; names that begin or end alike stay.
+fn in_formula(formula: &str, from: &str, to: &str) -> String {
+    let within = |c: char| c.is_alphanumeric() || c == '_';
+    let mut out = String::new();
+    let mut rest = formula;
+    while let Some(at) = rest.find(from) {
+        let (before, after) = (&rest[..at], &rest[at + from.len()..]);
+        let whole = !before.ends_with(within) && !after.starts_with(within);
+        out += before;
+        out += if whole { to } else { from };
+        rest = after;
     }
-    if let Some(Item::ArrayOfTables(all)) = table.get_mut("operation") {
-        for operation in all.iter_mut() {
-            for key in BY_MEMBER {
-                if let Some(t) = operation.get_mut(key).and_then(Item::as_table_like_mut) {
-                    t.remove(member);
-                }
-            }
-        }
-    }
+    out + rest
 }
