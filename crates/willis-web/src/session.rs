@@ -110,10 +110,12 @@ impl Session {
             json!({ "name": e.name, "kind": specification_kind(&specification, &e.name), "members": members })
         };
         let quantity = |(path, key): (String, willis::train::Key)| json!({ "path": path, "value": self.model.document().value(&key) });
+        // The first member is the frame: it has no colour, and nothing of the page takes hold of it.
+        let members: Vec<&str> = train.members()[1..].iter().map(|m| m.name.as_str()).collect();
         json!({
             "name": train.name(),
             "asDrawn": AS_DRAWN,
-            "members": train.members().iter().skip(1).map(|m| m.name.clone()).collect::<Vec<_>>(),
+            "members": members,
             "terminals": train.terminals().iter().map(name).collect::<Vec<_>>(),
             "ends": end(None),
             "states": train.states().iter().enumerate().map(state).collect::<Vec<_>>(),

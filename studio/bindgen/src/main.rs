@@ -7,7 +7,11 @@ use std::process::ExitCode;
 use wasm_bindgen_cli_support::Bindgen;
 
 fn main() -> ExitCode {
-    let [input, folder] = std::env::args().skip(1).collect::<Vec<_>>().try_into().unwrap_or_else(|_| [String::new(), String::new()]);
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [input, folder] = words.as_slice() else {
+        eprintln!("usage: willis-bindgen FILE.wasm FOLDER");
+        return ExitCode::FAILURE;
+    };
     let written = Bindgen::new()
         .input_path(input)
         .web(true)
