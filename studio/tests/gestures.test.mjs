@@ -152,10 +152,15 @@ test("with two freedoms a second dot is dragged and the first stays", async () =
 
 test("a number is typed with its unit", async () => {
   await gear("4");
-  await page.evaluate(() => window.__studio.move({ ...window.__studio.point, speeds: { [window.__studio.input]: "1450 rpm" } }, "speed"));
-  await shown(page);
-  const now = await state(page);
-  assert.ok(Math.abs(now.analysis.operations[0].speeds_rad_s.input - (1450 * Math.PI) / 30) < 1e-9);
+  for (const [typed, speed] of [["1450 rpm", (1450 * Math.PI) / 30], ["25 rad/s", 25], ["900", (900 * Math.PI) / 30]]) {
+    await page.focus("#speed");
+    await page.keyboard.press("Enter");
+    await page.keyboard.type(typed);
+    await page.keyboard.press("Enter");
+    await shown(page);
+    const now = await state(page);
+    assert.ok(Math.abs(now.analysis.operations[0].speeds_rad_s.input - speed) < 1e-9, typed);
+  }
 });
 
 test("pin compares, a second press releases", async () => {

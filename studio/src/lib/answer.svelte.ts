@@ -78,7 +78,7 @@ export class Answer {
     } catch (why) {
       if (turn !== this.#turn) return;
       if (why instanceof Refused) this.refusal = why.refusal;
-      else if (why instanceof Stopped && why.message.startsWith("a later step")) this.#asked = "";
+      else if (why instanceof Stopped && why.why === "overtaken") this.#asked = "";
       else this.stopped = why instanceof Error ? why.message : String(why);
     }
     this.busy = false;

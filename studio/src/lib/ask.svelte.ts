@@ -10,7 +10,15 @@ export const BUDGET_MS = 20_000;
 /** After this time without a job a worker is ended: it holds the whole library. */
 const IDLE_MS = 60_000;
 
-export class Stopped extends Error {}
+export class Stopped extends Error {
+  /** `overtaken`: a later question took its place. */
+  constructor(
+    readonly why: "overtaken" | "idle" | "slow" | "broken",
+    words: string,
+  ) {
+    super(words);
+  }
+}
 export class Refused extends Error {
   constructor(readonly refusal: Refusal) {
     super(refusal.diagnostics[0]?.message ?? "refused");
@@ -36,7 +44,7 @@ async function lane(name: string): Promise<Lane> {
   };
   made.worker.onerror = (event) => {
     event.preventDefault();
-    end(name, new Stopped(`the computation stopped: ${event.message}`));
+    end(name, new Stopped("broken", `the computation stopped: ${event.message}`));
   };
   made.worker.postMessage({ module: given });
   lanes.set(name, made);
@@ -57,7 +65,7 @@ function end(name: string, why: Error): void {
 
 /** Cancels what runs in a lane. */
 export function cancel(name: string): void {
-  if (lanes.get(name)?.job) end(name, new Stopped("a later step took its place"));
+  if (lanes.get(name)?.job) end(name, new Stopped("overtaken", "a later step took its place"));
 }
 
 /** Asks in a lane; `progress` hears the part that is done. The answer is the text that the command line would write. */
@@ -68,17 +76,17 @@ export async function ask(
 ): Promise<string> {
   cancel(name);
   const at = await lane(name);
-  if (at.job) end(name, new Stopped("a later step took its place"));
+  if (at.job) end(name, new Stopped("overtaken", "a later step took its place"));
   const now = lanes.get(name) ?? (await lane(name));
   const id = ++jobs;
   return new Promise((resolve, reject) => {
-    const timer = window.setTimeout(() => end(name, new Stopped(`stopped after ${BUDGET_MS / 1000} s`)), BUDGET_MS);
+    const timer = window.setTimeout(() => end(name, new Stopped("slow", `stopped after ${BUDGET_MS / 1000} s`)), BUDGET_MS);
     const fail = (why: Error) => reject(why);
     const settle = (told: Told) => {
       if (!told.done) return progress(told.what, told.part);
       clearTimeout(timer);
       now.job = null;
-      now.idle = window.setTimeout(() => end(name, new Stopped("nobody asks")), IDLE_MS);
+      now.idle = window.setTimeout(() => end(name, new Stopped("idle", "nobody asks")), IDLE_MS);
       if (told.refused) reject(new Refused(told.refused));
       else resolve(told.answer ?? "");
     };

@@ -5,23 +5,23 @@
 
 const SVG = "http://www.w3.org/2000/svg";
 
-/** Reads a picture; names in it are data and never markup. */
+/** Reads a picture as XML of its own: names in it are data and never markup. Its ids get a prefix, since a page has several. */
 export function parsed(text: string, prefix: string): SVGSVGElement | null {
   const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
   if (root.namespaceURI !== SVG || root.localName !== "svg") return null;
-  // There are handles in it.
-  root.setAttribute("role", "group");
   for (const one of root.querySelectorAll("[id]")) one.id = `${prefix}-${one.id}`;
-  // References to marks that now have other ids.
-  for (const one of root.querySelectorAll("[fill^='url(#'],[stroke^='url(#'],[clip-path^='url(#'],[mask^='url(#'],[href^='#']")) {
-    for (const name of ["fill", "stroke", "clip-path", "mask"]) {
-      const value = one.getAttribute(name);
-      if (value?.startsWith("url(#")) one.setAttribute(name, value.replace("url(#", `url(#${prefix}-`));
-    }
-    const href = one.getAttribute("href");
-    if (href?.startsWith("#")) one.setAttribute("href", `#${prefix}-${href.slice(1)}`);
-  }
+  if (text.includes("url(#") || text.includes("href=")) refer(root, prefix);
   return root as unknown as SVGSVGElement;
+}
+
+/** References to marks that have other ids now. */
+function refer(root: Element, prefix: string): void {
+  for (const one of root.querySelectorAll("*")) {
+    for (const { name, value } of [...one.attributes]) {
+      if (name.endsWith("href") && value.startsWith("#")) one.setAttribute(name, `#${prefix}-${value.slice(1)}`);
+      else if (value.includes("url(#")) one.setAttribute(name, value.replaceAll("url(#", `url(#${prefix}-`));
+    }
+  }
 }
 
 /** Attributes that the page gives to marks, which a picture does not know. */
@@ -79,6 +79,8 @@ function find(parent: Element, like: Element): Element | null {
 export function show(box: HTMLElement, text: string, prefix: string): SVGSVGElement | null {
   const from = parsed(text, prefix);
   if (!from) return null;
+  // There are handles in it.
+  from.setAttribute("role", "group");
   const there = box.querySelector<SVGSVGElement>(":scope > svg.fig");
   if (there) {
     morph(there, from);
@@ -93,7 +95,7 @@ export function show(box: HTMLElement, text: string, prefix: string): SVGSVGElem
 
 /** Schematic and levers stand under each other and are moved together. */
 export function pan(box: HTMLElement): void {
-  for (const other of document.querySelectorAll<HTMLElement>("#train > .body, #levers > .body")) {
+  for (const other of document.querySelectorAll<HTMLElement>("#train .body, #levers .body")) {
     if (other !== box && other.scrollLeft !== box.scrollLeft) other.scrollLeft = box.scrollLeft;
   }
 }

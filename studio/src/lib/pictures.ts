@@ -1,5 +1,7 @@
 /** Figures of the library in the page, and the way from their places to values. */
 
+import { parsed } from "./morph";
+
 export interface Drawn {
   svg: SVGSVGElement;
   /** Of what is shown, px; marks over the figure take the same. */
@@ -16,25 +18,17 @@ const KNOWN = new Set(
 const n = (e: Element, name: string) => Number(e.getAttribute(name));
 
 /**
- * The SVG of a figure as an element. It is parsed as XML of its own, never as markup of the page; ids get a prefix, so that two
- * figures of one kind do not share them. The ground is left out: a figure lies on its panel.
+ * The SVG of a figure as an element. Nothing that could act or load is in it, and the ground is left out: a figure lies on its
+ * panel.
  */
 export function drawn(text: string, prefix: string): Drawn | null {
-  const read = new DOMParser().parseFromString(text, "image/svg+xml");
-  const root = read.documentElement;
-  if (root.nodeName !== "svg" || read.querySelector("parsererror")) return null;
-  const svg = document.importNode(root, true) as unknown as SVGSVGElement;
-  const own = prefix.replace(/[^\w-]/g, "-") + "-";
-  for (const e of [svg, ...svg.querySelectorAll("*")]) {
-    if (!KNOWN.has(e.localName)) {
-      e.remove();
-      continue;
-    }
+  const read = parsed(text, prefix.replace(/[^\w-]/g, "-"));
+  if (!read || read.querySelector("parsererror")) return null;
+  const svg = document.importNode(read, true);
+  for (const e of svg.querySelectorAll("*")) {
+    if (!KNOWN.has(e.localName)) e.remove();
     for (const { name, value } of [...e.attributes]) {
-      if (name.startsWith("on")) e.removeAttribute(name);
-      else if (name === "id") e.id = own + value;
-      else if (name.endsWith("href")) value.startsWith("#") ? e.setAttribute(name, `#${own}${value.slice(1)}`) : e.removeAttribute(name);
-      else if (value.includes("url(#")) e.setAttribute(name, value.replaceAll("url(#", `url(#${own}`));
+      if (name.startsWith("on") || (name.endsWith("href") && !value.startsWith("#"))) e.removeAttribute(name);
     }
   }
   const [, , width = 0, height = 0] = (svg.getAttribute("viewBox") ?? "").split(/[\s,]+/).map(Number);
