@@ -1,5 +1,6 @@
 // Pictures of the studio for book and README: `node studio/picture.mjs PAGE.html FOLDER` writes frames of a lever that is dragged,
-// and one of the whole page.
+// and one of the whole page. `img2webp -loop 0 -lossy -q 60 -m 6 -d 90 FOLDER/frame-*.png -o book/src/figures/studio.webp` makes the
+// picture of them.
 import { mkdirSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -8,7 +9,8 @@ import { chromium } from "playwright-core";
 const [page_file, folder] = process.argv.slice(2);
 mkdirSync(folder, { recursive: true });
 const browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox"] });
-const page = await browser.newPage({ viewport: { width: 1366, height: 768 } });
+// Drawn at three quarters: 1024 by 576 px.
+const page = await browser.newPage({ viewport: { width: 1366, height: 768 }, deviceScaleFactor: 0.75 });
 await page.goto(pathToFileURL(resolve(page_file)).href);
 await page.waitForFunction(() => window.__ready === true);
 await page.evaluate(() => {

@@ -19,6 +19,12 @@ HERE = Path(__file__).parent
 PACKAGE = HERE / "python" / "willis"
 WIDTH = 120
 
+#: What an argument may be beside the field of the request.
+FORMS = {
+    "over": ' A mapping from quantities to values, `{"input.speed": "500..6000 rpm:12", "input.torque": [50.0, 100.0]}`, with numbers '
+    "in SI units; or a list of texts.",
+}
+
 #: Fields that are given by position.
 POSITIONAL = {
     "draw": ["kind"],
@@ -75,6 +81,17 @@ array([104.7, 104.7,   0. ])
 >>> points = stage.losses(speeds=["500 rpm", "1000 rpm"]).tables["points"]
 >>> bool(points["loss_w"][1] > points["loss_w"][0])
 True
+""",
+    "heat": """
+>>> warm = willis.read("examples/industrial-planetary-heat.toml").heat(operation="rated")
+>>> warm.data.operations[0].verdict
+'unique'
+""",
+    "calibrate": """
+>>> stage = willis.read("examples/fva-planetary-stage.toml")
+>>> fitted = stage.calibrate(data="examples/tests-fva-planetary-stage.csv")
+>>> fitted.data.tests, fitted.data.learnt, fitted.data.converged
+(23, 3, True)
 """,
     "sensitivity": """
 >>> stage = willis.read("examples/fva-planetary-stage.toml")
@@ -242,11 +259,15 @@ def paragraphs(text: str, indent: int) -> str:
     out = []
     # Options of the command are arguments here: --over "A=B" is over="A=B", --vary is `vary`.
     text = re.sub(r'(?<!`)--([a-z][a-z-]*) ("[^"]*"|[^\s`"]+=[^\s`"]+)', by_name, text)
+    # What the command takes several times is a list here.
+    text = re.sub(r"([.;]) ([Ss])everal times for ", lambda m: f"{m[1]} {'A' if m[2] == 'S' else 'a'} list for ", text)
     # One name with several values is a list.
     text = re.sub(r'\b([a-z_]+)=("[^"\n]*")[ ]+\1=("[^"\n]*")(?:[ ]+\1=("[^"\n]*"))?', listed, text)
     text = re.sub(r"(?<!`)--([a-z][a-z-]*)", lambda option: f"`{python_name(option[1].replace('-', '_'))}`", text)
     text = text.replace("`", "``").replace("\\", "\\\\")
     for part in text.split("\n\n"):
+        if part.startswith("On the command line"):
+            continue
         if part.startswith("  "):
             out.append(textwrap.indent("::\n\n" + textwrap.indent(part.strip("\n"), "    "), " " * indent))
         else:
@@ -286,7 +307,7 @@ def question(entry: dict[str, Any]) -> str:
             arguments.append(f"{own}: {kind}")
         else:
             arguments.append(f"{own}: {kind} | None = None")
-        docs.append(f"{pad}{own}\n" + paragraphs(schema.get("description", "").strip(), indent + 4))
+        docs.append(f"{pad}{own}\n" + paragraphs(schema.get("description", "").strip() + FORMS.get(field, ""), indent + 4))
         build.append(f'"{field}": {own}')
     if not marked and of != "trains":
         arguments.append("*")

@@ -133,6 +133,23 @@ test("a link gives the same text, point and answer", { timeout: 120_000 }, async
   }
 });
 
+test("a link with a look that cannot be opens the page all the same", async () => {
+  await open(page, "two-efficiencies.toml");
+  const point = (await state(page)).point;
+  for (const view of [{ answer: -1, losses: 1e9 }, { answer: 1e9, losses: 0 }, { answer: "1", losses: -5 }]) {
+    const hash = await page.evaluate(async ([point, view]) => {
+      const held = JSON.stringify({ t: "two-efficiencies.toml", p: point, v: view, w: "0" });
+      const packed = await new Response(new Blob([held]).stream().pipeThrough(new CompressionStream("deflate-raw"))).arrayBuffer();
+      return "#1." + btoa(String.fromCharCode(...new Uint8Array(packed))).replace(/\+/g, "-").replace(/\//g, "_").replace(/=+$/, "");
+    }, [point, view]);
+    const other = await studio(at, { hash });
+    assert.equal((await state(other)).analysis.operations[0].verdict, "multiple");
+    assert.deepEqual(await other.evaluate(() => [window.__studio.look.answer, window.__studio.look.losses]), [0, null]);
+    assert.deepEqual(other.faults, []);
+    await other.context().close();
+  }
+});
+
 test("a link that is damaged or of another version says so, and the page lives", async () => {
   for (const hash of ["#1.AAAA", "#1.", "#9.abc", "#<img src=x onerror=alert(1)>"]) {
     const other = await studio(at, { hash });

@@ -1,7 +1,9 @@
 // Sizes, alignment, colours, and what a machine can say about access for everyone.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { browser, file, open, shown, studio } from "./studio.mjs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { browser, file, open, root, shown, studio } from "./studio.mjs";
 
 let at;
 before(async () => {
@@ -162,6 +164,97 @@ test("with reduced motion nothing animates", async () => {
   await shown(page);
   await page.context().close();
   assert.equal(running, 0);
+});
+
+test("paper: four panels and the table, light, within the sheet", { timeout: 60_000 }, async () => {
+  const page = await studio(at, { colorScheme: "dark" });
+  await page.click('[data-gear="3"]');
+  await shown(page);
+  // A4 landscape less its margins.
+  await page.setViewportSize({ width: 1047, height: 718 });
+  await page.emulateMedia({ media: "print" });
+  await shown(page);
+  const told = await page.evaluate(() => {
+    const box = (e) => e.getBoundingClientRect();
+    const seen = [...document.querySelectorAll("main > section, .paper")].map((e) => [e.id || e.className.split(" ")[0], box(e).width > 100 && box(e).height > 10]);
+    const wide = [...document.querySelectorAll("main svg.fig, .paper table")].filter((e) => box(e).right > innerWidth + 1).length;
+    return { seen, wide, rows: document.querySelectorAll(".paper table tr").length, theme: document.documentElement.dataset.theme, bar: box(document.querySelector("header.top")).height };
+  });
+  assert.deepEqual(told.seen.filter(([, is]) => !is), []);
+  assert.equal(told.seen.length, 6);
+  assert.deepEqual([told.wide, told.theme, told.bar], [0, "light", 0]);
+  assert.ok(told.rows > 8);
+  const pdf = await page.pdf({ preferCSSPageSize: true, printBackground: true });
+  if (process.env.PICTURES) writeFileSync(`${process.env.PICTURES}/paper.pdf`, pdf);
+  assert.equal(pdf.toString("latin1").match(/\/Type\s*\/Page\b/g).length, 1, "pages");
+  await page.context().close();
+});
+
+for (const scheme of ["light", "dark"]) {
+  test(`forced colours, ${scheme}: members are told apart and stand out`, { timeout: 60_000 }, async () => {
+    const page = await studio(at, { forcedColors: "active", colorScheme: scheme });
+    const { canvas, members, text } = await page.evaluate(() => {
+      const hex = (c) => "#" + (c.match(/\d+/g) ?? []).slice(0, 3).map((x) => Number(x).toString(16).padStart(2, "0")).join("");
+      const dots = [...document.querySelectorAll('#levers circle[id^="levers-speed-"]')].map((d) => [d.dataset.member, hex(getComputedStyle(d).fill)]);
+      return { canvas: hex(getComputedStyle(document.querySelector("#train")).backgroundColor), members: [...new Map(dots)], text: hex(getComputedStyle(document.querySelector("#why dd")).color) };
+    });
+    assert.ok(members.length >= 7);
+    const wrong = members.filter(([, c]) => contrast(c, canvas) < 3).map(([m, c]) => `${m}: ${c} on ${canvas}`);
+    assert.equal(new Set(members.map(([, c]) => c)).size, members.length, "each member its own colour");
+    assert.ok(contrast(text, canvas) > 7);
+    if (process.env.PICTURES) await page.screenshot({ path: `${process.env.PICTURES}/forced-${scheme}.png` });
+    await page.context().close();
+    assert.deepEqual(wrong, []);
+  });
+}
+
+/** Blocks of a picture, 48 by 27 greys: faces and hinting of a machine make no difference to them, a lost panel does. */
+async function blocks(page, png) {
+  return page.evaluate(async (url) => {
+    const image = new Image();
+    image.src = url;
+    await image.decode();
+    const canvas = Object.assign(document.createElement("canvas"), { width: 48, height: 27 });
+    const draw = canvas.getContext("2d");
+    draw.imageSmoothingQuality = "high";
+    // Halving keeps every pixel in the mean.
+    let from = await createImageBitmap(image);
+    while (from.width > 96) from = await createImageBitmap(from, { resizeWidth: Math.ceil(from.width / 2), resizeHeight: Math.ceil(from.height / 2), resizeQuality: "medium" });
+    draw.drawImage(from, 0, 0, 48, 27);
+    const { data } = draw.getImageData(0, 0, 48, 27);
+    return Array.from({ length: 48 * 27 }, (_, k) => Math.round((data[4 * k] + data[4 * k + 1] + data[4 * k + 2]) / 3));
+  }, `data:image/png;base64,${png.toString("base64")}`);
+}
+
+test("the page looks as it did", { timeout: 120_000 }, async () => {
+  const path = join(root, "studio/tests/looks.json");
+  const known = existsSync(path) ? JSON.parse(readFileSync(path, "utf8")) : {};
+  const now = {};
+  const wrong = [];
+  for (const [name, width, height, colorScheme] of [["laptop", 1366, 768, "light"], ["dark", 1366, 768, "dark"], ["phone", 375, 667, "light"], ["wide", 1920, 1080, "light"]]) {
+    const page = await studio(at, { width, height, colorScheme });
+    await page.evaluate(() => window.__studio.gear("3"));
+    await shown(page);
+    const boxes = await page.$$eval("header.top, main > section, .drawer, .ptabs", (all) =>
+      Object.fromEntries(all.filter((e) => e.getClientRects().length > 0).map((e) => [e.id || e.className.split(" ")[0], ["x", "y", "width", "height"].map((k) => Math.round(e.getBoundingClientRect()[k]))])),
+    );
+    now[name] = { boxes, blocks: (await blocks(page, await page.screenshot())).map((x) => x.toString(16).padStart(2, "0")).join("") };
+    await page.context().close();
+    const was = known[name];
+    if (!was) continue;
+    for (const [panel, box] of Object.entries(was.boxes)) {
+      const own = now[name].boxes[panel];
+      if (!own || box.some((x, k) => Math.abs(x - own[k]) > 6)) wrong.push(`${name}: ${panel} at ${own}, not ${box}`);
+    }
+    const pixel = (text, k) => parseInt(text.slice(2 * k, 2 * k + 2), 16);
+    const far = Array.from({ length: 48 * 27 }, (_, k) => Math.abs(pixel(was.blocks, k) - pixel(now[name].blocks, k))).sort((a, b) => a - b);
+    const [mean, most] = [far.reduce((a, b) => a + b) / far.length, far[Math.floor(0.98 * far.length)]];
+    console.log(`${name}: mean difference ${mean.toFixed(2)} of 255, 98 % below ${most}`);
+    if (mean > 6 || most > 60) wrong.push(`${name}: mean difference ${mean.toFixed(2)}, 98 % below ${most}`);
+  }
+  if (process.env.LOOKS) writeFileSync(path, JSON.stringify(now, null, 1) + "\n");
+  else assert.deepEqual(Object.keys(known), Object.keys(now), "LOOKS=1 writes studio/tests/looks.json");
+  assert.deepEqual(wrong, []);
 });
 
 // Colours, from the tokens of the page's own style.

@@ -231,6 +231,27 @@ pub trait Question:
         let _ = answer;
         vec![]
     }
+
+    /// Whether the work can be cut into pieces that other machines do, with [`Question::piece`] and [`Question::gather`].
+    const IS_CUT: bool = false;
+
+    /// What piece `k` of `n`, counted from 0, finds, as bytes for [`Question::gather`].
+    ///
+    /// # Errors
+    /// The same as those of [`Question::ask`].
+    fn piece(&self, of: &[Given], k: usize, n: usize, work: &dyn Work) -> Result<Vec<u8>, Refusal> {
+        let _ = (of, k, n, work);
+        unreachable!("`{}` is not cut", Self::NAME)
+    }
+
+    /// The answer from all pieces in their order, the same that one machine gives, bit for bit.
+    ///
+    /// # Errors
+    /// The same as those of [`Question::ask`]; or they are not the pieces of this request.
+    fn gather(&self, of: &[Given], pieces: &[Vec<u8>]) -> Result<Self::Answer, Refusal> {
+        let _ = (of, pieces);
+        unreachable!("`{}` is not cut", Self::NAME)
+    }
 }
 
 /// A request of any question.
@@ -261,6 +282,18 @@ pub trait Request: fmt::Debug + Any + Send + Sync {
     /// # Errors
     /// The same.
     fn ask_for_good(&self, of: Arc<[Given]>, work: &dyn Work) -> Result<Box<dyn Answer + Send + Sync>, Refusal>;
+
+    /// See [`Question::piece`].
+    ///
+    /// # Errors
+    /// What it says; or the question is not one that is cut, or there is no such piece.
+    fn piece(&self, of: &[Given], k: usize, n: usize, work: &dyn Work) -> Result<Vec<u8>, Refusal>;
+
+    /// See [`Question::gather`].
+    ///
+    /// # Errors
+    /// What it says; or the question is not one that is cut.
+    fn gather(&self, of: Arc<[Given]>, pieces: &[Vec<u8>]) -> Result<Box<dyn Answer + Send + Sync>, Refusal>;
 }
 
 /// An answer to any question.
@@ -337,8 +370,8 @@ impl<Q: Question, B: Borrow<Q>, T: AsRef<[Given]>> Answer for Answered<(B, Phant
     }
 }
 
-/// Answers a question that fits the number of trains.
-fn answer<Q: Question>(question: &Q, of: &[Given], work: &dyn Work) -> Result<Q::Answer, Refusal> {
+/// Whether a question fits the number of trains and is sound by itself.
+fn checked<Q: Question>(question: &Q, of: &[Given]) -> Result<(), Refusal> {
     let (fits, wanted) = match Q::OF {
         Of::Nothing => (of.is_empty(), "no train"),
         Of::AtMostOne => (of.len() <= 1, "one train at most"),
@@ -350,7 +383,24 @@ fn answer<Q: Question>(question: &Q, of: &[Given], work: &dyn Work) -> Result<Q:
         return Err(Diagnostic::new(Code::UnknownSelection, "", message).into());
     }
     question.check()?;
+    Ok(())
+}
+
+/// Answers a question that fits the number of trains.
+fn answer<Q: Question>(question: &Q, of: &[Given], work: &dyn Work) -> Result<Q::Answer, Refusal> {
+    checked(question, of)?;
     question.ask(of, work)
+}
+
+/// Whether there is such a piece of a question.
+fn cut<Q: Question>(question: &Q, of: &[Given], k: usize, n: usize) -> Result<(), Refusal> {
+    checked(question, of)?;
+    let message = match (Q::IS_CUT, k < n) {
+        (false, _) => format!("the work of `{}` is not cut into pieces", Q::NAME),
+        (_, false) => format!("there is no piece {} of {n}", k + 1),
+        _ => return Ok(()),
+    };
+    Err(Diagnostic::new(Code::UnknownSelection, "", message).into())
 }
 
 impl<Q: Question> Request for Q {
@@ -381,6 +431,17 @@ impl<Q: Question> Request for Q {
 
     fn ask_for_good(&self, of: Arc<[Given]>, work: &dyn Work) -> Result<Box<dyn Answer + Send + Sync>, Refusal> {
         let answer = answer(self, &of, work)?;
+        Ok(Box::new(Answered { question: (self.clone(), PhantomData::<Q>), answer, of }))
+    }
+
+    fn piece(&self, of: &[Given], k: usize, n: usize, work: &dyn Work) -> Result<Vec<u8>, Refusal> {
+        cut(self, of, k, n)?;
+        Question::piece(self, of, k, n, work)
+    }
+
+    fn gather(&self, of: Arc<[Given]>, pieces: &[Vec<u8>]) -> Result<Box<dyn Answer + Send + Sync>, Refusal> {
+        cut(self, &of, 0, 1)?;
+        let answer = Question::gather(self, &of, pieces)?;
         Ok(Box::new(Answered { question: (self.clone(), PhantomData::<Q>), answer, of }))
     }
 }

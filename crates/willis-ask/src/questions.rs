@@ -2,6 +2,7 @@
 
 mod amount;
 mod analyze;
+mod calibrate;
 mod check;
 mod compare;
 mod cycle;
@@ -11,6 +12,7 @@ mod explain;
 mod export;
 mod flow;
 mod formula;
+mod heat;
 mod laws;
 mod locate;
 mod losses;
@@ -25,9 +27,11 @@ mod simulate;
 mod sweep;
 mod table;
 mod uncertainty;
+#[cfg(feature = "casebook")]
 mod validate;
 
 pub use analyze::Analyze;
+pub use calibrate::Calibrate;
 pub use check::Check;
 pub use compare::Compare;
 pub use cycle::{Cycle, CycleAnswer};
@@ -37,6 +41,7 @@ pub use explain::Explain;
 pub use export::Export;
 pub use flow::Flow;
 pub use formula::{Formula, FormulaAnswer};
+pub use heat::Heat;
 pub use laws::Laws;
 pub use locate::Locate;
 pub use losses::Losses;
@@ -50,6 +55,7 @@ pub use simulate::{MOST_EVENTS, MOST_KEPT, Simulate, run_text as simulation_text
 pub use sweep::{Sweep, SweepAnswer, bytes_in_words, duration_in_words, points_in_words, sweep_text};
 pub use table::Table;
 pub use uncertainty::{Uncertainty, UncertaintyAnswer};
+#[cfg(feature = "casebook")]
 pub use validate::Validate;
 
 use crate::Entry;
@@ -62,8 +68,10 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Check>(),
     Entry::of::<Flow>(),
     Entry::of::<Losses>(),
+    Entry::of::<Heat>(),
     Entry::of::<Sensitivity>(),
     Entry::of::<Uncertainty>(),
+    Entry::of::<Calibrate>(),
     Entry::of::<Sweep>(),
     Entry::of::<Cycle>(),
     Entry::of::<Compare>(),
@@ -78,6 +86,7 @@ pub static QUESTIONS: &[Entry] = &[
     Entry::of::<Report>(),
     Entry::of::<Export>(),
     Entry::of::<Laws>(),
+    #[cfg(feature = "casebook")]
     Entry::of::<Validate>(),
     Entry::of::<Explain>(),
 ];

@@ -5,9 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
+use willis::analysis::Verdict;
 use willis::model::Model;
 use willis::work::{Serial, Work};
-use willis_ask::{Entry, Given, Of, QUESTIONS, Refusal, RefusalReport};
+use willis_ask::questions::{Analyze, New, Simulate};
+use willis_ask::table::{Kind, Table};
+use willis_ask::{Entry, Given, Of, QUESTIONS, Question, Refusal, RefusalReport};
 
 fn examples() -> Vec<Given> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
@@ -43,17 +46,25 @@ fn requests(entry: &Entry, given: &Given) -> Vec<Value> {
         }
         "draw" => vec![json!({ "kind": "all" })],
         "uncertainty" => vec![json!({ "samples": 128 })],
-        "simulate" => (train.scenarios().iter())
-            .map(|s| json!({ "scenario": s.name, "samples": 5, "columns": ["speed", "mode"] }))
-            .collect(),
-        "sweep" if train.states().is_empty() => vec![json!({ "over": ["oil.temperature=40 degC, 60 degC"] })],
-        "sweep" => vec![json!({ "over": ["state=all"], "columns": ["members"] })],
+        "simulate" => train.scenarios().iter().map(|s| json!({ "scenario": s.name, "samples": 5 })).collect(),
+        "sweep" if train.states().is_empty() => {
+            vec![json!({ "over": ["oil.temperature=40 degC, 60 degC"], "columns": ["all"] })]
+        }
+        "sweep" => vec![json!({ "over": ["state=all"], "columns": ["all", "variators"] })],
         "compare" => vec![json!({}), json!({ "over": ["input.speed=500 rpm, 1000 rpm"] })],
         "regimes" => vec![json!({}), json!({ "family": true })],
         "locate" => train.operations().iter().map(|o| json!({ "operation": o.name })).collect(),
         "export" => willis::study::export::KINDS.iter().map(|k| json!({ "kind": k.id })).collect(),
         "table" => vec![json!({}), json!({ "lossless": true, "speed": "2000 rpm" })],
         "formula" => vec![json!({ "derivatives": true })],
+        "heat" if train.heat().is_some() => {
+            let text = "duration [min],input.speed [rpm]\n10,1500\n15,700\n";
+            vec![json!({}), json!({ "profile": { "name": "profile.csv", "text": text } })]
+        }
+        "calibrate" => {
+            let text = "oil.temperature [degC],loss [W]\n60,1000\n80,900\n";
+            vec![json!({ "data": { "name": "tests.csv", "text": text } })]
+        }
         "cycle" => {
             let states = train.states().iter().map(|s| s.name.as_str());
             let text: String = states.map(|s| format!("1,{s}\n")).collect();
@@ -91,6 +102,69 @@ impl Checker {
     }
 }
 
+/// Units of columns, and what a name with that unit ends with.
+const ENDINGS: [(&str, &str); 23] = [
+    ("um", "_um"),
+    ("rad/s^2", "_rad_s2"),
+    ("rad/s", "_rad_s"),
+    ("rpm", "_rpm"),
+    ("rad", "_rad"),
+    ("kg/m^3", "_kg_m3"),
+    ("kg m^2", "_kg_m2"),
+    ("m^2/s", "_m2_s"),
+    ("mm^2/s", "_mm2_s"),
+    ("N m", "_n_m"),
+    ("N/m", "_n_per_m"),
+    ("m/s", "_m_s"),
+    ("degC", "_degc"),
+    ("Pa", "_pa"),
+    ("Hz", "_hz"),
+    ("W", "_w"),
+    ("J", "_j"),
+    ("K", "_k"),
+    ("N", "_n"),
+    ("mm", "_mm"),
+    ("m", "_m"),
+    ("s", "_s"),
+    ("1/s", "_1_s"),
+];
+
+/// Every column is called `[WHAT.]quantity[_unit]`: what it is of, the quantity, its unit.
+fn check_names(what: &str, table: &Table, dimensions: &mut BTreeMap<String, (String, String)>) {
+    let mut names = BTreeSet::new();
+    for c in &table.columns {
+        let (name, place) = (c.name.as_str(), format!("{what}, column `{}` in `{}`", c.name, c.unit));
+        assert!(names.insert(name), "{place}: twice");
+        let ending = ENDINGS.iter().find(|e| e.0 == c.unit).map(|e| e.1);
+        assert!(c.unit.is_empty() || ending.is_some_and(|e| name.ends_with(e)), "{place}: its unit is not at its end");
+        if c.kind != Kind::Number {
+            assert!(c.unit.is_empty(), "{place}: a unit of no number");
+            continue;
+        }
+        let end = ENDINGS.iter().find(|e| name.ends_with(e.1));
+        assert!(!c.unit.is_empty() || end.is_none(), "{place}: has a unit by its name alone");
+        // The quantity is one word of the contracts, and has one unit in all tables.
+        let bare = name.strip_suffix(ending.unwrap_or("")).unwrap();
+        let quantity = bare.rsplit('.').next().unwrap();
+        let is_word = |q: &str| q.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        assert!(is_word(quantity), "{place}: `{quantity}` is no quantity");
+        let before = dimensions.entry(quantity.to_owned()).or_insert_with(|| (c.unit.clone(), place.clone()));
+        // An axis has the unit that its user wrote.
+        let written = [["rad/s", "rpm"], ["K", "degC"]];
+        let is_same =
+            before.0 == c.unit || written.iter().any(|w| [&*before.0, &*c.unit].iter().all(|u| w.contains(u)));
+        assert!(is_same, "{place}: another unit than {}", before.1);
+    }
+    // What is written says the same.
+    let csv = table.csv();
+    let header = csv.lines().next().unwrap_or_default();
+    assert_eq!(header.replace('"', ""), table.columns.iter().map(|c| &*c.name).collect::<Vec<_>>().join(","), "{what}");
+    if let Some(row) = table.json_lines().lines().next() {
+        let row: serde_json::Map<String, Value> = serde_json::from_str(row).unwrap();
+        assert!(row.keys().eq(table.columns.iter().map(|c| &c.name)), "{what}");
+    }
+}
+
 /// The questions that take longest.
 const LONG: [&str; 4] = ["draw", "formula", "report", "uncertainty"];
 
@@ -120,6 +194,7 @@ fn examine(chosen: fn(&str) -> bool) {
     // Tables that were promised and not yet seen.
     let mut promised: BTreeSet<(&str, &str)> =
         questions().flat_map(|q| q.tables.iter().map(|t| (q.name, *t))).collect();
+    let mut dimensions = BTreeMap::new();
     let mut answered: BTreeMap<&str, usize> = questions().map(|q| (q.name, 0)).collect();
     for entry in questions() {
         let of: Vec<&[Given]> = match entry.of {
@@ -149,6 +224,7 @@ fn examine(chosen: fn(&str) -> bool) {
                 assert!(!answer.text().is_empty() || entry.name == "sweep", "{what}");
                 for table in answer.tables() {
                     assert!(entry.tables.contains(&table.name.as_str()), "{what}: {}", table.name);
+                    check_names(&format!("{what}: {}", table.name), &table, &mut dimensions);
                     promised.retain(|(question, name)| (*question, *name) != (entry.name, &*table.name));
                     assert!(!table.csv().contains("NaN") && !table.csv().contains("inf,"), "{what}");
                 }
@@ -243,6 +319,25 @@ fn every_field_of_a_request_says_what_it_is() {
         for (name, field) in schema["properties"].as_object().into_iter().flatten() {
             let told = field["description"].as_str().is_some_and(|d| d.len() > 5);
             assert!(told, "`{name}` of `{}` is not described: {field}", entry.name);
+        }
+    }
+}
+
+#[test]
+fn every_start_is_a_train_without_a_warning() {
+    let starts = Question::ask(&New::default(), &[], &Serial).expect("all starts").starts;
+    assert!(starts.len() > 3, "{}", starts.len());
+    for start in starts {
+        let kind = &start.kind;
+        let model = Model::from_toml(&start.toml).unwrap_or_else(|e| panic!("{kind}: {e}"));
+        let given = [Given::new(kind, model)];
+        assert!(given[0].model.warnings().is_empty(), "{kind}: {:?}", given[0].model.warnings());
+        let analysis = Question::ask(&Analyze::default(), &given, &Serial).unwrap();
+        assert!(analysis.operations.iter().all(|o| o.verdict == Verdict::Unique), "{kind}");
+        let runs = !given[0].model.train().scenarios().is_empty();
+        assert!(!analysis.operations.is_empty() || runs, "{kind}");
+        if runs {
+            Question::ask(&Simulate::default(), &given, &Serial).unwrap();
         }
     }
 }

@@ -4,11 +4,12 @@ pub mod draw;
 
 use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::model::Model;
-use willis::study::{Axis, Hold, Question, UncertaintyPlan, UncertaintyRequest};
+use willis::model::{Model, Target};
+use willis::study::{Axis, Hold, PointAnswer, Question, Trains, UncertaintyPlan, UncertaintyRequest};
 use willis::work::{self, Effort, Serial, Work};
 
-use crate::kind::{Ask, Detail, FigureRequest, Kind};
+use crate::kind::{Ask, Detail, FigureRequest, Kind, MOMENT};
+use crate::map::compiled::CompiledProbe;
 use crate::parts::axes::{self, ChartAxis};
 
 pub(crate) const KIND: Kind<Bands> = Kind {
@@ -109,6 +110,36 @@ pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Re
     bands_within(model, request, over, &Serial, Detail::Fine)
 }
 
+/// Efficiency and loss of a sample at every value of the axis; NaN where there is no single answer.
+fn along(plan: &UncertaintyPlan<'_>, sample: usize, x: &Axis, trains: &mut Trains) -> Vec<[f64; 2]> {
+    /// Values at which it is tried to compile: the first may lie on a border.
+    const TRIES: usize = 3;
+    let target = Target::parse(&x.name, plan.question().model()).ok();
+    // By the sign of the value: beyond zero power goes other ways.
+    let mut compiled: [Result<CompiledProbe, usize>; 2] = [Err(0), Err(0)];
+    let mut one = |k: usize| {
+        let place = if x.is_text() { f64::NAN } else { x.number(k) };
+        let known = &mut compiled[usize::from(place > 0.0)];
+        let plain = place.is_finite() && place != 0.0;
+        if let (true, Ok(known)) = (plain, &mut *known)
+            && let Some(told) = known.at(&[place])
+        {
+            return [told.efficiency, told.loss_w].map(|v| v.unwrap_or(f64::NAN));
+        }
+        let Ok((train, operation)) = plan.asked_along(Some(sample), x, k, trains) else { return [f64::NAN; 2] };
+        let answer = PointAnswer::of(&train, &operation);
+        if !answer.is_unique() {
+            return [f64::NAN; 2];
+        }
+        if let (true, Err(tries @ 0..TRIES), Some(target)) = (plain, &*known, &target) {
+            let tries = tries + 1;
+            *known = CompiledProbe::new(&train, &operation, &[target], &[place], &answer, None).ok_or(tries);
+        }
+        [answer.efficiency(), answer.loss()]
+    };
+    (0..x.len()).map(&mut one).collect()
+}
+
 fn bands_within(
     model: &Model,
     request: &UncertaintyRequest,
@@ -128,7 +159,11 @@ fn bands_within(
     };
     let [x] = <[Axis; 1]>::try_from(axes::parse(&over, model)?).expect("one is parsed");
     let design = plan.design();
-    let most = if detail == Detail::Coarse { COARSE } else { usize::MAX };
+    let most = match detail {
+        Detail::Coarse if question.effort(COARSE as u64, x.len() as u64).seconds > MOMENT => COARSE / 2,
+        Detail::Coarse => COARSE,
+        Detail::Fine => usize::MAX,
+    };
     let samples: Vec<usize> = (0..plan.len()).filter(|k| design.is_sample(*k)).take(most).collect();
     if samples.len() * x.len() > MOST_POINTS {
         let message = format!("{} values with {} samples each are too many for a picture", x.len(), samples.len());
@@ -139,14 +174,7 @@ fn bands_within(
     // One train after the other, so that each is built once.
     let part = |k: usize| -> Vec<Vec<[f64; 2]>> {
         let mut trains = Default::default();
-        let mut along = |sample: &usize| {
-            let one = |j| {
-                let answer = plan.answer_along(Some(*sample), &x, j, &mut trains);
-                if answer.is_unique() { [answer.efficiency(), answer.loss()] } else { [f64::NAN; 2] }
-            };
-            (0..x.len()).map(one).collect()
-        };
-        let values = parts[k].iter().map(&mut along).collect();
+        let values = parts[k].iter().map(|sample| along(&plan, *sample, &x, &mut trains)).collect();
         work.advance(parts[k].len() as u64);
         values
     };

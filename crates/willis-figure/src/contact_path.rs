@@ -170,13 +170,13 @@ pub fn contact_path(train: &Train, operation: Option<&str>, mesh: Option<&str>) 
     let mut why = None;
     for operation in operations {
         match at(train, operation, &wanted) {
-            Ok((meshes, mut left_out)) if !meshes.is_empty() => {
+            Ok((meshes, mut left_out, oil_k)) if !meshes.is_empty() => {
                 left_out.sort();
                 return Ok(ContactPath {
                     title: train.name().to_owned(),
                     operation: operation.name.clone(),
                     oil: lubrication.oil.name.clone(),
-                    temperature_celsius: operation.temperature.unwrap_or(lubrication.temperature) - 273.15,
+                    temperature_celsius: oil_k.unwrap_or(lubrication.temperature) - 273.15,
                     friction_law: train.laws().mesh_friction(true).meta().id.to_owned(),
                     local: meshes.iter().any(|m| m.1),
                     film_law: train.laws().film.meta().id.to_owned(),
@@ -197,9 +197,9 @@ pub fn contact_path(train: &Train, operation: Option<&str>, mesh: Option<&str>) 
     Err(why.unwrap_or_default())
 }
 
-type Paths = (Vec<(MeshPath, bool)>, Vec<String>);
+type Paths = (Vec<(MeshPath, bool)>, Vec<String>, Option<f64>);
 
-/// The meshes at one operating point, and what is left out.
+/// The meshes at one operating point, what is left out, and the oil temperature, K.
 fn at(train: &Train, operation: &Operation, wanted: &[usize]) -> Result<Paths, Diagnostics> {
     let (report, _) = operate(train, operation)?;
     let Some(solution) = report.solutions.first() else {
@@ -209,6 +209,9 @@ fn at(train: &Train, operation: &Operation, wanted: &[usize]) -> Result<Paths, D
             "`willis analyze` tells more",
         ));
     };
+    // At the temperature of the heat balance, where there is one.
+    let mut warm = operation.clone();
+    warm.temperature = report.oil_k(train, operation);
     let (mut all, mut left_out) = (Vec::new(), Vec::new());
     for &k in wanted {
         let mesh = &train.meshes()[k];
@@ -217,7 +220,7 @@ fn at(train: &Train, operation: &Operation, wanted: &[usize]) -> Result<Paths, D
             left_out.push(format!("{}: no teeth given", mesh.name));
             continue;
         };
-        let Some(Along { stations, loss, local, driver }) = unstable::along(train, operation, k, own, STEPS) else {
+        let Some(Along { stations, loss, local, driver }) = unstable::along(train, &warm, k, own, STEPS) else {
             left_out.push(format!("{}: not loaded, or at rest", mesh.name));
             continue;
         };
@@ -246,7 +249,7 @@ fn at(train: &Train, operation: &Operation, wanted: &[usize]) -> Result<Paths, D
         };
         all.push((path, local));
     }
-    Ok((all, left_out))
+    Ok((all, left_out, warm.temperature))
 }
 
 fn unfit(text: impl Into<String>, hint: impl Into<String>) -> Diagnostics {

@@ -18,6 +18,18 @@ pub(crate) enum Detail {
 }
 
 impl Detail {
+    /// Points along two axes, of so many in full, where each point takes so long, s: a coarse figure has half as many along
+    /// each axis, and fewer if they would take longer than a moment, but enough to show a shape.
+    pub fn grid(self, full: [usize; 2], each: f64) -> [usize; 2] {
+        /// Points along an axis that show a shape.
+        const LEAST: usize = 6;
+        if self == Self::Fine {
+            return full;
+        }
+        let part = (MOMENT / (each * (full[0] * full[1]) as f64)).sqrt().min(0.5);
+        full.map(|n| ((n as f64 * part).ceil() as usize).max(LEAST.min(n)))
+    }
+
     /// Points along an axis, of so many in full.
     pub fn of(self, points: usize) -> usize {
         match self {
@@ -26,6 +38,10 @@ impl Detail {
         }
     }
 }
+
+/// Seconds of a coarse figure as its work is estimated. Estimates are right within a factor of three, and borders come to the
+/// points: what is seen takes some 20 ms to 50 ms.
+pub(crate) const MOMENT: f64 = 0.008;
 
 /// See [`Kind::steps`].
 pub(crate) type InSteps<T> = fn(&Model, &FigureRequest, &dyn Work, Detail) -> Result<T, Diagnostics>;
@@ -76,6 +92,8 @@ pub enum Ask {
     Terminals,
     /// [`FigureRequest::balance`].
     Balance,
+    /// [`FigureRequest::seen_from`].
+    SeenFrom,
     /// [`FigureRequest::nominal`].
     Nominal,
     /// [`FigureRequest::window`].
@@ -94,6 +112,7 @@ impl Ask {
             Self::Over => "over",
             Self::Terminals => "terminals",
             Self::Balance => "balance",
+            Self::SeenFrom => "seen-from",
             Self::Nominal => "nominal",
             Self::Window => "from",
             Self::Animated => "animated",
@@ -118,6 +137,8 @@ pub struct FigureRequest {
     pub terminals: Option<Vec<String>>,
     /// Two terminals whose powers add to zero, for regimes.
     pub balance: Option<[String; 2]>,
+    /// The member from which speeds and powers are seen, such as a carrier, for flows of power; absent for the housing.
+    pub seen_from: Option<String>,
     /// Teeth without geometry are drawn as nominal ones of module 1.
     pub nominal: bool,
     /// From when to when a scenario is shown, s; infinite where it is shown from its start or to its end.
@@ -141,6 +162,7 @@ impl FigureRequest {
             (Ask::Over, !self.over.is_empty()),
             (Ask::Terminals, self.terminals.is_some()),
             (Ask::Balance, self.balance.is_some()),
+            (Ask::SeenFrom, self.seen_from.is_some()),
             (Ask::Nominal, self.nominal),
             (Ask::Window, self.window.is_some()),
         ];

@@ -239,17 +239,27 @@ impl LeverLayout {
     /// # Errors
     /// No such operation or state; a state that has no motion to show.
     pub fn show(&self, train: &Train, request: &LeverRequest) -> Result<Lever, Diagnostics> {
-        shown(train, &self.families, &self.placed, request)
+        laid_out(train, &self.families, &self.placed, Shown::find(train, request)?)
+    }
+
+    /// The same of an operating point that is analyzed already, and one of its equilibria; where it has none, what moves only
+    /// with every loaded member pushing.
+    ///
+    /// # Errors
+    /// The train has no such operation; its speeds are not settled.
+    pub fn show_report(
+        &self,
+        train: &Train,
+        report: &OperationReport,
+        equilibrium: usize,
+    ) -> Result<Lever, Diagnostics> {
+        let operation = train.find_operation(&report.name)?;
+        let shown = Shown::report(train, operation, report.clone(), Some(equilibrium))?;
+        laid_out(train, &self.families, &self.placed, shown)
     }
 }
 
-fn shown(
-    train: &Train,
-    families: &[Family],
-    placed: &layout::Placed,
-    request: &LeverRequest,
-) -> Result<Lever, Diagnostics> {
-    let shown = Shown::find(train, request)?;
+fn laid_out(train: &Train, families: &[Family], placed: &layout::Placed, shown: Shown) -> Result<Lever, Diagnostics> {
     let mut bars: Vec<LeverBar> = Vec::new();
     for parts in &placed.bars {
         bars.push(bar(train, families, placed, parts, &shown));
@@ -315,6 +325,16 @@ impl Shown {
 
     fn operation(train: &Train, operation: &Operation) -> Result<Self, Diagnostics> {
         let (report, _) = operate(train, operation)?;
+        Self::report(train, operation, report, None)
+    }
+
+    /// Of one of several equilibria, or of one that delivers power.
+    fn report(
+        train: &Train,
+        operation: &Operation,
+        report: OperationReport,
+        equilibrium: Option<usize>,
+    ) -> Result<Self, Diagnostics> {
         let engaged = operation.state.map_or(&[][..], |k| &train.states()[k].engaged);
         let mut case = case(train, 0, &operation.name, engaged, &operation.fixed);
         case.note = note(&report);
@@ -329,7 +349,10 @@ impl Shown {
             unit: None,
             cases: vec![case],
             speeds: vec![speeds],
-            solution: chosen(report.solutions.into_iter().chain(report.dissipative_solutions).collect()),
+            solution: match equilibrium {
+                Some(k) if k < report.solutions.len() => report.solutions.into_iter().nth(k),
+                _ => chosen(report.solutions.into_iter().chain(report.dissipative_solutions).collect()),
+            },
         })
     }
 

@@ -1,6 +1,6 @@
 //! Efficiency over two quantities, with what has no answer, and the gear that loses least.
 
-mod compiled;
+pub(crate) mod compiled;
 pub mod draw;
 mod probe;
 mod told;
@@ -11,6 +11,7 @@ use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::Model;
 use willis::study::{Axis, Hold, PointVerdict, Question};
 use willis::train::{Load, MemberId, Operation, Train};
+use willis::unstable;
 use willis::work::{Cancelled, Effort, Serial, Work};
 
 use crate::kind::{Ask, Detail, FigureRequest, Kind};
@@ -226,7 +227,10 @@ fn map_within(
         return Ok(map);
     }
     let over = match over {
-        [] => vec![axes::usual_speed(&question, detail.of(COLUMNS)), axes::usual_load(&question, detail.of(ROWS))],
+        [] => {
+            let [columns, rows] = detail.grid([COLUMNS, ROWS], Effort::of_points(train, 1).seconds);
+            vec![axes::usual_speed(&question, columns), axes::usual_load(&question, rows)]
+        }
         [_, _] => over.to_vec(),
         _ => {
             let message = format!("a map runs over two quantities, not {}", over.len());
@@ -282,13 +286,9 @@ fn few_enough(points: usize) -> Result<(), Diagnostics> {
 /// The points of a grid, row by row.
 fn gridded([x, y]: [&ChartAxis; 2], probe: &mut Probe<'_, '_>, work: &dyn Work) -> Result<Vec<MapPoint>, Cancelled> {
     let width = x.values.len();
-    work.begin("points", (width * y.values.len()) as u64);
-    let mut found = Vec::with_capacity(width * y.values.len());
-    for row in &y.values {
-        going(work)?;
-        found.extend(x.values.iter().map(|x| probe.at([*x, *row])));
-        work.advance(width as u64);
-    }
+    let rows: Vec<Vec<[f64; 2]>> = y.values.iter().map(|y| x.values.iter().map(|x| [*x, *y]).collect()).collect();
+    work.begin("points", (width * rows.len()) as u64);
+    let mut found = probe.at_all(&rows, work)?;
     // A point exactly on a border belongs to no zone: it is told as what lies a millionth of a step inwards of it.
     let plain = probe.loosest();
     let inwards = |values: &[f64], k: usize| match k + 1 < values.len() {
@@ -498,7 +498,8 @@ fn best_state(question: &Question<'_>, work: &dyn Work, detail: Detail) -> Resul
     if train.states().iter().any(|s| s.input.is_some_and(|m| m != input) || s.output.is_some_and(|m| m != output)) {
         return Ok(None);
     }
-    let table = analysis::analyze(train, &Selection { state: None, operation: None })?.ratios;
+    // Operations do not matter here, nor what is wrong with them.
+    let table = analysis::analyze(&unstable::without_operations(train), &Selection::default())?.ratios;
     let own = |name: &str| table.0.iter().find(|row| row.0 == name).and_then(|row| row.1.value);
     let ratios: Vec<f64> = table.0.iter().filter_map(|(_, row)| row.value).filter(|r| *r > 0.0).collect();
     if ratios.len() < 2 {
@@ -512,10 +513,13 @@ fn best_state(question: &Question<'_>, work: &dyn Work, detail: Detail) -> Resul
         format!("{:.12e}", (x / unit).ceil() * unit).parse::<f64>().unwrap_or(x)
     };
     let (speed, torque) = (digits(most_speed / low), digits(most_torque * high));
-    let [columns, rows] = FEWER.map(|count| detail.of(count));
+    let [columns, rows] = detail.grid(FEWER, Effort::of_points(train, ratios.len() as u64).seconds);
+    // Low enough that no gear lies outside as a whole.
+    let (least_speed, least_torque) =
+        ((speed / 40.0).min(most_speed / high / 2.0), (torque / 30.0).min(most_torque * low / 2.0));
     let over = [
-        format!("output.speed={} rpm..{speed} rpm:{columns}", speed / 40.0),
-        format!("output.torque={} N m..{torque} N m:{rows}", torque / 30.0),
+        format!("output.speed={least_speed} rpm..{speed} rpm:{columns}"),
+        format!("output.torque={least_torque} N m..{torque} N m:{rows}"),
         "state=all".to_owned(),
     ];
     let [x, y] = <[Axis; 2]>::try_from(axes::parse(&over[..2], model)?).expect("two are parsed");

@@ -238,6 +238,8 @@ kinds! {
     "losses": Losses(LossChart) = losses::KIND;
     /// Losses without load of every gear, stacked by source.
     "spin": Spin(SpinLosses) = spin::KIND;
+    /// Temperatures and heat between the places of a gearbox, the balance as two curves, the warm-up.
+    "heat": Heat(HeatPicture) = heat::KIND;
     /// Oil film over roughness along the path of contact of a mesh.
     "film": Film(ContactPath) = contact_path::film::KIND;
     /// Friction, sliding and load along the path of contact of a mesh.

@@ -264,7 +264,7 @@ pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result
     let train = model.train();
     let selection = Selection { state: None, operation: request.operation.clone() };
     work.afford(&Effort::of_analysis(train, &selection))?;
-    let analysis = analyze(train, &selection)?;
+    let analysis = analyze(train, &selection)?.with_loads(train);
     // Only the first operation's is shown.
     let first = analysis.operations.first().map(|o| Selection { operation: Some(o.name.clone()), ..selection });
     let sensitivity = first.map(|first| sensitivity(train, &first));
@@ -279,6 +279,7 @@ pub fn report(model: &Model, request: &ReportRequest, work: &dyn Work) -> Result
         results::shift_table(&all),
         results::operations(&all),
         results::losses(&all),
+        results::heat(&all),
         results::maps(&all),
         results::motion(&all),
         results::formulas(&all),
@@ -367,6 +368,9 @@ fn wanted(model: &Model, request: &ReportRequest, analysis: &Analysis) -> Vec<(F
     if !analysis.operations.is_empty() {
         all.push((Band, FigureRequest { samples: 128, ..only.clone() }));
     }
+    if train.heat().is_some() && !analysis.operations.is_empty() {
+        all.push((Heat, only.clone()));
+    }
     for set in train.sets() {
         all.push((Front, FigureRequest { part: Some(set.name.clone()), ..Default::default() }));
     }
@@ -406,7 +410,7 @@ fn facts(all: &Findings<'_>) -> Vec<[String; 2]> {
 fn summary(all: &Findings<'_>) -> Section {
     let mut blocks = vec![Block::Notice { level: Level::Note, text: scope(all) }];
     let train = all.model.train();
-    blocks.extend(gears::tables(train));
+    blocks.extend(gears::tables(train, &all.analysis));
     let columns = ["Operating point", "Verdict"].map(Column::words).into_iter();
     let columns = columns.chain(["Efficiency", "90 % band", "Power in", "Lost"].map(Column::numbers)).collect();
     let rows: Vec<Vec<String>> = (all.analysis.operations.iter())

@@ -26,7 +26,7 @@ use crate::parts::point::pointed;
 
 pub(crate) const KIND: Kind<Sankey> = Kind {
     title: "Power flow to scale",
-    takes: &[Ask::State, Ask::Operation],
+    takes: &[Ask::State, Ask::Operation, Ask::SeenFrom],
     effort: kind::of_operations,
     applies: None,
     make: |s, r| Ok(sankey(&powers(s, r)?)),
@@ -68,6 +68,9 @@ pub struct SankeyPanel {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct SankeyFlow {
+    /// The member from which speeds and powers are seen; absent where that is the housing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seen_from: Option<String>,
     /// Power in, W.
     pub input_w: f64,
     /// Power out, W.
@@ -381,6 +384,7 @@ fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
         })
         .collect();
     Some(SankeyFlow {
+        seen_from: g.seen_from.clone(),
         input_w: g.input_power_w,
         output_w: g.output_power_w,
         loss_w: g.loss_w,
@@ -396,7 +400,8 @@ fn flow(g: &Hypergraph) -> Option<SankeyFlow> {
 fn fold_drags(stops: &mut [Stop<'_>], arcs: &mut Vec<Arc>) {
     for k in 0..stops.len() {
         let node = stops[k].node;
-        if !matches!(node.kind, NodeKind::Bearing | NodeKind::Seal | NodeKind::Gear | NodeKind::Rotor) {
+        use NodeKind::{Bearing, Drag, Gear, OpenElement, Pump, Rotor, Seal};
+        if !matches!(node.kind, Bearing | Seal | Gear | Rotor | Drag | OpenElement | Pump) {
             continue;
         }
         let into: Vec<Arc> = arcs.iter().filter(|a| a.to == k).cloned().collect();
@@ -460,7 +465,8 @@ fn join_ends(stops: &mut [Stop<'_>], arcs: &mut Vec<Arc>) {
         let Some(j) = arcs.iter().position(|a| ends(a).0 == k) else { continue };
         let (member, power) = (ends(&arcs[j]).1, arcs[j].power);
         let alone = arcs.iter().filter(|a| ends(a).1 == member).count() == 1;
-        let target = if alone && stops[member].input == 0.0 && stops[member].node.kind == NodeKind::Member {
+        let whole = matches!(stops[member].node.kind, NodeKind::Member | NodeKind::Frame);
+        let target = if alone && stops[member].input == 0.0 && whole {
             arcs.remove(j);
             stops[k].gone = true;
             member

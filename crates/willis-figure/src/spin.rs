@@ -3,14 +3,13 @@
 pub mod draw;
 
 use serde::{Deserialize, Serialize};
+use willis::analysis::{DrivingLoad, idle, operate_unnamed};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::exact::Rational;
 use willis::model::Model;
 use willis::operating_point::LossKind;
 use willis::study::{PointAnswer, PointVerdict};
-use willis::train::{Load, MemberId, Train};
-use willis::units::{Dimension, Quantity};
-use willis::unstable;
+use willis::train::{MemberId, Train};
+use willis::units::AngularSpeed;
 use willis::work::Effort;
 
 use crate::kind::{Ask, FigureRequest, Kind};
@@ -28,7 +27,8 @@ pub(crate) const KIND: Kind<SpinLosses> = Kind {
 };
 
 fn effort(model: &Model, _: &FigureRequest) -> Effort {
-    Effort::of_points(model.train(), model.train().states().len().max(1) as u64)
+    // Under load, for the temperature of the oil, and without.
+    Effort::of_points(model.train(), 2 * model.train().states().len().max(1) as u64)
 }
 
 /// What each gear loses while its output is free of torque.
@@ -55,6 +55,9 @@ pub struct SpinGear {
     pub state: String,
     /// The member that is driven.
     pub input: String,
+    /// Oil temperature, K: that under the load of the operating point; absent without such a load, or without an oil.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub oil_k: Option<f64>,
     /// What can be said of it: `unloaded` where nothing is lost.
     pub verdict: PointVerdict,
     /// Torque that turns the input, N m; absent where there is no single answer.
@@ -88,10 +91,10 @@ fn gears(train: &Train, state: Option<&str>) -> Vec<(Option<usize>, MemberId, Me
     all.into_iter().filter(wanted).filter_map(|k| ends(train, k).map(|(input, output)| (k, input, output))).collect()
 }
 
-/// Losses without load: the input of every gear turns at the speed of the operating point (of the file's first that prescribes
-/// it; without one at 1000 rpm), and no torque acts on any other terminal. What is lost then is what bearings, seals, and gears
-/// and rotors in air or oil take, and what their drag makes the teeth lose. Drag of open shift elements and of an oil pump is not
-/// computed.
+/// Losses without load: the input of every gear turns at the speed of the operating point (of the file's first in which it
+/// drives, or that prescribes it; without one at 1000 rpm) in oil as warm as under the load of that point, and no torque acts on
+/// any other terminal. What is lost then is what bearings, seals, open shift elements, an oil pump, and gears and rotors in air or
+/// oil take, and what their drag makes the teeth lose.
 ///
 /// # Errors
 /// No such state or operation; no input and output.
@@ -135,24 +138,38 @@ pub fn spin_losses(train: &Train, state: Option<&str>, operation: Option<&str>) 
         let d = Diagnostic::new(Code::Unfit, "", "losses without load need an input and an output, and there are none");
         return Err(d.hint("name them with `input` and `output`, or give two `terminals`").into());
     };
-    let candidates = train.operations().iter().filter(|o| asked.is_none_or(|asked| asked.name == o.name));
-    let mut candidates = candidates.map(|o| Some((o, o.speeds.iter().find(|s| s.0 == first.1)?.1.clone())));
-    let given = candidates.find_map(|found| found);
-    // 1000 rpm are 1000 π/30 rad/s.
-    let usual = || Quantity { value: Rational::new(100, 3), pi_power: 1, dimension: Dimension::ANGULAR_SPEED };
-    let (of_operation, speed) = match given {
-        Some((o, speed)) if speed.si() != 0.0 => (Some(o.name.clone()), speed),
-        _ => (None, usual()),
+    let mut loads: Vec<(MemberId, Option<DrivingLoad>)> = vec![];
+    for (_, input, _) in &all {
+        if loads.iter().all(|(known, _)| known != input) {
+            let load = match asked {
+                Some(operation) => DrivingLoad::of_operation(train, operation, *input),
+                None => DrivingLoad::of_file(train, *input),
+            };
+            loads.push((*input, load));
+        }
+    }
+    let load_of = |input: MemberId| loads.iter().find(|(known, _)| *known == input).and_then(|(_, load)| load.clone());
+    // Of an operation that says how fast the input turns, though it does not drive.
+    let turns = || {
+        let operations = train.operations().iter().filter(|o| asked.is_none_or(|asked| asked.name == o.name));
+        let mut speeds = operations.filter_map(|o| Some((o, o.speeds.iter().find(|s| s.0 == first.1)?.1.clone())));
+        speeds.next().filter(|(_, speed)| speed.si() != 0.0)
     };
-    let none = Quantity { value: Rational::ZERO, pi_power: 0, dimension: Dimension::TORQUE };
+    let (of_operation, speed) = match (load_of(first.1), turns()) {
+        (Some(load), _) => (load.operation, load.speed),
+        (None, Some((o, speed))) => (Some(o.name.clone()), speed),
+        (None, None) => (None, AngularSpeed::rpm(1000.0).into()),
+    };
     let gear = |(state, input, _): &(Option<usize>, MemberId, MemberId)| {
-        let idle = train.terminals().iter().filter(|m| *m != input);
-        let loads = idle.map(|m| (*m, Load::Torque(none.clone()))).collect();
-        let point = unstable::operation("no load".to_owned(), *state, vec![(*input, speed.clone())], loads);
-        let answer = PointAnswer::of(train, &point);
+        // As warm as under load, as in the table of all gears.
+        let loaded = load_of(*input)
+            .and_then(|load| DrivingLoad { speed: speed.clone(), ..load }.point(train, *state, "at load"));
+        let oil_k = loaded.and_then(|point| operate_unnamed(train, &point).ok()?.0.oil_k(train, &point));
+        let answer = idle(train, *state, &speed, oil_k).map(|point| PointAnswer::of(train, &point));
+        let verdict = answer.as_ref().map_or(PointVerdict::Undetermined, |a| a.verdict);
         let name = train.member_name(*input);
-        let known = matches!(answer.verdict, PointVerdict::Unique | PointVerdict::Unloaded);
-        let solution = answer.solution.as_ref().filter(|_| known);
+        let known = matches!(verdict, PointVerdict::Unique | PointVerdict::Unloaded);
+        let solution = answer.as_ref().and_then(|a| a.solution.as_ref()).filter(|_| known);
         let mut sources: Vec<SpinSource> = solution
             .map(|s| s.sources.iter())
             .into_iter()
@@ -164,7 +181,8 @@ pub fn spin_losses(train: &Train, state: Option<&str>, operation: Option<&str>) 
         SpinGear {
             state: state.map_or("as drawn".to_owned(), |k| train.states()[k].name.clone()),
             input: name.to_owned(),
-            verdict: answer.verdict,
+            oil_k,
+            verdict,
             torque_n_m: solution.and_then(|s| s.members.get(name)?.torque_n_m),
             loss_w: solution.map(|s| s.loss_w),
             sources,

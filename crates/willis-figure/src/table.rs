@@ -3,7 +3,7 @@
 
 pub mod draw;
 
-use willis::analysis::{ShaftTable, shaft_table};
+use willis::analysis::{AskedLoad, ShaftTable, ShaftTableRequest, shaft_table};
 
 use crate::kind::{self, Ask, Kind};
 
@@ -12,7 +12,12 @@ pub(crate) const KIND: Kind<ShaftTable> = Kind {
     takes: &[Ask::State],
     effort: kind::of_file,
     applies: None,
-    make: |s, r| shaft_table(s.train(), r.state.as_deref(), false),
+    make: |s, r| {
+        shaft_table(
+            s.train(),
+            &ShaftTableRequest { state: r.state.clone(), lossless: false, load: Some(AskedLoad::default()) },
+        )
+    },
     steps: None,
     draw: |data, _| draw::draw(data),
 };

@@ -36,14 +36,7 @@ pub fn ask(
     let of: Arc<[Given]> = trains.iter().map(|t| t.given.clone()).collect();
     let work = Interpreter::new(threads, patience, progress);
     let asked = py.detach(|| -> Result<_, Refusal> {
-        let entry = willis_ask::question(question).expect("the package asks what is in the list");
-        let request: Value = serde_json::from_str(request).expect("the package writes JSON");
-        let mut request = entry.request(request)?;
-        for file in request.attachments() {
-            if file.text.is_empty() {
-                file.text = willis_cli::input::table(&file.name).map_err(|w| Refusal::File(w, file.clone()))?;
-            }
-        }
+        let request = read(question, request)?;
         let answer = request.ask_for_good(of.clone(), &work)?;
         work.finish();
         Ok((request, answer))
@@ -52,6 +45,57 @@ pub fn ask(
         return Err(error);
     }
     let (request, answer) = asked.map_err(|refusal| refused(py, &refusal, &of))?;
+    Ok(Answer { answer, request, of })
+}
+
+/// A request from JSON, with the files that it names.
+fn read(question: &str, request: &str) -> Result<Box<dyn Request>, Refusal> {
+    let entry = willis_ask::question(question).expect("the package asks what is in the list");
+    let request: Value = serde_json::from_str(request).expect("the package writes JSON");
+    let mut request = entry.request(request)?;
+    for file in request.attachments() {
+        if file.text.is_empty() {
+            file.text = willis_cli::input::table(&file.name).map_err(|w| Refusal::File(w, file.clone()))?;
+        }
+    }
+    Ok(request)
+}
+
+/// What piece `k` of `n`, counted from 0, of a question finds; on one thread, however long it takes.
+#[pyfunction]
+pub fn piece<'py>(
+    py: Python<'py>,
+    question: &str,
+    request: &str,
+    train: PyRef<'_, Train>,
+    k: usize,
+    n: usize,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let of = [train.given.clone()];
+    let work = Interpreter::new(1, f64::INFINITY, None);
+    let found = py.detach(|| read(question, request)?.piece(&of, k, n, &work));
+    if let Some(error) = work.raised() {
+        return Err(error);
+    }
+    Ok(PyBytes::new(py, &found.map_err(|refusal| refused(py, &refusal, &of))?))
+}
+
+/// The answer from all pieces of a question, in their order.
+#[pyfunction]
+pub fn gather(
+    py: Python<'_>,
+    question: &str,
+    request: &str,
+    train: PyRef<'_, Train>,
+    pieces: Vec<Vec<u8>>,
+) -> PyResult<Answer> {
+    let of: Arc<[Given]> = Arc::new([train.given.clone()]);
+    let gathered = py.detach(|| -> Result<_, Refusal> {
+        let request = read(question, request)?;
+        let answer = request.gather(of.clone(), &pieces)?;
+        Ok((request, answer))
+    });
+    let (request, answer) = gathered.map_err(|refusal| refused(py, &refusal, &of))?;
     Ok(Answer { answer, request, of })
 }
 

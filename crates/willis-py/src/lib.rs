@@ -16,7 +16,7 @@ mod _willis {
     use pyo3::prelude::{Python, pyfunction};
 
     #[pymodule_export]
-    use crate::answer::{Answer, ask, questions};
+    use crate::answer::{Answer, ask, gather, piece, questions};
     #[pymodule_export]
     use crate::compiled::Compiled;
     #[pymodule_export]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import importlib.util
 import pickle
 import subprocess
 import sys
@@ -182,3 +183,17 @@ def test_a_profile_is_a_path_or_a_table(examples: Path) -> None:
     by_table = train.cycle(profile=polars.read_csv(path, infer_schema_length=0, comment_prefix="#"))
     # Comments have no place in a table: the lines of the file are other ones.
     assert by_path.tables["cycle"] == by_table.tables["cycle"]
+
+
+def test_text_in_a_notebook_keeps_its_columns(automatic: willis.Train) -> None:
+    shown = automatic.check()._repr_html_()
+    assert "font-family:monospace" in shown and "white-space:pre" in shown
+
+
+def test_a_bar_needs_no_widgets_and_says_nothing_of_them(
+    automatic: willis.Train, monkeypatch: pytest.MonkeyPatch, recwarn: pytest.WarningsRecorder
+) -> None:
+    pytest.importorskip("tqdm")
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
+    automatic.sweep(over={"input.speed": "500..6000 rpm:20"}, state="3", progress=True)
+    assert not [w for w in recwarn if "IProgress" in str(w.message)]

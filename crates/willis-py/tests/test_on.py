@@ -30,6 +30,28 @@ def test_processes_make_the_bytes_of_one(automatic: willis.Train, tmp_path: Path
     assert [Path(f).read_bytes() for f in parts.files] == parts_of_one_machine(automatic, 3, form)
 
 
+@pytest.mark.parametrize("shards", [1, 3, 1000])
+def test_an_uncertainty_in_shards_is_that_of_one_machine(examples: Path, shards: int) -> None:
+    stage = willis.read(examples / "fva-planetary-stage.toml")
+    request = {"vary": ["oil.temperature=60..80 degC", "P1.geometry.roughness=+-20%"], "laws": "mesh_friction", "samples": 128}
+    with ThreadPoolExecutor(2) as pool:
+        answer = willis.on(pool).uncertainty(stage, shards=shards, **request)
+    alone = stage.uncertainty(**request)
+    assert answer == alone and answer.tables == alone.tables and answer.request == alone.request
+
+
+def test_processes_find_an_uncertainty_and_tell_what_is_wrong(automatic: willis.Train) -> None:
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        on = willis.on(pool)
+        assert on.uncertainty(automatic, state="3", samples=128) == automatic.uncertainty(state="3", samples=128)
+        with pytest.raises(willis.TrainError, match="no state `33`"):
+            on.uncertainty(automatic, state="33")
+        with pytest.raises(willis.TrainError, match="unknown field `speed`"):
+            on.uncertainty(automatic, speed=3)
+        with pytest.raises(ValueError, match="0 shards"):
+            on.uncertainty(automatic, shards=0)
+
+
 def test_what_is_there_is_kept(automatic: willis.Train, tmp_path: Path) -> None:
     out = tmp_path / "out"
     with ThreadPoolExecutor(2) as pool:

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 import gc
 import pickle
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -70,3 +75,42 @@ def test_an_empty_table_is_one(automatic: willis.Train) -> None:
         again = pickle.loads(pickle.dumps(table))
         assert again == table
         assert pyarrow.table(again).num_rows == len(table)
+
+
+@pytest.mark.parametrize(
+    ("file", "words", "asked"),
+    [
+        (
+            "fva-planetary-stage.toml",
+            ["sweep", "--over", "sun.speed=500..1500 rpm:3", "--over", "oil.temperature=40, 80 degC", "--columns", "all"],
+            lambda t: t.sweep(over={"sun.speed": "500..1500 rpm:3", "oil.temperature": "40, 80 degC"}, columns="all"),
+        ),
+        (
+            "prius-hybrid.toml",
+            ["sweep", "--over", "ratio=0.5..2:4", "--columns", "all,variators"],
+            lambda t: t.sweep(over={"ratio": "0.5..2:4"}, columns=["all", "variators"]),
+        ),
+        ("launch.toml", ["simulate", "--samples", "5"], lambda t: t.simulate(samples=5)),
+        ("ivt-drive-away.toml", ["simulate", "--samples", "5"], lambda t: t.simulate(samples=5)),
+    ],
+)
+def test_columns_have_one_name_in_csv_parquet_and_python(
+    examples: Path, tmp_path: Path, file: str, words: list[str], asked: Callable[[willis.Train], willis.Answer]
+) -> None:
+    pyarrow = pytest.importorskip("pyarrow.parquet")
+    answer = asked(willis.read(examples / file))
+    table = next(t for t in answer.tables.values() if t.name in ("points", "rows"))
+    question, *options = words
+    names = {}
+    for ending in ("csv", "parquet"):
+        out = tmp_path / f"out.{ending}"
+        run = [sys.executable, "-m", "willis", question, str(examples / file), *options, "-o", str(out)]
+        subprocess.run(run, check=True, capture_output=True)
+        names[ending] = (
+            next(csv.reader(out.read_text().splitlines())) if ending == "csv" else pyarrow.read_schema(out).names
+        )
+    assert names["csv"] == names["parquet"] == table.columns
+    # And each is found without its unit.
+    for name in table.columns:
+        bare = name.removesuffix("_rad_s").removesuffix("_n_m").removesuffix("_w")
+        assert bare in table, bare

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use wasm_bindgen::prelude::wasm_bindgen;
-use willis::analysis::{self, Selection};
+use willis::analysis::{self, Analysis, Selection};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
-use willis::hypergraph::flows;
+use willis::hypergraph::{FlowReport, flow_of, flows_seen_from};
+use willis::kinematics::Configuration;
 use willis::model::Model;
-use willis::train::{AS_DRAWN, Train};
+use willis::train::{AS_DRAWN, MemberId, State, Train};
 use willis_ask::{Attachment, Given, Refusal};
 use willis_figure::{
     Columns, LeverLayout, LeverRequest, LeverScale, SankeyPaper, Stick, StickLayout, lever_panel, sankey, stick_panel,
@@ -33,6 +34,8 @@ pub struct Session {
     scheme: Option<Scheme>,
     /// Where the flow of power is drawn, kept while something is dragged.
     paper: Option<SankeyPaper>,
+    /// Pictures of the levers and of the flow of power that the page has.
+    seen: [String; 2],
 }
 
 /// A schematic that the page has: it depends on what is closed, and not on speeds and torques.
@@ -57,6 +60,12 @@ pub struct Boxes {
     pub power: [f64; 2],
     /// Least and greatest speed of the levers' scale, rad/s, and torque of the longest arrow, N m.
     pub scale: Option<[f64; 3]>,
+    /// Which of several equilibria is shown; 0 is the first.
+    pub answer: usize,
+    /// The member from which powers are seen; else the housing.
+    pub seen_from: Option<String>,
+    /// How many times wider losses are drawn than power; else as wide as they can be seen.
+    pub losses: Option<f64>,
 }
 
 /// What all panels show of one point.
@@ -69,13 +78,13 @@ pub struct Shown {
     pub operation: Option<String>,
     /// The state's name, where there is one.
     pub state: Option<String>,
-    /// The schematic as SVG, or a refusal as JSON; empty where it is not seen, or as it was before.
+    /// The schematic as SVG, or a refusal as JSON; empty where it is as it was before, or not seen.
     pub stick: String,
     /// The levers, likewise.
     pub lever: String,
     /// The flow of power, likewise.
     pub power: String,
-    /// Columns and scale of the levers as JSON.
+    /// Columns and scale of the levers, and how many times wider than power losses are drawn, as JSON.
     pub frame: String,
 }
 
@@ -91,7 +100,17 @@ impl Session {
         let model = read(name, text, &files)?;
         let stick = StickLayout::new(model.train());
         let lever = LeverLayout::new(model.train());
-        Ok(Self { name: name.to_owned(), files, model, stick, lever, shown: None, scheme: None, paper: None })
+        Ok(Self {
+            name: name.to_owned(),
+            files,
+            model,
+            stick,
+            lever,
+            shown: None,
+            scheme: None,
+            paper: None,
+            seen: Default::default(),
+        })
     }
 
     /// What the page needs to know of the train, as JSON: members, sets, elements, states, operations, quantities.
@@ -100,7 +119,7 @@ impl Session {
         let specification = serde_json::to_value(self.model.specification()).unwrap_or_default();
         let name = |m: &willis::train::MemberId| train.member_name(*m).to_owned();
         let end = |state: Option<usize>| train.ends(state).map(|m| m.map(|m| train.member_name(m).to_owned()));
-        let state = |(k, s): (usize, &willis::train::State)| {
+        let state = |(k, s): (usize, &State)| {
             let engaged: Vec<&str> =
                 s.engaged.iter().map(|e| train.shift_elements()[e.index()].name.as_str()).collect();
             json!({ "name": s.name, "engaged": engaged, "ends": end(Some(k)) })
@@ -123,10 +142,48 @@ impl Session {
             "sets": specification.get("set").cloned().unwrap_or(Value::Array(vec![])),
             "operations": specification.get("operation").cloned().unwrap_or(Value::Array(vec![])),
             "scenarios": train.scenarios().iter().map(|s| s.name.clone()).collect::<Vec<_>>(),
+            "sources": sources(&specification),
             "quantities": self.model.document().quantities().into_iter().map(quantity).collect::<Vec<_>>(),
             "warnings": self.model.warnings(),
         })
         .to_string()
+    }
+
+    /// What the train is with these elements closed, as JSON: the gear of the shift table, its input and output, members
+    /// whose speeds settle all others, and terminals of which a torque is given while the others balance the train. Members
+    /// whose speeds are `known` are taken before others; the input is the first of both.
+    ///
+    /// # Errors
+    /// There is no such element, as a refusal in JSON.
+    pub fn closed(&self, engaged: Vec<String>, known: Vec<String>) -> Result<String, String> {
+        let train = self.model.train();
+        let find = |name: &String| train.find_shift_element(name).map_err(|wrong| self.refused((*wrong).into()));
+        let mut closed = engaged.iter().map(find).collect::<Result<Vec<_>, _>>()?;
+        closed.sort_unstable();
+        closed.dedup();
+        let is_same = |s: &State| {
+            let mut own = s.engaged.clone();
+            own.sort_unstable();
+            own == closed
+        };
+        let state = train.states().iter().position(is_same);
+        let ends = train.ends(state);
+        let [input, output] = ends;
+        let all: Vec<MemberId> = train.members()[1..].iter().filter_map(|m| train.member(&m.name)).collect();
+        let c = Configuration::new(train, &closed, &[], &all);
+        let mut wish: Vec<MemberId> = input.into_iter().chain(train.terminals().iter().copied()).chain(all).collect();
+        wish.sort_by_key(|m| !known.iter().any(|name| name == train.member_name(*m)));
+        // What moves a train may be no terminal of it, as a machine of a variator.
+        let mut terminals = train.terminals().to_vec();
+        terminals.sort_by_key(|m| (Some(*m) != input, Some(*m) == output));
+        let names = |all: Vec<MemberId>| all.into_iter().map(|m| train.member_name(m)).collect::<Vec<_>>();
+        Ok(json!({
+            "state": state.map(|k| train.states()[k].name.clone()),
+            "ends": ends.map(|m| m.map(|m| train.member_name(m).to_owned())),
+            "speeds": names(c.settling(&wish)),
+            "torques": names(c.loading(&terminals)),
+        })
+        .to_string())
     }
 
     /// The train file with the entries that a point stands for, the text for which the command line gives the same answers.
@@ -137,12 +194,12 @@ impl Session {
         Ok(with_entries(self.model.to_toml(), &parsed::<Point>(point)?.entries(&self.model)))
     }
 
-    /// Shows a point in all panels. A schematic that is as it was before is left out.
+    /// Shows a point in all panels. A picture that is as it was before is left out.
     ///
     /// # Errors
     /// The point or the boxes are no JSON of such. What is wrong with the train at this point stands in the answer.
     pub fn show(&mut self, point: &str, boxes: &str) -> Result<Shown, String> {
-        let boxes: Boxes = parsed(boxes)?;
+        let mut boxes: Boxes = parsed(boxes)?;
         let at: Point = parsed(point)?;
         let moved = boxes.scale.and_then(|_| at.moved(self.model.train()));
         let (train, state, operation, engaged) = match moved {
@@ -160,14 +217,32 @@ impl Session {
             (Some(_), _) => Selection { state: None, operation: operation.clone() },
             (None, _) => Selection { state: state.clone(), operation: None },
         };
-        let analysis = match analysis::analyze(&train, &selection) {
-            Ok(analysis) => willis_ask::json(&analysis),
-            Err(wrong) => self.refused(wrong),
+        let found = analysis::analyze(&train, &selection);
+        let analysis = match &found {
+            Ok(analysis) => willis_ask::json(analysis),
+            Err(wrong) => self.refused(wrong.clone()),
         };
+        let found = found.ok().filter(|a| !a.operations.is_empty());
+        // What was chosen of another point may be no answer of this one.
+        let answers = found.as_ref().map_or(0, |a| a.operations[0].solutions.len());
+        boxes.answer = boxes.answer.min(answers.saturating_sub(1));
         let mut shown = Shown { analysis, operation, state, ..Shown::default() };
-        self.columns(&train, engaged, &boxes, &mut shown);
+        let frame = self.columns(&train, engaged, &boxes, found.as_ref(), &mut shown);
         if boxes.power[0] > 0.0 {
-            shown.power = self.power(&train, &selection, &boxes);
+            shown.power = self.power(&train, &selection, found.as_ref(), &boxes);
+        }
+        shown.frame = match (frame, &self.paper) {
+            (Some(mut frame), Some(paper)) => {
+                frame["widened"] = paper.widened().into();
+                frame.to_string()
+            }
+            (frame, _) => frame.unwrap_or_default().to_string(),
+        };
+        for (picture, seen) in [&mut shown.lever, &mut shown.power].into_iter().zip(&mut self.seen) {
+            match picture == seen {
+                true => picture.clear(),
+                false => seen.clone_from(picture),
+            }
         }
         Ok(shown)
     }
@@ -197,7 +272,16 @@ impl Session {
     /// # Errors
     /// The refusal as JSON.
     pub fn set(&self, path: &str, value: &str) -> Result<String, String> {
-        let changed = self.model.with([(path, value)]);
+        self.set_all(vec![path.to_owned()], vec![value.to_owned()])
+    }
+
+    /// The same of several quantities at once, such as a ring and the planets that follow it.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    #[wasm_bindgen(js_name = setAll)]
+    pub fn set_all(&self, paths: Vec<String>, values: Vec<String>) -> Result<String, String> {
+        let changed = self.model.with(paths.iter().map(String::as_str).zip(values.iter().map(String::as_str)));
         changed.map(|m| m.to_toml().to_owned()).map_err(|wrong| self.refused(wrong))
     }
 
@@ -243,6 +327,29 @@ impl Session {
         self.edited(|document| document.add_element(name, &members))
     }
 
+    /// How a scenario presses its elements, as JSON: tables with their knots.
+    pub fn ramps(&self, scenario: &str) -> String {
+        let ramps = self.model.document().ramps(scenario);
+        let all = ramps.iter().map(|r| json!({ "element": r.element, "knots": r.knots }));
+        Value::from_iter(all).to_string()
+    }
+
+    /// The train file with a knot of such a table moved.
+    ///
+    /// # Errors
+    /// The refusal as JSON.
+    #[wasm_bindgen(js_name = setKnot)]
+    pub fn set_knot(
+        &self,
+        scenario: &str,
+        element: &str,
+        knot: usize,
+        time: &str,
+        value: &str,
+    ) -> Result<String, String> {
+        self.edited(|document| document.set_knot(scenario, element, knot, [time, value]))
+    }
+
     /// The train file with a state more.
     ///
     /// # Errors
@@ -274,7 +381,14 @@ impl Session {
     }
 
     /// Schematic and levers, and where their columns are.
-    fn columns(&mut self, train: &Train, engaged: Option<Vec<String>>, boxes: &Boxes, shown: &mut Shown) {
+    fn columns(
+        &mut self,
+        train: &Train,
+        engaged: Option<Vec<String>>,
+        boxes: &Boxes,
+        found: Option<&Analysis>,
+        shown: &mut Shown,
+    ) -> Option<Value> {
         let kept = self.scheme.take().filter(|s| s.state == shown.state && s.engaged == engaged);
         let unfit = |wrong: &Diagnostics| self.refused(wrong.clone());
         let stick = match (kept, &self.stick) {
@@ -290,16 +404,19 @@ impl Session {
             (None, None) => LeverRequest::First,
         };
         let lever = match &self.lever {
-            Ok(layout) => layout.show(train, &request).map_err(|w| unfit(&w)),
+            Ok(layout) => match found {
+                Some(found) => layout.show_report(train, &found.operations[0], boxes.answer),
+                None => layout.show(train, &request),
+            }
+            .map_err(|w| unfit(&w)),
             Err(wrong) => Err(unfit(wrong)),
         };
-        shown.frame = "null".into();
         let ((stick, drawn), lever) = match (stick, lever) {
             (Ok(stick), Ok(lever)) => (stick, lever),
             (stick, lever) => {
                 shown.stick = stick.err().unwrap_or_default();
                 shown.lever = lever.err().unwrap_or_default();
-                return;
+                return None;
             }
         };
         let columns = Columns::new(&stick, &lever, boxes.width);
@@ -314,7 +431,6 @@ impl Session {
             "reach": scale.reach(&columns),
             "scale": [scale.speeds[0], scale.speeds[1], scale.torque],
         });
-        shown.frame = frame.to_string();
         let size = [boxes.width, boxes.stick];
         if boxes.stick > 0.0 && drawn != size {
             shown.stick = stick_panel(&stick, &columns, boxes.stick);
@@ -323,20 +439,29 @@ impl Session {
             shown.lever = lever_panel(&lever, &columns, boxes.lever, Some(scale));
         }
         self.scheme = Some(Scheme { state: shown.state.clone(), engaged, stick, size });
+        Some(frame)
     }
 
     /// The flow of power of a point. Its scale and columns are kept while something is dragged.
-    fn power(&mut self, train: &Train, selection: &Selection, boxes: &Boxes) -> String {
-        let flows = match flows(train, selection) {
+    fn power(&mut self, train: &Train, selection: &Selection, found: Option<&Analysis>, boxes: &Boxes) -> String {
+        let asked = || -> Result<FlowReport, Diagnostics> {
+            let seen_from = boxes.seen_from.as_deref();
+            match found {
+                Some(found) => Ok(FlowReport::of(found, vec![flow_of(train, &found.operations[0], seen_from)?])),
+                None => flows_seen_from(train, selection, seen_from),
+            }
+        };
+        let flows = match asked() {
             Ok(flows) => flows,
             Err(wrong) => return self.refused(wrong),
         };
         let figure = sankey(&flows);
         let size = boxes.power.map(|x| x.clamp(120.0, 4000.0));
         if boxes.scale.is_none() || self.paper.is_none() {
-            self.paper = Some(SankeyPaper::of_panel([&figure], size));
+            let losses = boxes.losses.map(|x| x.clamp(1.0, 50.0));
+            self.paper = Some(SankeyPaper::of_panel([&figure], size, losses));
         }
-        let drawn = self.paper.as_mut().and_then(|p| p.draw_alone(&figure, 0, size));
+        let drawn = self.paper.as_mut().and_then(|p| p.draw_alone(&figure, boxes.answer, size));
         drawn.unwrap_or_else(|| self.refused(Diagnostic::new(Code::Unfit, "", "no power flows at this point").into()))
     }
 
@@ -356,6 +481,17 @@ impl Session {
         read(&self.name, &text, &self.files)?;
         Ok(text)
     }
+}
+
+/// What acts in each scenario, and on which member.
+fn sources(specification: &Value) -> Value {
+    let list = |of: &Value, key: &str| of.get(key).and_then(Value::as_array).cloned().unwrap_or_default();
+    let source = |s: &Value| json!({ "name": s["name"], "member": s["member"] });
+    let own = |s: &Value| {
+        let name = s["name"].as_str().unwrap_or_default().to_owned();
+        (name, Value::from_iter(list(s, "source").iter().map(source)))
+    };
+    list(specification, "scenario").iter().map(own).collect::<serde_json::Map<_, _>>().into()
 }
 
 /// What kind of shift element an entry of the file is.

@@ -4,8 +4,11 @@
 //! Serialised as JSON it is the results contract `willis-analysis-1`; fields are added, never
 //! renamed. Units are SI and stand in the names.
 
+mod at_load;
 mod balance;
+mod doubts;
 mod effort;
+mod heat;
 mod loads;
 mod losses;
 mod margin;
@@ -19,9 +22,13 @@ mod variators;
 mod why;
 mod words;
 
+pub use at_load::{AskedLoad, AtLoad, DrivingLoad, idle};
+pub use doubts::{Doubt, DoubtKind};
+pub use heat::{HeatBasis, HeatEquilibrium, HeatFlow, HeatPoint, HeatReport, PlaceReport};
+pub(crate) use heat::{Losses as HeatOfLosses, NoHeat, placed as heat_placed};
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 pub use outside::{OutsideAt, OutsideLaw};
-pub use shafts::{ShaftElement, ShaftMember, ShaftState, ShaftTable, shaft_table};
+pub use shafts::{ShaftElement, ShaftMember, ShaftState, ShaftTable, ShaftTableRequest, shaft_table};
 pub use variators::{MachineReport, VariatorReport};
 
 pub use crate::power_flow::{BeyondLimit, LimitedQuantity};
@@ -38,7 +45,7 @@ use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::Configuration;
-use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource};
+use crate::operating_point::{BearingReport, ContactReport, Convergence, DragReport, LossKind, LossSource, ShaftLoad};
 use crate::statics::Certificate;
 use crate::train::{AS_DRAWN, Efficiency, MachineEfficiency, Operation, ShiftElementKind, Train};
 
@@ -139,6 +146,9 @@ pub struct StateReport {
     pub drive: Direction,
     /// Output drives input.
     pub coast: Direction,
+    /// Driving at the load that the file has for this input, where losses depend on load and [`Analysis::with_loads`] asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_load: Option<Box<AtLoad>>,
 }
 
 /// What a member does.
@@ -230,6 +240,18 @@ pub struct Losses {
     pub churning: f64,
     /// Shaft seals.
     pub seal: f64,
+    /// Drags that are given as torques.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub drag: f64,
+    /// Open clutches and brakes.
+    #[serde(default, skip_serializing_if = "is_zero", rename = "shift-element")]
+    pub shift_element: f64,
+    /// Oil that is sprayed into meshes.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub injection: f64,
+    /// Oil pumps.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub pump: f64,
     /// Variators.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub variator: f64,
@@ -240,6 +262,37 @@ fn is_zero(x: &f64) -> bool {
 }
 
 impl Losses {
+    /// The names of the kinds, in the order of [`all`](Losses::all).
+    pub const NAMES: [&'static str; 10] =
+        ["mesh", "bearing", "windage", "churning", "seal", "drag", "shift-element", "injection", "pump", "variator"];
+
+    /// The name of a kind as a column of tables: `shift_element_loss_w`.
+    pub fn column(kind: usize) -> String {
+        format!("{}_loss_w", Self::NAMES[kind].replace('-', "_"))
+    }
+
+    /// Which kinds a train can have: the first five always have a place.
+    pub(crate) fn of_train(train: &Train) -> impl Iterator<Item = usize> + use<> {
+        let has = [
+            [true; 5].as_slice(),
+            &[
+                !train.drags.is_empty(),
+                train.shift_elements.iter().any(|e| e.open.is_some()),
+                train.meshes.iter().any(|m| m.teeth.as_ref().is_some_and(|t| t.jet.is_some())),
+                !train.pumps.is_empty(),
+                !train.variators.is_empty(),
+            ],
+        ]
+        .concat();
+        (0..has.len()).filter(move |k| has[*k])
+    }
+
+    /// Each of them, W.
+    pub fn all(&self) -> [f64; 10] {
+        let Self { mesh, bearing, windage, churning, seal, drag, shift_element, injection, pump, variator } = *self;
+        [mesh, bearing, windage, churning, seal, drag, shift_element, injection, pump, variator]
+    }
+
     fn of(sources: &[LossSource]) -> Self {
         let mut all = Self::default();
         for s in sources {
@@ -249,6 +302,10 @@ impl Losses {
                 LossKind::Windage => &mut all.windage,
                 LossKind::Churning => &mut all.churning,
                 LossKind::Seal => &mut all.seal,
+                LossKind::Drag => &mut all.drag,
+                LossKind::ShiftElement => &mut all.shift_element,
+                LossKind::Injection => &mut all.injection,
+                LossKind::Pump => &mut all.pump,
                 LossKind::Variator => &mut all.variator,
             } += s.loss_w;
         }
@@ -409,6 +466,12 @@ pub struct SolutionReport {
     /// Rolling bearings.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub bearings: Named<BearingReport>,
+    /// Loads of the shafts that rest on these bearings.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub shaft_loads: Named<ShaftLoad>,
+    /// Numbers that cannot be right, or for which something is missing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub doubts: Vec<Doubt>,
     /// Drag torques between members, where losses are computed.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drags: Vec<DragReport>,
@@ -451,6 +514,9 @@ pub struct OperationReport {
     pub speed_deviation: Option<SpeedDeviation>,
     /// Speeds, also when the torques have no answer; rad/s.
     pub speeds_rad_s: Named<Option<f64>>,
+    /// Temperatures and heat, where the train says what carries heat away.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heat: Option<Box<HeatReport>>,
     /// Every equilibrium that drives a load (or, with two or more freedoms, any equilibrium).
     pub solutions: Vec<SolutionReport>,
     /// Of a locked train: equilibria in which every loaded member must push.
@@ -471,6 +537,12 @@ pub struct SpeedDeviation {
 }
 
 impl OperationReport {
+    /// Oil temperature that was in force, K: of the heat balance, else the one that was prescribed, else that of the oil.
+    pub fn oil_k(&self, train: &Train, operation: &Operation) -> Option<f64> {
+        let balance = self.heat.as_ref().map(|h| h.oil_k);
+        balance.or_else(|| train.lubrication.as_ref().map(|l| operation.temperature.unwrap_or(l.temperature)))
+    }
+
     /// The verdict for people. An equilibrium that is the only one but for the friction of loaded meshes at rest, which may
     /// be anything up to its limit, is called so; what that leaves open is in `stiction`.
     pub fn verdict_words(&self) -> &'static str {
@@ -493,6 +565,7 @@ impl OperationReport {
             outside_laws: vec![],
             speed_deviation: None,
             speeds_rad_s: speeds,
+            heat: None,
             solutions: vec![],
             dissipative_solutions: vec![],
         }
@@ -529,6 +602,65 @@ pub struct Analysis {
 
 impl Contract for Analysis {
     const FORMAT: &'static str = "willis-analysis-1";
+}
+
+impl Analysis {
+    /// The same with what every gear costs at the load that the file has for its input, and with none: [`StateReport::at_load`],
+    /// where losses depend on load. It takes two operating points a gear more.
+    ///
+    /// # Example
+    /// ```
+    /// use willis::analysis::{Selection, analyze};
+    /// use willis::train::Train;
+    ///
+    /// let train = Train::from_toml(r#"
+    ///     format = 1
+    ///     name = "one set"
+    ///     members = ["s", "c"]
+    ///     terminals = ["s", "c"]
+    ///     [[set]]
+    ///     name = "P1"
+    ///     sun = { member = "s", teeth = 30 }
+    ///     ring = { member = "frame", teeth = 70 }
+    ///     carrier = "c"
+    ///     mesh_efficiency = 1.0
+    ///     [[drag]]
+    ///     name = "seal"
+    ///     members = ["s", "frame"]
+    ///     coulomb = "0.2 N m"
+    ///     [[operation]]
+    ///     name = "full load"
+    ///     speeds = { s = "1000 rpm" }
+    ///     torques = { s = "10 N m" }
+    /// "#)?;
+    /// let analysis = analyze(&train, &Selection::default())?.with_loads(&train);
+    /// let gear = analysis.ratios.get("as drawn").unwrap().at_load.as_ref().unwrap();
+    /// assert!((gear.efficiency.unwrap() - 0.98).abs() < 1e-9);
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn with_loads(mut self, train: &Train) -> Self {
+        let asked = AskedLoad::default();
+        // Nothing is asked for, so nothing of it is wrong.
+        if let Ok(mut loads) = at_load::Loads::new(train, &asked) {
+            for (name, row) in &mut self.ratios.0 {
+                row.at_load = loads.at(train.states.iter().position(|s| s.name == *name));
+            }
+        }
+        self
+    }
+
+    /// Warnings of gears at load, each once, but of those in which the operation itself runs: its warnings are among the
+    /// [diagnostics](Self::diagnostics).
+    pub fn warnings_at_load(&self) -> Vec<&str> {
+        let runs = |state: &str, at: &AtLoad| {
+            let own = |o: &OperationReport| {
+                at.operation.as_ref() == Some(&o.name) && o.state.as_deref().unwrap_or(AS_DRAWN) == state
+            };
+            self.operations.iter().any(own)
+        };
+        let all = self.ratios.iter().filter_map(|(state, row)| Some((state, row.at_load.as_deref()?)));
+        AtLoad::warnings_of(all.filter(|(state, at)| !runs(state, at)).map(|(_, at)| at))
+    }
 }
 
 /// Which states and operations to analyse; `None` means all.
@@ -599,7 +731,6 @@ pub fn analyze(train: &Train, selection: &Selection) -> Result<Analysis, Diagnos
         }
     }
     table::steps(&mut ratios);
-
     let mut operations = Vec::new();
     for operation in &train.operations {
         if !selection.wants(train, operation) {
@@ -667,12 +798,24 @@ impl Selection {
     }
 }
 
+/// An operation at the temperature that it prescribes, or else that of the heat balance, or else that of the oil.
+fn at_its_temperature<'t>(
+    train: &'t Train,
+    operation: &Operation,
+    exactly: bool,
+) -> Result<operation::Settled<'t>, Vec<words::Refusal>> {
+    match &train.heat {
+        Some(network) => heat::settle(train, network, operation, exactly),
+        None => operation::settle_at(train, operation, exactly),
+    }
+}
+
 /// An operation with its equilibrium where there is exactly one.
 pub(crate) fn settle<'t>(
     train: &'t Train,
     operation: &Operation,
 ) -> Result<(OperationReport, Option<Point<'t>>, Diagnostics), Diagnostics> {
-    let settled = operation::settle(train, operation, true);
+    let settled = at_its_temperature(train, operation, true);
     let settled = settled.map_err(|wrong| words::named(operation, words::refused(train, operation, &wrong)))?;
     let notes = words::named(operation, words::found(train, operation, &settled.findings));
     Ok((settled.report, settled.point, notes))
@@ -694,7 +837,7 @@ pub fn operate(train: &Train, operation: &Operation) -> Result<(OperationReport,
 /// As [`operate`].
 pub fn operate_unnamed(train: &Train, operation: &Operation) -> Result<(OperationReport, Diagnostics), Diagnostics> {
     let settled =
-        operation::settle(train, operation, false).map_err(|wrong| words::refused(train, operation, &wrong))?;
+        at_its_temperature(train, operation, false).map_err(|wrong| words::refused(train, operation, &wrong))?;
     Ok((settled.report, words::found(train, operation, &settled.findings)))
 }
 
@@ -704,10 +847,16 @@ pub fn assumptions(train: &Train) -> Vec<String> {
     if train.meshes.iter().any(|m| !m.computed && m.efficiency != Efficiency::lossless()) {
         all.push("given mesh efficiencies are constants: independent of load, speed and temperature".into());
     }
-    if train.is_physical() {
+    if train.has_laws() {
         physical_assumptions(train, &mut all);
+        all.extend(not_counted(train, None));
     } else {
-        all.push("no bearing, windage, churning or seal losses, no drag of open shift elements".into());
+        all.extend(not_counted(train, Some("no bearing, windage, churning or seal losses")));
+    }
+    if !train.drags.is_empty() {
+        all.push("given drags act wherever their members turn against each other; at rest they may hold a load".into());
+        let beyond = train.drags.iter().filter(|d| d.members.iter().any(|m| !train.is_within(*m)));
+        all.extend(beyond.map(|d| format!("{}: it acts behind an elastic shaft and does not count here", d.name)));
     }
     for v in &train.variators {
         let constant = !v.machines().iter().any(|m| matches!(m.efficiency, MachineEfficiency::Map(_)));
@@ -731,8 +880,8 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
         let default = crate::losses::mesh_friction::Constant::DEFAULT.mu;
         let mu = train.laws.friction_coefficient.unwrap_or(default);
         all.push(format!(
-            "tooth friction is computed in operations; the table of ratios, regimes and formulas use a nominal \
-             coefficient of {mu}"
+            "tooth friction is computed in operations and at the load of the table of ratios; nominal efficiencies, \
+             regimes and formulas use a coefficient of {mu}"
         ));
         let law = train.laws.mesh_friction(train.lubrication.is_some());
         all.push(format!("tooth friction by `{}`, loss factor `{}`", law.meta().id, train.laws.loss_factor.meta().id));
@@ -791,5 +940,18 @@ fn physical_assumptions(train: &Train, all: &mut Vec<String>) {
     } else if train.sets.iter().any(|s| s.planets.is_some()) {
         all.push("no drag of carriers (give a [[rotor]])".into());
     }
-    all.push("no drag of open shift elements, no oil pump".into());
+}
+
+/// What of the losses without load the train file does not describe, behind what else is said of that.
+fn not_counted(train: &Train, before: Option<&str>) -> Option<String> {
+    let (known, unknown): (Vec<_>, Vec<_>) = train.shift_elements.iter().partition(|e| e.open.is_some());
+    let names: Vec<&str> = unknown.iter().map(|e| e.name.as_str()).collect();
+    let elements = match (known.is_empty(), names.is_empty()) {
+        (true, _) => Some("no drag of open shift elements".to_owned()),
+        (false, false) => Some(format!("no drag of {} while open", names.join(", "))),
+        (false, true) => None,
+    };
+    let pump = (train.has_laws() && train.pumps.is_empty()).then(|| "no oil pump".to_owned());
+    let said: Vec<String> = before.map(str::to_owned).into_iter().chain(elements).chain(pump).collect();
+    (!said.is_empty()).then(|| said.join(", "))
 }

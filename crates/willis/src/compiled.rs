@@ -624,14 +624,9 @@ impl CompiledTrain {
                 Column::Input(i) => torques[i],
                 Column::Linear(i) => linear[i],
                 Column::Loss => power,
-                Column::Efficiency if power_in > 0.0 => (power_in - power) / power_in,
-                Column::Efficiency => {
-                    if power_in.is_nan() {
-                        f64::NAN
-                    } else {
-                        0.0
-                    }
-                }
+                // Nothing times infinity is no number: powers beyond floating point have no efficiency.
+                Column::Efficiency if power_in > 0.0 => (power_in - power) / power_in + power * 0.0,
+                Column::Efficiency => power * 0.0,
             };
         }
         verdict

@@ -170,6 +170,11 @@ impl Diagnostics {
         self.0.iter()
     }
 
+    /// Whether there is an error among those that came after the first so many.
+    pub(crate) fn has_errors_since(&self, before: usize) -> bool {
+        self.0[before..].iter().any(|d| d.severity == Severity::Error)
+    }
+
     /// Whether an error is among them.
     pub fn has_errors(&self) -> bool {
         self.0.iter().any(|d| d.severity == Severity::Error)

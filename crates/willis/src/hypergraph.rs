@@ -26,15 +26,21 @@
 //! nothing on. *Loops*, power that runs in circles, are taken out first; an efficiency on a
 //! path is that of the power that is left, and so below that of the contact as a whole.
 //!
+//! *Seen from a member*, such as a carrier, every speed is less by that of the member, and so is that of the frame, which now
+//! turns and takes and gives power like any component: `τ (ω - ω₀)`. Torques that meet in a node add to zero, so balances and
+//! losses stay as they are; circles within a set appear or vanish, what enters and leaves changes with what holds the frame.
+//!
 //! Source: the hypergraph of Wang et al., Appl. Sci. 2020, 10, 5849, with torques that balance.
 
 use std::collections::{BTreeMap, BinaryHeap};
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{OperationReport, Role, Selection, SolutionReport, UnitPoint, Verdict, analyze, assumptions};
+use crate::analysis::{
+    Analysis, OperationReport, Role, Selection, SolutionReport, UnitPoint, Verdict, analyze, assumptions,
+};
 use crate::contract::{Contract, Format};
-use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::operating_point::DragSource;
 use crate::power_flow::{families, take_out_cycles};
@@ -70,6 +76,12 @@ pub enum NodeKind {
     Gear,
     /// A carrier or drum in oil or air.
     Rotor,
+    /// A drag that is given as a torque.
+    Drag,
+    /// An open clutch or brake that drags.
+    OpenElement,
+    /// An oil pump.
+    Pump,
     /// A closed clutch or brake, or several that share one load.
     ShiftElement,
     /// A shaft that is for good coupled with a member: a terminal with a name of its own.
@@ -182,6 +194,9 @@ pub struct Path {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
 pub struct Hypergraph {
+    /// The member from which speeds and powers are seen; absent where that is the housing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seen_from: Option<String>,
     /// Output over input power; 0 when everything is dissipated, absent when nothing is loaded.
     pub efficiency: Option<f64>,
     /// The efficiency exactly, where [`SolutionReport::efficiency_exact`] is known.
@@ -252,6 +267,20 @@ pub struct FlowReport {
     pub diagnostics: Vec<Diagnostic>,
 }
 
+impl FlowReport {
+    /// The report of power flows that were made from an analysis with [`flow_of`].
+    pub fn of(analysis: &Analysis, operations: Vec<OperationFlow>) -> Self {
+        Self {
+            format: Format::new(),
+            train: analysis.train.clone(),
+            source: analysis.source.clone(),
+            operations,
+            assumptions: analysis.assumptions.clone(),
+            diagnostics: analysis.diagnostics.clone(),
+        }
+    }
+}
+
 impl Contract for FlowReport {
     const FORMAT: &'static str = "willis-flow-1";
 }
@@ -290,17 +319,51 @@ impl Contract for FlowReport {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn flows(train: &Train, selection: &Selection) -> Result<FlowReport, Diagnostics> {
+    flows_seen_from(train, selection, None)
+}
+
+/// The same with speeds and powers as they are seen from a member, such as a carrier; without one from the frame, as [`flows`].
+///
+/// # Errors
+/// What [`flows`] refuses; there is no such member; its speed is not determined.
+///
+/// # Example
+/// ```
+/// use willis::analysis::Selection;
+/// use willis::hypergraph::{flows, flows_seen_from};
+/// use willis::train::{OperationSpec, SetSpec, Train};
+/// use willis::units::{AngularSpeed, Torque};
+///
+/// let train = Train::builder("one set")
+///     .members(["s", "c"])
+///     .terminals(["s", "c"])
+///     .set(SetSpec::simple("P1", ("s", 30), ("frame", 70), "c").planet(20, 4).mesh_efficiency(0.99))
+///     .operation(
+///         OperationSpec::new("full load")
+///             .speed("s", AngularSpeed::rpm(1000.0))
+///             .torque("s", Torque::n_m(10.0)),
+///     )
+///     .build()?;
+/// let of = |seen_from| flows_seen_from(&train, &Selection::default(), seen_from);
+/// let from_carrier = of(Some("c"))?;
+/// let graph = &from_carrier.operations[0].solutions[0];
+/// // The carrier rests, and the ring, which the housing holds, takes what the sun gives: 0.7 of the power, less the loss.
+/// assert!((graph.input_power_w - 0.7 * 1000.0 * std::f64::consts::PI / 30.0 * 10.0).abs() < 1e-9);
+/// assert!((graph.efficiency.unwrap() - 0.99 * 0.99).abs() < 1e-12);
+/// assert_eq!(graph.loss_w, flows(&train, &Selection::default())?.operations[0].solutions[0].loss_w);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub fn flows_seen_from(
+    train: &Train,
+    selection: &Selection,
+    seen_from: Option<&str>,
+) -> Result<FlowReport, Diagnostics> {
+    let place = place(train, seen_from)?;
     let analysis = analyze(train, selection)?;
-    let mut report = FlowReport {
-        format: Format::new(),
-        train: analysis.train,
-        source: analysis.source,
-        operations: analysis.operations.iter().map(|o| flow_of(train, o)).collect(),
-        assumptions: analysis.assumptions,
-        diagnostics: analysis.diagnostics,
-    };
+    let operations = analysis.operations.iter().map(|o| flow(train, o, place)).collect::<Result<_, _>>()?;
+    let mut report = FlowReport::of(&analysis, operations);
     if report.operations.is_empty() {
-        report.operations = per_unit(train, selection)?;
+        report.operations = per_unit(train, selection, place)?;
         if train.is_physical() {
             report.assumptions = assumptions(&train.without_laws());
             let nominal = "without an operating point teeth lose what a nominal coefficient of friction says, and bearings, \
@@ -311,24 +374,37 @@ pub fn flows(train: &Train, selection: &Selection) -> Result<FlowReport, Diagnos
     Ok(report)
 }
 
-fn flow_of(train: &Train, o: &OperationReport) -> OperationFlow {
-    let graphs = |all: &[SolutionReport]| all.iter().map(|s| hypergraph(train, s)).collect();
-    OperationFlow {
+/// The power flow of an operating point that is analyzed already, as it is seen from a member, else from the frame.
+///
+/// # Errors
+/// There is no such member; its speed is not determined.
+pub fn flow_of(train: &Train, o: &OperationReport, seen_from: Option<&str>) -> Result<OperationFlow, Diagnostics> {
+    flow(train, o, place(train, seen_from)?)
+}
+
+/// From where a flow is seen.
+fn place(train: &Train, seen_from: Option<&str>) -> Result<MemberId, Diagnostics> {
+    Ok(seen_from.map_or(Ok(FRAME), |name| train.find_member(name))?)
+}
+
+fn flow(train: &Train, o: &OperationReport, seen_from: MemberId) -> Result<OperationFlow, Diagnostics> {
+    let graphs = |all: &[SolutionReport]| all.iter().map(|s| graph(train, s, seen_from)).collect::<Result<_, _>>();
+    Ok(OperationFlow {
         name: o.name.clone(),
         state: o.state.clone(),
         unit: None,
         verdict: o.verdict,
         reason: o.reason.clone(),
-        solutions: graphs(&o.solutions),
-        dissipative_solutions: graphs(&o.dissipative_solutions),
-    }
+        solutions: graphs(&o.solutions)?,
+        dissipative_solutions: graphs(&o.dissipative_solutions)?,
+    })
 }
 
 /// The state that is selected, else every one, per unit of speed and torque at its input.
-fn per_unit(train: &Train, selection: &Selection) -> Result<Vec<OperationFlow>, Diagnostics> {
+fn per_unit(train: &Train, selection: &Selection, seen_from: MemberId) -> Result<Vec<OperationFlow>, Diagnostics> {
     let of = |state: Option<usize>| -> Result<OperationFlow, Diagnostics> {
         let point = UnitPoint::new(train, state)?;
-        let mut flow = flow_of(&point.train, &point.report);
+        let mut flow = flow(&point.train, &point.report, seen_from)?;
         flow.unit = Some(train.member_name(point.input).to_owned());
         // Nominal efficiencies are rounded.
         if train.meshes.iter().any(|m| m.computed) {
@@ -367,8 +443,10 @@ fn per_unit(train: &Train, selection: &Selection) -> Result<Vec<OperationFlow>, 
 struct Sketch<'t> {
     train: &'t Train,
     nodes: Vec<Node>,
-    /// Speed by member, rad/s; 0 where not determined, since nothing flows there.
+    /// Speed by member as it is seen, rad/s; 0 where not determined, since nothing flows there.
     speeds: Vec<f64>,
+    /// Whether the frame moves, as it is seen.
+    moving: bool,
     /// By contact and member: the torque that the member puts in.
     torques: BTreeMap<(usize, usize), Option<f64>>,
 }
@@ -384,6 +462,9 @@ impl Sketch<'_> {
             NodeKind::Seal => "seal",
             NodeKind::Gear => "gear",
             NodeKind::Rotor => "rotor",
+            NodeKind::Drag => "drag",
+            NodeKind::OpenElement => "open-element",
+            NodeKind::Pump => "pump",
             NodeKind::ShiftElement => "shift-element",
             NodeKind::Coupling => "coupling",
             NodeKind::Variator => "variator",
@@ -456,14 +537,39 @@ impl Sketch<'_> {
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
 pub fn hypergraph(train: &Train, solution: &SolutionReport) -> Hypergraph {
+    seen(train, solution, 0.0)
+}
+
+/// The same as it is seen from a member.
+fn graph(train: &Train, solution: &SolutionReport, seen_from: MemberId) -> Result<Hypergraph, Diagnostics> {
+    if seen_from == FRAME {
+        return Ok(hypergraph(train, solution));
+    }
+    let name = train.member_name(seen_from);
+    let Some(speed) = solution.members.get(name).and_then(|m| m.speed_rad_s) else {
+        let message = format!("powers cannot be seen from `{name}`: its speed is not determined");
+        return Err(Diagnostic::new(Code::Unfit, "", message)
+            .hint("count them from the housing, or give one more speed")
+            .into());
+    };
+    Ok(Hypergraph { seen_from: Some(name.to_owned()), ..seen(train, solution, speed) })
+}
+
+/// The graph as it is seen by someone who turns at a speed.
+fn seen(train: &Train, solution: &SolutionReport, own: f64) -> Hypergraph {
     let members = train.members().len();
-    let mut g = Sketch { train, nodes: Vec::new(), speeds: vec![0.0; members], torques: BTreeMap::new() };
+    let moving = own != 0.0;
+    let mut g = Sketch { train, nodes: Vec::new(), speeds: vec![0.0; members], moving, torques: BTreeMap::new() };
     // The frame is node 0, and a member's node has the member's number.
     g.node(NodeKind::Frame, &train.members()[0].name, 1);
+    if moving {
+        g.speeds[FRAME.index()] = -own;
+        g.nodes[FRAME.index()].speed_rad_s = Some(-own);
+    }
     for (name, m) in solution.members.iter() {
         let k = g.node(NodeKind::Member, name, 1);
-        g.speeds[k] = m.speed_rad_s.unwrap_or(0.0);
-        g.nodes[k].speed_rad_s = m.speed_rad_s;
+        g.nodes[k].speed_rad_s = m.speed_rad_s.map(|w| if moving { w - own } else { w });
+        g.speeds[k] = g.nodes[k].speed_rad_s.unwrap_or(0.0);
     }
     let mut contacts_of_mesh = vec![0; train.meshes().len()];
     for (j, mesh) in train.meshes().iter().enumerate() {
@@ -484,6 +590,10 @@ pub fn hypergraph(train: &Train, solution: &SolutionReport) -> Hypergraph {
             DragSource::Seal => NodeKind::Seal,
             DragSource::Gear => NodeKind::Gear,
             DragSource::Rotor => NodeKind::Rotor,
+            DragSource::Drag => NodeKind::Drag,
+            DragSource::ShiftElement => NodeKind::OpenElement,
+            DragSource::Injection => NodeKind::Teeth,
+            DragSource::Pump => NodeKind::Pump,
         };
         let count = match kind {
             NodeKind::Bearing => solution.bearings.get(&d.name).map_or(1, |b| b.bearings),
@@ -507,6 +617,10 @@ pub fn hypergraph(train: &Train, solution: &SolutionReport) -> Hypergraph {
         for (_, m) in v.machines.iter() {
             let member = g.index(&m.member);
             g.add(k, member, -m.torque_n_m);
+            // What its housing takes.
+            if moving {
+                g.add(k, FRAME.index(), m.torque_n_m);
+            }
         }
         g.nodes[k].loss_w = v.loss_w;
     }
@@ -568,7 +682,11 @@ fn shift_elements(g: &mut Sketch<'_>, solution: &SolutionReport, external: &[Opt
         let torques: Vec<Option<f64>> =
             ends.iter().map(|&m| external[m].filter(|_| m != FRAME.index()).map(|x| x - g.given(m))).collect();
         let k = g.node(NodeKind::ShiftElement, &names.join(", "), 1);
+        // Together they put nothing in: the frame takes the rest.
+        let rest =
+            ends.iter().zip(&torques).filter(|(m, _)| **m != FRAME.index()).map(|(_, t)| *t).sum::<Option<f64>>();
         for (m, torque) in ends.into_iter().zip(torques) {
+            let torque = if g.moving && m == FRAME.index() { rest.map(|t| -t) } else { torque };
             g.torques.insert((k, m), torque);
         }
     }
@@ -588,16 +706,25 @@ fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]
     let mut balance: Vec<f64> = vec![0.0; members];
     for (name, m) in solution.members.iter() {
         let member = g.index(name);
-        let power = m.power_w.unwrap_or(0.0);
-        balance[member] += power;
         let torque = external[member];
+        let power = match g.moving {
+            true => torque.unwrap_or(0.0) * g.speeds[member],
+            false => m.power_w.unwrap_or(0.0),
+        };
+        balance[member] += power;
         let (from, to) = match m.role {
+            Role::Input | Role::Output if g.moving && power > 0.0 => (g.node(NodeKind::Input, name, 1), member),
+            Role::Input | Role::Output if g.moving => (member, g.node(NodeKind::Output, name, 1)),
             Role::Input => (g.node(NodeKind::Input, name, 1), member),
             Role::Output => (member, g.node(NodeKind::Output, name, 1)),
             // Something outside holds it.
+            _ if power > 0.0 && g.moving => (FRAME.index(), member),
             _ => (member, FRAME.index()),
         };
-        let power = if to == FRAME.index() { 0.0 } else { power.abs() };
+        if g.moving && (from == FRAME.index() || to == FRAME.index()) {
+            balance[FRAME.index()] -= power;
+        }
+        let power = if to == FRAME.index() && !g.moving { 0.0 } else { power.abs() };
         lines.push(Line { from, to, member, torque, power });
     }
     let stores = solution.variators.iter().filter_map(|(name, v)| Some((name, v.store_w.filter(|p| *p != 0.0)?)));
@@ -621,8 +748,25 @@ fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]
         let power = torque.unwrap_or(0.0) * g.speeds[member];
         balance[member] -= power;
         balance[contact] += power;
-        let (from, to) = if power < 0.0 || member == FRAME.index() { (contact, member) } else { (member, contact) };
+        let leans = member == FRAME.index() && power <= 0.0;
+        let (from, to) = if power < 0.0 || leans || (member == FRAME.index() && !g.moving) {
+            (contact, member)
+        } else {
+            (member, contact)
+        };
         lines.push(Line { from, to, member, torque, power: power.abs() });
+    }
+    if g.moving {
+        // What holds the housing does work on it.
+        let power = -balance[FRAME.index()];
+        let torque = Some(power / g.speeds[FRAME.index()]);
+        let name = g.train.members()[FRAME.index()].name.clone();
+        let (from, to) = match power > 0.0 {
+            true => (g.node(NodeKind::Input, &name, 1), FRAME.index()),
+            false => (FRAME.index(), g.node(NodeKind::Output, &name, 1)),
+        };
+        balance.resize(g.nodes.len(), 0.0);
+        lines.push(Line { from, to, member: FRAME.index(), torque, power: power.abs() });
     }
     let largest = lines.iter().fold(0.0f64, |a, l| a.max(l.power));
     let strongest = lines.iter().fold(0.0f64, |a, l| a.max(l.torque.unwrap_or(0.0).abs()));
@@ -652,7 +796,14 @@ fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]
         }
     }
 
-    let (input, train) = (solution.input_power_w, g.train);
+    let train = g.train;
+    let ends = |kind: NodeKind, end: fn(&Line) -> usize| -> f64 {
+        lines.iter().filter(|l| g.nodes[end(l)].kind == kind).map(|l| l.power).sum()
+    };
+    let [input, output] = match g.moving {
+        true => [ends(NodeKind::Input, |l| l.from), ends(NodeKind::Output, |l| l.to)],
+        false => [solution.input_power_w, solution.output_power_w],
+    };
     let mut powers: Vec<(usize, usize, f64)> =
         lines.iter().filter(|l| l.power > 0.0).map(|l| (l.from, l.to, l.power)).collect();
     powers.sort_by_key(|e| (e.0, e.1));
@@ -693,13 +844,18 @@ fn finish(mut g: Sketch<'_>, solution: &SolutionReport, external: &[Option<f64>]
 
     let ways = Ways::new(&g.nodes, &powers);
     let (paths, path_count, share_on_paths) = ways.list(&g.nodes, input);
+    let (efficiency, efficiency_exact, power_residual_w) = match g.moving {
+        true => ((input > 0.0).then(|| output / input), None, input - output - solution.loss_w),
+        false => (solution.efficiency, solution.efficiency_exact.clone(), solution.power_residual_w),
+    };
     Hypergraph {
-        efficiency: solution.efficiency,
-        efficiency_exact: solution.efficiency_exact.clone(),
+        seen_from: None,
+        efficiency,
+        efficiency_exact,
         input_power_w: input,
-        output_power_w: solution.output_power_w,
+        output_power_w: output,
         loss_w: solution.loss_w,
-        power_residual_w: solution.power_residual_w,
+        power_residual_w,
         largest_residual_w: residual,
         nodes: g.nodes,
         edges,
@@ -965,9 +1121,12 @@ impl Hypergraph {
                 }
                 Some(set) => {
                     let path: Vec<&str> = l.nodes.iter().chain(l.nodes.first()).map(name).collect();
+                    let counted = match &self.seen_from {
+                        None => "in the frame of the housing".to_owned(),
+                        Some(member) => format!("as seen from {member}"),
+                    };
                     format!(
-                        "within {set} {}{share} run in a circle as powers are counted in the frame of the housing, not \
-                         through the train: {}",
+                        "within {set} {}{share} run in a circle as powers are counted {counted}, not through the train: {}",
                         watts(*power),
                         path.join(" → ")
                     )

@@ -8,7 +8,9 @@
 mod coupled;
 
 use crate::exact::{self, Matrix, Rational};
-use crate::train::{Efficiency, FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train, Variator};
+use crate::train::{
+    Efficiency, FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Store, Train, Variator, VariatorPath,
+};
 use crate::units::Quantity;
 
 pub(crate) use coupled::{Coupled, Coupling};
@@ -381,6 +383,78 @@ impl<'t> Configuration<'t> {
                     .collect()
             })
             .collect()
+    }
+
+    /// Members whose speeds are independent and settle those of all that `order` names: the first ones in that order.
+    /// They settle the whole train where `order` names a member of every part of it.
+    ///
+    /// The equations are eliminated from the last member on; what is left free are the first.
+    ///
+    /// # Example
+    /// ```
+    /// # use willis::train::{SetSpec, Train};
+    /// # use willis::kinematics::Configuration;
+    /// let train = Train::builder("set")
+    ///     .members(["s", "r", "c"])
+    ///     .set(SetSpec::simple("P1", ("s", 30), ("r", 70), "c"))
+    ///     .build()?;
+    /// let [s, r, c] = ["s", "r", "c"].map(|m| train.member(m).unwrap());
+    /// let free = Configuration::new(&train, &[], &[], &[]);
+    /// assert_eq!(free.settling(&[c, s, r]), [c, s]);
+    /// // What is held settles nothing.
+    /// let held = Configuration::new(&train, &[], &[c], &[]);
+    /// assert_eq!(held.settling(&[c, s, r]), [s]);
+    /// # Ok::<(), willis::diagnostic::Diagnostics>(())
+    /// ```
+    pub fn settling(&self, order: &[MemberId]) -> Vec<MemberId> {
+        let mut named: Vec<(usize, MemberId)> = vec![];
+        for &m in order.iter().filter(|m| !self.inner[m.0]) {
+            if let Some(n) = self.node(m).filter(|n| named.iter().all(|own| own.0 != *n)) {
+                named.push((n, m));
+            }
+        }
+        let mut columns: Vec<usize> = (0..self.nodes).filter(|n| named.iter().all(|own| own.0 != *n)).collect();
+        columns.extend(named.iter().rev().map(|own| own.0));
+        let ordered = |row: Vec<Rational>| columns.iter().map(|&n| row[n].clone()).collect();
+        let mut rows: Matrix = self.rows(0).into_iter().map(ordered).collect();
+        let tied: Vec<usize> = exact::reduce(&mut rows, self.nodes).into_iter().map(|k| columns[k]).collect();
+        named.into_iter().filter(|(n, _)| !tied.contains(n)).map(|(_, m)| m).collect()
+    }
+
+    /// Terminals of which an operating point has to give a torque or power, while the others balance the train: the first
+    /// ones in this order.
+    ///
+    /// Torques that balance belong to independent speeds, one for each freedom. A variator settles as many of them as it has
+    /// turning sides beyond the first, and a free store is one of them. With all members of a variator at rest it couples
+    /// nothing, and there is one torque more to give.
+    ///
+    /// # Example
+    /// ```
+    /// # use willis::train::{SetSpec, Train};
+    /// # use willis::kinematics::Configuration;
+    /// let train = Train::builder("set")
+    ///     .members(["s", "r", "c"])
+    ///     .terminals(["s", "r", "c"])
+    ///     .set(SetSpec::simple("P1", ("s", 30), ("r", 70), "c"))
+    ///     .build()?;
+    /// let free = Configuration::new(&train, &[], &[], &[]);
+    /// assert_eq!(free.loading(train.terminals()), [train.member("s").unwrap()]);
+    /// # Ok::<(), willis::diagnostic::Diagnostics>(())
+    /// ```
+    pub fn loading(&self, order: &[MemberId]) -> Vec<MemberId> {
+        let backward: Vec<MemberId> = order.iter().rev().copied().collect();
+        let mut balancing = self.settling(&backward);
+        let settled: usize = (self.train.variators.iter())
+            .map(|v| {
+                let sides = v.members().into_iter().filter(|m| self.node(*m).is_some()).count().saturating_sub(1);
+                let free = matches!(v.path, VariatorPath::Bus { store: Store::Free, .. });
+                sides + usize::from(free)
+            })
+            .sum();
+        // Where terminals are fewer than freedoms all of them may have to balance.
+        balancing.truncate(self.degrees_of_freedom().saturating_sub(settled));
+        let turns = |m: &MemberId| !self.inner[m.0] && self.node(*m).is_some();
+        order.iter().copied().filter(|m| turns(m) && !balancing.contains(m)).collect()
     }
 
     /// Speeds as combinations of the speeds of `prescribed`.

@@ -104,11 +104,12 @@
 //! 8. [`power_flow`]: torque and power everywhere, recirculation;
 //! 9. [`compiled`]: a train made ready for many points;
 //! 10. [`operating_point`]: losses and torques in agreement;
-//! 11. [`dynamics`]: motion over time, natural frequencies;
-//! 12. [`analysis`]: the whole answer, as every front end shows it;
-//! 13. [`hypergraph`]: where the power runs, as a graph of components and contacts;
-//! 14. [`regimes`]: every way a train can run, with closed formulas;
-//! 15. [`study`]: many operating points, what matters most, how sure it is, files for other programs.
+//! 11. [`heat`]: the oil temperature at which losses and heat flow agree, warm-up;
+//! 12. [`dynamics`]: motion over time, natural frequencies;
+//! 13. [`analysis`]: the whole answer, as every front end shows it;
+//! 14. [`hypergraph`]: where the power runs, as a graph of components and contacts;
+//! 15. [`regimes`]: every way a train can run, with closed formulas;
+//! 16. [`study`]: many operating points, what matters most, how sure it is, files for other programs.
 //!
 //! The library touches no file, clock or environment and builds for `wasm32-unknown-unknown`.
 
@@ -130,6 +131,7 @@ pub mod statics;
 pub mod power_flow;
 pub mod compiled;
 pub mod operating_point;
+pub mod heat;
 pub mod dynamics;
 pub mod analysis;
 pub mod hypergraph;
@@ -175,6 +177,8 @@ mod prose {
     struct WhereDoesEveryWattGo;
     #[doc = include_str!("../../../book/src/which-loss-first.md")]
     struct WhichLossFirst;
+    #[doc = include_str!("../../../book/src/heat.md")]
+    struct HowWarmDoesItGet;
     #[doc = include_str!("../../../book/src/maps.md")]
     struct HowDoesItGo;
     #[doc = include_str!("../../../book/src/efficiency-map.md")]

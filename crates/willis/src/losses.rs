@@ -211,12 +211,16 @@ macro_rules! family {
 
 pub mod bearing;
 pub mod churning;
+pub mod clutch_drag;
 pub mod film;
 pub mod film_reduction;
+pub mod injection;
 mod list;
 pub mod load_sharing;
 pub mod loss_factor;
 pub mod mesh_friction;
+pub mod plain_bearing;
+pub mod pump;
 pub mod rolling;
 pub mod rotor_drag;
 pub mod seal;
@@ -326,6 +330,14 @@ laws! {
     seal: seal::SealLoss;
     /// Carriers and drums.
     rotor_drag: rotor_drag::RotorDrag;
+    /// Open multi-plate clutches and brakes.
+    clutch_drag: clutch_drag::ClutchDrag;
+    /// Oil pumps.
+    pump: pump::PumpTorque;
+    /// Oil that is sprayed at meshes.
+    injection: injection::InjectionLoss;
+    /// Plain bearings.
+    plain_bearing: plain_bearing::PlainBearing;
 }
 
 impl Laws {

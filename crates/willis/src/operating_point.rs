@@ -23,8 +23,10 @@
 mod bearing;
 mod body;
 pub(crate) mod contact;
+mod forces;
 mod motion;
 mod numbers;
+mod support;
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -34,14 +36,18 @@ use serde::{Deserialize, Serialize};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Coupling, Motion};
 use crate::losses::{Outside, mesh_friction::MeshFriction, rolling::Rolling};
+use crate::named::Named;
 use crate::power_flow::{Drag, Flow, MeshFlow};
 use crate::real::{self, Real};
-use crate::train::{Efficiency, FRAME, Gear, Lubrication, MachineEfficiency, MemberId, Operation, Train, VariatorPath};
+use crate::train::{
+    Efficiency, FRAME, Gear, LossPart, Lubrication, MachineEfficiency, MemberId, Operation, Train, VariatorPath,
+};
 
 pub use bearing::BearingReport;
 pub use contact::{ContactReport, Regime};
+pub use forces::ShaftLoad;
 pub(crate) use motion::{LEAST_SPEED, Place};
-pub(crate) use numbers::{MountNumbers, Numbers, OilState, RotorNumbers, VariatorNumbers};
+pub(crate) use numbers::{DragNumbers, MountNumbers, Numbers, OilState, PumpNumbers, RotorNumbers, VariatorNumbers};
 
 /// The error that is left, over the loss.
 const ACCURACY: f64 = 1e-9;
@@ -72,11 +78,53 @@ pub enum LossKind {
     Churning,
     /// Lip seals.
     Seal,
+    /// Drags that the train file gives as torques.
+    Drag,
+    /// Open clutches and brakes.
+    #[serde(rename = "shift-element")]
+    ShiftElement,
+    /// Oil that is sprayed into a mesh.
+    Injection,
+    /// Oil pumps.
+    Pump,
     /// Variators: electric machines, pumps and motors, belts.
     Variator,
 }
 
 impl LossKind {
+    /// Its name in contracts and tables: `shift-element`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Sliding => "sliding",
+            Self::Rolling => "rolling",
+            Self::Bearing => "bearing",
+            Self::Windage => "windage",
+            Self::Churning => "churning",
+            Self::Seal => "seal",
+            Self::Drag => "drag",
+            Self::ShiftElement => "shift-element",
+            Self::Injection => "injection",
+            Self::Pump => "pump",
+            Self::Variator => "variator",
+        }
+    }
+
+    /// Families of the laws that cause it; none where the train file gives it.
+    pub const fn families(self) -> &'static [&'static str] {
+        match self {
+            Self::Sliding => &["mesh_friction"],
+            Self::Rolling => &["rolling"],
+            Self::Bearing => &["bearing", "plain_bearing"],
+            Self::Windage => &["windage", "rotor_drag"],
+            Self::Churning => &["churning", "rotor_drag"],
+            Self::Seal => &["seal"],
+            Self::ShiftElement => &["clutch_drag"],
+            Self::Injection => &["injection"],
+            Self::Pump => &["pump"],
+            Self::Drag | Self::Variator => &[],
+        }
+    }
+
     /// For people: `tooth sliding`.
     pub fn words(self) -> &'static str {
         match self {
@@ -86,6 +134,10 @@ impl LossKind {
             Self::Windage => "windage",
             Self::Churning => "churning",
             Self::Seal => "seal",
+            Self::Drag => "drag",
+            Self::ShiftElement => "open shift element",
+            Self::Injection => "oil injection",
+            Self::Pump => "oil pump",
             Self::Variator => "variator",
         }
     }
@@ -124,6 +176,15 @@ pub enum DragSource {
     Gear,
     /// A carrier or drum in oil or air.
     Rotor,
+    /// A drag that the train file gives.
+    Drag,
+    /// An open clutch or brake.
+    #[serde(rename = "shift-element")]
+    ShiftElement,
+    /// Oil that is sprayed into a mesh.
+    Injection,
+    /// An oil pump.
+    Pump,
 }
 
 /// A torque that two members exert on each other against their relative motion.
@@ -186,6 +247,13 @@ enum Source {
     Seal(usize),
     Body(usize),
     Rotor(usize),
+    /// A drag that the train gives.
+    Drag(usize),
+    /// A shift element that is open.
+    Open(usize),
+    Pump(usize),
+    /// Oil that is sprayed at a mesh.
+    Jet(usize),
     /// What a variator takes from its bus without load.
     Standby(usize),
 }
@@ -199,6 +267,10 @@ pub(crate) struct Physics<'t, R: Real = f64> {
     friction: MeshFriction,
     rolling: Option<Rolling>,
     bodies: Vec<body::Body>,
+    /// The given drags that count; none in motion, which has them as friction that can hold, and open elements, pumps and
+    /// jets not at all.
+    drags: Option<Vec<usize>>,
+    forces: forces::Forces<R>,
     /// By mesh: its tooth loss factor, which follows from the geometry alone.
     loss_factors: Vec<OnceLock<R>>,
     /// Amounts of relative speed below it count as this, rad/s.
@@ -307,8 +379,11 @@ impl<'t, R: Real> Physics<'t, R> {
         let friction = train.laws.mesh_friction(oil.is_some());
         let rolling = train.laws.rolling(&friction).filter(|_| oil.is_some());
         let bodies = body::bodies(&train);
+        let forces = forces::Forces::new(&train, &numbers);
+        let within = |k: &usize| train.drags[*k].members.iter().all(|m| train.is_within(*m));
+        let drags = Some((0..train.drags.len()).filter(within).collect());
         let loss_factors = train.meshes.iter().map(|_| OnceLock::new()).collect();
-        Self { train, numbers, oil, friction, rolling, bodies, loss_factors, least_speed: 0.0 }
+        Self { train, numbers, oil, friction, rolling, bodies, drags, forces, loss_factors, least_speed: 0.0 }
     }
 
     /// Members on which a drag acts: the statics must see them, planets too.
@@ -317,6 +392,14 @@ impl<'t, R: Real> Physics<'t, R> {
         all.extend(self.train.bearings.iter().flat_map(|b| b.members));
         all.extend(self.train.seals.iter().flat_map(|b| b.members));
         all.extend(self.train.rotors.iter().map(|r| r.member));
+        if let Some(drags) = &self.drags {
+            all.extend(drags.iter().flat_map(|k| self.train.drags[*k].members));
+            let open = self.train.shift_elements.iter().filter(|e| e.open.is_some());
+            all.extend(open.flat_map(|e| e.members));
+            all.extend(self.train.pumps.iter().map(|p| p.member));
+            let sprayed = self.train.meshes.iter().filter(|m| m.teeth.as_ref().is_some_and(|t| t.jet.is_some()));
+            all.extend(sprayed.flat_map(|m| m.gears.iter().map(|g| g.member)));
+        }
         all.extend(self.bodies.iter().map(|b| b.member));
         if self.rolling.is_some() {
             let rolling = self.train.meshes.iter().filter(|m| m.computed);
@@ -325,6 +408,11 @@ impl<'t, R: Real> Physics<'t, R> {
         all.sort_unstable();
         all.dedup();
         all
+    }
+
+    /// What tests say of a kind of loss.
+    fn factor(&self, part: LossPart) -> R {
+        self.numbers.loss_factors[part as usize]
     }
 
     /// Amount of the speed of two members relative to each other.
@@ -350,7 +438,10 @@ impl<'t, R: Real> Physics<'t, R> {
                 losses.push(MeshLoss::none());
                 continue;
             };
-            let tooth = self.tooth(mesh, teeth, m);
+            let mut tooth = self.tooth(mesh, teeth, m);
+            let factor = self.factor(LossPart::Teeth);
+            tooth.friction = tooth.friction.map(|mu| mu * factor);
+            tooth.rolling *= factor;
             // Rolling resists on both gears; each takes half of its power.
             for k in 0..2 {
                 let speed = real::abs(m.relative_speeds[k]);
@@ -367,12 +458,15 @@ impl<'t, R: Real> Physics<'t, R> {
             losses.push(MeshLoss { sliding, bearings: vec![], friction: tooth.friction });
         }
         let mut reports = Vec::with_capacity(self.train.bearings.len());
-        for (k, mount) in self.train.bearings.iter().enumerate() {
-            if self.oil.is_none() {
-                break;
-            }
-            let bearing::Friction { report, speed, mut torque, proportional, loading } =
-                self.bearing(k, speeds, meshes, &mut |_, _| {});
+        let reactions = self.oil.as_ref().map(|_| self.reactions(speeds, meshes));
+        let carried = reactions.iter().flat_map(|r| &r.places);
+        for ((k, mount), carried) in self.train.bearings.iter().enumerate().zip(carried) {
+            let bearing::Friction { mut report, speed, mut torque, mut proportional, loading } =
+                self.bearing(k, speeds, carried, &mut |_| {});
+            let [by_load, idle] = [LossPart::BearingLoad, LossPart::BearingNoLoad].map(|part| self.factor(part));
+            torque = torque * idle + proportional * (by_load - idle);
+            proportional *= by_load;
+            report.torque_n_m = torque.re() / f64::from(report.bearings);
             // The part that grows with the load belongs to the meshes that make the load.
             let weight = loading.iter().fold(none, |sum, l| sum + l.1);
             for (at, w) in loading {
@@ -394,13 +488,43 @@ impl<'t, R: Real> Physics<'t, R> {
             reports.push(report);
         }
         for (k, seal) in self.train.seals.iter().enumerate() {
-            drag(Source::Seal(k), seal.members, self.seal(k, speeds));
+            drag(Source::Seal(k), seal.members, self.seal(k, speeds) * self.factor(LossPart::Seal));
         }
         for (k, body) in self.bodies.iter().enumerate() {
-            drag(Source::Body(k), [body.member, body.against], self.body(body, speeds));
+            let part = match body.kind(&self.train).0 {
+                LossKind::Churning => LossPart::Churning,
+                _ => LossPart::Windage,
+            };
+            drag(Source::Body(k), [body.member, body.against], self.body(body, speeds) * self.factor(part));
         }
         for (k, rotor) in self.train.rotors.iter().enumerate() {
-            drag(Source::Rotor(k), [rotor.member, crate::train::FRAME], self.rotor(k, speeds));
+            let torque = self.rotor(k, speeds) * self.factor(LossPart::Rotor);
+            drag(Source::Rotor(k), [rotor.member, crate::train::FRAME], torque);
+        }
+        if let Some(drags) = &self.drags {
+            for k in drags {
+                let members = self.train.drags[*k].members;
+                drag(Source::Drag(*k), members, self.drag(*k, self.slip(speeds, members)));
+            }
+            for (k, element) in self.train.shift_elements.iter().enumerate() {
+                if let Some(torque) = self.open(k, speeds) {
+                    drag(Source::Open(k), element.members, torque);
+                }
+            }
+            for (k, pump) in self.train.pumps.iter().enumerate() {
+                drag(Source::Pump(k), [pump.member, FRAME], self.pump(k, speeds));
+            }
+            for m in meshes {
+                let mesh = &self.train.meshes[m.mesh.0];
+                // Both gears bring the oil to their speed; each takes half of the power.
+                let Some(power) = self.jet(m) else { continue };
+                for k in 0..2 {
+                    let speed = real::abs(m.relative_speeds[k]);
+                    if speed.re() > 0.0 {
+                        drag(Source::Jet(m.mesh.0), [mesh.gears[k].member, mesh.carrier], power * 0.5 / speed);
+                    }
+                }
+            }
         }
         step.meshes = losses;
         step.bearings = reports;
@@ -433,7 +557,7 @@ impl<'t, R: Real> Physics<'t, R> {
                 add(
                     &train.bearings[*bearing].name,
                     LossKind::Bearing,
-                    self.bearing_law(&train.bearings[*bearing]).meta().id,
+                    self.bearing_law_name(&train.bearings[*bearing]),
                     loss,
                 );
             }
@@ -447,12 +571,7 @@ impl<'t, R: Real> Physics<'t, R> {
                     add(&train.meshes[k].name, LossKind::Rolling, law, *loss);
                 }
                 Source::Bearing(k) => {
-                    add(
-                        &train.bearings[k].name,
-                        LossKind::Bearing,
-                        self.bearing_law(&train.bearings[k]).meta().id,
-                        *loss,
-                    );
+                    add(&train.bearings[k].name, LossKind::Bearing, self.bearing_law_name(&train.bearings[k]), *loss);
                 }
                 Source::Seal(k) => add(&train.seals[k].name, LossKind::Seal, train.laws.seal.meta().id, *loss),
                 Source::Body(k) => {
@@ -465,6 +584,14 @@ impl<'t, R: Real> Physics<'t, R> {
                         _ => LossKind::Windage,
                     };
                     add(&train.rotors[k].name, kind, train.laws.rotor_drag.meta().id, *loss);
+                }
+                Source::Drag(k) => add(&train.drags[k].name, LossKind::Drag, "given", *loss),
+                Source::Open(k) => {
+                    add(&train.shift_elements[k].name, LossKind::ShiftElement, self.open_law(k), *loss);
+                }
+                Source::Pump(k) => add(&train.pumps[k].name, LossKind::Pump, train.laws.pump.meta().id, *loss),
+                Source::Jet(k) => {
+                    add(&train.meshes[k].name, LossKind::Injection, train.laws.injection.meta().id, *loss)
                 }
                 Source::Standby(k) => add(&train.variators[k].name, LossKind::Variator, "given", *loss),
             }
@@ -506,9 +633,9 @@ impl Physics<'_> {
             }
         }
         let mut found = found.unwrap_or_default();
-        for k in 0..self.train.bearings.len() {
-            if self.oil.is_some() {
-                self.bearing_extrapolations(k, &flow.speeds, &flow.meshes, &mut found);
+        if self.oil.is_some() {
+            for (k, carried) in self.reactions(&flow.speeds, &flow.meshes).places.iter().enumerate() {
+                self.bearing_extrapolations(k, &flow.speeds, carried, &mut found);
             }
         }
         self.wet_extrapolations(&flow.speeds, &mut found);
@@ -631,15 +758,16 @@ impl Physics<'_> {
         all
     }
 
-    /// The bearings of a solved step, with their losses.
-    pub fn bearings(&self, step: &Step, flow: &Flow) -> Vec<(String, BearingReport)> {
+    /// The bearings of a solved step, with their losses, and the loads of the shafts on them, by member.
+    pub fn bearings(&self, step: &Step, flow: &Flow) -> (Named<BearingReport>, Named<ShaftLoad>) {
+        if self.oil.is_none() {
+            return (Named(vec![]), Named(vec![]));
+        }
         let mut all = Vec::new();
-        for (k, solved) in step.bearings.iter().enumerate() {
-            if self.oil.is_none() {
-                break;
-            }
+        let reactions = self.reactions(&flow.speeds, &flow.meshes);
+        for ((k, solved), carried) in step.bearings.iter().enumerate().zip(&reactions.places) {
             // Loads of this flow, with the torque it was solved with.
-            let mut report = self.bearing(k, &flow.speeds, &flow.meshes, &mut |_, _| {}).report;
+            let mut report = self.bearing(k, &flow.speeds, carried, &mut |_| {}).report;
             report.torque_n_m = solved.torque_n_m;
             let by_load = flow.meshes.iter().zip(&step.meshes).flat_map(|(m, own)| {
                 own.bearings.iter().filter(|b| b.0 == k).map(|b| b.1 * m.potential_power).collect::<Vec<_>>()
@@ -649,7 +777,8 @@ impl Physics<'_> {
             report.loss_w = by_load.chain(rest).sum::<f64>() + 0.0;
             all.push((self.train.bearings[k].name.clone(), report));
         }
-        all
+        let named = |(m, load)| (self.train.member_name(m).to_owned(), load);
+        (Named(all), Named(reactions.shafts.into_iter().map(named).collect()))
     }
 
     /// Every torque between two members beside those of the teeth.
@@ -664,6 +793,10 @@ impl Physics<'_> {
                 Source::Seal(k) => (DragSource::Seal, &train.seals[k].name),
                 Source::Body(k) => (DragSource::Gear, &self.bodies[k].name),
                 Source::Rotor(k) => (DragSource::Rotor, &train.rotors[k].name),
+                Source::Drag(k) => (DragSource::Drag, &train.drags[k].name),
+                Source::Open(k) => (DragSource::ShiftElement, &train.shift_elements[k].name),
+                Source::Pump(k) => (DragSource::Pump, &train.pumps[k].name),
+                Source::Jet(k) => (DragSource::Injection, &train.meshes[k].name),
                 // It acts on a bus, between no members.
                 Source::Standby(_) => continue,
             };

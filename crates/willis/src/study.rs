@@ -6,6 +6,8 @@
 
 mod answer;
 mod axis;
+mod calibrate;
+pub mod calibration;
 mod column;
 mod compare;
 mod compiled;
@@ -13,6 +15,7 @@ mod cycle;
 mod design;
 mod distribution;
 pub mod export;
+mod heat;
 mod profile;
 mod question;
 mod sensitivity;
@@ -22,6 +25,10 @@ mod uncertainty;
 
 pub use answer::{LawChoice, PointAnswer, PointVerdict, PointWarning};
 pub use axis::{Axis, values};
+pub use calibrate::{
+    BlindChange, BlindDirection, CalibrateRequest, CalibratedPart, Calibration, MeterOffset, NextTest, PredictedLoss,
+    TestResidual, calibrate,
+};
 pub use column::{Column, ColumnKind, ColumnTable, ColumnValues, Rows};
 pub use compare::{
     Band, CompareRequest, Compared, ComparedUnit, ComparedValue, Comparison, Difference, MapComparison, MapDifference,
@@ -29,12 +36,15 @@ pub use compare::{
 };
 pub use compiled::{CompiledSweep, SweepWorkspace};
 pub use cycle::{
-    Cycle, CycleAnswer, CycleReport, CycleRequest, Energies, EnergyKind, PowerDirection, RepeatedMessage, SourceEnergy,
-    TerminalEnergy, VerdictTime, Worst, WorstRow, cycle,
+    Cycle, CycleAnswer, CycleOil, CycleReport, CycleRequest, Energies, EnergyKind, PowerDirection, RepeatedMessage,
+    SourceEnergy, TerminalEnergy, VerdictTime, Worst, WorstRow, cycle,
 };
 pub(crate) use design::quantile;
 pub use design::{Design, REPLICATES, SamplingError, SobolIndices, Statistics};
 pub use distribution::{Distribution, standard_normal_quantile};
+pub use heat::{
+    DutyHeat, HeatRequest, HeatRow, HeatStudy, NoWarmUp, OperationHeat, RatingStatus, ThermalRating, WarmUp, heat,
+};
 pub use profile::{Basis, Profile, ProfileColumns, ProfileRow};
 pub use question::{Hold, Question, Trains};
 pub use sensitivity::{

@@ -15,6 +15,7 @@ mod expand;
 mod find;
 mod format;
 mod formula;
+pub mod heat;
 mod input;
 mod physical;
 mod reading;
@@ -36,24 +37,30 @@ pub use dynamic::{
     Contact, Control, ControlKind, Curve, DragMount, Engagement, Friction, Inertia, LossRow, LossTable, Scenario,
     Shaft, Signal, Source, SourceKind,
 };
-pub use edit::{Document, Key, Measure};
+pub use edit::{Document, Key, Measure, Ramp};
 pub use find::AS_DRAWN;
 pub(crate) use format::keys::Kind as KeyKind;
 pub use formula::Formula;
-pub(crate) use input::{BearingNumber, Input, RotorNumber, Slot};
+pub(crate) use heat::HeatNumber;
+pub(crate) use input::{BearingNumber, Input, PumpNumber, RotorNumber, Slot};
+pub(crate) use physical::OpenNumber;
 pub(crate) use physical::steel_mass;
-pub use physical::{BearingMount, Housing, Lubrication, PlanetBody, Rotor, SealMount, Teeth};
+pub use physical::{
+    BearingMount, Housing, Jet, LossFactors, LossPart, Lubrication, OpenElement, PlanetBody, Pump, Rotor, SealMount,
+    Teeth,
+};
 pub use reading::Reading;
 pub use schema::schema;
 pub(crate) use specification::kind_of;
 pub use specification::{
-    BearingSpec, BevelSpec, CentralSpec, ControlSpec, ControllerSpec, Direction, DoublePlanetSpec, DragSpec,
-    EfficiencySpec, EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, HousingSpec, LawsSpec,
-    LinearSpec, LossRowSpec, MachineEfficiencySpec, MachineSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec,
-    OilSupply, OperationSpec, PairKind, PlanetBodySpec, PlanetSpec, QuadraticSpec, RatioSpec, RavigneauxSpec,
-    RotorSpec, ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts, SetSpec, ShaftSpec, ShiftElementSpec, Side,
-    SideSpec, SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec, StepSpec, SteppedPlanetSpec, SteppedSpec,
-    StoreSpec, StudySpec, TerminalSpec, ToothSpec, VariatorSpec, VehicleSpec,
+    BearingSpec, BevelSpec, CentralSpec, ControlSpec, ControllerSpec, CoolerSpec, Direction, DoublePlanetSpec,
+    DragSpec, EfficiencySpec, EngagementSpec, Fluid, FormatNumber, FrictionSpec, GearSpec, GeometrySpec, Hand,
+    HeatNodeSpec, HeatPathSpec, HeatSpec, HousingSpec, JetSide, LawsSpec, LinearSpec, LossFactorSpec, LossRowSpec,
+    LossesSpec, MachineEfficiencySpec, MachineSpec, MeshSpec, MeshStiffness, MotorSpec, OilSpec, OilSupply, OpenSpec,
+    OperationSpec, PairKind, PlanetBodySpec, PlanetSpec, PumpSpec, QuadraticSpec, RatioSpec, RavigneauxSpec, RotorSpec,
+    ScenarioSpec, SealSpec, Sense, SetEfficiencySpec, SetParts, SetSpec, ShaftSpec, ShiftElementSpec, Side, SideSpec,
+    SignalSpec, SimpleSpec, SourceSpec, Specification, StateSpec, StepSpec, SteppedPlanetSpec, SteppedSpec, StoreSpec,
+    StudySpec, SurfaceSpec, TerminalSpec, ToothSpec, VariatorSpec, VehicleSpec,
 };
 pub use variator::{EfficiencyMap, Machine, MachineEfficiency, Store, Variator, VariatorKind, VariatorPath};
 
@@ -157,6 +164,8 @@ pub struct Mesh {
     pub bevel: bool,
     /// Identical meshes in parallel.
     pub count: u32,
+    /// Direction from the axis of the first gear to that of the second, rad, where it is known.
+    pub angle: Option<f64>,
     /// The set that it belongs to.
     pub set: Option<usize>,
     /// Whether [`Mesh::efficiency`] is a nominal one: at operating points the loss is computed from
@@ -213,6 +222,8 @@ pub struct ShiftElement {
     pub blocks: i8,
     /// What it can hold, where that is limited and known.
     pub friction: Option<Friction>,
+    /// What it does while it is open, where that is known.
+    pub open: Option<OpenElement>,
 }
 
 /// A row of the shift table.
@@ -391,9 +402,14 @@ pub struct Train {
     pub(crate) lubrication: Option<Lubrication>,
     pub(crate) laws: Laws,
     pub(crate) housing: Housing,
+    /// What tests say of the laws.
+    pub(crate) loss_factors: LossFactors,
+    /// What carries heat away.
+    pub(crate) heat: Option<heat::Heat>,
     pub(crate) bearings: Vec<BearingMount>,
     pub(crate) seals: Vec<SealMount>,
     pub(crate) rotors: Vec<Rotor>,
+    pub(crate) pumps: Vec<Pump>,
     pub(crate) planets: Vec<PlanetBody>,
     pub(crate) inertias: Vec<Inertia>,
     pub(crate) drags: Vec<DragMount>,
@@ -654,6 +670,11 @@ impl Train {
         &self.seals
     }
 
+    /// Every oil pump.
+    pub fn pumps(&self) -> &[Pump] {
+        &self.pumps
+    }
+
     /// Every carrier or drum that drags the fluid around it.
     pub fn rotors(&self) -> &[Rotor] {
         &self.rotors
@@ -699,8 +720,33 @@ impl Train {
         &self.variators
     }
 
-    /// Whether losses are computed at operating points, beside given mesh efficiencies.
+    /// What carries the heat of the losses away.
+    pub fn heat(&self) -> Option<&heat::Heat> {
+        self.heat.as_ref()
+    }
+
+    /// Whether operating points have losses beside those of given mesh efficiencies: computed ones, or given drags.
     pub fn is_physical(&self) -> bool {
+        self.has_laws()
+            || !(self.drags.is_empty() && self.pumps.is_empty())
+            || self.shift_elements.iter().any(|e| e.open.is_some())
+            || self.meshes.iter().any(|m| m.teeth.as_ref().is_some_and(|t| t.jet.is_some()))
+    }
+
+    /// Whether an operating point knows of a member: it is a gear, a carrier, a terminal, or joined to one by a shift
+    /// element or a variator. What hangs on an elastic shaft alone is a matter of motion.
+    pub(crate) fn is_within(&self, member: MemberId) -> bool {
+        let at = |m: MemberId| m == member;
+        member == FRAME
+            || self.meshes.iter().any(|m| at(m.carrier) || m.gears.iter().any(|g| at(g.member)))
+            || self.shift_elements.iter().any(|e| e.members.iter().any(|m| at(*m)))
+            || self.variators.iter().any(|v| v.members().iter().any(|m| at(*m)))
+            || self.joints.iter().flatten().any(|m| at(*m))
+            || self.terminals.iter().any(|m| at(*m))
+    }
+
+    /// Whether laws compute losses at operating points.
+    pub(crate) fn has_laws(&self) -> bool {
         self.meshes.iter().any(|m| m.computed)
             || !(self.bearings.is_empty() && self.seals.is_empty() && self.rotors.is_empty())
             || self.lubrication.as_ref().is_some_and(|l| l.supply.is_some())
@@ -720,6 +766,9 @@ impl Train {
         plain.bearings.clear();
         plain.seals.clear();
         plain.rotors.clear();
+        plain.drags.clear();
+        plain.pumps.clear();
+        plain.shift_elements.iter_mut().for_each(|e| e.open = None);
         plain.lubrication = None;
         plain
     }

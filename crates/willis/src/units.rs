@@ -641,6 +641,46 @@ pub(crate) fn without_unit<'a>(name: &'a str, unit: &str) -> &'a str {
     let ending = with_unit("", unit);
     name.strip_suffix(ending.as_str()).filter(|bare| !bare.is_empty()).unwrap_or(name)
 }
+quantity!(
+    /// A thermal conductance: heat flow over a difference of temperatures.
+    Conductance, CONDUCTANCE,
+    /// From watts per kelvin.
+    w_k = "W/K"
+);
+quantity!(
+    /// A heat transfer coefficient: conductance over area.
+    HeatTransfer, HEAT_TRANSFER,
+    /// From W/(m² K).
+    w_m2_k = "W/(m^2 K)"
+);
+quantity!(
+    /// A heat capacity.
+    HeatCapacity, HEAT_CAPACITY,
+    /// From joules per kelvin.
+    j_k = "J/K",
+    /// From kilojoules per kelvin.
+    kj_k = "kJ/K"
+);
+quantity!(
+    /// A heat capacity over mass.
+    SpecificHeat, SPECIFIC_HEAT,
+    /// From J/(kg K).
+    j_kg_k = "J/(kg K)"
+);
+quantity!(
+    /// A flow of volume.
+    VolumeFlow, FLOW,
+    /// From cubic metres per second.
+    m3_s = "m^3/s",
+    /// From litres per minute.
+    l_min = "l/min"
+);
+quantity!(
+    /// A speed along a line.
+    Speed, SPEED,
+    /// From metres per second.
+    m_s = "m/s"
+);
 
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,8 @@
 //! The program answers for every example train.
 
 use std::fs;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 use serde_json::Value;
 
@@ -27,58 +29,74 @@ fn scenarios(text: &str) -> Vec<&str> {
     heads.filter_map(|w| w[1].strip_prefix("name = \"")?.split('"').next()).collect()
 }
 
-/// Checks and analyses every example, and runs every scenario.
+/// What is wrong with the answers for a train: every question, every scenario.
+fn wrong_with(context: &Context, file: &str) -> Result<Vec<String>, String> {
+    let mut wrong = Vec::new();
+    let json = ["--format", "json"];
+    let questions = [
+        &["check"][..],
+        &["analyze"],
+        &["analyze", json[0], json[1]],
+        &["regimes"],
+        &["regimes", json[0], json[1]],
+        &["formula", "--derivatives"],
+        &["report"],
+    ];
+    // Power flow and losses need an operating point.
+    let text = fs::read_to_string(context.root.join(file)).map_err(|e| format!("{file}: {e}"))?;
+    let flows: &[&[&str]] = match text.lines().any(|l| l.trim() == "[[operation]]") {
+        true => &[
+            &["flow"],
+            &["flow", "--format", "json"],
+            &["flow", "--format", "svg"],
+            &["losses"],
+            &["losses", "--compare", "mesh_friction", "--format", "json"],
+        ],
+        false => &[],
+    };
+    let names = scenarios(&text);
+    if names.len() != text.lines().filter(|l| l.trim_start().starts_with("[[scenario]]")).count() {
+        wrong.push(format!("{file}: a scenario does not begin with its name"));
+    }
+    let runs: Vec<[&str; 5]> = (names.iter())
+        .flat_map(|name| ["text", "json"].map(|format| ["simulate", "--scenario", name, "--format", format]))
+        .collect();
+    let shafts: &[&[&str]] = match text.contains("stiffness = ") {
+        true => &[&["modes"], &["modes", "--format", "json"]],
+        false => &[],
+    };
+    let moves = runs.iter().map(|r| &r[..]).chain(shafts.iter().copied());
+    for arguments in questions.iter().chain(flows).copied().chain(moves) {
+        let mut command = context.willis();
+        match context.output(command.args(arguments).arg(file)) {
+            Err(e) => wrong.push(e),
+            Ok(output) if arguments.contains(&"json") && !is_object(&output.stdout) => {
+                wrong.push(format!("`{}` does not print a JSON object", said(&command)));
+            }
+            Ok(_) => {}
+        }
+    }
+    Ok(wrong)
+}
+
+/// Checks and analyses every example, and runs every scenario; two at a time.
 pub(crate) fn examples(context: &Context) -> Outcome {
     let all = || -> Result<usize, String> {
         build_willis(context)?;
-        let mut wrong = Vec::new();
         let files = example_files(context)?;
-        for file in &files {
-            let json = ["--format", "json"];
-            let questions = [
-                &["check"][..],
-                &["analyze"],
-                &["analyze", json[0], json[1]],
-                &["regimes"],
-                &["regimes", json[0], json[1]],
-                &["formula", "--derivatives"],
-                &["report"],
-            ];
-            // Power flow and losses need an operating point.
-            let text = fs::read_to_string(context.root.join(file)).map_err(|e| format!("{file}: {e}"))?;
-            let flows: &[&[&str]] = match text.lines().any(|l| l.trim() == "[[operation]]") {
-                true => &[
-                    &["flow"],
-                    &["flow", "--format", "json"],
-                    &["flow", "--format", "svg"],
-                    &["losses"],
-                    &["losses", "--compare", "mesh_friction", "--format", "json"],
-                ],
-                false => &[],
-            };
-            let names = scenarios(&text);
-            if names.len() != text.lines().filter(|l| l.trim_start().starts_with("[[scenario]]")).count() {
-                wrong.push(format!("{file}: a scenario does not begin with its name"));
+        let next = AtomicUsize::new(0);
+        let worker = || -> Result<Vec<String>, String> {
+            let mut wrong = Vec::new();
+            while let Some(file) = files.get(next.fetch_add(1, Ordering::Relaxed)) {
+                wrong.extend(wrong_with(context, file)?);
             }
-            let runs: Vec<[&str; 5]> = (names.iter())
-                .flat_map(|name| ["text", "json"].map(|format| ["simulate", "--scenario", name, "--format", format]))
-                .collect();
-            let shafts: &[&[&str]] = match text.contains("stiffness = ") {
-                true => &[&["modes"], &["modes", "--format", "json"]],
-                false => &[],
-            };
-            let moves = runs.iter().map(|r| &r[..]).chain(shafts.iter().copied());
-            for arguments in questions.iter().chain(flows).copied().chain(moves) {
-                let mut command = context.willis();
-                match context.output(command.args(arguments).arg(file)) {
-                    Err(e) => wrong.push(e),
-                    Ok(output) if arguments.contains(&"json") && !is_object(&output.stdout) => {
-                        wrong.push(format!("`{}` does not print a JSON object", said(&command)));
-                    }
-                    Ok(_) => {}
-                }
-            }
-        }
+            Ok(wrong)
+        };
+        let [one, other] = thread::scope(|scope| {
+            let workers = [scope.spawn(worker), scope.spawn(worker)];
+            workers.map(|w| w.join().unwrap_or_else(|_| Err("a worker ended early".into())))
+        });
+        let wrong = [one?, other?].concat();
         if wrong.is_empty() { Ok(files.len()) } else { Err(wrong.join("\n")) }
     };
     match all() {

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::process::Command;
 
 use serde_json::Value;
 
@@ -118,6 +119,10 @@ const FIGURES: &[(&str, &[&str])] = &[
     (
         "book/src/figures/herringbone-losses.svg",
         &["draw", "losses", "examples/wang-herringbone-physical.toml", "--theme", "auto", "-o"],
+    ),
+    (
+        "book/src/figures/heat-industrial.svg",
+        &["draw", "heat", "examples/industrial-planetary-heat.toml", "--operation", "rated", "--theme", "auto", "-o"],
     ),
     ("book/src/figures/ivt-drive-away.svg", &["draw", "time", "examples/ivt-drive-away.toml", "--theme", "auto", "-o"]),
     ("book/src/figures/nrel-front.svg", &["draw", "front", "examples/nrel-5mw-stage-1.toml", "--theme", "auto", "-o"]),
@@ -269,7 +274,15 @@ fn compare(context: &Context) -> Result<(), String> {
     if stale.is_empty() { Ok(()) } else { Err(format!("{}: run `cargo xtask generate`", stale.join("; "))) }
 }
 
-/// The optimised program.
+/// Builds the optimised program.
+pub(crate) const RELEASE: &str = "cargo build --release -p willis-cli";
+
+/// What can be built before it is needed.
+pub(crate) fn builds(context: &Context) -> Vec<Command> {
+    vec![context.words(RELEASE)]
+}
+
+/// The optimised program, without a word where it is there.
 pub(crate) fn build_willis(context: &Context) -> Result<(), String> {
-    context.run("cargo build --quiet --release -p willis-cli")
+    context.run(&format!("{RELEASE} --quiet"))
 }

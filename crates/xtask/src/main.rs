@@ -46,7 +46,7 @@ const STEPS: &[Step] = &[
         .env(&[("RUSTDOCFLAGS", "-D warnings")])
         .in_check(),
     Step::new("package", "every published crate holds what it needs", Action::Call(package::package)),
-    Step::new("release", "the optimised program", Action::Run("cargo build --release -p willis-cli")),
+    Step::new("release", "the optimised program", Action::Run(generate::RELEASE)).ahead(generate::builds),
     Step::new(
         "generated",
         "generated files are as `cargo xtask generate` writes them",
@@ -55,21 +55,18 @@ const STEPS: &[Step] = &[
     Step::new("examples", "the program answers for every example train", Action::Call(examples::examples)),
     Step::new("book", "what README and book say the program prints is what it prints", Action::Call(book::book)),
     Step::new("pages", "the book as web pages", Action::Call(book::pages)).may_skip(),
-    Step::new("bench-gate", "work counts have not grown", Action::Call(bench::bench_gate)).may_skip(),
+    Step::new("bench-gate", "work counts have not grown", Action::Call(bench::bench_gate)).may_skip().ahead(bench::builds),
     Step::new(
         "studio",
         "the library answers as WebAssembly, and the page around it works in a browser; [--no-tests] builds the page only",
         Action::Call(studio::studio),
     )
-    .may_skip(),
-    Step::new("python", "the Python package: wheel, tests, types, notebooks", Action::Call(python::python)).may_skip(),
-    Step::new("pdf", "reports as PDF, by a typesetter that is built for nobody else", Action::Call(pdf::pdf)),
-    Step::new(
-        "fuzz",
-        "no panic on random train files: 20 s, [--seconds N]; [--long] every text, 15 min a target",
-        Action::Call(fuzz::fuzz),
-    )
-    .may_skip(),
+    .may_skip()
+    .ahead(studio::builds),
+    Step::new("python", "the Python package: wheel, tests, types, notebooks", Action::Call(python::python))
+        .may_skip()
+        .ahead(python::builds),
+    Step::new("pdf", "reports as PDF, by a typesetter that is built for nobody else", Action::Call(pdf::pdf)).ahead(pdf::builds),
 ];
 
 /// Tasks that are no steps of `ci`, but are shown like steps.
@@ -80,6 +77,12 @@ const TASKS: &[Step] = &[
         "write the validation pages, then compare every number of others with ours; [--modelica FOLDER] whole trajectories",
         Action::Call(generate::validate),
     ),
+    Step::new(
+        "fuzz",
+        "no panic on random train files that grow by what they reach: 20 s, [--seconds N]; [--long] every text, 15 min a target",
+        Action::Call(fuzz::fuzz),
+    )
+    .may_skip(),
     Step::new("bench", "benchmarks of the library", Action::Call(bench::bench)),
     Step::new(
         "measure",

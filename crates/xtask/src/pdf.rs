@@ -1,10 +1,10 @@
 //! Reports as PDF: the typesetter is tested, reports are measured, and one is set.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use crate::context::{Context, component, passes};
+use crate::context::{Context, component, passes, said};
 use crate::generate::build_willis;
 use crate::step::{Outcome, outcome};
 
@@ -42,17 +42,35 @@ fn measured(context: &Context, typesetter: &Path) -> Result<(), String> {
     Ok(())
 }
 
+const MANIFEST: &str = "crates/willis-pdf/Cargo.toml";
+
+/// Built once, for tests and program alike; beside its manifest, where `report` looks for it.
+fn own_target(context: &Context) -> PathBuf {
+    context.root.join("crates/willis-pdf/target")
+}
+
+/// `cargo` for the typesetter.
+fn cargo(context: &Context, words: &str) -> Command {
+    let mut command = context.words(&format!("cargo {words} --manifest-path {MANIFEST}"));
+    command.env("CARGO_TARGET_DIR", own_target(context));
+    command
+}
+
+/// Builds the typesetter and its tests.
+pub(crate) fn builds(context: &Context) -> Vec<Command> {
+    ["test --no-run", "build"].map(|words| cargo(context, words)).into()
+}
+
 /// Tests the typesetter, measures reports, and sets one.
 pub(crate) fn pdf(context: &Context) -> Outcome {
-    const MANIFEST: &str = "crates/willis-pdf/Cargo.toml";
     let all = || -> Result<(), String> {
         component(context, "rustfmt")?;
         context.run(&format!("cargo fmt --manifest-path {MANIFEST} --check"))?;
-        // Built once, for tests and program alike; beside its manifest, where `report` looks for it.
-        let own = context.root.join("crates/willis-pdf/target");
-        for words in ["cargo test --manifest-path", "cargo build --manifest-path"] {
-            let words = format!("{words} {MANIFEST}");
-            passes(context.words(&words).env("CARGO_TARGET_DIR", &own), &words)?;
+        let own = own_target(context);
+        for words in ["test", "build"] {
+            let mut command = cargo(context, words);
+            let said = said(&command);
+            passes(&mut command, &said)?;
         }
         build_willis(context)?;
         measured(context, &own.join("debug/willis-pdf"))?;

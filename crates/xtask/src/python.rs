@@ -1,8 +1,8 @@
 //! The Python package: built as a wheel, installed where nothing else is, and tested there.
 
 use std::fs;
-use std::path::Path;
-use std::process::Command;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
 
 use crate::context::{Context, passes};
 use crate::step::{Outcome, outcome};
@@ -15,20 +15,35 @@ const CRATE: &str = "crates/willis-py";
 
 /// Builds the wheel, installs it and runs what is written for it.
 pub(crate) fn python(context: &Context) -> Outcome {
-    let folder = context.target.join("python");
-    let (venv, wheels) = (folder.join("venv"), folder.join("wheels"));
-    if let Err(why) = install(context, &venv, TOOLS) {
+    let (venv, wheels) = (venv(context), context.target.join("python/wheels"));
+    if let Err(why) = install(context, &venv) {
         return Outcome::Skipped(why);
     }
     outcome(test(context, &venv, &wheels))
 }
 
-/// A new environment with these packages.
-fn install(context: &Context, venv: &Path, packages: &str) -> Result<(), String> {
-    let mut make = context.words("python3 -m venv --clear");
-    passes(make.arg(venv), "python3 -m venv")?;
+/// The environment.
+fn venv(context: &Context) -> PathBuf {
+    context.target.join("python/venv")
+}
+
+/// An environment with the tools: what makes it, and what fills it. Both do nothing where that is done.
+fn tools(context: &Context, venv: &Path) -> [Command; 2] {
+    let mut make = context.words("python3 -m venv");
+    make.arg(venv);
     let mut pip = of(context, venv, "pip");
-    pip.args(["install", "--quiet", "--disable-pip-version-check"]).args(packages.split_whitespace());
+    pip.args(["install", "--quiet", "--disable-pip-version-check"]).args(TOOLS.split_whitespace());
+    [make, pip]
+}
+
+/// What can be fetched before.
+pub(crate) fn builds(context: &Context) -> Vec<Command> {
+    tools(context, &venv(context)).into()
+}
+
+fn install(context: &Context, venv: &Path) -> Result<(), String> {
+    let [mut make, mut pip] = tools(context, venv);
+    passes(&mut make, "python3 -m venv")?;
     passes(&mut pip, "pip install").map_err(|why| format!("packages cannot be had: {why}"))
 }
 
@@ -43,6 +58,7 @@ fn test(context: &Context, venv: &Path, wheels: &Path) -> Result<(), String> {
     let _ = fs::remove_dir_all(wheels);
     let manifest = format!("{CRATE}/Cargo.toml");
     let mut build = of(context, venv, "maturin");
+    build.env("WILLIS_WHEEL", "1");
     build.args(["build", "--quiet", "--manifest-path", &manifest, "--out"]).arg(wheels);
     passes(&mut build, "maturin build")?;
     let wheel = fs::read_dir(wheels).map_err(|e| e.to_string())?.flatten().map(|e| e.path()).next();
@@ -55,25 +71,25 @@ fn test(context: &Context, venv: &Path, wheels: &Path) -> Result<(), String> {
     let mut pip = of(context, venv, "pip");
     passes(pip.args(["install", "--quiet", "--force-reinstall", "--no-deps"]).arg(&wheel), "pip install of the wheel")?;
     let script = |name: &str| format!("{CRATE}/{name}");
-    let steps: &[(&str, &[&str])] = &[
-        ("python", &[&script("generate.py"), "--check"]),
-        ("python", &["-m", "pytest", "--quiet", "-p", "no:cacheprovider", &script("tests")]),
-        (
-            "mypy",
-            &[
-                "--strict",
-                "--config-file",
-                &script("pyproject.toml"),
-                &script("python/willis"),
-                &script("tests/typed.py"),
-            ],
-        ),
-    ];
-    for (program, words) in steps {
-        let mut command = of(context, venv, program);
-        passes(command.args(*words), &format!("{program} {}", words.join(" ")))?;
-    }
+    let mut check = of(context, venv, "python");
+    passes(check.arg(script("generate.py")).arg("--check"), "generate.py --check")?;
+    let mut mypy = of(context, venv, "mypy");
+    mypy.args(["--strict", "--config-file"]).args(["pyproject.toml", "python/willis", "tests/typed.py"].map(script));
     let mut pyright = of(context, venv, "pyright");
     pyright.arg("--pythonpath").arg(venv.join("bin/python")).args(["--project", CRATE]);
-    passes(&mut pyright, "pyright")
+    // Types are checked beside the tests; what that prints comes after what they print.
+    std::thread::scope(|scope| {
+        let types = scope.spawn(|| -> Result<Vec<Output>, String> {
+            [&mut mypy, &mut pyright].into_iter().map(|c| context.output(c)).collect()
+        });
+        let mut pytest = of(context, venv, "python");
+        pytest.args(["-m", "pytest", "--quiet", "-p", "no:cacheprovider"]).arg(script("tests"));
+        let tested = passes(&mut pytest, "pytest");
+        let types = types.join().map_err(|_| "the check of types ended early".to_owned())?;
+        tested?;
+        for output in types? {
+            print!("{}", String::from_utf8_lossy(&output.stdout));
+        }
+        Ok(())
+    })
 }

@@ -1,7 +1,9 @@
 //! What a step is, and how steps are run one after the other.
 
 use std::io::Write;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
 
 use crate::context::{Context, component, passes};
@@ -20,6 +22,9 @@ pub(crate) struct Step {
     may_skip: bool,
     /// Whether `check` runs it too.
     pub(crate) in_check: bool,
+    /// What it builds in a folder of its own, beside the steps before it: they often wait for one core. The step begins when that
+    /// has ended. What comes of it is not looked at; the step itself builds what is missing.
+    ahead: Option<fn(&Context) -> Vec<Command>>,
 }
 
 pub(crate) enum Action {
@@ -55,7 +60,7 @@ pub(crate) fn tested(result: Result<Tests, String>) -> Outcome {
 impl Step {
     /// A step of `ci` that must pass.
     pub(crate) const fn new(name: &'static str, about: &'static str, action: Action) -> Self {
-        Self { name, about, env: &[], action, may_skip: false, in_check: false }
+        Self { name, about, env: &[], action, may_skip: false, in_check: false, ahead: None }
     }
 
     /// A tool that cannot be had makes it `skipped` instead of failed.
@@ -66,6 +71,11 @@ impl Step {
     /// `check` runs it too.
     pub(crate) const fn in_check(self) -> Self {
         Self { in_check: true, ..self }
+    }
+
+    /// Runs these, one after the other, beside the steps before it.
+    pub(crate) const fn ahead(self, builds: fn(&Context) -> Vec<Command>) -> Self {
+        Self { ahead: Some(builds), ..self }
     }
 
     /// With this in the environment of its command.
@@ -100,6 +110,51 @@ impl Step {
 
 /// Runs steps up to the first that fails, and closes with what they came to.
 pub(crate) fn run(steps: &[&Step], context: &Context) -> ExitCode {
+    let over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        // However the steps end, nothing is built for them any longer.
+        let _ended = Ended(&over);
+        let (tell, built) = mpsc::channel();
+        let ahead: Vec<_> = steps.iter().filter(|_| steps.len() > 1).filter_map(|s| Some((s.name, s.ahead?))).collect();
+        let over = &over;
+        scope.spawn(move || {
+            for (name, builds) in ahead {
+                builds(context).into_iter().for_each(|build| until(over, build));
+                // Nobody listens when the steps have ended.
+                let _ = tell.send(name);
+            }
+        });
+        run_in_order(steps, context, &built)
+    })
+}
+
+/// Says that it is over when it goes.
+struct Ended<'a>(&'a AtomicBool);
+
+impl Drop for Ended<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Runs a command silently, to its end or until it is over. What the command itself has started (compilers, of `cargo`) is not
+/// killed with it: those end when their file is done, and nobody waits for them.
+fn until(over: &AtomicBool, mut command: Command) {
+    if over.load(Ordering::Relaxed) {
+        return;
+    }
+    let Ok(mut child) = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn() else { return };
+    while matches!(child.try_wait(), Ok(None)) {
+        if over.load(Ordering::Relaxed) {
+            let _ = child.kill();
+            let _ = child.wait();
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(100));
+    }
+}
+
+fn run_in_order(steps: &[&Step], context: &Context, built: &Receiver<&str>) -> ExitCode {
     let begin = Instant::now();
     let mut summary = Vec::new();
     let mut tests = None;
@@ -108,6 +163,10 @@ pub(crate) fn run(steps: &[&Step], context: &Context) -> ExitCode {
         println!("── {}/{} {}: {}", k + 1, steps.len(), step.name, step.repeat());
         let _ = std::io::stdout().flush();
         let start = Instant::now();
+        if step.ahead.is_some() {
+            // Those of steps before it have ended before; without any the channel is closed.
+            let _ = built.iter().find(|name| *name == step.name);
+        }
         let outcome = step.run(context);
         let took = time(start.elapsed());
         let (word, remark) = match outcome {

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use crate::context::{Context, passes, said};
 use crate::generate::build_willis;
@@ -9,8 +10,8 @@ use crate::step::Outcome;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// What a page may make its reader load, packed: it does not grow. The goal is 2 MB.
-const MOST_BYTES: u64 = 3_100_000;
+/// What a page may make its reader load, packed, in bytes: heat and calibration took it beyond the 2 MB that are wanted.
+const MOST_BYTES: u64 = 2_200_000;
 
 /// Why the step ended early.
 enum Stop {
@@ -73,17 +74,48 @@ fn is_there(context: &Context) -> bool {
     output.is_ok_and(|o| Path::new(String::from_utf8_lossy(&o.stdout).trim()).is_dir())
 }
 
+/// Builds the library for browsers.
+fn build_library(context: &Context) -> Command {
+    context.words(&format!("cargo build --profile web -p willis-web --target {TARGET}"))
+}
+
+/// `cargo` for the writer of JavaScript: a workspace of its own, built for this machine, once, and for nobody else.
+fn bindgen(context: &Context, word: &str) -> Command {
+    let words = format!("cargo {word} --quiet --manifest-path studio/bindgen/Cargo.toml --target-dir");
+    let mut command = context.words(&words);
+    command.arg(context.target.join("tools/bindgen"));
+    command
+}
+
+/// What can be built before.
+pub(crate) fn builds(context: &Context) -> Vec<Command> {
+    vec![context.words(&format!("rustup target add {TARGET}")), build_library(context), bindgen(context, "build")]
+}
+
 /// The library with its JavaScript in a folder; how many bytes it has, packed.
 fn library(context: &Context, folder: &Path) -> Result<u64, String> {
-    context.run(&format!("cargo build --profile web -p willis-web --target {TARGET}"))?;
-    // A workspace of its own: it is built for this machine, once, and for nobody else.
-    let tools = context.target.join("tools/bindgen");
-    let mut bindgen = context.words("cargo run --quiet --manifest-path studio/bindgen/Cargo.toml --target-dir");
-    bindgen.arg(&tools).arg("--").arg(context.target.join(TARGET).join("web/willis_web.wasm")).arg(folder);
-    passes(&mut bindgen, "cargo run --manifest-path studio/bindgen/Cargo.toml")?;
+    let mut build = build_library(context);
+    let words = said(&build);
+    passes(&mut build, &words)?;
+    let unpack = context.target.join("tools/unpack");
+    let mut build = context.words("cargo build --quiet --release --manifest-path studio/unpack/Cargo.toml --target");
+    build.arg(TARGET).arg("--target-dir").arg(&unpack);
+    passes(&mut build, "cargo build --manifest-path studio/unpack/Cargo.toml")?;
+    bound(context, &context.target.join(TARGET).join("web/willis_web.wasm"), folder, &["--pack"])?;
+    bound(context, &unpack.join(TARGET).join("release/willis_unpack.wasm"), folder, &[])?;
     node(context, &["pack", path(folder)?])?;
-    let packed = folder.join("willis_web_bg.wasm.gz");
-    fs::metadata(&packed).map(|m| m.len()).map_err(|e| format!("{}: {e}", packed.display()))
+    let size = |name: &str| {
+        let file = folder.join(name);
+        fs::metadata(&file).map(|m| m.len()).map_err(|e| format!("{}: {e}", file.display()))
+    };
+    Ok(size("willis_web_bg.wasm.lzma")? + size("willis_unpack_bg.wasm.gz")?)
+}
+
+/// Writes the JavaScript for a module.
+fn bound(context: &Context, module: &Path, folder: &Path, more: &[&str]) -> Result<(), String> {
+    let mut bindgen = bindgen(context, "run");
+    bindgen.arg("--").arg(module).arg(folder).args(more);
+    passes(&mut bindgen, "cargo run --manifest-path studio/bindgen/Cargo.toml")
 }
 
 /// A chore that is done in JavaScript: `pack`, or to compare the `answers`.
@@ -134,7 +166,7 @@ fn is_installed(folder: &Path) -> bool {
     }
 }
 
-/// The tests of the page.
+/// The tests of the page; what measures has the machine for itself.
 fn in_a_browser(context: &Context, page: &Path) -> Result<(), Stop> {
     let browser = chromium(context).ok_or_else(|| {
         Stop::Lack("the page is built, but there is no Chromium here to test it, and it cannot be had".into())
@@ -144,11 +176,14 @@ fn in_a_browser(context: &Context, page: &Path) -> Result<(), Stop> {
     let mut tests: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).collect();
     tests.retain(|p| p.to_string_lossy().ends_with(".test.mjs"));
     tests.sort();
-    // One after the other: some of them measure.
-    let mut node = context.words("node --test --test-concurrency=1 --test-reporter=spec");
-    node.args(tests).env("STUDIO", page).env("WILLIS", willis(context)).env("CHROMIUM", browser);
-    let said = said(&node);
-    Ok(passes(&mut node, &said)?)
+    let (measuring, others): (Vec<_>, Vec<_>) = tests.into_iter().partition(|p| p.ends_with("speed.test.mjs"));
+    for (together, tests) in [(2, others), (1, measuring)] {
+        let mut node = context.words(&format!("node --test --test-concurrency={together} --test-reporter=spec"));
+        node.args(tests).env("STUDIO", page).env("WILLIS", willis(context)).env("CHROMIUM", &browser);
+        let said = said(&node);
+        passes(&mut node, &said)?;
+    }
+    Ok(())
 }
 
 /// The browser, installed where this may install and it is missing.

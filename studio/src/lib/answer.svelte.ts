@@ -1,7 +1,7 @@
 /** A question that is asked again when what it is about has changed, while it is on the screen. */
 
 import { getContext, onDestroy } from "svelte";
-import { Refused, Stopped, ask, cancel, tell } from "./ask.svelte";
+import { Refused, Stopped, ask, cancel } from "./ask.svelte";
 import { store } from "./store.svelte";
 import type { Doc, Point, Refusal } from "./types";
 
@@ -11,6 +11,8 @@ export interface Asking {
   form?: string;
   /** Else what the store shows. */
   point?: Point;
+  /** First a coarse answer, which is there at once, then the fine one. */
+  coarse?: boolean;
 }
 
 /** Panes side by side have workers of their own. */
@@ -18,6 +20,10 @@ export const SIDE = "side";
 
 export class Answer {
   text = $state.raw<string | null>(null);
+  /** The second file of an answer that has two, such as the data of a picture. */
+  data = $state.raw<string | null>(null);
+  /** What is shown is the coarse answer. */
+  rough = $state(false);
   /** What the text answers, which may be what was asked before. */
   of = $state.raw<Asking | null>(null);
   refusal = $state.raw<Refusal | null>(null);
@@ -42,13 +48,19 @@ export class Answer {
       const key = JSON.stringify([doc.name, doc.text, given.point, asked.question, asked.request, asked.form]);
       if (key === this.#asked) return;
       // What changes on and on, as in a drag, is asked when it rests.
-      const timer = setTimeout(() => void this.#run(key, given), this.text === null ? 0 : wait);
+      const timer = setTimeout(() => void this.#run(key, given), this.text === null || asked.coarse ? 0 : wait);
       return () => clearTimeout(timer);
     });
     onDestroy(() => {
       this.#turn++;
       cancel(this.#lane);
+      cancel(this.#first);
     });
+  }
+
+  /** The lane of coarse answers: they are short, and its worker lives on while that of the fine ones is ended. */
+  get #first(): string {
+    return `${this.#lane} first`;
   }
 
   /** Once more, after it was stopped. */
@@ -60,6 +72,7 @@ export class Answer {
     const turn = ++this.#turn;
     this.#asked = key;
     this.busy = true;
+    this.rough = false;
     this.part = 0;
     this.what = "";
     this.stopped = "";
@@ -69,12 +82,15 @@ export class Answer {
       this.part = Math.min(1, part);
     };
     try {
-      const form = given.form ?? "json";
-      const text = await (form === "json" ? ask : tell)(this.#lane, { ...given, form }, progress);
+      if (given.coarse) {
+        cancel(this.#lane);
+        await this.#take(this.#first, turn, { ...given, request: { ...given.request, coarse: true } }, given, progress);
+        if (turn !== this.#turn) return;
+        this.rough = true;
+      }
+      await this.#take(this.#lane, turn, given, given, progress);
       if (turn !== this.#turn) return;
-      this.text = text;
-      this.of = given;
-      this.refusal = null;
+      this.rough = false;
     } catch (why) {
       if (turn !== this.#turn) return;
       if (why instanceof Refused) this.refusal = why.refusal;
@@ -82,6 +98,17 @@ export class Answer {
       else this.stopped = why instanceof Error ? why.message : String(why);
     }
     this.busy = false;
+  }
+
+  async #take(lane: string, turn: number, asked: Asking & { doc: Doc; point: Point }, of: Asking, progress: (what: string, part: number) => void): Promise<void> {
+    const form = asked.form ?? "json";
+    const told = await ask(lane, { doc: asked.doc, point: asked.point, question: asked.question, request: asked.request, form }, progress);
+    if (turn !== this.#turn) return;
+    const files = form === "json" ? [{ text: told }] : (JSON.parse(told) as { text: string }[]);
+    this.data = files[1]?.text ?? null;
+    this.of = of;
+    this.text = files[0]?.text ?? "";
+    this.refusal = null;
   }
 }
 

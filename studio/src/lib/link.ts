@@ -2,13 +2,13 @@
 
 import { example } from "./examples";
 import { version } from "./willis";
-import type { Doc, Point } from "./types";
+import type { Doc, Look, Point } from "./types";
 
 interface Held {
   /** The file, or the name of an example. */
   t: string | Doc;
   p: Point;
-  v: Record<string, unknown>;
+  v: Partial<Look>;
   w: string;
 }
 
@@ -28,7 +28,7 @@ function decoded(text: string): Uint8Array<ArrayBuffer> {
   return Uint8Array.from(atob(text.replace(/-/g, "+").replace(/_/g, "/")), (c) => c.charCodeAt(0));
 }
 
-export async function link(doc: Doc, point: Point, view: Record<string, unknown>): Promise<string> {
+export async function link(doc: Doc, point: Point, view: Partial<Look>): Promise<string> {
   const known = example(doc.name);
   const t = known && known.text === doc.text ? doc.name : doc;
   const held: Held = { t, p: point, v: view, w: version() };
@@ -36,8 +36,10 @@ export async function link(doc: Doc, point: Point, view: Record<string, unknown>
   return PREFIX + coded(packed);
 }
 
+const within = (x: unknown, low: number, high: number) => typeof x === "number" && x >= low && x <= high;
+
 /** What a link holds; a sentence where it cannot be read. */
-export async function opened(hash: string): Promise<{ doc: Doc; point: Point; view: Record<string, unknown>; other: string | null } | string | null> {
+export async function opened(hash: string): Promise<{ doc: Doc; point: Point; view: Partial<Look>; other: string | null } | string | null> {
   if (!hash || hash === "#") return null;
   if (!hash.startsWith(PREFIX)) return "This link is of another version of the studio.";
   try {
@@ -55,8 +57,14 @@ export async function opened(hash: string): Promise<{ doc: Doc; point: Point; vi
       fixed: p.fixed ?? [],
       more: p.more ?? {},
     };
+    const v = held.v ?? {};
+    const view: Partial<Look> = {
+      answer: Number.isInteger(v.answer) && within(v.answer, 0, 1000) ? v.answer! : 0,
+      seen_from: typeof v.seen_from === "string" ? v.seen_from : null,
+      losses: within(v.losses, 1, 50) ? v.losses! : null,
+    };
     const own = version();
-    return { doc: { name: doc.name, text: doc.text, files: doc.files ?? {} }, point, view: held.v ?? {}, other: held.w === own ? null : held.w };
+    return { doc: { name: doc.name, text: doc.text, files: doc.files ?? {} }, point, view, other: held.w === own ? null : held.w };
   } catch {
     return "The link is damaged: a part of it is missing.";
   }

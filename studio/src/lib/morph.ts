@@ -27,14 +27,18 @@ function refer(root: Element, prefix: string): void {
 /** Attributes that the page gives to marks, which a picture does not know. */
 const OURS = new Set(["class", "role", "tabindex", "aria-label", "aria-valuetext", "aria-valuenow", "aria-valuemin", "aria-valuemax", "aria-pressed"]);
 
+const OUR_CLASSES = ["hot", "on", "handle", "drag", "along", "fig"];
+
+function attribute(to: Element, name: string, value: string): void {
+  if (name === "class") {
+    const own = [...to.classList].filter((c) => OUR_CLASSES.includes(c));
+    const all = [value, ...own].join(" ").trim();
+    if (to.getAttribute("class") !== all) to.setAttribute("class", all);
+  } else if (to.getAttribute(name) !== value) to.setAttribute(name, value);
+}
+
 function attributes(to: Element, from: Element): void {
-  for (const { name, value } of [...from.attributes]) {
-    if (name === "class") {
-      const own = [...to.classList].filter((c) => ["hot", "on", "handle", "drag"].includes(c));
-      const all = [value, ...own].join(" ").trim();
-      if (to.getAttribute("class") !== all) to.setAttribute("class", all);
-    } else if (to.getAttribute(name) !== value) to.setAttribute(name, value);
-  }
+  for (const { name, value } of [...from.attributes]) attribute(to, name, value);
   for (const { name } of [...to.attributes]) if (!from.hasAttribute(name) && !OURS.has(name)) to.removeAttribute(name);
 }
 
@@ -75,21 +79,83 @@ function find(parent: Element, like: Element): Element | null {
   return null;
 }
 
+/** A picture that is in the page: its text piece by piece, and the element that each piece begins. */
+interface Seen {
+  pieces: string[];
+  elements: (Element | null)[];
+}
+
+const seen = new WeakMap<SVGSVGElement, Seen>();
+
+/** What stands between one `<` and the next. Every opening tag begins an element, in the order of the document. */
+function remember(svg: SVGSVGElement, text: string): void {
+  const pieces = text.split("<");
+  const own = [svg, ...svg.querySelectorAll("*")].filter((e) => !e.closest("[data-ours]"));
+  let k = 0;
+  const elements = pieces.map((p) => (p === "" || p[0] === "/" || p[0] === "?" || p[0] === "!" ? null : (own[k++] ?? null)));
+  if (k === own.length) seen.set(svg, { pieces, elements });
+  else seen.delete(svg);
+}
+
+const TAG = /^([\w:-]+)((?:\s+[\w:-]+="[^"]*")*)\s*\/?>([^]*)$/;
+const ATTRIBUTE = /([\w:-]+)="([^"]*)"/g;
+const ENTITIES: Record<string, string> = { lt: "<", gt: ">", amp: "&", quot: '"', apos: "'" };
+const plain = (text: string) =>
+  text.includes("&") ? text.replace(/&(?:#x([\da-f]+)|#(\d+)|(\w+));/gi, (all, hex, number, name) => (hex ? String.fromCodePoint(parseInt(hex, 16)) : number ? String.fromCodePoint(Number(number)) : (ENTITIES[name] ?? all))) : text;
+
+/** Changes only what is different in the text of the picture, without reading the rest. False where more than values changed. */
+function patch(svg: SVGSVGElement, text: string, prefix: string): boolean {
+  const old = seen.get(svg);
+  const pieces = text.split("<");
+  if (!old || old.pieces.length !== pieces.length) return false;
+  const changes: [Element, RegExpExecArray, RegExpExecArray][] = [];
+  for (let k = 0; k < pieces.length; k++) {
+    const [was, now] = [old.pieces[k]!, pieces[k]!];
+    if (was === now) continue;
+    const element = old.elements[k];
+    const [before, after] = [TAG.exec(was), TAG.exec(now)];
+    if (!element || !before || !after || before[1] !== after[1]) return false;
+    if (before[3] !== after[3] && element.firstChild?.nodeType !== Node.TEXT_NODE) return false;
+    changes.push([element, before, after]);
+  }
+  for (const [element, before, after] of changes) {
+    if (before[2] !== after[2]) {
+      const left = new Set([...before[2]!.matchAll(ATTRIBUTE)].map((m) => m[1]!));
+      for (const [, name, value] of after[2]!.matchAll(ATTRIBUTE)) {
+        left.delete(name!);
+        let v = plain(value!);
+        if (name === "id") v = `${prefix}-${v}`;
+        else if (name!.endsWith("href") && v.startsWith("#")) v = `#${prefix}-${v.slice(1)}`;
+        else if (v.includes("url(#")) v = v.replaceAll("url(#", `url(#${prefix}-`);
+        if (element === svg && name === "role") continue;
+        attribute(element, name!, v);
+      }
+      for (const name of left) if (!OURS.has(name)) element.removeAttribute(name);
+    }
+    if (before[3] !== after[3]) element.firstChild!.nodeValue = plain(after[3]!);
+  }
+  seen.set(svg, { pieces, elements: old.elements });
+  return true;
+}
+
 /** Puts a picture into a box. */
 export function show(box: HTMLElement, text: string, prefix: string): SVGSVGElement | null {
+  const shown = box.querySelector<SVGSVGElement>(":scope > svg.fig");
+  if (shown && patch(shown, text, prefix)) return shown;
   const from = parsed(text, prefix);
   if (!from) return null;
   // There are handles in it.
   from.setAttribute("role", "group");
-  const there = box.querySelector<SVGSVGElement>(":scope > svg.fig");
-  if (there) {
-    morph(there, from);
-    there.classList.add("fig");
-    return there;
+  if (shown) {
+    morph(shown, from);
+    shown.classList.add("fig");
+    remember(shown, text);
+    return shown;
   }
   const made = document.importNode(from, true);
   made.classList.add("fig");
   box.append(made);
+  remember(made, text);
   return made;
 }
 

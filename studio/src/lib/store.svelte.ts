@@ -3,13 +3,15 @@
  * be taken back; a drag is one step.
  */
 
-import { RPM, figures, plain, rounded } from "./numbers";
+import { RPM, figures, plain } from "./numbers";
 import { Session, refusal, refused } from "./willis";
-import type { Analysis, Boxes, Doc, Facts, Frame, OperationReport, Point, Refusal, Solution } from "./types";
+import type { Analysis, Boxes, Closed, Doc, Facts, Frame, Look, OperationReport, Point, Refusal, Solution } from "./types";
 
 export interface Step {
   doc: Doc;
   point: Point;
+  /** The time of a run whose speeds the point has, s. */
+  moment: number | null;
   what: string;
 }
 
@@ -36,6 +38,12 @@ const OWN_KEYS = ["name", "state", "speeds", "torques", "powers", "fixed"];
 const MOST_TEXT = 4 * 2 ** 20;
 export const NOTHING: Point = { state: null, engaged: null, speeds: {}, torques: {}, powers: {}, fixed: [], more: {} };
 
+function told(x: number | null | undefined, factor: number, unit: string): string | null {
+  return x ? `${plain(Number((x * factor).toPrecision(6)))} ${unit}` : null;
+}
+
+const PLAIN: Look = { answer: 0, seen_from: null, losses: null };
+
 class Store {
   doc = $state.raw<Doc>({ name: "", text: "", files: {} });
   point = $state.raw<Point>(NOTHING);
@@ -43,11 +51,14 @@ class Store {
   /** What is wrong with the text; panels keep the last good train. */
   broken = $state.raw<Refusal | null>(null);
   view = $state.raw<View | null>(null);
-  boxes = $state.raw<Boxes>({ width: 700, stick: 300, lever: 260, power: [640, 280], scale: null });
+  boxes = $state.raw<Boxes>({ width: 700, stick: 300, lever: 260, power: [640, 280], scale: null, ...PLAIN });
   hovered = $state<string | null>(null);
   /** Something is dragged: scales stay. */
   dragging = $state(false);
-  pinned = $state.raw<{ step: Step; view: View } | null>(null);
+  /** What is compared with what is shown. */
+  pinned = $state.raw<{ state: string | null; solution: Solution | null } | null>(null);
+  /** The time of a run whose speeds are shown, s. */
+  moment = $state<number | null>(null);
   labels = $state<"speed" | "torque">("speed");
   /** What the live region says. */
   spoken = $state("");
@@ -67,8 +78,18 @@ class Store {
     return this.view?.analysis?.operations[0] ?? null;
   }
 
+  /** The equilibrium that is shown, of several perhaps. */
   get solution(): Solution | null {
-    return this.operation?.solutions[0] ?? null;
+    return this.operation?.solutions[this.answer] ?? null;
+  }
+
+  get answer(): number {
+    return Math.max(0, Math.min(this.boxes.answer, (this.operation?.solutions.length ?? 1) - 1));
+  }
+
+  get look(): Look {
+    const { answer, seen_from, losses } = this.boxes;
+    return { answer, seen_from, losses };
   }
 
   get input(): string | null {
@@ -95,7 +116,7 @@ class Store {
   }
 
   #step(what: string): Step {
-    return { doc: this.doc, point: this.point, what };
+    return { doc: this.doc, point: this.point, moment: this.moment, what };
   }
 
   #remember(step: Step): void {
@@ -104,9 +125,10 @@ class Store {
   }
 
   /** Opens a file; the first operation of it, or its first gear, is shown. */
-  open(doc: Doc, point?: Point): boolean {
+  open(doc: Doc, point?: Point, look: Partial<Look> = {}): boolean {
     if (this.facts) this.#remember(this.#step("open"));
     this.pinned = null;
+    this.boxes = { ...this.boxes, ...PLAIN, ...look };
     const good = this.#read(doc);
     this.point = point ?? (this.facts ? this.#first(this.facts) : NOTHING);
     this.refresh();
@@ -115,6 +137,8 @@ class Store {
 
   #read(doc: Doc): boolean {
     this.doc = doc;
+    // Another train runs otherwise.
+    this.moment = null;
     if (doc.text.length > MOST_TEXT) {
       const message = `the file has ${figures(doc.text.length / 2 ** 20, 3)} MiB, more than 4 MiB`;
       const diagnostic = { code: "", severity: "error" as const, place: "", message, hints: ["a train file is a few kB: leave out what is no train"] };
@@ -160,30 +184,36 @@ class Store {
     const state = facts.states.find((s) => s.name === name);
     const [input] = state?.ends ?? facts.ends;
     if (!input) return { ...NOTHING, state: name };
-    const before = this.view?.analysis?.operations[0];
-    const speed = from.speeds[input] ?? this.#told(before?.speeds_rad_s[input], RPM, "rpm") ?? "1000 rpm";
-    const load: Partial<Point> = from.powers[input]
-      ? { powers: { [input]: from.powers[input] } }
-      : { torques: { [input]: from.torques[input] ?? this.#told(before?.solutions[0]?.members[input]?.torque_n_m, 1, "N m") ?? "100 N m" } };
-    return { ...NOTHING, state: name, speeds: { [input]: speed }, ...load };
+    return { ...NOTHING, state: name, speeds: { [input]: this.#speed(input, from) ?? "1000 rpm" }, ...this.#load(input, from) };
   }
 
-  #told(x: number | null | undefined, factor: number, unit: string): string | null {
-    return x ? `${plain(Number((x * factor).toPrecision(6)))} ${unit}` : null;
+  /** The speed of a member as it was given, else as it is shown; none where it stands still. */
+  #speed(member: string, from: Point): string | null {
+    return from.speeds[member] ?? told(this.operation?.speeds_rad_s[member], RPM, "rpm");
+  }
+
+  /** The load of the input as it was given, else as it is shown; none where it is no terminal, as a machine of a variator. */
+  #load(input: string, from: Point): Pick<Point, "torques" | "powers"> {
+    if (!this.facts?.terminals.includes(input)) return { torques: {}, powers: {} };
+    const power = from.powers[input];
+    if (power) return { torques: {}, powers: { [input]: power } };
+    const torque = from.torques[input] ?? told(this.solution?.members[input]?.torque_n_m, 1, "N m") ?? "100 N m";
+    return { torques: { [input]: torque }, powers: {} };
   }
 
   /** Changes the point; `merge` while something is dragged. */
   move(point: Point, what: string): void {
     if (!this.dragging) this.#remember(this.#step(what));
+    this.moment = null;
     this.point = point;
     this.later();
   }
 
   /** A drag begins. */
-  grab(what: string): void {
+  grab(what: string, scale: Boxes["scale"] = this.view?.frame?.scale ?? null): void {
     this.#before = this.#step(what);
     this.dragging = true;
-    this.boxes = { ...this.boxes, scale: this.view?.frame?.scale ?? null };
+    this.boxes = { ...this.boxes, scale };
   }
 
   /** It ends; taken back, everything is as before. */
@@ -194,9 +224,8 @@ class Store {
     this.boxes = { ...this.boxes, scale: null };
     if (!before) return;
     if (back) {
-      const changed = before.doc !== this.doc;
-      this.point = before.point;
-      if (changed) this.#read(before.doc);
+      if (before.doc !== this.doc) this.#read(before.doc);
+      this.#back(before);
     } else if (before.doc !== this.doc || before.point !== this.point) this.#remember(before);
     this.refresh();
   }
@@ -235,6 +264,22 @@ class Store {
     return null;
   }
 
+  /** What an edit would be refused for; nothing changes. */
+  check(change: (session: Session) => string): Refusal | null {
+    if (!this.#session || this.broken) return this.broken;
+    try {
+      change(this.#session);
+      return null;
+    } catch (thrown) {
+      return refusal(thrown);
+    }
+  }
+
+  /** What the library knows of the train at hand without being asked at length. */
+  tell<T>(of: (session: Session) => string): T | null {
+    return this.#session && !this.broken ? (JSON.parse(of(this.#session)) as T) : null;
+  }
+
   /** The point as far as the train still has what it names. */
   #fit(): void {
     const facts = this.facts;
@@ -268,8 +313,13 @@ class Store {
 
   #take(step: Step): void {
     if (step.doc !== this.doc) this.#read(step.doc);
-    this.point = step.point;
+    this.#back(step);
     this.refresh();
+  }
+
+  #back(step: Step): void {
+    this.point = step.point;
+    this.moment = step.moment;
   }
 
   /** Shows with the next frame; moves in between are one. */
@@ -279,6 +329,19 @@ class Store {
       this.#frame = 0;
       this.refresh();
     });
+  }
+
+  /** What waits for the next frame is done now: keys come faster than frames. */
+  now(): void {
+    if (!this.#frame) return;
+    cancelAnimationFrame(this.#frame);
+    this.#frame = 0;
+    this.refresh();
+  }
+
+  /** How the point is shown: which answer, from where, how wide losses. No step: nothing of the train changes. */
+  show(look: Partial<Look>): void {
+    this.resize(look);
   }
 
   resize(boxes: Partial<Boxes>): void {
@@ -302,8 +365,8 @@ class Store {
         operation: shown.operation ?? null,
         state: shown.state ?? null,
         stick: shown.stick || (this.view?.stick ?? ""),
-        lever: wrong ? (this.view?.lever ?? "") : shown.lever,
-        power: wrong ? (this.view?.power ?? "") : shown.power,
+        lever: wrong ? (this.view?.lever ?? "") : shown.lever || (this.view?.lever ?? ""),
+        power: wrong ? (this.view?.power ?? "") : shown.power || (this.view?.power ?? ""),
         frame: wrong ? (this.view?.frame ?? null) : (JSON.parse(shown.frame) as Frame),
         generation: ++this.#generation,
         took: performance.now() - began,
@@ -320,7 +383,7 @@ class Store {
   }
 
   pin(): void {
-    this.pinned = this.pinned || !this.view ? null : { step: this.#step("pin"), view: this.view };
+    this.pinned = this.pinned || !this.view ? null : { state: this.view.state, solution: this.solution };
   }
 
   /** Sets the speed of a member, rpm. With one freedom everything scales; with more the others keep theirs. */
@@ -345,44 +408,60 @@ class Store {
   }
 
   gear(name: string): void {
-    if (!this.facts || (name === this.point.state && !this.point.engaged)) return;
+    if (!this.facts || (name === this.point.state && !this.point.engaged && this.moment === null)) return;
     this.move(this.inState(name, this.facts, this.point), `gear ${name}`);
   }
 
+  #toggled: { element: string; from: Step; to: Point } | null = null;
+
   /** Closes an element that is open and opens one that is closed; a known gear is that gear. */
   toggle(element: string): void {
-    const facts = this.facts;
-    if (!facts) return;
+    if (!this.facts || this.broken) return;
     const opens = this.engaged.includes(element);
     const closed = opens ? this.engaged.filter((e) => e !== element) : [...this.engaged, element];
-    const same = facts.states.find((s) => s.engaged.length === closed.length && s.engaged.every((e) => closed.includes(e)));
-    this.#remember(this.#step(same ? `gear ${same.name}` : `${element} ${opens ? "opens" : "closes"}`));
-    const before = this.operation;
-    this.point = { ...NOTHING, state: same?.name ?? null, engaged: same ? null : closed };
-    this.refresh();
-    // Without an operating point the answer tells how many freedoms there are: so many speeds are given.
-    const dof = Object.values(this.view?.analysis?.ratios ?? {})[0]?.degrees_of_freedom ?? 0;
-    if (dof === 0) return;
-    const [input] = same?.ends ?? facts.ends;
-    const order = [...new Set([...(input ? [input] : []), ...facts.terminals, ...facts.members])];
-    const told = (w: number | null | undefined) => `${plain(rounded((w ?? 0) * RPM, 4000))} rpm`;
-    const load = input ? `${plain(Number((before?.solutions[0]?.members[input]?.torque_n_m ?? 100).toPrecision(6)))} N m` : null;
-    // Speeds that are independent of each other: members are tried in order until the library takes them.
-    const speeds: Record<string, string> = {};
-    for (const m of order) {
-      if (Object.keys(speeds).length >= dof) break;
-      speeds[m] = told(before?.speeds_rad_s[m] || (m === input ? 1000 / RPM : 0));
-      this.point = { ...this.point, speeds: { ...speeds } };
-      this.refresh();
-      if (this.view?.refused) delete speeds[m];
+    const from = this.point;
+    const is = this.#closed(closed, this.facts.members);
+    const step = this.#step(is.state ? `gear ${is.state}` : `${element} ${opens ? "opens" : "closes"}`);
+    this.#remember(step);
+    const last = this.#toggled;
+    // The same one back at once is as it was before, also where it stood still in between.
+    if (last?.element === element && last.to === from && last.from.doc === this.doc) this.#back(last.from);
+    else {
+      const speeds = is.speeds.map((m, k) => [m, this.#speed(m, from) ?? (k === 0 ? "1000 rpm" : "0 rpm")]);
+      const [input] = is.ends;
+      const load = input ? this.#load(input, from) : { torques: {}, powers: {} };
+      // Another terminal keeps what it carried, torque or power.
+      const kept = (m: string) => (m in from.powers ? { torques: {}, powers: { [m]: from.powers[m]! } } : { torques: { [m]: from.torques[m] ?? "0 N m" }, powers: {} });
+      this.#set(closed, is, speeds, (m) => (m === input ? load : kept(m)));
     }
-    // As many terminals as there are freedoms balance the train; only the others have a torque given.
-    const given = facts.terminals.length - dof;
-    const torques: Record<string, string> = input && load && given > 0 ? { [input]: load } : {};
-    const others = facts.terminals.filter((m) => m !== input && m !== facts.ends[1]);
-    for (const m of others.slice(0, Math.max(0, given - 1))) torques[m] = "0 N m";
-    this.point = { ...this.point, speeds, torques };
+    this.#toggled = { element, from: step, to: this.point };
     this.refresh();
+  }
+
+  /** What the train is with these elements closed; members whose speeds are known settle the others. */
+  #closed(closed: string[], known: string[]): Closed {
+    return JSON.parse(this.#session!.closed(closed, known)) as Closed;
+  }
+
+  /** The point with these elements closed, these speeds, and a load on every terminal that does not balance the train. */
+  #set(closed: string[], is: Closed, speeds: string[][], load: (terminal: string) => Pick<Point, "torques" | "powers">): void {
+    // What does not turn takes no load.
+    const loads = speeds.length ? is.torques.map(load) : [];
+    const [torques, powers] = [Object.assign({}, ...loads.map((l) => l.torques)), Object.assign({}, ...loads.map((l) => l.powers))];
+    this.point = { ...NOTHING, state: is.state, engaged: is.state ? null : closed, speeds: Object.fromEntries(speeds), torques, powers };
+    this.moment = null;
+  }
+
+  /** A moment of a run: what is closed, speeds in rad/s, and the torque of what drives the input. The panels show its steady state. */
+  at(moment: number, closed: string[], speeds: Record<string, number>, torque: number | null): void {
+    if (!this.facts || this.broken) return;
+    const is = this.#closed(closed, Object.keys(speeds));
+    const given = is.speeds.filter((m) => m in speeds).map((m) => [m, `${plain(Number((speeds[m]! * RPM).toPrecision(7)))} rpm`]);
+    const [input] = is.ends;
+    const load = input === null ? null : torque === null ? this.#load(input, this.point) : { torques: { [input]: `${plain(Number(torque.toPrecision(6)))} N m` }, powers: {} };
+    this.#set(closed, is, given, (m) => (m === input && load ? load : { torques: { [m]: "0 N m" }, powers: {} }));
+    this.moment = moment;
+    this.later();
   }
 
   say(text: string): void {

@@ -25,7 +25,16 @@ export interface Boxes {
   lever: number;
   power: [number, number];
   scale: [number, number, number] | null;
+  /** Which of several equilibria is shown. */
+  answer: number;
+  /** The member from which powers are seen; else the housing. */
+  seen_from: string | null;
+  /** How many times wider losses are drawn than power; else as wide as they can be seen. */
+  losses: number | null;
 }
+
+/** What of the page a link keeps besides file and point. */
+export type Look = Pick<Boxes, "answer" | "seen_from" | "losses">;
 
 export interface Frame {
   width: number;
@@ -34,6 +43,8 @@ export interface Frame {
   reach: number;
   columns: { name: string; x: number; span: [number, number] }[];
   scale: [number, number, number];
+  /** How many times wider losses are drawn than power. */
+  widened?: number;
 }
 
 export interface Diagnostic {
@@ -65,6 +76,17 @@ export interface Element {
   members: string[];
 }
 
+/** What a train is with some elements closed. */
+export interface Closed {
+  /** The gear of the shift table. */
+  state: string | null;
+  ends: [string | null, string | null];
+  /** Members whose speeds settle all others. */
+  speeds: string[];
+  /** Terminals of which a torque is given while the others balance the train. */
+  torques: string[];
+}
+
 export interface Facts {
   name: string;
   asDrawn: string;
@@ -76,6 +98,8 @@ export interface Facts {
   sets: Record<string, any>[];
   operations: Record<string, any>[];
   scenarios: string[];
+  /** What acts in a scenario, and on which member. */
+  sources: Record<string, { name: string; member: string }[]>;
   quantities: { path: string; value: string | null }[];
   warnings: Diagnostic[];
 }

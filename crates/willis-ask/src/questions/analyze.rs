@@ -12,7 +12,7 @@ use willis::work::{Effort, Work};
 use crate::table::Table;
 use crate::{Given, Question, Refusal};
 
-pub(super) use text::margins;
+pub(super) use text::{at_load_cell, load, margins, starred};
 
 /// Analyse a train: its shift table and its operating points.
 ///
@@ -49,7 +49,8 @@ impl Question for Analyze {
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<Analysis, Refusal> {
         let selection = Selection { state: self.state.clone(), operation: self.operation.clone() };
         work.afford(&Effort::of_analysis(of[0].model.train(), &selection))?;
-        Ok(analysis::analyze(of[0].model.train(), &selection)?)
+        let train = of[0].model.train();
+        Ok(analysis::analyze(train, &selection)?.with_loads(train))
     }
 
     fn text(&self, answer: &Analysis, of: &[Given]) -> String {

@@ -45,6 +45,9 @@ pub struct Draw {
     /// Two terminals whose powers add to zero (regimes).
     #[cfg_attr(feature = "clap", arg(long, value_delimiter = ',', value_name = "A,B"))]
     pub balance: Option<Vec<String>>,
+    /// Show powers as they are seen from this member, such as a carrier (sankey, flow); else from the housing.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MEMBER"))]
+    pub seen_from: Option<String>,
     /// Draw teeth without geometry as nominal ones of module 1.
     #[cfg_attr(feature = "clap", arg(long))]
     pub nominal: bool,
@@ -54,6 +57,9 @@ pub struct Draw {
     /// Until when a scenario is shown (time): "3500 ms".
     #[cfg_attr(feature = "clap", arg(long, value_name = "TIME"))]
     pub to: Option<String>,
+    /// Fewer points and samples, for a first look at what takes long (map, band).
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub coarse: bool,
     /// Wheels turn (front, in SVG).
     #[cfg_attr(feature = "clap", arg(long))]
     pub animated: bool,
@@ -78,9 +84,11 @@ impl Default for Draw {
             over: vec![],
             terminals: None,
             balance: None,
+            seen_from: None,
             nominal: false,
             from: None,
             to: None,
+            coarse: false,
             animated: false,
             theme: Look::Light,
             scale: 2.0,
@@ -183,6 +191,7 @@ impl Draw {
             over: self.over.clone(),
             terminals: self.terminals.clone(),
             balance: pair(self.balance.as_deref())?,
+            seen_from: self.seen_from.clone(),
             nominal: self.nominal,
             window: self.window()?,
             samples: 0,
@@ -289,7 +298,8 @@ impl Question for Draw {
         let narrows = |a: &Ask| matches!(a, Ask::State | Ask::Operation | Ask::Part | Ask::Over);
         let asked = request.asks().iter().any(narrows);
         work.afford(&kind.effort(model, &request))?;
-        match kind.make_within(model, &request, work) {
+        let coarse = if self.coarse { kind.make_coarse(model, &request, work) } else { None };
+        match coarse.unwrap_or_else(|| kind.make_within(model, &request, work)) {
             Ok(figure) => Ok(DrawAnswer::One(Box::new(figure))),
             // Where a kind does not apply to a train at all, those that do are told.
             Err(wrong) if !asked => {

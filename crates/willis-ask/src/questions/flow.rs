@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::analysis::Selection;
 use willis::diagnostic::Diagnostic;
-use willis::hypergraph::{FlowReport, flows};
+use willis::hypergraph::{FlowReport, flows_seen_from};
 use willis::work::{Effort, Work};
 
 #[cfg(feature = "pictures")]
@@ -28,6 +28,9 @@ pub struct Flow {
     /// Only operations that run in this state of the shift table.
     #[cfg_attr(feature = "clap", arg(long, value_name = "STATE"))]
     pub state: Option<String>,
+    /// Count speeds and powers as they are seen from this member, such as a carrier; else from the housing.
+    #[cfg_attr(feature = "clap", arg(long, value_name = "MEMBER"))]
+    pub seen_from: Option<String>,
 }
 
 impl Question for Flow {
@@ -42,7 +45,8 @@ impl Question for Flow {
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<FlowReport, Refusal> {
         let selection = Selection { state: self.state.clone(), operation: self.operation.clone() };
         work.afford(&Effort::of_analysis(of[0].model.train(), &selection))?;
-        Ok(flows(of[0].model.train(), &selection)?)
+        let train = of[0].model.train();
+        Ok(flows_seen_from(train, &selection, self.seen_from.as_deref())?)
     }
 
     fn text(&self, answer: &FlowReport, _: &[Given]) -> String {

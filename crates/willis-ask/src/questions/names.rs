@@ -17,6 +17,7 @@ pub fn exports() -> Vec<&'static str> {
 }
 
 /// Cases of published numbers.
+#[cfg(feature = "casebook")]
 pub fn cases() -> Vec<&'static str> {
     willis_casebook::CASES.iter().map(|c| c.name).collect()
 }

@@ -103,26 +103,3 @@ impl Question for New {
         Ok(answer.starts.iter().map(|s| File::text(format!("{}.toml", s.kind), &*s.toml)).collect())
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use willis::work::Serial;
-
-    use super::*;
-    use crate::questions::{Analyze, Simulate};
-
-    #[test]
-    fn every_start_is_a_train_without_a_warning() {
-        for (kind, _, toml) in STARTS {
-            let given = [Given::read(kind, toml).unwrap_or_else(|e| panic!("{kind}: {e}"))];
-            assert!(given[0].model.warnings().is_empty(), "{kind}: {:?}", given[0].model.warnings());
-            let analysis = Question::ask(&Analyze::default(), &given, &Serial).unwrap();
-            let unique = |v: willis::analysis::Verdict| v == willis::analysis::Verdict::Unique;
-            assert!(analysis.operations.iter().all(|o| unique(o.verdict)), "{kind}");
-            assert!(!analysis.operations.is_empty() || !given[0].model.train().scenarios().is_empty(), "{kind}");
-            if !given[0].model.train().scenarios().is_empty() {
-                Question::ask(&Simulate::default(), &given, &Serial).unwrap();
-            }
-        }
-    }
-}

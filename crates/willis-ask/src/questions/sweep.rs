@@ -20,11 +20,13 @@ use crate::{Given, Question, Refusal};
 ///
 ///   --over state=all   --over P1.planet.count=3,4,6   --over "oil.temperature=20..100 degC:9"
 ///
-/// `…:100` are so many values, ends included; `…:31:log` a constant ratio; `…:step 500 rpm` every so much. Torque and
-/// power of `input` and `output` are positive where they drive; of a member called by its name they are those ON it, as
-/// in the train file. Every point is that of `analyze`; a point that is locked or has several solutions is a row that
-/// says so. Without --output a summary is all there is. An interrupted sweep goes on when the same command is given
-/// again.
+/// A range may end with `:100` for so many values, both ends included, with `:31:log` for so many at a constant ratio, or
+/// with `:step 500 rpm` for one every so much. Torque and power of `input` and `output` are positive where they drive; of
+/// a member called by its name they are those ON it, as in the train file. Every point is that of `analyze`; a point that
+/// is locked or has several solutions is a row that says so.
+///
+/// On the command line the rows are written into the file of --output, without which there is only a summary; an
+/// interrupted sweep goes on when the same command is given again.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]
 #[serde(default, deny_unknown_fields)]

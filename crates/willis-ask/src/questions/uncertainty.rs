@@ -6,7 +6,8 @@ mod text;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use willis::contract::Contract;
-use willis::study::{self, ColumnTable, UncertaintyRequest};
+use willis::diagnostic::{Code, Diagnostic};
+use willis::study::{self, ColumnTable, SampleResult, UncertaintyPlan, UncertaintyRequest};
 use willis::work::Work;
 
 use crate::table::Table;
@@ -62,6 +63,25 @@ pub struct UncertaintyAnswer {
     pub samples: ColumnTable,
 }
 
+impl From<study::UncertaintyAnswer> for UncertaintyAnswer {
+    fn from(answer: study::UncertaintyAnswer) -> Self {
+        Self { report: answer.report, samples: answer.samples }
+    }
+}
+
+impl Uncertainty {
+    fn request(&self) -> UncertaintyRequest {
+        UncertaintyRequest {
+            operation: self.operation.clone(),
+            state: self.state.clone(),
+            vary: self.vary.clone(),
+            laws: self.laws.clone(),
+            samples: self.samples,
+            seed: self.seed,
+        }
+    }
+}
+
 impl Contract for UncertaintyAnswer {
     const FORMAT: &'static str = study::Uncertainty::FORMAT;
 }
@@ -73,17 +93,29 @@ impl Question for Uncertainty {
         &[Extra { name: "samples-out", value: "FILE.csv", about: "Write every sample into this file" }];
     type Answer = UncertaintyAnswer;
 
+    const IS_CUT: bool = true;
+
     fn ask(&self, of: &[Given], work: &dyn Work) -> Result<UncertaintyAnswer, Refusal> {
-        let request = UncertaintyRequest {
-            operation: self.operation.clone(),
-            state: self.state.clone(),
-            vary: self.vary.clone(),
-            laws: self.laws.clone(),
-            samples: self.samples,
-            seed: self.seed,
-        };
-        let answer = study::uncertainty(&of[0].model, &request, work)?;
-        Ok(UncertaintyAnswer { report: answer.report, samples: answer.samples })
+        Ok(study::uncertainty(&of[0].model, &self.request(), work)?.into())
+    }
+
+    fn piece(&self, of: &[Given], k: usize, n: usize, work: &dyn Work) -> Result<Vec<u8>, Refusal> {
+        let plan = UncertaintyPlan::new(&of[0].model, &self.request())?;
+        let found = plan.evaluate_within(plan.piece(k, n), work)?;
+        Ok(serde_json::to_vec(&found).expect("plain data"))
+    }
+
+    fn gather(&self, of: &[Given], pieces: &[Vec<u8>]) -> Result<UncertaintyAnswer, Refusal> {
+        let plan = UncertaintyPlan::new(&of[0].model, &self.request())?;
+        let read = pieces.iter().map(|bytes| serde_json::from_slice::<SampleResult>(bytes).ok());
+        let all = read.reduce(|all, piece| {
+            let mut all = all?;
+            all.join(piece?);
+            Some(all)
+        });
+        let answer = all.flatten().and_then(|all| plan.answer_of(&all));
+        let wrong = || Diagnostic::new(Code::UnknownSelection, "", "these are not all pieces of this uncertainty");
+        Ok(answer.ok_or_else(wrong)?.into())
     }
 
     fn text(&self, answer: &UncertaintyAnswer, _: &[Given]) -> String {

@@ -71,7 +71,7 @@ fn shape(n: &Node) -> &'static str {
         NodeKind::Teeth => "shape=triangle",
         NodeKind::Bearing => "shape=circle",
         NodeKind::Seal => "shape=square",
-        NodeKind::Gear | NodeKind::Rotor => "shape=diamond",
+        NodeKind::Gear | NodeKind::Rotor | NodeKind::Drag | NodeKind::OpenElement | NodeKind::Pump => "shape=diamond",
         NodeKind::Input | NodeKind::Output => "shape=plaintext",
         _ => "shape=box, peripheries=2",
     }

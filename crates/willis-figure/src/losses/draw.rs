@@ -67,13 +67,8 @@ fn words(chart: &LossChart) -> String {
 fn name(s: &LossSeries) -> String {
     let kind = match s.kind {
         None => return format!("{} others", s.sources),
-        Some(LossKind::Sliding) => "sliding",
-        Some(LossKind::Rolling) => "rolling",
-        Some(LossKind::Bearing) => "bearing",
-        Some(LossKind::Windage) => "windage",
-        Some(LossKind::Churning) => "churning",
-        Some(LossKind::Seal) => "seal",
-        Some(_) => "other",
+        Some(LossKind::ShiftElement) => "open",
+        Some(kind) => kind.name(),
     };
     match s.name.contains(kind) {
         true => s.name.clone(),
@@ -90,6 +85,10 @@ fn source(s: &LossSeries) -> [Of<'_>; 2] {
         Some(LossKind::Windage) => (Of::Element(&s.name), "loss_w windage"),
         Some(LossKind::Churning) => (Of::Element(&s.name), "loss_w churning"),
         Some(LossKind::Seal) => (Of::Element(&s.name), "loss_w seal"),
+        Some(LossKind::Drag) => (Of::Element(&s.name), "loss_w drag"),
+        Some(LossKind::ShiftElement) => (Of::Element(&s.name), "loss_w shift-element"),
+        Some(LossKind::Injection) => (Of::Mesh(&s.name), "loss_w injection"),
+        Some(LossKind::Pump) => (Of::Element(&s.name), "loss_w pump"),
         _ => (Of::Element(&s.name), "loss_w other"),
     };
     [part, Of::Quantity(what)]

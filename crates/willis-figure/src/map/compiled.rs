@@ -24,7 +24,7 @@ struct Prescribed {
 }
 
 impl Prescribed {
-    fn at(&self, place: [f64; 2]) -> f64 {
+    fn at(&self, place: &[f64]) -> f64 {
         self.axis.map_or(1.0, |a| place[a]) * self.value
     }
 }
@@ -60,25 +60,28 @@ pub struct CompiledProbe {
 }
 
 impl CompiledProbe {
-    /// Compiles what was asked at a place and has this answer; none where that cannot be, or does not agree.
+    /// Compiles what was asked at a place along these axes and has this answer; none where that cannot be, or does not agree.
     pub fn new(
         train: &Train,
         operation: &Operation,
-        axes: [&Target; 2],
-        place: [f64; 2],
+        axes: &[&Target],
+        place: &[f64],
         answer: &PointAnswer,
         input: Option<MemberId>,
     ) -> Option<Self> {
         let varies = |t: &Target| matches!(t, Target::Speed(_) | Target::Torque(_));
-        if train.is_physical() || !train.variators().is_empty() || !answer.is_unique() || !axes.into_iter().all(varies)
+        if train.is_physical()
+            || !train.variators().is_empty()
+            || !answer.is_unique()
+            || !axes.iter().all(|a| varies(a))
         {
             return None;
         }
         let moving = operation.speeds.iter().filter(|s| s.1.si() != 0.0).count();
         let [train_input, train_output] = train.ends(operation.state);
         let axis_of = |member: MemberId, speed: bool| -> Option<Option<usize>> {
-            for (k, target) in axes.into_iter().enumerate() {
-                let who = match target {
+            for (k, target) in axes.iter().enumerate() {
+                let who = match *target {
                     Target::Speed(who) if speed => who,
                     Target::Torque(who) if !speed => who,
                     _ => continue,
@@ -107,9 +110,9 @@ impl CompiledProbe {
             Load::Power(_) => None,
         };
         let torques = operation.loads.iter().map(torque).collect::<Option<Vec<_>>>()?;
-        // Both axes must be among them.
+        // All axes must be among them.
         let seen = |k: usize| speeds.iter().chain(&torques).any(|p| p.axis == Some(k));
-        if !(seen(0) && seen(1)) {
+        if !(0..axes.len()).all(seen) {
             return None;
         }
 
@@ -190,8 +193,8 @@ impl CompiledProbe {
         same.then_some(own)
     }
 
-    /// The answer at a place; none where only the long way has it.
-    pub fn at(&mut self, place: [f64; 2]) -> Option<Told> {
+    /// The answer at a place, of which no quantity has another sign than at the first; none where only the long way has it.
+    pub fn at(&mut self, place: &[f64]) -> Option<Told> {
         let mut given = [[0.0; 16]; 2];
         let [speeds, torques] = &mut given;
         let (speeds, torques) = (speeds.get_mut(..self.speeds.len())?, torques.get_mut(..self.torques.len())?);

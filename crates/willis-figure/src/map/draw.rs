@@ -79,8 +79,7 @@ pub(super) fn draw_on(map: &EfficiencyMap, paper: Drawing) -> String {
         top += 17.0;
     }
     let head = format!("Efficiency map of {}", map.title);
-    if let Some(efficiency) = constant(map) {
-        let said = everywhere(map, efficiency);
+    if let Some(said) = everywhere(map) {
         for l in lines(&said, width - 56.0, 15.0) {
             top += 21.0;
             body = body.add(text(28.0, top, 15.0, Anchor::Start, &l));
@@ -124,18 +123,23 @@ fn constant(map: &EfficiencyMap) -> Option<f64> {
 }
 
 /// A map that is the same everywhere, in words.
-fn everywhere(map: &EfficiencyMap, efficiency: f64) -> String {
+fn everywhere(map: &EfficiencyMap) -> Option<String> {
     let range = |axis: &crate::ChartAxis| {
         let [first, .., last] = &axis.values[..] else { return axis.name.clone() };
         format!("{} from {} to {} {}", axis.name, digits(*first), digits(*last), axis.unit).trim_end().to_owned()
     };
-    format!(
-        "The efficiency is {} everywhere: for {} and {}. The file gives efficiencies that depend on neither. Teeth with a \
-         module and an oil, bearings, or drag torques would make a map of it.",
-        percent(efficiency),
-        range(&map.x),
-        range(&map.y)
-    )
+    let place = format!("{} and {}", range(&map.x), range(&map.y));
+    if let Some(efficiency) = constant(map) {
+        return Some(format!(
+            "The efficiency is {} everywhere: for {place}. The file gives efficiencies that depend on neither. Teeth with a \
+             module and an oil, bearings, or drag torques would make a map of it.",
+            percent(efficiency),
+        ));
+    }
+    // Nothing to be seen: one answer, and no efficiency.
+    let first = map.points.first()?.verdict;
+    let is_one = first != UNIQUE && map.points.iter().all(|p| p.verdict == first);
+    is_one.then(|| format!("There is no efficiency anywhere: for {place} every point is “{}”.", says(first)))
 }
 
 /// What the picture tells those who do not see it.

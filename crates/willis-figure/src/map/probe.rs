@@ -1,11 +1,13 @@
 //! What holds at any place of a map, between the points of its grid too.
 
 use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 
 use willis::diagnostic::Diagnostics;
 use willis::model::Target;
 use willis::study::{Axis, PointAnswer, PointVerdict, Question, Trains};
-use willis::train::MemberId;
+use willis::train::{MemberId, Operation, Train};
+use willis::work::{self, Cancelled, Work};
 
 use super::compiled::CompiledProbe;
 use super::told::{Told, Way};
@@ -110,6 +112,42 @@ impl<'q, 's> Probe<'q, 's> {
         found
     }
 
+    /// What holds at places, row by row. Where each takes long, rows are shared out by `work`.
+    pub fn at_all(&mut self, rows: &[Vec<[f64; 2]>], work: &dyn Work) -> Result<Vec<Found>, Cancelled> {
+        let train = self.question.model().train();
+        let never_compiled = train.is_physical() || !train.variators().is_empty();
+        if self.choice.is_none() && never_compiled {
+            let (question, axes, seen) = (self.question, &self.axes, &self.seen);
+            let told = work::map(work, rows.len(), |k| {
+                let mut trains = Trains::default();
+                let mut unseen = |place: &[f64; 2]| -> Option<Told> {
+                    let asked = || Told::of(&asked(question, axes, *place, None, &mut trains).answer(), None);
+                    (!seen.contains_key(&place.map(f64::to_bits))).then(asked)
+                };
+                let row: Vec<Option<Told>> = rows[k].iter().map(&mut unseen).collect();
+                work.advance(rows[k].len() as u64);
+                row
+            })?;
+            // In their order, so that zones have the same numbers however the work was shared.
+            for (place, told) in rows.iter().flatten().zip(told.into_iter().flatten()) {
+                if let Some(told) = told {
+                    let found = self.noted(MapPoint::of(&told, None), told.ways);
+                    self.seen.insert(place.map(f64::to_bits), found);
+                }
+            }
+            return Ok(rows.iter().flatten().map(|place| self.at(*place)).collect());
+        }
+        let mut all = vec![];
+        for row in rows {
+            if work.cancelled() {
+                return Err(Cancelled);
+            }
+            all.extend(row.iter().map(|place| self.at(*place)));
+            work.advance(row.len() as u64);
+        }
+        Ok(all)
+    }
+
     fn ask(&mut self, place: [f64; 2]) -> Found {
         let (point, ways) = match self.choice.take() {
             None => {
@@ -122,6 +160,11 @@ impl<'q, 's> Probe<'q, 's> {
                 best
             }
         };
+        self.noted(point, ways)
+    }
+
+    /// A point with its zone.
+    fn noted(&mut self, point: MapPoint, ways: Vec<Way>) -> Found {
         let idle = ways.iter().filter(|w| **w == Way::Idle).count();
         if point.verdict == MapVerdict::Point(PointVerdict::Unique) {
             let least = self.loosest.0.entry(point.best).or_insert(idle);
@@ -180,7 +223,7 @@ impl<'q, 's> Probe<'q, 's> {
         let key = (state.map(|s| s.0), place.map(|x| x > 0.0));
         let plain = place.iter().all(|x| *x != 0.0);
         let tries = match self.compiled.get_mut(&key) {
-            Some(Ok(compiled)) if plain => match compiled.at(place) {
+            Some(Ok(compiled)) if plain => match compiled.at(&place) {
                 Some(told) => return told,
                 None => TRIES,
             },
@@ -188,21 +231,50 @@ impl<'q, 's> Probe<'q, 's> {
             None if plain => 0,
             _ => TRIES,
         };
-        let along = self.axes.iter().zip(place).map(|((target, unit), value)| (target, format!("{value} {unit}")));
-        let mut settings: Vec<(&Target, String)> = along.map(|(t, v)| (t, v.trim_end().to_owned())).collect();
-        settings.extend(state.map(|s| (&Target::State, s.1.to_owned())));
         let name = input.map(|m| self.question.model().train().member_name(m));
-        let (train, operation) = match self.question.at(&settings, &mut self.trains) {
-            Ok(asked) => asked,
-            Err(wrong) => return Told::of(&PointAnswer::refused(wrong), name),
+        let (train, operation) = match asked(self.question, &self.axes, place, state.map(|s| s.1), &mut self.trains) {
+            Asked::Of(train, operation) => (train, operation),
+            refused => return Told::of(&refused.answer(), name),
         };
         let answer = PointAnswer::of(&train, &operation);
         if tries < TRIES && answer.is_unique() {
             let axes = self.axes.each_ref().map(|a| &a.0);
-            let compiled = CompiledProbe::new(&train, &operation, axes, place, &answer, input);
+            let compiled = CompiledProbe::new(&train, &operation, &axes, &place, &answer, input);
             self.compiled.insert(key, compiled.ok_or(tries + 1));
         }
         Told::of(&answer, name)
+    }
+}
+
+/// What is asked at a place, or why nothing is.
+enum Asked {
+    Of(Arc<Train>, Operation),
+    Refused(Diagnostics),
+}
+
+impl Asked {
+    fn answer(self) -> PointAnswer {
+        match self {
+            Self::Of(train, operation) => PointAnswer::of(&train, &operation),
+            Self::Refused(wrong) => PointAnswer::refused(wrong),
+        }
+    }
+}
+
+/// What is asked at a place of these axes, in a state where one is given.
+fn asked(
+    question: &Question<'_>,
+    axes: &[(Target, String); 2],
+    place: [f64; 2],
+    state: Option<&str>,
+    trains: &mut Trains,
+) -> Asked {
+    let along = axes.iter().zip(place).map(|((target, unit), value)| (target, format!("{value} {unit}")));
+    let mut settings: Vec<(&Target, String)> = along.map(|(t, v)| (t, v.trim_end().to_owned())).collect();
+    settings.extend(state.map(|s| (&Target::State, s.to_owned())));
+    match question.at(&settings, trains) {
+        Ok((train, operation)) => Asked::Of(train, operation),
+        Err(wrong) => Asked::Refused(wrong),
     }
 }
 

@@ -2,11 +2,9 @@
 
 use std::borrow::Cow;
 
-use willis::analysis::Selection;
-use willis::exact::Rational;
-use willis::kinematics::Configuration;
+use willis::analysis::{DrivingLoad, Selection};
 use willis::train::{Load, MemberId, Train};
-use willis::units::{Dimension, Quantity};
+use willis::units::{AngularSpeed, Torque};
 use willis::unstable;
 
 use crate::parts::style::{digits, watts};
@@ -39,35 +37,14 @@ pub fn ends(train: &Train, state: Option<usize>) -> Option<(MemberId, MemberId)>
 }
 
 fn driven(train: &Train, state: Option<usize>) -> Option<Train> {
-    let (input, output) = ends(train, state)?;
-    let engaged = state.map_or(&[][..], |k| &train.states()[k].engaged);
-    let transfer = Configuration::new(train, engaged, &[], &[]).transfer(&[input]);
-    let turns = transfer.speeds[output.index()].as_ref().is_some_and(|w| !w[0].is_zero());
-    if !turns || !transfer.conflicts.is_empty() {
-        return None;
-    }
-    let of_file = train.operations().iter().find_map(|o| {
-        let speed = &o.speeds.iter().find(|s| s.0 == input)?.1;
-        let load = &o.loads.iter().find(|l| l.0 == input)?.1;
-        let power = match load {
-            Load::Torque(t) => t.si() * speed.si(),
-            Load::Power(p) => p.si(),
-        };
-        (power > 0.0).then(|| (speed.clone(), load.clone()))
-    });
-    let (speed, load) = of_file.unwrap_or_else(|| {
-        let torque = Quantity { value: Rational::from(100), pi_power: 0, dimension: Dimension::TORQUE };
-        // 1000 rpm are 1000 π/30 rad/s.
-        let speed = Quantity { value: Rational::new(100, 3), pi_power: 1, dimension: Dimension::ANGULAR_SPEED };
-        (speed, Load::Torque(torque))
-    });
-    let driving = match &load {
+    let (input, _) = ends(train, state)?;
+    let load = DrivingLoad::of_file(train, input);
+    let load = load.unwrap_or_else(|| DrivingLoad::new(AngularSpeed::rpm(1000.0), Torque::n_m(100.0)));
+    let driving = match &load.load {
         Load::Torque(t) => format!("{} N m", digits(t.si())),
         Load::Power(p) => watts(p.si()),
     };
-    let name = format!("default point, {} rpm and {driving} at {}", digits(speed.si() * RPM), train.member_name(input));
-    let none = Quantity { value: Rational::ZERO, pi_power: 0, dimension: Dimension::TORQUE };
-    let idle = train.terminals().iter().filter(|m| **m != input && **m != output);
-    let loads = std::iter::once((input, load)).chain(idle.map(|m| (*m, Load::Torque(none.clone())))).collect();
-    Some(unstable::with_operation(train, unstable::operation(name, state, vec![(input, speed)], loads)))
+    let rpm = digits(load.speed.si() * RPM);
+    let name = format!("default point, {rpm} rpm and {driving} at {}", train.member_name(input));
+    Some(unstable::with_operation(train, load.point(train, state, name)?))
 }

@@ -89,15 +89,7 @@ pub fn law_title(kind: Option<LossKind>, id: &str) -> String {
     if id == "given" {
         return "efficiency given".to_owned();
     }
-    let families: &[&str] = match kind {
-        Some(LossKind::Sliding) => &["mesh_friction"],
-        Some(LossKind::Rolling) => &["rolling"],
-        Some(LossKind::Bearing) => &["bearing"],
-        Some(LossKind::Windage) => &["windage", "rotor_drag"],
-        Some(LossKind::Churning) => &["churning", "rotor_drag"],
-        Some(LossKind::Seal) => &["seal"],
-        _ => &[],
-    };
+    let families = kind.map_or(&[][..], LossKind::families);
     let all = entries();
     let own = families.iter().find_map(|f| all.iter().find(|e| e.family == *f && e.id == id));
     own.map_or_else(|| law(id), |e| e.title.to_owned())

@@ -1,8 +1,8 @@
 //! What came out: the shift table, the operating points, losses, maps, motion, formulas.
 
 use willis::analysis::{
-    CertificateReport, Direction, MachineReport, OperationReport, Role, SolutionReport, StateReport, VariatorReport,
-    Verdict,
+    CertificateReport, Direction, HeatBasis, MachineReport, OperationReport, Role, SolutionReport, StateReport,
+    VariatorReport, Verdict,
 };
 use willis::operating_point::Regime;
 use willis::regimes::{ClosedFormula, FormulaRequest, formulas as closed};
@@ -493,6 +493,39 @@ fn what_first(all: &Findings<'_>) -> Option<Block> {
         o.quantities.len()
     );
     (!rows.is_empty()).then_some(Block::Table { caption, columns, rows })
+}
+
+/// Oil temperature of every operating point, and where its heat goes.
+pub fn heat(all: &Findings<'_>) -> Option<Section> {
+    let celsius = |t: f64| fixed(t - 273.15, 1);
+    let of = |o: &OperationReport| {
+        let h = o.heat.as_ref()?;
+        let from = match (h.basis, h.verdict) {
+            (HeatBasis::Given, _) => "given",
+            (_, Some(verdict)) => verdict.words(),
+            (_, None) => "–",
+        };
+        let limit = h.basis == HeatBasis::Limit;
+        Some(vec![
+            o.name.clone(),
+            if limit { format!("above {}", celsius(h.limit_k)) } else { celsius(h.oil_k) },
+            from.to_owned(),
+            if limit { "–".into() } else { fixed(h.margin_k, 1) },
+            celsius(h.ambient_k),
+            watts(h.heat_w),
+        ])
+    };
+    let rows: Vec<Vec<String>> = all.analysis.operations.iter().filter_map(of).collect();
+    let columns = ["Operating point", "Oil, °C", "Balance", "Below the limit, K", "Air, °C", "Heat"];
+    let columns =
+        columns.map(|c| if matches!(c, "Operating point" | "Balance") { Column::words(c) } else { Column::numbers(c) });
+    let caption = "Oil temperature at which losses and the heat that is carried away agree".to_owned();
+    let mut blocks: Vec<Block> = vec![];
+    if !rows.is_empty() {
+        blocks.push(Block::Table { caption, columns: columns.into(), rows });
+    }
+    blocks.extend(all.figures.block(FigureKind::Heat, None, "How warm it gets: places, balance and warm-up"));
+    (!blocks.is_empty()).then(|| Section { title: "Heat".into(), blocks })
 }
 
 pub fn maps(all: &Findings<'_>) -> Option<Section> {

@@ -98,7 +98,11 @@ fn bearings(train: &Train) -> Option<Block> {
 
 fn oil(train: &Train) -> Option<Block> {
     let l = train.lubrication()?;
-    let mut text = format!("Oil: {} at {} °C", l.oil.name, significant(l.temperature - 273.15, 4));
+    let mut text = format!("Oil: {}", l.oil.name);
+    // With a heat balance every operating point has its own.
+    if train.heat().is_none() {
+        text += &format!(" at {} °C", significant(l.temperature - 273.15, 4));
+    }
     if let Some(volume) = l.volume {
         text += &format!(", {} litres in the sump", significant(volume * 1e3, 4));
     }

@@ -125,10 +125,11 @@ impl SankeyPaper {
     }
 
     /// For a panel of a screen that is so many px wide and high: the flow alone with names, losses and what goes round. Other
-    /// powers are the titles of their ribbons.
-    pub fn of_panel<'d>(all: impl IntoIterator<Item = &'d Sankey>, size: [f64; 2]) -> Self {
+    /// powers are the titles of their ribbons. Losses are drawn so many times wider than power; without a number, as wide as
+    /// they can be seen.
+    pub fn of_panel<'d>(all: impl IntoIterator<Item = &'d Sankey>, size: [f64; 2], losses: Option<f64>) -> Self {
         let flows: Vec<&SankeyFlow> = all.into_iter().flat_map(|s| &s.panels).filter_map(|p| p.flow.as_ref()).collect();
-        Self { frame: Frame::of_panel(&flows, size), spots: BTreeMap::new() }
+        Self { frame: Frame::of_panel(&flows, size, losses), spots: BTreeMap::new() }
     }
 
     /// One of the flows alone in its panel, of at least that size; none where no power flows.
@@ -217,8 +218,13 @@ fn caption(f: &SankeyFlow) -> Vec<String> {
     let list: Vec<String> =
         kinds.iter().map(|(k, p)| format!("{} {} ({})", losers(*k), watts(*p), percent(*p, f.input_w))).collect();
     let lost = if list.is_empty() { String::new() } else { format!(" by {}", list.join(", ")) };
-    let power =
-        format!("{efficiency}: in {}, out {}, lost {}{lost}.", watts(f.input_w), watts(f.output_w), watts(f.loss_w));
+    let seen = f.seen_from.as_ref().map(|member| format!("As seen from {member}, ")).unwrap_or_default();
+    let power = format!(
+        "{seen}{efficiency}: in {}, out {}, lost {}{lost}.",
+        watts(f.input_w),
+        watts(f.output_w),
+        watts(f.loss_w)
+    );
     let sentence = |t: &String| {
         let mut letters = t.chars();
         letters.next().map_or(String::new(), |c| c.to_uppercase().chain(letters).collect::<String>()) + "."

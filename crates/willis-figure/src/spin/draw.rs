@@ -139,11 +139,14 @@ fn basis(data: &SpinLosses) -> String {
         Some(name) => format!("the speed of operating point {name}"),
         None => "a speed that was chosen here".to_owned(),
     };
-    format!(
-        "{input} turns at {} rpm, {from}; no torque acts on the output. Drag of open shift elements and of an oil pump is not \
-         computed.",
-        digits(data.speed_rpm)
-    )
+    let oil = data.gears.iter().filter_map(|g| g.oil_k).map(|t| t - 273.15);
+    let [low, high] = oil.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], t| [l.min(t), h.max(t)]);
+    let oil = match high - low {
+        d if d.is_nan() || high < low => String::new(),
+        d if d < 0.5 => format!(", the oil as warm as under load, {high:.0} °C"),
+        _ => format!(", the oil as warm as under load, {low:.0} to {high:.0} °C"),
+    };
+    format!("{input} turns at {} rpm, {from}; no torque acts on the output{oil}.", digits(data.speed_rpm))
 }
 
 /// Why there is nothing to draw.
@@ -203,6 +206,10 @@ fn quantity(kind: Option<LossKind>) -> &'static str {
         Some(LossKind::Windage) => "loss_w windage",
         Some(LossKind::Churning) => "loss_w churning",
         Some(LossKind::Seal) => "loss_w seal",
+        Some(LossKind::Drag) => "loss_w drag",
+        Some(LossKind::ShiftElement) => "loss_w shift-element",
+        Some(LossKind::Injection) => "loss_w injection",
+        Some(LossKind::Pump) => "loss_w pump",
         _ => "loss_w other",
     }
 }

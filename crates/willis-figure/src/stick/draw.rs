@@ -7,12 +7,12 @@ use svg::Document;
 use svg::node::element::{Circle, Group, Path, Polyline};
 
 use self::labels::Labels;
-use self::sheet::{PLATE, ROW, Sheet};
+use self::sheet::{PLATE, ROW, Sheet, role};
 use crate::parts::alive::{Of, guide, of};
 use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, line, lines, number, page, rectangle, text, wide,
 };
-use crate::{Columns, Drawing, GearRole, JointKind, Place, Stick, StickGear, StickJoint, StickPiece, Way};
+use crate::{Columns, Drawing, GearRole, JointKind, Place, Stick, StickJoint, StickPiece, Way};
 
 /// Length of a terminal's arrow.
 const ARROW: f64 = 40.0;
@@ -96,16 +96,6 @@ fn words(data: &Stick) -> String {
     let mut all: Vec<String> = blocks.chain(joints).collect();
     all.push(subtitle(data));
     all.join(". ")
-}
-
-fn role(g: &StickGear) -> &'static str {
-    match g.role {
-        GearRole::Sun => "sun",
-        GearRole::Planet => "planet",
-        GearRole::Ring => "ring",
-        GearRole::Side => "side gear",
-        _ => "gear",
-    }
 }
 
 impl Sheet<'_> {
@@ -444,37 +434,39 @@ impl Sheet<'_> {
     fn list(&self) -> Group {
         let mut g = Group::new();
         let top = self.list_top();
-        let rows = self.list_rows() - 1;
         let speeds = self.speeds();
-        // Names, parts and speeds share a narrow column.
-        let parts = 182.0 - 0.45 * (430.0 - self.list);
-        for column in 0..self.list_columns().min(self.listed().len().div_ceil(rows.max(1))) {
-            let x = 28.0 + self.list * column as f64;
+        let parts = self.parts_at();
+        let columns = self.list_of_members();
+        let left = |column: usize| 28.0 + self.list * column as f64;
+        for x in (0..columns.len()).map(left) {
             g = g.add(text(x + 54.0, top, 11.0, Anchor::Start, "member").set("fill", FAINT));
             g = g.add(text(x + parts, top, 11.0, Anchor::Start, "its parts").set("fill", FAINT));
             if speeds {
                 g = g.add(text(x + self.list - 24.0, top, 11.0, Anchor::End, "speed / input").set("fill", FAINT));
             }
         }
-        for (row, k) in self.listed().into_iter().enumerate() {
-            let m = &self.data.members[k];
-            let x = 28.0 + self.list * (row / rows) as f64;
-            let y = top + ROW * (row % rows + 1) as f64;
-            let width = if m.loaded == Some(true) { THICK } else { THIN };
-            let number = self.category[k].map_or(0, |c| c + 1);
-            let mut own = Group::new()
-                .add(text(x + 14.0, y, 11.0, Anchor::End, &number.to_string()).set("fill", FAINT))
-                .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
-                .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, parts - 62.0, 12.0)))
-                .add(
-                    text(x + parts, y, 11.0, Anchor::Start, &fit(&self.parts(k), self.list - 98.0 - parts, 11.0))
-                        .set("fill", FAINT),
-                );
-            if let Some(speed) = m.speed_ratio.filter(|_| speeds) {
-                let shown = if speed == 0.0 { "stands still".to_owned() } else { digits(speed) };
-                own = own.add(text(x + self.list - 24.0, y, 11.0, Anchor::End, &shown));
+        for (column, members) in columns.into_iter().enumerate() {
+            let (x, mut row) = (left(column), 0);
+            for (k, lines) in members {
+                let y = top + ROW * (row + 1) as f64;
+                let m = &self.data.members[k];
+                let width = if m.loaded == Some(true) { THICK } else { THIN };
+                let number = self.category[k].map_or(0, |c| c + 1);
+                let mut own = Group::new()
+                    .add(text(x + 14.0, y, 11.0, Anchor::End, &number.to_string()).set("fill", FAINT))
+                    .add(line((x + 20.0, y - 4.0), (x + 46.0, y - 4.0), &self.ink(Some(k)), width))
+                    .add(text(x + 54.0, y, 12.0, Anchor::Start, &fit(&m.name, parts - 62.0, 12.0)));
+                for (nth, part) in lines.iter().enumerate() {
+                    let y = y + ROW * nth as f64;
+                    own = own.add(text(x + parts, y, 11.0, Anchor::Start, part).set("fill", FAINT));
+                }
+                row += lines.len();
+                if let Some(speed) = m.speed_ratio.filter(|_| speeds) {
+                    let shown = if speed == 0.0 { "stands still".to_owned() } else { digits(speed) };
+                    own = own.add(text(x + self.list - 24.0, y, 11.0, Anchor::End, &shown));
+                }
+                g = g.add(of(own, "row", &[Of::Member(&m.name)]));
             }
-            g = g.add(of(own, "row", &[Of::Member(&m.name)]));
         }
         g
     }
@@ -515,25 +507,6 @@ impl Sheet<'_> {
             g = g.add(text(x + 30.0, y, 11.0, Anchor::Start, "frame").set("fill", FAINT));
         }
         g
-    }
-
-    /// Whether speeds are known beside that of the input.
-    fn speeds(&self) -> bool {
-        self.listed().into_iter().filter(|&k| self.data.members[k].speed_ratio.is_some()).count() > 1
-    }
-
-    /// What a member is made of: its gears, and the blocks whose planets it carries.
-    fn parts(&self, k: usize) -> String {
-        let block = |b: usize| self.data.blocks[b].name.as_str();
-        let mut all: Vec<String> = Vec::new();
-        for g in self.data.gears.iter().filter(|g| g.member == Some(k)) {
-            all.push(format!("{} {}", role(g), block(g.block)));
-        }
-        for &b in &self.data.members[k].carries {
-            all.push(format!("carrier {}", block(b)));
-        }
-        all.dedup();
-        all.join(", ")
     }
 }
 

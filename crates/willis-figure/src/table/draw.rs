@@ -1,7 +1,7 @@
 //! The table of speeds and torques: a column a state, a row a shaft, under every number a bar as long as it says.
 
 use svg::node::element::{Circle, Group};
-use willis::analysis::{ShaftElement, ShaftState, ShaftTable};
+use willis::analysis::{AtLoad, ShaftElement, ShaftState, ShaftTable};
 use willis::exact::Rational;
 use willis::train::ShiftElementKind;
 
@@ -61,7 +61,7 @@ struct Section {
 ///
 /// # Example
 /// ```
-/// use willis::analysis::shaft_table;
+/// use willis::analysis::{ShaftTableRequest, shaft_table};
 /// use willis::train::{SetSpec, Train};
 ///
 /// let train = Train::builder("reducer")
@@ -69,7 +69,7 @@ struct Section {
 ///     .terminals(["sun", "carrier"])
 ///     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4).mesh_efficiency(0.98))
 ///     .build()?;
-/// let picture = willis_figure::draw_table(&shaft_table(&train, None, false)?);
+/// let picture = willis_figure::draw_table(&shaft_table(&train, &ShaftTableRequest::default())?);
 /// assert!(picture.contains(r#"data-member="carrier""#) && picture.contains("0.300"));
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
@@ -247,13 +247,14 @@ fn sections(table: &ShaftTable, states: &[(String, ShaftState)]) -> Vec<Section>
                 .as_ref()
                 .map_or(Cell::Unknown, |r| Cell::Words(r.to_fraction().trim_end_matches("/1").replace('-', "−")))
         }),
-        quantity("efficiency, %", &|s| s.efficiency.map_or(Cell::Unknown, |e| Cell::Words(percent(e)))),
+        quantity("efficiency of the teeth, %", &|s| s.efficiency.map_or(Cell::Unknown, |e| Cell::Words(percent(e)))),
     ];
     if ends(table).is_none() {
         first.push(quantity("input", &|s| Cell::Words(s.input.clone())));
         first.push(quantity("output", &|s| Cell::Words(s.output.clone())));
     }
     let mut all = vec![Section { head: String::new(), bars: false, rows: first }];
+    all.extend(losses(states));
 
     let of_kind = |planet: bool| {
         names(states, |s| {
@@ -338,6 +339,38 @@ fn sections(table: &ShaftTable, states: &[(String, ShaftState)]) -> Vec<Section>
     all
 }
 
+/// Losses at a load and without one, where they depend on that.
+fn losses(states: &[(String, ShaftState)]) -> Vec<Section> {
+    let at = |s: &ShaftState| s.at_load.as_deref().cloned();
+    let Some(first) = states.iter().find_map(|(_, s)| at(s)) else { return vec![] };
+    let same =
+        |s: &ShaftState| at(s).is_none_or(|a| (a.speed_rad_s, a.torque_n_m) == (first.speed_rad_s, first.torque_n_m));
+    let point = match states.iter().all(|(_, s)| same(s)) {
+        true => first.point(|x| figures(x, 4), |operation| format!("“{operation}”")),
+        false => "the load of each input in the file".to_owned(),
+    };
+    let row = |name: &str, cell: &dyn Fn(&AtLoad) -> Cell| Row {
+        cells: states.iter().map(|(_, s)| at(s).map_or(Cell::Unknown, |a| cell(&a))).collect(),
+        name: name.to_owned(),
+        about: (|n| Of::Quantity(n), name.to_owned()),
+    };
+    let watts = |w: Option<f64>| w.map_or(Cell::Unknown, |w| Cell::Words(figures(w, 4)));
+    let mut rows = vec![
+        row("efficiency at load, %", &|a| {
+            let mark = if a.warnings.is_empty() { "" } else { " *" };
+            a.efficiency.map_or(Cell::Unknown, |e| Cell::Words(percent(e) + mark))
+        }),
+        row("loss at load, W", &|a| watts(a.loss_w)),
+        row("spin loss, W", &|a| watts(a.spin_loss_w)),
+    ];
+    if states.iter().any(|(_, s)| at(s).is_some_and(|a| a.temperature_k.is_some())) {
+        let more = |a: &AtLoad| if a.beyond_limit { "> " } else { "" };
+        let celsius = |a: &AtLoad| a.temperature_k.map(|t| Cell::Words(format!("{}{:.0}", more(a), t - 273.15)));
+        rows.push(row("oil, °C", &|a| celsius(a).unwrap_or(Cell::Unknown)));
+    }
+    vec![Section { head: format!("Losses at {point}; spin loss: nothing at the output"), bars: false, rows }]
+}
+
 /// Input and output, where they are the same in all states.
 fn ends(table: &ShaftTable) -> Option<[&str; 2]> {
     let mut all = table.states.iter().map(|(_, s)| [s.input.as_str(), s.output.as_str()]);
@@ -357,7 +390,9 @@ fn caption(table: &ShaftTable) -> String {
         true => "without losses",
         false => "with the losses of the teeth",
     };
-    format!("{path}The input drives, {losses}. Bars to the left are negative; {UNKNOWN} is not determined.")
+    let warned = table.states.iter().any(|(_, s)| s.at_load.as_ref().is_some_and(|a| !a.warnings.is_empty()));
+    let mark = if warned { " * With a warning, which the table of losses names." } else { "" };
+    format!("{path}The input drives, {losses}. Bars to the left are negative; {UNKNOWN} is not determined.{mark}")
 }
 
 fn words(table: &ShaftTable) -> String {

@@ -126,7 +126,7 @@ fn the_flow_of_power_fits_its_panel() {
     for (name, train) in examples() {
         let Ok(report) = flows(&train, &Selection::default()) else { continue };
         let figure = sankey(&report);
-        let mut paper = SankeyPaper::of_panel([&figure], [700.0, 320.0]);
+        let mut paper = SankeyPaper::of_panel([&figure], [700.0, 320.0], None);
         for k in 0..figure.panels.len() {
             let Some(drawn) = paper.draw_alone(&figure, k, [700.0, 320.0]) else { continue };
             let svg = roxmltree::Document::parse(&drawn).expect("SVG");

@@ -1,5 +1,6 @@
 //! Losses without load: every gear is in balance by itself.
 
+use willis::analysis::{AskedLoad, ShaftTableRequest, shaft_table};
 use willis::study::PointVerdict;
 use willis_figure::{draw_spin, spin_losses};
 
@@ -31,6 +32,29 @@ fn what_the_input_brings_is_lost() {
     }
     // Few examples give what such losses need.
     assert!(lossy >= 2, "{lossy}");
+}
+
+/// The picture and the shift table say the same of a gear: spin loss, sources and oil.
+#[test]
+fn the_table_says_the_same() {
+    let mut compared = 0;
+    for (name, train) in examples() {
+        let Ok(spin) = spin_losses(&train, None, None) else { continue };
+        let request = ShaftTableRequest { load: Some(AskedLoad::default()), ..ShaftTableRequest::default() };
+        let table = shaft_table(&train, &request).expect("it has gears");
+        for gear in &spin.gears {
+            let Some(at) = table.states.get(&gear.state).and_then(|s| s.at_load.as_deref()) else { continue };
+            if (at.speed_rad_s * 30.0 / std::f64::consts::PI - spin.speed_rpm).abs() > 1e-9 * spin.speed_rpm.abs() {
+                continue;
+            }
+            assert_eq!(gear.oil_k, at.temperature_k, "{name} {}", gear.state);
+            assert_eq!(gear.loss_w, at.spin_loss_w, "{name} {}", gear.state);
+            let losing = at.spin_sources.iter().filter(|s| s.loss_w > 0.0).count();
+            assert_eq!(gear.sources.len(), losing, "{name} {}", gear.state);
+            compared += 1;
+        }
+    }
+    assert!(compared > 5, "{compared}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The picture of speeds and torques says what `willis table` says, cell by cell.
 
 use resvg::usvg::roxmltree::{Document, Node};
-use willis::analysis::{ShaftTable, shaft_table};
+use willis::analysis::{ShaftTable, ShaftTableRequest, shaft_table};
 use willis::exact::Rational;
 use willis_figure::draw_table;
 
@@ -80,10 +80,10 @@ fn agrees(table: &ShaftTable) -> usize {
 fn every_cell_agrees_with_the_table() {
     let mut compared = 0;
     for (_, train) in examples() {
-        compared += shaft_table(&train, None, false).map_or(0, |t| agrees(&t));
+        compared += shaft_table(&train, &ShaftTableRequest::default()).map_or(0, |t| agrees(&t));
     }
     for (_, model) in hard() {
-        compared += shaft_table(model.train(), None, false).map_or(0, |t| agrees(&t));
+        compared += shaft_table(model.train(), &ShaftTableRequest::default()).map_or(0, |t| agrees(&t));
     }
     assert!(compared > 2000, "{compared}");
 }
@@ -92,7 +92,7 @@ fn every_cell_agrees_with_the_table() {
 /// 72 input = (33 + 72) output − 33 sun = (105 + 72) output.
 #[test]
 fn the_sun_of_the_simpson_train_runs_backwards() {
-    let table = shaft_table(&example("simpson-ford-c4.toml"), None, false).unwrap();
+    let table = shaft_table(&example("simpson-ford-c4.toml"), &ShaftTableRequest::default()).unwrap();
     let svg = draw_table(&table);
     let document = Document::parse(&svg).unwrap();
     let ratio = (105.0 + 72.0) / 72.0;

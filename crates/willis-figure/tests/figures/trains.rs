@@ -39,8 +39,8 @@ pub fn code_in(text: &str, names: &[&str]) -> Option<String> {
         return Some("`".to_owned());
     }
     let apart = |c: char| !(c.is_alphanumeric() || c == '_' || c == '-');
-    // Names of laws in files are those of people, written small.
-    const WORDS: [&str; 6] = ["constant", "none", "stiffness", "equal", "uniform", "integrated"];
+    // Names of laws in files are those of people, written small; but for some that are plain words.
+    const WORDS: [&str; 7] = ["constant", "none", "stiffness", "equal", "uniform", "integrated", "displacement"];
     let law = |w: &str| !WORDS.contains(&w) && entries().iter().any(|e| e.id == w);
     let key = |w: &&str| {
         let mut parts = w.trim_matches('_').split('_');

@@ -179,7 +179,8 @@ class Answer:
         return self.text.rstrip("\n")
 
     def _repr_html_(self) -> str:
-        return f"<pre style='line-height:1.25'>{escape(self.text)}</pre>"
+        style = "line-height:1.25;font-family:monospace;white-space:pre;overflow-x:auto"
+        return f"<pre style='{style}'>{escape(self.text)}</pre>"
 
 
 def _again(kind: type[Answer], trains: Sequence[Train], kept: dict[str, Any]) -> Answer:

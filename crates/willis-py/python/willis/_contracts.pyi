@@ -59,6 +59,115 @@ class AnalyzeDirection(Record):
     def why(self) -> Any | None:
         """What ``reason`` says, as data."""
 
+class AnalyzeLosses(Record):
+    """Losses by kind, W."""
+    @property
+    def mesh(self) -> float:
+        """Tooth friction."""
+    @property
+    def bearing(self) -> float:
+        """Bearings."""
+    @property
+    def windage(self) -> float:
+        """Air and oil mist."""
+    @property
+    def churning(self) -> float:
+        """Oil sump."""
+    @property
+    def seal(self) -> float:
+        """Shaft seals."""
+    @property
+    def drag(self) -> float:
+        """Drags that are given as torques."""
+    @property
+    def injection(self) -> float:
+        """Oil that is sprayed into meshes."""
+    @property
+    def pump(self) -> float:
+        """Oil pumps."""
+    @property
+    def variator(self) -> float:
+        """Variators."""
+
+class AnalyzeLossSource(Record):
+    """One place where power is lost."""
+    @property
+    def name(self) -> str:
+        """What loses it."""
+    @property
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "drag", "shift-element", "injection", "pump", "variator"]:
+        """What kind of loss it is."""
+    @property
+    def law(self) -> str:
+        """Its name in the list of laws; ``given`` for a given efficiency."""
+    @property
+    def loss_w(self) -> float:
+        """The power, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def share(self) -> float:
+        """The part of all losses."""
+
+class AnalyzeAtLoad(Record):
+    """A gear at a stated load, and at the same speed without one."""
+    @property
+    def operation(self) -> str | None:
+        """The operation of the file whose speed and load these are; absent where they were asked for."""
+    @property
+    def speed_rad_s(self) -> float:
+        """Speed of the input, rad/s."""
+    @property
+    def speed(self) -> float: ...
+    @property
+    def torque_n_m(self) -> float:
+        """Torque at the input, N m."""
+    @property
+    def torque(self) -> float: ...
+    @property
+    def temperature_k(self) -> float | None:
+        """Oil temperature, K: prescribed, of the heat balance, or of the oil; absent without an oil."""
+    @property
+    def temperature(self) -> float | None: ...
+    @property
+    def beyond_limit(self) -> bool:
+        """Whether no temperature up to the limit balances losses and heat flow: then it is the limit."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of the point."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power."""
+    @property
+    def loss_w(self) -> float | None:
+        """All losses, W."""
+    @property
+    def loss(self) -> float | None: ...
+    @property
+    def losses_w(self) -> AnalyzeLosses | None:
+        """Losses by kind, W."""
+    @property
+    def losses(self) -> AnalyzeLosses | None: ...
+    @property
+    def spin_loss_w(self) -> float | None:
+        """What turns the input at this speed and temperature with nothing at the output, W: the spin loss."""
+    @property
+    def spin_loss(self) -> float | None: ...
+    @property
+    def spin_losses_w(self) -> AnalyzeLosses | None:
+        """That by kind, W."""
+    @property
+    def spin_losses(self) -> AnalyzeLosses | None: ...
+    @property
+    def spin_sources(self) -> list[AnalyzeLossSource]:
+        """That by source, the largest first."""
+    @property
+    def reason(self) -> str | None:
+        """Why there is no efficiency."""
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings of the point under load: laws outside their ranges, the heat balance, limits."""
+
 class AnalyzeStateReport(Record):
     """A row of the shift table."""
     @property
@@ -91,6 +200,10 @@ class AnalyzeStateReport(Record):
     @property
     def coast(self) -> AnalyzeDirection:
         """Output drives input."""
+    @property
+    def at_load(self) -> AnalyzeAtLoad | None:
+        """Driving at the load that the file has for this input, where losses depend on load and
+        [``Analysis::with_loads``] asked."""
 
 class AnalyzeOutsideAt(Record):
     """A place where a law was used outside its range."""
@@ -135,6 +248,186 @@ class AnalyzeSpeedDeviation(Record):
     @property
     def relative(self) -> float:
         """By which part of the largest of their speeds, as the gears tie them, they contradict each other."""
+
+class AnalyzeCertificate2(Record):
+    """Why there are no other equilibria."""
+    @property
+    def method(self) -> Literal["elasticity", "branch-and-bound"]:
+        """The argument."""
+    @property
+    def proved(self) -> bool:
+        """Whether bounds prove it. Else the elasticity is taken to differ within an interval no more than it does from
+        one interval to the next, or, where intervals were excluded, each heat to be monotone between the
+        temperatures computed."""
+    @property
+    def largest_elasticity(self) -> float | None:
+        """Largest elasticity of the losses between two temperatures; one equilibrium where it is below 1."""
+    @property
+    def temperatures(self) -> int:
+        """Temperatures at which the losses were computed."""
+    @property
+    def widest_k(self) -> float:
+        """Largest distance between two of them, K."""
+    @property
+    def widest(self) -> float: ...
+
+class AnalyzeHeatEquilibrium(Record):
+    """An oil temperature at which losses and heat flow agree."""
+    @property
+    def oil_k(self) -> float:
+        """The temperature, K."""
+    @property
+    def oil(self) -> float: ...
+    @property
+    def stable(self) -> bool:
+        """Whether the oil returns to it after a small disturbance."""
+    @property
+    def heat_w(self) -> float:
+        """Heat made there, W."""
+    @property
+    def heat(self) -> float: ...
+    @property
+    def step_w(self) -> list[float] | None:
+        """On the step of a law: heat that reaches the oil just below and just above it, W."""
+    @property
+    def step(self) -> list[float] | None: ...
+
+class AnalyzePlaceReport(Record):
+    """A place of the network."""
+    @property
+    def temperature_k(self) -> float:
+        """Its temperature, K."""
+    @property
+    def temperature(self) -> float: ...
+    @property
+    def heat_w(self) -> float:
+        """Heat made there, W."""
+    @property
+    def heat(self) -> float: ...
+    @property
+    def share_to_oil(self) -> float:
+        """Part of that heat that reaches the oil."""
+    @property
+    def given(self) -> bool:
+        """Whether its temperature is given."""
+
+class AnalyzeHeatFlow(Record):
+    """Heat on its way."""
+    @property
+    def between(self) -> list[str]:
+        """From where to where."""
+    @property
+    def heat_w(self) -> float:
+        """The heat, W; negative the other way round."""
+    @property
+    def heat(self) -> float: ...
+
+class AnalyzeHeatPoint(Record):
+    """Heat at an oil temperature."""
+    @property
+    def oil_k(self) -> float:
+        """Oil temperature, K."""
+    @property
+    def oil(self) -> float: ...
+    @property
+    def reaching_w(self) -> float:
+        """Heat that reaches the oil, W: computed there, or on a straight line between two temperatures at which it
+        was."""
+    @property
+    def reaching(self) -> float: ...
+    @property
+    def carried_w(self) -> float:
+        """Heat that leaves it, W."""
+    @property
+    def carried(self) -> float: ...
+
+class AnalyzeHeatReport(Record):
+    """The temperatures of an operating point, and where its heat goes."""
+    @property
+    def oil_k(self) -> float:
+        """Oil temperature in force, K."""
+    @property
+    def oil(self) -> float: ...
+    @property
+    def basis(self) -> Literal["balance", "given", "limit"]:
+        """Where it comes from."""
+    @property
+    def verdict(self) -> Literal["unique", "several", "none-below-limit", "undecided"] | None:
+        """What can be said of it; absent where it is given."""
+    @property
+    def certificate(self) -> AnalyzeCertificate2 | None:
+        """Why there is no other."""
+    @property
+    def equilibria(self) -> list[AnalyzeHeatEquilibrium]:
+        """Every oil temperature that holds, the coldest first."""
+    @property
+    def undecided_k(self) -> list[list[float]]:
+        """Intervals in which it could not be decided, K."""
+    @property
+    def undecided(self) -> list[list[float]]: ...
+    @property
+    def ambient_k(self) -> float:
+        """Temperature of the air, K."""
+    @property
+    def ambient(self) -> float: ...
+    @property
+    def limit_k(self) -> float:
+        """Highest oil temperature allowed, K."""
+    @property
+    def limit(self) -> float: ...
+    @property
+    def margin_k(self) -> float:
+        """Limit less oil temperature, K."""
+    @property
+    def margin(self) -> float: ...
+    @property
+    def heat_w(self) -> float:
+        """Losses that become heat in the gearbox, W."""
+    @property
+    def heat(self) -> float: ...
+    @property
+    def extra_heat_w(self) -> float:
+        """Heat into the oil beside the losses, W."""
+    @property
+    def extra_heat(self) -> float: ...
+    @property
+    def cooled_elsewhere_w(self) -> float:
+        """Losses of variators, which have a cooling of their own, W."""
+    @property
+    def cooled_elsewhere(self) -> float: ...
+    @property
+    def residual_w(self) -> float:
+        """Heat that reaches the oil less what leaves it, W: it warms where that is above zero."""
+    @property
+    def residual(self) -> float: ...
+    @property
+    def places(self) -> Named[AnalyzePlaceReport]:
+        """Every place."""
+    @property
+    def paths(self) -> list[AnalyzeHeatFlow]:
+        """Every way for heat."""
+    @property
+    def cooler_w(self) -> float | None:
+        """Heat that the cooler takes, W; negative where it heats."""
+    @property
+    def cooler(self) -> float | None: ...
+    @property
+    def curve(self) -> list[AnalyzeHeatPoint]:
+        """Heat that reaches the oil and what it gives off, over its temperature. What reaches it is computed at the
+        temperatures that the balance looked at; between those it is a straight line."""
+    @property
+    def slope_w_k(self) -> float | None:
+        """Change of what leaves the oil less what reaches it with its temperature, W/K; above zero where it is stable."""
+    @property
+    def slope_w(self) -> float | None: ...
+    @property
+    def time_constants_s(self) -> list[float]:
+        """Time constants around this temperature, s, the slowest first; none without heat capacities."""
+    @property
+    def time_constants(self) -> list[float]: ...
+    @property
+    def drivers_change(self) -> bool:
+        """Whether other gears drive when the oil is cold than when it is as hot as it may be."""
 
 class AnalyzeMemberReport(Record):
     """A member in an operating point."""
@@ -295,47 +588,6 @@ class AnalyzeBeyondLimit(Record):
     def limit(self) -> float:
         """What it may be at most (or, of a ratio, at least), SI."""
 
-class AnalyzeLosses(Record):
-    """Losses by kind, W."""
-    @property
-    def mesh(self) -> float:
-        """Tooth friction."""
-    @property
-    def bearing(self) -> float:
-        """Bearings."""
-    @property
-    def windage(self) -> float:
-        """Air and oil mist."""
-    @property
-    def churning(self) -> float:
-        """Oil sump."""
-    @property
-    def seal(self) -> float:
-        """Shaft seals."""
-    @property
-    def variator(self) -> float:
-        """Variators."""
-
-class AnalyzeLossSource(Record):
-    """One place where power is lost."""
-    @property
-    def name(self) -> str:
-        """What loses it."""
-    @property
-    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"]:
-        """What kind of loss it is."""
-    @property
-    def law(self) -> str:
-        """Its name in the list of laws; ``given`` for a given efficiency."""
-    @property
-    def loss_w(self) -> float:
-        """The power, W."""
-    @property
-    def loss(self) -> float: ...
-    @property
-    def share(self) -> float:
-        """The part of all losses."""
-
 class AnalyzeContactReport(Record):
     """A tooth contact in an operating point. Loads are those of one of the pairs in parallel."""
     @property
@@ -355,6 +607,12 @@ class AnalyzeContactReport(Record):
         """Operating pressure angle in the transverse section, rad."""
     @property
     def operating_pressure_angle(self) -> float: ...
+    @property
+    def backlash_m(self) -> float:
+        """Transverse circumferential backlash at the operating circles, m; 0 where the centre distance follows from
+        the shifts."""
+    @property
+    def backlash(self) -> float: ...
     @property
     def tangential_force_n(self) -> float:
         """Tangential force at the operating pitch circle, N."""
@@ -418,7 +676,7 @@ class AnalyzeContactReport(Record):
     def rolling_loss(self) -> float: ...
 
 class AnalyzeBearingReport(Record):
-    """A place with rolling bearings in an operating point."""
+    """A place with bearings in an operating point."""
     @property
     def designation(self) -> str:
         """Designation."""
@@ -440,7 +698,7 @@ class AnalyzeBearingReport(Record):
     def radial_load(self) -> float: ...
     @property
     def axial_load_n(self) -> float:
-        """Axial load of one bearing, N."""
+        """Axial load of one bearing, N; mean of those that share it."""
     @property
     def axial_load(self) -> float: ...
     @property
@@ -457,6 +715,54 @@ class AnalyzeBearingReport(Record):
     @property
     def loss(self) -> float: ...
 
+class AnalyzeShaftLoad(Record):
+    """What the teeth and planets do to a shaft on bearings, and what of it the bearings of the train do not carry."""
+    @property
+    def radial_n(self) -> float:
+        """Radial force, N: sum of amounts where directions are not known relative to each other."""
+    @property
+    def radial(self) -> float: ...
+    @property
+    def thrust_n(self) -> float:
+        """Thrust along the axis, N; positive towards growing positions."""
+    @property
+    def thrust(self) -> float: ...
+    @property
+    def tilting_n_m(self) -> float:
+        """Tilting moment about the origin of the positions, N m."""
+    @property
+    def tilting(self) -> float: ...
+    @property
+    def uncarried_radial_n(self) -> float:
+        """Radial force that no bearing of the train carries, N."""
+    @property
+    def uncarried_radial(self) -> float: ...
+    @property
+    def uncarried_thrust_n(self) -> float:
+        """Thrust that no bearing of the train carries, N."""
+    @property
+    def uncarried_thrust(self) -> float: ...
+    @property
+    def uncarried_tilting_n_m(self) -> float:
+        """Tilting moment that no bearing of the train carries, N m: gears or other shafts must."""
+    @property
+    def uncarried_tilting(self) -> float: ...
+
+class AnalyzeDoubt(Record):
+    """A number that cannot be right, or that something must be missing for."""
+    @property
+    def kind(self) -> Literal["contact-pressure", "bearing-load", "bearing-speed", "bearing-loss", "thrust-on-floating", "uncarried-thrust", "uncarried-force", "uncarried-moment"]:
+        """What it is."""
+    @property
+    def at(self) -> str:
+        """The mesh, bearing or member."""
+    @property
+    def value(self) -> float:
+        """The number, in the unit of its kind."""
+    @property
+    def limit(self) -> float:
+        """What it passes, in the same unit."""
+
 class AnalyzeDragReport(Record):
     """A torque that two members exert on each other against their relative motion.
 
@@ -466,7 +772,7 @@ class AnalyzeDragReport(Record):
     def name(self) -> str:
         """What exerts it: name of the bearing, seal, gear or rotor; of rolling, of the mesh."""
     @property
-    def source(self) -> Literal["rolling", "bearing", "seal", "gear", "rotor"]:
+    def source(self) -> Literal["rolling", "bearing", "seal", "gear", "rotor", "drag", "shift-element", "injection", "pump"]:
         """What that is."""
     @property
     def members(self) -> list[str]:
@@ -644,6 +950,12 @@ class AnalyzeSolutionReport(Record):
     def bearings(self) -> Named[AnalyzeBearingReport]:
         """Rolling bearings."""
     @property
+    def shaft_loads(self) -> Named[AnalyzeShaftLoad]:
+        """Loads of the shafts that rest on these bearings."""
+    @property
+    def doubts(self) -> list[AnalyzeDoubt]:
+        """Numbers that cannot be right, or for which something is missing."""
+    @property
     def drags(self) -> list[AnalyzeDragReport]:
         """Drag torques between members, where losses are computed."""
     @property
@@ -693,6 +1005,9 @@ class AnalyzeOperationReport(Record):
         """Speeds, also when the torques have no answer; rad/s."""
     @property
     def speeds(self) -> Named[float | None]: ...
+    @property
+    def heat(self) -> AnalyzeHeatReport | None:
+        """Temperatures and heat, where the train says what carries heat away."""
     @property
     def solutions(self) -> list[AnalyzeSolutionReport]:
         """Every equilibrium that drives a load (or, with two or more freedoms, any equilibrium)."""
@@ -809,6 +1124,115 @@ class TableShaftElement(Record):
         """Torque that it exerts on the first member, over the input torque; 0 while it is open, absent where it is not
         determined."""
 
+class TableLosses(Record):
+    """Losses by kind, W."""
+    @property
+    def mesh(self) -> float:
+        """Tooth friction."""
+    @property
+    def bearing(self) -> float:
+        """Bearings."""
+    @property
+    def windage(self) -> float:
+        """Air and oil mist."""
+    @property
+    def churning(self) -> float:
+        """Oil sump."""
+    @property
+    def seal(self) -> float:
+        """Shaft seals."""
+    @property
+    def drag(self) -> float:
+        """Drags that are given as torques."""
+    @property
+    def injection(self) -> float:
+        """Oil that is sprayed into meshes."""
+    @property
+    def pump(self) -> float:
+        """Oil pumps."""
+    @property
+    def variator(self) -> float:
+        """Variators."""
+
+class TableLossSource(Record):
+    """One place where power is lost."""
+    @property
+    def name(self) -> str:
+        """What loses it."""
+    @property
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "drag", "shift-element", "injection", "pump", "variator"]:
+        """What kind of loss it is."""
+    @property
+    def law(self) -> str:
+        """Its name in the list of laws; ``given`` for a given efficiency."""
+    @property
+    def loss_w(self) -> float:
+        """The power, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def share(self) -> float:
+        """The part of all losses."""
+
+class TableAtLoad(Record):
+    """A gear at a stated load, and at the same speed without one."""
+    @property
+    def operation(self) -> str | None:
+        """The operation of the file whose speed and load these are; absent where they were asked for."""
+    @property
+    def speed_rad_s(self) -> float:
+        """Speed of the input, rad/s."""
+    @property
+    def speed(self) -> float: ...
+    @property
+    def torque_n_m(self) -> float:
+        """Torque at the input, N m."""
+    @property
+    def torque(self) -> float: ...
+    @property
+    def temperature_k(self) -> float | None:
+        """Oil temperature, K: prescribed, of the heat balance, or of the oil; absent without an oil."""
+    @property
+    def temperature(self) -> float | None: ...
+    @property
+    def beyond_limit(self) -> bool:
+        """Whether no temperature up to the limit balances losses and heat flow: then it is the limit."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of the point."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power."""
+    @property
+    def loss_w(self) -> float | None:
+        """All losses, W."""
+    @property
+    def loss(self) -> float | None: ...
+    @property
+    def losses_w(self) -> TableLosses | None:
+        """Losses by kind, W."""
+    @property
+    def losses(self) -> TableLosses | None: ...
+    @property
+    def spin_loss_w(self) -> float | None:
+        """What turns the input at this speed and temperature with nothing at the output, W: the spin loss."""
+    @property
+    def spin_loss(self) -> float | None: ...
+    @property
+    def spin_losses_w(self) -> TableLosses | None:
+        """That by kind, W."""
+    @property
+    def spin_losses(self) -> TableLosses | None: ...
+    @property
+    def spin_sources(self) -> list[TableLossSource]:
+        """That by source, the largest first."""
+    @property
+    def reason(self) -> str | None:
+        """Why there is no efficiency."""
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings of the point under load: laws outside their ranges, the heat balance, limits."""
+
 class TableShaftState(Record):
     """One state."""
     @property
@@ -844,6 +1268,9 @@ class TableShaftState(Record):
     @property
     def sets(self) -> Named[Named[float]]:
         """Torque that each member puts into each set, or mesh of no set, over the input torque."""
+    @property
+    def at_load(self) -> TableAtLoad | None:
+        """What it costs at a load and without one, where losses depend on that."""
 
 class TableSpan(Record):
     """A part of a text."""
@@ -1025,7 +1452,7 @@ class FlowNode(Record):
     def id(self) -> str:
         """Unique: kind and name, as in ``member:sun``, ``teeth:P1.sun-planet``, ``input:sun``; or ``frame``."""
     @property
-    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "shift-element", "coupling", "variator", "input", "output"]:
+    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "drag", "open-element", "pump", "shift-element", "coupling", "variator", "input", "output"]:
         """What it is."""
     @property
     def name(self) -> str:
@@ -1140,6 +1567,9 @@ class FlowPath(Record):
 
 class FlowHypergraph(Record):
     """The power flow of one equilibrium."""
+    @property
+    def seen_from(self) -> str | None:
+        """The member from which speeds and powers are seen; absent where that is the housing."""
     @property
     def efficiency(self) -> float | None:
         """Output over input power; 0 when everything is dissipated, absent when nothing is loaded."""
@@ -1301,6 +1731,15 @@ class LossesLosses(Record):
     def seal(self) -> float:
         """Shaft seals."""
     @property
+    def drag(self) -> float:
+        """Drags that are given as torques."""
+    @property
+    def injection(self) -> float:
+        """Oil that is sprayed into meshes."""
+    @property
+    def pump(self) -> float:
+        """Oil pumps."""
+    @property
     def variator(self) -> float:
         """Variators."""
 
@@ -1310,7 +1749,7 @@ class LossesLossSource(Record):
     def name(self) -> str:
         """What loses it."""
     @property
-    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"]:
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "drag", "shift-element", "injection", "pump", "variator"]:
         """What kind of loss it is."""
     @property
     def law(self) -> str:
@@ -1482,13 +1921,476 @@ class LossesAnswer(Answer):
     def spreads(self) -> list[LossesSpread]:
         """Where laws are compared: the spread over each group of points that differ in the law alone."""
 
+class HeatLossSource(Record):
+    """One place where power is lost."""
+    @property
+    def name(self) -> str:
+        """What loses it."""
+    @property
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "drag", "shift-element", "injection", "pump", "variator"]:
+        """What kind of loss it is."""
+    @property
+    def law(self) -> str:
+        """Its name in the list of laws; ``given`` for a given efficiency."""
+    @property
+    def loss_w(self) -> float:
+        """The power, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def share(self) -> float:
+        """The part of all losses."""
+
+class HeatCertificate(Record):
+    """Why there are no other equilibria."""
+    @property
+    def method(self) -> Literal["elasticity", "branch-and-bound"]:
+        """The argument."""
+    @property
+    def proved(self) -> bool:
+        """Whether bounds prove it. Else the elasticity is taken to differ within an interval no more than it does from
+        one interval to the next, or, where intervals were excluded, each heat to be monotone between the
+        temperatures computed."""
+    @property
+    def largest_elasticity(self) -> float | None:
+        """Largest elasticity of the losses between two temperatures; one equilibrium where it is below 1."""
+    @property
+    def temperatures(self) -> int:
+        """Temperatures at which the losses were computed."""
+    @property
+    def widest_k(self) -> float:
+        """Largest distance between two of them, K."""
+    @property
+    def widest(self) -> float: ...
+
+class HeatHeatEquilibrium(Record):
+    """An oil temperature at which losses and heat flow agree."""
+    @property
+    def oil_k(self) -> float:
+        """The temperature, K."""
+    @property
+    def oil(self) -> float: ...
+    @property
+    def stable(self) -> bool:
+        """Whether the oil returns to it after a small disturbance."""
+    @property
+    def heat_w(self) -> float:
+        """Heat made there, W."""
+    @property
+    def heat(self) -> float: ...
+    @property
+    def step_w(self) -> list[float] | None:
+        """On the step of a law: heat that reaches the oil just below and just above it, W."""
+    @property
+    def step(self) -> list[float] | None: ...
+
+class HeatPlaceReport(Record):
+    """A place of the network."""
+    @property
+    def temperature_k(self) -> float:
+        """Its temperature, K."""
+    @property
+    def temperature(self) -> float: ...
+    @property
+    def heat_w(self) -> float:
+        """Heat made there, W."""
+    @property
+    def heat(self) -> float: ...
+    @property
+    def share_to_oil(self) -> float:
+        """Part of that heat that reaches the oil."""
+    @property
+    def given(self) -> bool:
+        """Whether its temperature is given."""
+
+class HeatHeatFlow(Record):
+    """Heat on its way."""
+    @property
+    def between(self) -> list[str]:
+        """From where to where."""
+    @property
+    def heat_w(self) -> float:
+        """The heat, W; negative the other way round."""
+    @property
+    def heat(self) -> float: ...
+
+class HeatHeatPoint(Record):
+    """Heat at an oil temperature."""
+    @property
+    def oil_k(self) -> float:
+        """Oil temperature, K."""
+    @property
+    def oil(self) -> float: ...
+    @property
+    def reaching_w(self) -> float:
+        """Heat that reaches the oil, W: computed there, or on a straight line between two temperatures at which it
+        was."""
+    @property
+    def reaching(self) -> float: ...
+    @property
+    def carried_w(self) -> float:
+        """Heat that leaves it, W."""
+    @property
+    def carried(self) -> float: ...
+
+class HeatHeatReport(Record):
+    """The temperatures of an operating point, and where its heat goes."""
+    @property
+    def oil_k(self) -> float:
+        """Oil temperature in force, K."""
+    @property
+    def oil(self) -> float: ...
+    @property
+    def basis(self) -> Literal["balance", "given", "limit"]:
+        """Where it comes from."""
+    @property
+    def verdict(self) -> Literal["unique", "several", "none-below-limit", "undecided"] | None:
+        """What can be said of it; absent where it is given."""
+    @property
+    def certificate(self) -> HeatCertificate | None:
+        """Why there is no other."""
+    @property
+    def equilibria(self) -> list[HeatHeatEquilibrium]:
+        """Every oil temperature that holds, the coldest first."""
+    @property
+    def undecided_k(self) -> list[list[float]]:
+        """Intervals in which it could not be decided, K."""
+    @property
+    def undecided(self) -> list[list[float]]: ...
+    @property
+    def ambient_k(self) -> float:
+        """Temperature of the air, K."""
+    @property
+    def ambient(self) -> float: ...
+    @property
+    def limit_k(self) -> float:
+        """Highest oil temperature allowed, K."""
+    @property
+    def limit(self) -> float: ...
+    @property
+    def margin_k(self) -> float:
+        """Limit less oil temperature, K."""
+    @property
+    def margin(self) -> float: ...
+    @property
+    def heat_w(self) -> float:
+        """Losses that become heat in the gearbox, W."""
+    @property
+    def heat(self) -> float: ...
+    @property
+    def extra_heat_w(self) -> float:
+        """Heat into the oil beside the losses, W."""
+    @property
+    def extra_heat(self) -> float: ...
+    @property
+    def cooled_elsewhere_w(self) -> float:
+        """Losses of variators, which have a cooling of their own, W."""
+    @property
+    def cooled_elsewhere(self) -> float: ...
+    @property
+    def residual_w(self) -> float:
+        """Heat that reaches the oil less what leaves it, W: it warms where that is above zero."""
+    @property
+    def residual(self) -> float: ...
+    @property
+    def places(self) -> Named[HeatPlaceReport]:
+        """Every place."""
+    @property
+    def paths(self) -> list[HeatHeatFlow]:
+        """Every way for heat."""
+    @property
+    def cooler_w(self) -> float | None:
+        """Heat that the cooler takes, W; negative where it heats."""
+    @property
+    def cooler(self) -> float | None: ...
+    @property
+    def curve(self) -> list[HeatHeatPoint]:
+        """Heat that reaches the oil and what it gives off, over its temperature. What reaches it is computed at the
+        temperatures that the balance looked at; between those it is a straight line."""
+    @property
+    def slope_w_k(self) -> float | None:
+        """Change of what leaves the oil less what reaches it with its temperature, W/K; above zero where it is stable."""
+    @property
+    def slope_w(self) -> float | None: ...
+    @property
+    def time_constants_s(self) -> list[float]:
+        """Time constants around this temperature, s, the slowest first; none without heat capacities."""
+    @property
+    def time_constants(self) -> list[float]: ...
+    @property
+    def drivers_change(self) -> bool:
+        """Whether other gears drive when the oil is cold than when it is as hot as it may be."""
+
+class HeatThermalRating(Record):
+    """The largest load that the limit of the oil temperature allows, all torques and powers scaled together."""
+    @property
+    def status(self) -> Literal["found", "too-hot-without-load", "no-limit", "no-answer"]:
+        """What can be said."""
+    @property
+    def load_factor(self) -> float | None:
+        """Factor on the load of the operating point at which the oil has its limit."""
+    @property
+    def input_power_w(self) -> float | None:
+        """Power in there, W: the thermal rating."""
+    @property
+    def input_power(self) -> float | None: ...
+    @property
+    def heat_w(self) -> float | None:
+        """Heat in the gearbox there, W."""
+    @property
+    def heat(self) -> float | None: ...
+    @property
+    def carried_w(self) -> float:
+        """Heat that is carried away at the limit, W."""
+    @property
+    def carried(self) -> float: ...
+
+class HeatHeatRow(Record):
+    """Temperatures at a time."""
+    @property
+    def time_s(self) -> float:
+        """Time, s."""
+    @property
+    def time(self) -> float: ...
+    @property
+    def temperatures_k(self) -> list[float]:
+        """Temperature of each place, K."""
+    @property
+    def temperatures(self) -> list[float]: ...
+    @property
+    def heat_w(self) -> float:
+        """Heat made, W."""
+    @property
+    def heat(self) -> float: ...
+
+class HeatWarmUp(Record):
+    """Temperatures from a start on."""
+    @property
+    def start_k(self) -> float:
+        """Oil temperature at the start, K."""
+    @property
+    def start(self) -> float: ...
+    @property
+    def places(self) -> list[str]:
+        """Places, in the order of the temperatures of a row."""
+    @property
+    def rows(self) -> list[HeatHeatRow]:
+        """Rows, evenly spaced in time."""
+    @property
+    def settled_s(self) -> float | None:
+        """When the oil is within 1 K of where it tends to, s; absent where it is not in the time shown."""
+    @property
+    def settled(self) -> float | None: ...
+    @property
+    def limit_after_s(self) -> float | None:
+        """When the oil passes its limit, s; rows end there."""
+    @property
+    def limit_after(self) -> float | None: ...
+    @property
+    def made_j(self) -> float:
+        """Heat made, J."""
+    @property
+    def made(self) -> float: ...
+    @property
+    def carried_j(self) -> float:
+        """Heat carried away, J."""
+    @property
+    def carried(self) -> float: ...
+    @property
+    def stored_j(self) -> float:
+        """Heat stored, J."""
+    @property
+    def stored(self) -> float: ...
+    @property
+    def audit(self) -> float:
+        """Heat made less carried less stored, over the largest of them: round-off."""
+    @property
+    def interpolation(self) -> float:
+        """Largest difference of the losses from those between which they were interpolated, over them."""
+    @property
+    def steps(self) -> int:
+        """Steps of the integration."""
+
+class HeatOperationHeat(Record):
+    """Heat of one operating point."""
+    @property
+    def name(self) -> str:
+        """Its name."""
+    @property
+    def state(self) -> str | None:
+        """The state of the shift table."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of the operating point at the oil temperature in force."""
+    @property
+    def reason(self) -> str | None:
+        """Why there is no answer."""
+    @property
+    def input_power_w(self) -> float | None:
+        """Power in, W."""
+    @property
+    def input_power(self) -> float | None: ...
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power at that temperature."""
+    @property
+    def loss_w(self) -> float | None:
+        """All losses there, W."""
+    @property
+    def loss(self) -> float | None: ...
+    @property
+    def sources(self) -> list[HeatLossSource]:
+        """Losses by source there, largest first."""
+    @property
+    def heat(self) -> HeatHeatReport | None:
+        """Temperatures, and where the heat goes."""
+    @property
+    def rating(self) -> HeatThermalRating | None:
+        """Largest load at which the oil stays at its limit."""
+    @property
+    def warm_up(self) -> HeatWarmUp | None:
+        """From a cold start on; none without heat capacities."""
+    @property
+    def no_warm_up(self) -> Literal["no-capacity", "no-answer", "too-fast"] | None:
+        """Why there is no warm-up, where there is heat to tell of."""
+
+class HeatDutyHeat(Record):
+    """A duty cycle that repeats itself, in its steady state."""
+    @property
+    def basis(self) -> Literal["trace", "durations", "shares"]:
+        """How rows weigh. The order of shares is not known: they are taken together, as one mean heat."""
+    @property
+    def rows_of_profile(self) -> int:
+        """Rows of the profile."""
+    @property
+    def period_s(self) -> float:
+        """One period, s."""
+    @property
+    def period(self) -> float: ...
+    @property
+    def without_answer_s(self) -> float:
+        """Time of rows without an answer, s; they make no heat here."""
+    @property
+    def without_answer(self) -> float: ...
+    @property
+    def highest_k(self) -> float:
+        """Highest oil temperature, K."""
+    @property
+    def highest(self) -> float: ...
+    @property
+    def lowest_k(self) -> float:
+        """Lowest oil temperature, K."""
+    @property
+    def lowest(self) -> float: ...
+    @property
+    def mean_k(self) -> float:
+        """Mean oil temperature over time, K."""
+    @property
+    def mean(self) -> float: ...
+    @property
+    def margin_k(self) -> float:
+        """Limit less highest oil temperature, K."""
+    @property
+    def margin(self) -> float: ...
+    @property
+    def mean_heat_w(self) -> float:
+        """Mean heat, W."""
+    @property
+    def mean_heat(self) -> float: ...
+    @property
+    def passes(self) -> int:
+        """Passes until the end was the start; 0 where rows have no order."""
+    @property
+    def left_k(self) -> float:
+        """Difference of start and end that is left, K."""
+    @property
+    def left(self) -> float: ...
+    @property
+    def audit(self) -> float:
+        """Heat made less carried less stored, over the largest of them: the worst of all rows."""
+    @property
+    def places(self) -> list[str]:
+        """Places, in the order of the temperatures of a row."""
+    @property
+    def rows(self) -> list[HeatHeatRow]:
+        """Temperatures at the end of each row of the profile, the start before them."""
+
+class HeatSpan(Record):
+    """A part of a text."""
+    @property
+    def start(self) -> int:
+        """The first byte, counted from 0."""
+    @property
+    def end(self) -> int:
+        """The byte after the last."""
+    @property
+    def line(self) -> int:
+        """The line of the first character."""
+    @property
+    def column(self) -> int:
+        """The column of the first character."""
+    @property
+    def end_line(self) -> int:
+        """The line of the character after the last."""
+    @property
+    def end_column(self) -> int:
+        """The column of the character after the last."""
+
+class HeatDiagnostic(Record):
+    """One thing to tell the user."""
+    @property
+    def code(self) -> str:
+        """Stable code; ``willis explain CODE`` tells more."""
+    @property
+    def severity(self) -> Literal["error", "warning", "note"]:
+        """How much it matters."""
+    @property
+    def place(self) -> str:
+        """The place in the train, such as ``set[1].ring.teeth``; empty for the train as a whole."""
+    @property
+    def message(self) -> str:
+        """What is the case, with the numbers and names in it."""
+    @property
+    def hints(self) -> list[str]:
+        """What to do; may name a value that works."""
+    @property
+    def file(self) -> str | None:
+        """The file whose text it stands on, as the caller names it."""
+    @property
+    def span(self) -> HeatSpan | None:
+        """The part of the source text it stands on, when there is one."""
+    @property
+    def replacement(self) -> str | None:
+        """What to put in place of the spanned text, when that is known."""
+
+class HeatAnswer(Answer):
+    """How warm a gearbox gets: the results contract ``willis-heat-1``."""
+    @property
+    def format(self) -> Literal["willis-heat-1"]:
+        """``willis-heat-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def operations(self) -> list[HeatOperationHeat]:
+        """Every operation asked for."""
+    @property
+    def duty(self) -> HeatDutyHeat | None:
+        """What a duty cycle makes of it."""
+    @property
+    def assumptions(self) -> list[str]:
+        """What stands in for data that were not given, and what the model leaves out."""
+    @property
+    def diagnostics(self) -> list[HeatDiagnostic]:
+        """Warnings and notes."""
+
 class SensitivitySourceChange(Record):
     """What a quantity does to one loss."""
     @property
     def name(self) -> str:
         """What loses it."""
     @property
-    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"]:
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "drag", "shift-element", "injection", "pump", "variator"]:
         """What kind of loss it is."""
     @property
     def law(self) -> str:
@@ -1536,6 +2438,14 @@ class SensitivityQuantitySensitivity(Record):
         """Change of all losses for the step, W."""
     @property
     def loss_change(self) -> float: ...
+    @property
+    def oil_derivative(self) -> float | None:
+        """``dT_oil/dq``, K over the SI unit of the value, where the oil temperature follows."""
+    @property
+    def oil_change_k(self) -> float | None:
+        """Change of the oil temperature for the step, K."""
+    @property
+    def oil_change(self) -> float | None: ...
     @property
     def loss_elasticity(self) -> float | None:
         """``(dP_loss/P_loss)/(dq/q)``: percent of loss for one percent of the quantity; absent for temperatures,
@@ -1625,6 +2535,11 @@ class SensitivityOperationSensitivity(Record):
     @property
     def input_power(self) -> float: ...
     @property
+    def oil_k(self) -> float | None:
+        """Oil temperature, K, where the train says what carries heat away."""
+    @property
+    def oil(self) -> float | None: ...
+    @property
     def loss_w(self) -> float:
         """All losses, W."""
     @property
@@ -1713,6 +2628,227 @@ class SensitivityAnswer(Answer):
 
 class UncertaintyAnswer(Answer):
     """How sure a number is, and the samples that say so."""
+
+class CalibrateCalibratedPart(Record):
+    """The factor on a kind of loss."""
+    @property
+    def key(self) -> str:
+        """Its key in ``[losses.factor]``."""
+    @property
+    def name(self) -> str:
+        """For people."""
+    @property
+    def factor(self) -> float:
+        """The factor on the law."""
+    @property
+    def spread(self) -> float:
+        """Standard deviation of its logarithm."""
+    @property
+    def band(self) -> list[float]:
+        """Its 90 % band."""
+    @property
+    def prior(self) -> float:
+        """Standard deviation of the logarithm before the tests."""
+    @property
+    def learnt(self) -> float:
+        """Part of the variance of the prior that the tests took away."""
+    @property
+    def at_bound(self) -> bool:
+        """Whether it is at the largest factor that is allowed."""
+
+class CalibrateMeterOffset(Record):
+    """The offset of a torque meter."""
+    @property
+    def member(self) -> str:
+        """Where it measures."""
+    @property
+    def group(self) -> str:
+        """The group of tests."""
+    @property
+    def offset_n_m(self) -> float:
+        """What it shows too much, N m, in the direction in which power goes in."""
+    @property
+    def offset(self) -> float: ...
+    @property
+    def spread_n_m(self) -> float:
+        """Standard deviation, N m."""
+    @property
+    def spread(self) -> float: ...
+    @property
+    def prior_n_m(self) -> float:
+        """Standard deviation before the tests, N m."""
+    @property
+    def prior(self) -> float: ...
+
+class CalibrateBlindChange(Record):
+    """The change of one parameter."""
+    @property
+    def name(self) -> str:
+        """The kind of loss, or the meter."""
+    @property
+    def change(self) -> float:
+        """Of a kind of loss, as a part of it; of a meter its offset, N m."""
+    @property
+    def meter(self) -> bool:
+        """Whether it is the offset of a meter."""
+
+class CalibrateBlindDirection(Record):
+    """A combination of parameters that the tests do not see."""
+    @property
+    def information(self) -> float:
+        """What the tests tell of it over what the prior does: below 1."""
+    @property
+    def changes(self) -> list[CalibrateBlindChange]:
+        """Changes that leave every test as it is, the largest first."""
+
+class CalibrateTestResidual(Record):
+    """A test beside its prediction."""
+    @property
+    def line(self) -> int:
+        """Its line in the data."""
+    @property
+    def group(self) -> str:
+        """Its group."""
+    @property
+    def condition(self) -> str:
+        """How it ran."""
+    @property
+    def measured_w(self) -> float:
+        """Measured loss, W."""
+    @property
+    def measured(self) -> float: ...
+    @property
+    def sigma_w(self) -> float:
+        """Its standard deviation, W."""
+    @property
+    def sigma(self) -> float: ...
+    @property
+    def before_w(self) -> float:
+        """Loss of the laws as they are, W."""
+    @property
+    def before(self) -> float: ...
+    @property
+    def predicted_w(self) -> float:
+        """Predicted loss with the factors and offsets, W."""
+    @property
+    def predicted(self) -> float: ...
+    @property
+    def residual(self) -> float:
+        """Measured less predicted, over the standard deviation."""
+    @property
+    def left_out(self) -> float:
+        """The same from a fit without this test."""
+    @property
+    def weight(self) -> float:
+        """Its weight: 1 and more for a reading that fits, towards 0 for an outlier."""
+    @property
+    def outlier(self) -> bool:
+        """Whether it is an outlier: a weight below 0.2."""
+
+class CalibratePredictedLoss(Record):
+    """The loss of an operation of the file."""
+    @property
+    def operation(self) -> str:
+        """The operation."""
+    @property
+    def before_w(self) -> float:
+        """Loss of the laws as they are, W."""
+    @property
+    def before(self) -> float: ...
+    @property
+    def loss_w(self) -> float:
+        """Loss with the factors, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def spread_w(self) -> float:
+        """Standard deviation from what the tests leave open of the factors, W."""
+    @property
+    def spread(self) -> float: ...
+    @property
+    def band_w(self) -> list[float]:
+        """90 % band, with what the laws miss between groups, W."""
+    @property
+    def band(self) -> list[float]: ...
+    @property
+    def outside(self) -> list[list[Any]]:
+        """Quantities that lie outside what was tested, each with its value and the tested range, SI."""
+
+class CalibrateNextTest(Record):
+    """A test that would teach something."""
+    @property
+    def condition(self) -> str:
+        """How it runs."""
+    @property
+    def gain(self) -> float:
+        """By how much it would lower the logarithm of what is possible for all parameters."""
+    @property
+    def lowers_variance(self) -> float:
+        """By what part it would lower the variance of the losses of the file's operations."""
+
+class CalibrateAnswer(Answer):
+    """What tests say of the laws: the results contract ``willis-calibrate-1``."""
+    @property
+    def format(self) -> Literal["willis-calibrate-1"]:
+        """``willis-calibrate-1``."""
+    @property
+    def train(self) -> str:
+        """Name of the train."""
+    @property
+    def tests(self) -> int:
+        """Tests."""
+    @property
+    def groups(self) -> int:
+        """Groups of tests."""
+    @property
+    def parts(self) -> list[CalibrateCalibratedPart]:
+        """The factors."""
+    @property
+    def covariance(self) -> list[list[float]]:
+        """Covariance of their logarithms, in the order of ``parts``."""
+    @property
+    def offsets(self) -> list[CalibrateMeterOffset]:
+        """Offsets of torque meters."""
+    @property
+    def learnt(self) -> int:
+        """Combinations of parameters of which the tests tell more than the prior, of all."""
+    @property
+    def combinations(self) -> int:
+        """How many combinations there are: as many as parameters."""
+    @property
+    def blind(self) -> list[CalibrateBlindDirection]:
+        """Combinations that the tests do not tell from each other."""
+    @property
+    def without_effect(self) -> list[str]:
+        """Kinds of loss that no test has; they keep their factor."""
+    @property
+    def misfit(self) -> float:
+        """Square of how much larger the residuals are than the stated noise, from the tests that parameters do not use
+        up: 1 where the laws fit. Outliers have little say."""
+    @property
+    def inflation(self) -> float:
+        """Factor on the variance of the noise because the laws do not fit within what was stated; 1 where they do."""
+    @property
+    def group_misfit(self) -> float:
+        """Root mean square of what the laws miss in a group that was left out, over the loss; at least 3 %."""
+    @property
+    def inside_band(self) -> int:
+        """Tests that are inside the 90 % band of the others, of all."""
+    @property
+    def residuals(self) -> list[CalibrateTestResidual]:
+        """Every test."""
+    @property
+    def predictions(self) -> list[CalibratePredictedLoss]:
+        """Loss of each operation of the file, before and after."""
+    @property
+    def next(self) -> list[CalibrateNextTest]:
+        """Tests that would teach most, the best first."""
+    @property
+    def converged(self) -> bool:
+        """Whether the estimate was found; without one there is no answer."""
+    @property
+    def train_file(self) -> str:
+        """The train file with the factors."""
 
 class SweepAnswer(_answer.Sweep):
     """A sweep: what its points say together, and the points themselves."""
@@ -3308,7 +4444,7 @@ class DrawWolf(Record):
 class DrawSankeyLoss(Record):
     """Power that turns into heat."""
     @property
-    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "shift-element", "coupling", "variator", "input", "output"]:
+    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "drag", "open-element", "pump", "shift-element", "coupling", "variator", "input", "output"]:
         """What loses it: teeth, bearings, seals, gears or rotors in their fluid."""
     @property
     def names(self) -> list[str]:
@@ -3330,7 +4466,7 @@ class DrawSankeyNode(Record):
     def id(self) -> str:
         """Its identifier in the hypergraph."""
     @property
-    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "shift-element", "coupling", "variator", "input", "output"]:
+    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "drag", "open-element", "pump", "shift-element", "coupling", "variator", "input", "output"]:
         """What it is."""
     @property
     def name(self) -> str:
@@ -3411,6 +4547,9 @@ class DrawSankeyFlow(Record):
 
     At every node ``Σ links in + input = Σ links out + output + Σ losses`` up to round-off."""
     @property
+    def seen_from(self) -> str | None:
+        """The member from which speeds and powers are seen; absent where that is the housing."""
+    @property
     def input_w(self) -> float:
         """Power in, W."""
     @property
@@ -3469,7 +4608,7 @@ class DrawNode(Record):
     def id(self) -> str:
         """Unique: kind and name, as in ``member:sun``, ``teeth:P1.sun-planet``, ``input:sun``; or ``frame``."""
     @property
-    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "shift-element", "coupling", "variator", "input", "output"]:
+    def kind(self) -> Literal["frame", "member", "teeth", "bearing", "seal", "gear", "rotor", "drag", "open-element", "pump", "shift-element", "coupling", "variator", "input", "output"]:
         """What it is."""
     @property
     def name(self) -> str:
@@ -3584,6 +4723,9 @@ class DrawPath(Record):
 
 class DrawHypergraph(Record):
     """The power flow of one equilibrium."""
+    @property
+    def seen_from(self) -> str | None:
+        """The member from which speeds and powers are seen; absent where that is the housing."""
     @property
     def efficiency(self) -> float | None:
         """Output over input power; 0 when everything is dissipated, absent when nothing is loaded."""
@@ -4208,7 +5350,7 @@ class DrawLossSeries(Record):
     def name(self) -> str:
         """The source, as the losses name it; ``others`` for all that are too small to be told."""
     @property
-    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"] | None:
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "drag", "shift-element", "injection", "pump", "variator"] | None:
         """What kind of loss it is; of the others, none."""
     @property
     def law(self) -> str | None:
@@ -4270,7 +5412,7 @@ class DrawSpinSource(Record):
     def name(self) -> str:
         """What loses it."""
     @property
-    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "variator"]:
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "drag", "shift-element", "injection", "pump", "variator"]:
         """What kind of loss it is."""
     @property
     def loss_w(self) -> float:
@@ -4286,6 +5428,12 @@ class DrawSpinGear(Record):
     @property
     def input(self) -> str:
         """The member that is driven."""
+    @property
+    def oil_k(self) -> float | None:
+        """Oil temperature, K: that under the load of the operating point; absent without such a load, or without an
+        oil."""
+    @property
+    def oil(self) -> float | None: ...
     @property
     def verdict(self) -> Literal["locked", "multiple", "refused", "undetermined", "unique", "unloaded"]:
         """What can be said of it: ``unloaded`` where nothing is lost."""
@@ -4317,6 +5465,269 @@ class DrawSpinLosses(Record):
     @property
     def gears(self) -> list[DrawSpinGear]:
         """The gears, in the order of the file; one named ``as drawn`` of a train without states."""
+
+class DrawCertificate(Record):
+    """Why there are no other equilibria."""
+    @property
+    def method(self) -> Literal["elasticity", "branch-and-bound"]:
+        """The argument."""
+    @property
+    def proved(self) -> bool:
+        """Whether bounds prove it. Else the elasticity is taken to differ within an interval no more than it does from
+        one interval to the next, or, where intervals were excluded, each heat to be monotone between the
+        temperatures computed."""
+    @property
+    def largest_elasticity(self) -> float | None:
+        """Largest elasticity of the losses between two temperatures; one equilibrium where it is below 1."""
+    @property
+    def temperatures(self) -> int:
+        """Temperatures at which the losses were computed."""
+    @property
+    def widest_k(self) -> float:
+        """Largest distance between two of them, K."""
+    @property
+    def widest(self) -> float: ...
+
+class DrawHeatEquilibrium(Record):
+    """An oil temperature at which losses and heat flow agree."""
+    @property
+    def oil_k(self) -> float:
+        """The temperature, K."""
+    @property
+    def oil(self) -> float: ...
+    @property
+    def stable(self) -> bool:
+        """Whether the oil returns to it after a small disturbance."""
+    @property
+    def heat_w(self) -> float:
+        """Heat made there, W."""
+    @property
+    def heat(self) -> float: ...
+    @property
+    def step_w(self) -> list[float] | None:
+        """On the step of a law: heat that reaches the oil just below and just above it, W."""
+    @property
+    def step(self) -> list[float] | None: ...
+
+class DrawPlaceReport(Record):
+    """A place of the network."""
+    @property
+    def temperature_k(self) -> float:
+        """Its temperature, K."""
+    @property
+    def temperature(self) -> float: ...
+    @property
+    def heat_w(self) -> float:
+        """Heat made there, W."""
+    @property
+    def heat(self) -> float: ...
+    @property
+    def share_to_oil(self) -> float:
+        """Part of that heat that reaches the oil."""
+    @property
+    def given(self) -> bool:
+        """Whether its temperature is given."""
+
+class DrawHeatFlow(Record):
+    """Heat on its way."""
+    @property
+    def between(self) -> list[str]:
+        """From where to where."""
+    @property
+    def heat_w(self) -> float:
+        """The heat, W; negative the other way round."""
+    @property
+    def heat(self) -> float: ...
+
+class DrawHeatPoint(Record):
+    """Heat at an oil temperature."""
+    @property
+    def oil_k(self) -> float:
+        """Oil temperature, K."""
+    @property
+    def oil(self) -> float: ...
+    @property
+    def reaching_w(self) -> float:
+        """Heat that reaches the oil, W: computed there, or on a straight line between two temperatures at which it
+        was."""
+    @property
+    def reaching(self) -> float: ...
+    @property
+    def carried_w(self) -> float:
+        """Heat that leaves it, W."""
+    @property
+    def carried(self) -> float: ...
+
+class DrawHeatReport(Record):
+    """The temperatures of an operating point, and where its heat goes."""
+    @property
+    def oil_k(self) -> float:
+        """Oil temperature in force, K."""
+    @property
+    def oil(self) -> float: ...
+    @property
+    def basis(self) -> Literal["balance", "given", "limit"]:
+        """Where it comes from."""
+    @property
+    def verdict(self) -> Literal["unique", "several", "none-below-limit", "undecided"] | None:
+        """What can be said of it; absent where it is given."""
+    @property
+    def certificate(self) -> DrawCertificate | None:
+        """Why there is no other."""
+    @property
+    def equilibria(self) -> list[DrawHeatEquilibrium]:
+        """Every oil temperature that holds, the coldest first."""
+    @property
+    def undecided_k(self) -> list[list[float]]:
+        """Intervals in which it could not be decided, K."""
+    @property
+    def undecided(self) -> list[list[float]]: ...
+    @property
+    def ambient_k(self) -> float:
+        """Temperature of the air, K."""
+    @property
+    def ambient(self) -> float: ...
+    @property
+    def limit_k(self) -> float:
+        """Highest oil temperature allowed, K."""
+    @property
+    def limit(self) -> float: ...
+    @property
+    def margin_k(self) -> float:
+        """Limit less oil temperature, K."""
+    @property
+    def margin(self) -> float: ...
+    @property
+    def heat_w(self) -> float:
+        """Losses that become heat in the gearbox, W."""
+    @property
+    def heat(self) -> float: ...
+    @property
+    def extra_heat_w(self) -> float:
+        """Heat into the oil beside the losses, W."""
+    @property
+    def extra_heat(self) -> float: ...
+    @property
+    def cooled_elsewhere_w(self) -> float:
+        """Losses of variators, which have a cooling of their own, W."""
+    @property
+    def cooled_elsewhere(self) -> float: ...
+    @property
+    def residual_w(self) -> float:
+        """Heat that reaches the oil less what leaves it, W: it warms where that is above zero."""
+    @property
+    def residual(self) -> float: ...
+    @property
+    def places(self) -> Named[DrawPlaceReport]:
+        """Every place."""
+    @property
+    def paths(self) -> list[DrawHeatFlow]:
+        """Every way for heat."""
+    @property
+    def cooler_w(self) -> float | None:
+        """Heat that the cooler takes, W; negative where it heats."""
+    @property
+    def cooler(self) -> float | None: ...
+    @property
+    def curve(self) -> list[DrawHeatPoint]:
+        """Heat that reaches the oil and what it gives off, over its temperature. What reaches it is computed at the
+        temperatures that the balance looked at; between those it is a straight line."""
+    @property
+    def slope_w_k(self) -> float | None:
+        """Change of what leaves the oil less what reaches it with its temperature, W/K; above zero where it is stable."""
+    @property
+    def slope_w(self) -> float | None: ...
+    @property
+    def time_constants_s(self) -> list[float]:
+        """Time constants around this temperature, s, the slowest first; none without heat capacities."""
+    @property
+    def time_constants(self) -> list[float]: ...
+    @property
+    def drivers_change(self) -> bool:
+        """Whether other gears drive when the oil is cold than when it is as hot as it may be."""
+
+class DrawHeatRow(Record):
+    """Temperatures at a time."""
+    @property
+    def time_s(self) -> float:
+        """Time, s."""
+    @property
+    def time(self) -> float: ...
+    @property
+    def temperatures_k(self) -> list[float]:
+        """Temperature of each place, K."""
+    @property
+    def temperatures(self) -> list[float]: ...
+    @property
+    def heat_w(self) -> float:
+        """Heat made, W."""
+    @property
+    def heat(self) -> float: ...
+
+class DrawWarmUp(Record):
+    """Temperatures from a start on."""
+    @property
+    def start_k(self) -> float:
+        """Oil temperature at the start, K."""
+    @property
+    def start(self) -> float: ...
+    @property
+    def places(self) -> list[str]:
+        """Places, in the order of the temperatures of a row."""
+    @property
+    def rows(self) -> list[DrawHeatRow]:
+        """Rows, evenly spaced in time."""
+    @property
+    def settled_s(self) -> float | None:
+        """When the oil is within 1 K of where it tends to, s; absent where it is not in the time shown."""
+    @property
+    def settled(self) -> float | None: ...
+    @property
+    def limit_after_s(self) -> float | None:
+        """When the oil passes its limit, s; rows end there."""
+    @property
+    def limit_after(self) -> float | None: ...
+    @property
+    def made_j(self) -> float:
+        """Heat made, J."""
+    @property
+    def made(self) -> float: ...
+    @property
+    def carried_j(self) -> float:
+        """Heat carried away, J."""
+    @property
+    def carried(self) -> float: ...
+    @property
+    def stored_j(self) -> float:
+        """Heat stored, J."""
+    @property
+    def stored(self) -> float: ...
+    @property
+    def audit(self) -> float:
+        """Heat made less carried less stored, over the largest of them: round-off."""
+    @property
+    def interpolation(self) -> float:
+        """Largest difference of the losses from those between which they were interpolated, over them."""
+    @property
+    def steps(self) -> int:
+        """Steps of the integration."""
+
+class DrawHeatPicture(Record):
+    """The heat of an operating point."""
+    @property
+    def title(self) -> str:
+        """The train, the operation and its state."""
+    @property
+    def heat(self) -> DrawHeatReport:
+        """Temperatures, and where the heat goes."""
+    @property
+    def rating_w(self) -> float | None:
+        """Largest power in at the limit of the oil temperature, W."""
+    @property
+    def rating(self) -> float | None: ...
+    @property
+    def warm_up(self) -> DrawWarmUp | None:
+        """From a cold start on."""
 
 class DrawPathPoint(Record):
     """A tooth pair at one place."""
@@ -4719,6 +6130,115 @@ class DrawShaftElement(Record):
         """Torque that it exerts on the first member, over the input torque; 0 while it is open, absent where it is not
         determined."""
 
+class DrawLosses(Record):
+    """Losses by kind, W."""
+    @property
+    def mesh(self) -> float:
+        """Tooth friction."""
+    @property
+    def bearing(self) -> float:
+        """Bearings."""
+    @property
+    def windage(self) -> float:
+        """Air and oil mist."""
+    @property
+    def churning(self) -> float:
+        """Oil sump."""
+    @property
+    def seal(self) -> float:
+        """Shaft seals."""
+    @property
+    def drag(self) -> float:
+        """Drags that are given as torques."""
+    @property
+    def injection(self) -> float:
+        """Oil that is sprayed into meshes."""
+    @property
+    def pump(self) -> float:
+        """Oil pumps."""
+    @property
+    def variator(self) -> float:
+        """Variators."""
+
+class DrawLossSource(Record):
+    """One place where power is lost."""
+    @property
+    def name(self) -> str:
+        """What loses it."""
+    @property
+    def kind(self) -> Literal["sliding", "rolling", "bearing", "windage", "churning", "seal", "drag", "shift-element", "injection", "pump", "variator"]:
+        """What kind of loss it is."""
+    @property
+    def law(self) -> str:
+        """Its name in the list of laws; ``given`` for a given efficiency."""
+    @property
+    def loss_w(self) -> float:
+        """The power, W."""
+    @property
+    def loss(self) -> float: ...
+    @property
+    def share(self) -> float:
+        """The part of all losses."""
+
+class DrawAtLoad(Record):
+    """A gear at a stated load, and at the same speed without one."""
+    @property
+    def operation(self) -> str | None:
+        """The operation of the file whose speed and load these are; absent where they were asked for."""
+    @property
+    def speed_rad_s(self) -> float:
+        """Speed of the input, rad/s."""
+    @property
+    def speed(self) -> float: ...
+    @property
+    def torque_n_m(self) -> float:
+        """Torque at the input, N m."""
+    @property
+    def torque(self) -> float: ...
+    @property
+    def temperature_k(self) -> float | None:
+        """Oil temperature, K: prescribed, of the heat balance, or of the oil; absent without an oil."""
+    @property
+    def temperature(self) -> float | None: ...
+    @property
+    def beyond_limit(self) -> bool:
+        """Whether no temperature up to the limit balances losses and heat flow: then it is the limit."""
+    @property
+    def verdict(self) -> Literal["unique", "multiple", "locked", "unloaded", "undetermined"]:
+        """What can be said of the point."""
+    @property
+    def efficiency(self) -> float | None:
+        """Output over input power."""
+    @property
+    def loss_w(self) -> float | None:
+        """All losses, W."""
+    @property
+    def loss(self) -> float | None: ...
+    @property
+    def losses_w(self) -> DrawLosses | None:
+        """Losses by kind, W."""
+    @property
+    def losses(self) -> DrawLosses | None: ...
+    @property
+    def spin_loss_w(self) -> float | None:
+        """What turns the input at this speed and temperature with nothing at the output, W: the spin loss."""
+    @property
+    def spin_loss(self) -> float | None: ...
+    @property
+    def spin_losses_w(self) -> DrawLosses | None:
+        """That by kind, W."""
+    @property
+    def spin_losses(self) -> DrawLosses | None: ...
+    @property
+    def spin_sources(self) -> list[DrawLossSource]:
+        """That by source, the largest first."""
+    @property
+    def reason(self) -> str | None:
+        """Why there is no efficiency."""
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings of the point under load: laws outside their ranges, the heat balance, limits."""
+
 class DrawShaftState(Record):
     """One state."""
     @property
@@ -4754,6 +6274,9 @@ class DrawShaftState(Record):
     @property
     def sets(self) -> Named[Named[float]]:
         """Torque that each member puts into each set, or mesh of no set, over the input torque."""
+    @property
+    def at_load(self) -> DrawAtLoad | None:
+        """What it costs at a load and without one, where losses depend on that."""
 
 class DrawShaftTable(Record):
     """Speeds and torques of a whole shift table: the results contract ``willis-table-1``."""
@@ -4876,7 +6399,7 @@ class DrawBands(Record):
 class DrawMissing(Record):
     """A kind of figure that does not apply to a train."""
     @property
-    def kind(self) -> Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "spin", "film", "path", "modes", "time", "shift", "table", "tornado", "band"]:
+    def kind(self) -> Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "spin", "heat", "film", "path", "modes", "time", "shift", "table", "tornado", "band"]:
         """The kind."""
     @property
     def why(self) -> str:
@@ -4888,7 +6411,7 @@ class DrawAnswer(_answer.Drawing):
     def format(self) -> Literal["willis-figures-1"]:
         """``willis-figures-1``."""
     @property
-    def figures(self) -> list[DrawStick | DrawLever | DrawWolf | DrawSankey | DrawFlowReport | DrawFront | DrawRegimeMap | DrawEfficiencyMap | DrawSplit | DrawLossChart | DrawSpinLosses | DrawContactPath | DrawVibration | DrawTimePlot | DrawShiftTable | DrawShaftTable | DrawTornado | DrawBands]:
+    def figures(self) -> list[DrawStick | DrawLever | DrawWolf | DrawSankey | DrawFlowReport | DrawFront | DrawRegimeMap | DrawEfficiencyMap | DrawSplit | DrawLossChart | DrawSpinLosses | DrawHeatPicture | DrawContactPath | DrawVibration | DrawTimePlot | DrawShiftTable | DrawShaftTable | DrawTornado | DrawBands]:
         """The figures, as data."""
     @property
     def missing(self) -> list[DrawMissing]:

@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _willis
+from ._answer import Answer
 from ._errors import TrainError
 
 if TYPE_CHECKING:
-    from ._answer import Answer
     from ._train import Train
 
 
@@ -113,18 +113,50 @@ class On:
 
     def ask(self, question: str, trains: Sequence[Train], **request: Any) -> Iterator[Answer]:
         """A question of many trains, one answer each, in their order: ``on(executor).ask("analyze", trains)``."""
-        waiting = [self._submit(one, question, train, request) for train in trains]
-        for k, future in enumerate(waiting):
-            for attempt in range(self._tries):
-                try:
-                    yield self._result(future)
-                    break
-                except TrainError:
+        yield from self._each([(one, question, train, request) for train in trains])
+
+    def uncertainty(self, train: Train, *, shards: int = 16, **request: Any) -> Answer:
+        """How sure a number is, as :meth:`Train.uncertainty` tells it, its points cut into so many shards.
+
+        The answer is that of one machine, bit for bit, whatever the number of shards. A shard that fails is tried again, three
+        times in all.
+
+        >>> from concurrent.futures import ThreadPoolExecutor
+        >>> import willis
+        >>> train = willis.read("examples/zf-8hp70.toml")
+        >>> with ThreadPoolExecutor(2) as pool:
+        ...     answer = willis.on(pool).uncertainty(train, state="3", samples=128, shards=4)
+        >>> answer == train.uncertainty(state="3", samples=128)
+        True
+        """
+        from ._request import fields
+
+        if not 1 <= shards <= 1_000_000:
+            raise ValueError(f"{shards} shards: from 1 to 1000000 are possible")
+        words = json.dumps(fields("uncertainty", request))
+        core = train._core
+        found = self._each([(piece, "uncertainty", words, train, k, shards) for k in range(shards)])
+        return Answer(_willis.gather("uncertainty", words, core, list(found)), [train])
+
+    def _each(self, work: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
+        """The results of calls, in their order, each tried again where a worker is lost."""
+        waiting = [self._submit(*call) for call in work]
+        for k, call in enumerate(work):
+            yield self._one(waiting[k], call)
+            waiting[k] = None
+
+    def _one(self, future: Any, call: tuple[Any, ...]) -> Any:
+        tries = self._tries
+        while True:
+            try:
+                return self._result(future)
+            except TrainError:
+                raise
+            except Exception:
+                tries -= 1
+                if not tries:
                     raise
-                except Exception:
-                    if attempt + 1 == self._tries:
-                        raise
-                    future = self._submit(one, question, trains[k], request)
+                future = self._submit(*call)
 
 
 def on(executor: Any, *, tries: int = 3) -> On:
@@ -172,6 +204,11 @@ def one(question: str, train: Train, request: Mapping[str, Any]) -> Answer:
     """One question of one train, by a worker."""
     answer: Answer = getattr(train, question)(**request)
     return answer
+
+
+def piece(question: str, request: str, train: Train, k: int, n: int) -> bytes:
+    """A piece of the work of a question, by a worker."""
+    return _willis.piece(question, request, train._core, k, n)
 
 
 def shard(parts: Sequence[Any], words: Sequence[str], k: int, n: int, form: str) -> bytes:

@@ -73,6 +73,8 @@ class Questions:
         *,
         state: str | None = None,
         speed: Quantity | None = None,
+        torque: str | None = None,
+        temperature: str | None = None,
         lossless: bool | None = None,
         threads: int | None = None,
         yes: bool = False,
@@ -82,16 +84,24 @@ class Questions:
         states.
 
         Speeds are those over the speed of the input, or in rpm at a given one. Torques are those over the torque of
-        the input, which drives the output through the losses of the teeth.
+        the input, which drives the output through the losses of the teeth. Where losses depend on load and speed,
+        they are computed for every state at one load, and at the same speed with nothing at the output: the spin
+        loss, with the drag of every open element.
 
         Parameters
         ----------
         state
             Only this state of the shift table.
         speed
-            Show speeds in rpm at this speed of the input: 2000rpm.
+            Show speeds in rpm at this speed of the input, and compute losses there: 2000rpm. Losses without it: at the
+            speed of the file's first operation in which the input drives.
+        torque
+            Compute losses at this torque at the input: 150Nm. Without it: at the load of that operation.
+        temperature
+            Compute losses at this oil temperature: 80degC. Without it: at that of the operation, the heat balance, or
+            the oil.
         lossless
-            Torques without losses.
+            Torques without losses, and no losses at a load.
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
@@ -107,7 +117,7 @@ class Questions:
             _ask(
                 "table",
                 [cast(Any, self)],
-                {"state": state, "speed": speed, "lossless": lossless},
+                {"state": state, "speed": speed, "torque": torque, "temperature": temperature, "lossless": lossless},
                 threads=threads,
                 yes=yes,
                 progress=progress,
@@ -151,6 +161,7 @@ class Questions:
         *,
         operation: str | None = None,
         state: str | None = None,
+        seen_from: str | None = None,
         threads: int | None = None,
         yes: bool = False,
         progress: bool | Progress | None = None,
@@ -167,6 +178,8 @@ class Questions:
             Only this operation.
         state
             Only operations that run in this state of the shift table.
+        seen_from
+            Count speeds and powers as they are seen from this member, such as a carrier; else from the housing.
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
@@ -182,7 +195,7 @@ class Questions:
             _ask(
                 "flow",
                 [cast(Any, self)],
-                {"operation": operation, "state": state},
+                {"operation": operation, "state": state, "seen_from": seen_from},
                 threads=threads,
                 yes=yes,
                 progress=progress,
@@ -238,6 +251,60 @@ class Questions:
                 "losses",
                 [cast(Any, self)],
                 {"operation": operation, "speeds": speeds, "powers": powers, "torques": torques, "temperature": temperature, "compare": compare},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def heat(
+        self,
+        *,
+        operation: str | None = None,
+        state: str | None = None,
+        duration: str | None = None,
+        start: str | None = None,
+        profile: str | os.PathLike[str] | object | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.HeatAnswer":
+        """Tell how warm the gearbox gets: oil temperature, parts, warm-up, thermal rating, duty cycles.
+
+        The oil temperature is the one at which the losses and what ``[heat]`` carries away agree, with the reason
+        why there is no other, or all of them with their stability, or none below the limit. The thermal rating is
+        the largest load at the limit. With heat capacities the warm-up from a cold start follows, and with a
+        profile the steady state of a duty cycle that repeats itself.
+
+        Parameters
+        ----------
+        operation
+            Only this operation.
+        state
+            Only operations that run in this state.
+        duration
+            How long the warm-up takes: '2 h'. Default: five time constants.
+        start
+            Oil temperature at the start of the warm-up: '-20 degC'. Default: that of the file, or of the air.
+        profile
+            A duty cycle (CSV, as for ``willis cycle``), or - for standard input: its steady state when it repeats
+            itself.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> warm = willis.read("examples/industrial-planetary-heat.toml").heat(operation="rated")
+        >>> warm.data.operations[0].verdict
+        'unique'
+        """
+        return cast(
+            "contracts.HeatAnswer",
+            _ask(
+                "heat",
+                [cast(Any, self)],
+                {"operation": operation, "state": state, "duration": duration, "start": start, "profile": profile},
                 threads=threads,
                 yes=yes,
                 progress=progress,
@@ -317,7 +384,7 @@ class Questions:
         state
             In this state of the shift table.
         vary
-            An uncertain quantity: 'P1.mesh_efficiency=0.985..0.995'. Several times for several quantities.
+            An uncertain quantity: 'P1.mesh_efficiency=0.985..0.995'. A list for several quantities.
         laws
             Families whose laws are each as likely as the others, with commas between; or all.
         samples
@@ -341,6 +408,66 @@ class Questions:
                 "uncertainty",
                 [cast(Any, self)],
                 {"operation": operation, "state": state, "vary": vary, "laws": laws, "samples": samples, "seed": seed},
+                threads=threads,
+                yes=yes,
+                progress=progress,
+            ),
+        )
+
+    def calibrate(
+        self,
+        *,
+        data: str | os.PathLike[str] | object | None = None,
+        sigma: float | None = None,
+        offset: Sequence[str] | str | None = None,
+        parts: Sequence[str] | str | None = None,
+        operation: str | None = None,
+        trust_all: bool | None = None,
+        threads: int | None = None,
+        yes: bool = False,
+        progress: bool | Progress | None = None,
+    ) -> "contracts.CalibrateAnswer":
+        """Fit the laws of a train to tests: factors on tooth friction, bearings, churning, with what is learnt and
+        what is not.
+
+        Each row of the data, a CSV file, is one test: the measured ``loss [W]``, perhaps ``sigma [W]`` (its
+        standard deviation), ``group`` (tests of one day or meter) and ``note``; the other columns say how it ran,
+        with the unit in the header: ``input.speed [rpm]``, ``input.torque [N m]``, ``oil.temperature [degC]``,
+        state. The priors are how far the laws of each kind of loss lie apart. The train file that results has the
+        factors and what is left open of them, and every command uses it.
+
+        Parameters
+        ----------
+        data
+            The tests (CSV), or - for standard input.
+        sigma
+            Standard deviation of the measured loss where no column gives it, as a part of it. Default: 0.02.
+        offset
+            Look for the offset of a torque meter in each group, with its standard deviation before the tests:
+            'input=0.5 N m'. Several times for several meters.
+        parts
+            Only these kinds of loss may move: teeth, bearing_load, bearing_no_load, seal, churning, windage, rotor.
+        operation
+            The operation that gives what no column sets. Default: the file's first.
+        trust_all
+            Take every reading as good: no outliers.
+        threads, yes, progress
+            Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
+            called with a word, how much is done and how much there is.
+
+        Examples
+        --------
+        >>> stage = willis.read("examples/fva-planetary-stage.toml")
+        >>> fitted = stage.calibrate(data="examples/tests-fva-planetary-stage.csv")
+        >>> fitted.data.tests, fitted.data.learnt, fitted.data.converged
+        (23, 3, True)
+        """
+        return cast(
+            "contracts.CalibrateAnswer",
+            _ask(
+                "calibrate",
+                [cast(Any, self)],
+                {"data": data, "sigma": sigma, "offset": offset, "parts": parts, "operation": operation, "trust_all": trust_all},
                 threads=threads,
                 yes=yes,
                 progress=progress,
@@ -373,16 +500,18 @@ class Questions:
 
               over=["state=all", "P1.planet.count=3,4,6", "oil.temperature=20..100 degC:9"]
 
-        ``…:100`` are so many values, ends included; ``…:31:log`` a constant ratio; ``…:step 500 rpm`` every so
-        much. Torque and power of ``input`` and ``output`` are positive where they drive; of a member called by its
-        name they are those ON it, as in the train file. Every point is that of ``analyze``; a point that is locked
-        or has several solutions is a row that says so. Without ``output`` a summary is all there is. An interrupted
-        sweep goes on when the same command is given again.
+        A range may end with ``:100`` for so many values, both ends included, with ``:31:log`` for so many at a
+        constant ratio, or with ``:step 500 rpm`` for one every so much. Torque and power of ``input`` and
+        ``output`` are positive where they drive; of a member called by its name they are those ON it, as in the
+        train file. Every point is that of ``analyze``; a point that is locked or has several solutions is a row
+        that says so.
 
         Parameters
         ----------
         over
-            An axis, QUANTITY=VALUES; several times for several axes, the last runs fastest.
+            An axis, QUANTITY=VALUES; a list for several axes, the last runs fastest. A mapping from quantities to
+            values, ``{"input.speed": "500..6000 rpm:12", "input.torque": [50.0, 100.0]}``, with numbers in SI units; or
+            a list of texts.
         study
             A [[study]] of the train file, instead of axes and what belongs to them.
         operation
@@ -445,9 +574,9 @@ class Questions:
         profile
             The profile (CSV), or - for standard input.
         ignore_column
-            Leave this column of the profile out; its name, with or without the unit. Several times for several columns.
+            Leave this column of the profile out; its name, with or without the unit. A list for several columns.
         only_column
-            Read this column of the profile and no others than are named so. Several times for several columns.
+            Read this column of the profile and no others than are named so. A list for several columns.
         operation
             The operation that gives what no column sets. Default: the first one in the state, else the file's first.
         state
@@ -498,7 +627,9 @@ class Questions:
         state
             Only this state, and operations in it.
         over
-            A quantity and its values: 'input.speed=500 rpm..6000 rpm:12'. Several times for a grid.
+            A quantity and its values: 'input.speed=500 rpm..6000 rpm:12'. A list for a grid. A mapping from quantities
+            to values, ``{"input.speed": "500..6000 rpm:12", "input.torque": [50.0, 100.0]}``, with numbers in SI units;
+            or a list of texts.
         threads, yes, progress
             Threads for long work (all cores); whether it may take as long as it takes; ``True`` for a bar, or what is
             called with a word, how much is done and how much there is.
@@ -807,7 +938,7 @@ class Questions:
 
     def draw(
         self,
-        kind: Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "spin", "film", "path", "modes", "time", "shift", "table", "tornado", "band", "all"] | None = None,
+        kind: Literal["stick", "lever", "wolf", "sankey", "flow", "front", "regimes", "map", "split", "losses", "spin", "heat", "film", "path", "modes", "time", "shift", "table", "tornado", "band", "all"] | None = None,
         *,
         state: str | None = None,
         operation: str | None = None,
@@ -815,9 +946,11 @@ class Questions:
         over: Mapping[str, object] | Sequence[str] | str | None = None,
         terminals: Sequence[str] | str | None = None,
         balance: Sequence[str] | str | None = None,
+        seen_from: str | None = None,
         nominal: bool | None = None,
         from_: Quantity | None = None,
         to: Quantity | None = None,
+        coarse: bool | None = None,
         animated: bool | None = None,
         theme: Literal["light", "dark", "auto"] | None = None,
         scale: float | None = None,
@@ -842,17 +975,23 @@ class Questions:
         part
             The set, mesh or scenario to draw.
         over
-            A quantity along an axis, as ``sweep`` takes it: "sun.speed=500..3000 rpm:40".
+            A quantity along an axis, as ``sweep`` takes it: "sun.speed=500..3000 rpm:40". A mapping from quantities to
+            values, ``{"input.speed": "500..6000 rpm:12", "input.torque": [50.0, 100.0]}``, with numbers in SI units; or
+            a list of texts.
         terminals
             Members on which torque may act, with commas between (regimes); else the train's terminals.
         balance
             Two terminals whose powers add to zero (regimes).
+        seen_from
+            Show powers as they are seen from this member, such as a carrier (sankey, flow); else from the housing.
         nominal
             Draw teeth without geometry as nominal ones of module 1.
         from_
             From when a scenario is shown (time): "3 s".
         to
             Until when a scenario is shown (time): "3500 ms".
+        coarse
+            Fewer points and samples, for a first look at what takes long (map, band).
         animated
             Wheels turn (front, in SVG).
         theme
@@ -875,7 +1014,7 @@ class Questions:
             _ask(
                 "draw",
                 [cast(Any, self)],
-                {"kind": kind, "state": state, "operation": operation, "part": part, "over": over, "terminals": terminals, "balance": balance, "nominal": nominal, "from": from_, "to": to, "animated": animated, "theme": theme, "scale": scale, "width": width},
+                {"kind": kind, "state": state, "operation": operation, "part": part, "over": over, "terminals": terminals, "balance": balance, "seen_from": seen_from, "nominal": nominal, "from": from_, "to": to, "coarse": coarse, "animated": animated, "theme": theme, "scale": scale, "width": width},
                 threads=threads,
                 yes=yes,
                 progress=progress,
@@ -1035,7 +1174,7 @@ def new(
 
 
 def laws(
-    family: Literal["mesh_friction", "rolling", "loss_factor", "load_sharing", "film", "film_reduction", "bearing", "windage", "churning", "seal", "rotor_drag"] | None = None,
+    family: Literal["mesh_friction", "rolling", "loss_factor", "load_sharing", "film", "film_reduction", "bearing", "windage", "churning", "seal", "rotor_drag", "clutch_drag", "pump", "injection", "plain_bearing"] | None = None,
     *,
     oils: bool | None = None,
     bearings: bool | None = None,
@@ -1113,7 +1252,7 @@ def validate(
 
 
 def explain(
-    code: Literal["E001", "E002", "E003", "E004", "E005", "E006", "E007", "E008", "E101", "E102", "E103", "E104", "E105", "E106", "E107", "E108", "E109", "E110", "E111", "E112", "E113", "E114", "E201", "E202", "E203", "E204", "E205", "E206", "E207", "E208", "E209", "E210", "E211", "E212", "W301", "W302", "W303", "W304", "W305", "W306", "W307", "W308", "W309", "W310", "W311", "W312", "W313", "W314", "W315", "W316", "W317", "W318", "W319", "W320", "W321", "N401", "N402", "N403", "N404"] | None = None,
+    code: Literal["E001", "E002", "E003", "E004", "E005", "E006", "E007", "E008", "E101", "E102", "E103", "E104", "E105", "E106", "E107", "E108", "E109", "E110", "E111", "E112", "E113", "E114", "E201", "E202", "E203", "E204", "E205", "E206", "E207", "E208", "E209", "E210", "E211", "E212", "W301", "W302", "W303", "W304", "W305", "W306", "W307", "W308", "W309", "W310", "W311", "W312", "W313", "W314", "W315", "W316", "W317", "W318", "W319", "W320", "W321", "W322", "W330", "W331", "N401", "N402", "N403", "N404", "N405"] | None = None,
     *,
     threads: int | None = None,
     yes: bool = False,

@@ -34,8 +34,12 @@ def ask(
     progress: Any,
 ) -> Answer:
     """Asks a question; what is ``None`` is left out."""
-    request = {name: _field(question, name, value) for name, value in given.items() if value is not None}
-    return _ask(question, trains, request, threads=threads, yes=yes, progress=progress)
+    return _ask(question, trains, fields(question, given), threads=threads, yes=yes, progress=progress)
+
+
+def fields(question: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """A request from arguments; what is ``None`` is left out."""
+    return {name: _field(question, name, value) for name, value in given.items() if value is not None}
 
 
 def _field(question: str, name: str, value: Any) -> Any:
@@ -47,7 +51,7 @@ def _field(question: str, name: str, value: Any) -> Any:
         return _quantity.one(value, _QUANTITIES[name])
     if name in ("state", "operation", "scenario") and isinstance(value, int):
         return str(value)
-    if name == "profile":
+    if name in ("profile", "data"):
         return _attachment(name, value)
     if isinstance(value, enum.Enum):
         return value.value
@@ -62,7 +66,20 @@ def _field(question: str, name: str, value: Any) -> Any:
 
 
 #: Fields that are lists, of which one item may be given alone.
-_LISTS = {"columns", "terminals", "balance", "vary", "laws", "ignore_column", "only_column", "fixed", "from", "to"}
+_LISTS = {
+    "balance",
+    "columns",
+    "fixed",
+    "from",
+    "ignore_column",
+    "laws",
+    "offset",
+    "only_column",
+    "parts",
+    "terminals",
+    "to",
+    "vary",
+}
 
 
 def _attachment(name: str, value: Any) -> dict[str, str]:

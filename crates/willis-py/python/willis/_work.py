@@ -15,9 +15,8 @@ def watcher(progress: bool | Progress | None) -> tuple[Progress | None, Callable
         return None, lambda: None
     if callable(progress):
         return progress, lambda: None
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
+    tqdm = _bar()
+    if tqdm is None:
         return None, lambda: None
     bars: dict[str, Any] = {}
 
@@ -33,3 +32,17 @@ def watcher(progress: bool | Progress | None) -> tuple[Progress | None, Callable
             bar.close()
 
     return told, finish
+
+
+def _bar() -> Any:
+    """The bar of tqdm that can be shown here, if there is one: that of notebooks needs their widgets, and warns without them."""
+    from importlib.util import find_spec
+
+    try:
+        if find_spec("ipywidgets") is None:
+            from tqdm.std import tqdm
+        else:
+            from tqdm.auto import tqdm
+    except (ImportError, ValueError):
+        return None
+    return tqdm

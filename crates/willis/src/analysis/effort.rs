@@ -15,6 +15,8 @@ const ELIMINATION: f64 = 1.3e-8;
 const DECIMALS: f64 = 3.0;
 /// Losses that depend on torques are found in rounds.
 const ROUNDS: f64 = 3.0;
+/// An oil temperature is found in so many rounds of all that.
+const HEAT: f64 = 30.0;
 /// What it costs to read a train file anew, s for a byte.
 const BYTE: f64 = 3e-8;
 
@@ -22,7 +24,7 @@ const BYTE: f64 = 3e-8;
 /// elimination takes than with the numbers of the file.
 fn point(train: &Train, digits: f64) -> f64 {
     let n = train.meshes().len() as f64;
-    let rounds = if train.is_physical() { ROUNDS } else { 1.0 };
+    let rounds = if train.is_physical() { ROUNDS } else { 1.0 } * if train.heat().is_some() { HEAT } else { 1.0 };
     POINT + rounds * (MESH * n + digits * ELIMINATION * n.powi(3))
 }
 
@@ -44,9 +46,10 @@ impl Effort {
             Some(_) => 1,
             None => train.operations().len(),
         };
-        let states = if selection.state.is_some() { 1 } else { train.states().len() };
-        // A state is asked driving and coasting.
-        Self::of_points(train, (operations + 2 * states) as u64)
+        let states = if selection.state.is_some() { 1 } else { train.states().len().max(1) };
+        // A state is asked driving and coasting; where losses depend on load, at it and without it.
+        let each = if train.depends_on_load() { 4 } else { 2 };
+        Self::of_points(train, (operations + each * states) as u64)
     }
 }
 

@@ -125,6 +125,20 @@ impl Contract for LossTable {
     const FORMAT: &'static str = "willis-losses-1";
 }
 
+/// What is wrong with oil temperatures, K, that are asked for.
+pub(super) fn beyond_oils(train: &Train, temperatures: &[f64]) -> Diagnostics {
+    let mut wrong = Diagnostics::default();
+    if !temperatures.is_empty() && train.lubrication.is_none() {
+        let d = Diagnostic::new(Code::MissingKey, "oil", "a temperature is given, but the train has no oil");
+        wrong.push(d.hint("add [oil] with a name of the catalogue, or its viscosities"));
+    }
+    for t in temperatures.iter().filter(|t| !(200.0..=600.0).contains(*t)) {
+        let message = format!("an oil temperature of {:.1} °C is none that a gearbox has", t - 273.15);
+        wrong.push(Diagnostic::new(Code::OutOfRange, "", message).hint("from -73 to 327 °C is computed"));
+    }
+    wrong
+}
+
 /// Evaluates losses.
 ///
 /// # Errors
@@ -180,14 +194,7 @@ pub fn losses(train: &Train, request: &LossRequest) -> Result<LossTable, Diagnos
         let d = Diagnostic::new(Code::UnknownName, "", message).suggest(family, losses::FAMILIES.iter().copied());
         wrong.push(d.hint(format!("the families are: {}", losses::FAMILIES.join(", "))));
     }
-    if !request.temperatures.is_empty() && train.lubrication.is_none() {
-        let d = Diagnostic::new(Code::MissingKey, "oil", "a temperature is given, but the train has no oil");
-        wrong.push(d.hint("add [oil] with a name of the catalogue, or its viscosities"));
-    }
-    for t in request.temperatures.iter().filter(|t| !(200.0..=600.0).contains(*t)) {
-        let message = format!("an oil temperature of {:.1} °C is none that a gearbox has", t - 273.15);
-        wrong.push(Diagnostic::new(Code::OutOfRange, "", message).hint("from -73 to 327 °C is computed"));
-    }
+    wrong.extend(beyond_oils(train, &request.temperatures));
     if wrong.has_errors() {
         return Err(wrong);
     }
@@ -294,7 +301,7 @@ fn variants(operation: &Operation, request: &LossRequest, wrong: &mut Diagnostic
     all
 }
 
-fn quantity(load: &Load) -> &Quantity {
+pub(super) fn quantity(load: &Load) -> &Quantity {
     match load {
         Load::Torque(q) | Load::Power(q) => q,
     }
@@ -317,7 +324,7 @@ fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<Loss
         speed_rad_s: speed,
         torque_of: operation.loads.first().map(|l| train.member_name(l.0).to_owned()),
         torque_n_m: torque,
-        temperature_k: train.lubrication.as_ref().map(|l| operation.temperature.unwrap_or(l.temperature)),
+        temperature_k: report.oil_k(train, operation),
         law: law.map(str::to_owned),
         verdict: report.verdict,
         reason: report.reason.clone(),
@@ -330,17 +337,16 @@ fn point(train: &Train, operation: &Operation, law: Option<&str>) -> Result<Loss
             solution.map(|s| s.contacts.iter().map(|(n, c)| (n.clone(), c.friction)).collect()).unwrap_or_default(),
         ),
         convergence: solution.and_then(|s| s.convergence),
-        warnings: (train.lubrication.iter())
-            .filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)))
-            .map(|b| b.to_string())
-            .map(|text| Diagnostic::new(Code::OutsideLaw, "", text))
-            .chain(notes)
-            .filter(|d| d.severity == Severity::Warning)
-            .map(|d| d.message)
-            .collect(),
+        warnings: warnings(train, report.oil_k(train, operation), notes),
         why: report.why,
         outside_laws: report.outside_laws,
     })
+}
+
+/// Warnings of a point, and those of its oil, whose operation stands beside them.
+pub(super) fn warnings(train: &Train, oil_k: Option<f64>, notes: Diagnostics) -> Vec<String> {
+    let oil = train.lubrication.iter().filter_map(|l| l.beyond(oil_k?)).map(|b| b.to_string());
+    oil.chain(notes.into_iter().filter(|d| d.severity == Severity::Warning).map(|d| d.message)).collect()
 }
 
 fn spread(points: &[LossPoint], family: &str, compatibility: impl Fn(&str) -> bool) -> Option<Spread> {

@@ -6,6 +6,7 @@ use crate::statics::{Certificate, Equilibrium, SolvedColumn, Unsolvable};
 use crate::train::{MemberId, MeshId, Operation, ShiftElementId, ShiftElementKind, Train};
 
 use super::balance::{Balance, Branch, Setting};
+use super::doubts::doubts;
 use super::loads::Loads;
 use super::solution::Frame;
 use super::words::{Finding, Refusal, names};
@@ -37,9 +38,13 @@ pub(super) struct Settled<'t> {
     pub findings: Vec<Finding>,
 }
 
-/// Analyses an operation; `Err` when what it prescribes makes no question. `exactly` also works efficiencies out as
-/// fractions.
-pub(super) fn settle<'t>(train: &'t Train, operation: &Operation, exactly: bool) -> Result<Settled<'t>, Vec<Refusal>> {
+/// Analyses an operation at one temperature; `Err` when what it prescribes makes no question. `exactly` also works
+/// efficiencies out as fractions.
+pub(super) fn settle_at<'t>(
+    train: &'t Train,
+    operation: &Operation,
+    exactly: bool,
+) -> Result<Settled<'t>, Vec<Refusal>> {
     let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
     let physics = train.depends_on_load().then(|| Physics::new(train, operation));
     let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
@@ -101,6 +106,9 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation, exactly: bool)
         })
         .collect();
     let mut all: Vec<SolutionReport> = frames.iter().zip(&branches).map(|(f, b)| f.solution(&b.solution)).collect();
+    for s in &mut all {
+        s.doubts = doubts(train, s);
+    }
     all.sort_by(|a, b| a.efficiency.partial_cmp(&b.efficiency).unwrap_or(std::cmp::Ordering::Equal));
     if !all.iter().all(finite) {
         return Err(vec![Refusal::TorqueTooLarge]);
@@ -141,6 +149,7 @@ pub(super) fn settle<'t>(train: &'t Train, operation: &Operation, exactly: bool)
         findings.extend(held_back(train, s));
         findings.extend(near_boundary(s));
         findings.extend(s.beyond_limits.iter().cloned().map(Finding::Beyond));
+        findings.extend(s.doubts.iter().cloned().map(Finding::Doubt));
         findings.extend(variators::outside_maps(train, s).into_iter().map(Finding::OutsideMap));
     }
     let point = match (verdict, &branches[..]) {

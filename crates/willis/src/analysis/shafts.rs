@@ -10,8 +10,9 @@ use crate::named::Named;
 use crate::power_flow::{External, Flow, ties};
 use crate::train::{AS_DRAWN, Efficiency, FRAME, MemberId, MemberKind, ShiftElementId, ShiftElementKind, Train};
 
-use super::Why;
+use super::at_load::{AskedLoad, AtLoad, Loads};
 use super::table::Drive;
+use super::why::Why;
 
 /// Speeds and torques of a whole shift table: the results contract `willis-table-1`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,6 +35,17 @@ pub struct ShaftTable {
 
 impl Contract for ShaftTable {
     const FORMAT: &'static str = "willis-table-1";
+}
+
+/// What a shift table is asked for.
+#[derive(Clone, Debug, Default)]
+pub struct ShaftTableRequest {
+    /// Only this state.
+    pub state: Option<String>,
+    /// Torques without the losses of the teeth.
+    pub lossless: bool,
+    /// What of the load is asked for at which losses are computed; none leaves losses out.
+    pub load: Option<AskedLoad>,
 }
 
 /// One state.
@@ -65,6 +77,9 @@ pub struct ShaftState {
     pub shift_elements: Named<ShaftElement>,
     /// Torque that each member puts into each set, or mesh of no set, over the input torque.
     pub sets: Named<Named<f64>>,
+    /// What it costs at a load and without one, where losses depend on that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_load: Option<Box<AtLoad>>,
 }
 
 /// A member in a state.
@@ -101,14 +116,14 @@ pub struct ShaftElement {
 }
 
 /// Speeds and torques of every shaft, planet and shift element in every state, per unit of speed and torque at the input,
-/// which drives. `lossless` leaves the losses of the teeth out of the torques.
+/// which drives; and losses at a load.
 ///
 /// # Errors
 /// A state that the train does not have; a train without input and output.
 ///
 /// # Example
 /// ```
-/// use willis::analysis::shaft_table;
+/// use willis::analysis::{ShaftTableRequest, shaft_table};
 /// use willis::exact::Rational;
 /// use willis::train::{SetSpec, Train};
 ///
@@ -117,7 +132,7 @@ pub struct ShaftElement {
 ///     .terminals(["sun", "carrier"])
 ///     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4).mesh_efficiency(0.98))
 ///     .build()?;
-/// let table = shaft_table(&train, None, true)?;
+/// let table = shaft_table(&train, &ShaftTableRequest { lossless: true, ..ShaftTableRequest::default() })?;
 /// let only = &table.states.0[0].1;
 /// assert_eq!(only.members.get("carrier").unwrap().speed, Some(Rational::new(3, 10)));
 /// // The planet turns backwards on its carrier, 30/20 times as fast as the sun does seen from there.
@@ -126,7 +141,8 @@ pub struct ShaftElement {
 /// assert!((only.members.get("carrier").unwrap().torque.unwrap() + 10.0 / 3.0).abs() < 1e-12);
 /// # Ok::<(), willis::Diagnostics>(())
 /// ```
-pub fn shaft_table(train: &Train, state: Option<&str>, lossless: bool) -> Result<ShaftTable, Diagnostics> {
+pub fn shaft_table(train: &Train, request: &ShaftTableRequest) -> Result<ShaftTable, Diagnostics> {
+    let (state, lossless) = (request.state.as_deref(), request.lossless);
     let only = state.filter(|name| *name != AS_DRAWN).map(|name| train.find_state(name)).transpose();
     let only = only.map_err(|d| Diagnostics::from(*d))?;
     let mut states = Vec::new();
@@ -146,6 +162,19 @@ pub fn shaft_table(train: &Train, state: Option<&str>, lossless: bool) -> Result
             None => return Err(no_ends("the train", "").into()),
         }
     }
+    if let Some(asked) = &request.load {
+        let mut loads = Loads::new(train, asked)?;
+        for (name, s) in &mut states {
+            s.at_load = loads.at(train.states.iter().position(|own| own.name == *name));
+        }
+        // Where there is a ratio, and no other reason.
+        let without = states.iter().filter(|(_, s)| s.ratio.is_some() && s.at_load.is_none());
+        let without: Vec<&str> = without.map(|(name, _)| name.as_str()).collect();
+        let is_asked = asked.torque.is_some() || asked.temperature.is_some();
+        if !without.is_empty() && (is_asked || train.depends_on_load()) {
+            diagnostics.push(no_load(train, &without));
+        }
+    }
     Ok(ShaftTable {
         format: Format::new(),
         train: train.name.clone(),
@@ -154,6 +183,21 @@ pub fn shaft_table(train: &Train, state: Option<&str>, lossless: bool) -> Result
         states: Named(states),
         diagnostics: diagnostics.into_iter().collect(),
     })
+}
+
+/// Why a load that is asked for says nothing.
+fn no_load(train: &Train, states: &[&str]) -> Diagnostic {
+    let new = |text: &str| Diagnostic::new(Code::NothingAsked, "", text);
+    match train.depends_on_load() {
+        false => new("the losses of this train are given efficiencies: neither load nor oil changes them")
+            .hint("give `geometry`, bearings, seals or drags to have losses that do"),
+        true => new(&format!(
+            "{}: no losses at a load, because neither the file nor what is asked for has both speed and torque of an input \
+             that drives",
+            states.join(", ")
+        ))
+        .hint("ask for speed and torque of the input, or add an [[operation]] in which it drives"),
+    }
 }
 
 fn no_ends(what: &str, place: &str) -> Diagnostic {
@@ -238,6 +282,7 @@ fn row(train: &Train, engaged: &[ShiftElementId], ends: [Option<MemberId>; 2], l
             .map(|k| (train.shift_elements[k].name.clone(), of_element(k)))
             .collect(),
         sets: Named(sets.collect()),
+        at_load: None,
     })
 }
 

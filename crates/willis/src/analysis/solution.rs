@@ -40,6 +40,8 @@ impl Frame<'_> {
         let members =
             (1..train.members.len()).map(|m| (train.members[m].name.clone(), self.member(MemberId(m), &flow, &held)));
         let members = Named(members.collect());
+        let none = || (Named(vec![]), Named(vec![]));
+        let (bearings, shaft_loads) = self.physics.map_or_else(none, |(p, (step, _))| p.bearings(step, &flow));
         let meshes = flow.meshes.iter().map(|f| {
             let mesh = &train.meshes[f.mesh.0];
             let report = MeshReport {
@@ -88,7 +90,7 @@ impl Frame<'_> {
         } else if flow.loss == 0.0 {
             Some(1.0)
         } else {
-            Some((flow.output_power / flow.input_power).clamp(0.0, 1.0))
+            Some((flow.output_power / flow.input_power).clamp(0.0, 1.0) + 0.0)
         };
         SolutionReport {
             efficiency,
@@ -106,7 +108,9 @@ impl Frame<'_> {
             losses_w,
             sources,
             contacts: Named(self.physics.map(|(p, (step, _))| p.contacts(step, &flow)).unwrap_or_default()),
-            bearings: Named(self.physics.map(|(p, (step, _))| p.bearings(step, &flow)).unwrap_or_default()),
+            doubts: vec![],
+            shaft_loads,
+            bearings,
             drags: self.physics.map(|(p, (step, _))| p.drags(step, &flow)).unwrap_or_default(),
             convergence: self.physics.map(|(_, (_, convergence))| *convergence),
             recirculation: flow

@@ -120,6 +120,7 @@ pub(super) fn row(
         degrees_of_freedom: c.degrees_of_freedom(),
         drive,
         coast,
+        at_load: None,
     })
 }
 

@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Ratio};
-use crate::train::{AS_DRAWN, Load, MemberId, Operation, Train, Variator};
+use crate::train::{AS_DRAWN, Load, MemberId, Operation, Train};
 use crate::units::{Dimension, Quantity};
 
 use super::{OperationReport, operate};
@@ -70,12 +70,7 @@ fn open(c: &Configuration<'_>, what: &str, input: &str) -> String {
 fn missing(c: &Configuration<'_>, state: Option<usize>) -> String {
     let train = c.train;
     let freedoms = c.degrees_of_freedom();
-    let mut ends: Vec<usize> = train.terminals.iter().filter_map(|m| c.node(*m)).collect();
-    ends.sort_unstable();
-    ends.dedup();
-    // A variator adds a torque for each of its sides beyond the first.
-    let passed: usize = train.variators.iter().map(|v: &Variator| v.members().len().saturating_sub(1)).sum();
-    let loads = (ends.len() + passed).saturating_sub(freedoms).max(1);
+    let loads = c.loading(&train.terminals).len().max(1);
     let state = state.map(|k| format!("state = \"{}\", ", train.states[k].name)).unwrap_or_default();
     let loads = if loads == 1 { "1 torque or power".to_owned() } else { format!("{loads} torques or powers") };
     format!("add an [[operation]] with {state}{freedoms} independent speeds and {loads}")

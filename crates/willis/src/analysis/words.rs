@@ -3,7 +3,7 @@
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, apart};
 use crate::train::{MemberId, Operation, ShiftElementId, Train};
 
-use super::{BeyondLimit, Boundary, OutsideLaw, SpeedDeviation, StictionRange, Why};
+use super::{BeyondLimit, Boundary, Doubt, OutsideLaw, SpeedDeviation, StictionRange, Why};
 
 /// Why an operation makes no question.
 #[derive(Clone, Debug)]
@@ -43,12 +43,24 @@ pub(super) enum Finding {
     OutsideMap(String),
     /// Ranges that friction at rest leaves open.
     Stiction(Vec<StictionRange>),
+    /// A number that cannot be right.
+    Doubt(Doubt),
     /// A law was used outside its range.
     Outside(OutsideLaw),
     /// A one-way clutch would hold this torque, N m, against its free direction.
     OneWay(ShiftElementId, f64),
     /// Prescribed speeds contradict the gears within the tolerance.
     Yield(SpeedDeviation),
+    /// There is no heat balance, because the operating point has no single answer.
+    NoHeat(Option<super::Verdict>),
+    /// At the limit, K, more heat reaches the oil than is carried away, W.
+    TooHot { limit: f64, reaching: f64, carried: f64 },
+    /// Oil temperatures that hold, K, and whether they are stable; and where it is not decided.
+    SeveralTemperatures { others: Vec<(f64, bool)>, undecided: Vec<[f64; 2]>, taken: f64 },
+    /// The oil temperature, K, is that of a step of a law: heat below and above, W.
+    HeatStep { oil: f64, step: [f64; 2] },
+    /// The cooler warms the oil, W.
+    CoolerHeats(f64),
     /// A prescribed torque (or else speed) is near a boundary.
     Near { torque: bool, boundary: Boundary },
 }
@@ -206,6 +218,7 @@ impl Finding {
                 );
                 Diagnostic::new(Code::SpeedsYield, format!("{place}.speeds"), message)
             }
+            Self::Doubt(doubt) => Diagnostic::new(Code::Implausible, place, doubt.to_string()),
             Self::Outside(law) => Diagnostic::new(Code::OutsideLaw, place, law.to_string()),
             Self::OneWay(element, torque) => {
                 let element = &train.shift_elements[element.0];
@@ -218,6 +231,57 @@ impl Finding {
                 );
                 Diagnostic::new(Code::OneWay, place, message)
                     .hint("analyse the state without it, or engage a brake beside it")
+            }
+            Self::NoHeat(verdict) => {
+                let message = match verdict {
+                    Some(verdict) => format!(
+                        "no oil temperature follows: at some temperature the operating point is {}",
+                        verdict.words()
+                    ),
+                    None => "no oil temperature follows: the thermal network has no finite temperatures".to_owned(),
+                };
+                Diagnostic::new(Code::NoHeatBalance, place, message)
+                    .hint("the temperature of the oil in the file was taken")
+            }
+            Self::TooHot { limit, reaching, carried } => {
+                let message = format!(
+                    "at the limit of {} °C {} W reach the oil and {} W are carried away: it gets hotter than allowed",
+                    celsius(*limit),
+                    watts(*reaching),
+                    watts(*carried)
+                );
+                Diagnostic::new(Code::NoHeatBalance, place, message)
+                    .hint("the answer is that at the limit; less load, a larger area, moving air or a cooler helps")
+            }
+            Self::SeveralTemperatures { others, undecided, taken } => {
+                let all = others
+                    .iter()
+                    .map(|(t, stable)| format!("{} °C{}", celsius(*t), if *stable { "" } else { " (not stable)" }));
+                let mut parts: Vec<String> = vec![];
+                if others.len() > 1 {
+                    parts.push(format!("losses and heat flow agree at {}", all.collect::<Vec<_>>().join(", ")));
+                }
+                let open = |[a, b]: &[f64; 2]| format!("{} to {} °C", celsius(*a), celsius(*b));
+                if !undecided.is_empty() {
+                    let list: Vec<String> = undecided.iter().map(open).collect();
+                    parts.push(format!("it is not decided whether they agree from {}", list.join(", ")));
+                }
+                let message = format!("{}; from a cold start: {} °C", parts.join("; "), celsius(*taken));
+                Diagnostic::new(Code::SeveralTemperatures, place, message)
+            }
+            Self::HeatStep { oil, step: [below, above] } => {
+                let message = format!(
+                    "the oil temperature of {} °C rests on a step of a law: {} W just below it, {} W just above",
+                    celsius(*oil),
+                    watts(*below),
+                    watts(*above)
+                );
+                Diagnostic::new(Code::HeatStep, place, message)
+            }
+            Self::CoolerHeats(heat) => {
+                let message = format!("what should cool is warmer than the oil and heats it by {} W", watts(*heat));
+                Diagnostic::new(Code::NoHeatBalance, place, message)
+                    .hint("a thermostat keeps it shut until the oil is warm")
             }
             Self::Near { torque, boundary: b } => {
                 let (what, unit, factor, effect) = match torque {
@@ -297,4 +361,14 @@ fn significant(x: f64) -> String {
 pub(super) fn short(x: f64) -> String {
     let text = format!("{x:.4}");
     if text.parse::<f64>() == Ok(0.0) && x != 0.0 { format!("{x:.3e}") } else { text }
+}
+
+/// A temperature for a sentence.
+fn celsius(kelvin: f64) -> String {
+    format!("{:.1}", kelvin - 273.15)
+}
+
+/// A power for a sentence.
+fn watts(x: f64) -> String {
+    if x.abs() < 100.0 { format!("{x:.1}") } else { format!("{x:.0}") }
 }

@@ -47,6 +47,8 @@ pub enum Kind {
     AxialBall,
     /// Axial (thrust) cylindrical roller bearing.
     AxialCylindricalRoller,
+    /// Plain bearing: no rolling elements.
+    Plain,
 }
 
 impl Kind {
@@ -83,6 +85,7 @@ impl Kind {
         ("toroidal-roller", Self::ToroidalRoller),
         ("axial-ball", Self::AxialBall),
         ("axial-cylindrical-roller", Self::AxialCylindricalRoller),
+        ("plain", Self::Plain),
     ];
 
     /// Rows of rolling elements.
@@ -110,6 +113,7 @@ impl fmt::Display for Kind {
             Self::ToroidalRoller => "toroidal roller bearing",
             Self::AxialBall => "axial ball bearing",
             Self::AxialCylindricalRoller => "axial cylindrical roller bearing",
+            Self::Plain => "plain bearing",
         })
     }
 }
@@ -204,6 +208,27 @@ pub struct Bearing {
     pub source: String,
     /// How far they were checked.
     pub trust: Trust,
+}
+
+impl Bearing {
+    /// Whether it holds a shaft along its axis. A cylindrical roller bearing does by its flanges: its designation
+    /// tells (NJ, NUP, NF, NCF and NJG do; NU, N and what is not known do not).
+    pub fn takes_thrust(&self) -> bool {
+        use Kind::{CylindricalRoller, FullComplementCylindricalRoller, NeedleRoller, ToroidalRoller};
+        match self.kind {
+            CylindricalRoller | FullComplementCylindricalRoller => {
+                let name = self.designation.trim_start();
+                ["NJ", "NUP", "NF", "NCF", "NNCF"].iter().any(|p| name.starts_with(p))
+            }
+            NeedleRoller | ToroidalRoller | Kind::Plain => false,
+            _ => true,
+        }
+    }
+
+    /// Whether it carries radial loads: all do but axial bearings.
+    pub fn takes_radial_load(&self) -> bool {
+        !matches!(self.kind, Kind::AxialBall | Kind::AxialCylindricalRoller)
+    }
 }
 
 /// The numbers of a bearing that its friction laws read, copied out of a [`Bearing`] so that the

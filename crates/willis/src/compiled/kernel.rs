@@ -610,8 +610,10 @@ lanes! {
         let n = out.len();
         let (loss, power_in) = (&loss[..n], &power_in[..n]);
         for i in 0..n {
-            let e = (power_in[i] - loss[i]) / power_in[i];
-            out[i] = if power_in[i] > 0.0 { e } else { loss[i] * 0.0 };
+            // Powers beyond floating point have no efficiency: nothing times infinity is no number.
+            let none = loss[i] * 0.0;
+            let e = (power_in[i] - loss[i]) / power_in[i] + none;
+            out[i] = if power_in[i] > 0.0 { e } else { none };
         }
     }
     /// Sum in 32 partial sums.
@@ -856,7 +858,8 @@ impl Single {
         let pos = |p: f64| if p > 0.0 { p } else { 0.0 };
         let power_in = pos(pl) + pos(pa) + pos(pb);
         let loss = pl + pa + pb;
-        let efficiency = if power_in > 0.0 { (power_in - loss) / power_in } else { 0.0 };
+        // Powers beyond floating point have no efficiency: nothing times infinity is no number.
+        let efficiency = if power_in > 0.0 { (power_in - loss) / power_in + loss * 0.0 } else { 0.0 };
         SinglePoint { torque: [ta, tb], loss, efficiency }
     }
 

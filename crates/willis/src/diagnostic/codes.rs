@@ -215,6 +215,17 @@ codes! {
     /// All members of a variator stand still. No power can pass it, and the torques of its machines have nothing to do
     /// with each other: none of them is known, and the variator was left out.
     W321 VariatorAtRest: "a variator stands still";
+    /// A number of the answer cannot be right, though the formulas hold: a pressure that no steel bears, a load far
+    /// beyond the rating of a bearing, thrust on a bearing that takes none, a force that no bearing of the file carries.
+    /// The message has the number and its limit. Look at the sizes, the loads and the units in the file.
+    W322 Implausible: "a number that cannot be right";
+    /// Up to the limit of `[heat]` the losses are larger than what housing and cooler carry away, or the losses have no
+    /// single value, so that no oil temperature can be told. The answer is that at the limit, or at the temperature of
+    /// the oil in the file. Reduce the load, or let more heat out: a larger area, moving air, a cooler.
+    W330 NoHeatBalance: "no oil temperature below the limit";
+    /// Losses and heat flow agree at several oil temperatures, or it could not be decided whether they do. The answer is
+    /// the one that a cold start reaches. A hot gearbox may stay at another one.
+    W331 SeveralTemperatures: "the oil temperature is not the only one";
     /// A loaded mesh without relative motion: its friction may act in either direction, up to the
     /// sliding value, so torques behind it are known only within a range. Shown: the value
     /// without friction.
@@ -228,6 +239,9 @@ codes! {
     /// The file gives teeth and an efficiency for one mesh: the efficiency is used, and the teeth
     /// only for speeds, pressures and film. Leave out the efficiency to have the loss computed.
     N404 GivenEfficiency: "a given efficiency is used instead of the teeth";
+    /// A law jumps at the oil temperature at which losses and heat flow would agree: just below it the losses are larger
+    /// than what is carried away, just above it smaller. The temperature is that of the step.
+    N405 HeatStep: "the oil temperature rests on a step of a law";
 }
 
 impl Code {

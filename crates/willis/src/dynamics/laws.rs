@@ -33,7 +33,7 @@ pub(super) struct Laws {
 impl Laws {
     /// Those of a train with losses to compute.
     pub fn of(train: &Train) -> Option<Self> {
-        let physics = train.is_physical().then(|| Physics::in_motion(train))?;
+        let physics = train.has_laws().then(|| Physics::in_motion(train))?;
         let places = physics.places();
         let meshes = (0..train.meshes().len()).map(|k| MeshFlow {
             mesh: MeshId(k),
@@ -121,6 +121,8 @@ impl Place {
             LossKind::Windage => EnergyLossKind::Windage,
             LossKind::Churning => EnergyLossKind::Churning,
             LossKind::Seal => EnergyLossKind::Seal,
+            LossKind::Drag | LossKind::Pump | LossKind::Injection => EnergyLossKind::Drag,
+            LossKind::ShiftElement => EnergyLossKind::ShiftElement,
             LossKind::Variator => EnergyLossKind::Variator,
         }
     }

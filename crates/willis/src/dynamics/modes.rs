@@ -445,7 +445,7 @@ mod tests {
             shaft(&mut t, "T", ["b", "frame"], 200.0, 0.0);
             let members = [t.member("a").unwrap(), FRAME];
             let (name, torque) = ("oil".to_owned(), Curve::constant(1.0));
-            t.drags.push(DragMount { name, members, torque, viscous, peak: 1.0 });
+            t.drags.push(DragMount { name, members, torque, viscous, places: 1, peak: 1.0 });
             modes(&t, None, &[]).unwrap()
         };
         let report = build(4.0);

@@ -154,6 +154,7 @@ impl System {
             frictions.extend(law_places(laws, &mut ports));
             assumptions.extend(laws.assumptions(train));
         }
+        assumptions.extend(not_followed(train));
         let mut paths = Paths::of(train, scenario, integrals, frictions.len(), &mut ports)?;
         frictions.append(&mut paths.rubbing);
         let elastic = shafts(c, scenario, &mut ports);
@@ -359,6 +360,15 @@ impl System {
         let engagements = self.scenario.engagements.iter().map(|e| &e.signal);
         sources.chain(engagements).chain(self.scenario.controls.iter().map(|c| c.kind.signal()))
     }
+}
+
+/// What costs power at an operating point and is not there in motion.
+fn not_followed(train: &Train) -> Option<String> {
+    let open = train.shift_elements().iter().any(|e| e.open.is_some());
+    let jets = train.meshes().iter().any(|m| m.teeth.as_ref().is_some_and(|t| t.jet.is_some()));
+    let all = [(open, "drag of open shift elements"), (!train.pumps().is_empty(), "oil pumps"), (jets, "jets of oil")];
+    let named: Vec<&str> = all.iter().filter(|x| x.0).map(|x| x.1).collect();
+    (!named.is_empty()).then(|| format!("not followed in motion: {}", named.join(", ")))
 }
 
 /// Whatever has inertia, rubs or is driven stays visible; other planets vanish in chains.

@@ -1,16 +1,19 @@
-//! Loads and friction of rolling bearings in an operating point.
+//! Friction of rolling and plain bearings in an operating point, under what they carry.
 
-use num_dual::{Dual, DualNum};
+use num_dual::Dual;
 use serde::{Deserialize, Serialize};
 
+use crate::catalogue::bearing::Kind;
+use crate::losses::Outside;
 use crate::losses::bearing::{BearingDuty, BearingTorque, Palmgren, Supply};
-use crate::power_flow::MeshFlow;
+use crate::losses::plain_bearing::{Journal, PlainBearing};
 use crate::real::{self, Real};
-use crate::train::{BearingMount, FRAME, MemberId, OilSupply};
+use crate::train::{BearingMount, OilSupply};
 
+use super::forces::Carried;
 use super::{Extrapolation, Physics};
 
-/// A place with rolling bearings in an operating point.
+/// A place with bearings in an operating point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[non_exhaustive]
@@ -25,7 +28,7 @@ pub struct BearingReport {
     pub speed_rad_s: f64,
     /// Radial load of one bearing, the most loaded, N.
     pub radial_load_n: f64,
-    /// Axial load of one bearing, N.
+    /// Axial load of one bearing, N; mean of those that share it.
     pub axial_load_n: f64,
     /// Frictional torque of one bearing, mean of all, N m.
     pub torque_n_m: f64,
@@ -35,30 +38,55 @@ pub struct BearingReport {
     pub loss_w: f64,
 }
 
-/// A force that has a part in proportion to the tooth forces and a part that has not.
-#[derive(Clone, Copy, Debug)]
-struct Load<R> {
-    /// Along the direction of travel, from the teeth, N.
-    tangential: R,
-    /// Along the radius outward, from the teeth, N.
-    radial: R,
-    /// Along the radius outward, centrifugal, N.
-    centrifugal: R,
-    /// Axial, from the teeth, N.
-    axial: R,
-    /// Tilting moment in the plane of radius and axis, from the teeth, N m.
-    tilting: R,
+/// One bearing under load, as its law sees it, with derivatives by a factor on the tooth forces.
+#[expect(clippy::large_enum_variant, reason = "one at a time on the stack; a box would allocate at every point")]
+pub(super) enum Duty<R: Real> {
+    Rolling(BearingTorque, BearingDuty<Dual<R>>),
+    Plain(PlainBearing, Journal<Dual<R>>),
 }
 
-impl<R: Real> Load<R> {
-    fn none() -> Self {
-        let none = R::from(0.0);
-        Self { tangential: none, radial: none, centrifugal: none, axial: none, tilting: none }
+impl<R: Real> Duty<R> {
+    /// Frictional torque, N m.
+    fn torque(&self) -> Dual<R> {
+        match self {
+            Self::Rolling(law, duty) => law.eval(duty),
+            Self::Plain(law, journal) => law.eval(journal),
+        }
     }
 }
 
-/// A load and the meshes that make it, with their weights.
-type Loading<R> = (Load<R>, Vec<(usize, R)>);
+impl Duty<f64> {
+    /// Family, law, and what lies outside its range.
+    fn outside(&self) -> (&'static str, &'static str, Vec<Outside>) {
+        match self {
+            Self::Rolling(law, d) => {
+                let plain = BearingDuty {
+                    bearing: d.bearing,
+                    speed: d.speed.re,
+                    radial_load: d.radial_load.re,
+                    axial_load: d.axial_load.re,
+                    kinematic_viscosity: d.kinematic_viscosity.re,
+                    base: d.base,
+                    sliding_friction: d.sliding_friction,
+                    supply: d.supply,
+                };
+                (BearingTorque::FAMILY, law.meta().id, law.outside(&plain))
+            }
+            Self::Plain(law, j) => {
+                let plain = Journal {
+                    speed: j.speed.re,
+                    diameter: j.diameter.re,
+                    width: j.width.re,
+                    clearance: j.clearance.re,
+                    load: j.load.re,
+                    viscosity: j.viscosity.re,
+                    friction: j.friction.re,
+                };
+                (PlainBearing::FAMILY, law.meta().id, law.outside(&plain))
+            }
+        }
+    }
+}
 
 /// Friction of the bearings of a mount.
 pub(super) struct Friction<R> {
@@ -74,62 +102,38 @@ pub(super) struct Friction<R> {
 }
 
 impl<R: Real> Physics<'_, R> {
-    /// Friction of the bearings of a mount; `duties` is told the law and the state of one of them.
-    pub(super) fn bearing(
-        &self,
-        k: usize,
-        speeds: &[R],
-        meshes: &[MeshFlow<R>],
-        duties: &mut dyn FnMut(&BearingTorque, &BearingDuty<Dual<R>>),
-    ) -> Friction<R> {
-        let train = &self.train;
-        let (mount, numbers) = (&train.bearings[k], &self.numbers.bearings[k]);
-        let [a, b] = mount.members;
-        let speed = self.slip(speeds, mount.members);
-        let planet = train.planets.iter().position(|p| mount.members.contains(&p.member));
-        let (load, loading) = match planet {
-            Some(planet) => self.planet_load(planet, speeds, meshes),
-            // Of two shafts, the one that has gears.
-            None => match self.central_load(a, meshes) {
-                (_, none) if a == FRAME || none.is_empty() && b != FRAME => self.central_load(b, meshes),
-                found => found,
-            },
-        };
-        let none = R::from(0.0);
-        let count = f64::from(mount.count);
-        // A pair takes the tilting moment by unequal radial loads.
-        let face =
-            |j: &(usize, R)| self.numbers.teeth[meshes[j.0].mesh.0].as_ref().map_or(none, |t| t.pair.total_width());
-        let span = numbers.span.unwrap_or_else(|| loading.iter().map(face).fold(none, real::max));
-        let couple = if mount.count > 1 && span.re() > 0.0 { load.tilting / span } else { none };
-        // The load of one bearing at scale 1 of the tooth forces, with its derivative by that scale.
-        let scale = |x: R| Dual::new(x, x);
+    /// One bearing of a mount under its loads.
+    fn duty(&self, k: usize, speed: R, radial: Dual<R>, axial: Dual<R>) -> Duty<R> {
+        let (mount, numbers) = (&self.train.bearings[k], &self.numbers.bearings[k]);
         let fixed = Dual::from_re;
-        let one = |side: f64| {
-            let tangential = scale(load.tangential / count);
-            let radial = scale(load.radial / count + couple * side) + fixed(load.centrifugal / count);
-            let size = tangential * tangential + radial * radial;
-            let size = if size.re.re() > 0.0 { size.sqrt() } else { fixed(none) };
-            size + fixed(numbers.radial_load / count)
-        };
-        let axial = scale(load.axial / count) + fixed(numbers.axial_load / count);
-        let law = self.bearing_law(mount);
         let (lubrication, oil) = self.oil.as_ref().expect("bearings are computed with an oil");
-        let duty = |radial: Dual<R>| BearingDuty {
+        let kind = mount.bearing.kind;
+        if kind == Kind::Plain {
+            let journal = Journal {
+                speed: fixed(speed),
+                diameter: fixed(numbers.data.bore),
+                width: fixed(numbers.data.width),
+                clearance: fixed(numbers.clearance),
+                load: radial,
+                viscosity: fixed(oil.dynamic_viscosity),
+                friction: fixed(numbers.friction),
+            };
+            return Duty::Plain(self.train.laws.plain_bearing, journal);
+        }
+        let duty = BearingDuty {
             bearing: numbers.data,
             speed: fixed(speed),
             radial_load: radial,
             axial_load: axial,
             kinematic_viscosity: fixed(oil.kinematic_viscosity),
             base: lubrication.oil.base,
-            sliding_friction: match mount.bearing.kind.is_ball() {
+            sliding_friction: match kind.is_ball() {
                 true => lubrication.oil.sliding_ball,
                 // Measured on cylindrical rollers.
                 false => lubrication.oil.sliding_roller.filter(|_| {
-                    use crate::catalogue::bearing::Kind::{
+                    use Kind::{
                         AxialCylindricalRoller, CylindricalRoller, FullComplementCylindricalRoller, NeedleRoller,
                     };
-                    let kind = mount.bearing.kind;
                     matches!(
                         kind,
                         CylindricalRoller | FullComplementCylindricalRoller | AxialCylindricalRoller | NeedleRoller
@@ -138,18 +142,39 @@ impl<R: Real> Physics<'_, R> {
             },
             supply: self.supply(k),
         };
-        let sides = if couple.re() != 0.0 { [1.0, -1.0] } else { [0.0, 0.0] };
+        Duty::Rolling(self.bearing_law(mount), duty)
+    }
+
+    /// Friction of the bearings of a mount under what they carry; `told` is the one that is loaded most.
+    pub(super) fn bearing(
+        &self,
+        k: usize,
+        speeds: &[R],
+        carried: &Carried<R>,
+        told: &mut dyn FnMut(&Duty<R>),
+    ) -> Friction<R> {
+        let train = &self.train;
+        let (mount, numbers) = (&train.bearings[k], &self.numbers.bearings[k]);
+        let speed = self.slip(speeds, mount.members);
+        let none = R::from(0.0);
+        let count = f64::from(mount.count);
+        let fixed = Dual::from_re;
+        let Carried { radial: radials, axial, loading } = carried;
+        let axial = *axial / count + fixed(numbers.axial_load / count);
         let mut torque = fixed(none);
         let mut radial = 0.0f64;
-        for side in sides {
-            let own = one(side);
-            radial = radial.max(own.re.re());
+        let mut worst = fixed(none);
+        for own in radials {
+            let own = *own + fixed(numbers.radial_load / count);
+            if own.re.re() >= radial {
+                (radial, worst) = (own.re.re(), own);
+            }
             if speed.re() > 0.0 {
-                torque += law.eval(&duty(own)) * 0.5;
+                torque += self.duty(k, speed, own, axial).torque() * (1.0 / radials.len() as f64);
             }
         }
         if speed.re() > 0.0 {
-            duties(&law, &duty(one(sides[0])));
+            told(&self.duty(k, speed, worst, axial));
         }
         let number = mount.count * mount.places;
         let finite = |x: R| if x.re().is_finite() { x } else { none };
@@ -163,10 +188,10 @@ impl<R: Real> Physics<'_, R> {
             radial_load_n: radial,
             axial_load_n: axial.re.re(),
             torque_n_m: all.re() / f64::from(number),
-            law: law.meta().id.to_owned(),
+            law: self.bearing_law_name(mount).to_owned(),
             loss_w: 0.0,
         };
-        Friction { report, speed, torque: all, proportional, loading }
+        Friction { report, speed, torque: all, proportional, loading: loading.clone() }
     }
 
     /// The law for a bearing: the SKF model has no constants for some kinds; Palmgren has.
@@ -174,6 +199,14 @@ impl<R: Real> Physics<'_, R> {
         let chosen = self.train.laws.bearing;
         let skf = matches!(chosen, BearingTorque::Skf(_) | BearingTorque::Skf6000(_));
         if skf && mount.bearing.skf.is_none() { BearingTorque::Palmgren(Palmgren::DEFAULT) } else { chosen }
+    }
+
+    /// Its name, of plain bearings as of others.
+    pub(super) fn bearing_law_name(&self, mount: &BearingMount) -> &'static str {
+        match mount.bearing.kind {
+            Kind::Plain => self.train.laws.plain_bearing.meta().id,
+            _ => self.bearing_law(mount).meta().id,
+        }
     }
 
     fn supply(&self, k: usize) -> Supply<R> {
@@ -187,79 +220,6 @@ impl<R: Real> Physics<'_, R> {
             }
         }
     }
-
-    /// Load of one planet's bearings: the tangential forces of its meshes add up, the radial ones
-    /// cancel as far as the pressure angles agree, and the planet itself pulls outward.
-    fn planet_load(&self, planet: usize, speeds: &[R], meshes: &[MeshFlow<R>]) -> Loading<R> {
-        let train = &self.train;
-        let [orbit_radius, mass] = self.numbers.planets[planet];
-        let planet = &train.planets[planet];
-        let none = R::from(0.0);
-        let mut load = Load { centrifugal: mass * speeds[planet.carrier.0].powi(2) * orbit_radius, ..Load::none() };
-        let mut loading = Vec::new();
-        let (mut between_planets, mut between_tilts) = (none, none);
-        for (j, m) in meshes.iter().enumerate() {
-            let mesh = &train.meshes[m.mesh.0];
-            let Some(k) = mesh.gears.iter().position(|g| g.member == planet.member) else { continue };
-            let Some(teeth) = &self.numbers.teeth[m.mesh.0] else { continue };
-            let pair = &teeth.pair;
-            // Torque of the mesh on one planet.
-            let moment = -m.torques[k] / f64::from(mesh.count);
-            let radius = pair.gears[k].operating_radius;
-            let force = moment / radius;
-            let size = real::abs(force);
-            loading.push((j, size));
-            // On one helicoid the axial force is in proportion to the moment, wherever the contact is.
-            let axial = if pair.data.double_helical { none } else { force * pair.operating_helix.tan() };
-            load.axial += axial;
-            let other = mesh.gears[1 - k].member;
-            if train.planets.iter().any(|p| p.member == other)
-                || train.members[other.0].kind == crate::train::MemberKind::Planet
-            {
-                // Where the other planet sits is not known: the whole force, in the worst direction.
-                between_planets += size / pair.operating_pressure_angle.cos();
-                between_tilts += real::abs(axial) * radius;
-                continue;
-            }
-            // Contact on the far side of a ring, pressing inward; on the near side of a sun.
-            let side = if pair.internal() { 1.0 } else { -1.0 };
-            load.tangential += force * side;
-            load.radial -= size * side * pair.operating_pressure_angle.tan();
-            load.tilting -= axial * side * radius;
-        }
-        load.tangential = real::abs(load.tangential) + between_planets;
-        load.tilting = real::abs(load.tilting) + between_tilts;
-        load.axial = real::abs(load.axial);
-        (load, loading)
-    }
-
-    /// Load of a central shaft: nothing radial from equally spaced planets, the whole tooth force
-    /// from a single pair; axial forces of single helices. Forces of several pairs on one shaft are
-    /// added as if they pointed in one direction.
-    fn central_load(&self, member: MemberId, meshes: &[MeshFlow<R>]) -> Loading<R> {
-        let train = &self.train;
-        let mut load = Load::none();
-        let mut loading = Vec::new();
-        for (j, m) in meshes.iter().enumerate() {
-            let mesh = &train.meshes[m.mesh.0];
-            let Some(k) = mesh.gears.iter().position(|g| g.member == member) else { continue };
-            let Some(teeth) = &self.numbers.teeth[m.mesh.0] else { continue };
-            let pair = &teeth.pair;
-            let force = real::abs(m.torques[k]) / pair.gears[k].operating_radius;
-            let none = R::from(0.0);
-            let axial = if pair.data.double_helical { none } else { force * pair.operating_helix.tan() };
-            load.axial += axial;
-            // A set whose number of planets is not told is taken as balanced.
-            let single = mesh.count == 1 && mesh.set.is_none_or(|s| train.sets[s].planets.is_some());
-            if single {
-                load.tangential += force / pair.operating_pressure_angle.cos();
-            }
-            if single || axial.re() > 0.0 {
-                loading.push((j, force));
-            }
-        }
-        (load, loading)
-    }
 }
 
 impl Physics<'_> {
@@ -268,24 +228,13 @@ impl Physics<'_> {
         &self,
         k: usize,
         speeds: &[f64],
-        meshes: &[MeshFlow],
+        carried: &Carried<f64>,
         all: &mut Vec<Extrapolation>,
     ) {
         let name = &self.train.bearings[k].name;
-        self.bearing(k, speeds, meshes, &mut |law, d| {
-            let plain = BearingDuty {
-                bearing: d.bearing,
-                speed: d.speed.re,
-                radial_load: d.radial_load.re,
-                axial_load: d.axial_load.re,
-                kinematic_viscosity: d.kinematic_viscosity.re,
-                base: d.base,
-                sliding_friction: d.sliding_friction,
-                supply: d.supply,
-            };
-            for outside in law.outside(&plain) {
-                all.push(Extrapolation { family: "bearing", law: law.meta().id, at: name.clone(), outside });
-            }
+        self.bearing(k, speeds, carried, &mut |duty| {
+            let (family, law, outside) = duty.outside();
+            all.extend(outside.into_iter().map(|outside| Extrapolation { family, law, at: name.clone(), outside }));
         });
     }
 }

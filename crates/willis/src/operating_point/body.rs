@@ -3,11 +3,15 @@
 use crate::exact::Rational;
 use crate::losses::Outside;
 use crate::losses::churning::Dip;
+use crate::losses::clutch_drag::OpenPack;
+use crate::losses::injection::JetAtMesh;
+use crate::losses::pump::PumpDuty;
 use crate::losses::rotor_drag::Drum;
 use crate::losses::seal::Lip;
 use crate::losses::windage::{AIR_PER_OIL, Disc, Windage, mist};
+use crate::power_flow::MeshFlow;
 use crate::real::{self, Real};
-use crate::train::{FRAME, Fluid, MemberId, MemberKind, OilSupply, Train};
+use crate::train::{FRAME, Fluid, JetSide, MemberId, MemberKind, OilSupply, OpenElement, Train};
 
 use super::numbers::{RotorNumbers, VG_100};
 use super::{Extrapolation, LossKind, Physics};
@@ -194,6 +198,102 @@ impl<R: Real> Physics<'_, R> {
         (speed.re() != 0.0).then_some(Drum { speed, radius, length, radial_gap, axial_gap, density, viscosity })
     }
 
+    /// A given drag at a relative speed, all of its places, N m.
+    pub(super) fn drag(&self, k: usize, speed: R) -> R {
+        let (drag, own) = (&self.train.drags[k], &self.numbers.drags[k]);
+        let dry = own.coulomb.unwrap_or_else(|| {
+            // The curve with its slope.
+            let at = speed.re();
+            (speed - at) * drag.torque.slope(at) + drag.torque.at(at)
+        });
+        dry + own.viscous * speed
+    }
+
+    /// State of an open pack; none where the element is no pack or there is no oil.
+    fn pack(&self, k: usize, speeds: &[R]) -> Option<OpenPack<R>> {
+        let Some(OpenElement::Pack { surfaces, inner_radius, outer_radius, gap, flow, groove_share, groove_depth }) =
+            &self.numbers.open[k]
+        else {
+            return None;
+        };
+        let (_, oil) = self.oil.as_ref()?;
+        Some(OpenPack {
+            speeds: self.train.shift_elements[k].members.map(|m| speeds[m.0]),
+            surfaces: f64::from(*surfaces),
+            inner_radius: *inner_radius,
+            outer_radius: *outer_radius,
+            gap: *gap,
+            flow: *flow,
+            groove_share: *groove_share,
+            groove_depth: *groove_depth,
+            density: oil.density,
+            viscosity: oil.dynamic_viscosity,
+        })
+    }
+
+    /// Torque of a shift element that is open, N m; none where nothing is known of it.
+    pub(super) fn open(&self, k: usize, speeds: &[R]) -> Option<R> {
+        let slip = self.slip(speeds, self.train.shift_elements[k].members);
+        let oil = self.oil.as_ref().map(|(_, oil)| oil);
+        match self.numbers.open[k].as_ref()? {
+            OpenElement::Pack { .. } => Some(self.train.laws.clutch_drag.eval(&self.pack(k, speeds)?)),
+            // Plane shear between drum and band.
+            OpenElement::Band { radius, width, wrap, gap, wetted } => {
+                Some(oil?.dynamic_viscosity * slip * radius.powi(3) * *width * *wrap * *wetted / *gap)
+            }
+            // By the similarity of rivulets: slip goes with the root of the viscosity, the torque at it with its power 1.5.
+            OpenElement::Curve(curve, temperature) => {
+                let thicker = match (oil, &self.oil) {
+                    (Some(oil), Some((lubrication, _))) if lubrication.beyond(*temperature).is_none() => {
+                        oil.dynamic_viscosity / lubrication.oil.curves::<f64>().dynamic_viscosity(*temperature)
+                    }
+                    _ => R::from(1.0),
+                };
+                let root = thicker.sqrt();
+                let at = slip / root;
+                let (x, own) = (at.re(), (at - at.re()) * curve.slope(at.re()));
+                Some((own + curve.at(x)) * thicker * root)
+            }
+            OpenElement::Torque(torque) => Some(*torque),
+        }
+    }
+
+    /// The law of a shift element that is open.
+    pub(super) fn open_law(&self, k: usize) -> &'static str {
+        match &self.train.shift_elements[k].open {
+            Some(OpenElement::Pack { .. }) => self.train.laws.clutch_drag.meta().id,
+            Some(OpenElement::Band { .. }) => "full-film",
+            _ => "given",
+        }
+    }
+
+    /// Torque of a pump, N m.
+    pub(super) fn pump(&self, k: usize, speeds: &[R]) -> R {
+        let (pump, own) = (&self.train.pumps[k], &self.numbers.pumps[k]);
+        let none = R::from(0.0);
+        self.train.laws.pump.eval(&PumpDuty {
+            speed: self.slip(speeds, [pump.member, FRAME]),
+            displacement: own.displacement,
+            pressure: own.pressure,
+            efficiency: own.efficiency,
+            viscosity: self.oil.as_ref().map_or(none, |(_, oil)| oil.dynamic_viscosity),
+        })
+    }
+
+    /// Power that the oil sprayed at a mesh takes, at all of its parallel meshes, W.
+    pub(super) fn jet(&self, m: &MeshFlow<R>) -> Option<R> {
+        let (teeth, (_, oil)) = (self.numbers.teeth[m.mesh.0].as_ref()?, self.oil.as_ref()?);
+        let jet = teeth.jet.as_ref()?;
+        let power = self.train.laws.injection.eval(&JetAtMesh {
+            pitch_speed: real::abs(m.relative_speeds[0]) * teeth.pair.gears[0].operating_radius,
+            jet_speed: jet.speed,
+            flow: jet.flow,
+            density: oil.density,
+            into_mesh: jet.side == JetSide::IntoMesh,
+        });
+        Some(power * f64::from(self.train.meshes[m.mesh.0].count))
+    }
+
     /// Drag of a rotor, N m.
     pub(super) fn rotor(&self, k: usize, speeds: &[R]) -> R {
         let Some(drum) = self.drum(k, speeds) else { return R::from(0.0) };
@@ -222,6 +322,11 @@ impl Physics<'_> {
                     note("windage", laws.windage.meta().id, &body.name, laws.windage.outside(&disc));
                 }
                 None => {}
+            }
+        }
+        for (k, element) in self.train.shift_elements.iter().enumerate() {
+            if let Some(pack) = self.pack(k, speeds).filter(|p| p.speeds[0] != p.speeds[1]) {
+                note("clutch_drag", laws.clutch_drag.meta().id, &element.name, laws.clutch_drag.outside(&pack));
             }
         }
         for (k, rotor) in self.train.rotors.iter().enumerate() {

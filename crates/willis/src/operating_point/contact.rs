@@ -68,6 +68,10 @@ pub struct ContactReport {
     pub overlap_ratio: f64,
     /// Operating pressure angle in the transverse section, rad.
     pub operating_pressure_angle_rad: f64,
+    /// Transverse circumferential backlash at the operating circles, m; 0 where the centre distance follows from the
+    /// shifts.
+    #[serde(default)]
+    pub backlash_m: f64,
     /// Tangential force at the operating pitch circle, N.
     pub tangential_force_n: f64,
     /// Load at the base circle over the face width, N/m.
@@ -511,6 +515,7 @@ impl Physics<'_> {
             contact_ratio: pair.contact_ratio,
             overlap_ratio: pair.overlap_ratio,
             operating_pressure_angle_rad: pair.operating_pressure_angle,
+            backlash_m: pair.backlash,
             tangential_force_n: loaded.torque / pair.gears[driver].operating_radius,
             line_load_n_per_m: loaded.base_force / pair.total_width(),
             pitch_line_speed_m_s: loaded.pitch_line_speed,

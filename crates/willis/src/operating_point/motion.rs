@@ -24,7 +24,7 @@ pub(crate) struct Place {
 impl Physics<'static> {
     /// For a train that moves, at the temperature of its oil.
     pub fn in_motion(train: &Train) -> Self {
-        Self { least_speed: LEAST_SPEED, ..Self::at(Cow::Owned(train.clone()), None) }
+        Self { least_speed: LEAST_SPEED, drags: None, ..Self::at(Cow::Owned(train.clone()), None) }
     }
 
     /// Every place of a drag.

@@ -4,7 +4,10 @@ use crate::catalogue::bearing::Data;
 use crate::catalogue::oil::Curves;
 use crate::losses::mesh_friction::{Constant, MeshFriction};
 use crate::real::Real;
-use crate::train::{BearingMount, Efficiency, Lubrication, Store, Teeth, Train, Variator, VariatorPath};
+use crate::train::{
+    BearingMount, DragMount, Efficiency, LossPart, Lubrication, OpenElement, Store, Teeth, Train, Variator,
+    VariatorPath,
+};
 
 /// Viscosity of an oil at 40 °C where only the one at its temperature is known, m²/s.
 pub(super) const VG_100: f64 = 100e-6;
@@ -22,6 +25,10 @@ pub(crate) struct Numbers<R> {
     /// Diameter under each seal, m.
     pub seals: Vec<R>,
     pub rotors: Vec<RotorNumbers<R>>,
+    pub drags: Vec<DragNumbers<R>>,
+    /// Of each shift element that drags while it is open.
+    pub open: Vec<Option<OpenElement<R>>>,
+    pub pumps: Vec<PumpNumbers<R>>,
     /// Radius of the orbit, m, and mass, kg.
     pub planets: Vec<[R; 2]>,
     pub enclosure: Option<R>,
@@ -29,6 +36,8 @@ pub(crate) struct Numbers<R> {
     pub axial_gap: Option<R>,
     /// What the law `constant` gives.
     pub friction_coefficient: R,
+    /// Factors on the losses, by [kind](LossPart).
+    pub loss_factors: [R; LossPart::COUNT],
     pub variators: Vec<VariatorNumbers<R>>,
 }
 
@@ -68,6 +77,12 @@ impl VariatorNumbers<f64> {
 pub(crate) struct MountNumbers<R> {
     pub data: Data<R>,
     pub span: Option<R>,
+    /// Where their middle stands along the axis, m.
+    pub position: Option<R>,
+    /// Of a plain bearing: difference of its two diameters, m.
+    pub clearance: R,
+    /// Of a plain bearing: coefficient of friction without a full film.
+    pub friction: R,
     pub radial_load: R,
     pub axial_load: R,
     pub level: Option<R>,
@@ -78,10 +93,42 @@ impl MountNumbers<f64> {
         Self {
             data: mount.bearing.data(),
             span: mount.span,
+            position: mount.position,
+            clearance: mount.clearance,
+            friction: mount.friction,
             radial_load: mount.radial_load,
             axial_load: mount.axial_load,
             level: mount.level,
         }
+    }
+}
+
+/// Numbers of an oil pump.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PumpNumbers<R> {
+    /// m³ a turn.
+    pub displacement: R,
+    /// Pa.
+    pub pressure: R,
+    pub efficiency: Option<R>,
+}
+
+/// What a given drag exerts, of all places together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DragNumbers<R> {
+    /// Torque at any speed, N m; none where it is a curve over speed.
+    pub coulomb: Option<R>,
+    /// Torque over relative speed, N m s/rad.
+    pub viscous: R,
+}
+
+impl DragNumbers<f64> {
+    pub fn of(drag: &DragMount) -> Self {
+        let coulomb = match drag.torque.points() {
+            [[_, torque]] => Some(*torque),
+            _ => None,
+        };
+        Self { coulomb, viscous: drag.viscous }
     }
 }
 
@@ -161,6 +208,11 @@ impl Numbers<f64> {
                     axial_gap: r.axial_gap,
                 })
                 .collect(),
+            drags: train.drags.iter().map(DragNumbers::of).collect(),
+            open: train.shift_elements.iter().map(|e| e.open.clone()).collect(),
+            pumps: (train.pumps.iter())
+                .map(|p| PumpNumbers { displacement: p.displacement, pressure: p.pressure, efficiency: p.efficiency })
+                .collect(),
             planets: train.planets.iter().map(|p| [p.orbit_radius, p.mass]).collect(),
             enclosure: train.housing.enclosure,
             axial_gap: train.housing.axial_gap,
@@ -168,6 +220,7 @@ impl Numbers<f64> {
                 MeshFriction::Constant(constant) => constant.mu,
                 _ => train.laws.friction_coefficient.unwrap_or(Constant::DEFAULT.mu),
             },
+            loss_factors: train.loss_factors.factors,
             variators: train.variators.iter().map(VariatorNumbers::of).collect(),
         }
     }

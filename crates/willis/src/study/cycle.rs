@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::SolutionReport;
+use crate::analysis::{Losses, SolutionReport};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target, Who};
@@ -17,6 +17,7 @@ use crate::work::{self, Effort, Work};
 
 use super::answer::{PointAnswer, PointVerdict};
 use super::column::{Column, ColumnTable, ColumnValues};
+use super::heat;
 use super::profile::{Basis, Held, Profile, ProfileColumns, ProfileRow};
 use super::question::{Hold, Question, Trains};
 
@@ -89,7 +90,7 @@ struct CyclePart {
     points: Vec<CyclePoint>,
     /// By name and kind: law, energy.
     sources: BTreeMap<(String, EnergyKind), (String, f64)>,
-    kinds: [f64; 6],
+    kinds: [f64; Losses::NAMES.len()],
     /// By member: energy in, energy out.
     terminals: BTreeMap<String, [f64; 2]>,
     warnings: BTreeMap<Code, Vec<Told>>,
@@ -150,12 +151,21 @@ pub enum EnergyKind {
     Bearing,
     /// Gears that move oil.
     Churning,
+    /// Drags that are given as torques.
+    Drag,
+    /// Oil that is sprayed into meshes.
+    Injection,
     /// All losses of a mesh, where they are given as an efficiency.
     Mesh,
+    /// Oil pumps.
+    Pump,
     /// Rolling of teeth through the oil film.
     Rolling,
     /// Friction of seals.
     Seal,
+    /// Open clutches and brakes.
+    #[serde(rename = "shift-element")]
+    ShiftElement,
     /// Sliding of teeth.
     Sliding,
     /// Variators.
@@ -170,9 +180,13 @@ impl EnergyKind {
         match self {
             Self::Bearing => "bearing",
             Self::Churning => "churning",
+            Self::Drag => "drag",
+            Self::Injection => "injection",
             Self::Mesh => "mesh",
+            Self::Pump => "pump",
             Self::Rolling => "rolling",
             Self::Seal => "seal",
+            Self::ShiftElement => "shift-element",
             Self::Sliding => "sliding",
             Self::Variator => "variator",
             Self::Windage => "windage",
@@ -189,6 +203,10 @@ impl From<LossKind> for EnergyKind {
             LossKind::Windage => Self::Windage,
             LossKind::Churning => Self::Churning,
             LossKind::Seal => Self::Seal,
+            LossKind::Drag => Self::Drag,
+            LossKind::ShiftElement => Self::ShiftElement,
+            LossKind::Injection => Self::Injection,
+            LossKind::Pump => Self::Pump,
             LossKind::Variator => Self::Variator,
         }
     }
@@ -353,6 +371,9 @@ pub struct CycleReport {
     pub warnings: Named<Vec<RepeatedMessage>>,
     /// What is remarkable about the profile.
     pub notes: Vec<String>,
+    /// The oil temperature, where it follows from the losses.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub oil: Option<CycleOil>,
 }
 
 impl Contract for CycleReport {
@@ -440,8 +461,59 @@ pub fn cycle(model: &Model, request: &CycleRequest, work: &dyn Work) -> Result<C
         }
     };
     let profile = Profile::parse_columns(&request.profile, model, &columns)?;
-    let question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
-    Cycle::new(question, &profile).run(work)
+    let mut question = Question::new(model, request.operation.as_deref(), request.state.as_deref(), Hold::AsGiven)?;
+    let oil = oil_of(&question, &profile, work)?;
+    if let Some(CycleOil { mean_k: Some(t), .. }) = oil {
+        question.warm(t);
+    }
+    let mut answer = Cycle::new(question, &profile).run(work)?;
+    answer.report.oil = oil;
+    Ok(answer)
+}
+
+/// The oil temperature of a cycle, where the train says what carries heat away and neither operation nor profile gives
+/// it.
+fn oil_of(question: &Question<'_>, profile: &Profile, work: &dyn Work) -> Result<Option<CycleOil>, Diagnostics> {
+    let train = question.model().train();
+    let given = profile.conditions() > 0 && profile.settings(0).iter().any(|s| *s.0 == Target::Temperature);
+    let Some(network) = train.heat().filter(|_| !given && question.base().temperature.is_none()) else {
+        return Ok(None);
+    };
+    match heat::of_rows(question, profile, network, work) {
+        Ok(found) => Ok(Some(CycleOil {
+            mean_k: Some(found.mean_k),
+            lowest_k: Some(found.lowest_k),
+            highest_k: Some(found.highest_k),
+            limit_k: network.limit,
+            why_not: None,
+        })),
+        Err(wrong) if wrong.iter().any(|d| d.code == Code::Cancelled) => Err(wrong),
+        Err(wrong) => Ok(Some(CycleOil {
+            mean_k: None,
+            lowest_k: None,
+            highest_k: None,
+            limit_k: network.limit,
+            why_not: wrong.iter().next().map(|d| d.message.clone()),
+        })),
+    }
+}
+
+/// The oil temperature of a cycle that repeats itself.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[non_exhaustive]
+pub struct CycleOil {
+    /// Mean over time, K, at which every row is computed; absent where each row has its own steady temperature.
+    pub mean_k: Option<f64>,
+    /// Lowest, K.
+    pub lowest_k: Option<f64>,
+    /// Highest, K.
+    pub highest_k: Option<f64>,
+    /// Highest that is allowed, K.
+    pub limit_k: f64,
+    /// Why each row has its own steady temperature instead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why_not: Option<String>,
 }
 
 impl<'a> Cycle<'a> {
@@ -563,8 +635,7 @@ impl<'a> Cycle<'a> {
         point.output_power_w = s.output_power_w;
         point.loss_w = s.loss_w;
         point.residual_w = s.power_residual_w;
-        let l = &s.losses_w;
-        for (sum, power) in part.kinds.iter_mut().zip([l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator]) {
+        for (sum, power) in part.kinds.iter_mut().zip(s.losses_w.all()) {
             *sum += power * held.time_s;
         }
         let mut lose = |name: &str, kind, law: &str, power: f64| {
@@ -673,7 +744,7 @@ impl<'a> Cycle<'a> {
         whole.close();
         let mut sources: BTreeMap<&(String, EnergyKind), (&String, f64)> = BTreeMap::new();
         let mut terminals: BTreeMap<&str, TerminalEnergy> = BTreeMap::new();
-        let mut kinds = [0.0; 6];
+        let mut kinds = [0.0; Losses::NAMES.len()];
         let mut warnings: BTreeMap<Code, Vec<Told>> = BTreeMap::new();
         for part in parts {
             for (key, (law, energy)) in &part.sources {
@@ -737,11 +808,7 @@ impl<'a> Cycle<'a> {
             efficiency: whole.efficiency,
             time_mean_efficiency: (mean_time > 0.0).then(|| mean / mean_time),
             mean_loss_w: (whole.time_s > 0.0).then(|| whole.energy_lost_j / whole.time_s),
-            losses_j: ["mesh", "bearing", "windage", "churning", "seal", "variator"]
-                .map(str::to_owned)
-                .into_iter()
-                .zip(kinds)
-                .collect(),
+            losses_j: Losses::of_train(train).map(|k| (Losses::NAMES[k].to_owned(), kinds[k])).collect(),
             sources,
             ways: PowerDirection::ALL
                 .iter()
@@ -755,6 +822,7 @@ impl<'a> Cycle<'a> {
             worst: self.worst(&points),
             warnings: warnings.into_iter().map(|(code, told)| (code.as_str().to_owned(), said(told))).collect(),
             notes: profile.notes().to_vec(),
+            oil: None,
         }
     }
 

@@ -126,6 +126,11 @@ impl<'s> Question<'s> {
         &self.base
     }
 
+    /// Gives the oil a temperature, K, at every point that does not say another.
+    pub(super) fn warm(&mut self, oil: f64) {
+        self.base.temperature = Some(oil);
+    }
+
     /// How much work it is at so many trains that differ in values of their file, at so many points each.
     pub fn effort(&self, trains: u64, points_each: u64) -> Effort {
         Effort::of_trains(self.model.train(), self.alone().text().len(), trains, points_each)

@@ -10,11 +10,12 @@
 //! itself was.
 
 mod balance;
+mod heat;
 mod seeded;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{self, Margin, Point, Selection, Verdict};
+use crate::analysis::{self, HeatBasis, Margin, Point, Selection, Verdict};
 use crate::contract::{Contract, Format};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
@@ -23,6 +24,7 @@ use crate::operating_point::LossKind;
 use crate::train::{FRAME, Load, Operation, Slot, Train};
 
 use balance::{Moved, Powers, powers};
+use heat::Following;
 
 /// A loss is said to move with a quantity when it does so by this part of the largest change.
 const WORTH_TELLING: f64 = 1e-3;
@@ -68,6 +70,9 @@ pub struct OperationSensitivity {
     pub efficiency_exact: Option<Rational>,
     /// Power in at all inputs, W.
     pub input_power_w: f64,
+    /// Oil temperature, K, where the train says what carries heat away.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub oil_k: Option<f64>,
     /// All losses, W.
     pub loss_w: f64,
     /// Every quantity that moves a loss, the one with the largest effect first.
@@ -173,6 +178,12 @@ pub struct QuantitySensitivity {
     pub efficiency_change: Option<f64>,
     /// Change of all losses for the step, W.
     pub loss_change_w: f64,
+    /// `dT_oil/dq`, K over the SI unit of the value, where the oil temperature follows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub oil_derivative: Option<f64>,
+    /// Change of the oil temperature for the step, K.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub oil_change_k: Option<f64>,
     /// `(dP_loss/P_loss)/(dq/q)`: percent of loss for one percent of the quantity; absent for temperatures, angles and
     /// shifts.
     pub loss_elasticity: Option<f64>,
@@ -294,6 +305,36 @@ pub fn sensitivity(train: &Train, selection: &Selection) -> Result<Sensitivity, 
     })
 }
 
+/// Loss of an operating point, W, with its derivative by each quantity, and the speeds of all members, rad/s; `None` where
+/// there is no one equilibrium, or a derivative is not settled.
+pub(super) fn loss_by(
+    train: &Train,
+    operation: &Operation,
+    quantities: &[Slot],
+) -> Result<Option<(f64, Vec<f64>)>, Diagnostics> {
+    let (report, point, _) = analysis::settle(train, operation)?;
+    let (Some(point), [solution]) = (&point, &report.solutions[..]) else { return Ok(None) };
+    let hot = report.heat.as_ref().map(|h| Operation { temperature: Some(h.oil_k), ..operation.clone() });
+    let operation = hot.as_ref().unwrap_or(operation);
+    let following = report.heat.as_ref().and_then(|h| Following::new(train, operation, point, h));
+    let mut slopes = Vec::with_capacity(quantities.len());
+    for slot in quantities {
+        let slots = [*slot];
+        let numbers = seeded::numbers(train, operation.temperature, &slots);
+        let Some(mut found) = numbers.and_then(|n| powers(train, operation, point, n, Moved::Train)) else {
+            return Ok(None);
+        };
+        if let Some(following) = &following {
+            following.follow(&slots, &mut found);
+        }
+        if !found.loss.eps.is_finite() || found.error > 1e-6 {
+            return Ok(None);
+        }
+        slopes.push(found.loss.eps);
+    }
+    Ok(Some((solution.loss_w, slopes)))
+}
+
 fn of_operation(
     train: &Train,
     operation: &Operation,
@@ -309,6 +350,7 @@ fn of_operation(
         efficiency: None,
         efficiency_exact: None,
         input_power_w: 0.0,
+        oil_k: None,
         loss_w: 0.0,
         quantities: vec![],
         without_effect: vec![],
@@ -328,9 +370,25 @@ fn of_operation(
     all.loss_w = solution.loss_w;
     all.margin = Some(solution.margin.clone());
     all.notes = notes(train, point);
+    // The oil temperature that follows, or the one at its limit.
+    let hot = report.heat.as_ref().map(|h| Operation { temperature: Some(h.oil_k), ..operation.clone() });
+    let follows = report.heat.as_ref().is_some_and(|h| h.basis == HeatBasis::Balance);
+    let operation = hot.as_ref().unwrap_or(operation);
+    let following = report.heat.as_ref().and_then(|h| Following::new(train, operation, point, h));
+    all.oil_k = report.heat.as_ref().map(|h| h.oil_k);
+    if follows {
+        all.notes.push(match &following {
+            Some(_) => "the oil temperature follows: what a quantity does through it is counted".into(),
+            None => "the oil temperature is not stable here, and is held".into(),
+        });
+    }
 
     let mut checks = Checks { balance_residual: 0.0, rounds: 0, error: 0.0 };
     for quantity in quantities(train, operation) {
+        // A temperature that follows is moved by the others.
+        if follows && quantity.slots.contains(&Slot::Temperature) {
+            continue;
+        }
         if let Some(mesh) = starts_to_move(train, operation, point, quantity.moved) {
             let why = format!("{mesh} is loaded and at rest, and loses when it moves, whichever way");
             all.without_derivative.push((quantity.name, why));
@@ -338,7 +396,7 @@ fn of_operation(
         }
         let numbers = seeded::numbers(train, operation.temperature, &quantity.slots);
         let found = numbers.and_then(|n| powers(train, operation, point, n, quantity.moved));
-        let Some(found) = found else {
+        let Some(mut found) = found else {
             let why = "the geometry or the equilibrium stands on an edge of what is possible";
             all.without_derivative.push((quantity.name, why.into()));
             continue;
@@ -355,8 +413,13 @@ fn of_operation(
         checks.balance_residual = checks.balance_residual.max(found.residual());
         checks.rounds = checks.rounds.max(found.rounds);
         checks.error = checks.error.max(found.error);
+        let oil = following.as_ref().map(|f| f.follow(&quantity.slots, &mut found));
         match told(quantity, &found) {
-            Ok(q) => all.quantities.push(q),
+            Ok(q) => all.quantities.push(QuantitySensitivity {
+                oil_derivative: oil,
+                oil_change_k: oil.map(|t| t * q.step_size),
+                ..q
+            }),
             Err(name) => all.without_effect.push(name),
         }
     }
@@ -416,6 +479,8 @@ fn told(quantity: Quantity, found: &Powers) -> Result<QuantitySensitivity, Strin
         loss_derivative_w: loss.eps,
         efficiency_change: efficiency.map(|e| e * step_size),
         loss_change_w: loss.eps * step_size,
+        oil_derivative: None,
+        oil_change_k: None,
         loss_elasticity: (step == StepKind::Percent && loss.re > 0.0).then(|| loss.eps * quantity.value / loss.re),
         sources,
     })

@@ -3,12 +3,15 @@
 mod assumed;
 mod report;
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::Losses;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::{Model, Target, Who};
-use crate::train::{Load, Measure, Store, Train, VariatorPath};
+use crate::train::{Load, Measure, Operation, Store, Train, VariatorPath};
 use crate::units::{self, Quantity, with_unit};
 use crate::work::{self, Cancelled, Effort, Work};
 
@@ -176,7 +179,7 @@ pub fn uncertainty(
     let plan = UncertaintyPlan::new(model, request)?;
     work.afford(&plan.effort())?;
     let evaluated = plan.evaluate_all(work)?;
-    Ok(UncertaintyAnswer { report: plan.finish(&evaluated), samples: plan.table(&evaluated) })
+    Ok(plan.answered(&evaluated))
 }
 
 /// Uncertain quantities, an operating point, and the points at which it is evaluated.
@@ -229,12 +232,14 @@ pub struct UncertaintyPlan<'s> {
     nominal_verdict: PointVerdict,
 }
 
-/// Values at some points.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// Values at some points. It can be sent to another machine and says the same there, bit for bit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct SampleResult {
     /// Of every point.
     verdicts: Vec<PointVerdict>,
     /// Of every point: one for each output; NaN where there is none.
+    #[serde(with = "bits")]
     values: Vec<f64>,
     seen: Seen,
 }
@@ -245,6 +250,19 @@ impl SampleResult {
         self.verdicts.extend(later.verdicts);
         self.values.extend(later.values);
         summary::join(&mut self.seen, &later.seen);
+    }
+}
+
+/// Numbers by their bits: text has no NaN, and programs differ in the last digit.
+mod bits {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(all: &[f64], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(all.iter().map(|x| x.to_bits()))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
+        Ok(Vec::<u64>::deserialize(from)?.into_iter().map(f64::from_bits).collect())
     }
 }
 
@@ -362,7 +380,8 @@ impl<'s> UncertaintyPlan<'s> {
     fn name_outputs(&mut self) {
         let train = self.question.model().train();
         self.outputs = vec![Column::number("efficiency", ""), Column::number("loss_w", "W")];
-        self.outputs.extend(KINDS.iter().map(|kind| Column::number(format!("{kind}_loss_w"), "W")));
+        let kinds = Losses::of_train(self.question.model().train());
+        self.outputs.extend(kinds.map(|k| Column::number(Losses::column(k), "W")));
         self.outputs.extend(sources(train).map(|name| Column::number(format!("{name}.total_loss_w"), "W")));
         let answer = PointAnswer::of(train, self.question.base());
         self.nominal = self.values(&answer);
@@ -461,13 +480,27 @@ impl<'s> UncertaintyPlan<'s> {
     /// The answer at a value of an axis: at a point, or with the file as written. A quantity that is itself the axis
     /// takes the axis' value.
     pub fn answer_along(&self, point: Option<usize>, axis: &Axis, k: usize, trains: &mut Trains) -> PointAnswer {
-        let mut settings = point.map_or_else(Vec::new, |p| self.settings_at(&self.design.at(p)));
-        settings.retain(|s| *s.0 != axis.target);
-        settings.push((&axis.target, axis.setting(k)));
-        match self.question.at(&settings, trains) {
+        match self.asked_along(point, axis, k, trains) {
             Ok((train, operation)) => PointAnswer::of(&train, &operation),
             Err(wrong) => PointAnswer::refused(wrong),
         }
+    }
+
+    /// What [`UncertaintyPlan::answer_along`] answers: the train and the operating point.
+    ///
+    /// # Errors
+    /// They are not possible with these values.
+    pub fn asked_along(
+        &self,
+        point: Option<usize>,
+        axis: &Axis,
+        k: usize,
+        trains: &mut Trains,
+    ) -> Result<(Arc<Train>, Operation), Diagnostics> {
+        let mut settings = point.map_or_else(Vec::new, |p| self.settings_at(&self.design.at(p)));
+        settings.retain(|s| *s.0 != axis.target);
+        settings.push((&axis.target, axis.setting(k)));
+        self.question.at(&settings, trains)
     }
 
     /// The values at every point.
@@ -475,14 +508,23 @@ impl<'s> UncertaintyPlan<'s> {
     /// # Errors
     /// The work was cancelled.
     pub fn evaluate_all(&self, work: &dyn Work) -> Result<SampleResult, Cancelled> {
+        self.evaluate_within(0..self.len(), work)
+    }
+
+    /// The values at a range of points, which `work` shares out.
+    ///
+    /// # Errors
+    /// The work was cancelled.
+    pub fn evaluate_within(&self, points: Range<usize>, work: &dyn Work) -> Result<SampleResult, Cancelled> {
         /// Points of a piece: whole groups, about so many points.
         const PIECE: usize = 64;
         let piece = self.group() * (PIECE / self.group()).max(1);
-        work.begin("points", self.len() as u64);
-        let parts = work::map(work, self.len().div_ceil(piece), |k| {
-            let points = k * piece..((k + 1) * piece).min(self.len());
-            let part = self.evaluate(points.clone(), &mut Trains::default());
-            work.advance(points.len() as u64);
+        work.begin("points", points.len() as u64);
+        let parts = work::map(work, points.len().div_ceil(piece), |k| {
+            let from = points.start + k * piece;
+            let own = from..(from + piece).min(points.end);
+            let part = self.evaluate(own.clone(), &mut Trains::default());
+            work.advance(own.len() as u64);
             part
         })?;
         let mut all = SampleResult::default();
@@ -490,8 +532,30 @@ impl<'s> UncertaintyPlan<'s> {
         Ok(all)
     }
 
+    /// The points of piece `k` of `n`, counted from 0: whole groups, as many in each piece as in any other or one more.
+    ///
+    /// # Panics
+    /// If `n` is 0 or `k` is not below it.
+    pub fn piece(&self, k: usize, n: usize) -> Range<usize> {
+        assert!(k < n, "piece {k} of {n}");
+        let groups = self.len().div_ceil(self.group());
+        // Wide enough for as many groups and pieces as there may be.
+        let at = |k: usize| (groups as u128 * k as u128 / n as u128) as usize * self.group();
+        at(k).min(self.len())..at(k + 1).min(self.len())
+    }
+
+    /// The answer from the values at all points, in their order; nothing if they are not those of this plan.
+    pub fn answer_of(&self, evaluated: &SampleResult) -> Option<UncertaintyAnswer> {
+        let fits = evaluated.verdicts.len() == self.len() && evaluated.values.len() == self.len() * self.outputs.len();
+        fits.then(|| self.answered(evaluated))
+    }
+
+    fn answered(&self, evaluated: &SampleResult) -> UncertaintyAnswer {
+        UncertaintyAnswer { report: self.finish(evaluated), samples: self.table(evaluated) }
+    }
+
     /// The values at a range of points.
-    pub fn evaluate(&self, points: std::ops::Range<usize>, trains: &mut Trains) -> SampleResult {
+    pub fn evaluate(&self, points: Range<usize>, trains: &mut Trains) -> SampleResult {
         let mut all = SampleResult::default();
         for point in points {
             let answer = self.answer(point, trains);
@@ -520,9 +584,9 @@ impl<'s> UncertaintyPlan<'s> {
         let Some(s) = answer.solution.as_ref().filter(|_| answer.is_unique()) else {
             return vec![f64::NAN; self.outputs.len()];
         };
-        let l: &Losses = &s.losses_w;
-        let mut values =
-            vec![answer.efficiency(), s.loss_w, l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator];
+        let mut values = vec![answer.efficiency(), s.loss_w];
+        let losses = s.losses_w.all();
+        values.extend(Losses::of_train(self.question.model().train()).map(|k| losses[k]));
         values.extend(sources(self.question.model().train()).map(|name| {
             let mut own = s.sources.iter().filter(|x| x.name == name).map(|x| x.loss_w).peekable();
             match own.peek() {
@@ -537,15 +601,15 @@ impl<'s> UncertaintyPlan<'s> {
     }
 }
 
-/// Losses by kind, in the order in which they are among the values.
-const KINDS: [&str; 6] = ["mesh", "bearing", "windage", "churning", "seal", "variator"];
-
 /// Names of what may lose power.
 fn sources(train: &Train) -> impl Iterator<Item = &str> {
     (train.meshes().iter().map(|m| m.name.as_str()))
         .chain(train.bearings.iter().map(|b| b.name.as_str()))
         .chain(train.seals.iter().map(|s| s.name.as_str()))
         .chain(train.rotors.iter().map(|r| r.name.as_str()))
+        .chain(train.drags.iter().map(|d| d.name.as_str()))
+        .chain(train.pumps.iter().map(|p| p.name.as_str()))
+        .chain(train.shift_elements.iter().filter(|e| e.open.is_some()).map(|e| e.name.as_str()))
         .chain(train.variators.iter().map(|v| v.name.as_str()))
 }
 

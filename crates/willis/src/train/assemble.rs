@@ -1,6 +1,8 @@
 //! From names and numbers to a checked [`Train`]: everything that is wrong is found in one pass.
 
 mod dynamic;
+mod hands;
+mod heat;
 mod physical;
 mod variator;
 
@@ -12,9 +14,9 @@ use crate::losses::Laws;
 use super::assembler::{Assembler, Load, check_name, check_text, unique};
 use super::described::{GivenFriction, GivenMesh, GivenSet, sign};
 use super::input::{Assembled, inputs};
-use super::physical::{BearingMount, Housing, Lubrication, Rotor, SealMount};
+use super::physical::{BearingMount, Housing, Lubrication, Rotor, SealMount, Teeth};
 use super::specification::field::{Field, Tabular};
-use super::specification::{OperationSpec, ShiftElementSpec, Specification, StateSpec, TerminalSpec};
+use super::specification::{Hand, OperationSpec, ShiftElementSpec, Specification, StateSpec, TerminalSpec};
 use super::words::clip;
 use super::{
     Efficiency, FRAME, Gear, Load as Prescribed, LossTable, Member, MemberId, MemberKind, Mesh, MeshId, Operation,
@@ -75,7 +77,9 @@ impl Assembler<'_> {
         let table = self.loss_table(spec, &name, place);
         let efficiency = table.as_ref().map(|(first, _)| first.clone()).or(given);
         let geometry = spec.geometry.as_ref().filter(|_| !spec.bevel && !alike && spec.loss_table.is_none());
+        let hand = geometry.and_then(|g| g.hand).map_or(0.0, Hand::sign);
         let teeth = geometry.and_then(|g| self.tooth_pair(g, gears_of_pair, &name, place));
+        let teeth = teeth.map(|t| Teeth { hand, ..t });
         let computed = efficiency.is_none() && teeth.is_some();
         if efficiency.is_some() && teeth.is_some() {
             self.given_efficiency(&name, place);
@@ -117,6 +121,7 @@ impl Assembler<'_> {
             efficiency: efficiency.unwrap_or_else(Efficiency::lossless),
             bevel: spec.bevel,
             count,
+            angle: spec.angle,
             set: None,
             computed,
             teeth: teeth.map(Box::new),
@@ -132,6 +137,7 @@ impl Assembler<'_> {
             );
         }
         let friction = self.friction(&GivenFriction::from(spec), place);
+        let at = place;
         let place = format!("{place}.members");
         let ids: Vec<_> =
             spec.members.iter().enumerate().map(|(k, m)| self.resolve(m, &format!("{place}[{k}]"))).collect();
@@ -165,6 +171,7 @@ impl Assembler<'_> {
             members,
             blocks: spec.blocks.map_or(-1, sign),
             friction,
+            open: spec.open.as_ref().and_then(|o| self.open_element(&o.twin(), &format!("{at}.open"))),
         })
     }
 
@@ -353,10 +360,25 @@ pub(super) fn assemble<'a>(
     let variators = a.variators(&spec.variator);
     let (shift_elements, states, operations) = a.shifting(spec, &variators);
     let (mut bearings, seals, rotors) = a.machinery(spec, &lubrication);
+    let pumps = a.each(&spec.pump, "pump", |a, p, place| a.pump(&p.twin(), place));
     a.surroundings(spec, &lubrication);
+    let makers = heat::Makers {
+        bearings: bearings.iter().map(|b| b.name.as_str()).collect(),
+        seals: seals.iter().map(|s| s.name.as_str()).collect(),
+        rotors: rotors.iter().map(|r| r.name.as_str()).collect(),
+        variators: variators.iter().map(|v| v.name.as_str()).collect(),
+    };
+    let loss_factors = a.loss_factors(spec.losses.as_ref().map(Tabular::twin).as_ref());
+    check_text(
+        &mut a,
+        "a text",
+        spec.losses.as_ref().and_then(|l| l.calibrated.as_deref()).unwrap_or(""),
+        "losses.calibrated",
+    );
+    let network = a.heat(spec.heat.as_ref(), lubrication.as_ref(), &makers);
     // An oil that is wrong was reported; it is not missing as well.
     if lubrication.is_some() || spec.oil.is_none() {
-        a.missing_for_losses(&lubrication, &bearings, &rotors);
+        a.missing_for_losses(&lubrication, &bearings, &rotors, &shift_elements, &pumps);
     }
     let (terminals, input, output) = a.terminals(spec, &states, &variators);
     let masses: Vec<(MemberId, f64)> = (sets.iter())
@@ -366,6 +388,8 @@ pub(super) fn assemble<'a>(
     let shifting = shift_elements.iter().flat_map(|e| e.members);
     let central: Vec<MemberId> = terminals.iter().copied().chain(shifting).collect();
     let planets = a.planet_bodies(&masses, &mut bearings, &central);
+    a.hands(!bearings.is_empty());
+    a.positions(&bearings);
 
     let mut inertias = a.inertias(&spec.inertias.plain());
     let of_planets = a.planet_inertias(&sets, &resolved_sets, &planets, &inertias, !spec.scenario.is_empty());
@@ -394,7 +418,7 @@ pub(super) fn assemble<'a>(
         loose_members(&mut a, touched);
     }
 
-    if a.diagnostics.iter().skip(before).any(|d| d.severity == crate::diagnostic::Severity::Error) {
+    if a.diagnostics.has_errors_since(before) {
         return None;
     }
     let assumptions = a.assumptions();
@@ -426,9 +450,12 @@ pub(super) fn assemble<'a>(
         lubrication,
         laws,
         housing,
+        heat: network,
+        loss_factors,
         bearings,
         seals,
         rotors,
+        pumps,
         planets,
         inertias,
         drags,
@@ -577,6 +604,7 @@ impl Assembler<'_> {
         let bearings = self.each(&spec.bearing, "bearing", |a, b, place| a.bearing(&b.twin(), place));
         let seals = self.each(&spec.seal, "seal", |a, s, place| a.seal(&s.twin(), place));
         let rotors = self.each(&spec.rotor, "rotor", |a, r, place| a.rotor(&r.twin(), place));
+        unique(self, "pump", "pump", spec.pump.iter().map(|r| r.name.as_str()));
         self.oil_of_seals(lubrication, &seals);
         (bearings, seals, rotors)
     }

@@ -33,6 +33,11 @@ pub(crate) struct Cell<'t> {
 }
 
 impl Row<'_> {
+    /// What separates the cells.
+    pub fn separator(&self) -> char {
+        char::from(self.separator)
+    }
+
     /// A finite number in a cell, as the train file would write it: with a decimal point.
     pub fn number(&self, cell: &str) -> Result<String, Unread> {
         // A true minus, as some programs write it.

@@ -87,6 +87,7 @@ pub(super) struct GivenMesh {
     pub bevel: bool,
     pub count: i64,
     pub geometry: Option<PlainGeometry>,
+    pub angle: Option<f64>,
     pub loss_table: Option<Vec<PlainLossRow>>,
 }
 
@@ -101,6 +102,7 @@ impl From<&MeshSpec> for GivenMesh {
             bevel: spec.kind == Some(PairKind::Bevel),
             count: spec.count.unwrap_or(1),
             geometry: spec.geometry.plain(),
+            angle: spec.angle.plain(),
             loss_table: spec.loss_table.plain(),
         }
     }

@@ -82,6 +82,8 @@ pub struct DragMount {
     pub torque: Curve,
     /// Viscous coefficient d, N m s/rad, of all places together.
     pub viscous: f64,
+    /// Identical places: the number of planets, else one.
+    pub places: u32,
     /// Torque at which it breaks away, over that at which it slides; at least 1.
     pub peak: f64,
 }

@@ -1,6 +1,9 @@
 //! Quantities of a train file by their path, and other values for them.
 
 mod parts;
+mod ramps;
+
+pub use ramps::Ramp;
 
 use toml_edit::{Array, DocumentMut, Formatted, InlineTable, Item, TableLike, Value};
 
@@ -47,6 +50,11 @@ pub struct Key {
 }
 
 impl Key {
+    /// Whether it is in a table of the file.
+    pub(crate) fn is_in(&self, table: &str) -> bool {
+        matches!(self.steps.first(), Some(Step::Key(name)) if name == table)
+    }
+
     /// Whether it is in an operation, scenario or study.
     pub(crate) fn is_of_a_question(&self) -> bool {
         matches!(self.steps.first(), Some(Step::Key(name)) if QUESTIONS.contains(&name.as_str()))

@@ -57,6 +57,7 @@ pub(super) fn expand(a: &mut Assembler<'_>, set: &GivenSet, planets: &[MemberId]
             same_sense: p.same_sense,
             bevel: p.bevel,
             count: count.unwrap_or(1),
+            angle: None,
             set: Some(index),
             computed: is_computed(set, &teeth),
             teeth: teeth.map(Box::new),

@@ -2,7 +2,7 @@
 
 use crate::diagnostic::{Code, Diagnostic};
 
-use super::{Operation, Scenario, State, Train};
+use super::{MemberId, Operation, Scenario, ShiftElementId, State, Train};
 
 /// Name of the train with nothing engaged, beside the states of its shift table.
 pub const AS_DRAWN: &str = "as drawn";
@@ -38,6 +38,48 @@ impl Train {
     pub fn find_operation(&self, name: &str) -> Result<&Operation, Box<Diagnostic>> {
         let found = self.operations.iter().find(|o| o.name == name);
         found.ok_or_else(|| missing("operation", name, self.operations.iter().map(|o| o.name.as_str())))
+    }
+
+    /// The member of that name.
+    ///
+    /// # Errors
+    /// There is none; what was meant is suggested.
+    ///
+    /// ```
+    /// use willis::train::{SetSpec, Train};
+    ///
+    /// let train = Train::builder("reducer")
+    ///     .members(["sun", "carrier"])
+    ///     .terminals(["sun", "carrier"])
+    ///     .set(SetSpec::simple("P1", ("sun", 30), ("frame", 70), "carrier").planet(20, 4).mesh_efficiency(0.99))
+    ///     .build()?;
+    /// assert!(train.find_member("carrier").is_ok());
+    /// assert_eq!(train.find_member("carier").unwrap_err().hints[0], "did you mean `carrier`?");
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn find_member(&self, name: &str) -> Result<MemberId, Box<Diagnostic>> {
+        self.member(name).ok_or_else(|| missing("member", name, self.members.iter().map(|m| m.name.as_str())))
+    }
+
+    /// The shift element of that name.
+    ///
+    /// # Errors
+    /// There is none; what was meant is suggested.
+    ///
+    /// ```
+    /// use willis::train::Train;
+    ///
+    /// let text = "format = 1\nname = \"pair\"\nmembers = [\"a\", \"b\"]\nterminals = [\"a\", \"b\"]\n\
+    ///             [[shift_element]]\nname = \"lock-up\"\nkind = \"clutch\"\nmembers = [\"a\", \"b\"]\n";
+    /// let train = Train::from_toml(text)?;
+    /// assert!(train.find_shift_element("lock-up").is_ok());
+    /// assert_eq!(train.find_shift_element("lockup").unwrap_err().hints[0], "did you mean `lock-up`?");
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn find_shift_element(&self, name: &str) -> Result<ShiftElementId, Box<Diagnostic>> {
+        let known = self.shift_elements.iter().map(|e| e.name.as_str());
+        let found = known.clone().position(|own| own == name).map(ShiftElementId);
+        found.ok_or_else(|| missing("shift element", name, known))
     }
 
     /// The scenario of that name.

@@ -4,11 +4,13 @@
 use crate::exact::Rational;
 
 use super::described::{GivenEfficiency, GivenGear, GivenMesh, GivenSet, Parts};
+use super::heat::HeatNumber;
 use super::specification::field::Tabular;
 use super::specification::{
-    EfficiencySpec, MachineEfficiencySpec, PlainGeometry, PlainTooth, SetEfficiencySpec, Specification, ToothSpec,
+    EfficiencySpec, MachineEfficiencySpec, PlainGeometry, PlainSurface, PlainTooth, SetEfficiencySpec, Specification,
+    ToothSpec,
 };
-use super::{BearingMount, Lubrication, Mesh, PlanetBody};
+use super::{BearingMount, LossPart, Lubrication, Mesh, OpenNumber, PlanetBody};
 
 /// A continuous number of the train file, or one that stands in for it.
 #[derive(Clone, Debug)]
@@ -44,6 +46,7 @@ pub(crate) enum Slot {
     Width(usize),
     PressureAngle(usize),
     Helix(usize),
+    Position(usize),
     CentreDistance(usize),
     YoungsModulus(usize),
     PoissonRatio(usize),
@@ -71,7 +74,18 @@ pub(crate) enum Slot {
     /// Diameter of the shaft.
     Seal(usize),
     Rotor(usize, RotorNumber),
+    /// Of a shift element that is open.
+    Open(usize, OpenNumber),
+    Pump(usize, PumpNumber),
+    /// Flow of a jet at a mesh (`true`), or its speed.
+    Jet(usize, bool),
+    /// Of a given drag: its viscous part (`true`), or the torque at any speed.
+    Drag(usize, bool),
     Mass(usize),
+    /// A factor on a kind of loss.
+    LossFactor(LossPart),
+    /// A number of what carries heat away.
+    Heat(HeatNumber),
 }
 
 /// A number of a bearing.
@@ -84,9 +98,21 @@ pub(crate) enum BearingNumber {
     StaticRating,
     AxialFactor,
     Span,
+    Position,
+    Clearance,
+    Friction,
     RadialLoad,
     AxialLoad,
     Level,
+}
+
+/// A number of an oil pump.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub(crate) enum PumpNumber {
+    Displacement,
+    Pressure,
+    Efficiency,
 }
 
 /// A number of a rotor.
@@ -137,6 +163,7 @@ pub(super) fn inputs(
     }
     list.oil(spec);
     list.machinery(spec);
+    list.heat(spec);
     list.variators(spec);
     list.all
 }
@@ -336,6 +363,9 @@ impl List<'_> {
             // Spur gears become helical in one direction only.
             ("helix", Some(g.helix()).filter(|b| *b != 0.0), "rad", Slot::Helix(j), true),
             ("centre_distance", g.centre_distance, "m", Slot::CentreDistance(j), true),
+            ("position", g.position, "m", Slot::Position(j), true),
+            ("jet_flow", g.jet_flow, "m^3/s", Slot::Jet(j, true), true),
+            ("jet_speed", g.jet_speed, "m/s", Slot::Jet(j, false), true),
             ("youngs_modulus", Some(g.youngs_modulus()), "Pa", Slot::YoungsModulus(j), g.youngs_modulus.is_some()),
             ("poisson_ratio", Some(g.poisson_ratio()), "-", Slot::PoissonRatio(j), g.poisson_ratio.is_some()),
         ] {
@@ -425,6 +455,9 @@ impl List<'_> {
                     ("static_rating", b.static_rating, "N", B::StaticRating),
                     ("axial_factor", b.axial_factor, "-", B::AxialFactor),
                     ("span", b.span, "m", B::Span),
+                    ("position", b.position, "m", B::Position),
+                    ("clearance", b.clearance, "m", B::Clearance),
+                    ("friction", b.friction, "-", B::Friction),
                     ("radial_load", b.radial_load, "N", B::RadialLoad),
                     ("axial_load", b.axial_load, "N", B::AxialLoad),
                     ("level", b.level, "m", B::Level),
@@ -433,6 +466,47 @@ impl List<'_> {
                         let path = format!("{}.{key}", b.name);
                         self.add(path, value, unit, false, Slot::Bearing(k, number));
                     }
+                }
+            }
+        }
+        for (k, p) in spec.pump.iter().map(Tabular::twin).enumerate() {
+            use PumpNumber as P;
+            for (key, value, unit, number) in [
+                ("displacement", Some(p.displacement), "m^3", P::Displacement),
+                ("pressure", Some(p.pressure), "Pa", P::Pressure),
+                ("efficiency", p.efficiency, "-", P::Efficiency),
+            ] {
+                if let Some(value) = value {
+                    self.add(format!("{}.{key}", p.name), value, unit, false, Slot::Pump(k, number));
+                }
+            }
+        }
+        for (k, e) in spec.shift_element.iter().enumerate() {
+            use super::OpenNumber as N;
+            let Some(o) = e.open.as_ref().map(|o| o.twin()) else { continue };
+            for (key, value, unit, number) in [
+                ("inner_radius", o.inner_radius, "m", N::InnerRadius),
+                ("outer_radius", o.outer_radius, "m", N::OuterRadius),
+                ("gap", o.gap, "m", N::Gap),
+                ("flow", o.flow, "m^3/s", N::Flow),
+                ("groove_share", o.groove_share, "-", N::GrooveShare),
+                ("groove_depth", o.groove_depth, "m", N::GrooveDepth),
+                ("drum_radius", o.drum_radius, "m", N::DrumRadius),
+                ("width", o.width, "m", N::Width),
+                ("wrap", o.wrap, "rad", N::Wrap),
+                ("wetted", o.wetted, "-", N::Wetted),
+                ("torque", o.torque, "N m", N::Torque),
+            ] {
+                if let Some(value) = value {
+                    self.add(format!("{}.open.{key}", e.name), value, unit, false, Slot::Open(k, number));
+                }
+            }
+        }
+        for (k, d) in spec.drag.iter().map(Tabular::twin).enumerate() {
+            let parts = [("coulomb", d.coulomb, "N m", false), ("viscous", d.viscous, "N m s/rad", true)];
+            for (key, value, unit, viscous) in parts {
+                if let Some(value) = value {
+                    self.add(format!("{}.{key}", d.name), value, unit, false, Slot::Drag(k, viscous));
                 }
             }
         }
@@ -450,6 +524,65 @@ impl List<'_> {
             ] {
                 self.add(format!("{}.{key}", r.name), value, "m", false, Slot::Rotor(k, number));
             }
+        }
+    }
+
+    fn heat(&mut self, spec: &Specification) {
+        if let Some(factors) = spec.losses.as_ref().and_then(|l| l.factor.as_ref()).map(Tabular::twin) {
+            for (part, value) in LossPart::ALL.into_iter().zip(factors.values()) {
+                if let Some(value) = value {
+                    self.add(format!("losses.factor.{}", part.key()), value, "-", false, Slot::LossFactor(part));
+                }
+            }
+        }
+        use HeatNumber as H;
+        let Some(h) = spec.heat.as_ref().map(Tabular::twin) else { return };
+        let mut add = |path: String, value: Option<f64>, unit: &'static str, number: H| {
+            if let Some(value) = value {
+                self.add(path, value, unit, false, Slot::Heat(number));
+            }
+        };
+        add("heat.ambient".into(), Some(h.ambient), "K", H::Fixed(super::heat::AMBIENT));
+        add("heat.extra_heat".into(), h.extra_heat, "W", H::ExtraHeat);
+        add("heat.factor".into(), h.factor, "-", H::Factor);
+        add("heat.oil_specific_heat".into(), h.oil_specific_heat, "J/(kg K)", H::SpecificHeat);
+        if let Some(c) = &h.cooler {
+            add("heat.cooler.inlet".into(), Some(c.inlet), "K", H::Inlet);
+            add("heat.cooler.flow".into(), c.flow, "m^3/s", H::Flow);
+            add("heat.cooler.effectiveness".into(), c.effectiveness, "-", H::Effectiveness);
+            add("heat.cooler.conductance".into(), c.conductance, "W/K", H::CoolerConductance);
+        }
+        let mut surface = |place: &str, s: &PlainSurface, k: usize| {
+            for (key, value, unit, number) in [
+                ("conductance", s.conductance, "W/K", H::Conductance(k)),
+                ("coefficient", s.coefficient, "W/(m^2 K)", H::Coefficient(k)),
+                ("area", s.area, "m^2", H::Area(k)),
+                // The sides of a box are an area too.
+                ("height", s.height.filter(|_| s.area.is_some()), "m", H::Height(k)),
+                ("emissivity", s.emissivity, "-", H::Emissivity(k)),
+                ("air_speed", s.air_speed, "m/s", H::AirSpeed(k)),
+                ("flow_length", s.flow_length, "m", H::FlowLength(k)),
+                ("air_share", s.air_share, "-", H::AirShare(k)),
+                ("fin_area", s.fin_area, "m^2", H::FinArea(k)),
+                ("fin_height", s.fin_height, "m", H::FinHeight(k)),
+                ("fin_thickness", s.fin_thickness, "m", H::FinThickness(k)),
+            ] {
+                add(format!("{place}.{key}"), value, unit, number);
+            }
+        };
+        if h.node.is_empty() && h.path.is_empty() {
+            let outer = usize::from(h.oil_area.is_some());
+            surface("heat", &h.surface, outer);
+            add("heat.oil_area".into(), h.oil_area, "m^2", H::Area(0));
+            add("heat.oil_coefficient".into(), h.oil_coefficient, "W/(m^2 K)", H::Coefficient(0));
+            add("heat.foundation".into(), h.foundation, "W/K", H::Conductance(outer + 1));
+            return;
+        }
+        for (k, p) in h.path.iter().enumerate() {
+            surface(&format!("heat.path.{k}"), &p.surface, k);
+        }
+        for (k, n) in h.node.iter().enumerate() {
+            add(format!("heat.node.{}.temperature", n.name), n.temperature, "K", H::Fixed(k + 2));
         }
     }
 }

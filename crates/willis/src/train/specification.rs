@@ -5,6 +5,7 @@
 
 mod dynamic;
 pub(super) mod field;
+mod heat;
 mod physical;
 mod set;
 mod variator;
@@ -14,7 +15,7 @@ use crate::exact::Rational;
 use crate::train::ShiftElementKind;
 use crate::train::format::keys::{Kind, Table};
 use crate::train::format::{Datum, Directed, Node};
-use crate::units::{AngularSpeed, Force, Length, MomentOfInertia, Power, Temperature, Torque};
+use crate::units::{Angle, AngularSpeed, Force, Length, MomentOfInertia, Power, Temperature, Torque};
 
 use field::{Field, Tabular, choice, specification};
 
@@ -25,11 +26,16 @@ pub use dynamic::{
 pub(super) use dynamic::{
     PlainControl, PlainController, PlainDrag, PlainLossRow, PlainPlanetBody, PlainScenario, PlainShaft, PlainSource,
 };
+pub use heat::{CoolerSpec, HeatNodeSpec, HeatPathSpec, HeatSpec, SurfaceSpec};
+pub(super) use heat::{PlainCooler, PlainHeat, PlainSurface};
 pub use physical::{
-    BearingSpec, Fluid, GeometrySpec, HousingSpec, LawsSpec, MeshStiffness, OilSpec, OilSupply, RotorSpec, SealSpec,
-    ToothSpec,
+    BearingSpec, Fluid, GeometrySpec, Hand, HousingSpec, JetSide, LawsSpec, LossFactorSpec, LossesSpec, MeshStiffness,
+    OilSpec, OilSupply, OpenSpec, PumpSpec, RotorSpec, SealSpec, ToothSpec,
 };
-pub(super) use physical::{PlainBearing, PlainGeometry, PlainHousing, PlainOil, PlainRotor, PlainSeal, PlainTooth};
+pub(super) use physical::{
+    PlainBearing, PlainGeometry, PlainHousing, PlainLossFactor, PlainLosses, PlainOil, PlainOpen, PlainPump,
+    PlainRotor, PlainSeal, PlainTooth,
+};
 pub use set::{
     BevelSpec, CentralSpec, DoublePlanetSpec, PlanetSpec, RavigneauxSpec, SetParts, SetSpec, Side, SideSpec,
     SimpleSpec, StepSpec, SteppedPlanetSpec, SteppedSpec,
@@ -339,7 +345,10 @@ specification! {
         /// Identical meshes in parallel. Default: 1.
         may count: Option<i64>,
         /// The teeth: module, width, angles. With an oil, losses are computed.
-        may geometry: Option<GeometrySpec>,
+        may geometry: Option<Box<GeometrySpec>>,
+        /// Direction from the axis of the first gear to that of the second, seen along the axes, from any direction that
+        /// all angles share. Default: not known, so forces of several meshes on a shaft are added by amount.
+        may angle: Option<Angle>,
         /// Efficiency and bearing torque over speed, instead of an efficiency; operating points use its first row.
         may loss_table: Option<Vec<LossRowSpec>>,
         /// Relative to the carrier. `same` for chains and for the second side gear of a bevel set.
@@ -370,6 +379,8 @@ specification! {
         may effective_radius: Option<Length>,
         /// Torque at which it breaks away over that at which it slides; at least 1. Default: 1.
         may peak: Option<f64>,
+        /// What it does while it is open: drag by its plates, or by a measured curve. Default: nothing.
+        may open: Option<Box<OpenSpec>>,
     }
 
     /// A row of the shift table.
@@ -474,14 +485,21 @@ specification! {
         may oil: Option<OilSpec>,
         /// Which law of each family is used; `willis laws` lists them.
         may laws: Option<LawsSpec>,
+        /// What tests say of the losses that the laws give.
+        may losses: Option<LossesSpec>,
         /// What surrounds the gears.
         may housing: Option<HousingSpec>,
+        /// What carries the heat of the losses away: operations without a temperature run at the oil temperature that
+        /// follows.
+        may heat: Option<HeatSpec>,
         /// Rolling bearings.
         may bearing: Vec<BearingSpec>,
         /// Radial lip seals.
         may seal: Vec<SealSpec>,
         /// Carriers and drums that drag the fluid around them.
         may rotor: Vec<RotorSpec>,
+        /// Oil pumps.
+        may pump: Vec<PumpSpec>,
         /// Moments of inertia of members about their axes; of planets, all of them together. Planets of sets may have
         /// theirs in the set.
         may inertias: Vec<(String, MomentOfInertia)>,
@@ -619,6 +637,13 @@ impl Specification {
         self
     }
 
+    /// Says what carries the heat of the losses away.
+    #[must_use]
+    pub fn heat(mut self, heat: HeatSpec) -> Self {
+        self.heat = Some(heat);
+        self
+    }
+
     /// Adds rolling bearings between two members.
     #[must_use]
     pub fn bearing(mut self, bearing: BearingSpec) -> Self {
@@ -630,6 +655,13 @@ impl Specification {
     #[must_use]
     pub fn seal(mut self, seal: SealSpec) -> Self {
         self.seal.push(seal);
+        self
+    }
+
+    /// Adds an oil pump that a member drives.
+    #[must_use]
+    pub fn pump(mut self, pump: PumpSpec) -> Self {
+        self.pump.push(pump);
         self
     }
 
@@ -725,7 +757,7 @@ impl MeshSpec {
     /// Gives its teeth, from which the loss is computed when no efficiency is given.
     #[must_use]
     pub fn geometry(mut self, geometry: GeometrySpec) -> Self {
-        self.geometry = Some(geometry);
+        self.geometry = Some(Box::new(geometry));
         self
     }
 

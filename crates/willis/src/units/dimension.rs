@@ -52,6 +52,19 @@ impl Dimension {
     /// N m s²/rad², torque over the square of angular speed
     pub const TORQUE_PER_SPEED_SQUARED: Self = Self([2, 1, 0, -2, 0]);
 
+    /// W/K
+    pub const CONDUCTANCE: Self = Self([2, 1, -3, 1, -1]);
+    /// W/(m² K)
+    pub const HEAT_TRANSFER: Self = Self([0, 1, -3, 1, -1]);
+    /// J/K
+    pub const HEAT_CAPACITY: Self = Self([2, 1, -2, 1, -1]);
+    /// J/(kg K)
+    pub const SPECIFIC_HEAT: Self = Self([2, 0, -2, 1, -1]);
+    /// m³/s
+    pub const FLOW: Self = Self([3, 0, -1, 0, 0]);
+    /// m/s
+    pub const SPEED: Self = Self([1, 0, -1, 0, 0]);
+
     /// What a person calls it, and an example that the reader accepts.
     pub fn describe(self) -> (&'static str, &'static str) {
         self.kind().map_or(("a quantity of another kind", ""), |k| (k.name, k.example))
@@ -134,4 +147,15 @@ pub(super) const KINDS: &[Kind] = &[
            example: "0.02 N m s^2/rad", units: &["N m s^2/rad", "kN m s^2/rad", "mN m s^2/rad"] },
     Kind { dimension: Dimension::TORQUE_PER_SPEED_SQUARED, name: "a torque over speed squared",
            example: "0.05 N m s^2/rad^2", units: &["N m s^2/rad^2", "mN m s^2/rad^2", "N m/rpm^2"] },
+    Kind { dimension: Dimension::CONDUCTANCE, name: "a thermal conductance", example: "45 W/K",
+           units: &["W/K", "kW/K"] },
+    Kind { dimension: Dimension::HEAT_TRANSFER, name: "a heat transfer coefficient", example: "15 W/(m^2 K)",
+           units: &["W/(m^2 K)", "kW/(m^2 K)"] },
+    Kind { dimension: Dimension::HEAT_CAPACITY, name: "a heat capacity", example: "60 kJ/K",
+           units: &["kJ/K", "J/K", "MJ/K", "W h/K"] },
+    Kind { dimension: Dimension::SPECIFIC_HEAT, name: "a specific heat", example: "1950 J/(kg K)",
+           units: &["J/(kg K)", "kJ/(kg K)"] },
+    Kind { dimension: Dimension::FLOW, name: "a volume flow", example: "6 l/min",
+           units: &["l/min", "m^3/s", "l/s", "m^3/h", "l/h", "cm^3/s"] },
+    Kind { dimension: Dimension::SPEED, name: "a speed", example: "1.4 m/s", units: &["m/s", "km/h", "ft/s"] },
 ];

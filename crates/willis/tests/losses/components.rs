@@ -703,3 +703,81 @@ fn churning_in_an_oil_ring_keeps_its_regime() {
     let (slow, fast) = (at(300.0), at(1200.0));
     assert!((slow / fast - 1.0).abs() < 0.5, "{slow} against {fast}");
 }
+
+// ---- Open elements, pumps, jets, plain bearings ------------------------------------------------------
+
+/// Closed forms of an open pack with one side at rest, computed apart: critical speed, peak, six speeds by three laws.
+#[test]
+fn val_open_pack_by_three_laws() {
+    use willis::losses::clutch_drag::{ClutchDrag, OpenPack};
+    let at = |law: &str, rpm: f64| {
+        let pack = OpenPack { speeds: [rpm * std::f64::consts::PI / 30.0, 0.0], ..OpenPack::typical() };
+        ClutchDrag::named(law).unwrap().eval(&pack)
+    };
+    for (rpm, full, rivulets, radius) in [
+        (100.0, 0.09015709134013983, 0.09015709134013983, 0.09015709134013983),
+        (300.0, 0.27047127402041954, 0.27047127402041954, 0.27047127402041954),
+        (470.0, 0.42373832929865735, 0.3931068865778369, 0.22631961007124846),
+        (500.0, 0.4507854567006992, 0.3695204733831668, 0.0),
+        (1000.0, 0.9015709134013984, 0.1847602366915834, 0.0),
+        (3000.0, 2.7047127402041955, 0.061586745563861116, 0.0),
+    ] {
+        close("full film", at("full-film", rpm), full, 1e-9);
+        close("rivulets", at("rivulets", rpm), rivulets, 1e-9);
+        assert!((at("equivalent-radius", rpm) - radius).abs() < 1e-9, "{rpm}");
+    }
+    close("peak", at("rivulets", 452.6935523762163), 0.40813533950634096, 1e-9);
+    // Plates that turn against each other keep their oil; those that turn together throw it out.
+    let two = |a: f64, b: f64| {
+        let pack = OpenPack { speeds: [a, b], ..OpenPack::typical() };
+        ClutchDrag::default().eval(&pack)
+    };
+    assert!(two(50.0, -50.0) > 3.0 * two(200.0, 100.0));
+    assert_eq!(two(70.0, 70.0), 0.0);
+    // Grooves take part of the shear and drain the gap.
+    let grooved = OpenPack { groove_share: 0.4, groove_depth: 0.4e-3, ..OpenPack::typical() };
+    let plain = OpenPack { ..OpenPack::typical() };
+    let shear = ClutchDrag::named("full-film").unwrap();
+    close("grooves", shear.eval(&grooved) / shear.eval(&plain), 0.6 + 0.4 / 3.0, 1e-12);
+}
+
+/// The theory of short bearings goes over into Petroff's without load, and never beyond the friction of a dry bush.
+#[test]
+fn plain_bearings_go_from_petroff_to_dry_friction() {
+    use willis::losses::plain_bearing::{Journal, PlainBearing};
+    let law = |name: &str, s: &Journal<f64>| PlainBearing::named(name).unwrap().eval(s);
+    let light = Journal { load: 1e-6, ..Journal::typical() };
+    close("light", law("ocvirk", &light), law("petroff", &light), 1e-6);
+    let mut last = 0.0;
+    for load in [1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6, 1e8] {
+        let s = Journal { load, ..Journal::typical() };
+        let m = law("ocvirk", &s);
+        assert!(
+            m.is_finite() && m >= last && m <= law("boundary-friction", &s).max(4.0 * law("petroff", &s)),
+            "{load} {m}"
+        );
+        last = m;
+    }
+    // The derivative by the load is that of the torque.
+    let slope = |f: f64| {
+        let s = |load| Journal { load, ..Journal::typical() };
+        let h = 1e-4 * f;
+        let numeric = (law("ocvirk", &s(f + h)) - law("ocvirk", &s(f - h))) / (2.0 * h);
+        let c = num_dual::Dual64::from;
+        let t = Journal::typical();
+        let dual = Journal {
+            speed: c(t.speed),
+            diameter: c(t.diameter),
+            width: c(t.width),
+            clearance: c(t.clearance),
+            load: num_dual::Dual64::new(f, 1.0),
+            viscosity: c(t.viscosity),
+            friction: c(t.friction),
+        };
+        (numeric, PlainBearing::default().eval(&dual).eps)
+    };
+    for f in [10.0, 500.0, 5000.0] {
+        let (numeric, exact) = slope(f);
+        assert!((numeric - exact).abs() < 1e-4 * exact.abs(), "{f}: {numeric} {exact}");
+    }
+}

@@ -1822,7 +1822,8 @@ fn val_losses_go_on_over_every_boundary_but_those_without_relative_motion() {
 #[test]
 fn val_losses_of_the_examples_go_on_over_boundaries_by_the_solver() {
     let mut compared = 0;
-    for (name, mut text, train) in examples() {
+    // Regimes are those of the teeth alone; drags would take their part of an operating point.
+    for (name, mut text, train) in examples().into_iter().filter(|e| e.2.drags().is_empty()) {
         for atlas in atlases(&train) {
             if atlas.base_speeds.len() != 2 || atlas.independent_torques != 1 {
                 continue;

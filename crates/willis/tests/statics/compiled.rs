@@ -467,3 +467,36 @@ fn laws_that_cannot_be() {
         assert_eq!(code(&train, &[("P1", law)]), Code::OutOfRange);
     }
 }
+
+/// Powers that floating point cannot hold give no efficiency, never an infinite one.
+#[test]
+fn powers_beyond_floating_point_have_no_efficiency() {
+    for (ring, speeds) in [("frame", vec!["s"]), ("r", vec!["s", "c"])] {
+        let train = Train::builder("set")
+            .members(["s", "r", "c"])
+            .terminals(if ring == "r" { vec!["s", "r", "c"] } else { vec!["s", "c"] })
+            .set(SetSpec::simple("P1", ("s", 30), (ring, 70), "c").planet(20, 4).mesh_efficiency(0.99))
+            .build()
+            .expect("a train");
+        let compiled = train.compile(&Duty::new(speeds.clone(), ["s"]).output(Output::Efficiency)).expect("a duty");
+        let mut work = compiled.workspace();
+        for torque in [1.0, 1e300, 5.5e307, 1e308, f64::MAX, -5.5e307] {
+            for speed in [1.0, 1e-3, 1e3, -1.0] {
+                let mut out = [0.0; 1];
+                let at = [speed, 0.4 * speed];
+                compiled.evaluate(&at[..speeds.len()], &[torque], &mut work, &mut out);
+                assert!(out[0].is_nan() || (0.0..=1.0).contains(&out[0]), "{ring} {torque} {speed}: {}", out[0]);
+                assert!(torque.abs() > 1e299 || out[0] > 0.0 || speed < 0.0);
+                let (columns, torques) = (at.map(|w| [w; 3]), [[torque; 3]]);
+                let given: Vec<&[f64]> = columns[..speeds.len()].iter().map(|c| &c[..]).collect();
+                let mut batch = [0.0; 3];
+                let points = Points { speeds: &given, torques: &[&torques[0]] };
+                compiled.evaluate_batch(&points, &mut work, &mut [&mut batch]);
+                for e in batch {
+                    assert!(e.is_nan() || (0.0..=1.0).contains(&e), "{ring} {torque} {speed}: {batch:?}");
+                    assert!(torque.abs() > 1e299 || (e - out[0]).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}

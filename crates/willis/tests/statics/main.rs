@@ -3,10 +3,12 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod at_load;
 mod compiled;
 mod degenerate;
 mod echo;
 mod flow;
+mod loads;
 mod operating_point;
 mod properties;
 mod speeds;

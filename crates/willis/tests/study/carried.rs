@@ -38,7 +38,7 @@ fn generated() -> Vec<(&'static str, String)> {
         format!("shift = 0.0, dedendum = 1.25, roughness = '0.5 um', immersion = '3 mm', {tip}")
     };
     let geometry = "{ module = '4 mm', width = '50 mm', pressure_angle = '20 deg', helix = '0 deg', double_helical = true, \
-                    addendum = 1.0, dedendum = 1.25, roughness = '0.6 um', youngs_modulus = '206 GPa', poisson_ratio = 0.3, mesh_stiffness = 'iso-6336', external_mesh_stiffness = '18 N/(mm um)', internal_mesh_stiffness = '19 N/(mm um)' }";
+                    addendum = 1.0, dedendum = 1.25, roughness = '0.6 um', youngs_modulus = '206 GPa', poisson_ratio = 0.3, hand = 'right', position = '5 mm', jet_flow = '0.3 l/min', jet_speed = '5 m/s', jet_side = 'out-of-mesh', mesh_stiffness = 'iso-6336', external_mesh_stiffness = '18 N/(mm um)', internal_mesh_stiffness = '19 N/(mm um)' }";
     let apart = |distance: f64| geometry.replace(" }", &format!(", centre_distance = '{distance} mm' }}"));
     let body = |orbit: f64| format!("mass = '0.4 kg', inertia = '2e-4 kg m^2', orbit_radius = '{orbit} mm'");
     let oil = "[oil]\nname = 'own'\nbase = 'pao'\ndensity_15 = '880 kg/m^3'\npressure_viscosity = '18 1/GPa'\n\
@@ -46,12 +46,14 @@ fn generated() -> Vec<(&'static str, String)> {
     let two = "viscosity_40 = '100 mm^2/s'\nviscosity_100 = '11 mm^2/s'\n";
     let physical = "[laws]\nmesh_friction = 'schlenk'\nfriction_coefficient = 0.06\nloss_factor = 'ohlendorf'\n\
         load_sharing = 'uniform'\nfilm = 'dowson-higginson'\nfilm_reduction = 'gupta-cheng'\nrolling = 'none'\n\
-        bearing = 'palmgren'\nwindage = 'dawson-1984'\nchurning = 'changenet-2011'\nseal = 'iso-14179-2'\nrotor_drag = 'bilgen-boulos-daily-nece'\n\
+        bearing = 'palmgren'\nwindage = 'dawson-1984'\nchurning = 'changenet-2011'\nseal = 'iso-14179-2'\nrotor_drag = 'bilgen-boulos-daily-nece'\nclutch_drag = 'full-film'\npump = 'wilson'\ninjection = 'ariura'\nplain_bearing = 'petroff'\n\
         [housing]\nenclosure = 0.8\naxial_gap = '30 mm'\n\
         [[bearing]]\nname = 'planets'\nmembers = ['P.planet', 'carrier']\ndesignation = 'NU 206'\ncount = 2\nspan = '20 mm'\n\
         [[bearing]]\nname = 'sun'\nmembers = ['sun']\nkind = 'tapered-roller'\nseries = '302'\nbore = '50 mm'\n\
         outside_diameter = '90 mm'\nwidth = '21.75 mm'\nstatic_rating = '100 kN'\naxial_factor = 1.4\nshaft_diameter = '50 mm'\n\
-        radial_load = '400 N'\naxial_load = '300 N'\nsupply = 'bath'\nlevel = '4 mm'\n\
+        radial_load = '400 N'\naxial_load = '300 N'\nposition = '40 mm'\nlocates = true\nsupply = 'bath'\nlevel = '4 mm'\n\
+        [[bearing]]\nname = 'bush'\nmembers = ['carrier']\nkind = 'plain'\nbore = '60 mm'\nwidth = '40 mm'\nclearance = '0.1 mm'\nfriction = 0.1\n\
+        [[pump]]\nname = 'pump'\nmember = 'carrier'\ndisplacement = '10 cm^3'\npressure = '5 bar'\nefficiency = 0.8\n\
         [[seal]]\nname = 'in'\nmembers = ['sun']\ndiameter = '50 mm'\nmaterial = 'nbr'\ncount = 2\n\
         [[rotor]]\nname = 'drum'\nmember = 'carrier'\nradius = '130 mm'\nlength = '110 mm'\nradial_gap = '12 mm'\n\
         axial_gap = '15 mm'\nfluid = 'mist'\n";
@@ -67,9 +69,11 @@ fn generated() -> Vec<(&'static str, String)> {
         )
     };
     let dynamic = "[[shift_element]]\nname = 'B'\nkind = 'brake'\nmembers = ['ring']\ncapacity = '80 N m'\npeak = 1.2\n\
+        open = { surfaces = 6, inner_radius = '60 mm', outer_radius = '75 mm', gap = '0.3 mm', flow = '0.2 l/min', groove_share = 0.2, groove_depth = '0.4 mm' }\n\
+        [[shift_element]]\nname = 'D'\nkind = 'brake'\nmembers = ['ring']\nopen = { drum_radius = '80 mm', width = '40 mm', wrap = '300 deg', gap = '0.5 mm', wetted = 0.7 }\n\
         [[shift_element]]\nname = 'C'\nkind = 'clutch'\nmembers = ['sun', 'carrier']\nfriction = 0.12\nnormal_force = '5 kN'\n\
-        effective_radius = '190 mm'\n\
-        [[shift_element]]\nname = 'F'\nkind = 'one-way'\nmembers = ['ring']\nblocks = 'backward'\n\
+        effective_radius = '190 mm'\nopen = { curve = [['0 rpm', '0 N m'], ['300 rpm', '0.5 N m']], temperature = '70 degC' }\n\
+        [[shift_element]]\nname = 'F'\nkind = 'one-way'\nmembers = ['ring']\nblocks = 'backward'\nopen = { torque = '0.2 N m' }\n\
         [[state]]\nname = '1'\nengaged = ['B']\ninput = 'sun'\noutput = 'carrier'\n\
         [[drag]]\nname = 'd'\nmembers = ['sun']\ncoulomb = '3 N m'\nviscous = '0.1 N m s/rad'\npeak = 1.1\n\
         [[drag]]\nname = 't'\nmembers = ['carrier']\ntable = [['0 rpm', '1 N m'], ['100 rpm', '2 N m']]\n\
@@ -134,7 +138,7 @@ fn generated() -> Vec<(&'static str, String)> {
         let [a, b] = [88.0, 168.0].map(|d| tooth(Some(d).filter(|_| tip)));
         format!(
             "[[mesh]]\nname = 'G'\ngears = [{{ member = 'sun', teeth = 20, internal = false, {a} }}, {{ member = 'lay', teeth = 40, \
-             {b} }}]\ncarrier = 'frame'\ncount = 2\ngeometry = {}\n\
+             {b} }}]\ncarrier = 'frame'\ncount = 2\nangle = '30 deg'\ngeometry = {}\n\
              [[mesh]]\nname = 'R'\ngears = [{{ member = 'lay', teeth = 20 }}, {{ member = 'mid', teeth = 60, internal = true }}]\n\
              efficiency = 0.98\n\
              [[mesh]]\nname = 'H'\ngears = [{{ member = 'mid', teeth = 20 }}, {{ member = 'end', teeth = 40 }}]\nkind = 'bevel'\n\
@@ -158,6 +162,30 @@ fn generated() -> Vec<(&'static str, String)> {
         [[variator]]\nname = 'path'\nkind = 'electric'\nstore = '0 W'\nstandby = '0 W'\n\
         machines = [{ name = 'a', member = 'sun', efficiency = { motoring = 0.9, generating = 0.88 }, torque = '100 N m', \
         power = '10 kW', speed = '6000 rpm' }, { name = 'b', member = 'ring', efficiency = 0.9 }]\n";
+    let surface = "area = '0.6 m^2'\nheight = '0.3 m'\nemissivity = 0.9\nair_speed = '1.5 m/s'\nflow_length = '0.5 m'\n\
+        air_share = 0.8\nfin_area = '0.2 m^2'\nfin_height = '20 mm'\nfin_thickness = '4 mm'\n";
+    let sides = "length = '0.5 m'\nwidth = '0.4 m'\nheight = '0.3 m'\nsurroundings = 'hall'\n";
+    let losses = "[losses]\ncalibrated = 'tests'\n[losses.factor]\nteeth = 1.1\nbearing_load = 0.9\nbearing_no_load = 1.2\n\
+        seal = 0.8\nchurning = 0.7\nwindage = 1.3\nrotor = 1.4\n[losses.spread]\nteeth = 0.1\nbearing_load = 0.2\n\
+        bearing_no_load = 0.3\nseal = 0.2\nchurning = 0.3\nwindage = 0.4\nrotor = 0.5\n";
+    let heat = "[heat]\nambient = '20 degC'\nlimit = '90 degC'\nstart = '10 degC'\nextra_heat = '50 W'\nfactor = 1.1\n";
+    let housing = format!(
+        "{heat}oil_area = '0.4 m^2'\noil_coefficient = '150 W/(m^2 K)'\nfoundation = '5 W/K'\nheat_capacity = '18 kJ/K'\n\
+         housing_heat_capacity = '42 kJ/K'\noil_specific_heat = '2000 J/(kg K)'\n{surface}\
+         cooler = {{ inlet = '30 degC', flow = '6 l/min', effectiveness = 0.5, opens = '50 degC', open = '58 degC' }}\n"
+    );
+    let masses = format!(
+        "{heat}oil_area = '0.4 m^2'\nmass = '20 kg'\nhousing_mass = '80 kg'\n{sides}\
+         cooler = {{ inlet = '30 degC', conductance = '40 W/K' }}\n"
+    );
+    let coefficient = format!("{heat}area = '0.6 m^2'\ncoefficient = '15 W/(m^2 K)'\n");
+    let network = format!(
+        "{heat}[[heat.node]]\nname = 'gear'\nparts = ['sun']\nheat_capacity = '2 kJ/K'\n\
+         [[heat.node]]\nname = 'case'\nmass = '50 kg'\n[[heat.node]]\nname = 'floor'\ntemperature = '15 degC'\n\
+         [[heat.path]]\nbetween = ['oil', 'gear']\nconductance = '20 W/K'\n\
+         [[heat.path]]\nbetween = ['oil', 'case']\narea = '0.4 m^2'\ncoefficient = '200 W/(m^2 K)'\n\
+         [[heat.path]]\nbetween = ['case', 'ambient']\n{surface}[[heat.path]]\nbetween = ['case', 'floor']\n{sides}"
+    );
     let tips = [Some(76.0), Some(96.0), Some(236.0)];
     let held = simple([None; 3], &apart(78.0)).replace("'frame'", "'ring'");
     vec![
@@ -180,6 +208,11 @@ fn generated() -> Vec<(&'static str, String)> {
         ("mesh", head("'sun', 'lay', 'mid', 'end', 'carrier'") + oil + two + &mesh(false)),
         ("mesh, tips", head("'sun', 'lay', 'mid', 'end', 'carrier'") + oil + two + &mesh(true)),
         ("variators", head("'sun', 'carrier', 'ring'") + variators),
+        ("heat, housing", head(ends) + losses + &housing + &plain + "basic_efficiency = 0.97\n"),
+        ("heat, masses", head(ends) + &masses + &plain + "basic_efficiency = 0.97\n"),
+        ("heat, coefficient", head(ends) + &coefficient + &plain + "basic_efficiency = 0.97\n"),
+        ("heat, conductance", head(ends) + heat + "conductance = '45 W/K'\n" + &plain + "basic_efficiency = 0.97\n"),
+        ("heat, network", head(ends) + &network + &plain + "basic_efficiency = 0.97\n"),
     ]
 }
 
@@ -551,7 +584,7 @@ fn an_inertia_behind_an_elastic_shaft_is_told() {
     }
 }
 
-/// An open clutch that drags with 3 N m: the amount is told where it is missing, and the numbers are those without it.
+/// An open clutch that drags with 3 N m: either it is in the numbers, or the amount is told and they are those without it.
 #[test]
 fn the_drag_of_an_open_clutch_is_told_with_its_amount() {
     let plain = example("zf-8hp70");
@@ -566,12 +599,15 @@ fn the_drag_of_an_open_clutch_is_told_with_its_amount() {
             assert!(text.contains("BearingFriction friction_open_E(useSupport=true, tau_pos=[0, 3; 1, 3])"), "{text}");
             continue;
         }
+        if moved(&out, &made(&without, kind, &request)) {
+            assert_eq!(told(&out, "drag.coulomb"), None, "{kind}");
+            continue;
+        }
         assert_eq!(told(&out, "drag.coulomb"), Some((&["open E".to_owned()][..], &["3 N m".to_owned()][..])), "{kind}");
         // Whose it is goes with it.
         assert_eq!(told(&out, "drag.members"), None);
         assert!(out.notes.iter().any(|n| n.contains("drag.coulomb (open E: 3 N m)")), "{kind}: {:?}", out.notes);
         assert!(kind == "csv" || text.contains("drag.coulomb (open E: 3 N m)"), "{kind}: {text}");
-        assert!(!moved(&out, &made(&without, kind, &request)), "{kind}");
     }
 }
 

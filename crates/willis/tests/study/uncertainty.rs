@@ -8,6 +8,7 @@ use willis::study::{
     Design, Distribution, PointVerdict, SampleResult, Statistics, Trains, Uncertainty, UncertaintyPlan,
     UncertaintyRequest, WarningKind, standard_normal_quantile,
 };
+use willis::work::Serial;
 
 use crate::common::example;
 
@@ -388,6 +389,20 @@ fn the_same_seed_gives_the_same_bytes_however_it_is_cut() {
     }
     assert_eq!(whole, parts);
     assert_eq!(plan.finish(&whole), plan.finish(&parts));
+    // Pieces for other machines, more of them than there are groups included; sent as text.
+    for n in [1, 2, 7, plan.len() + 3] {
+        let (mut sent, mut next) = (SampleResult::default(), 0);
+        for k in 0..n {
+            let points = plan.piece(k, n);
+            assert!(points.start == next && points.start.is_multiple_of(plan.group()), "{k} of {n}: {points:?}");
+            next = points.end;
+            let text = serde_json::to_string(&plan.evaluate_within(points, &Serial).unwrap()).unwrap();
+            sent.join(serde_json::from_str(&text).unwrap());
+        }
+        assert_eq!((next, format!("{sent:?}")), (plan.len(), format!("{whole:?}")), "{n}");
+        assert_eq!(plan.answer_of(&sent).unwrap().report, plan.finish(&whole));
+    }
+    assert!(plan.answer_of(&plan.evaluate(0..plan.len() - 1, &mut Trains::default())).is_none());
     let again = found(PHYSICAL, &vary, 128, 9);
     assert_eq!(again, plan.finish(&whole));
     assert_ne!(found(PHYSICAL, &vary, 128, 10).outputs, again.outputs);

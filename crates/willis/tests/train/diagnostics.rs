@@ -205,6 +205,8 @@ fn regress_every_code_has_a_case() {
     // have `what_is_wrong_with_an_axis_is_told` in study.rs, E211 has `a_sweep_that_is_stopped_says_so` there, E212
     // `what_would_take_long_is_refused_before_it_begins` in tests/study.
     // W320 needs a table: `a_map_is_read_where_the_machine_runs` in tests/statics/variators.rs.
+    // W322 has `what_cannot_be_right_is_said_with_its_numbers` in tests/statics.
+    // W331 needs laws: `several_temperatures_are_told` in tests/heat.
     // W318 needs a tolerance: `measured_speeds_are_taken_within_a_tolerance` in tests/statics.
     let elsewhere = [
         Code::Unreadable,
@@ -215,6 +217,8 @@ fn regress_every_code_has_a_case() {
         Code::TooLong,
         Code::SpeedsYield,
         Code::OutsideMap,
+        Code::SeveralTemperatures,
+        Code::Implausible,
     ];
     let missing: Vec<_> =
         Code::ALL.iter().filter(|c| !elsewhere.contains(c) && !COVERED.contains(c)).map(|c| c.as_str()).collect();
@@ -605,6 +609,8 @@ cases! {
     regress_w317_no_agreement: NotConverged, RESTLESS;
 
     // N404 GivenEfficiency
+    regress_w330: NoHeatBalance, and(REDUCER, "[heat]\nambient = \"20 degC\"\nconductance = \"0.1 W/K\"");
+    regress_n405: HeatStep, and(REDUCER, "[heat]\nambient = \"20 degC\"\nconductance = \"0.2 W/K\"\n[heat.cooler]\ninlet = \"20 degC\"\nconductance = \"1 W/K\"\nopens = \"60 degC\"\nopen = \"333.1500000001 K\"");
     regress_n404_set: GivenEfficiency, with(TOOTHED, "carrier = \"carrier\"", "carrier = \"carrier\"\nmesh_efficiency = 0.99");
     regress_n404_mesh: GivenEfficiency, with(PAIR, "efficiency = 0.98", "efficiency = 0.98\ngeometry = { module = \"2 mm\", width = \"20 mm\" }");
 

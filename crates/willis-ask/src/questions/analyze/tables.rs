@@ -37,6 +37,13 @@ fn states(a: &Analysis) -> Table {
             ("verdict_coasting", Text),
             ("certified_driving", Flag),
             ("certified_coasting", Flag),
+            ("operation", Text),
+            ("speed_rad_s", Number),
+            ("torque_n_m", Number),
+            ("temperature_k", Number),
+            ("efficiency_at_load", Number),
+            ("loss_at_load_w", Number),
+            ("spin_loss_w", Number),
         ],
     );
     for (name, s) in a.ratios.iter() {
@@ -56,6 +63,13 @@ fn states(a: &Analysis) -> Table {
             word(&s.coast.verdict).into(),
             certified(&s.drive).into(),
             certified(&s.coast).into(),
+            s.at_load.as_ref().and_then(|a| a.operation.clone()).into(),
+            s.at_load.as_ref().map(|a| a.speed_rad_s).into(),
+            s.at_load.as_ref().map(|a| a.torque_n_m).into(),
+            s.at_load.as_ref().and_then(|a| a.temperature_k).into(),
+            s.at_load.as_ref().and_then(|a| a.efficiency).into(),
+            s.at_load.as_ref().and_then(|a| a.loss_w).into(),
+            s.at_load.as_ref().and_then(|a| a.spin_loss_w).into(),
         ]);
     }
     t

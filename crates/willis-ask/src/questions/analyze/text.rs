@@ -2,13 +2,13 @@
 
 use comfy_table::CellAlignment;
 use willis::analysis::{
-    Analysis, CertificateReport, Direction, Margin, MemberReport, OperationReport, Role, SolutionReport, StateReport,
-    VariatorReport, Verdict,
+    Analysis, AtLoad, CertificateReport, Direction, Margin, MemberReport, OperationReport, Role, SolutionReport,
+    StateReport, VariatorReport, Verdict,
 };
 use willis::statics::Certificate;
 use willis::train::Train;
 
-use crate::questions::losses;
+use crate::questions::{heat, losses};
 use crate::style::{bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
 
 pub fn analysis(train: &Train, a: &Analysis) -> String {
@@ -76,7 +76,12 @@ fn shift_table(a: &Analysis) -> String {
     if steps {
         header.push("step");
     }
-    header.extend(["η driving", "η coasting", "verdict driving / coasting"]);
+    header.extend(["η driving", "η coasting"]);
+    let loaded = rows.iter().any(|(_, s)| s.at_load.is_some());
+    if loaded {
+        header.extend(["η at load", "spin loss W"]);
+    }
+    header.push("verdict driving / coasting");
     let columns = header.len();
     set_header(&mut t, &header);
     for (name, s) in rows {
@@ -95,6 +100,11 @@ fn shift_table(a: &Analysis) -> String {
         }
         row.push(efficiency_cell(&s.drive));
         row.push(efficiency_cell(&s.coast));
+        if loaded {
+            let at = s.at_load.as_deref();
+            row.push(at.map_or("-".into(), at_load_cell));
+            row.push(at.and_then(|a| a.spin_loss_w).map_or("-".into(), |w| significant(w, 4)));
+        }
         row.push(verdicts(s));
         t.add_row(row);
     }
@@ -103,6 +113,7 @@ fn shift_table(a: &Analysis) -> String {
         t.column_mut(k).expect("it was just added").set_cell_alignment(CellAlignment::Right);
     }
     out += &show(&t);
+    out += &loads(a);
     if rows.iter().any(|(_, s)| proved(&s.drive) || proved(&s.coast)) {
         out += &dim("proved: exactly one equilibrium exists whatever the load (certificate)");
         out.push('\n');
@@ -114,12 +125,57 @@ fn shift_table(a: &Analysis) -> String {
                 out += &format!("{name}, {way}: {reason}: η = {}\n", all.join(" or "));
             }
         }
+        if let Some(why) = s.at_load.as_deref().and_then(AtLoad::without_output) {
+            out += &wrap(&format!("{name}, at load: {why}"), "");
+            out.push('\n');
+        }
         if let Some(why) = &s.no_ratio {
             out += &wrap(&format!("{name}: {why}"), "");
             out.push('\n');
         }
     }
     out
+}
+
+/// Speed and torque of a load, and whose they are.
+pub fn load(a: &AtLoad) -> String {
+    a.point(|x| significant(x, 5), |operation| format!("`{operation}`"))
+}
+
+/// Efficiency at load, or why there is none, in a word; marked where there is a warning.
+pub fn at_load_cell(a: &AtLoad) -> String {
+    let mark = if a.warnings.is_empty() { "" } else { " *" };
+    a.efficiency.map_or(a.verdict.words().to_owned(), percent) + mark
+}
+
+/// The warnings that the mark stands for.
+pub fn starred(warnings: &[&str]) -> String {
+    warnings.iter().map(|text| dim(&wrap(text, "* ")) + "\n").collect()
+}
+
+/// At which load losses were computed beside the nominal efficiencies.
+fn loads(a: &Analysis) -> String {
+    let all = || a.ratios.iter().filter_map(|(_, s)| s.at_load.as_deref());
+    let mut told: Vec<String> = vec![];
+    for a in all() {
+        let oil = a.temperature_k.map_or(String::new(), |t| {
+            let limit = if a.beyond_limit { " (the limit: no balance below it)" } else { "" };
+            format!(", oil at {:.1} °C{limit}", t - 273.15)
+        });
+        let text = load(a) + &oil;
+        if !told.contains(&text) {
+            told.push(text);
+        }
+    }
+    if told.is_empty() {
+        return String::new();
+    }
+    let text = format!("at load: {}; η driving and coasting: of the teeth alone", told.join("; "));
+    let warnings = match (a.warnings_at_load(), all().any(|a| !a.warnings.is_empty())) {
+        (own, true) if own.is_empty() => dim("* with a warning, which stands at the operations") + "\n",
+        (own, _) => starred(&own),
+    };
+    dim(&wrap(&text, "")) + "\n" + &warnings
 }
 
 fn efficiency_cell(d: &Direction) -> String {
@@ -181,6 +237,9 @@ fn operation(o: &OperationReport) -> String {
     if let Some(reason) = &o.reason {
         out += &wrap(reason, "               ");
         out.push('\n');
+    }
+    if let Some(heat) = &o.heat {
+        out += &heat::of_report(heat);
     }
     if o.solutions.is_empty() && o.dissipative_solutions.is_empty() {
         let mut t = table();

@@ -71,9 +71,9 @@ pub fn tables(c: &Comparison) -> Vec<Table> {
                 ("equal", Integer),
                 ("mean", Number),
                 ("most_better", Number),
-                ("at", Text),
+                ("most_better_at", Text),
                 ("most_worse", Number),
-                ("at", Text),
+                ("most_worse_at", Text),
             ],
         );
         for p in &m.pairs {

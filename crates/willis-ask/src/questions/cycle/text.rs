@@ -56,6 +56,20 @@ pub fn text(r: &CycleReport, profile: &str) -> String {
     for note in &r.notes {
         out += &(wrap(note, "  ! ") + "\n");
     }
+    if let Some(oil) = &r.oil {
+        let celsius = |k: Option<f64>| k.map_or("-".to_owned(), |k| format!("{:.1}", k - 273.15));
+        let text = match &oil.why_not {
+            None => format!(
+                "{} °C on average when the cycle repeats itself ({} to {} °C; limit {} °C), at which every row is computed",
+                celsius(oil.mean_k),
+                celsius(oil.lowest_k),
+                celsius(oil.highest_k),
+                celsius(Some(oil.limit_k))
+            ),
+            Some(why) => format!("each row at its own steady temperature, because {why}"),
+        };
+        out += &(wrap(&text, "oil: ") + "\n");
+    }
     out.push('\n');
     let or_none = |e: Option<f64>| e.map_or("-".into(), percent);
     match r.efficiency {

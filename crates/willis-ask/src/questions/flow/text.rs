@@ -62,6 +62,9 @@ fn graph(g: &Hypergraph) -> String {
         Some(_) => "none: no power leaves, all of it is lost".into(),
         None => "none: no power enters".into(),
     };
+    if let Some(member) = &g.seen_from {
+        out += &format!("  seen from    {member}: speeds and powers are less by its own speed\n");
+    }
     out += &format!("  efficiency   {efficiency}\n");
     out += &format!(
         "  power        in {}, out {}, lost {}; balance closes to {:.1e} W\n",
@@ -196,6 +199,9 @@ fn kind(n: &Node) -> String {
         NodeKind::Seal => "seal",
         NodeKind::Gear => "gear in fluid",
         NodeKind::Rotor => "rotor in fluid",
+        NodeKind::Drag => "given drag",
+        NodeKind::OpenElement => "open clutch or brake",
+        NodeKind::Pump => "oil pump",
         NodeKind::Coupling => "coupled for good",
         NodeKind::Variator => "variator",
         _ => "clutch or brake",

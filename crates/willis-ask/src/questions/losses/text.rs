@@ -1,6 +1,6 @@
 //! Losses for eyes and as a table.
 
-use willis::analysis::{LossPoint, LossTable, Named, SolutionReport, Verdict};
+use willis::analysis::{LossPoint, LossTable, Losses, Named, SolutionReport, Verdict};
 use willis::operating_point::{BearingReport, ContactReport, Regime};
 
 use crate::style::{bar, bold, dim, percent, plural, right, rpm, set_header, show, significant, table, wrap};
@@ -53,7 +53,21 @@ fn contacts(all: &Named<ContactReport>) -> String {
     let mut t = table();
     set_header(
         &mut t,
-        &["tooth contact", "µ", "H_V", "ε_α", "ε_β", "F_t N", "v_t m/s", "v_slide m/s", "p_H MPa", "h µm", "λ", "film"],
+        &[
+            "tooth contact",
+            "µ",
+            "H_V",
+            "ε_α",
+            "ε_β",
+            "F_t N",
+            "v_t m/s",
+            "v_slide m/s",
+            "p_H MPa",
+            "h µm",
+            "λ",
+            "film",
+            "backlash µm",
+        ],
     );
     for (name, c) in all.iter() {
         let or_dash = |x: Option<f64>, digits| x.map_or("-".into(), |x| significant(x, digits));
@@ -70,9 +84,11 @@ fn contacts(all: &Named<ContactReport>) -> String {
             or_dash(c.film_m.map(|h| h * 1e6), 3),
             or_dash(c.film_ratio, 3),
             c.regime.map_or("-", Regime::words).into(),
+            if c.backlash_m == 0.0 { "0".into() } else { significant(c.backlash_m * 1e6, 3) },
         ]);
     }
     right(&mut t, 1..11);
+    right(&mut t, 12..13);
     show(&t)
 }
 
@@ -166,9 +182,11 @@ fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
             header.push("µ");
         }
     }
-    let split = group.iter().any(|p| p.losses_w.variator != 0.0);
-    header.extend(["mesh W", "bearing W", "windage W", "churning W", "seal W"]);
-    header.extend(split.then_some("variator W"));
+    // The first five have a column in any case.
+    let shown: Vec<usize> =
+        (0..Losses::NAMES.len()).filter(|k| *k < 5 || group.iter().any(|p| p.losses_w.all()[*k] != 0.0)).collect();
+    let titles: Vec<String> = shown.iter().map(|k| format!("{} W", Losses::NAMES[*k].replace('-', " "))).collect();
+    header.extend(titles.iter().map(String::as_str));
     header.extend(["loss W", "η", "verdict"]);
     set_header(&mut t, &header);
     for p in group {
@@ -191,9 +209,8 @@ fn group_table(all: &LossTable, group: &[LossPoint]) -> String {
                 });
             }
         }
-        let l = &p.losses_w;
-        let kinds = [l.mesh, l.bearing, l.windage, l.churning, l.seal].into_iter();
-        for x in kinds.chain(split.then_some(l.variator)) {
+        let losses = p.losses_w.all();
+        for x in shown.iter().map(|k| losses[*k]) {
             row.push(if x == 0.0 { "-".into() } else { significant(x, 4) });
         }
         row.push(significant(p.loss_w, 5));
@@ -267,6 +284,10 @@ pub fn table_of(all: &LossTable) -> Table {
             ("windage_loss_w", Number),
             ("churning_loss_w", Number),
             ("seal_loss_w", Number),
+            ("drag_loss_w", Number),
+            ("shift_element_loss_w", Number),
+            ("injection_loss_w", Number),
+            ("pump_loss_w", Number),
             ("variator_loss_w", Number),
             ("converged", Flag),
             ("warnings", Text),
@@ -292,6 +313,10 @@ pub fn table_of(all: &LossTable) -> Table {
             l.windage.into(),
             l.churning.into(),
             l.seal.into(),
+            l.drag.into(),
+            l.shift_element.into(),
+            l.injection.into(),
+            l.pump.into(),
             l.variator.into(),
             p.convergence.is_none_or(|c| c.converged).into(),
             warnings.join("; ").into(),

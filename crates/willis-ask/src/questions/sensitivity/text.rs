@@ -30,6 +30,9 @@ fn operation(o: &OperationSensitivity) -> String {
     let efficiency = o.efficiency.map_or("-".to_owned(), percent);
     let loss = format!("{} W of {} W", significant(o.loss_w, 5), significant(o.input_power_w, 6));
     out += &format!("  {:<12} {efficiency}, {loss} lost\n", "efficiency");
+    if let Some(oil) = o.oil_k {
+        out += &format!("  {:<12} {:.1} °C\n", "oil", oil - 273.15);
+    }
     if let Some(margin) = &o.margin {
         let near = margins(margin);
         let none = format!("  {:<12} no other regime and no locking was found near\n", "margin");
@@ -39,19 +42,25 @@ fn operation(o: &OperationSensitivity) -> String {
         out += "  nothing that the file gives moves a loss here: the train is lossless, or unloaded\n";
     } else {
         let mut t = table();
-        set_header(&mut t, &["quantity", "value", "step", "η points", "loss W", "% per %", "moves most"]);
+        let follows = o.quantities.iter().any(|q| q.oil_change_k.is_some());
+        let mut header = vec!["quantity", "value", "step", "η points", "loss W", "% per %"];
+        header.extend(follows.then_some("oil K"));
+        header.push("moves most");
+        set_header(&mut t, &header);
         for q in &o.quantities {
-            t.add_row([
+            let mut row = vec![
                 q.name.clone() + if q.assumed { " *" } else { "" },
                 value(q),
                 q.step.label().into(),
                 q.efficiency_change.map_or("-".into(), |x| change(100.0 * x)),
                 change(q.loss_change_w),
                 q.loss_elasticity.map_or("-".into(), change),
-                moves(q),
-            ]);
+            ];
+            row.extend(follows.then(|| q.oil_change_k.map_or("-".into(), change)));
+            row.push(moves(q));
+            t.add_row(row);
         }
-        right(&mut t, 1..6);
+        right(&mut t, 1..header.len() - 1);
         out += &show(&t);
     }
     if o.quantities.iter().any(|q| q.assumed) {

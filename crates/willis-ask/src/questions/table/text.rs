@@ -1,8 +1,10 @@
 //! Speeds and torques of a shift table, for eyes.
 
-use willis::analysis::{ShaftState, ShaftTable};
+use willis::analysis::{AtLoad, Losses, ShaftState, ShaftTable};
 use willis::exact::Rational;
+use willis::operating_point::LossKind;
 
+use crate::questions::analyze::{at_load_cell, load, starred};
 use crate::style::{bold, dim, percent, right, rpm, set_header, show, significant, table, wrap};
 
 /// A cell of what is not known.
@@ -113,6 +115,7 @@ pub fn text(all: &ShaftTable, speed: Option<f64>) -> String {
         });
         factor(found.or(if s.efficiency.is_some() { Some(0.0) } else { None }))
     });
+    out += &at_load(states);
     for (name, s) in states {
         if let Some(reason) = &s.reason {
             out += &wrap(&format!("{name}: {reason}"), "");
@@ -120,4 +123,85 @@ pub fn text(all: &ShaftTable, speed: Option<f64>) -> String {
         }
     }
     out + "\n"
+}
+
+/// Losses at a load and without one; nothing where they depend on neither.
+fn at_load(states: &[(String, ShaftState)]) -> String {
+    let all: Vec<(&str, &AtLoad)> =
+        states.iter().filter_map(|(n, s)| Some((n.as_str(), &**s.at_load.as_ref()?))).collect();
+    let Some((_, first)) = all.first() else { return String::new() };
+    let one = all.iter().all(|(_, a)| (a.speed_rad_s, a.torque_n_m) == (first.speed_rad_s, first.torque_n_m));
+    let watts = |x: Option<f64>| x.map_or(UNKNOWN.into(), |x| significant(x, 4));
+    let limit = |a: &AtLoad| if a.beyond_limit { "> " } else { "" };
+    let celsius = |a: &AtLoad| a.temperature_k.map(|t| format!("{}{:.1}", limit(a), t - 273.15));
+    let warm = all.iter().any(|(_, a)| a.temperature_k.is_some());
+    let kinds = |of: &dyn Fn(&AtLoad) -> Option<Losses>| -> Vec<usize> {
+        let own = |k: &usize| all.iter().any(|(_, a)| of(a).is_some_and(|l| l.all()[*k] != 0.0));
+        (0..Losses::NAMES.len()).filter(own).collect()
+    };
+    let matrix = |title: &str, loaded: bool, of: &dyn Fn(&AtLoad) -> Option<Losses>| {
+        let kinds = kinds(of);
+        let mut header = vec!["state".to_owned()];
+        if loaded && !one {
+            header.extend(["rpm".to_owned(), "N m".to_owned()]);
+        }
+        if loaded && warm {
+            header.push("oil °C".into());
+        }
+        if loaded {
+            header.push("η".into());
+        }
+        header.push("loss W".into());
+        header.extend(kinds.iter().map(|k| Losses::NAMES[*k].to_owned()));
+        let elements = if loaded { vec![] } else { open_elements(&all) };
+        header.extend(elements.iter().cloned());
+        let mut t = table();
+        set_header(&mut t, &header.iter().map(String::as_str).collect::<Vec<_>>());
+        for (name, a) in &all {
+            let mut row = vec![(*name).to_owned()];
+            if loaded && !one {
+                row.extend([significant(rpm(a.speed_rad_s), 5), significant(a.torque_n_m, 4)]);
+            }
+            if loaded && warm {
+                row.push(celsius(a).unwrap_or(UNKNOWN.into()));
+            }
+            if loaded {
+                row.push(at_load_cell(a));
+            }
+            row.push(watts(if loaded { a.loss_w } else { a.spin_loss_w }));
+            row.extend(kinds.iter().map(|k| watts(of(a).map(|l| l.all()[*k]))));
+            row.extend(elements.iter().map(|e| drag(a, e).map_or(NOTHING.into(), |w| watts(Some(w)))));
+            t.add_row(row);
+        }
+        right(&mut t, 1..header.len());
+        format!("\n{}\n{}", bold(title), show(&t))
+    };
+    let at = if one { load(first) } else { "the load of each input".to_owned() };
+    let mut out = matrix(&format!("Losses at {at}"), true, &|a| a.losses_w);
+    out += &matrix("Spin losses: the same speed and oil, nothing at the output", false, &|a| a.spin_losses_w);
+    out += &starred(&AtLoad::warnings_of(all.iter().map(|(_, a)| *a)));
+    for (name, a) in &all {
+        if let Some(reason) = a.without_output() {
+            out += &wrap(&format!("{name}, at load: {reason}"), "");
+            out.push('\n');
+        }
+    }
+    out
+}
+
+/// Open shift elements whose drag is known, in any state.
+fn open_elements(all: &[(&str, &AtLoad)]) -> Vec<String> {
+    let mut names: Vec<String> = vec![];
+    for source in all.iter().flat_map(|(_, a)| &a.spin_sources).filter(|s| s.kind == LossKind::ShiftElement) {
+        if !names.contains(&source.name) {
+            names.push(source.name.clone());
+        }
+    }
+    names
+}
+
+/// What one of them takes without load, W.
+fn drag(a: &AtLoad, element: &str) -> Option<f64> {
+    let own = a.spin_sources.iter().find(|s| s.kind == LossKind::ShiftElement && s.name == element);
+    own.map(|s| s.loss_w)
 }

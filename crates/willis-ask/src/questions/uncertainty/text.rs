@@ -31,7 +31,10 @@ impl<'a> Shown<'a> {
             "loss_w" => "loss".into(),
             name => match name.strip_suffix(".total_loss_w") {
                 Some(source) => format!("  {source}"),
-                None => name.replace("_loss_w", " loss"),
+                None => match name.strip_suffix("_loss_w") {
+                    Some(kind) => kind.replace('_', " ") + " loss",
+                    None => name.to_owned(),
+                },
             },
         }
     }

@@ -161,7 +161,9 @@ pub fn shape(kind: NodeKind, x: f64, y: f64) -> Group {
         NodeKind::Teeth => g.add(polygon(&[(0.0, -R - 1.0), (R + 1.0, R - 2.0), (-R - 1.0, R - 2.0)])),
         NodeKind::Seal => g.add(polygon(&[(-s, -s), (s, -s), (s, s), (-s, s)])),
         NodeKind::Gear => g.add(polygon(&[(0.0, -R), (R, 0.0), (0.0, R), (-R, 0.0)])),
-        NodeKind::Rotor => g.add(polygon(&[(0.0, -R), (R, 0.0), (0.0, R), (-R, 0.0)])).add(ring(INK, 1.4)),
+        NodeKind::Drag | NodeKind::OpenElement | NodeKind::Pump | NodeKind::Rotor => {
+            g.add(polygon(&[(0.0, -R), (R, 0.0), (0.0, R), (-R, 0.0)])).add(ring(INK, 1.4))
+        }
         NodeKind::ShiftElement => g
             .add(rectangle(x - R, y - R, 2.0 * R, 2.0 * R, PAPER))
             .add(line((x - 3.5, y - R - 1.0), (x - 3.5, y + R + 1.0), INK, 3.0))

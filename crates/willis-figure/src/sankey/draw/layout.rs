@@ -77,22 +77,23 @@ pub struct Frame {
 
 impl Frame {
     /// For a panel of a screen: names, losses and what goes round, as wide as the panel if that suffices, and no higher than it
-    /// where the powers can be drawn that small.
-    pub fn of_panel(flows: &[&SankeyFlow], [width, height]: [f64; 2]) -> Self {
+    /// where the powers can be drawn that small. Losses are so many times wider than power, or as wide as they can be seen.
+    pub fn of_panel(flows: &[&SankeyFlow], [width, height]: [f64; 2], losses: Option<f64>) -> Self {
         let full = flows.iter().map(|f| Layout::scale_of(f)).fold(f64::INFINITY, f64::min);
-        let mut frame = Self::brief(flows, full, width);
+        let mut frame = Self::brief(flows, full, width, losses);
         for part in [0.8, 0.64, 0.5, 0.4, 0.3, 0.22] {
             let tall = flows.iter().map(|f| Layout::within(f, &frame, &mut BTreeMap::new()).height).fold(0.0, f64::max);
             if tall <= height {
                 break;
             }
-            frame = Self::brief(flows, part * full, width);
+            frame = Self::brief(flows, part * full, width, losses);
         }
         frame
     }
 
-    fn brief(flows: &[&SankeyFlow], scale: f64, width: f64) -> Self {
-        let widened = flows.iter().map(|f| Layout::widening(f, scale)).fold(WIDER[WIDER.len() - 1], f64::min);
+    fn brief(flows: &[&SankeyFlow], scale: f64, width: f64, losses: Option<f64>) -> Self {
+        let seen = || flows.iter().map(|f| Layout::widening(f, scale)).fold(WIDER[WIDER.len() - 1], f64::min);
+        let widened = losses.unwrap_or_else(seen);
         let [mut rooms, tight] = BRIEF.map(|spacing| Self::rooms(flows, scale, widened, spacing, true));
         if spread(&rooms).1 > width {
             rooms = tight;

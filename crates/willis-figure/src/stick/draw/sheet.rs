@@ -1,7 +1,7 @@
 //! The page of a stick diagram: where it is drawn, and which members are listed in which colour.
 
-use crate::parts::style::{BOLD, INK, colour, wide};
-use crate::{Columns, Drawing, Place, Stick};
+use crate::parts::style::{BOLD, INK, colour, fit, wide};
+use crate::{Columns, Drawing, GearRole, Place, Stick, StickGear};
 
 /// Left and right of the grid on a screen.
 const MARGIN: f64 = 168.0;
@@ -107,8 +107,67 @@ impl<'a> Sheet<'a> {
         (((self.width - 56.0) / self.list + 1e-9) as usize).max(1)
     }
 
+    /// The members that are listed, in the columns of the list, each with its parts in as many lines as they need.
+    pub fn list_of_members(&self) -> Vec<Vec<(usize, Vec<String>)>> {
+        let all: Vec<(usize, Vec<String>)> = self.listed().into_iter().map(|k| (k, self.parts(k))).collect();
+        let needed: usize = all.iter().map(|m| m.1.len()).sum();
+        let filled = |rows: usize| {
+            let mut columns: Vec<Vec<(usize, Vec<String>)>> = vec![];
+            let mut left = 0;
+            for member in &all {
+                if left < member.1.len() {
+                    columns.push(vec![]);
+                    left = rows;
+                }
+                left = left.saturating_sub(member.1.len());
+                columns.last_mut().expect("the first has no room left").push(member.clone());
+            }
+            columns
+        };
+        let most = self.list_columns();
+        let least = needed.div_ceil(most).max(1);
+        (least..=needed.max(1)).map(filled).find(|c| c.len() <= most).unwrap_or_default()
+    }
+
+    /// Rows of the list, its head included.
     pub fn list_rows(&self) -> usize {
-        self.listed().len().div_ceil(self.list_columns()) + 1
+        let rows = |column: &Vec<(usize, Vec<String>)>| column.iter().map(|m| m.1.len()).sum::<usize>();
+        self.list_of_members().iter().map(rows).max().unwrap_or(0) + 1
+    }
+
+    /// Where the parts of a member stand in its column, right of its name.
+    pub fn parts_at(&self) -> f64 {
+        // Names, parts and speeds share a narrow column.
+        182.0 - 0.45 * (LIST[0] - self.list)
+    }
+
+    /// Whether there are speeds to be listed.
+    pub fn speeds(&self) -> bool {
+        self.listed().into_iter().filter(|&k| self.data.members[k].speed_ratio.is_some()).count() > 1
+    }
+
+    /// What a member is made of, in lines: its gears, and the blocks whose planets it carries.
+    fn parts(&self, k: usize) -> Vec<String> {
+        let block = |b: usize| self.data.blocks[b].name.as_str();
+        let gears = self.data.gears.iter().filter(|g| g.member == Some(k));
+        let mut all: Vec<String> = gears.map(|g| format!("{} {}", role(g), block(g.block))).collect();
+        all.extend(self.data.members[k].carries.iter().map(|&b| format!("carrier {}", block(b))));
+        all.dedup();
+        let room = self.list - self.parts_at() - if self.speeds() { 98.0 } else { 24.0 };
+        let mut lines = vec![String::new()];
+        for (nth, part) in all.iter().enumerate() {
+            let part = if nth + 1 < all.len() { format!("{part},") } else { part.clone() };
+            let last = lines.last_mut().expect("never empty");
+            if last.is_empty() {
+                *last = part;
+            } else if wide(last, 11.0) + wide(" ", 11.0) + wide(&part, 11.0) <= room {
+                *last += " ";
+                *last += &part;
+            } else {
+                lines.push(part);
+            }
+        }
+        lines.into_iter().map(|l| fit(&l, room, 11.0)).collect()
     }
 
     pub fn ink(&self, member: Option<usize>) -> String {
@@ -126,4 +185,15 @@ fn categories(data: &Stick) -> Vec<Option<usize>> {
         joined || data.terminals.iter().any(|t| t.member == k) || !data.members[k].carries.is_empty()
     };
     data.members.iter().enumerate().map(|(k, m)| (!m.planet || led_out(k)).then_some(m.colour)).collect()
+}
+
+/// What a gear is called in lists.
+pub fn role(g: &StickGear) -> &'static str {
+    match g.role {
+        GearRole::Sun => "sun",
+        GearRole::Planet => "planet",
+        GearRole::Ring => "ring",
+        GearRole::Side => "side gear",
+        _ => "gear",
+    }
 }

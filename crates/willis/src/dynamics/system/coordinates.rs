@@ -44,27 +44,12 @@ impl Coordinates {
     /// The prescribed speeds and as many of the wished, then of all, as are independent; if the prescribed ones are
     /// not, the first of them that depend on each other.
     fn choose(c: &Configuration<'_>, prescribed: &[MemberId], wish: &[MemberId]) -> Result<Self, Vec<MemberId>> {
-        let freedoms = c.degrees_of_freedom();
-        let mut chosen: Vec<MemberId> = Vec::new();
-        let independent = |set: &[MemberId]| c.transfer(set).conflicts.is_empty();
-        for &m in prescribed {
-            chosen.push(m);
-            if !independent(&chosen) {
-                return Err(chosen);
-            }
-        }
         let all = (1..c.train.members().len()).map(MemberId);
-        for m in wish.iter().copied().chain(all) {
-            if chosen.len() == freedoms {
-                break;
-            }
-            if chosen.contains(&m) || c.inner[m.0] {
-                continue;
-            }
-            chosen.push(m);
-            if !independent(&chosen) {
-                chosen.pop();
-            }
+        let order: Vec<MemberId> = prescribed.iter().chain(wish).copied().chain(all).collect();
+        let mut chosen = c.settling(&order);
+        // They are its first ones where they are independent.
+        if let Some(tied) = (0..prescribed.len()).find(|&k| chosen.get(k) != Some(&prescribed[k])) {
+            return Err(prescribed[..=tied].to_vec());
         }
         // Prescribed speeds come last.
         chosen.rotate_left(prescribed.len());

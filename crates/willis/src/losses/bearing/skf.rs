@@ -316,6 +316,8 @@ fn geometry<D: Real>(s: &BearingDuty<D>, k: &SkfConstants, dm: Inner<D>, n: D) -
             real::min(pow(fr, 0.54) * fixed(dm.powf(1.97) * r1), pow(fr, 0.31) * fixed(dm.powf(2.37) * r2)),
             real::min(pow(fr, 5.0 * third) * fixed(dm.powf(-0.19) * s1), fr * fixed(dm.powf(1.05) * s2)),
         ),
+        // It has no constants of this model, and never comes here.
+        Kind::Plain => (D::from(0.0), D::from(0.0)),
         Kind::AxialBall => (pow(fa, 0.54) * fixed(dm.powf(1.83) * r1), pow(fa, 4.0 * third) * fixed(dm.powf(0.05) * s1)),
         Kind::AxialCylindricalRoller => (pow(fa, 0.31) * fixed(dm.powf(2.38) * r1), fa * fixed(dm.powf(0.62) * s1)),
         Kind::CylindricalRoller | Kind::FullComplementCylindricalRoller | Kind::NeedleRoller => {

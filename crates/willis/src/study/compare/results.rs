@@ -254,13 +254,17 @@ fn solution_facts(s: &SolutionReport, all: &mut Vec<Fact>) {
             s.meshes.iter().map(|(name, m)| fact(format!("loss in {name}"), ComparedUnit::Watt, Some(m.loss_w))),
         );
     } else {
-        let Losses { mesh, bearing, windage, churning, seal, variator } = s.losses_w;
-        for (name, loss) in
-            [("meshes", mesh), ("bearings", bearing), ("windage", windage), ("churning", churning), ("seals", seal)]
-                .into_iter()
-                .chain((!s.variators.is_empty()).then_some(("variators", variator)))
-        {
-            all.push(fact(format!("loss in all {name}"), ComparedUnit::Watt, Some(loss)));
+        for (k, (name, loss)) in Losses::NAMES.iter().zip(s.losses_w.all()).enumerate() {
+            // The first five stand in every answer, the others where there are any.
+            if k < 5 || loss != 0.0 || (*name == "variator" && !s.variators.is_empty()) {
+                let all_of = match *name {
+                    "mesh" => "meshes",
+                    "windage" | "churning" | "injection" => name,
+                    "shift-element" => "open shift elements",
+                    other => &format!("{other}s"),
+                };
+                all.push(fact(format!("loss in all {all_of}"), ComparedUnit::Watt, Some(loss)));
+            }
         }
         for x in &s.sources {
             let kind = EnergyKind::from(x.kind).name();

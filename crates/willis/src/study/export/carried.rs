@@ -47,6 +47,8 @@ fn is_train(key: &[&str], kind: KeyKind) -> bool {
         ["set" | "mesh", "efficiency" | "mesh_efficiency" | "basic_efficiency", ..] => true,
         ["mesh", "gears", "teeth" | "internal"] | ["mesh", "sense" | "kind"] => true,
         ["shift_element", "kind" | "blocks"] => true,
+        // Where heat is made joins no shafts.
+        ["heat", "node", "parts"] => false,
         _ => matches!(kind, KeyKind::Name | KeyKind::Names),
     }
 }
@@ -279,6 +281,7 @@ fn others(key: &[&str], kind: KeyKind, value: &Value) -> Vec<Value> {
             all.dedup();
             texts(all)
         }
+        (["heat", "node", "parts"], ..) => vec![Value::Array(vec![])],
         (_, KeyKind::Choice(all), _) => texts(all.to_vec()),
         (_, _, Value::Bool(is)) => vec![Value::from(!is)],
         (_, KeyKind::Integer, Value::Number(n)) => {

@@ -200,7 +200,7 @@ pub(super) fn write(train: &Train, request: &Asked) -> Result<Export, Diagnostic
     if !missing.is_empty() {
         notes.push(format!("not in the file, parameters without a value: {}", missing.join(", ")));
     }
-    if train.is_physical() {
+    if train.has_laws() {
         notes.push(
             "tooth losses are computed at operating points: the model has nominal efficiencies, and no bearings, seals \
              or drag; modelica-loss-table has the computed losses of the whole gear"

@@ -4,8 +4,10 @@ use num_dual::Dual64;
 
 use crate::catalogue::oil::Viscosity;
 use crate::geometry::{Pair, PairData, Tip};
-use crate::operating_point::{MountNumbers, Numbers, OilState, RotorNumbers, VariatorNumbers};
-use crate::train::{BearingNumber, RotorNumber, Slot, Teeth, Train, steel_mass};
+use crate::operating_point::{
+    DragNumbers, MountNumbers, Numbers, OilState, PumpNumbers, RotorNumbers, VariatorNumbers,
+};
+use crate::train::{BearingNumber, Jet, LossPart, PumpNumber, RotorNumber, Slot, Teeth, Train, steel_mass};
 
 /// A number that nothing depends on.
 fn constant(value: f64) -> Dual64 {
@@ -28,6 +30,13 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[Slot]) -
             pair: Pair::new(&pair_data(&t.pair.data, j, &seeded)).ok()?,
             roughness: [0, 1].map(|k| seeded(Slot::Roughness(j, k), t.roughness[k])),
             immersion: [0, 1].map(|k| t.immersion[k].map(|depth| seeded(Slot::Immersion(j, k), depth))),
+            jet: t.jet.map(|jet| Jet {
+                flow: seeded(Slot::Jet(j, true), jet.flow),
+                speed: seeded(Slot::Jet(j, false), jet.speed),
+                side: jet.side,
+            }),
+            hand: t.hand,
+            position: t.position.map(|x| seeded(Slot::Position(j), x)),
             youngs_modulus: seeded(Slot::YoungsModulus(j), t.youngs_modulus),
             poisson_ratio: seeded(Slot::PoissonRatio(j), t.poisson_ratio),
             stiffness: t.stiffness,
@@ -56,6 +65,9 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[Slot]) -
             MountNumbers {
                 data,
                 span: own.span.map(|x| of(B::Span, x)),
+                position: own.position.map(|x| of(B::Position, x)),
+                clearance: of(B::Clearance, own.clearance),
+                friction: of(B::Friction, own.friction),
                 radial_load: of(B::RadialLoad, own.radial_load),
                 axial_load: of(B::AxialLoad, own.axial_load),
                 level: own.level.map(|x| of(B::Level, x)),
@@ -114,9 +126,31 @@ pub(super) fn numbers(train: &Train, temperature: Option<f64>, slots: &[Slot]) -
                 }
             })
             .collect(),
+        open: (plain.open.iter().enumerate())
+            .map(|(k, open)| open.as_ref().map(|o| o.lift(&|number, value| seeded(Slot::Open(k, number), value))))
+            .collect(),
+        pumps: (plain.pumps.iter().enumerate())
+            .map(|(k, p)| {
+                let of = |number: PumpNumber, value: f64| seeded(Slot::Pump(k, number), value);
+                PumpNumbers {
+                    displacement: of(PumpNumber::Displacement, p.displacement),
+                    pressure: of(PumpNumber::Pressure, p.pressure),
+                    efficiency: p.efficiency.map(|x| of(PumpNumber::Efficiency, x)),
+                }
+            })
+            .collect(),
+        drags: (plain.drags.iter().zip(&train.drags).enumerate())
+            .map(|(k, (own, mount))| {
+                // The file has what one place exerts.
+                let n = f64::from(mount.places);
+                let of = |viscous: bool, value: f64| seeded(Slot::Drag(k, viscous), value / n) * n;
+                DragNumbers { coulomb: own.coulomb.map(|c| of(false, c)), viscous: of(true, own.viscous) }
+            })
+            .collect(),
         planets,
         enclosure: plain.enclosure.map(|x| seeded(Slot::Enclosure, x)),
         axial_gap: plain.axial_gap.map(|x| seeded(Slot::AxialGap, x)),
+        loss_factors: LossPart::ALL.map(|part| seeded(Slot::LossFactor(part), plain.loss_factors[part as usize])),
         friction_coefficient: seeded(Slot::FrictionCoefficient, plain.friction_coefficient),
         variators: (plain.variators.iter().enumerate())
             .map(|(k, v)| {

@@ -62,12 +62,6 @@ pub(in crate::study) enum OfMachine {
     Power,
 }
 
-const LOSS_KINDS: [&str; 6] = ["mesh", "bearing", "windage", "churning", "seal", "variator"];
-
-fn loss_of(l: &Losses, kind: usize) -> f64 {
-    [l.mesh, l.bearing, l.windage, l.churning, l.seal, l.variator][kind]
-}
-
 /// The group of columns that are only had by their own name.
 const SINGLY: &str = "";
 
@@ -110,6 +104,9 @@ fn offers(train: &Train) -> Vec<Offer> {
         .chain(train.bearings.iter().map(|b| &b.name))
         .chain(train.seals.iter().map(|b| &b.name))
         .chain(train.rotors.iter().map(|b| &b.name))
+        .chain(train.drags.iter().map(|b| &b.name))
+        .chain(train.pumps.iter().map(|b| &b.name))
+        .chain(train.shift_elements.iter().filter(|e| e.open.is_some()).map(|b| &b.name))
         .chain(train.variators.iter().map(|v| &v.name));
     for s in sources {
         // A mesh has a loss of its own by sliding; this is all that is lost under a name.
@@ -168,9 +165,8 @@ impl Sweep<'_> {
         all.push((Column::number("output_power_w", "W"), What::OutputPower));
         all.push((Column::number("loss_w", "W"), What::Loss));
         if physical {
-            let kinds = LOSS_KINDS.iter().enumerate();
-            let kinds = kinds.filter(|(_, n)| **n != "variator" || !train.variators.is_empty());
-            all.extend(kinds.map(|(k, n)| (Column::number(format!("{n}_loss_w"), "W"), What::LossOf(k))));
+            let column = |k: usize| Column::number(Losses::column(k), "W");
+            all.extend(Losses::of_train(train).map(|k| (column(k), What::LossOf(k))));
         }
         all
     }
@@ -248,7 +244,7 @@ impl Sweep<'_> {
             What::InputPower => Some(s.input_power_w),
             What::OutputPower => Some(s.output_power_w),
             What::Loss => Some(s.loss_w),
-            What::LossOf(kind) => Some(loss_of(&s.losses_w, *kind)),
+            What::LossOf(kind) => Some(s.losses_w.all()[*kind]),
             What::Residual => Some(s.power_residual_w),
             What::Circulating => Some(s.recirculation.iter().map(|r| r.power_w).fold(0.0, f64::max)),
             What::LockFactor => s.margin.lock_loss_factor,

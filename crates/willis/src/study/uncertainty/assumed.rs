@@ -7,7 +7,7 @@ use crate::model::Target;
 use crate::study::answer::PointAnswer;
 use crate::study::distribution::{Distribution, Reader};
 use crate::study::question::Question;
-use crate::train::{Measure, Train};
+use crate::train::{LossPart, Measure, Train};
 
 use super::{LawChoice, Uncertain, UncertainValue, listed, nominal};
 
@@ -17,6 +17,8 @@ const LOSS: f64 = 0.2;
 const ROUGHNESS: f64 = 0.2;
 /// Kelvin of an oil temperature.
 const TEMPERATURE: f64 = 5.0;
+/// Standard deviation of the logarithm of what carries heat away.
+const HEAT: f64 = 0.25;
 
 /// The law of a family that a train uses.
 pub(super) fn in_force(train: &Train, family: &str) -> Option<&'static str> {
@@ -150,7 +152,28 @@ pub(super) fn quantities(question: &Question<'_>) -> (Vec<Uncertain>, Vec<String
         told.push(format!("roughness is doubtful by ±20 % ({})", listed(&roughness)));
     }
     let varies = |l: &crate::train::Lubrication| !matches!(l.oil.viscosity, Viscosity::Fixed { .. });
-    if train.is_physical() && train.lubrication.as_ref().is_some_and(varies) {
+    let follows = train.heat.is_some() && question.base().temperature.is_none();
+    if follows {
+        let key = document.find("heat.factor").expect("a key of [heat]");
+        let text = document.value(&key).unwrap_or_else(|| "1".to_owned());
+        let median = text.parse().unwrap_or(1.0);
+        let likely = UncertainValue::Between(Distribution::Lognormal { median, factor: HEAT.exp() });
+        let (name, unit, target) = ("heat.factor".into(), String::new(), Target::File(key));
+        all.push(Uncertain { name, unit, likely, nominal: Some(text), target });
+        told.push("what carries heat away is known within 25 % (one standard deviation)".into());
+    }
+    for (part, (factor, spread)) in
+        LossPart::ALL.into_iter().zip(train.loss_factors.factors.into_iter().zip(train.loss_factors.spreads))
+    {
+        let Some(spread) = spread.filter(|s| *s > 0.0) else { continue };
+        let name = format!("losses.factor.{}", part.key());
+        let Ok(key) = document.find(&name) else { continue };
+        let likely = UncertainValue::Between(Distribution::Lognormal { median: factor, factor: spread.exp() });
+        told.push(format!("{name}: what tests leave open, {:.0} %", 100.0 * spread));
+        let (unit, nominal, target) = (String::new(), Some(factor.to_string()), Target::File(key));
+        all.push(Uncertain { name, unit, likely, nominal, target });
+    }
+    if !follows && train.is_physical() && train.lubrication.as_ref().is_some_and(varies) {
         let target = Target::Temperature;
         let text = nominal(&target, question).expect("there is an oil");
         let (value, unit) = Reader::base_of(&text, Measure::Number).expect("it was written as a number");
@@ -159,7 +182,10 @@ pub(super) fn quantities(question: &Question<'_>) -> (Vec<Uncertain>, Vec<String
         all.push(Uncertain { name: "oil.temperature".into(), unit, likely, nominal: Some(text), target });
         told.push("the oil's temperature is doubtful by ±5 K".into());
     }
-    if train.meshes.iter().any(|m| m.computed)
+    // Tests say which friction there is, whatever the law.
+    let tested = train.loss_factors.spreads[LossPart::Teeth as usize].is_some();
+    if !tested
+        && train.meshes.iter().any(|m| m.computed)
         && let Ok(found) = laws("mesh_friction", question)
     {
         let (laws, what): (Vec<_>, Vec<_>) = found.into_iter().unzip();

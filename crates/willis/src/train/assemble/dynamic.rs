@@ -76,7 +76,7 @@ impl Assembler<'_> {
     }
 
     /// A curve over the amount of something, of values that are not negative.
-    fn curve_of_amounts(&mut self, points: &[[f64; 2]], place: &str) -> Option<Curve> {
+    pub fn curve_of_amounts(&mut self, points: &[[f64; 2]], place: &str) -> Option<Curve> {
         let curve = self.curve(points, "rad/s", place)?;
         match points.iter().position(|p| p.iter().any(|x| *x < 0.0)) {
             None => Some(curve),
@@ -245,10 +245,11 @@ impl Assembler<'_> {
         }
         let torque = table.unwrap_or_else(|| Some(Curve::constant(spec.coulomb.unwrap_or(0.0))))?;
         let (members, peak) = (members.filter(|_| good)?, peak?);
-        let places = f64::from(self.planets_at(members));
+        let count = self.planets_at(members);
+        let places = f64::from(count);
         let torque = Curve::new(torque.points().iter().map(|[x, y]| [*x, y * places]).collect())?;
         let viscous = spec.viscous.unwrap_or(0.0) * places;
-        Some(DragMount { name: spec.name.clone(), members, torque, viscous, peak })
+        Some(DragMount { name: spec.name.clone(), members, torque, viscous, places: count, peak })
     }
 
     /// How many planets of a set stand behind one of these members.

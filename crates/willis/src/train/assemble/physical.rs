@@ -8,13 +8,16 @@ use crate::geometry::{Pair, PairData, Tip, Wheel};
 use crate::losses::loss_factor::Path;
 use crate::losses::seal::Material;
 use crate::train::assembler::Assembler;
-use crate::train::physical::{BearingMount, Known, Lubrication, PlanetBody, Rotor, SealMount, Teeth, steel_mass};
+use crate::train::physical::{
+    BearingMount, Jet, Known, LossFactors, LossPart, Lubrication, OpenElement, PlanetBody, Pump, Rotor, SealMount,
+    Teeth, steel_mass,
+};
 use crate::train::specification::{
-    Fluid, LawsSpec, MeshStiffness, PlainBearing, PlainGeometry, PlainHousing, PlainOil, PlainRotor, PlainSeal,
-    PlainTooth,
+    Fluid, JetSide, LawsSpec, MeshStiffness, PlainBearing, PlainGeometry, PlainHousing, PlainLossFactor, PlainLosses,
+    PlainOil, PlainOpen, PlainPump, PlainRotor, PlainSeal, PlainTooth,
 };
 use crate::train::words::{clip, list};
-use crate::train::{Efficiency, FRAME, MemberId, MemberKind, MeshId};
+use crate::train::{Efficiency, FRAME, MemberId, MemberKind, MeshId, ShiftElement};
 
 /// Assumed roughness `Ra` of ground flanks, m.
 const ROUGHNESS: f64 = 0.4e-6;
@@ -22,6 +25,22 @@ const ROUGHNESS: f64 = 0.4e-6;
 const TEMPERATURE: f64 = 333.15;
 /// Temperature at which oils are classed, K.
 const COLD: f64 = 313.15;
+/// Assumed clearance of plain bearings, over the bore.
+const CLEARANCE: f64 = 1.5e-3;
+/// Assumed oil temperature of measured curves of drag, K.
+const CURVE_TEMPERATURE: f64 = 353.15;
+/// Assumed oil through one gap of an open pack, m³/s: 0.1 l/min (0.05 to 0.3 in automatic transmissions).
+const PACK_FLOW: f64 = 1e-4 / 60.0;
+
+/// Operating pressure angles of teeth in use, rad: 12 to 40 degrees.
+const USUAL_ANGLES: std::ops::RangeInclusive<f64> = 0.209..=0.699;
+/// Backlash beyond which shifts and centre distance do not belong together, in modules.
+const USUAL_BACKLASH: f64 = 0.5;
+
+/// Whether operating angle and backlash are those of teeth in use.
+fn usual(pair: &Pair) -> bool {
+    USUAL_ANGLES.contains(&pair.operating_pressure_angle) && pair.backlash.abs() <= USUAL_BACKLASH * pair.data.module
+}
 
 impl Assembler<'_> {
     /// A number that must be finite and above (or at) zero; reported and replaced where it is not.
@@ -56,6 +75,8 @@ impl Assembler<'_> {
         let mut good = true;
         for (value, zero, what, unit, key) in [
             (g.module * 1e3, false, "a module", "mm", "module"),
+            (g.jet_flow.unwrap_or(1.0), false, "a flow", "m³/s", "jet_flow"),
+            (g.jet_speed.unwrap_or(0.0), true, "a speed", "m/s", "jet_speed"),
             (g.width * 1e3, false, "a face width", "mm", "width"),
             (g.youngs_modulus() / 1e9, false, "a modulus", "GPa", "youngs_modulus"),
             (g.roughness.unwrap_or(0.0) * 1e6, true, "a roughness", "µm", "roughness"),
@@ -110,19 +131,51 @@ impl Assembler<'_> {
             centre_distance: g.centre_distance,
             wheels: [wheel(&gears[0]), wheel(&gears[1])],
         };
+        // With the other sign of the ring's shift, as DIN has it, the teeth may fit.
+        let turned = |remarks: usize| {
+            let ring = data.wheels.iter().position(|w| w.internal && w.shift != 0.0)?;
+            let mut other = data.clone();
+            other.wheels[ring].shift = -other.wheels[ring].shift;
+            let fits = Pair::new(&other).is_ok_and(|p| p.remarks().len() < remarks && usual(&p));
+            fits.then(|| {
+                format!(
+                    "with a shift of {} on the ring they fit: DIN counts it the other way",
+                    other.wheels[ring].shift
+                )
+            })
+        };
         let pair = match Pair::new(&data) {
             Ok(pair) => pair,
             Err(faults) => {
                 for fault in faults {
                     let message = format!("{}: {fault}", clip(title));
-                    self.report(Diagnostic::new(Code::ImpossibleGeometry, at.as_str(), message));
+                    let d = Diagnostic::new(Code::ImpossibleGeometry, at.as_str(), message);
+                    self.report(match turned(usize::MAX) {
+                        Some(hint) => d.hint(hint),
+                        None => d,
+                    });
                 }
                 return None;
             }
         };
-        for remark in pair.remarks() {
+        let mut remarks: Vec<String> = pair.remarks().iter().map(ToString::to_string).collect();
+        if !usual(&pair) {
+            let [angle, backlash] = [pair.operating_pressure_angle.to_degrees(), pair.backlash / pair.data.module];
+            remarks.push(match USUAL_ANGLES.contains(&pair.operating_pressure_angle) {
+                true => {
+                    format!("a backlash of {backlash:.2} modules: shifts and centre distance do not belong together")
+                }
+                false => format!("an operating pressure angle of {angle:.1}°: teeth in use have 12 to 40°"),
+            });
+        }
+        let hint = turned(remarks.len());
+        for remark in remarks {
             let message = format!("{}: {remark}", clip(title));
-            self.report(Diagnostic::new(Code::DoubtfulGeometry, at.as_str(), message));
+            let d = Diagnostic::new(Code::DoubtfulGeometry, at.as_str(), message);
+            self.report(match &hint {
+                Some(hint) => d.hint(hint.as_str()),
+                None => d,
+            });
         }
         let roughness = gears.map(|(_, _, t)| t.roughness.or(g.roughness));
         if roughness.iter().any(Option::is_none) {
@@ -133,6 +186,13 @@ impl Assembler<'_> {
             pair,
             roughness: roughness.map(|r| r.unwrap_or(ROUGHNESS)),
             immersion: gears.map(|(_, _, t)| t.immersion),
+            hand: 0.0,
+            position: g.position,
+            jet: g.jet_flow.map(|flow| Jet {
+                flow,
+                speed: g.jet_speed.unwrap_or(0.0),
+                side: g.jet_side.unwrap_or(JetSide::IntoMesh),
+            }),
             youngs_modulus: g.youngs_modulus(),
             poisson_ratio: g.poisson_ratio(),
             stiffness,
@@ -350,6 +410,9 @@ impl Assembler<'_> {
                 good &= self.positive(value, zero, what, unit, &format!("{place}.{key}"));
             }
         }
+        if spec.kind == Some(bearing::Kind::Plain) {
+            return self.plain_bearing(spec, members.filter(|_| good), place);
+        }
         let found = spec.designation.as_ref().and_then(|d| bearing::find(d));
         let bearing = match (found, spec.kind, spec.bore, spec.outside_diameter, spec.width) {
             (Some(found), kind, bore, outside, width) => {
@@ -429,6 +492,16 @@ impl Assembler<'_> {
             );
         }
         let count = self.count(spec.count.unwrap_or(1), &format!("{place}.count"));
+        if spec.locates == Some(true) && !bearing.takes_thrust() {
+            let message = format!(
+                "bearing `{}`: a {} of designation `{}` holds no shaft along its axis",
+                clip(&spec.name),
+                bearing.kind,
+                clip(&bearing.designation)
+            );
+            let d = Diagnostic::new(Code::DoubtfulBearing, format!("{place}.locates"), message);
+            self.report(d.hint("leave out `locates`, or choose a bearing with flanges (NJ, NUP) or a ball bearing"));
+        }
         Some(BearingMount {
             name: spec.name.clone(),
             members: members?,
@@ -436,11 +509,186 @@ impl Assembler<'_> {
             count,
             places: 1,
             span: spec.span,
+            position: spec.position,
+            clearance: 0.0,
+            friction: 0.0,
+            locates: spec.locates,
             radial_load: spec.radial_load.unwrap_or(0.0),
             axial_load: spec.axial_load.unwrap_or(0.0),
             supply: spec.supply,
             level: spec.level,
         })
+    }
+
+    /// A plain bearing: bore and width, and what of clearance and friction is not given.
+    fn plain_bearing(
+        &mut self,
+        spec: &PlainBearing,
+        members: Option<[MemberId; 2]>,
+        place: &str,
+    ) -> Option<BearingMount> {
+        let (Some(bore), Some(width)) = (spec.bore, spec.width) else {
+            let message = format!("plain bearing `{}` has no bore or no width", clip(&spec.name));
+            let d = Diagnostic::new(Code::MissingKey, place, message);
+            self.report(d.hint("give `bore` and `width`; `clearance` and `friction` may follow"));
+            return None;
+        };
+        let clearance = spec.clearance.unwrap_or_else(|| {
+            self.assume(&spec.name, "clearance of the plain bearing not given, taken as 0.0015 of the bore");
+            CLEARANCE * bore
+        });
+        let friction = spec.friction.unwrap_or(0.08);
+        let good = self.positive(clearance * 1e3, false, "a clearance", "mm", &format!("{place}.clearance"))
+            & self.positive(friction, false, "a coefficient of friction", "", &format!("{place}.friction"));
+        // A bush without a size of its own: a wall of a tenth of the bore.
+        let outside = spec.outside_diameter.unwrap_or(1.2 * bore);
+        let name = spec.designation.as_deref().unwrap_or(&spec.name);
+        let count = self.count(spec.count.unwrap_or(1), &format!("{place}.count"));
+        Some(BearingMount {
+            name: spec.name.clone(),
+            members: members.filter(|_| good)?,
+            bearing: Bearing::new(name, bearing::Kind::Plain, "", bore, outside, width),
+            count,
+            places: 1,
+            span: spec.span,
+            position: spec.position,
+            clearance,
+            friction,
+            locates: spec.locates,
+            radial_load: spec.radial_load.unwrap_or(0.0),
+            axial_load: spec.axial_load.unwrap_or(0.0),
+            supply: spec.supply,
+            level: spec.level,
+        })
+    }
+
+    /// What a shift element does while it is open: one of a curve, a pack, a band, a torque.
+    pub fn open_element(&mut self, spec: &PlainOpen, place: &str) -> Option<OpenElement> {
+        let pack = [spec.inner_radius, spec.outer_radius].iter().any(Option::is_some) || spec.surfaces.is_some();
+        let forms = [
+            ("curve", spec.curve.is_some()),
+            ("surfaces", pack),
+            ("drum_radius", spec.drum_radius.is_some()),
+            ("torque", spec.torque.is_some()),
+        ];
+        let given: Vec<&str> = forms.iter().filter(|f| f.1).map(|f| f.0).collect();
+        const HINT: &str = "give `curve`; or surfaces, inner_radius, outer_radius and gap; or drum_radius, width, wrap and \
+                            gap; or `torque`";
+        if given.len() != 1 {
+            let (code, message) = match given.len() {
+                0 => (Code::MissingKey, "it is not said what drags".to_owned()),
+                _ => (Code::Conflict, format!("the drag is given more than once: {}", list(given))),
+            };
+            self.report(Diagnostic::new(code, place, message).hint(HINT));
+            return None;
+        }
+        let mut good = true;
+        for (value, zero, what, unit, key) in [
+            (spec.inner_radius.map(|v| v * 1e3), false, "a radius", "mm", "inner_radius"),
+            (spec.outer_radius.map(|v| v * 1e3), false, "a radius", "mm", "outer_radius"),
+            (spec.gap.map(|v| v * 1e3), false, "a gap", "mm", "gap"),
+            (spec.flow.map(|v| v * 6e4), false, "a flow", "l/min", "flow"),
+            (spec.groove_share, true, "a share", "", "groove_share"),
+            (spec.groove_depth.map(|v| v * 1e3), true, "a depth", "mm", "groove_depth"),
+            (spec.drum_radius.map(|v| v * 1e3), false, "a radius", "mm", "drum_radius"),
+            (spec.width.map(|v| v * 1e3), false, "a width", "mm", "width"),
+            (spec.wrap, false, "an angle", "rad", "wrap"),
+            (spec.wetted, true, "a share", "", "wetted"),
+            (spec.torque, true, "a torque", "N m", "torque"),
+            (spec.temperature, false, "an absolute temperature", "K", "temperature"),
+        ] {
+            if let Some(value) = value {
+                good &= self.positive(value, zero, what, unit, &format!("{place}.{key}"));
+            }
+        }
+        for (value, key) in [(spec.groove_share, "groove_share"), (spec.wetted, "wetted")] {
+            if let Some(share) = value.filter(|x| *x > 1.0 || key == "groove_share" && *x >= 1.0) {
+                let message = format!("a share of {share}: it is a part of the surface, up to 1");
+                self.report(Diagnostic::new(Code::OutOfRange, format!("{place}.{key}"), message));
+                good = false;
+            }
+        }
+        let mut need = |value: Option<f64>, key: &str| {
+            if value.is_none() {
+                let message = format!("the drag of an open element needs `{key}`");
+                self.report(Diagnostic::new(Code::MissingKey, format!("{place}.{key}"), message).hint(HINT));
+            }
+            value
+        };
+        let element = match given[0] {
+            "curve" => {
+                let curve =
+                    self.curve_of_amounts(spec.curve.as_deref().unwrap_or_default(), &format!("{place}.curve"))?;
+                OpenElement::Curve(curve, spec.temperature.unwrap_or(CURVE_TEMPERATURE))
+            }
+            "surfaces" => {
+                let [inner, outer] = [need(spec.inner_radius, "inner_radius"), need(spec.outer_radius, "outer_radius")];
+                let gap = need(spec.gap, "gap");
+                let surfaces = need(spec.surfaces.map(|n| n as f64), "surfaces");
+                let (inner_radius, outer_radius, gap, _) = (inner?, outer?, gap?, surfaces?);
+                if outer_radius <= inner_radius {
+                    let message = format!(
+                        "an outer radius of {} mm is not above the inner one of {} mm",
+                        outer_radius * 1e3,
+                        inner_radius * 1e3
+                    );
+                    self.report(Diagnostic::new(Code::OutOfRange, format!("{place}.outer_radius"), message));
+                    good = false;
+                }
+                if spec.flow.is_none() {
+                    let name = place.split('.').next().unwrap_or(place);
+                    self.assume(name, "oil through the gaps of open packs not given, taken as 0.1 l/min each");
+                }
+                OpenElement::Pack {
+                    surfaces: self.count(spec.surfaces.unwrap_or(1), &format!("{place}.surfaces")),
+                    inner_radius,
+                    outer_radius,
+                    gap,
+                    flow: spec.flow.unwrap_or(PACK_FLOW),
+                    groove_share: spec.groove_share.unwrap_or(0.0),
+                    groove_depth: spec.groove_depth.unwrap_or(0.0),
+                }
+            }
+            "drum_radius" => {
+                let all = [need(spec.drum_radius, "drum_radius"), need(spec.width, "width"), need(spec.wrap, "wrap")];
+                let gap = need(spec.gap, "gap");
+                let [radius, width, wrap] = all;
+                OpenElement::Band {
+                    radius: radius?,
+                    width: width?,
+                    wrap: wrap?,
+                    gap: gap?,
+                    wetted: spec.wetted.unwrap_or(1.0),
+                }
+            }
+            _ => OpenElement::Torque(spec.torque?),
+        };
+        good.then_some(element)
+    }
+
+    pub fn pump(&mut self, spec: &PlainPump, place: &str) -> Option<Pump> {
+        let member = self.resolve(&spec.member, &format!("{place}.member"));
+        let mut good = true;
+        for (value, what, unit, key) in [
+            (spec.displacement * 1e6, "a displacement", "cm³", "displacement"),
+            (spec.pressure * 1e-5, "a pressure", "bar", "pressure"),
+            (spec.efficiency.unwrap_or(1.0), "an efficiency", "", "efficiency"),
+        ] {
+            good &= self.positive(value, false, what, unit, &format!("{place}.{key}"));
+        }
+        if let Some(eta) = spec.efficiency.filter(|x| *x > 1.0) {
+            let message = format!("an efficiency of {eta}: a pump takes more than it delivers");
+            self.report(Diagnostic::new(Code::OutOfRange, format!("{place}.efficiency"), message));
+            good = false;
+        }
+        if member == Some(FRAME) {
+            let message = "the frame does not turn and drives nothing";
+            self.report(Diagnostic::new(Code::BadName, format!("{place}.member"), message));
+            good = false;
+        }
+        let member = member.filter(|_| good)?;
+        let PlainPump { name, displacement, pressure, efficiency, .. } = spec.clone();
+        Some(Pump { name, member, displacement, pressure, efficiency })
     }
 
     pub fn seal(&mut self, spec: &PlainSeal, place: &str) -> Option<SealMount> {
@@ -512,6 +760,7 @@ impl Assembler<'_> {
         };
         let planets: Vec<bool> = (0..self.members.len()).map(|m| is_planet(MemberId(m))).collect();
         let mut all: Vec<PlanetBody> = Vec::new();
+        let mut too_large: Vec<Diagnostic> = Vec::new();
         for (j, mesh) in self.meshes.iter().enumerate() {
             for k in 0..2 {
                 let member = mesh.gears[k].member;
@@ -535,6 +784,22 @@ impl Assembler<'_> {
         for body in &mut all {
             let bearing = bearings.iter().find(|b| b.members.contains(&body.member));
             let hole = bearing.map_or(0.0, |b| b.bearing.outside_diameter / 2.0);
+            let root = (self.meshes.iter())
+                .flat_map(|m| m.teeth.iter().flat_map(|t| m.gears.iter().zip(&t.pair.gears)))
+                .filter(|(g, _)| g.member == body.member && !g.internal)
+                .map(|(_, own)| own.root_radius)
+                .fold(f64::INFINITY, f64::min);
+            if let Some(b) = bearing.filter(|_| hole >= root) {
+                let message = format!(
+                    "bearing `{}`: its outside diameter of {:.1} mm does not fit into a planet with a root circle of {:.1} mm",
+                    clip(&b.name),
+                    hole * 2e3,
+                    root * 2e3
+                );
+                let at = bearings.iter().position(|x| std::ptr::eq(x, b)).unwrap_or(0);
+                let place = format!("bearing[{at}]");
+                too_large.push(Diagnostic::new(Code::DoubtfulBearing, place, message));
+            }
             let teeth = |j: usize| self.meshes[j].teeth.as_deref().cloned();
             let estimate = || steel_mass(&self.meshes, body.member, hole, &teeth);
             let given = masses.iter().find(|(m, _)| *m == body.member).map(|(_, mass)| *mass);
@@ -549,6 +814,7 @@ impl Assembler<'_> {
                 self.assumptions.push((name, text));
             }
         }
+        too_large.into_iter().for_each(|d| self.report(d));
         for b in bearings {
             let planets = |m: MemberId| {
                 let of = |x: &&crate::train::Mesh| x.gears.iter().any(|g| g.member == m);
@@ -557,6 +823,33 @@ impl Assembler<'_> {
             b.places = b.members.iter().find_map(|m| planets(*m)).unwrap_or(1);
         }
         all
+    }
+
+    /// Factors that tests gave.
+    pub fn loss_factors(&mut self, spec: Option<&PlainLosses>) -> LossFactors {
+        let Some(spec) = spec else { return LossFactors::default() };
+        let of = |all: &Option<PlainLossFactor>| all.as_ref().map_or([None; LossPart::COUNT], PlainLossFactor::values);
+        let (given, spreads) = (of(&spec.factor), of(&spec.spread));
+        for (part, (factor, spread)) in LossPart::ALL.into_iter().zip(given.into_iter().zip(spreads)) {
+            let key = part.key();
+            if let Some(x) = factor {
+                self.positive(x, false, "a factor", "", &format!("losses.factor.{key}"));
+            }
+            if let Some(x) = spread {
+                self.positive(x, true, "a standard deviation", "", &format!("losses.spread.{key}"));
+            }
+        }
+        let named: Vec<String> = LossPart::ALL
+            .into_iter()
+            .zip(given)
+            .filter_map(|(part, x)| Some(format!("{} {}", part.words(), x?)))
+            .collect();
+        if !named.is_empty() {
+            let rests =
+                spec.calibrated.as_ref().map_or("factors of the file".to_owned(), |c| format!("calibrated, {c}"));
+            self.assume("losses", format!("{rests}: {}", named.join(", ")));
+        }
+        LossFactors { factors: given.map(|x| x.unwrap_or(1.0)), spreads, calibrated: spec.calibrated.clone() }
     }
 
     pub fn housing(&mut self, spec: &PlainHousing) {
@@ -579,10 +872,18 @@ impl Assembler<'_> {
         lubrication: &Option<Lubrication>,
         bearings: &[BearingMount],
         rotors: &[Rotor],
+        elements: &[ShiftElement],
+        pumps: &[Pump],
     ) {
+        let in_oil = |e: &&ShiftElement| matches!(e.open, Some(OpenElement::Pack { .. } | OpenElement::Band { .. }));
+        let sprayed = self.meshes.iter().find(|m| m.teeth.as_ref().is_some_and(|t| t.jet.is_some()));
+        let viscous = pumps.first().filter(|_| self.laws.pump.meta().id == "wilson");
         let needs_oil = [
-            ("bearing", bearings.first().map(|b| b.name.as_str())),
-            ("rotor", rotors.iter().find(|r| r.fluid != Fluid::Air).map(|r| r.name.as_str())),
+            ("the friction of bearing", bearings.first().map(|b| b.name.clone())),
+            ("the friction of rotor", rotors.iter().find(|r| r.fluid != Fluid::Air).map(|r| r.name.clone())),
+            ("the drag of open element", elements.iter().find(in_oil).map(|e| e.name.clone())),
+            ("the friction of pump", viscous.map(|p| p.name.clone())),
+            ("what a jet takes at", sprayed.map(|m| m.name.clone())),
         ];
         if lubrication.is_none()
             && self.meshes.iter().any(|m| m.computed)
@@ -592,7 +893,7 @@ impl Assembler<'_> {
         }
         for (what, name) in needs_oil {
             if let (Some(name), None) = (name, lubrication) {
-                let message = format!("the friction of {what} `{}` depends on an oil, and none is given", clip(name));
+                let message = format!("{what} `{}` depends on an oil, and none is given", clip(&name));
                 let d = Diagnostic::new(Code::MissingKey, "oil", message);
                 self.report(d.hint("add [oil] with a name of the catalogue, or its viscosities"));
             }

@@ -6,8 +6,8 @@ use super::Document;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::train::words::clip;
 
-/// Keys whose values are names of members.
-const MEMBERS: [&str; 7] = ["member", "members", "carrier", "input", "output", "fixed", "terminals"];
+/// Keys whose values are names of members. Parts that heat a place may be other things, but a name of a member is one.
+const MEMBERS: [&str; 8] = ["member", "members", "carrier", "input", "output", "fixed", "terminals", "parts"];
 /// Keys of tables whose own keys are names of members.
 const BY_MEMBER: [&str; 5] = ["speeds", "torques", "powers", "inertias", "initial_speeds"];
 /// The member that every train has.

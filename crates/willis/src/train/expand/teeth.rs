@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::train::Teeth;
+use crate::train::specification::Hand;
 use crate::train::words::clip;
 
 use super::expansion::Expansion;
@@ -13,12 +14,18 @@ const CONCENTRIC: f64 = 5e-3;
 /// The teeth of each mesh of the set, where its geometry is given, on one centre distance.
 pub(super) fn teeth(e: &mut Expansion<'_, '_>, pairs: &[Pair<'_>]) -> Vec<Option<Teeth>> {
     let mut all = Vec::with_capacity(pairs.len());
+    let has_sun = pairs.iter().any(|p| p.central.is_some_and(|c| !c.internal));
     for p in pairs {
         let own = p.central.and_then(|c| c.geometry.as_ref());
         let geometry = if p.bevel { None } else { own.or(e.set.geometry.as_ref()) };
         let gears = [&p.gears[0], &p.gears[1]].map(|g| (g.teeth.to_f64(), g.internal, &g.tooth));
         let title = format!("{}.{}", e.set.name, p.name);
-        all.push(geometry.and_then(|g| e.a.tooth_pair(g, gears, &title, &e.place)));
+        let teeth = geometry.and_then(|g| e.a.tooth_pair(g, gears, &title, &e.place));
+        // What a set says holds for its suns, what a gear says for itself. A sun stands first in its pair; a ring
+        // stands second, and the planet that stands first has its hand.
+        let named = p.central.is_some_and(|c| own.is_some() || c.internal != has_sun);
+        let hand = geometry.and_then(|g| g.hand).filter(|_| named).map_or(0.0, Hand::sign);
+        all.push(teeth.map(|t| Teeth { hand, ..t }));
     }
     concentric(e, pairs, &all);
     all

@@ -75,6 +75,24 @@ impl Measured for f64 {
     }
 }
 
+/// A large table that few entries have takes the room of a pointer in the others.
+impl<T: Field> Field for Box<T> {
+    const KIND: Kind = T::KIND;
+    type Plain = T::Plain;
+    fn read(node: &Node) -> Self {
+        Self::new(T::read(node))
+    }
+    fn blank() -> Self {
+        Self::new(T::blank())
+    }
+    fn write(&self) -> Option<Datum> {
+        T::write(self)
+    }
+    fn plain(&self) -> Self::Plain {
+        T::plain(self)
+    }
+}
+
 macro_rules! measured {
     ($($name:ident $dimension:ident),* $(,)?) => {$(
         impl Measured for $name {
@@ -144,6 +162,12 @@ measured!(
     ViscousCoefficient VISCOUS,
     TorquePerAcceleration TORQUE_PER_ACCELERATION,
     TorquePerSpeedSquared TORQUE_PER_SPEED_SQUARED,
+    Conductance CONDUCTANCE,
+    HeatTransfer HEAT_TRANSFER,
+    HeatCapacity HEAT_CAPACITY,
+    SpecificHeat SPECIFIC_HEAT,
+    VolumeFlow FLOW,
+    Speed SPEED,
 );
 
 /// Fields whose value is one kind of node.

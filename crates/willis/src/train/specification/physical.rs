@@ -4,9 +4,10 @@ use crate::catalogue::bearing::Kind as BearingKind;
 use crate::catalogue::oil::Base;
 use crate::losses::seal::Material;
 use crate::train::format::keys::Kind;
+use crate::train::physical::LossPart;
 use crate::units::{
-    Angle, Density, DynamicViscosity, Force, KinematicViscosity, Length, Pressure, PressureCoefficient, Temperature,
-    Volume,
+    Angle, AngularSpeed, Density, DynamicViscosity, Force, KinematicViscosity, Length, Pressure, PressureCoefficient,
+    Speed, Temperature, Torque, Volume, VolumeFlow,
 };
 
 use super::field::{choice, specification};
@@ -33,6 +34,7 @@ choice!(BearingKind {
     ToroidalRoller = "toroidal-roller",
     AxialBall = "axial-ball",
     AxialCylindricalRoller = "axial-cylindrical-roller",
+    Plain = "plain",
 });
 choice!(Material { Fkm = "fkm", Nbr = "nbr" });
 
@@ -79,6 +81,37 @@ pub enum MeshStiffness {
     Iso6336,
 }
 choice!(MeshStiffness { Rigid = "rigid", Iso6336 = "iso-6336" });
+
+/// Which way the teeth of a helical gear wind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Hand {
+    /// As the thread of a common screw.
+    Right,
+    /// The other way.
+    Left,
+}
+choice!(Hand { Right = "right", Left = "left" });
+
+/// Where oil is sprayed at a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum JetSide {
+    /// Where the teeth come into mesh.
+    IntoMesh,
+    /// Where they leave it.
+    OutOfMesh,
+}
+choice!(JetSide { IntoMesh = "into-mesh", OutOfMesh = "out-of-mesh" });
+
+impl Hand {
+    /// 1 for right, -1 for left.
+    pub(crate) fn sign(self) -> f64 {
+        if self == Self::Right { 1.0 } else { -1.0 }
+    }
+}
 
 specification! {
     /// The teeth of one gear, as far as known.
@@ -131,6 +164,12 @@ specification! {
         may helix: Option<Angle>,
         /// true for herringbone gears: two helices whose axial forces cancel.
         may double_helical: bool,
+        /// Hand of the helix: of the first gear of a mesh, of the suns of a set (of its rings where it has none), of a
+        /// gear with a geometry of its own. The mating gears follow. Default: gears on one shaft have the same hand.
+        may hand: Option<Hand>,
+        /// Where the middle of the teeth stands along the axis, from any origin that all positions share. Default: all
+        /// gears and bearings in one plane.
+        may position: Option<Length>,
         /// Operating centre distance. Default: the one that follows from the profile shifts.
         may centre_distance: Option<Length>,
         /// Addendum coefficient of the basic rack. Default: 1.
@@ -143,6 +182,12 @@ specification! {
         may youngs_modulus: Option<Pressure>,
         /// Of the gear material. Default: 0.3.
         may poisson_ratio: Option<f64>,
+        /// Oil that is sprayed at the mesh; of parallel meshes, at each.
+        may jet_flow: Option<VolumeFlow>,
+        /// Speed of that oil against the motion of the teeth. Default: none.
+        may jet_speed: Option<Speed>,
+        /// Where it is sprayed: `into-mesh`, or `out-of-mesh`. Default: into-mesh.
+        may jet_side: Option<JetSide>,
         /// What the meshes are between their gears in `modes`: `rigid`, or springs by `iso-6336`. Default: rigid.
         may mesh_stiffness: Option<MeshStiffness>,
         /// Mean stiffness of each pair of external gears along the line of action over the face width, c_gamma, instead:
@@ -208,6 +253,42 @@ specification! {
         may seal: Option<String>,
         /// Carriers and drums.
         may rotor_drag: Option<String>,
+        /// Open multi-plate clutches and brakes.
+        may clutch_drag: Option<String>,
+        /// Oil pumps.
+        may pump: Option<String>,
+        /// Oil that is sprayed at meshes.
+        may injection: Option<String>,
+        /// Plain bearings.
+        may plain_bearing: Option<String>,
+    }
+
+    /// A number for each kind of loss, as tests give it.
+    LossFactorSpec => PlainLossFactor {
+        /// Tooth friction, sliding and rolling.
+        may teeth: Option<f64>,
+        /// The part of bearing friction that grows with the load.
+        may bearing_load: Option<f64>,
+        /// The part of bearing friction that is there without load.
+        may bearing_no_load: Option<f64>,
+        /// Lip seals.
+        may seal: Option<f64>,
+        /// Gears in the sump.
+        may churning: Option<f64>,
+        /// Gears in air.
+        may windage: Option<f64>,
+        /// Carriers and drums.
+        may rotor: Option<f64>,
+    }
+
+    /// What tests say of the losses that the laws give.
+    LossesSpec => PlainLosses {
+        /// What the factors rest on, for readers: tests and their range.
+        may calibrated: Option<String>,
+        /// Factors on the losses of the laws. Default: 1.
+        may factor: Option<LossFactorSpec>,
+        /// Standard deviation of the natural logarithm of each factor that the tests leave; `willis uncertainty` reads it.
+        may spread: Option<LossFactorSpec>,
     }
 
     /// What surrounds the gears.
@@ -239,6 +320,11 @@ specification! {
         may width: Option<Length>,
         /// Static load rating C0.
         may static_rating: Option<Force>,
+        /// Of a plain bearing (kind `plain`, with bore and width): difference of its two diameters. Default: 0.0015 of
+        /// the bore.
+        may clearance: Option<Length>,
+        /// Of a plain bearing: coefficient of friction where there is no full film. Default: 0.08.
+        may friction: Option<f64>,
         /// Axial factor Y of a tapered bearing.
         may axial_factor: Option<f64>,
         /// How many sit side by side and share the load. Default: 1.
@@ -248,6 +334,12 @@ specification! {
         /// Distance between the outermost of them; takes the tilting moment of helical planets. Default: the face
         /// width.
         may span: Option<Length>,
+        /// Where their middle stands along the axis, from the origin of the positions of the gears. Default: in the
+        /// middle of the gears of their shaft.
+        may position: Option<Length>,
+        /// Whether they hold their shaft in place and take its thrust. Default: the first bearing of a shaft whose kind
+        /// can.
+        may locates: Option<bool>,
         /// A constant radial load beside those of the gears, on all of them together. Default: none.
         may radial_load: Option<Force>,
         /// A constant axial load beside those of the gears. Default: none.
@@ -256,6 +348,53 @@ specification! {
         may supply: Option<OilSupply>,
         /// Oil level above the lowest rolling element's contact, for a bath.
         may level: Option<Length>,
+    }
+
+    /// What a shift element does while it is open: a measured curve, the plates of a pack, a band around a drum, or one
+    /// torque.
+    OpenSpec => PlainOpen {
+        /// Torque over the amount of slip, measured by its maker or on a test bench.
+        may curve: Option<Vec<(AngularSpeed, Torque)>>,
+        /// Oil temperature at which the curve was measured. Default: 80 degC.
+        may temperature: Option<Temperature>,
+        /// Friction surfaces of a pack.
+        may surfaces: Option<i64>,
+        /// Inner radius of the friction surfaces.
+        may inner_radius: Option<Length>,
+        /// Outer radius of the friction surfaces.
+        may outer_radius: Option<Length>,
+        /// Gap between two plates, or between band and drum.
+        may gap: Option<Length>,
+        /// Oil through one gap. Default: 0.1 l/min.
+        may flow: Option<VolumeFlow>,
+        /// Part of the friction surface that is groove. Default: none.
+        may groove_share: Option<f64>,
+        /// Depth of the grooves.
+        may groove_depth: Option<Length>,
+        /// Radius of the drum of a band brake.
+        may drum_radius: Option<Length>,
+        /// Width of the band.
+        may width: Option<Length>,
+        /// Angle over which the band wraps the drum.
+        may wrap: Option<Angle>,
+        /// Part of the band that oil wets. Default: 1.
+        may wetted: Option<f64>,
+        /// One torque at any slip: the spring of a one-way clutch that overruns.
+        may torque: Option<Torque>,
+    }
+
+    /// An oil pump that a member of the train drives. All of its power becomes heat of the oil.
+    PumpSpec => PlainPump {
+        /// What it is called.
+        must name: String,
+        /// The member that drives it.
+        must member: String as Kind::Name,
+        /// Oil of one turn.
+        must displacement: Volume,
+        /// Pressure against which it delivers.
+        must pressure: Pressure,
+        /// Hydromechanical efficiency. Default: 0.85.
+        may efficiency: Option<f64>,
     }
 
     /// A radial lip seal.
@@ -326,7 +465,7 @@ impl PlainGeometry {
 }
 
 impl LawsSpec {
-    fn families_mut(&mut self) -> [(&'static str, &mut Option<String>); 11] {
+    fn families_mut(&mut self) -> [(&'static str, &mut Option<String>); 15] {
         [
             ("mesh_friction", &mut self.mesh_friction),
             ("loss_factor", &mut self.loss_factor),
@@ -339,6 +478,10 @@ impl LawsSpec {
             ("churning", &mut self.churning),
             ("seal", &mut self.seal),
             ("rotor_drag", &mut self.rotor_drag),
+            ("clutch_drag", &mut self.clutch_drag),
+            ("pump", &mut self.pump),
+            ("injection", &mut self.injection),
+            ("plain_bearing", &mut self.plain_bearing),
         ]
     }
 
@@ -346,5 +489,12 @@ impl LawsSpec {
     pub(crate) fn choices(&self) -> Vec<(&'static str, String)> {
         let mut all = self.clone();
         all.families_mut().into_iter().filter_map(|(family, law)| Some((family, law.take()?))).collect()
+    }
+}
+
+impl PlainLossFactor {
+    /// By kind of loss, in their order.
+    pub(crate) fn values(&self) -> [Option<f64>; LossPart::COUNT] {
+        [self.teeth, self.bearing_load, self.bearing_no_load, self.seal, self.churning, self.windage, self.rotor]
     }
 }

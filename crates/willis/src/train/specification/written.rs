@@ -27,6 +27,12 @@ const UNITS: &[(Dimension, &[&str])] = &[
     (Dimension::VISCOUS, &["N m s/rad", "N m/rpm", "N m s/deg"]),
     (Dimension::TORQUE_PER_ACCELERATION, &["N m s^2/rad", "N m s^2/deg"]),
     (Dimension::TORQUE_PER_SPEED_SQUARED, &["N m s^2/rad^2", "N m s^2/deg^2", "N m s^2/rad deg"]),
+    (Dimension::CONDUCTANCE, &["W/K", "kW/K"]),
+    (Dimension::HEAT_TRANSFER, &["W/(m^2 K)"]),
+    (Dimension::HEAT_CAPACITY, &["kJ/K", "J/K"]),
+    (Dimension::SPECIFIC_HEAT, &["J/(kg K)"]),
+    (Dimension::FLOW, &["l/min", "m^3/s"]),
+    (Dimension::SPEED, &["m/s"]),
 ];
 
 /// The number before a unit. Decimals where they are exact, else a fraction.
