@@ -226,6 +226,57 @@ pub struct Convergence {
     pub contraction: f64,
 }
 
+/// Losses on their way to agree with the torques.
+#[derive(Clone, Debug)]
+pub(crate) struct Approach {
+    step: Step,
+    rounds: Rounds,
+}
+
+impl Approach {
+    /// The losses to begin with.
+    pub fn new(step: Step) -> Self {
+        let rounds =
+            Rounds { count: 0, last: f64::INFINITY, contraction: 0.0, watts: f64::INFINITY, growing: 0 };
+        Self { step, rounds }
+    }
+}
+
+/// How the changes from round to round shrink.
+#[derive(Clone, Copy, Debug)]
+struct Rounds {
+    count: usize,
+    /// The last change, over the loss.
+    last: f64,
+    contraction: f64,
+    /// The last change, W, and for how many rounds it has been growing.
+    watts: f64,
+    growing: usize,
+}
+
+impl Rounds {
+    /// Takes the change of one more round; how they ended, if it was the last.
+    fn ended(&mut self, watts: f64, loss: f64) -> Option<Convergence> {
+        self.count += 1;
+        self.growing = if watts > GROWTH.0 * self.watts { self.growing + 1 } else { 0 };
+        self.watts = watts;
+        let change = if watts == 0.0 { 0.0 } else { watts / loss.max(f64::MIN_POSITIVE) };
+        // The first rounds leave the start behind; they say nothing of the contraction.
+        let q = if self.last.is_finite() && self.last > 0.0 { (change / self.last).min(2.0) } else { 0.5 };
+        self.contraction = if self.count > 2 { q.max(0.2 * self.contraction) } else { q };
+        self.last = change;
+        // The step that was solved is what is returned: all further changes are still missing in it.
+        let error = if self.contraction < 1.0 { change / (1.0 - self.contraction) } else { f64::INFINITY };
+        let converged = error <= ACCURACY || change <= 1e-15;
+        (converged || self.count == MOST_ROUNDS || self.growing == GROWTH.1).then(|| Convergence {
+            converged,
+            rounds: self.count,
+            error: if error.is_finite() { error } else { change.min(f64::MAX) },
+            contraction: self.contraction,
+        })
+    }
+}
+
 /// A quantity outside the range of the law that used it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extrapolation {
@@ -670,50 +721,43 @@ impl Physics<'_> {
         (change, computed)
     }
 
-    /// Repeats statics and laws from `start` until they agree. `solve` gives the flow for the losses
-    /// of a step, or nothing where friction locks the train. Returns the last step that was solved,
-    /// its flow, and how well it agrees.
+    /// Repeats statics and laws until they agree. `solve` gives the flow for the losses of a step, or nothing where friction
+    /// locks the train. Returns the last step that was solved, its flow, and how well it agrees.
     pub fn agree<F>(
         &self,
         motion: &Motion,
-        start: Step,
+        from: Approach,
         mut solve: impl FnMut(&Step) -> Option<(F, Flow)>,
     ) -> Option<(Step, F, Flow, Convergence)> {
-        let mut step = start;
-        let (mut last, mut contraction) = (f64::INFINITY, 0.0f64);
-        let mut rounds = 0;
-        // Watts of the last round's change, and for how many rounds it has been growing.
-        let (mut watts, mut growing) = (f64::INFINITY, 0);
+        let Approach { mut step, mut rounds } = from;
         loop {
-            rounds += 1;
             let (own, flow) = solve(&step)?;
             let next = self.step(&flow, motion);
             let (change, loss) = self.change(&flow, &step, &next);
-            growing = if change > GROWTH.0 * watts { growing + 1 } else { 0 };
-            watts = change;
-            let change = if change == 0.0 { 0.0 } else { change / loss.max(f64::MIN_POSITIVE) };
-            // The first rounds leave the start behind; they say nothing of the contraction.
-            let q = if last.is_finite() && last > 0.0 { (change / last).min(2.0) } else { 0.5 };
-            contraction = if rounds > 2 { q.max(0.2 * contraction) } else { q };
-            // The step that was solved is what is returned: all further changes are still missing in it.
-            let error = if contraction < 1.0 { change / (1.0 - contraction) } else { f64::INFINITY };
-            let converged = error <= ACCURACY || change <= 1e-15;
-            if converged || rounds == MOST_ROUNDS || growing == GROWTH.1 {
-                return Some((
-                    step,
-                    own,
-                    flow,
-                    Convergence {
-                        converged,
-                        rounds,
-                        error: if error.is_finite() { error } else { change.min(f64::MAX) },
-                        contraction,
-                    },
-                ));
+            if let Some(convergence) = rounds.ended(change, loss) {
+                return Some((step, own, flow, convergence));
             }
             step = next;
-            last = change;
         }
+    }
+
+    /// The rounds of [`agree`](Self::agree) up to the last one, which is left to it, or to where `solve` gives up.
+    pub fn approach(
+        &self,
+        motion: &Motion,
+        mut from: Approach,
+        mut solve: impl FnMut(&Step) -> Option<Flow>,
+    ) -> Approach {
+        while let Some(flow) = solve(&from.step) {
+            let next = self.step(&flow, motion);
+            let (change, loss) = self.change(&flow, &from.step, &next);
+            let mut rounds = from.rounds;
+            if rounds.ended(change, loss).is_some() {
+                break;
+            }
+            from = Approach { step: next, rounds };
+        }
+        from
     }
 
     /// Every loss of a solved step by its source, largest first; their sum is the flow's loss.

@@ -21,6 +21,7 @@
 
 mod blocks;
 mod enumeration;
+mod known;
 mod problem;
 
 use std::collections::HashSet;
@@ -36,6 +37,7 @@ use crate::train::MemberId;
 use blocks::{Block, blocks};
 
 pub(crate) use enumeration::Stretch;
+pub(crate) use known::{Known, rho};
 pub use problem::{Balanced, Equilibria, Problem, Unposed};
 
 /// How uniqueness was established.

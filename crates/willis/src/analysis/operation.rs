@@ -2,7 +2,7 @@
 
 use crate::kinematics::{Configuration, Coupled, Motion};
 use crate::operating_point::Physics;
-use crate::statics::{Certificate, Equilibrium, SolvedColumn, Unsolvable};
+use crate::statics::{Certificate, Equilibrium, Known, SolvedColumn, Unsolvable};
 use crate::train::{MemberId, MeshId, Operation, ShiftElementId, ShiftElementKind, Train};
 
 use super::balance::{Balance, Branch, Setting};
@@ -27,6 +27,13 @@ pub(crate) struct Point<'t> {
     pub forces: Vec<f64>,
     /// Terminals that balance the train.
     pub open: Vec<MemberId>,
+}
+
+impl Point<'_> {
+    /// Its linear equations.
+    pub fn known(&self) -> Known<'_> {
+        Known { c: &self.c, rows: &self.rows, columns: &self.columns }
+    }
 }
 
 /// An operating point, answered.

@@ -8,8 +8,9 @@ use num_dual::{Dual64, DualNum};
 use crate::analysis::Point;
 use crate::kinematics::Coupling;
 use crate::operating_point::{LossKind, Numbers, Physics, Step, VariatorNumbers};
-use crate::power_flow::{self, Drag, MeshFlow};
+use crate::power_flow::{Drag, MeshFlow};
 use crate::real;
+use crate::statics::{SolvedColumn, rho};
 use crate::train::{FRAME, Load, MachineEfficiency, MemberId, Operation, Store, Train, Variator};
 
 /// Most rounds of laws and statics.
@@ -272,15 +273,14 @@ fn coefficients(point: &Point<'_>, speeds: &[Dual64], k: usize) -> [Dual64; 2] {
 fn asked(point: &Point<'_>, speeds: &[Dual64], forces: &[Dual64], eta: &InForce<'_>) -> Vec<[Dual64; 2]> {
     let gears = point.c.gears().len();
     let of = |k: usize| {
-        let column = point.columns.iter().find(|c| c.element == gears + k);
-        let rho = rho(column.and_then(|c| c.p_drives), eta.passing[k]);
+        let rho = passed(point.known().p_drives(gears + k), eta.passing[k]);
         let [a, b] = coefficients(point, speeds, k);
         [forces[gears + k] * a, forces[gears + k] * b * rho]
     };
     (0..point.c.couplings.len()).map(of).collect()
 }
 
-fn rho(p_drives: Option<bool>, [first, second]: [Dual64; 2]) -> Dual64 {
+fn passed(p_drives: Option<bool>, [first, second]: [Dual64; 2]) -> Dual64 {
     match p_drives {
         None => Dual64::from(1.0),
         Some(true) => first,
@@ -322,53 +322,24 @@ fn solve(
     drags: Vec<Drag<Dual64>>,
     eta: &InForce<'_>,
 ) -> Option<State> {
-    let efficiencies = eta.meshes;
     let gears = point.c.gears().len();
-    let n = point.columns.len();
-    let zero = Dual64::from(0.0);
-    let mut matrix = vec![vec![zero; n + 1]; n];
-    for (j, column) in point.columns.iter().enumerate() {
+    let known = point.known();
+    let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, Dual64)| {
         let element = &point.c.elements[column.element];
         if let Some(k) = column.element.checked_sub(gears) {
             let [a, b] = coefficients(point, speeds, k);
-            for (member, x) in [(element.p, a), (element.q, b * rho(column.p_drives, eta.passing[k]))] {
-                let row = point.c.node(member).and_then(|n| point.rows.iter().position(|r| *r == n));
-                if let Some(row) = row {
-                    matrix[row][j] += x;
-                }
+            for (member, x) in [(element.p, a), (element.q, b * passed(column.p_drives, eta.passing[k]))] {
+                known.row(point.c.node(member)).into_iter().for_each(|row| add(row, x));
             }
-            continue;
+            return;
         }
-        let along = |p_drives: bool| {
-            element.links.iter().fold(Dual64::from(1.0), |product, link| {
-                product * efficiencies[link.mesh.index()][usize::from(p_drives != link.along)]
-            })
-        };
-        let rho = match column.p_drives {
-            None => Dual64::from(1.0),
-            Some(true) => along(true),
-            Some(false) => along(false).recip(),
-        };
-        for &(row, constant, slope) in &column.entries {
-            matrix[row][j] = rho * slope + constant;
-        }
-    }
-    let torques = loads
-        .torques(point, speeds)
-        .into_iter()
-        .chain(drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]));
-    for (member, torque) in torques {
-        let node = point.c.node(member);
-        if let Some(row) = node.and_then(|n| point.rows.iter().position(|r| *r == n)) {
-            matrix[row][n] += torque;
-        }
-    }
-    let found = eliminate(matrix)?;
-    let mut forces = vec![zero; point.c.elements.len()];
-    for (column, force) in point.columns.iter().zip(found) {
-        forces[column.element] = force;
-    }
-    let meshes = walk(point, speeds, &forces, efficiencies);
+        let rho = rho(element, column.p_drives, eta.meshes);
+        column.entries.iter().for_each(|&(row, constant, slope)| add(row, rho * slope + constant));
+    };
+    let torques = loads.torques(point, speeds).into_iter();
+    let torques = torques.chain(drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]));
+    let forces = known.forces(entries, torques.map(|(member, torque)| (point.c.node(member), torque)))?;
+    let meshes = walk(point, speeds, &forces, eta.meshes);
     Some(State { meshes, passing: asked(point, speeds, &forces, eta), drags })
 }
 
@@ -378,44 +349,9 @@ fn walk(
     forces: &[Dual64],
     efficiencies: &[[Dual64; 2]],
 ) -> Vec<MeshFlow<Dual64>> {
-    let mut meshes = Vec::new();
-    for (e, element) in point.c.gears().iter().enumerate() {
-        let drives = point.columns.iter().find(|c| c.element == e).and_then(|c| c.p_drives);
-        // Idle elements have no driver.
-        let drives = drives.filter(|_| forces[e].re != 0.0 || forces[e].eps != 0.0);
-        let own = |mesh: crate::train::MeshId, forward: bool| efficiencies[mesh.index()][usize::from(!forward)];
-        power_flow::walk(point.c.train, element, forces[e], drives, speeds, &own, &mut meshes);
-    }
-    meshes.sort_by_key(|m| m.mesh);
-    meshes
-}
-
-/// Solves linear equations, the right side in the last column; pivots are chosen by value.
-fn eliminate(mut m: Vec<Vec<Dual64>>) -> Option<Vec<Dual64>> {
-    let n = m.len();
-    for k in 0..n {
-        let best = (k..n).max_by(|&a, &b| m[a][k].re.abs().total_cmp(&m[b][k].re.abs()))?;
-        if m[best][k].re == 0.0 {
-            return None;
-        }
-        m.swap(k, best);
-        let (above, below) = m.split_at_mut(k + 1);
-        let pivot = &above[k];
-        for row in below {
-            let factor = row[k] / pivot[k];
-            if factor.re != 0.0 || factor.eps != 0.0 {
-                for j in k..=n {
-                    row[j] -= factor * pivot[j];
-                }
-            }
-        }
-    }
-    let mut x = vec![Dual64::from(0.0); n];
-    for k in (0..n).rev() {
-        let known = (k + 1..n).fold(m[k][n], |sum, j| sum - m[k][j] * x[j]);
-        x[k] = known / m[k][k];
-    }
-    Some(x)
+    // Idle elements have no driver.
+    let acts = |e: usize| forces[e].re != 0.0 || forces[e].eps != 0.0;
+    point.known().meshes(forces, speeds, efficiencies, |e| point.known().p_drives(e).filter(|_| acts(e)))
 }
 
 /// Torque times speed of the second member relative to the first.
