@@ -14,6 +14,7 @@ mod losses;
 mod margin;
 mod operation;
 mod outside;
+mod rounds;
 mod shafts;
 mod solution;
 mod table;

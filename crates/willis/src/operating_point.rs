@@ -51,6 +51,8 @@ pub(crate) use numbers::{DragNumbers, MountNumbers, Numbers, OilState, PumpNumbe
 
 /// The error that is left, over the loss.
 const ACCURACY: f64 = 1e-9;
+/// The same where losses of neighbouring points are compared.
+const CLOSE: f64 = 1e-12;
 /// Most rounds of statics and laws.
 const MOST_ROUNDS: usize = 200;
 /// Changes that grow by this factor in so many rounds on end will not come to rest.
@@ -237,14 +239,23 @@ impl Approach {
     /// The losses to begin with.
     pub fn new(step: Step) -> Self {
         let rounds =
-            Rounds { count: 0, last: f64::INFINITY, contraction: 0.0, watts: f64::INFINITY, growing: 0 };
+            Rounds { accuracy: ACCURACY, count: 0, last: f64::INFINITY, contraction: 0.0, watts: f64::INFINITY, growing: 0 };
         Self { step, rounds }
+    }
+
+    /// The same for losses that are compared with others closely.
+    pub fn closely(step: Step) -> Self {
+        let mut own = Self::new(step);
+        own.rounds.accuracy = CLOSE;
+        own
     }
 }
 
 /// How the changes from round to round shrink.
 #[derive(Clone, Copy, Debug)]
 struct Rounds {
+    /// The error at which they end, over the loss.
+    accuracy: f64,
     count: usize,
     /// The last change, over the loss.
     last: f64,
@@ -267,7 +278,7 @@ impl Rounds {
         self.last = change;
         // The step that was solved is what is returned: all further changes are still missing in it.
         let error = if self.contraction < 1.0 { change / (1.0 - self.contraction) } else { f64::INFINITY };
-        let converged = error <= ACCURACY || change <= 1e-15;
+        let converged = error <= self.accuracy || change <= 1e-15;
         (converged || self.count == MOST_ROUNDS || self.growing == GROWTH.1).then(|| Convergence {
             converged,
             rounds: self.count,
@@ -420,6 +431,14 @@ impl<'t> Physics<'t> {
     fn at(train: Cow<'t, Train>, temperature: Option<f64>) -> Self {
         let numbers = Numbers::of(&train, temperature);
         Self::with_numbers(train, numbers)
+    }
+
+    /// Brings the oil to another temperature, K.
+    pub fn warm_to(&mut self, temperature: f64) {
+        if let (Some((lubrication, state)), Some(own)) = (&mut self.oil, &mut self.numbers.oil) {
+            *state = OilState::of(lubrication, temperature);
+            *own = *state;
+        }
     }
 }
 

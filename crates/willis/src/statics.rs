@@ -534,7 +534,6 @@ impl Equilibrium {
     /// Solves one pattern (`None`: lossless); signs of the forces are certain, by error bound or
     /// by exact arithmetic. `None` when the pattern is exactly singular.
     fn attempt(&self, choice: &[Option<bool>], t: &[Rational], t_float: &[f64]) -> Option<Trial> {
-        let n = self.columns.len();
         let rho = |j: usize| choice[j].map_or(1.0, |p| self.columns[j].rho_floats[usize::from(!p)]);
         let b = self.float_matrix(&rho);
         let exact = || -> Option<Trial> {
@@ -543,26 +542,10 @@ impl Equilibrium {
             let forces: Vec<f64> = f.iter().map(Rational::to_f64).collect();
             Some(Trial { bounds: rounding(&forces), forces, signs, exact: Some(f) })
         };
-        let Some(inverse) = b.clone().try_inverse() else { return exact() };
-        let t = DVector::from_column_slice(t_float);
-        let mut f = &inverse * &t;
-        f += &inverse * (&t - &b * &f);
-        // With D = I − R B and v = |R| |residual|: |f − f*| ≤ v + |D| v + |D|² v + …, rounding of the residual and of the
-        // entries of B included.
         let sizes = self.sizes(&rho);
-        let unit = 4.0 * (n as f64 + 2.0) * f64::EPSILON;
-        let residual = (&t - &b * &f).abs() + (&sizes * f.abs() + t.abs()) * unit;
-        let off = (DMatrix::identity(n, n) - &inverse * &b).abs() + inverse.abs() * sizes * unit;
-        let defect = off.column_sum().max() + 1e-12;
-        let v = inverse.abs() * residual;
-        let bound = v.add_scalar(v.max() * defect / (1.0 - defect).max(1e-300)) * (1.0 + 1e-9);
-        // NaN fails both comparisons and goes the exact way too.
-        let certain = defect < 0.1 && (0..n).all(|j| f[j].abs() > bound[j]);
-        if !certain {
-            return exact();
-        }
-        let signs = f.iter().map(|x| if *x > 0.0 { 1 } else { -1 }).collect();
-        Some(Trial { forces: f.iter().copied().collect(), bounds: bound.iter().copied().collect(), signs, exact: None })
+        let Some((forces, bounds)) = certain(&b, &sizes, &DVector::from_column_slice(t_float)) else { return exact() };
+        let signs = forces.iter().map(|x| if *x > 0.0 { 1 } else { -1 }).collect();
+        Some(Trial { forces, bounds, signs, exact: None })
     }
 
     fn solution(&self, trial: Trial, pattern: Vec<bool>) -> Solution {
@@ -588,6 +571,26 @@ impl Equilibrium {
         }
         s
     }
+}
+
+/// Solves `b f = t` where rounding leaves no doubt about any sign: the forces, and how far each may be from the exact one.
+/// `sizes` are those of the terms that the entries of `b` are sums of.
+fn certain(b: &DMatrix<f64>, sizes: &DMatrix<f64>, t: &DVector<f64>) -> Option<(Vec<f64>, Vec<f64>)> {
+    let n = t.len();
+    let inverse = b.clone().try_inverse()?;
+    let mut f = &inverse * t;
+    f += &inverse * (t - b * &f);
+    // With D = I − R B and v = |R| |residual|: |f − f*| ≤ v + |D| v + |D|² v + …, rounding of the residual and of the
+    // entries of B included.
+    let unit = 4.0 * (n as f64 + 2.0) * f64::EPSILON;
+    let residual = (t - b * &f).abs() + (sizes * f.abs() + t.abs()) * unit;
+    let off = (DMatrix::identity(n, n) - &inverse * b).abs() + inverse.abs() * sizes * unit;
+    let defect = off.column_sum().max() + 1e-12;
+    let v = inverse.abs() * residual;
+    let bound = v.add_scalar(v.max() * defect / (1.0 - defect).max(1e-300)) * (1.0 + 1e-9);
+    // NaN fails both comparisons.
+    let certain = defect < 0.1 && (0..n).all(|j| f[j].abs() > bound[j]);
+    certain.then(|| (f.iter().copied().collect(), bound.iter().copied().collect()))
 }
 
 /// What one unit of force in an element asks of a node, with ρ as given.
@@ -775,6 +778,21 @@ impl Equilibrium {
         let (centre, radius): (Vec<f64>, Vec<f64>) =
             bounds.iter().map(|[lo, hi]| ((lo + hi) / 2.0, (hi - lo) / 2.0 * (1.0 + 1e-12))).unzip();
         self.regular(&centre, &radius)
+    }
+
+    /// Whether rounding leaves no doubt that, with ρ between these bounds (first end driving, second end driving, by column)
+    /// and these torques by row, one solution exists for every load, and that in that of this load the ends of `columns` drive.
+    pub(crate) fn is_only(&self, columns: &[SolvedColumn], rho: &[[f64; 2]], torques: &[f64]) -> bool {
+        let bounds: Vec<[f64; 2]> = rho.iter().map(|[p, q]| [p.min(*q), p.max(*q)]).collect();
+        let own = |j: usize| rho[j][usize::from(columns[j].p_drives == Some(false))];
+        let forces = || certain(&self.float_matrix(&own), &self.sizes(&own), &DVector::from_column_slice(torques));
+        let as_taken = |forces: &[f64]| {
+            (0..forces.len()).all(|j| {
+                let drives = forces[j] * f64::from(self.columns[j].sigma);
+                rho[j][0] == rho[j][1] || columns[j].p_drives == Some(drives > 0.0)
+            })
+        };
+        self.regular_between(&bounds) && forces().is_some_and(|(forces, _)| as_taken(&forces))
     }
 
     pub(crate) fn system(&self) -> System {

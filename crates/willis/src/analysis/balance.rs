@@ -1,14 +1,15 @@
 //! Every equilibrium of an operating point; where laws compute losses, brought into agreement with its torques.
 
 use crate::exact::Rational;
-use crate::kinematics::{Configuration, Motion, Node};
+use crate::kinematics::{Configuration, Motion};
 use crate::operating_point::{Approach, Convergence, Physics, Step};
 use crate::power_flow::{Drag, Flow};
-use crate::statics::{Answer, Certificate, Equilibrium, Known, Solution, SolvedColumn, Stretch, Unsolvable, rho};
+use crate::statics::{Answer, Certificate, Equilibrium, Known, Solution, Stretch, Unsolvable};
 use crate::train::{MemberId, Operation};
 
 use super::TorqueRange;
 use super::loads::Loads;
+use super::rounds::Rounds;
 use super::words::{Refusal, name_of};
 
 /// What all rounds of an operating point have in common.
@@ -72,15 +73,15 @@ impl<'a> Setting<'a> {
     /// Every equilibrium: with the efficiencies of the train, or with losses that laws compute.
     pub fn balance(
         &self,
-        problem: Loads,
+        problem: &Loads,
         equilibrium: Equilibrium,
         physics: Option<&Physics<'_>>,
     ) -> Result<Balance<'a>, Vec<Refusal>> {
         if let Some(physics) = physics {
-            return self.agreed(physics);
+            return self.agreed(physics, problem);
         }
         let answer = equilibrium.solve(&problem.torques);
-        let ranges = answer.stretches.iter().flat_map(|stretch| self.ranges(&problem, &equilibrium, stretch)).collect();
+        let ranges = answer.stretches.iter().flat_map(|stretch| self.ranges(problem, &equilibrium, stretch)).collect();
         let branch = |solution| Branch {
             c: self.c.clone(),
             problem: problem.clone(),
@@ -118,59 +119,21 @@ impl<'a> Setting<'a> {
         &self,
         physics: &Physics<'_>,
         start: Step,
-        first: &Solved<'_>,
+        problem: &Loads,
         second: &Solved<'_>,
         solution: usize,
     ) -> Approach {
         let from = Approach::new(start);
-        if !self.c.couplings.is_empty() || !self.operation.machines.is_empty() {
-            return from;
-        }
-        let (c, train) = (self.c, self.c.train);
         let (rows, columns) = second.equilibrium.solved(&second.answer.solutions[solution]);
-        let known = Known { c, rows: &rows, columns: &columns };
-        let given: Vec<[f64; 2]> =
-            c.efficiencies.iter().map(|e| [e.forward.to_f64(), e.backward.to_f64()]).collect();
-        let speeds: Vec<f64> = (0..c.node_of.len()).map(|m| self.motion.si(MemberId(m)).unwrap_or(0.0)).collect();
-        let scale = first.problem.scale();
-        let loads: Vec<(Node, f64)> =
-            rows.iter().map(|&n| (Some(n), first.problem.torques[n].to_f64() * scale)).collect();
-        physics.approach(self.motion, from, |step| {
-            let efficiencies = step.efficiencies(train, &given);
-            let acting = step.drags.iter().flat_map(|d| [(d.members[0], d.torque), (d.members[1], -d.torque)]);
-            let acting: Vec<(Node, f64)> = acting.map(|(member, torque)| (c.node(member), torque)).collect();
-            // Torque on a part that carried none has no equation here.
-            let has_equation = |node: Node| {
-                node.is_none_or(|n| second.problem.open.contains(&n)) || known.row(node).is_some()
-            };
-            if !acting.iter().all(|(node, _)| has_equation(*node)) {
-                return None;
-            }
-            let entries = |column: &SolvedColumn, add: &mut dyn FnMut(usize, f64)| {
-                let rho = rho(&c.elements[column.element], column.p_drives, &efficiencies);
-                column.entries.iter().for_each(|&(row, constant, slope)| add(row, rho * slope + constant));
-            };
-            let forces = known.forces(entries, loads.iter().copied().chain(acting))?;
-            let drives = |e: usize| match forces[e] * f64::from(self.sigma[e].unwrap_or(0)) {
-                0.0 => None,
-                power => Some(power > 0.0),
-            };
-            let turns = |column: &SolvedColumn| {
-                let [p, q] = [true, false].map(|p| rho(&c.elements[column.element], Some(p), &efficiencies));
-                column.p_drives.is_some() && drives(column.element) != column.p_drives && p != q
-            };
-            if !forces.iter().all(|f| f.is_finite()) || columns.iter().any(turns) {
-                return None;
-            }
-            let meshes = known.meshes(&forces, &speeds, &efficiencies, drives);
-            let relative = |d: &Drag| speeds[d.members[1].0] - speeds[d.members[0].0];
-            let drag_losses = step.drags.iter().map(|d| d.torque * relative(d)).collect();
-            Some(Flow { speeds: speeds.clone(), meshes, drag_losses, ..Flow::default() })
-        })
+        let known = Known { c: self.c, rows: &rows, columns: &columns };
+        match Rounds::new(known, self.motion, self.operation, self.sigma, problem) {
+            Some(rounds) => physics.approach(self.motion, from, |step| rounds.flow(step)),
+            None => from,
+        }
     }
 
     /// Brings torques and computed losses into agreement, for every equilibrium.
-    fn agreed(&self, physics: &Physics<'_>) -> Result<Balance<'a>, Vec<Refusal>> {
+    fn agreed(&self, physics: &Physics<'_>, problem: &Loads) -> Result<Balance<'a>, Vec<Refusal>> {
         let nothing = |certificate| Balance {
             branches: vec![],
             certificate,
@@ -193,7 +156,7 @@ impl<'a> Setting<'a> {
         for k in 0..second.answer.solutions.len() {
             let mut drivers = second.answer.solutions[k].driver.clone();
             let mut failed = None;
-            let from = self.approach(physics, start.clone(), &first, &second, k);
+            let from = self.approach(physics, start.clone(), problem, &second, k);
             let agreed = physics.agree(self.motion, from, |step| {
                 let solved = match self.solve(step, &step.drags) {
                     Ok(solved) => solved?,

@@ -7,13 +7,13 @@ use serde::{Deserialize, Serialize};
 use crate::heat::balance::Failed;
 use crate::heat::{Balance, Certificate, HeatVerdict, Limits, Source, balance, time_constants};
 use crate::named::Named;
-use crate::operating_point::{LossKind, LossSource};
+use crate::operating_point::{LossKind, LossSource, Physics};
 use crate::train::heat::{Heat, HeatPart, OIL};
 use crate::train::{Operation, Train};
 
-use super::operation::{Settled, settle_at};
+use super::operation::{Origin, Point, Settled, settle_at};
 use super::words::{Finding, Refusal};
-use super::{SolutionReport, Verdict};
+use super::{MeshReport, SolutionReport, Verdict};
 
 /// Width to which an oil temperature is closed in, K.
 const TOLERANCE: f64 = 1e-7;
@@ -156,19 +156,41 @@ pub(crate) struct Losses<'t> {
     train: &'t Train,
     heat: &'t Heat,
     operation: Operation,
-    /// Which gears drive, at every temperature that was asked.
-    drivers: RefCell<Vec<(f64, Vec<Option<String>>)>>,
+    /// From where other temperatures are looked for.
+    near: RefCell<Option<Near<'t>>>,
+    /// Which gear of each mesh drives, at every temperature that was asked.
+    drivers: RefCell<Vec<(f64, Vec<Option<usize>>)>>,
+}
+
+/// An equilibrium at one temperature, and the laws at the next.
+struct Near<'t> {
+    point: Point<'t>,
+    origin: Origin,
+    physics: Physics<'t>,
 }
 
 impl<'t> Losses<'t> {
     pub fn new(train: &'t Train, heat: &'t Heat, operation: &Operation) -> Self {
-        Self { train, heat, operation: operation.clone(), drivers: RefCell::default() }
+        let (near, drivers) = (RefCell::default(), RefCell::default());
+        Self { train, heat, operation: operation.clone(), near, drivers }
+    }
+
+    /// The heat at a temperature from the equilibrium at another one, where that needs no second look.
+    fn near(&self, oil: f64) -> Option<Vec<f64>> {
+        let mut near = self.near.borrow_mut();
+        let Near { point, origin, physics } = near.as_mut()?;
+        physics.warm_to(oil);
+        let (step, flow) = origin.follow(point, &self.operation, physics)?;
+        let parts = physics.parts(&step, &flow.meshes, &flow.drag_losses);
+        let (made, _) = placed(self.train, self.heat, parts.iter().map(|s| (s.0.as_str(), s.1, s.3)));
+        self.drivers.borrow_mut().push((oil, flow.meshes.iter().map(|m| m.driver).collect()));
+        Some(made)
     }
 
     /// Whether other gears drive at one end of the temperatures than at the other.
     fn drivers_change(&self) -> bool {
         let all = self.drivers.borrow();
-        let by = |a: &&(f64, Vec<Option<String>>), b: &&(f64, Vec<Option<String>>)| a.0.total_cmp(&b.0);
+        let by = |a: &&(f64, Vec<Option<usize>>), b: &&(f64, Vec<Option<usize>>)| a.0.total_cmp(&b.0);
         let ends = all.iter().min_by(by).zip(all.iter().max_by(by));
         ends.is_some_and(|(cold, hot)| cold.1 != hot.1)
     }
@@ -178,6 +200,9 @@ impl Source for Losses<'_> {
     type Error = NoHeat;
 
     fn heat(&self, oil: f64) -> Result<Vec<f64>, NoHeat> {
+        if let Some(made) = self.near(oil) {
+            return Ok(made);
+        }
         let operation = Operation { temperature: Some(oil), ..self.operation.clone() };
         let settled = settle_at(self.train, &operation, false).map_err(|wrong| NoHeat(Why::Refused(wrong)))?;
         let [solution] = &settled.report.solutions[..] else {
@@ -186,9 +211,17 @@ impl Source for Losses<'_> {
         if !matches!(settled.report.verdict, Verdict::Unique | Verdict::Unloaded) {
             return Err(NoHeat(Why::Verdict(settled.report.verdict)));
         }
-        let drivers = solution.meshes.iter().map(|(_, m)| m.driver.clone()).collect();
-        self.drivers.borrow_mut().push((oil, drivers));
-        Ok(made(self.train, self.heat, solution).0)
+        let own = |(name, m): &(String, MeshReport)| {
+            let mesh = self.train.meshes.iter().find(|mesh| mesh.name == *name)?;
+            mesh.gears.iter().position(|g| Some(self.train.member_name(g.member)) == m.driver.as_deref())
+        };
+        self.drivers.borrow_mut().push((oil, solution.meshes.0.iter().map(own).collect()));
+        let made = made(self.train, self.heat, solution).0;
+        if let (Some(point), Some(origin)) = (settled.point, settled.origin) {
+            let physics = Physics::new(self.train, &operation);
+            *self.near.borrow_mut() = Some(Near { point, origin, physics });
+        }
+        Ok(made)
     }
 }
 

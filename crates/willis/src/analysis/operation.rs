@@ -1,13 +1,15 @@
 //! One operating point, from what is prescribed to the answer: speeds, loads, equilibria, verdict.
 
 use crate::kinematics::{Configuration, Coupled, Motion};
-use crate::operating_point::Physics;
+use crate::operating_point::{Approach, Physics, Step};
+use crate::power_flow::Flow;
 use crate::statics::{Certificate, Equilibrium, Known, SolvedColumn, Unsolvable};
 use crate::train::{MemberId, MeshId, Operation, ShiftElementId, ShiftElementKind, Train};
 
 use super::balance::{Balance, Branch, Setting};
 use super::doubts::doubts;
 use super::loads::Loads;
+use super::rounds::Rounds;
 use super::solution::Frame;
 use super::words::{Finding, Refusal, names};
 use super::{
@@ -36,11 +38,34 @@ impl Point<'_> {
     }
 }
 
+/// What a unique equilibrium with computed losses was solved from: that with other losses is looked for from here.
+pub(super) struct Origin {
+    equilibrium: Equilibrium,
+    /// The loads without drags.
+    problem: Loads,
+    sigma: Vec<Option<i8>>,
+    step: Step,
+}
+
+impl Origin {
+    /// The losses that other physics give at a point, in floating point, and their flow; `None` where they are not found so,
+    /// or where it is not beyond doubt that they are the only ones.
+    pub fn follow(&self, point: &Point<'_>, operation: &Operation, physics: &Physics<'_>) -> Option<(Step, Flow)> {
+        let rounds = Rounds::new(point.known(), &point.motion, operation, &self.sigma, &self.problem)?;
+        let from = Approach::closely(self.step.clone());
+        let (step, (), flow, convergence) =
+            physics.agree(&point.motion, from, |step| rounds.flow(step).map(|flow| ((), flow)))?;
+        (convergence.converged && rounds.is_only(&self.equilibrium, &step, &flow)).then_some((step, flow))
+    }
+}
+
 /// An operating point, answered.
 pub(super) struct Settled<'t> {
     pub report: OperationReport,
     /// The equilibrium where there is exactly one.
     pub point: Option<Point<'t>>,
+    /// What it was solved from, where laws compute losses.
+    pub origin: Option<Origin>,
     /// What else a reader must know.
     pub findings: Vec<Finding>,
 }
@@ -98,7 +123,7 @@ pub(super) fn settle_at<'t>(
     let setting = Setting { c: &c, motion: &motion, operation, sigma: &sigma };
     let nothing_acts = problem.are_none();
     let Balance { branches, certificate, continuum, ranges, driven } =
-        setting.balance(problem, equilibrium, physics.as_ref())?;
+        setting.balance(&problem, equilibrium, physics.as_ref())?;
     let frames: Vec<Frame<'_>> = branches
         .iter()
         .map(|branch| Frame {
@@ -163,7 +188,10 @@ pub(super) fn settle_at<'t>(
         (Verdict::Unique, [branch]) => Some(point(&c, &motion, branch)),
         _ => None,
     };
-    Ok(Settled { report, point, findings })
+    let solved = branches.into_iter().next().filter(|_| point.is_some());
+    let solved = solved.and_then(|branch| Some((branch.equilibrium, branch.computed?.0)));
+    let origin = solved.map(|(equilibrium, step)| Origin { equilibrium, problem, sigma, step });
+    Ok(Settled { report, point, origin, findings })
 }
 
 impl Settled<'_> {
@@ -173,7 +201,7 @@ impl Settled<'_> {
         report.explain(&why);
         let mut findings: Vec<Finding> = report.speed_deviation.clone().map(Finding::Yield).into_iter().collect();
         findings.push(Finding::Why(why));
-        Self { report, point: None, findings }
+        Self { report, point: None, origin: None, findings }
     }
 }
 

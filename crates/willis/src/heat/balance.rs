@@ -305,6 +305,19 @@ fn crosses(a: &Sample, b: &Sample) -> bool {
     a.residual() < 0.0 && b.residual() >= 0.0 || a.residual() > 0.0 && b.residual() <= 0.0
 }
 
+/// Where between `a` and `b` the residual is zero, as a part of the way from `a`; `c` is a third point beside them.
+fn between(a: &Sample, b: &Sample, c: Option<&Sample>) -> f64 {
+    let [fa, fb] = [a, b].map(Sample::residual);
+    let Some(c) = c else { return fa / (fa - fb) };
+    let fc = c.residual();
+    let (xi, phi) = ((a.oil - b.oil) / (c.oil - b.oil), (fa - fb) / (fc - fb));
+    if phi * phi >= xi || (1.0 - phi) * (1.0 - phi) >= 1.0 - xi {
+        return 0.5;
+    }
+    let reach = (c.oil - a.oil) / (b.oil - a.oil);
+    fa / (fb - fa) * fc / (fb - fc) + reach * fa / (fc - fa) * fb / (fc - fb)
+}
+
 #[derive(Default)]
 struct Found {
     equilibria: Vec<Equilibrium>,
@@ -438,50 +451,34 @@ impl<S: Source> Search<'_, S> {
 
     /// The equilibrium between two temperatures with residuals of different signs, and what was computed on the way.
     fn close_in(&mut self, a: Sample, b: Sample) -> Result<(Equilibrium, Vec<Sample>), Failed<S::Error>> {
-        let (mut a, mut b) = (a, b);
         let slope = (b.residual() - a.residual()) / (b.oil - a.oil);
         let mut more = vec![];
-        // Illinois: the end that stays counts half; every third step halves.
-        let (mut weight_a, mut weight_b) = (a.residual(), b.residual());
-        for round in 1.. {
-            let width = b.oil - a.oil;
+        // The method of Chandrupatla (Adv. Eng. Softw. 28 (1997) 145): a parabola through the last three points where it is
+        // sure to lie between, else the middle; the straight line to begin with. `a` is the latest point, `c` the one before.
+        let (mut a, mut b, mut c) = (b, a, None::<Sample>);
+        loop {
+            let width = (b.oil - a.oil).abs();
             let middle = 0.5 * (a.oil + b.oil);
-            if b.residual() == 0.0 || width <= self.tolerance || middle <= a.oil || middle >= b.oil {
+            if a.residual() == 0.0 || width <= self.tolerance || middle == a.oil || middle == b.oil {
                 break;
             }
-            let secant = b.oil - weight_b * width / (weight_b - weight_a);
-            let inside = secant > a.oil && secant < b.oil;
-            let next = if round % 3 == 0 || !inside { middle } else { secant };
-            // A little beyond the secant closes the interval from both sides.
-            let nudge = self.tolerance.max(4.0 * f64::EPSILON * next) * 0.5;
-            let next = if next == middle {
-                next
-            } else if next - a.oil < b.oil - next {
-                (next + nudge).min(middle)
-            } else {
-                (next - nudge).max(middle)
-            };
-            let m = self.sample(next)?;
+            let part = between(&a, &b, c.as_ref());
+            let least = (0.5 * self.tolerance / width).clamp(f64::EPSILON, 0.5);
+            let m = self.sample(a.oil + part.clamp(least, 1.0 - least) * (b.oil - a.oil))?;
             more.push(m.clone());
             // A residual so small is a temperature so near.
             let chord = (b.residual() - a.residual()) / width;
             let found = m.residual().abs() <= 0.25 * self.tolerance * chord.abs();
-            match (m.residual() < 0.0) == (a.residual() < 0.0) {
-                true => {
-                    weight_b *= 0.5;
-                    weight_a = m.residual();
-                    a = m;
-                }
-                false => {
-                    weight_a *= 0.5;
-                    weight_b = m.residual();
-                    b = m;
-                }
-            }
+            let before = std::mem::replace(&mut a, m);
+            c = Some(match (a.residual() < 0.0) == (before.residual() < 0.0) {
+                true => before,
+                false => std::mem::replace(&mut b, before),
+            });
             if found {
                 break;
             }
         }
+        let (a, b) = if a.oil < b.oil { (a, b) } else { (b, a) };
         let width = (b.oil - a.oil).max(f64::MIN_POSITIVE);
         // What a steady law changes over so small a width.
         let expected = 4.0 * slope.abs() * width + 1e-8 * a.reaching.abs().max(b.reaching.abs());

@@ -186,6 +186,14 @@ impl<R: Real> OilState<R> {
     }
 }
 
+impl OilState<f64> {
+    /// As the train has it, at a temperature, K.
+    pub fn of(lubrication: &Lubrication, temperature: f64) -> Self {
+        let given = [lubrication.oil.lubricant_factor, lubrication.volume, lubrication.mist];
+        Self::at(lubrication, &lubrication.oil.curves(), temperature, given)
+    }
+}
+
 impl Numbers<f64> {
     /// As the train has them, at the temperature of its oil unless another is given.
     pub fn of(train: &Train, temperature: Option<f64>) -> Self {
@@ -194,10 +202,7 @@ impl Numbers<f64> {
                 .map(|m| [m.efficiency.forward.to_f64(), m.efficiency.backward.to_f64()])
                 .collect(),
             teeth: train.meshes.iter().map(|m| m.teeth.as_deref().cloned()).collect(),
-            oil: train.lubrication.as_ref().map(|l| {
-                let given = [l.oil.lubricant_factor, l.volume, l.mist];
-                OilState::at(l, &l.oil.curves(), temperature.unwrap_or(l.temperature), given)
-            }),
+            oil: train.lubrication.as_ref().map(|l| OilState::of(l, temperature.unwrap_or(l.temperature))),
             bearings: train.bearings.iter().map(MountNumbers::of).collect(),
             seals: train.seals.iter().map(|s| s.diameter).collect(),
             rotors: (train.rotors.iter())
