@@ -1,6 +1,7 @@
 //! Where the power runs: torque and power of every member, mesh and shift element for one
 //! equilibrium, the balance, and the power that goes round in circles.
 
+mod known;
 mod limits;
 
 use std::collections::BTreeMap;
@@ -10,6 +11,7 @@ use crate::real::{self, Real};
 use crate::statics::Solution;
 use crate::train::{FRAME, MemberId, MemberKind, MeshId, ShiftElementId, Train, Variator};
 
+pub(crate) use known::{Known, rho};
 pub use limits::{BeyondLimit, LimitedQuantity};
 pub(crate) use limits::{machine_beyond, ratio_beyond};
 

@@ -21,7 +21,6 @@
 
 mod blocks;
 mod enumeration;
-mod known;
 mod problem;
 
 use std::collections::HashSet;
@@ -37,7 +36,6 @@ use crate::train::MemberId;
 use blocks::{Block, blocks};
 
 pub(crate) use enumeration::Stretch;
-pub(crate) use known::{Known, rho};
 pub use problem::{Balanced, Equilibria, Problem, Unposed};
 
 /// How uniqueness was established.

@@ -3,8 +3,8 @@
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion};
 use crate::operating_point::{Approach, Convergence, Physics, Step};
-use crate::power_flow::{Drag, Flow};
-use crate::statics::{Answer, Certificate, Equilibrium, Known, Solution, Stretch, Unsolvable};
+use crate::power_flow::{Drag, Flow, Known};
+use crate::statics::{Answer, Certificate, Equilibrium, Solution, Stretch, Unsolvable};
 use crate::train::{MemberId, Operation};
 
 use super::TorqueRange;

@@ -72,7 +72,7 @@ pub struct HeatReport {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cooler_w: Option<f64>,
     /// Heat that reaches the oil and what it gives off, over its temperature. What reaches it is computed at the temperatures
-    /// that the balance looked at; between those it is a straight line.
+    /// that the balance looked at; between those it is a straight line. Points of studies have none.
     pub curve: Vec<HeatPoint>,
     /// Change of what leaves the oil less what reaches it with its temperature, W/K; above zero where it is stable.
     pub slope_w_k: Option<f64>,
@@ -282,7 +282,7 @@ pub(crate) fn placed<'a, R: crate::real::Real>(
 }
 
 /// An operating point at the temperature that its losses and what carries them away give, or at the one that is
-/// prescribed.
+/// prescribed. `exactly` also works out fractions and the curve.
 pub(super) fn settle<'t>(
     train: &'t Train,
     heat: &'t Heat,
@@ -316,6 +316,9 @@ pub(super) fn settle<'t>(
     report.basis = basis;
     report.drivers_change = losses.drivers_change();
     describe(&mut report, heat, &found);
+    if exactly {
+        report.curve = curve(heat, &found);
+    }
     settled.findings.extend(findings(&found, &report));
     settled.report.heat = Some(Box::new(report));
     Ok(settled)
@@ -379,7 +382,6 @@ fn describe(report: &mut HeatReport, heat: &Heat, found: &Balance) {
     report.equilibria = (found.equilibria.iter())
         .map(|e| HeatEquilibrium { oil_k: e.at.oil, stable: e.is_stable(), heat_w: total(&e.at.made), step_w: e.step })
         .collect();
-    report.curve = curve(heat, found);
     if let Some(e) = found.equilibria.iter().find(|e| e.at.oil == report.oil_k) {
         report.slope_w_k = Some(e.slope);
         // Slopes of the heats between the samples around it.

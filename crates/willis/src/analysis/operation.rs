@@ -2,8 +2,8 @@
 
 use crate::kinematics::{Configuration, Coupled, Motion};
 use crate::operating_point::{Approach, Physics, Step};
-use crate::power_flow::Flow;
-use crate::statics::{Certificate, Equilibrium, Known, SolvedColumn, Unsolvable};
+use crate::power_flow::{Flow, Known};
+use crate::statics::{Certificate, Equilibrium, SolvedColumn, Unsolvable};
 use crate::train::{MemberId, MeshId, Operation, ShiftElementId, ShiftElementKind, Train};
 
 use super::balance::{Balance, Branch, Setting};

@@ -2,8 +2,8 @@
 
 use crate::kinematics::{Configuration, Motion, Node};
 use crate::operating_point::Step;
-use crate::power_flow::{Drag, Flow};
-use crate::statics::{Equilibrium, Known, SolvedColumn, rho};
+use crate::power_flow::{Drag, Flow, Known, rho};
+use crate::statics::{Equilibrium, SolvedColumn};
 use crate::train::{MemberId, Operation};
 
 use super::loads::Loads;

@@ -468,7 +468,7 @@ impl<S: Source> Search<'_, S> {
             more.push(m.clone());
             // A residual so small is a temperature so near.
             let chord = (b.residual() - a.residual()) / width;
-            let found = m.residual().abs() <= 0.25 * self.tolerance * chord.abs();
+            let found = m.residual().abs() <= 1e-3 * self.tolerance * chord.abs();
             let before = std::mem::replace(&mut a, m);
             c = Some(match (a.residual() < 0.0) == (before.residual() < 0.0) {
                 true => before,

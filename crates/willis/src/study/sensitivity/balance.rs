@@ -8,9 +8,9 @@ use num_dual::{Dual64, DualNum};
 use crate::analysis::Point;
 use crate::kinematics::Coupling;
 use crate::operating_point::{LossKind, Numbers, Physics, Step, VariatorNumbers};
-use crate::power_flow::{Drag, MeshFlow};
+use crate::power_flow::{Drag, MeshFlow, rho};
 use crate::real;
-use crate::statics::{SolvedColumn, rho};
+use crate::statics::SolvedColumn;
 use crate::train::{FRAME, Load, MachineEfficiency, MemberId, Operation, Store, Train, Variator};
 
 /// Most rounds of laws and statics.

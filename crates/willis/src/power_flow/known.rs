@@ -1,11 +1,11 @@
 //! Forces where it is known which end of each element drives: linear equations, in any kind of number.
 
 use crate::kinematics::{Configuration, Element, Node};
-use crate::power_flow::{self, MeshFlow};
 use crate::real::Real;
+use crate::statics::SolvedColumn;
 use crate::train::MeshId;
 
-use super::SolvedColumn;
+use super::{MeshFlow, walk};
 
 /// Which ends drive, and which forces and torques are in question.
 #[derive(Clone, Copy)]
@@ -69,7 +69,7 @@ impl Known<'_> {
         let own = |mesh: MeshId, forward: bool| efficiencies[mesh.index()][usize::from(!forward)];
         let mut meshes = Vec::with_capacity(self.c.train.meshes.len());
         for (k, element) in self.c.gears().iter().enumerate() {
-            power_flow::walk(self.c.train, element, forces[k], p_drives(k), speeds, &own, &mut meshes);
+            walk(self.c.train, element, forces[k], p_drives(k), speeds, &own, &mut meshes);
         }
         meshes.sort_by_key(|m: &MeshFlow<R>| m.mesh);
         meshes
