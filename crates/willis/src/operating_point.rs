@@ -238,8 +238,14 @@ pub(crate) struct Approach {
 impl Approach {
     /// The losses to begin with.
     pub fn new(step: Step) -> Self {
-        let rounds =
-            Rounds { accuracy: ACCURACY, count: 0, last: f64::INFINITY, contraction: 0.0, watts: f64::INFINITY, growing: 0 };
+        let rounds = Rounds {
+            accuracy: ACCURACY,
+            count: 0,
+            last: f64::INFINITY,
+            contraction: 0.0,
+            watts: f64::INFINITY,
+            growing: 0,
+        };
         Self { step, rounds }
     }
 

@@ -24,6 +24,8 @@ const PARTS: usize = 8;
 /// Width below which an interval is not halved, K: with bounds, and from samples.
 const NARROW: f64 = 1e-6;
 const NARROW_SAMPLED: f64 = 1e-3;
+/// How near an equilibrium a temperature must be to end the search, over the width that ends it otherwise.
+const NEAR: f64 = 1e-3;
 /// Most temperatures at which a source is asked.
 const MOST_SAMPLES: usize = 100_000;
 const MOST_SAMPLES_SAMPLED: usize = 400;
@@ -463,12 +465,12 @@ impl<S: Source> Search<'_, S> {
                 break;
             }
             let part = between(&a, &b, c.as_ref());
-            let least = (0.5 * self.tolerance / width).clamp(f64::EPSILON, 0.5);
+            let least = (0.5 * NEAR * self.tolerance / width).clamp(f64::EPSILON, 0.5);
             let m = self.sample(a.oil + part.clamp(least, 1.0 - least) * (b.oil - a.oil))?;
             more.push(m.clone());
             // A residual so small is a temperature so near.
             let chord = (b.residual() - a.residual()) / width;
-            let found = m.residual().abs() <= 1e-3 * self.tolerance * chord.abs();
+            let found = m.residual().abs() <= NEAR * self.tolerance * chord.abs();
             let before = std::mem::replace(&mut a, m);
             c = Some(match (a.residual() < 0.0) == (before.residual() < 0.0) {
                 true => before,

@@ -8,7 +8,7 @@ use willis::study::{CalibrateRequest, CycleRequest, HeatRequest, calibrate, cycl
 use willis::train::Train;
 use willis::work::Serial;
 
-use crate::common::example;
+use crate::common::{Dice, example, examples};
 
 const ZERO: f64 = 273.15;
 
@@ -401,6 +401,40 @@ fn more_air_never_heats() {
         assert!(oil <= last + 1e-9 && oil > 293.15, "{air} m/s: {oil} after {last}");
         last = oil;
     }
+}
+
+/// The balance is looked for in floating point, from one temperature to the next; where it is found, everything is solved
+/// exactly: there the heat must leave that is made, for every train with laws and at any warmth.
+#[test]
+fn a_balance_found_in_floating_point_is_one_of_exact_numbers() {
+    let mut dice = Dice(0x4ea7);
+    let mut seen = 0;
+    for (name, text) in examples() {
+        let model = Model::from_toml(&text).unwrap();
+        if !model.train().is_physical() || model.train().heat().is_some() {
+            continue;
+        }
+        let all = analyze(model.train(), &Selection::default()).unwrap().operations;
+        let all = all.into_iter().map(|o| (o.name, o.solutions.first().map_or(0.0, |s| s.loss_w)));
+        for (operation, loss) in all.filter(|o| o.1 > 0.0) {
+            for _ in 0..6 {
+                // From a few kelvin above the air to beyond the limit.
+                let conductance = loss / (60.0 + 55.0 * dice.unit());
+                let heat = format!(
+                    "\n[heat]\nambient = \"{} degC\"\nlimit = \"110 degC\"\nconductance = \"{conductance} W/K\"\n",
+                    dice.whole(-20, 40)
+                );
+                let heated = Model::from_toml(&(text.clone() + &heat)).unwrap();
+                let selection = Selection { operation: Some(operation.clone()), ..Selection::default() };
+                let all = analyze(heated.train(), &selection).unwrap().operations;
+                let Some(h) = all[0].heat.as_ref().filter(|h| h.basis == HeatBasis::Balance) else { continue };
+                let left = h.residual_w.abs() / h.heat_w;
+                assert!(left < 3e-8, "{name}, {operation}: {left:e} of {} W", h.heat_w);
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 20, "{seen}");
 }
 
 /// A cooler that is colder than the air takes the oil below it, and the warm-up goes there, too.
