@@ -414,7 +414,7 @@ class AnalyzeHeatReport(Record):
     @property
     def curve(self) -> list[AnalyzeHeatPoint]:
         """Heat that reaches the oil and what it gives off, over its temperature. What reaches it is computed at the
-        temperatures that the balance looked at; between those it is a straight line."""
+        temperatures that the balance looked at; between those it is a straight line. Points of studies have none."""
     @property
     def slope_w_k(self) -> float | None:
         """Change of what leaves the oil less what reaches it with its temperature, W/K; above zero where it is stable."""
@@ -2106,7 +2106,7 @@ class HeatHeatReport(Record):
     @property
     def curve(self) -> list[HeatHeatPoint]:
         """Heat that reaches the oil and what it gives off, over its temperature. What reaches it is computed at the
-        temperatures that the balance looked at; between those it is a straight line."""
+        temperatures that the balance looked at; between those it is a straight line. Points of studies have none."""
     @property
     def slope_w_k(self) -> float | None:
         """Change of what leaves the oil less what reaches it with its temperature, W/K; above zero where it is stable."""
@@ -5631,7 +5631,7 @@ class DrawHeatReport(Record):
     @property
     def curve(self) -> list[DrawHeatPoint]:
         """Heat that reaches the oil and what it gives off, over its temperature. What reaches it is computed at the
-        temperatures that the balance looked at; between those it is a straight line."""
+        temperatures that the balance looked at; between those it is a straight line. Points of studies have none."""
     @property
     def slope_w_k(self) -> float | None:
         """Change of what leaves the oil less what reaches it with its temperature, W/K; above zero where it is stable."""

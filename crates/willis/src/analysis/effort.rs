@@ -15,8 +15,8 @@ const ELIMINATION: f64 = 1.3e-8;
 const DECIMALS: f64 = 3.0;
 /// Losses that depend on torques are found in rounds.
 const ROUNDS: f64 = 3.0;
-/// An oil temperature is found in so many rounds of all that.
-const HEAT: f64 = 30.0;
+/// An oil temperature is found in about as much time as so many points.
+const HEAT: f64 = 10.0;
 /// What it costs to read a train file anew, s for a byte.
 const BYTE: f64 = 3e-8;
 
