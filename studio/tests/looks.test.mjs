@@ -190,6 +190,22 @@ test("paper: four panels and the table, light, within the sheet", { timeout: 60_
   await page.context().close();
 });
 
+test("every loss is listed, and together they are all that is lost", { timeout: 120_000 }, async () => {
+  const page = await studio(at);
+  for (const name of ["two-mode-split.toml", "prius-hybrid.toml", "zf-8hp70.toml", "wang-herringbone-physical.toml"]) {
+    await open(page, name);
+    await shown(page);
+    const told = await page.evaluate(() => {
+      const rows = [...document.querySelectorAll(".paper table")].at(-1).querySelectorAll("tbody tr td:last-child");
+      const s = window.__studio.solution;
+      return { parts: [...rows].reduce((sum, td) => sum + parseFloat(td.textContent), 0), whole: (100 * s.loss_w) / s.input_power_w };
+    });
+    // Three figures each.
+    assert.ok(Math.abs(told.parts - told.whole) < 0.01 * told.whole, `${name}: ${told.parts} of ${told.whole} %`);
+  }
+  await page.context().close();
+});
+
 for (const scheme of ["light", "dark"]) {
   test(`forced colours, ${scheme}: members are told apart and stand out`, { timeout: 60_000 }, async () => {
     const page = await studio(at, { forcedColors: "active", colorScheme: scheme });

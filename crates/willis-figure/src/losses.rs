@@ -82,11 +82,7 @@ pub struct LossSeries {
 /// The losses of an answer: name, kind, law, W.
 fn sources(answer: &PointAnswer) -> Option<Vec<(String, LossKind, String, f64)>> {
     let s = answer.solution.as_ref().filter(|_| answer.is_unique())?;
-    if !s.sources.is_empty() {
-        return Some(s.sources.iter().map(|x| (x.name.clone(), x.kind, x.law.clone(), x.loss_w)).collect());
-    }
-    let meshes = s.meshes.iter().filter(|(_, m)| m.loss_w > 0.0);
-    Some(meshes.map(|(name, m)| (name.clone(), LossKind::Sliding, "given".to_owned(), m.loss_w)).collect())
+    Some(s.losses_by_source().into_iter().map(|x| (x.name, x.kind, x.law, x.loss_w)).collect())
 }
 
 /// Computes losses over a quantity (the operation's first speed, where none is named), source by source.

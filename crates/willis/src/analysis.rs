@@ -487,6 +487,47 @@ pub struct SolutionReport {
     pub stiction: Vec<StictionRange>,
 }
 
+impl SolutionReport {
+    /// Every loss by its source, the largest first: [`sources`](Self::sources), and where efficiencies are given each mesh
+    /// and variator with its own. Their sum is [`loss_w`](Self::loss_w).
+    ///
+    /// # Example
+    /// ```
+    /// use willis::analysis::{Selection, analyze};
+    /// use willis::train::Train;
+    ///
+    /// let train = Train::from_toml(r#"
+    ///     format = 1
+    ///     name = "pair"
+    ///     members = ["a", "b"]
+    ///     terminals = ["a", "b"]
+    ///     mesh = [{ name = "m", gears = [{ member = "a", teeth = 20 }, { member = "b", teeth = 30 }], efficiency = 0.99 }]
+    ///     operation = [{ name = "o", speeds = { a = "100 rad/s" }, torques = { a = "10 N m" } }]
+    /// "#)?;
+    /// let all = analyze(&train, &Selection::default())?.operations[0].solutions[0].losses_by_source();
+    /// assert_eq!((all.len(), all[0].name.as_str()), (1, "m"));
+    /// assert!((all[0].loss_w - 10.0).abs() < 1e-9);
+    /// # Ok::<(), willis::Diagnostics>(())
+    /// ```
+    pub fn losses_by_source(&self) -> Vec<LossSource> {
+        if !self.sources.is_empty() {
+            return self.sources.clone();
+        }
+        let meshes = self.meshes.iter().map(|(name, m)| (name, LossKind::Sliding, m.loss_w));
+        let variators = self.variators.iter().map(|(name, v)| (name, LossKind::Variator, v.loss_w));
+        let given = |(name, kind, loss_w): (&String, LossKind, f64)| LossSource {
+            name: name.clone(),
+            kind,
+            law: "given".to_owned(),
+            loss_w,
+            share: if self.loss_w > 0.0 { loss_w / self.loss_w } else { 0.0 },
+        };
+        let mut all: Vec<LossSource> = meshes.chain(variators).filter(|x| x.2 != 0.0).map(given).collect();
+        all.sort_by(|a, b| b.loss_w.total_cmp(&a.loss_w));
+        all
+    }
+}
+
 /// An operating point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -602,6 +602,7 @@ impl Temperature {
 /// ```
 /// assert_eq!(willis::units::for_people(0.045, "m"), (45.0, "mm"));
 /// assert_eq!(willis::units::for_people(0.5e-6, "m"), (0.5, "µm"));
+/// assert_eq!(willis::units::for_people(6e5, "Pa"), (6.0, "bar"));
 /// assert_eq!(willis::units::for_people(2.0, "N m"), (2.0, "N m"));
 /// ```
 pub fn for_people(x: f64, unit: &str) -> (f64, &str) {
@@ -610,11 +611,14 @@ pub fn for_people(x: f64, unit: &str) -> (f64, &str) {
         "m" => (x * 1e3, "mm"),
         "rad" => (x.to_degrees(), "°"),
         "K" => (x - 273.15, "°C"),
+        "Pa" if x.abs() < 1e8 => (x / 1e5, "bar"),
         "Pa" => (x / 1e9, "GPa"),
         "1/Pa" => (x * 1e9, "1/GPa"),
         "m^2/s" => (x * 1e6, "mm²/s"),
         "Pa s" => (x * 1e3, "mPa s"),
+        "m^3" if x.abs() < 1e-4 => (x * 1e6, "cm³"),
         "m^3" => (x * 1e3, "l"),
+        "m^3/s" => (x * 6e4, "l/min"),
         "kg/m^3" => (x, "kg/m³"),
         "rad/s" => (x * 30.0 / std::f64::consts::PI, "rpm"),
         "W" if x.abs() >= 1e3 => (x / 1e3, "kW"),

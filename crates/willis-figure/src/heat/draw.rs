@@ -141,13 +141,14 @@ fn network(p: &HeatPicture, width: f64) -> (Group, f64) {
     let most = ways.iter().fold(0.0f64, |a, w| a.max(w.2));
     let mut marks = Group::new();
     let mut labels = Group::new();
-    for (from, to, q) in &ways {
+    let doors = doors(&ways, &place);
+    for ((from, to, q), door) in ways.iter().zip(&doors) {
         let (a, b) = (place(*from), place(*to));
         let thick = if most > 0.0 { (q / most * WIDEST).max(1.0) } else { 1.0 };
         let (end, middle, d) = if (a.0 - b.0).abs() < 1.0 {
             // Within a column: around its left side.
             let side = a.0 - 34.0 - 10.0 * ((a.1 - b.1).abs() / ROW - 1.0).max(0.0);
-            let (s, e) = ((a.0, a.1 + BOX.1 / 2.0), (b.0, b.1 + BOX.1 / 2.0));
+            let (s, e) = ((a.0, door[0]), (b.0, door[1]));
             let middle = (0.25 * s.0 + 0.75 * side, (s.1 + e.1) / 2.0);
             let d = format!(
                 "M{} {} C{} {} {} {} {} {}",
@@ -163,8 +164,8 @@ fn network(p: &HeatPicture, width: f64) -> (Group, f64) {
             (e, middle, d)
         } else {
             let right = a.0 < b.0;
-            let s = (a.0 + if right { BOX.0 } else { 0.0 }, a.1 + BOX.1 / 2.0);
-            let e = (b.0 + if right { 0.0 } else { BOX.0 }, b.1 + BOX.1 / 2.0);
+            let s = (a.0 + if right { BOX.0 } else { 0.0 }, door[0]);
+            let e = (b.0 + if right { 0.0 } else { BOX.0 }, door[1]);
             let bend = (s.0 + e.0) / 2.0;
             // Past a column in between, below it.
             let over = (a.0 - b.0).abs() > 1.5 * (columns[1] - columns[0]) && !inner.is_empty();
@@ -185,14 +186,14 @@ fn network(p: &HeatPicture, width: f64) -> (Group, f64) {
                     "M{} {} C{} {} {} {} {} {} S{} {} {} {}",
                     number(s.0),
                     number(s.1),
-                    number(s.0 + 70.0),
-                    number(drop),
                     number(s.0 + 90.0),
+                    number(s.1),
+                    number(s.0 + 40.0),
                     number(drop),
                     number(bend),
                     number(drop),
-                    number(e.0 - 70.0),
-                    number(drop),
+                    number(e.0 - 90.0),
+                    number(e.1),
                     number(e.0),
                     number(e.1)
                 ),
@@ -254,6 +255,31 @@ fn network(p: &HeatPicture, width: f64) -> (Group, f64) {
         boxes = boxes.add(of(own, "place", &[Of::Quantity(&format!("temperature {name}"))]));
     }
     (Group::new().add(marks).add(boxes).add(labels), TOP + height + if inner.is_empty() { 0.0 } else { 24.0 })
+}
+
+/// Heights at which each way leaves its first place and enters its second: those at one side of a box stand one below the
+/// other, in the order of the places that they lead to. A way around the left side of a column starts towards its end, that to
+/// the next box inside those to boxes further on.
+fn doors(ways: &[(usize, usize, f64)], place: &dyn Fn(usize) -> (f64, f64)) -> Vec<[f64; 2]> {
+    // Way, end, place, whether at its right side, where it leads.
+    let mut ends: Vec<(usize, usize, usize, bool, f64)> = vec![];
+    for (k, &(from, to, _)) in ways.iter().enumerate() {
+        let (a, b) = (place(from), place(to));
+        let leads = |own: (f64, f64), other: (f64, f64)| match (own.0 - other.0).abs() < 1.0 {
+            true => (1e6 - (other.1 - own.1).abs()) * (other.1 - own.1).signum(),
+            false => other.1,
+        };
+        ends.push((k, 0, from, a.0 < b.0 - 1.0, leads(a, b)));
+        ends.push((k, 1, to, b.0 < a.0 - 1.0, leads(b, a)));
+    }
+    let mut doors = vec![[0.0; 2]; ways.len()];
+    for &(k, end, own, right, leads) in &ends {
+        let beside = || ends.iter().filter(|x| (x.2, x.3) == (own, right));
+        let above = beside().filter(|x| (x.4, x.0) < (leads, k)).count();
+        let part = (above as f64 + 1.0) / (beside().count() as f64 + 1.0);
+        doors[k][end] = place(own).1 + BOX.1 * part;
+    }
+    doors
 }
 
 /// Heat that reaches the oil and what it gives off, over its temperature.

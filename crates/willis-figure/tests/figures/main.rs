@@ -13,6 +13,7 @@ mod html;
 mod in_steps;
 mod lever;
 mod lever_drawn;
+mod losses;
 mod panels;
 mod pictures;
 mod map;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::heat::balance::Failed;
 use crate::heat::{Balance, Certificate, HeatVerdict, Limits, Source, balance, time_constants};
 use crate::named::Named;
-use crate::operating_point::{LossKind, LossSource, Physics};
+use crate::operating_point::{LossKind, Physics};
 use crate::train::heat::{Heat, HeatPart, OIL};
 use crate::train::{Operation, Train};
 
@@ -227,16 +227,8 @@ impl Source for Losses<'_> {
 
 /// Heat made at each place, W, and the losses of variators that are cooled elsewhere.
 pub(crate) fn made(train: &Train, heat: &Heat, solution: &SolutionReport) -> (Vec<f64>, f64) {
-    let of = |s: &LossSource| (s.name.clone(), s.kind, s.loss_w);
-    let mut all: Vec<(String, LossKind, f64)> = solution.sources.iter().map(of).collect();
-    if all.is_empty() {
-        // Efficiencies are given: each mesh has its loss, each variator its own.
-        all.extend(solution.meshes.iter().map(|(name, m)| (name.clone(), LossKind::Sliding, m.loss_w)));
-        let variators = solution.losses_w.variator;
-        let names = train.variators.iter().map(|v| v.name.clone());
-        all.extend(names.take(usize::from(variators != 0.0)).map(|name| (name, LossKind::Variator, variators)));
-    }
-    placed(train, heat, all.iter().map(|(name, kind, loss)| (name.as_str(), *kind, *loss)))
+    let all = solution.losses_by_source();
+    placed(train, heat, all.iter().map(|s| (s.name.as_str(), s.kind, s.loss_w)))
 }
 
 /// Losses of named sources at the places where they become heat; what no place names is made in the oil. Of tooth friction
