@@ -232,13 +232,13 @@ pub struct Convergence {
 #[derive(Clone, Debug)]
 pub(crate) struct Approach {
     step: Step,
-    rounds: Rounds,
+    rounds: Trend,
 }
 
 impl Approach {
     /// The losses to begin with.
     pub fn new(step: Step) -> Self {
-        let rounds = Rounds {
+        let rounds = Trend {
             accuracy: ACCURACY,
             count: 0,
             last: f64::INFINITY,
@@ -259,7 +259,7 @@ impl Approach {
 
 /// How the changes from round to round shrink.
 #[derive(Clone, Copy, Debug)]
-struct Rounds {
+struct Trend {
     /// The error at which they end, over the loss.
     accuracy: f64,
     count: usize,
@@ -271,7 +271,7 @@ struct Rounds {
     growing: usize,
 }
 
-impl Rounds {
+impl Trend {
     /// Takes the change of one more round; how they ended, if it was the last.
     fn ended(&mut self, watts: f64, loss: f64) -> Option<Convergence> {
         self.count += 1;
