@@ -5,7 +5,7 @@ pub mod draw;
 use serde::{Deserialize, Serialize};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::model::{Model, Target};
-use willis::study::{Axis, Hold, PointAnswer, Question, Trains, UncertaintyPlan, UncertaintyRequest};
+use willis::study::{Axis, Hold, PointAnswer, PointAnswers, Question, Trains, UncertaintyPlan, UncertaintyRequest};
 use willis::work::{self, Effort, Serial, Work};
 
 use crate::kind::{Ask, Detail, FigureRequest, Kind, MOMENT};
@@ -114,6 +114,14 @@ pub fn bands(model: &Model, request: &UncertaintyRequest, over: &[String]) -> Re
 fn along(plan: &UncertaintyPlan<'_>, sample: usize, x: &Axis, trains: &mut Trains) -> Vec<[f64; 2]> {
     /// Values at which it is tried to compile: the first may lie on a border.
     const TRIES: usize = 3;
+    if plan.question().model().train().is_physical() {
+        let mut values = vec![];
+        let points = (0..x.len()).map(|k| plan.asked_along(Some(sample), x, k, trains));
+        PointAnswers::each(points, false, |answer, _| {
+            values.push(if answer.is_unique() { [answer.efficiency(), answer.loss()] } else { [f64::NAN; 2] });
+        });
+        return values;
+    }
     let target = Target::parse(&x.name, plan.question().model()).ok();
     // By the sign of the value: beyond zero power goes other ways.
     let mut compiled: [Result<CompiledProbe, usize>; 2] = [Err(0), Err(0)];

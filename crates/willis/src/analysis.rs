@@ -15,6 +15,7 @@ mod margin;
 mod operation;
 mod outside;
 mod rounds;
+mod series;
 mod shafts;
 mod solution;
 mod table;
@@ -29,6 +30,8 @@ pub use heat::{HeatBasis, HeatEquilibrium, HeatFlow, HeatPoint, HeatReport, Plac
 pub(crate) use heat::{Losses as HeatOfLosses, NoHeat, placed as heat_placed};
 pub use losses::{LossPoint, LossRequest, LossTable, Spread, losses};
 pub use outside::{OutsideAt, OutsideLaw};
+pub use series::{MemberNumbers, PointNumbers};
+pub(crate) use series::{PointSeries, Told};
 pub use shafts::{ShaftElement, ShaftMember, ShaftState, ShaftTable, ShaftTableRequest, shaft_table};
 pub use variators::{MachineReport, VariatorReport};
 
@@ -294,23 +297,19 @@ impl Losses {
         [mesh, bearing, windage, churning, seal, drag, shift_element, injection, pump, variator]
     }
 
-    fn of(sources: &[LossSource]) -> Self {
-        let mut all = Self::default();
-        for s in sources {
-            *match s.kind {
-                LossKind::Sliding | LossKind::Rolling => &mut all.mesh,
-                LossKind::Bearing => &mut all.bearing,
-                LossKind::Windage => &mut all.windage,
-                LossKind::Churning => &mut all.churning,
-                LossKind::Seal => &mut all.seal,
-                LossKind::Drag => &mut all.drag,
-                LossKind::ShiftElement => &mut all.shift_element,
-                LossKind::Injection => &mut all.injection,
-                LossKind::Pump => &mut all.pump,
-                LossKind::Variator => &mut all.variator,
-            } += s.loss_w;
-        }
-        all
+    fn add(&mut self, kind: LossKind, loss: f64) {
+        *match kind {
+            LossKind::Sliding | LossKind::Rolling => &mut self.mesh,
+            LossKind::Bearing => &mut self.bearing,
+            LossKind::Windage => &mut self.windage,
+            LossKind::Churning => &mut self.churning,
+            LossKind::Seal => &mut self.seal,
+            LossKind::Drag => &mut self.drag,
+            LossKind::ShiftElement => &mut self.shift_element,
+            LossKind::Injection => &mut self.injection,
+            LossKind::Pump => &mut self.pump,
+            LossKind::Variator => &mut self.variator,
+        } += loss;
     }
 }
 

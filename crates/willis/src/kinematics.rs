@@ -533,8 +533,17 @@ impl<'t> Configuration<'t> {
     /// a contradiction: each list is tied together by the gears in a way that the prescribed values do not respect.
     pub fn motion(&self, prescribed: &[(MemberId, Quantity)]) -> Result<Motion, Vec<Vec<MemberId>>> {
         let members: Vec<_> = prescribed.iter().map(|(m, _)| *m).collect();
+        self.motion_by(&self.transfer(&members), prescribed)
+    }
+
+    /// The same where the [transfer](Self::transfer) of these members is known.
+    pub(crate) fn motion_by(
+        &self,
+        transfer: &Transfer,
+        prescribed: &[(MemberId, Quantity)],
+    ) -> Result<Motion, Vec<Vec<MemberId>>> {
+        let members: Vec<_> = prescribed.iter().map(|(m, _)| *m).collect();
         let (values, pi_power) = common(prescribed.iter().map(|(_, q)| q));
-        let transfer = self.transfer(&members);
         let dot = |factors: &[Rational]| {
             factors.iter().zip(&values).fold(Rational::ZERO, |sum, (f, v)| if f.is_zero() { sum } else { sum + f * v })
         };

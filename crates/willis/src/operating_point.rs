@@ -615,64 +615,67 @@ impl<'t, R: Real> Physics<'t, R> {
         meshes: &[MeshFlow<R>],
         drag_losses: &[R],
     ) -> Vec<(String, LossKind, &'static str, R)> {
-        let train = &self.train;
         let mut all: Vec<(String, LossKind, &'static str, R)> = Vec::new();
-        let mut add = |name: &str, kind: LossKind, law: &'static str, loss: R| match all
-            .iter_mut()
-            .find(|s| s.0 == name && s.1 == kind && s.2 == law)
-        {
-            Some(s) => s.3 += loss,
-            None => all.push((name.to_owned(), kind, law, loss)),
-        };
+        self.each_loss(step, meshes, drag_losses, |name, kind, law, loss| {
+            match all.iter_mut().find(|s| s.0 == name && s.1 == kind && s.2 == law) {
+                Some(s) => s.3 += loss,
+                None => all.push((name.to_owned(), kind, law, loss)),
+            }
+        });
+        all
+    }
+
+    /// Tells every loss of a solved step, several of one source one after the other: what loses it, what kind it is, its
+    /// law, the power in W.
+    pub fn each_loss(
+        &self,
+        step: &Step<R>,
+        meshes: &[MeshFlow<R>],
+        drag_losses: &[R],
+        mut add: impl FnMut(&str, LossKind, &'static str, R),
+    ) {
+        let train = &self.train;
         for (m, own) in meshes.iter().zip(&step.meshes) {
             let mesh = &train.meshes[m.mesh.0];
             let mut teeth = m.loss;
             for (bearing, part) in &own.bearings {
                 let loss = m.potential_power * *part;
                 teeth -= loss;
-                add(
-                    &train.bearings[*bearing].name,
-                    LossKind::Bearing,
-                    self.bearing_law_name(&train.bearings[*bearing]),
-                    loss,
-                );
+                let mount = &train.bearings[*bearing];
+                add(&mount.name, LossKind::Bearing, self.bearing_law_name(mount), loss);
             }
             let law = if mesh.computed { self.friction.meta().id } else { "given" };
             add(&mesh.name, LossKind::Sliding, law, teeth);
         }
         for (source, loss) in step.sources.iter().zip(drag_losses) {
-            match *source {
+            let (name, kind, law) = match *source {
                 Source::Rolling(k) => {
-                    let law = self.rolling.map_or("none", |r| r.meta().id);
-                    add(&train.meshes[k].name, LossKind::Rolling, law, *loss);
+                    (&train.meshes[k].name, LossKind::Rolling, self.rolling.map_or("none", |r| r.meta().id))
                 }
                 Source::Bearing(k) => {
-                    add(&train.bearings[k].name, LossKind::Bearing, self.bearing_law_name(&train.bearings[k]), *loss);
+                    let mount = &train.bearings[k];
+                    (&mount.name, LossKind::Bearing, self.bearing_law_name(mount))
                 }
-                Source::Seal(k) => add(&train.seals[k].name, LossKind::Seal, train.laws.seal.meta().id, *loss),
+                Source::Seal(k) => (&train.seals[k].name, LossKind::Seal, train.laws.seal.meta().id),
                 Source::Body(k) => {
                     let (kind, law) = self.bodies[k].kind(train);
-                    add(&self.bodies[k].name, kind, law, *loss);
+                    (&self.bodies[k].name, kind, law)
                 }
                 Source::Rotor(k) => {
                     let kind = match train.rotors[k].fluid {
                         crate::train::Fluid::Oil => LossKind::Churning,
                         _ => LossKind::Windage,
                     };
-                    add(&train.rotors[k].name, kind, train.laws.rotor_drag.meta().id, *loss);
+                    (&train.rotors[k].name, kind, train.laws.rotor_drag.meta().id)
                 }
-                Source::Drag(k) => add(&train.drags[k].name, LossKind::Drag, "given", *loss),
-                Source::Open(k) => {
-                    add(&train.shift_elements[k].name, LossKind::ShiftElement, self.open_law(k), *loss);
-                }
-                Source::Pump(k) => add(&train.pumps[k].name, LossKind::Pump, train.laws.pump.meta().id, *loss),
-                Source::Jet(k) => {
-                    add(&train.meshes[k].name, LossKind::Injection, train.laws.injection.meta().id, *loss)
-                }
-                Source::Standby(k) => add(&train.variators[k].name, LossKind::Variator, "given", *loss),
-            }
+                Source::Drag(k) => (&train.drags[k].name, LossKind::Drag, "given"),
+                Source::Open(k) => (&train.shift_elements[k].name, LossKind::ShiftElement, self.open_law(k)),
+                Source::Pump(k) => (&train.pumps[k].name, LossKind::Pump, train.laws.pump.meta().id),
+                Source::Jet(k) => (&train.meshes[k].name, LossKind::Injection, train.laws.injection.meta().id),
+                Source::Standby(k) => (&train.variators[k].name, LossKind::Variator, "given"),
+            };
+            add(name, kind, law, *loss);
         }
-        all
     }
 }
 

@@ -122,8 +122,6 @@ pub struct Flow<R = f64> {
     pub drag_losses: Vec<R>,
     /// Input less output less losses, W: zero up to round-off.
     pub residual: R,
-    /// Recirculating powers, largest first.
-    pub circulations: Vec<Circulation>,
 }
 
 /// What acts on a terminal.
@@ -164,7 +162,6 @@ impl Flow {
         let members = c.node_of.len();
         let speeds: Vec<f64> = (0..members).map(|m| motion.si(MemberId(m)).unwrap_or(0.0)).collect();
         let mut meshes = Vec::with_capacity(train.meshes.len());
-        let mut demand = vec![0.0; members];
         for (j, e) in c.gears().iter().enumerate() {
             let own = |mesh: MeshId, forward: bool| {
                 let own = &c.efficiencies[mesh.0];
@@ -173,6 +170,22 @@ impl Flow {
             walk(train, e, solution.forces[j] * scale, solution.driver[j], &speeds, &own, &mut meshes);
         }
         meshes.sort_by_key(|m: &MeshFlow| m.mesh);
+        let variators = variators(c, solution, scale, &speeds, externals, driven);
+        Self::assemble(c, speeds, meshes, variators, externals, drags)
+    }
+
+    /// The flow through meshes and variators whose torques are known.
+    pub(crate) fn assemble(
+        c: &Configuration<'_>,
+        speeds: Vec<f64>,
+        meshes: Vec<MeshFlow>,
+        variators: Vec<VariatorFlow>,
+        externals: &[External],
+        drags: &[Drag],
+    ) -> Self {
+        let train = c.train;
+        let members = c.node_of.len();
+        let mut demand = vec![0.0; members];
         for m in &meshes {
             let mesh = &train.meshes[m.mesh.0];
             for (member, torque) in
@@ -181,8 +194,6 @@ impl Flow {
                 demand[member.0] += torque;
             }
         }
-
-        let variators = variators(c, solution, scale, &speeds, externals, driven);
         for side in variators.iter().flat_map(|v| &v.sides) {
             demand[side.member.0] -= side.torque;
         }
@@ -211,7 +222,6 @@ impl Flow {
         let passing = variators.iter().map(|v| v.loss);
         let loss = meshes.iter().map(|m| m.loss).chain(drag_losses.iter().copied()).chain(passing).sum::<f64>();
         let residual = powers.iter().sum::<f64>() - loss;
-        let circulations = circulations(c, &meshes, &variators, &speeds, input_power);
         Self {
             torques,
             speeds,
@@ -225,8 +235,12 @@ impl Flow {
             loss,
             drag_losses,
             residual,
-            circulations,
         }
+    }
+
+    /// Recirculating powers, largest first.
+    pub(crate) fn circulations(&self, c: &Configuration<'_>) -> Vec<Circulation> {
+        circulations(c, &self.meshes, &self.variators, &self.speeds, self.input_power)
     }
 }
 

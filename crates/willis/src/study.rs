@@ -23,7 +23,7 @@ mod summary;
 mod sweep;
 mod uncertainty;
 
-pub use answer::{LawChoice, PointAnswer, PointVerdict, PointWarning};
+pub use answer::{LawChoice, PointAnswer, PointAnswers, PointVerdict, PointWarning};
 pub use axis::{Axis, values};
 pub use calibrate::{
     BlindChange, BlindDirection, CalibrateRequest, CalibratedPart, Calibration, MeterOffset, NextTest, PredictedLoss,

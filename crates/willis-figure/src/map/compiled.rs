@@ -149,7 +149,7 @@ impl CompiledProbe {
             let mut turned = None;
             for mesh in chain.iter().map(|m| &train.meshes()[m.index()]) {
                 let place = members + solution.meshes.iter().position(|(n, _)| *n == mesh.name)?;
-                let [driving, driven] = mesh.gears.each_ref().map(|g| Way::Driver(name(g.member)));
+                let [driving, driven] = mesh.gears.each_ref().map(|g| Way::Driver(g.member));
                 let idle = first[place] == Way::Idle;
                 let turned = *turned.get_or_insert(first[place] == driven);
                 let ways = match (first[place] == driving, turned) {

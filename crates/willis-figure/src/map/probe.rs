@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use willis::diagnostic::Diagnostics;
 use willis::model::Target;
-use willis::study::{Axis, PointAnswer, PointVerdict, Question, Trains};
+use willis::study::{Axis, PointAnswer, PointAnswers, PointVerdict, Question, Trains};
 use willis::train::{MemberId, Operation, Train};
 use willis::work::{self, Cancelled, Work};
 
@@ -118,22 +118,22 @@ impl<'q, 's> Probe<'q, 's> {
         let never_compiled = train.is_physical() || !train.variators().is_empty();
         if self.choice.is_none() && never_compiled {
             let (question, axes, seen) = (self.question, &self.axes, &self.seen);
+            let unseen = |row: &[[f64; 2]]| -> Vec<[f64; 2]> {
+                row.iter().filter(|place| !seen.contains_key(&place.map(f64::to_bits))).copied().collect()
+            };
+            let rows_unseen: Vec<Vec<[f64; 2]>> = rows.iter().map(|row| unseen(row)).collect();
             let told = work::map(work, rows.len(), |k| {
                 let mut trains = Trains::default();
-                let mut unseen = |place: &[f64; 2]| -> Option<Told> {
-                    let asked = || Told::of(&asked(question, axes, *place, None, &mut trains).answer(), None);
-                    (!seen.contains_key(&place.map(f64::to_bits))).then(asked)
-                };
-                let row: Vec<Option<Told>> = rows[k].iter().map(&mut unseen).collect();
+                let mut row: Vec<Told> = vec![];
+                let points = rows_unseen[k].iter().map(|place| asked(question, axes, *place, None, &mut trains));
+                PointAnswers::each(points, false, |answer, _| row.push(Told::of(&answer, None)));
                 work.advance(rows[k].len() as u64);
                 row
             })?;
             // In their order, so that zones have the same numbers however the work was shared.
-            for (place, told) in rows.iter().flatten().zip(told.into_iter().flatten()) {
-                if let Some(told) = told {
-                    let found = self.noted(MapPoint::of(&told, None), told.ways);
-                    self.seen.insert(place.map(f64::to_bits), found);
-                }
+            for (place, told) in rows_unseen.iter().flatten().zip(told.into_iter().flatten()) {
+                let found = self.noted(MapPoint::of(&told, None), told.ways);
+                self.seen.insert(place.map(f64::to_bits), found);
             }
             return Ok(rows.iter().flatten().map(|place| self.at(*place)).collect());
         }
@@ -231,10 +231,9 @@ impl<'q, 's> Probe<'q, 's> {
             None if plain => 0,
             _ => TRIES,
         };
-        let name = input.map(|m| self.question.model().train().member_name(m));
         let (train, operation) = match asked(self.question, &self.axes, place, state.map(|s| s.1), &mut self.trains) {
-            Asked::Of(train, operation) => (train, operation),
-            refused => return Told::of(&refused.answer(), name),
+            Ok(asked) => asked,
+            Err(wrong) => return Told::of(&PointAnswer::refused(wrong), input),
         };
         let answer = PointAnswer::of(&train, &operation);
         if tries < TRIES && answer.is_unique() {
@@ -242,22 +241,7 @@ impl<'q, 's> Probe<'q, 's> {
             let compiled = CompiledProbe::new(&train, &operation, &axes, &place, &answer, input);
             self.compiled.insert(key, compiled.ok_or(tries + 1));
         }
-        Told::of(&answer, name)
-    }
-}
-
-/// What is asked at a place, or why nothing is.
-enum Asked {
-    Of(Arc<Train>, Operation),
-    Refused(Diagnostics),
-}
-
-impl Asked {
-    fn answer(self) -> PointAnswer {
-        match self {
-            Self::Of(train, operation) => PointAnswer::of(&train, &operation),
-            Self::Refused(wrong) => PointAnswer::refused(wrong),
-        }
+        Told::of(&answer, input)
     }
 }
 
@@ -268,14 +252,11 @@ fn asked(
     place: [f64; 2],
     state: Option<&str>,
     trains: &mut Trains,
-) -> Asked {
+) -> Result<(Arc<Train>, Operation), Diagnostics> {
     let along = axes.iter().zip(place).map(|((target, unit), value)| (target, format!("{value} {unit}")));
     let mut settings: Vec<(&Target, String)> = along.map(|(t, v)| (t, v.trim_end().to_owned())).collect();
     settings.extend(state.map(|s| (&Target::State, s.to_owned())));
-    match question.at(&settings, trains) {
-        Ok((train, operation)) => Asked::Of(train, operation),
-        Err(wrong) => Asked::Refused(wrong),
-    }
+    question.at(&settings, trains)
 }
 
 impl MapPoint {

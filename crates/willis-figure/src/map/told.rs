@@ -2,9 +2,10 @@
 
 use willis::analysis::Role;
 use willis::study::{PointAnswer, PointVerdict};
+use willis::train::MemberId;
 
 /// Which way power goes through a part.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub enum Way {
     /// It neither gives nor takes power.
     Idle,
@@ -15,7 +16,7 @@ pub enum Way {
     /// A member that only passes power on, or is held.
     Passes,
     /// A mesh that this member drives.
-    Driver(String),
+    Driver(MemberId),
     /// A machine of a variator that gives power.
     Motors,
     /// A machine of a variator that takes power.
@@ -34,11 +35,11 @@ pub struct Told {
 }
 
 impl Told {
-    pub fn of(answer: &PointAnswer, input: Option<&str>) -> Self {
-        let s = answer.solution.as_ref();
+    pub fn of(answer: &PointAnswer, input: Option<MemberId>) -> Self {
+        let s = answer.numbers.as_ref();
         let unique = s.filter(|_| answer.is_unique());
-        let input = input.zip(s).and_then(|(name, s)| {
-            let m = s.members.get(name)?;
+        let input = input.zip(s).and_then(|(input, s)| {
+            let m = s.member(input)?;
             Some([m.speed_rad_s?, m.torque_n_m?])
         });
         Self {
@@ -54,15 +55,16 @@ impl Told {
 
 /// Which way power goes through every part that can change it.
 pub fn ways(answer: &PointAnswer) -> Vec<Way> {
-    let Some(s) = &answer.solution else { return vec![] };
-    let members = s.members.iter().map(|(_, m)| match m.role {
+    let Some(s) = &answer.numbers else { return vec![] };
+    let members = s.members.iter().map(|m| match m.role {
         Role::Input => Way::Input,
         Role::Output => Way::Output,
         Role::Idle => Way::Idle,
         _ => Way::Passes,
     });
-    let meshes = s.meshes.iter().map(|(_, m)| m.driver.clone().map_or(Way::Idle, Way::Driver));
-    let machines = s.variators.iter().flat_map(|(_, v)| v.machines.iter()).map(|(_, m)| match m.power_w {
+    let meshes = s.drivers.iter().map(|driver| driver.map_or(Way::Idle, Way::Driver));
+    let variators = answer.solution.iter().flat_map(|s| s.variators.iter());
+    let machines = variators.flat_map(|(_, v)| v.machines.iter()).map(|(_, m)| match m.power_w {
         w if w > 0.0 => Way::Motors,
         w if w < 0.0 => Way::Generates,
         _ => Way::Idle,

@@ -9,7 +9,7 @@ use crate::train::{MemberId, Operation};
 
 use super::TorqueRange;
 use super::loads::Loads;
-use super::rounds::Rounds;
+use super::rounds::{Agreed, Rounds};
 use super::words::{Refusal, name_of};
 
 /// What all rounds of an operating point have in common.
@@ -28,6 +28,8 @@ pub(super) struct Branch<'a> {
     pub solution: Solution,
     pub drags: Vec<Drag>,
     pub computed: Option<(Step, Convergence)>,
+    /// Its numbers, where they were found in floating point: exact ones only decide.
+    pub told: Option<Agreed>,
 }
 
 /// Every equilibrium of an operating point.
@@ -48,6 +50,10 @@ struct Solved<'a> {
     equilibrium: Equilibrium,
     answer: Answer,
 }
+
+/// Losses in agreement with the torques of an equilibrium: the losses, the train with them, the equilibrium's position, how
+/// well they agree, and the numbers that were found in floating point.
+type Agreement<'a> = (Step, Solved<'a>, usize, Convergence, Option<Agreed>);
 
 impl<'a> Setting<'a> {
     /// Solves with the losses of a step; `Err` where the loads make no question.
@@ -89,6 +95,7 @@ impl<'a> Setting<'a> {
             solution,
             drags: vec![],
             computed: None,
+            told: None,
         };
         Ok(Balance {
             branches: answer.solutions.into_iter().map(branch).collect(),
@@ -112,23 +119,57 @@ impl<'a> Setting<'a> {
         problem.balancing().filter_map(range).collect()
     }
 
-    /// Brings losses near their agreement with the torques, in floating point: the ends that drive in a solution of `second`,
-    /// where losses are those of `start`, are taken to do so in the next rounds too. Where they do not, it ends there; what it
-    /// comes to is solved exactly in any case.
-    fn approach(
+    /// Brings torques and losses into agreement from one equilibrium of `second`, where losses are those of `start`; `None`
+    /// where friction locks the train on the way.
+    ///
+    /// As long as the same ends drive, every round is one of floating point; the losses that it comes to are solved exactly,
+    /// which decides whether the same ends drive there. Where they do not, every round is exact.
+    fn agreement(
         &self,
         physics: &Physics<'_>,
-        start: Step,
         problem: &Loads,
-        second: &Solved<'_>,
+        start: &Step,
+        second: &Solved<'a>,
         solution: usize,
-    ) -> Approach {
-        let from = Approach::new(start);
+    ) -> Result<Option<Agreement<'a>>, Vec<Refusal>> {
         let (rows, columns) = second.equilibrium.solved(&second.answer.solutions[solution]);
         let known = Known { c: self.c, rows: &rows, columns: &columns };
-        match Rounds::new(known, self.motion, self.operation, self.sigma, problem) {
+        let rounds = Rounds::new(known, self.motion, self.operation, self.sigma, problem);
+        if let Some(agreed) = rounds.as_ref().and_then(|rounds| rounds.agree(physics, self.motion))
+            && let Some(solved) = self.solve(&agreed.step, &agreed.step.drags)?
+        {
+            let drivers = |flow: &Flow| flow.meshes.iter().map(|m| m.driver).collect::<Vec<_>>();
+            let same = |s: &Solution| drivers(&self.flow(&solved, s, &agreed.step.drags)) == drivers(&agreed.flow);
+            if let Some(at) = solved.answer.solutions.iter().position(same) {
+                return Ok(Some((agreed.step.clone(), solved, at, agreed.convergence, Some(agreed))));
+            }
+        }
+        let from = Approach::new(start.clone());
+        let from = match &rounds {
             Some(rounds) => physics.approach(self.motion, from, |step| rounds.flow(step)),
             None => from,
+        };
+        let mut drivers = second.answer.solutions[solution].driver.clone();
+        let mut failed = None;
+        let agreed = physics.agree(self.motion, from, |step| {
+            let solved = match self.solve(step, &step.drags) {
+                Ok(solved) => solved?,
+                Err(wrong) => {
+                    failed = Some(wrong);
+                    return None;
+                }
+            };
+            let all = &solved.answer.solutions;
+            // The equilibrium in which the same ends drive, or most of them; none where it locks.
+            let alike = |s: &Solution| s.driver.iter().zip(&drivers).filter(|(a, b)| a == b).count();
+            let at = (0..all.len()).max_by_key(|&k| (alike(&all[k]), std::cmp::Reverse(k)))?;
+            drivers = all[at].driver.clone();
+            let flow = self.flow(&solved, &all[at], &step.drags);
+            Some(((solved, at), flow))
+        });
+        match failed {
+            Some(wrong) => Err(wrong),
+            None => Ok(agreed.map(|(step, (solved, at), _, convergence)| (step, solved, at, convergence, None))),
         }
     }
 
@@ -154,29 +195,10 @@ impl<'a> Setting<'a> {
         let mut continuum = false;
         let mut driven = None;
         for k in 0..second.answer.solutions.len() {
-            let mut drivers = second.answer.solutions[k].driver.clone();
-            let mut failed = None;
-            let from = self.approach(physics, start.clone(), problem, &second, k);
-            let agreed = physics.agree(self.motion, from, |step| {
-                let solved = match self.solve(step, &step.drags) {
-                    Ok(solved) => solved?,
-                    Err(wrong) => {
-                        failed = Some(wrong);
-                        return None;
-                    }
-                };
-                let all = &solved.answer.solutions;
-                // The equilibrium in which the same ends drive, or most of them; none where it locks.
-                let alike = |s: &Solution| s.driver.iter().zip(&drivers).filter(|(a, b)| a == b).count();
-                let at = (0..all.len()).max_by_key(|&k| (alike(&all[k]), std::cmp::Reverse(k)))?;
-                drivers = all[at].driver.clone();
-                let flow = self.flow(&solved, &all[at], &step.drags);
-                Some(((solved, at), flow))
-            });
-            if let Some(wrong) = failed {
-                return Err(wrong);
-            }
-            let Some((step, (solved, at), _, convergence)) = agreed else { continue };
+            let Some((step, solved, at, convergence, told)) = self.agreement(physics, problem, &start, &second, k)?
+            else {
+                continue;
+            };
             let Solved { c, problem, equilibrium, answer } = solved;
             if answer.certificate != certificate && !answer.certificate.unique_for_every_load() {
                 certificate = answer.certificate;
@@ -198,7 +220,8 @@ impl<'a> Setting<'a> {
             });
             driven = Some(driven.unwrap_or(false) || drives);
             let drags = step.drags.clone();
-            branches.push(Branch { c, problem, equilibrium, solution, drags, computed: Some((step, convergence)) });
+            let computed = Some((step, convergence));
+            branches.push(Branch { c, problem, equilibrium, solution, drags, computed, told });
         }
         if branches.is_empty() {
             return Ok(nothing(certificate));

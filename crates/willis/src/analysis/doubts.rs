@@ -6,10 +6,9 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::catalogue::bearing::{Bearing, Kind};
-use crate::operating_point::BearingReport;
+use crate::named::Named;
+use crate::operating_point::{BearingReport, ContactReport, ShaftLoad};
 use crate::train::Train;
-
-use super::SolutionReport;
 
 /// Largest Hertzian pressure of hardened steel teeth, Pa: flanks yield beyond it (ISO 6336-5: endurance 1.2 to 1.65 GPa,
 /// static strength up to 1.6 times that).
@@ -76,18 +75,24 @@ fn static_load(bearing: &Bearing, b: &BearingReport) -> f64 {
     }
 }
 
-/// What is doubted in a solution.
-pub(super) fn doubts(train: &Train, s: &SolutionReport) -> Vec<Doubt> {
+/// What is doubted in a solution with this power into the train, contacts of teeth, bearings and shafts.
+pub(super) fn doubts(
+    train: &Train,
+    input_power_w: f64,
+    contacts: &Named<ContactReport>,
+    bearings: &Named<BearingReport>,
+    shafts: &Named<ShaftLoad>,
+) -> Vec<Doubt> {
     let mut all = Vec::new();
     let mut doubt = |kind: DoubtKind, at: &str, value: f64, limit: f64| {
         if value > limit && value.is_finite() {
             all.push(Doubt { kind, at: at.to_owned(), value, limit });
         }
     };
-    for (name, c) in s.contacts.iter() {
+    for (name, c) in contacts.iter() {
         doubt(DoubtKind::ContactPressure, name, c.pressure_pa, PRESSURE);
     }
-    for ((name, b), mount) in s.bearings.iter().zip(&train.bearings) {
+    for ((name, b), mount) in bearings.iter().zip(&train.bearings) {
         let bearing = &mount.bearing;
         if let Some(rating) = bearing.static_rating {
             doubt(DoubtKind::BearingLoad, name, static_load(bearing, b) / rating, 1.0);
@@ -96,8 +101,8 @@ pub(super) fn doubts(train: &Train, s: &SolutionReport) -> Vec<Doubt> {
             let mean = (bearing.bore + bearing.outside_diameter) / 2.0;
             doubt(DoubtKind::BearingSpeed, name, b.speed_rad_s * 30.0 / std::f64::consts::PI * mean * 1e3, SPEED);
         }
-        if s.input_power_w > 0.0 && b.loss_w > LEAST_LOSS {
-            doubt(DoubtKind::BearingLoss, name, b.loss_w / s.input_power_w, LOSS);
+        if input_power_w > 0.0 && b.loss_w > LEAST_LOSS {
+            doubt(DoubtKind::BearingLoss, name, b.loss_w / input_power_w, LOSS);
         }
         if !bearing.takes_thrust() {
             doubt(DoubtKind::ThrustOnFloating, name, b.axial_load_n, UNCARRIED * b.radial_load_n.max(1.0));
@@ -106,7 +111,7 @@ pub(super) fn doubts(train: &Train, s: &SolutionReport) -> Vec<Doubt> {
     // Without positions every force acts in one plane, and what tilts a shaft is not known.
     let placed = train.bearings.iter().any(|b| b.position.is_some())
         || train.meshes.iter().any(|m| m.teeth.as_ref().is_some_and(|t| t.position.is_some()));
-    for (member, load) in s.shaft_loads.iter() {
+    for (member, load) in shafts.iter() {
         let [force, thrust, tilting] = [load.radial_n, load.thrust_n.abs(), load.tilting_n_m];
         let size = force.max(thrust);
         doubt(DoubtKind::UncarriedThrust, member, load.uncarried_thrust_n.abs(), (UNCARRIED * size).max(1.0));

@@ -7,16 +7,17 @@ use serde::{Deserialize, Serialize};
 use crate::heat::balance::Failed;
 use crate::heat::{Balance, Certificate, HeatVerdict, Limits, Source, balance, time_constants};
 use crate::named::Named;
-use crate::operating_point::{LossKind, Physics};
+use crate::operating_point::{LossKind, Physics, Step};
 use crate::train::heat::{Heat, HeatPart, OIL};
 use crate::train::{Operation, Train};
 
 use super::operation::{Origin, Point, Settled, settle_at};
+use super::rounds::Agreed;
 use super::words::{Finding, Refusal};
 use super::{MeshReport, SolutionReport, Verdict};
 
 /// Width to which an oil temperature is closed in, K.
-const TOLERANCE: f64 = 1e-7;
+pub(super) const TOLERANCE: f64 = 1e-7;
 
 /// Where an oil temperature comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -167,6 +168,8 @@ struct Near<'t> {
     point: Point<'t>,
     origin: Origin,
     physics: Physics<'t>,
+    /// The losses at the first temperature: from there all others are looked for, so that they do not depend on their order.
+    start: Option<Step>,
 }
 
 impl<'t> Losses<'t> {
@@ -178,13 +181,12 @@ impl<'t> Losses<'t> {
     /// The heat at a temperature from the equilibrium at another one, where that needs no second look.
     fn near(&self, oil: f64) -> Option<Vec<f64>> {
         let mut near = self.near.borrow_mut();
-        let Near { point, origin, physics } = near.as_mut()?;
+        let Near { point, origin, physics, start } = near.as_mut()?;
         physics.warm_to(oil);
-        let (step, flow) = origin.follow(point, &self.operation, physics)?;
-        let parts = physics.parts(&step, &flow.meshes, &flow.drag_losses);
-        let (made, _) = placed(self.train, self.heat, parts.iter().map(|s| (s.0.as_str(), s.1, s.3)));
-        self.drivers.borrow_mut().push((oil, flow.meshes.iter().map(|m| m.driver).collect()));
-        Some(made)
+        let agreed = origin.follow(point, &self.operation, physics, start.as_ref())?;
+        start.get_or_insert_with(|| agreed.step.clone());
+        self.drivers.borrow_mut().push((oil, agreed.flow.meshes.iter().map(|m| m.driver).collect()));
+        Some(made_by(self.train, self.heat, physics, &agreed))
     }
 
     /// Whether other gears drive at one end of the temperatures than at the other.
@@ -219,7 +221,8 @@ impl Source for Losses<'_> {
         let made = made(self.train, self.heat, solution).0;
         if let (Some(point), Some(origin)) = (settled.point, settled.origin) {
             let physics = Physics::new(self.train, &operation);
-            *self.near.borrow_mut() = Some(Near { point, origin, physics });
+            *self.near.borrow_mut() = Some(Near { point, origin, physics, start: None });
+            return Ok(self.near(oil).unwrap_or(made));
         }
         Ok(made)
     }
@@ -229,6 +232,13 @@ impl Source for Losses<'_> {
 pub(crate) fn made(train: &Train, heat: &Heat, solution: &SolutionReport) -> (Vec<f64>, f64) {
     let all = solution.losses_by_source();
     placed(train, heat, all.iter().map(|s| (s.name.as_str(), s.kind, s.loss_w)))
+}
+
+/// Heat made at each place, W, by losses that were found in floating point.
+pub(super) fn made_by(train: &Train, heat: &Heat, physics: &Physics<'_>, agreed: &Agreed) -> Vec<f64> {
+    let Agreed { step, flow, .. } = agreed;
+    let parts = physics.parts(step, &flow.meshes, &flow.drag_losses);
+    placed(train, heat, parts.iter().map(|s| (s.0.as_str(), s.1, s.3))).0
 }
 
 /// Losses of named sources at the places where they become heat; what no place names is made in the oil. Of tooth friction

@@ -1,15 +1,15 @@
 //! One operating point, from what is prescribed to the answer: speeds, loads, equilibria, verdict.
 
 use crate::kinematics::{Configuration, Coupled, Motion};
-use crate::operating_point::{Approach, Physics, Step};
-use crate::power_flow::{Flow, Known};
+use crate::operating_point::{Physics, Step};
+use crate::power_flow::Known;
 use crate::statics::{Certificate, Equilibrium, SolvedColumn, Unsolvable};
 use crate::train::{MemberId, MeshId, Operation, ShiftElementId, ShiftElementKind, Train};
 
 use super::balance::{Balance, Branch, Setting};
 use super::doubts::doubts;
 use super::loads::Loads;
-use super::rounds::Rounds;
+use super::rounds::{Agreed, Rounds};
 use super::solution::Frame;
 use super::words::{Finding, Refusal, names};
 use super::{
@@ -38,24 +38,74 @@ impl Point<'_> {
     }
 }
 
+/// Which ends drive in an equilibrium with computed losses: others with the same drivers are looked for from here.
+pub(super) struct Pattern {
+    equilibrium: Equilibrium,
+    /// Node of each equation.
+    rows: Vec<usize>,
+    columns: Vec<SolvedColumn>,
+    sigma: Vec<Option<i8>>,
+    /// Nodes whose torque is left to be found.
+    open: Vec<usize>,
+}
+
+impl Pattern {
+    /// Whether it can be that of a point with these directions of motion and loads.
+    pub fn suits(&self, sigma: &[Option<i8>], problem: &Loads) -> bool {
+        let has_equation = |n: &usize| self.rows.contains(n) || self.open.contains(n);
+        // Friction in a mesh at rest is open.
+        self.sigma == sigma
+            && self.columns.iter().all(|c| c.p_drives.is_some())
+            && self.open == problem.open
+            && problem.loaded.iter().all(has_equation)
+    }
+
+    /// Whether both say the same of a point.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let drivers = |p: &Self| p.columns.iter().map(|c| (c.element, c.p_drives)).collect::<Vec<_>>();
+        self.sigma == other.sigma
+            && self.open == other.open
+            && self.rows == other.rows
+            && drivers(self) == drivers(other)
+    }
+
+    pub fn rounds<'a>(
+        &'a self,
+        c: &'a Configuration<'a>,
+        motion: &Motion,
+        operation: &Operation,
+        problem: &'a Loads,
+    ) -> Option<Rounds<'a>> {
+        let known = Known { c, rows: &self.rows, columns: &self.columns };
+        Rounds::new(known, motion, operation, &self.sigma, problem)
+    }
+
+    /// Whether an agreement of its [rounds](Self::rounds) is beyond doubt the only equilibrium.
+    pub fn is_only(&self, rounds: &Rounds<'_>, agreed: &Agreed) -> bool {
+        rounds.is_only(&self.equilibrium, agreed)
+    }
+}
+
 /// What a unique equilibrium with computed losses was solved from: that with other losses is looked for from here.
 pub(super) struct Origin {
-    equilibrium: Equilibrium,
+    pub pattern: Pattern,
     /// The loads without drags.
     problem: Loads,
-    sigma: Vec<Option<i8>>,
-    step: Step,
 }
 
 impl Origin {
-    /// The losses that other physics give at a point, in floating point, and their flow; `None` where they are not found so,
-    /// or where it is not beyond doubt that they are the only ones.
-    pub fn follow(&self, point: &Point<'_>, operation: &Operation, physics: &Physics<'_>) -> Option<(Step, Flow)> {
-        let rounds = Rounds::new(point.known(), &point.motion, operation, &self.sigma, &self.problem)?;
-        let from = Approach::closely(self.step.clone());
-        let (step, (), flow, convergence) =
-            physics.agree(&point.motion, from, |step| rounds.flow(step).map(|flow| ((), flow)))?;
-        (convergence.converged && rounds.is_only(&self.equilibrium, &step, &flow)).then_some((step, flow))
+    /// The losses that other physics give at a point, in floating point, looked for from those that are `near`; `None` where
+    /// they are not found so, or where it is not beyond doubt that they are the only ones.
+    pub fn follow(
+        &self,
+        point: &Point<'_>,
+        operation: &Operation,
+        physics: &Physics<'_>,
+        near: Option<&Step>,
+    ) -> Option<Agreed> {
+        let rounds = self.pattern.rounds(&point.c, &point.motion, operation, &self.problem)?;
+        let agreed = rounds.agree_closely(physics, &point.motion, near)?;
+        self.pattern.is_only(&rounds, &agreed).then_some(agreed)
     }
 }
 
@@ -135,11 +185,12 @@ pub(super) fn settle_at<'t>(
             drags: &branch.drags,
             exactly,
             physics: physics.as_ref().zip(branch.computed.as_ref()),
+            told: branch.told.as_ref(),
         })
         .collect();
     let mut all: Vec<SolutionReport> = frames.iter().zip(&branches).map(|(f, b)| f.solution(&b.solution)).collect();
     for s in &mut all {
-        s.doubts = doubts(train, s);
+        s.doubts = doubts(train, s.input_power_w, &s.contacts, &s.bearings, &s.shaft_loads);
     }
     all.sort_by(|a, b| a.efficiency.partial_cmp(&b.efficiency).unwrap_or(std::cmp::Ordering::Equal));
     if !all.iter().all(finite) {
@@ -188,9 +239,12 @@ pub(super) fn settle_at<'t>(
         (Verdict::Unique, [branch]) => Some(point(&c, &motion, branch)),
         _ => None,
     };
-    let solved = branches.into_iter().next().filter(|_| point.is_some());
-    let solved = solved.and_then(|branch| Some((branch.equilibrium, branch.computed?.0)));
-    let origin = solved.map(|(equilibrium, step)| Origin { equilibrium, problem, sigma, step });
+    let solved = branches.into_iter().next().filter(|branch| point.is_some() && branch.computed.is_some());
+    let solved = solved.map(|Branch { equilibrium, solution, .. }| (equilibrium.solved(&solution), equilibrium));
+    let origin = solved.map(|((rows, columns), equilibrium)| {
+        let open = problem.open.clone();
+        Origin { pattern: Pattern { equilibrium, rows, columns, sigma, open }, problem }
+    });
     Ok(Settled { report, point, origin, findings })
 }
 

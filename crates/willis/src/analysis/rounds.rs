@@ -1,8 +1,8 @@
 //! Laws and statics in floating point, where it is known which ends drive.
 
 use crate::kinematics::{Configuration, Motion, Node};
-use crate::operating_point::Step;
-use crate::power_flow::{Drag, Flow, Known, rho};
+use crate::operating_point::{Approach, Convergence, Physics, Step};
+use crate::power_flow::{Drag, External, Flow, Known, rho};
 use crate::statics::{Equilibrium, SolvedColumn};
 use crate::train::{MemberId, Operation};
 
@@ -31,7 +31,7 @@ impl<'a> Rounds<'a> {
         problem: &'a Loads,
     ) -> Option<Self> {
         let c = known.c;
-        if !c.couplings.is_empty() || !operation.machines.is_empty() {
+        if !c.train.variators.is_empty() || !operation.machines.is_empty() {
             return None;
         }
         let scale = problem.scale();
@@ -79,26 +79,38 @@ impl<'a> Rounds<'a> {
         Some(Flow { speeds: self.speeds.clone(), meshes, drag_losses, ..Flow::default() })
     }
 
-    /// Of a column's element: ρ when its first end drives, and when its second does.
-    fn rho_between(&self, column: &SolvedColumn, efficiencies: &[[f64; 2]]) -> [f64; 2] {
-        match column.p_drives {
-            None => [1.0; 2],
-            Some(_) => [true, false].map(|p| rho(&self.c().elements[column.element], Some(p), efficiencies)),
-        }
+    /// Losses in agreement with the torques, from a train without any; `None` where other ends drive on the way.
+    pub fn agree(&self, physics: &Physics<'_>, motion: &Motion) -> Option<Agreed> {
+        self.agree_from(physics, motion, Approach::new(self.start(physics, motion)?))
     }
 
-    /// Whether the flow of a step is the only one, beyond the doubts of rounding, and drives its load in spite of the drags.
-    /// `equilibrium` is the problem of `known`, with whatever losses.
-    pub fn is_only(&self, equilibrium: &Equilibrium, step: &Step, flow: &Flow) -> bool {
+    /// The same for losses that are compared with others closely, which may begin near those of a neighbour.
+    pub fn agree_closely(&self, physics: &Physics<'_>, motion: &Motion, near: Option<&Step>) -> Option<Agreed> {
+        let start = near.cloned().or_else(|| self.start(physics, motion))?;
+        self.agree_from(physics, motion, Approach::closely(start))
+    }
+
+    /// The losses for the torques that there are without losses.
+    fn start(&self, physics: &Physics<'_>, motion: &Motion) -> Option<Step> {
+        Some(physics.step(&self.flow(&Step::lossless(self.c().train))?, motion))
+    }
+
+    fn agree_from(&self, physics: &Physics<'_>, motion: &Motion, from: Approach) -> Option<Agreed> {
+        let (step, (), flow, convergence) =
+            physics.agree(motion, from, |step| self.flow(step).map(|flow| ((), flow)))?;
+        let acting = self.acting(&step, &flow);
+        convergence.converged.then_some(Agreed { step, flow, convergence, acting })
+    }
+
+    /// What acts on each terminal in the flow of a step.
+    fn acting(&self, step: &Step, flow: &Flow) -> Vec<Acting> {
         let c = self.c();
-        let efficiencies = step.efficiencies(c.train, &self.given);
-        let rho: Vec<[f64; 2]> = self.known.columns.iter().map(|k| self.rho_between(k, &efficiencies)).collect();
-        let mut torques: Vec<f64> = self.loads.iter().map(|(_, torque)| *torque).collect();
-        // What elements and drags ask of each node.
-        let mut asked = vec![0.0; c.nodes];
+        // What elements and drags ask of each node, and the sizes of its terms.
+        let mut asked = vec![[0.0; 2]; c.nodes];
         let mut ask = |member: MemberId, torque: f64| {
             if let Some(n) = c.node(member).filter(|_| !c.inner[member.0]) {
-                asked[n] += torque;
+                asked[n][0] += torque;
+                asked[n][1] += torque.abs();
             }
         };
         for m in &flow.meshes {
@@ -107,23 +119,78 @@ impl<'a> Rounds<'a> {
             members.into_iter().zip(m.torques).for_each(|(member, torque)| ask(member, torque));
         }
         for d in &step.drags {
+            ask(d.members[0], -d.torque);
+            ask(d.members[1], d.torque);
+        }
+        let scale = self.problem.scale();
+        let terminals = self.problem.terminals.iter().map(|(member, prescribed)| {
+            let [torque, size] = match (prescribed, c.node(*member)) {
+                (Some(torque), _) => [torque.to_f64() * scale; 2],
+                (None, Some(n)) => {
+                    let given = self.problem.torques[n].to_f64() * scale;
+                    [asked[n][0] - given, asked[n][1] + given.abs()]
+                }
+                (None, None) => [0.0; 2],
+            };
+            Acting { member: *member, torque, size: size.abs() }
+        });
+        terminals.collect()
+    }
+
+    /// Of a column's element: ρ when its first end drives, and when its second does.
+    fn rho_between(&self, column: &SolvedColumn, efficiencies: &[[f64; 2]]) -> [f64; 2] {
+        match column.p_drives {
+            None => [1.0; 2],
+            Some(_) => [true, false].map(|p| rho(&self.c().elements[column.element], Some(p), efficiencies)),
+        }
+    }
+
+    /// Whether this agreement is the only one, beyond the doubts of rounding, and drives its load in spite of the drags.
+    /// `equilibrium` is the problem of `known`, with whatever losses.
+    pub fn is_only(&self, equilibrium: &Equilibrium, agreed: &Agreed) -> bool {
+        let c = self.c();
+        let Agreed { step, acting, .. } = agreed;
+        let efficiencies = step.efficiencies(c.train, &self.given);
+        let rho: Vec<[f64; 2]> = self.known.columns.iter().map(|k| self.rho_between(k, &efficiencies)).collect();
+        let mut torques: Vec<f64> = self.loads.iter().map(|(_, torque)| *torque).collect();
+        for d in &step.drags {
             for (member, torque) in [(d.members[0], d.torque), (d.members[1], -d.torque)] {
-                ask(member, -torque);
                 if let Some(row) = self.known.row(c.node(member)) {
                     torques[row] += torque;
                 }
             }
         }
-        let scale = self.problem.scale();
-        let gives = self.problem.terminals.iter().any(|(member, prescribed)| {
-            let torque = match (prescribed, c.node(*member)) {
-                (Some(torque), _) => torque.to_f64() * scale,
-                (None, Some(n)) => asked[n] - self.problem.torques[n].to_f64() * scale,
-                (None, None) => 0.0,
-            };
-            torque * self.speeds[member.0] < 0.0
-        });
+        let gives = acting.iter().any(|x| x.torque * self.speeds[x.member.0] < 0.0);
         let drives = gives || c.degrees_of_freedom() != 1 || self.problem.are_none();
         drives && equilibrium.is_only(self.known.columns, &rho, &torques)
+    }
+}
+
+/// Losses and torques in agreement, in floating point.
+pub(super) struct Agreed {
+    pub step: Step,
+    /// Speeds, meshes and drags.
+    pub flow: Flow,
+    pub convergence: Convergence,
+    /// In the order of the terminals.
+    pub acting: Vec<Acting>,
+}
+
+/// The torque on a terminal.
+pub(super) struct Acting {
+    pub member: MemberId,
+    /// N m.
+    pub torque: f64,
+    /// The sum of the sizes of the terms that it is a sum of.
+    pub size: f64,
+}
+
+impl Agreed {
+    /// The whole flow; `externals` tell the signs of powers, and powers that are prescribed.
+    pub fn whole(&self, c: &Configuration<'_>, externals: &[External]) -> Flow {
+        let own = |(x, told): (&External, &Acting)| External { torque: told.torque, ..*x };
+        let externals: Vec<External> = externals.iter().zip(&self.acting).map(own).collect();
+        let Flow { speeds, meshes, .. } = self.flow.clone();
+        Flow::assemble(c, speeds, meshes, vec![], &externals, &self.step.drags)
     }
 }

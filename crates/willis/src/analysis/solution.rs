@@ -2,14 +2,16 @@
 
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion};
-use crate::operating_point::{Convergence, Physics, Step};
+use crate::operating_point::{Convergence, LossKind, Physics, Step};
 use crate::power_flow::{Drag, Flow};
 use crate::statics::{Equilibrium, Solution, torque_exact};
 use crate::train::{FRAME, MemberId, MemberKind, Operation};
 
 use super::loads::Loads;
+use super::rounds::Agreed;
 use super::{
-    CirculationReport, Losses, MemberReport, MeshReport, Named, Role, ShiftElementReport, SolutionReport, variators,
+    CirculationReport, Losses, MemberNumbers, MemberReport, MeshReport, Named, Role, ShiftElementReport,
+    SolutionReport, variators,
 };
 
 /// Everything a solution is seen against.
@@ -24,11 +26,16 @@ pub(super) struct Frame<'a> {
     pub exactly: bool,
     /// Where losses are computed: the laws, and the step in force.
     pub physics: Option<(&'a Physics<'a>, &'a (Step, Convergence))>,
+    /// Its numbers, where they were found in floating point.
+    pub told: Option<&'a Agreed>,
 }
 
 impl Frame<'_> {
     pub fn flow(&self, s: &Solution) -> Flow {
         let acting = self.problem.acting(self.c, self.motion, self.equilibrium, s);
+        if let Some(told) = self.told {
+            return told.whole(self.c, &acting);
+        }
         Flow::new(self.c, self.motion, s, self.problem.scale(), &acting, self.drags, &self.problem.driven)
     }
 
@@ -36,7 +43,7 @@ impl Frame<'_> {
     pub fn solution(&self, s: &Solution) -> SolutionReport {
         let flow = self.flow(s);
         let train = self.c.train;
-        let held: Vec<MemberId> = self.held();
+        let held = held(self.c, self.operation);
         let members =
             (1..train.members.len()).map(|m| (train.members[m].name.clone(), self.member(MemberId(m), &flow, &held)));
         let members = Named(members.collect());
@@ -77,21 +84,13 @@ impl Frame<'_> {
         let decided = rational.as_ref().filter(|_| s.exact.is_some());
         let sources = self.physics.map(|(p, (step, _))| p.sources(step, &flow)).unwrap_or_default();
         let losses_w = match self.physics {
-            Some(_) => Losses::of(&sources),
+            Some((physics, (step, _))) => Losses::of(physics, step, &flow),
             None => {
                 let variator = flow.variators.iter().map(|v| v.loss).sum::<f64>() + 0.0;
                 Losses { mesh: flow.meshes.iter().map(|m| m.loss).sum::<f64>() + 0.0, variator, ..Losses::default() }
             }
         };
-        let efficiency = if flow.input_power <= 0.0 {
-            None
-        } else if let Some(e) = decided {
-            Some(e.to_f64())
-        } else if flow.loss == 0.0 {
-            Some(1.0)
-        } else {
-            Some((flow.output_power / flow.input_power).clamp(0.0, 1.0) + 0.0)
-        };
+        let efficiency = decided.filter(|_| flow.input_power > 0.0).map(Rational::to_f64).or_else(|| efficiency(&flow));
         SolutionReport {
             efficiency,
             efficiency_exact: rational.filter(|_| self.problem.is_exact),
@@ -114,7 +113,7 @@ impl Frame<'_> {
             drags: self.physics.map(|(p, (step, _))| p.drags(step, &flow)).unwrap_or_default(),
             convergence: self.physics.map(|(_, (_, convergence))| *convergence),
             recirculation: flow
-                .circulations
+                .circulations(self.c)
                 .iter()
                 .map(|r| CirculationReport {
                     power_w: r.power,
@@ -130,47 +129,21 @@ impl Frame<'_> {
     /// What a member does; `held` are those at rest by a brake, the operation, or what is tied to them.
     fn member(&self, id: MemberId, flow: &Flow, held: &[MemberId]) -> MemberReport {
         let train = self.c.train;
-        let speed = self.motion.si(id);
-        let torque = flow.torques[id.0];
-        let power = match (torque, speed) {
-            // What acts beside it holds a shaft at rest, and has no power.
-            (Some(_), Some(_)) if flow.powers[id.0] != 0.0 => Some(flow.powers[id.0]),
-            (Some(t), Some(w)) => Some(t * w),
-            (None, Some(0.0)) | (Some(0.0), None) => Some(0.0),
-            _ => None,
-        };
-        let at_rest = self.motion.speeds[id.0].as_ref().is_some_and(Rational::is_zero);
-        let role = match flow.roles[id.0] {
-            _ if held.contains(&id) => Role::Fixed,
-            1 => Role::Input,
-            -1 => Role::Output,
-            _ if at_rest && torque.is_none_or(|t| t != 0.0) => Role::Fixed,
-            _ => Role::Idle,
-        };
+        let MemberNumbers { speed_rad_s, torque_n_m, power_w, role } = member(self.motion, flow, held, id);
         let carrier = (train.members[id.0].kind == MemberKind::Planet || self.c.inner[id.0])
             .then(|| train.meshes.iter().find(|x| x.gears.iter().any(|g| g.member == id)).map(|x| x.carrier))
             .flatten();
         MemberReport {
-            speed_rad_s: speed,
+            speed_rad_s,
             carrier: carrier.filter(|c| *c != FRAME).map(|c| train.member_name(c).to_owned()),
             relative_speed_rad_s: carrier.and_then(|c| {
                 let (w, c) = (self.motion.speeds[id.0].as_ref()?, self.motion.speeds[c.0].as_ref()?);
                 Some((w - c).to_f64() * std::f64::consts::PI.powi(self.motion.pi_power.into()))
             }),
-            torque_n_m: torque.map(|t| t + 0.0),
-            power_w: power.map(|p| p + 0.0),
+            torque_n_m,
+            power_w,
             role,
         }
-    }
-
-    /// Members held by a brake, by the operation, or tied to something that is.
-    fn held(&self) -> Vec<MemberId> {
-        let train = self.c.train;
-        let brakes = self.c.engaged.iter().flat_map(|e| {
-            let m = train.shift_elements[e.0].members;
-            if m.contains(&FRAME) { m.to_vec() } else { vec![] }
-        });
-        brakes.chain(self.operation.fixed.iter().copied()).filter(|m| *m != FRAME).collect()
     }
 
     /// Output over input power in rationals; `None` where that is not asked for.
@@ -193,5 +166,52 @@ impl Frame<'_> {
             add(speed * &torque);
         }
         (power_in.sign() > 0).then(|| power_out / power_in)
+    }
+}
+
+/// Output over input power; `None` where no power comes in.
+pub(super) fn efficiency(flow: &Flow) -> Option<f64> {
+    let of = || if flow.loss == 0.0 { 1.0 } else { (flow.output_power / flow.input_power).clamp(0.0, 1.0) + 0.0 };
+    (flow.input_power > 0.0).then(of)
+}
+
+/// Members held by a brake, by the operation, or tied to something that is.
+pub(super) fn held(c: &Configuration<'_>, operation: &Operation) -> Vec<MemberId> {
+    let brakes = c.engaged.iter().flat_map(|e| {
+        let m = c.train.shift_elements[e.0].members;
+        if m.contains(&FRAME) { m.to_vec() } else { vec![] }
+    });
+    brakes.chain(operation.fixed.iter().copied()).filter(|m| *m != FRAME).collect()
+}
+
+/// The numbers of a member; `held` as [`held`] has them.
+pub(super) fn member(motion: &Motion, flow: &Flow, held: &[MemberId], id: MemberId) -> MemberNumbers {
+    let speed = motion.si(id);
+    let torque = flow.torques[id.0];
+    let power = match (torque, speed) {
+        // What acts beside it holds a shaft at rest, and has no power.
+        (Some(_), Some(_)) if flow.powers[id.0] != 0.0 => Some(flow.powers[id.0]),
+        (Some(t), Some(w)) => Some(t * w),
+        (None, Some(0.0)) | (Some(0.0), None) => Some(0.0),
+        _ => None,
+    };
+    let at_rest = motion.speeds[id.0].as_ref().is_some_and(Rational::is_zero);
+    let role = match flow.roles[id.0] {
+        _ if held.contains(&id) => Role::Fixed,
+        1 => Role::Input,
+        -1 => Role::Output,
+        _ if at_rest && torque.is_none_or(|t| t != 0.0) => Role::Fixed,
+        _ => Role::Idle,
+    };
+    MemberNumbers { speed_rad_s: speed, torque_n_m: torque.map(|t| t + 0.0), power_w: power.map(|p| p + 0.0), role }
+}
+
+impl Losses {
+    /// By kind, of a step whose flow this is.
+    pub(super) fn of(physics: &Physics<'_>, step: &Step, flow: &Flow) -> Self {
+        let mut all = Self::default();
+        physics.each_loss(step, &flow.meshes, &flow.drag_losses, |_, kind, _, loss| all.add(kind, loss));
+        flow.variators.iter().for_each(|v| all.add(LossKind::Variator, v.loss));
+        all
     }
 }

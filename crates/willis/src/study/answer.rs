@@ -1,10 +1,11 @@
 //! The answer at one point of a study.
 
 use std::fmt;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{self, OperationReport, SolutionReport, Verdict};
+use crate::analysis::{OperationReport, PointNumbers, PointSeries, SolutionReport, Told, Verdict};
 use crate::diagnostic::{Code, Diagnostics, Severity};
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Ratio};
@@ -107,21 +108,40 @@ pub struct PointAnswer {
     pub verdict: PointVerdict,
     /// One sentence that explains a verdict other than `unique`.
     pub reason: String,
-    /// The one equilibrium, where there is one.
+    /// The one equilibrium, where there is one; where only numbers were asked for it may be left out.
     pub solution: Option<SolutionReport>,
+    /// The numbers of the one equilibrium, where there is one.
+    pub numbers: Option<PointNumbers>,
     /// Warnings of this point, those of a code side by side.
     pub warnings: Vec<PointWarning>,
     /// Speed of the input over that of the output: as they turn here, else as the gears tie them.
     pub ratio: Option<f64>,
     /// Speeds that are prescribed, in rpm: as they are written, where they are written so.
-    pub(super) prescribed_rpm: Vec<(String, f64)>,
+    pub(super) prescribed_rpm: Vec<(MemberId, f64)>,
 }
 
 impl PointAnswer {
     /// What [`analyze`](crate::analyze) says of an operation.
     pub fn of(train: &Train, operation: &Operation) -> Self {
-        let (report, notes) = match analysis::operate_unnamed(train, operation) {
-            Ok(answer) => answer,
+        PointAnswers::new(train).whole(operation)
+    }
+
+    fn told(train: &Train, operation: &Operation, told: Result<Told, Diagnostics>) -> Self {
+        let (verdict, reason, solution, numbers, ratio, deviation, notes, outside) = match told {
+            Ok(Told::Whole(report, notes)) => {
+                let speed = |m| report.speeds_rad_s.get(train.member_name(m)).copied().flatten();
+                let ratio = ratio(train, operation, speed);
+                let OperationReport { verdict, reason, solutions, outside_laws, speed_deviation, .. } = *report;
+                let is_one = matches!(verdict, Verdict::Unique | Verdict::Unloaded);
+                let solution = solutions.into_iter().next().filter(|_| is_one);
+                let numbers = solution.as_ref().map(|s| PointNumbers::of(train, s));
+                let deviation = speed_deviation.map(|d| d.relative);
+                (verdict, reason, solution, numbers, ratio, deviation, notes, outside_laws)
+            }
+            Ok(Told::Numbers(numbers, notes, outside)) => {
+                let ratio = ratio(train, operation, |m| numbers.member(m)?.speed_rad_s);
+                (Verdict::Unique, None, None, Some(numbers), ratio, None, notes, outside)
+            }
             Err(wrong) => return Self::refused(wrong),
         };
         let oil = train.lubrication.iter().filter_map(|l| l.beyond(operation.temperature.unwrap_or(l.temperature)));
@@ -131,10 +151,8 @@ impl PointAnswer {
             message: beyond.to_string(),
             deviation: None,
         });
-        let ratio = ratio(train, operation, &report);
         // The notes tell of the laws outside their ranges in the order of these.
-        let mut outside = report.outside_laws.into_iter();
-        let deviation = report.speed_deviation.as_ref().map(|d| d.relative);
+        let mut outside = outside.into_iter();
         let own = notes.into_iter().filter(|d| d.severity == Severity::Warning && d.code != Code::SelfLocking);
         let own = own.map(|d| {
             let law = if d.code == Code::OutsideLaw { outside.next() } else { None };
@@ -145,22 +163,15 @@ impl PointAnswer {
         let warnings = oil.chain(own).collect();
         let in_rpm = |(m, w): &(MemberId, Quantity)| {
             let rpm = |q: &Quantity| (&q.value * &Rational::from(30)).to_f64();
-            (w.pi_power == 1).then(|| (train.member_name(*m).to_owned(), rpm(w)))
+            (w.pi_power == 1).then(|| (*m, rpm(w)))
         };
         // A speed that contradicts the others follows them.
-        let prescribed_rpm = match report.speed_deviation {
+        let prescribed_rpm = match deviation {
             None => operation.speeds.iter().filter_map(in_rpm).collect(),
             Some(_) => vec![],
         };
-        let is_one = matches!(report.verdict, Verdict::Unique | Verdict::Unloaded);
-        Self {
-            ratio,
-            prescribed_rpm,
-            verdict: report.verdict.into(),
-            reason: report.reason.unwrap_or_default(),
-            solution: report.solutions.into_iter().next().filter(|_| is_one),
-            warnings,
-        }
+        let reason = reason.unwrap_or_default();
+        Self { verdict: verdict.into(), reason, solution, numbers, warnings, ratio, prescribed_rpm }
     }
 
     /// Of a point that makes no question.
@@ -171,6 +182,7 @@ impl PointAnswer {
             verdict: PointVerdict::Refused,
             reason: errors.join("; "),
             solution: None,
+            numbers: None,
             warnings: vec![],
             ratio: None,
             prescribed_rpm: vec![],
@@ -198,12 +210,12 @@ impl PointAnswer {
 
     /// Output over input power, NaN where there is none.
     pub fn efficiency(&self) -> f64 {
-        self.solution.as_ref().and_then(|s| s.efficiency).unwrap_or(f64::NAN)
+        self.numbers.as_ref().and_then(|s| s.efficiency).unwrap_or(f64::NAN)
     }
 
     /// All losses, W; NaN where there is no answer.
     pub fn loss(&self) -> f64 {
-        self.solution.as_ref().map_or(f64::NAN, |s| s.loss_w)
+        self.numbers.as_ref().map_or(f64::NAN, |s| s.loss_w)
     }
 }
 
@@ -214,8 +226,100 @@ fn ends(train: &Train, operation: &Operation) -> Option<[MemberId; 2]> {
 }
 
 /// Speed of the input over that of the output, where both are known and the output turns.
-fn ratio(train: &Train, operation: &Operation, report: &OperationReport) -> Option<f64> {
-    let [input, output] = ends(train, operation)?.map(|m| train.member_name(m));
-    let [input, output] = [input, output].map(|name| report.speeds_rad_s.get(name).copied().flatten());
+fn ratio(train: &Train, operation: &Operation, speed: impl Fn(MemberId) -> Option<f64>) -> Option<f64> {
+    let [input, output] = ends(train, operation)?.map(speed);
     output.filter(|w| *w != 0.0).and_then(|w| Some(input? / w)).filter(|r| r.is_finite() && *r != 0.0)
+}
+
+/// Answers at many operating points of one train, one after the other: what they have in common is worked out once, and
+/// a point costs a fraction of what it costs alone. No answer depends on those before it, to the last bit.
+///
+/// # Example
+/// ```
+/// use willis::study::{PointAnswer, PointAnswers};
+/// use willis::train::Train;
+///
+/// let train = Train::from_toml(r#"
+///     format = 1
+///     name = "one set"
+///     members = ["s", "c"]
+///     terminals = ["s", "c"]
+///     [[set]]
+///     name = "P1"
+///     sun = { member = "s", teeth = 30 }
+///     ring = { member = "frame", teeth = 70 }
+///     carrier = "c"
+///     mesh_efficiency = 0.99
+///     [[operation]]
+///     name = "full load"
+///     speeds = { s = "1000 rpm" }
+///     torques = { s = "10 N m" }
+/// "#)?;
+/// let operation = &train.operations()[0];
+/// let answer = PointAnswers::new(&train).numbers(operation);
+/// assert_eq!(answer.numbers, PointAnswer::of(&train, operation).numbers);
+/// assert!((answer.efficiency() - 0.98607).abs() < 1e-9);
+/// # Ok::<(), willis::Diagnostics>(())
+/// ```
+pub struct PointAnswers<'t> {
+    train: &'t Train,
+    series: PointSeries<'t>,
+}
+
+impl fmt::Debug for PointAnswers<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PointAnswers").field("train", &self.train.name()).finish_non_exhaustive()
+    }
+}
+
+impl<'t> PointAnswers<'t> {
+    /// Of a train.
+    pub fn new(train: &'t Train) -> Self {
+        Self { train, series: PointSeries::new(train) }
+    }
+
+    /// All that is known of a point.
+    pub fn whole(&self, operation: &Operation) -> PointAnswer {
+        let told = self.series.whole(operation);
+        PointAnswer::told(self.train, operation, told)
+    }
+
+    /// The numbers of a point, its verdict and its warnings; the [solution](PointAnswer::solution) may be left out.
+    pub fn numbers(&mut self, operation: &Operation) -> PointAnswer {
+        let told = self.series.numbers(operation);
+        PointAnswer::told(self.train, operation, told)
+    }
+
+    /// The answers to points of studies, in their order, with the train of each where there is one; those of one train that
+    /// come one after the other have it in common. `whole` asks for all that is known of each.
+    pub fn each(
+        points: impl IntoIterator<Item = Result<(Arc<Train>, Operation), Diagnostics>>,
+        whole: bool,
+        mut take: impl FnMut(PointAnswer, Option<(&Arc<Train>, &Operation)>),
+    ) {
+        let mut points = points.into_iter();
+        let mut next = points.next();
+        while let Some(asked) = next.take() {
+            let (train, mut operation) = match asked {
+                Ok(asked) => asked,
+                Err(wrong) => {
+                    take(PointAnswer::refused(wrong), None);
+                    next = points.next();
+                    continue;
+                }
+            };
+            let mut own = PointAnswers::new(&train);
+            loop {
+                let answer = if whole { own.whole(&operation) } else { own.numbers(&operation) };
+                take(answer, Some((&train, &operation)));
+                match points.next() {
+                    Some(Ok((same, following))) if Arc::ptr_eq(&same, &train) => operation = following,
+                    other => {
+                        next = other;
+                        break;
+                    }
+                }
+            }
+        }
+    }
 }

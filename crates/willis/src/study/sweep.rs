@@ -4,11 +4,13 @@ mod columns;
 mod plan;
 mod report;
 
+use std::sync::Arc;
+
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, Severity};
 use crate::model::{Model, Target};
 use crate::train::{Operation, Train};
 
-use super::answer::{PointAnswer, PointWarning};
+use super::answer::{PointAnswer, PointAnswers, PointWarning};
 use super::axis::Axis;
 use super::column::{Column, Rows};
 use super::question::{Hold, Question, Trains};
@@ -192,30 +194,33 @@ impl<'s> Sweep<'s> {
 
     /// The answer at a point.
     pub fn answer(&self, point: u64, trains: &mut Trains) -> PointAnswer {
-        match self.ask(point, trains) {
-            Ok((train, operation)) => {
-                let mut answer = PointAnswer::of(&train, &operation);
-                if self.columns.iter().any(|c| c.1 == What::Ratio) {
-                    answer = answer.with_ratio(&train, &operation);
-                }
-                let base = self.question.model().train().warnings();
-                // What is wrong with this train and not with that of the file: planets that touch, for one.
-                let own = train.warnings().iter().filter(|d| d.severity == Severity::Warning);
-                let new = own.filter(|d| !base.iter().any(|b| b.code == d.code && b.message == d.message));
-                let told =
-                    new.map(|d| PointWarning { code: d.code, law: None, message: d.message.clone(), deviation: None });
-                answer.warnings.extend(told);
-                answer
-            }
-            Err(wrong) => PointAnswer::refused(wrong),
+        let mut found = None;
+        PointAnswers::each([self.ask(point, trains)], true, |answer, asked| {
+            found = Some(self.completed(answer, asked))
+        });
+        found.expect("one is asked")
+    }
+
+    /// An answer with what only a sweep says.
+    fn completed(&self, mut answer: PointAnswer, asked: Option<(&Arc<Train>, &Operation)>) -> PointAnswer {
+        let Some((train, operation)) = asked else { return answer };
+        if self.columns.iter().any(|c| c.1 == What::Ratio) {
+            answer = answer.with_ratio(train, operation);
         }
+        let base = self.question.model().train().warnings();
+        // What is wrong with this train and not with that of the file: planets that touch, for one.
+        let own = train.warnings().iter().filter(|d| d.severity == Severity::Warning);
+        let new = own.filter(|d| !base.iter().any(|b| b.code == d.code && b.message == d.message));
+        let told = new.map(|d| PointWarning { code: d.code, law: None, message: d.message.clone(), deviation: None });
+        answer.warnings.extend(told);
+        answer
     }
 
     /// The train and the operating point at a point.
     ///
     /// # Errors
     /// See [`Question::at`].
-    pub fn ask(&self, point: u64, trains: &mut Trains) -> Result<(std::sync::Arc<Train>, Operation), Diagnostics> {
+    pub fn ask(&self, point: u64, trains: &mut Trains) -> Result<(Arc<Train>, Operation), Diagnostics> {
         let place = self.place(point);
         let settings: Vec<(&Target, String)> =
             self.axes.iter().zip(&place).map(|(a, k)| (&a.target, a.setting(*k))).collect();
@@ -228,25 +233,37 @@ impl<'s> Sweep<'s> {
         let mut rows = Rows::with_capacity(self.columns(), n);
         let group = self.group();
         let text_axes: Vec<usize> = (0..self.axes.len()).filter(|k| self.axes[*k].is_text()).collect();
+        let mut answers: Vec<PointAnswer> = vec![];
         let mut point = from;
-        while point < to {
-            let answers: Vec<PointAnswer> = (point..(point + group).min(to)).map(|p| self.answer(p, trains)).collect();
-            let best = match group {
-                1 => None,
-                _ => (0..answers.len())
-                    .filter(|k| answers[*k].is_unique() && answers[*k].efficiency() > 0.0)
-                    .max_by(|a, b| answers[*a].efficiency().total_cmp(&answers[*b].efficiency()).then(b.cmp(a))),
-            };
-            for (k, answer) in answers.iter().enumerate() {
-                let place = self.place(point + k as u64);
-                self.summarise(&mut rows.summary, point + k as u64, &place, &text_axes, answer, best == Some(k));
-                for (values, (_, what)) in rows.columns.iter_mut().zip(&self.columns) {
-                    self.cell(values, what, &place, answer, best == Some(k));
-                }
+        let whole = self.columns.iter().any(|c| !c.1.is_among_numbers());
+        let asked = (from..to).map(|p| self.ask(p, trains));
+        PointAnswers::each(asked, whole, |answer, asked| {
+            answers.push(self.completed(answer, asked));
+            // The states of one point belong together.
+            if answers.len() as u64 == group.min(to - point) {
+                self.add(&mut rows, point, &answers, &text_axes);
+                point += answers.len() as u64;
+                answers.clear();
             }
-            point += group;
-        }
+        });
         rows
+    }
+
+    /// Adds the rows of the points from one on that belong together.
+    fn add(&self, rows: &mut Rows, point: u64, answers: &[PointAnswer], text_axes: &[usize]) {
+        let best = match self.group() {
+            1 => None,
+            _ => (0..answers.len())
+                .filter(|k| answers[*k].is_unique() && answers[*k].efficiency() > 0.0)
+                .max_by(|a, b| answers[*a].efficiency().total_cmp(&answers[*b].efficiency()).then(b.cmp(a))),
+        };
+        for (k, answer) in answers.iter().enumerate() {
+            let place = self.place(point + k as u64);
+            self.summarise(&mut rows.summary, point + k as u64, &place, text_axes, answer, best == Some(k));
+            for (values, (_, what)) in rows.columns.iter_mut().zip(&self.columns) {
+                self.cell(values, what, &place, answer, best == Some(k));
+            }
+        }
     }
 
     fn summarise(

@@ -3,11 +3,14 @@
 use std::fs;
 
 use willis::analysis::{Analysis, Selection, analyze};
-use willis::model::Model;
-use willis::study::{Axis, ColumnValues, Hold, PointVerdict, Question, Rows, Sweep, SweepRequest, sensitivity};
-use willis::train::{Document, Train};
+use willis::model::{Model, Target};
+use willis::study::{
+    Axis, ColumnValues, Hold, PointAnswer, PointAnswers, PointVerdict, Question, Rows, Sweep, SweepRequest, Trains,
+    sensitivity,
+};
+use willis::train::{Document, Load, Train};
 
-use crate::common::{self, example};
+use crate::common::{self, example, examples};
 
 fn subject(text: &str) -> Model {
     let mut load = |file: &str| fs::read_to_string(common::folder().join(file)).map_err(|e| e.to_string());
@@ -504,4 +507,54 @@ fn groups_of_columns_share_no_name() {
         files += 1;
     }
     assert!(files > 20, "{files} files");
+}
+
+/// A point of a series is that asked alone, to the last bit, whatever was asked before it: speeds and torques of both signs, at
+/// rest and without load, small and large, at several temperatures.
+#[test]
+fn points_of_a_series_are_those_asked_alone() {
+    for (file, text) in examples() {
+        let model = subject(&text);
+        let train = model.train();
+        if !(train.is_physical() || text.contains("[[drag]]")) {
+            continue;
+        }
+        let mut points = vec![];
+        let mut trains = Trains::default();
+        for operation in train.operations() {
+            let ([(speed, w)], [(load, value)]) = (&operation.speeds[..], &operation.loads[..]) else { continue };
+            let question = Question::new(&model, Some(&operation.name), None, Hold::AsGiven).unwrap();
+            let (speed, load_on) = (train.member_name(*speed), train.member_name(*load));
+            let (what, unit, value) = match value {
+                Load::Torque(t) => ("torque", "N m", t.si()),
+                Load::Power(p) => ("power", "W", p.si()),
+            };
+            let speed = Target::parse(&format!("{speed}.speed"), &model).unwrap();
+            let load = Target::parse(&format!("{load_on}.{what}"), &model).unwrap();
+            let oil = Target::parse("oil.temperature", &model).ok().filter(|_| train.is_physical());
+            for k in [1.0, 0.31, -1.0, 1e-3, 1.7, 0.0, 0.9999] {
+                for l in [1.0, 1.3, -0.7, 0.013, 0.0, 2.0, 1e-6, 100.0] {
+                    for t in [None, Some("41 degC"), Some("95.5 degC")] {
+                        let rpm = w.si() * k * 30.0 / std::f64::consts::PI;
+                        let mut settings =
+                            vec![(&speed, format!("{rpm} rpm")), (&load, format!("{} {unit}", value * l))];
+                        settings.extend(oil.as_ref().zip(t).map(|(oil, t)| (oil, t.to_owned())));
+                        points.push(question.at(&settings, &mut trains).unwrap());
+                    }
+                }
+            }
+        }
+        let (mut alone, mut quick) = (0, 0);
+        PointAnswers::each(points.into_iter().map(Ok), false, |answer, asked| {
+            let (train, operation) = asked.unwrap();
+            let whole = PointAnswer::of(train, operation);
+            assert_eq!((answer.verdict, &answer.reason), (whole.verdict, &whole.reason), "{file}");
+            assert_eq!(format!("{:?}", answer.numbers), format!("{:?}", whole.numbers), "{file} {operation:?}");
+            assert_eq!(answer.warnings, whole.warnings, "{file}");
+            assert_eq!(answer.ratio, whole.ratio);
+            alone += 1;
+            quick += usize::from(answer.solution.is_none() && answer.numbers.is_some());
+        });
+        println!("{file}: {quick} of {alone}");
+    }
 }

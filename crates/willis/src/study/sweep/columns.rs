@@ -1,6 +1,6 @@
 //! What the columns of a sweep hold.
 
-use crate::analysis::Losses;
+use crate::analysis::{Losses, PointNumbers};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::model::Target;
 use crate::study::answer::PointAnswer;
@@ -42,6 +42,31 @@ pub(in crate::study) enum What {
     Machine([String; 2], OfMachine),
     Reason,
     Warnings,
+}
+
+impl What {
+    /// Whether the [numbers](PointNumbers) of a point have it.
+    pub(super) fn is_among_numbers(&self) -> bool {
+        matches!(
+            self,
+            Self::Axis(_)
+                | Self::Verdict
+                | Self::Best
+                | Self::Reason
+                | Self::Warnings
+                | Self::Ratio
+                | Self::Efficiency
+                | Self::InputPower
+                | Self::OutputPower
+                | Self::Loss
+                | Self::LossOf(_)
+                | Self::Residual
+                | Self::Speed(_)
+                | Self::Torque(_)
+                | Self::Power(_)
+                | Self::SpeedRpm(_)
+        )
+    }
 }
 
 /// A number of a variator.
@@ -238,19 +263,13 @@ impl Sweep<'_> {
         if *what == What::Ratio {
             return answer.ratio.unwrap_or(f64::NAN);
         }
+        if let Some(found) = answer.numbers.as_ref().and_then(|numbers| self.among(what, numbers, answer)) {
+            return found.unwrap_or(f64::NAN);
+        }
         let Some(s) = &answer.solution else { return f64::NAN };
         let found = match what {
-            What::Efficiency => s.efficiency,
-            What::InputPower => Some(s.input_power_w),
-            What::OutputPower => Some(s.output_power_w),
-            What::Loss => Some(s.loss_w),
-            What::LossOf(kind) => Some(s.losses_w.all()[*kind]),
-            What::Residual => Some(s.power_residual_w),
             What::Circulating => Some(s.recirculation.iter().map(|r| r.power_w).fold(0.0, f64::max)),
             What::LockFactor => s.margin.lock_loss_factor,
-            What::Speed(name) => s.members.get(name).and_then(|m| m.speed_rad_s),
-            What::Torque(name) => s.members.get(name).and_then(|m| m.torque_n_m),
-            What::Power(name) => s.members.get(name).and_then(|m| m.power_w),
             What::MeshLoss(name) => s.meshes.get(name).map(|m| m.loss_w),
             What::MeshEfficiency(name) => s.meshes.get(name).map(|m| m.efficiency),
             What::MeshFriction(name) => s.contacts.get(name).and_then(|m| m.friction),
@@ -258,13 +277,6 @@ impl Sweep<'_> {
             What::SourceLoss(name) => {
                 let mut own = s.sources.iter().filter(|x| x.name == *name).map(|x| x.loss_w).peekable();
                 own.peek().is_some().then(|| own.sum())
-            }
-            What::SpeedRpm(name) => {
-                if let Some((_, rpm)) = answer.prescribed_rpm.iter().find(|(own, _)| own == name) {
-                    return *rpm;
-                }
-                let speed = s.members.get(name).and_then(|m| m.speed_rad_s);
-                speed.map(|w| w * 30.0 / std::f64::consts::PI)
             }
             What::Variator(name, of) => s.variators.get(name).and_then(|v| match of {
                 OfVariator::Power => Some(v.power_w),
@@ -280,8 +292,31 @@ impl Sweep<'_> {
                     OfMachine::Power => m.power_w,
                 })
             }
-            What::Axis(_) | What::Verdict | What::Best | What::Ratio | What::Reason | What::Warnings => None,
+            _ => None,
         };
         found.unwrap_or(f64::NAN)
+    }
+
+    /// A quantity that is [among the numbers](What::is_among_numbers) of a point, where it has a value; `None` for others.
+    fn among(&self, what: &What, s: &PointNumbers, answer: &PointAnswer) -> Option<Option<f64>> {
+        let member = |name: &str| self.question.model().train().member(name);
+        let numbers = |name: &str| member(name).and_then(|m| s.member(m));
+        Some(match what {
+            What::Efficiency => s.efficiency,
+            What::InputPower => Some(s.input_power_w),
+            What::OutputPower => Some(s.output_power_w),
+            What::Loss => Some(s.loss_w),
+            What::LossOf(kind) => Some(s.losses_w.all()[*kind]),
+            What::Residual => Some(s.power_residual_w),
+            What::Speed(name) => numbers(name).and_then(|m| m.speed_rad_s),
+            What::Torque(name) => numbers(name).and_then(|m| m.torque_n_m),
+            What::Power(name) => numbers(name).and_then(|m| m.power_w),
+            What::SpeedRpm(name) => {
+                let prescribed = answer.prescribed_rpm.iter().find(|(own, _)| Some(*own) == member(name));
+                let turning = || numbers(name)?.speed_rad_s.map(|w| w * 30.0 / std::f64::consts::PI);
+                prescribed.map(|(_, rpm)| *rpm).or_else(turning)
+            }
+            _ => return None,
+        })
     }
 }
