@@ -210,6 +210,10 @@ pub struct Pair<R = f64> {
     pub contact_ratio: R,
     /// Overlap ratio `ε_β` of **one** helix.
     pub overlap_ratio: R,
+    /// Radii of curvature of both flanks at C in the transverse section, and the cosine of the helix angle at the base
+    /// circle: every point of the path needs them.
+    curvature_at_pitch: [R; 2],
+    cos_base_helix: R,
     remarks: Vec<Remark>,
 }
 
@@ -384,8 +388,11 @@ impl<R: Real> Pair<R> {
         }) {
             remarks.push(Remark::TipInterference { overlap });
         }
+        let tan = alpha_wt.tan();
         Ok(Self {
             data: data.clone(),
+            curvature_at_pitch: [0, 1].map(|k: usize| gears[k].base_radius * tan),
+            cos_base_helix: basis.base_helix.cos(),
             transverse_module: basis.module,
             transverse_pressure_angle: alpha_t,
             base_helix: basis.base_helix,
@@ -432,6 +439,11 @@ impl<R: Real> Pair<R> {
     /// Width that carries, m: both helices of a double helical pair.
     pub fn total_width(&self) -> R {
         self.data.width * if self.data.double_helical { 2.0 } else { 1.0 }
+    }
+
+    /// Cosine of the helix angle at the base circle.
+    pub(crate) fn cos_base_helix(&self) -> R {
+        self.cos_base_helix
     }
 
     /// `K = π (1/z_1 ± 1/z_2)/cos β_b`, −, with − for a ring: mean sliding over rolling is this
@@ -491,12 +503,12 @@ impl<R: Real> Pair<R> {
     /// # Source
     /// `[iso21771]`, radius of curvature of the involute.
     pub fn curvature_radii(&self, s: R) -> [R; 2] {
-        let tan = self.operating_pressure_angle.tan();
+        let [own, other] = self.curvature_at_pitch;
         let first = if self.data.wheels[0].internal { -s } else { s };
         // on a ring both centres of curvature lie on one side
         let second = if self.internal() { first } else { -s };
         // with the ring first, s > 0 is the addendum of the ring, the dedendum of the pinion
-        [self.gears[0].base_radius * tan + first, self.gears[1].base_radius * tan + second]
+        [own + first, other + second]
     }
 
     /// Reduced radius of curvature in the transverse section, m, at the distance s from C, m:
@@ -532,7 +544,7 @@ impl<R: Real> Pair<R> {
     /// assert_eq!(pair.total_width(), 0.16);
     /// ```
     pub fn reduced_radius(&self, s: R) -> R {
-        self.reduced_radius_transverse(s) / self.base_helix.cos()
+        self.reduced_radius_transverse(s) / self.cos_base_helix
     }
 
     /// Sliding speed over the speed of wheel 0 relative to the carrier, m: `|v_g|/|ω_1| =
@@ -600,7 +612,7 @@ impl<R: Real> Pair<R> {
         // ε_α ε_β less the products, written without the difference that ε_β → 0 would magnify
         let shared = real::max(n_alpha + n_beta - 1.0, R::from(0.0));
         let least = if beta.re() == 0.0 { R::from(floor_a) } else { (n_alpha * floor_b + shared) / beta + floor_a };
-        least / self.base_helix.cos()
+        least / self.cos_base_helix
     }
 }
 

@@ -233,7 +233,13 @@ pub struct Convergence {
 pub(crate) struct Approach {
     step: Step,
     rounds: Trend,
+    /// Where it is known already.
+    idle: Option<Idle>,
 }
+
+/// Drags of a motion that do not depend on the load.
+#[derive(Clone, Debug)]
+pub(crate) struct Idle(Vec<(Source, Drag)>);
 
 impl Approach {
     /// The losses to begin with.
@@ -246,7 +252,12 @@ impl Approach {
             watts: f64::INFINITY,
             growing: 0,
         };
-        Self { step, rounds }
+        Self { step, rounds, idle: None }
+    }
+
+    /// With the drags that do not depend on the load.
+    pub fn with(self, idle: Idle) -> Self {
+        Self { idle: Some(idle), ..self }
     }
 
     /// The same for losses that are compared with others closely.
@@ -345,6 +356,17 @@ pub(crate) struct Physics<'t, R: Real = f64> {
     least_speed: f64,
 }
 
+/// What laws say of a solved step beside its losses.
+pub(crate) struct Told {
+    /// The contact of each mesh with teeth.
+    pub contacts: Named<ContactReport>,
+    pub bearings: Named<BearingReport>,
+    /// Loads of the shafts on bearings, by member.
+    pub shafts: Named<ShaftLoad>,
+    /// Where laws were used outside their ranges.
+    pub extrapolations: Vec<Extrapolation>,
+}
+
 /// Losses of one mesh as parts of its potential power.
 #[derive(Clone, Debug)]
 struct MeshLoss<R = f64> {
@@ -371,7 +393,8 @@ pub(crate) struct Step<R = f64> {
     meshes: Vec<MeshLoss<R>>,
     sources: Vec<Source>,
     pub drags: Vec<Drag<R>>,
-    bearings: Vec<BearingReport>,
+    /// Frictional torque of one bearing of each mount, N m.
+    bearings: Vec<R>,
     /// Efficiency of machines that have a map: variator and machine.
     machines: Vec<([usize; 2], f64)>,
 }
@@ -498,13 +521,89 @@ impl<'t, R: Real> Physics<'t, R> {
 
     /// The losses that the laws give for torques and speeds; `known` are the members whose speed is settled.
     pub fn evaluate(&self, speeds: &[R], meshes: &[MeshFlow<R>], known: &dyn Fn(MemberId) -> bool) -> Step<R> {
+        self.evaluate_with(speeds, meshes, known, &self.without_load(speeds, meshes, known))
+    }
+
+    /// Where a drag resists, if it does.
+    fn drag_between(
+        &self,
+        speeds: &[R],
+        known: &dyn Fn(MemberId) -> bool,
+        members: [MemberId; 2],
+        torque: R,
+    ) -> Option<Drag<R>> {
+        let relative = (speeds[members[0].0] - speeds[members[1].0]).re();
+        let acts =
+            torque.re() > LEAST_DRAG && self.slip(speeds, members).re() > 0.0 && members.iter().all(|m| known(*m));
+        acts.then(|| Drag { members, torque: -torque * relative.signum() })
+    }
+
+    /// The drags that do not depend on the load; of the meshes only the speeds count.
+    fn without_load(
+        &self,
+        speeds: &[R],
+        meshes: &[MeshFlow<R>],
+        known: &dyn Fn(MemberId) -> bool,
+    ) -> Vec<(Source, Drag<R>)> {
+        let mut all = Vec::new();
+        let mut drag = |source: Source, members: [MemberId; 2], torque: R| {
+            all.extend(self.drag_between(speeds, known, members, torque).map(|drag| (source, drag)));
+        };
+        for (k, seal) in self.train.seals.iter().enumerate() {
+            drag(Source::Seal(k), seal.members, self.seal(k, speeds) * self.factor(LossPart::Seal));
+        }
+        for (k, body) in self.bodies.iter().enumerate() {
+            let part = match body.kind(&self.train).0 {
+                LossKind::Churning => LossPart::Churning,
+                _ => LossPart::Windage,
+            };
+            drag(Source::Body(k), [body.member, body.against], self.body(body, speeds) * self.factor(part));
+        }
+        for (k, rotor) in self.train.rotors.iter().enumerate() {
+            let torque = self.rotor(k, speeds) * self.factor(LossPart::Rotor);
+            drag(Source::Rotor(k), [rotor.member, crate::train::FRAME], torque);
+        }
+        let Some(drags) = &self.drags else { return all };
+        for k in drags {
+            let members = self.train.drags[*k].members;
+            drag(Source::Drag(*k), members, self.drag(*k, self.slip(speeds, members)));
+        }
+        for (k, element) in self.train.shift_elements.iter().enumerate() {
+            if let Some(torque) = self.open(k, speeds) {
+                drag(Source::Open(k), element.members, torque);
+            }
+        }
+        for (k, pump) in self.train.pumps.iter().enumerate() {
+            drag(Source::Pump(k), [pump.member, FRAME], self.pump(k, speeds));
+        }
+        for m in meshes {
+            let mesh = &self.train.meshes[m.mesh.0];
+            // Both gears bring the oil to their speed; each takes half of the power.
+            let Some(power) = self.jet(m) else { continue };
+            for k in 0..2 {
+                let speed = real::abs(m.relative_speeds[k]);
+                if speed.re() > 0.0 {
+                    drag(Source::Jet(m.mesh.0), [mesh.gears[k].member, mesh.carrier], power * 0.5 / speed);
+                }
+            }
+        }
+        all
+    }
+
+    /// The losses for torques and speeds, where the [drags that do not depend on the load](Self::without_load) are known.
+    fn evaluate_with(
+        &self,
+        speeds: &[R],
+        meshes: &[MeshFlow<R>],
+        known: &dyn Fn(MemberId) -> bool,
+        without_load: &[(Source, Drag<R>)],
+    ) -> Step<R> {
         let mut step = Step::blank(&self.train);
         let none = R::from(0.0);
         let mut drag = |source: Source, members: [MemberId; 2], torque: R| {
-            let relative = (speeds[members[0].0] - speeds[members[1].0]).re();
-            if torque.re() > LEAST_DRAG && self.slip(speeds, members).re() > 0.0 && members.iter().all(|m| known(*m)) {
+            if let Some(drag) = self.drag_between(speeds, known, members, torque) {
                 step.sources.push(source);
-                step.drags.push(Drag { members, torque: -torque * relative.signum() });
+                step.drags.push(drag);
             }
         };
         let mut losses: Vec<MeshLoss<R>> = Vec::with_capacity(meshes.len());
@@ -533,19 +632,20 @@ impl<'t, R: Real> Physics<'t, R> {
             };
             losses.push(MeshLoss { sliding, bearings: vec![], friction: tooth.friction });
         }
-        let mut reports = Vec::with_capacity(self.train.bearings.len());
+        let mut bearings = Vec::with_capacity(self.train.bearings.len());
         let reactions = self.oil.as_ref().map(|_| self.reactions(speeds, meshes));
         let carried = reactions.iter().flat_map(|r| &r.places);
         for ((k, mount), carried) in self.train.bearings.iter().enumerate().zip(carried) {
-            let bearing::Friction { mut report, speed, mut torque, mut proportional, loading } =
+            let bearing::Friction { speed, mut torque, mut proportional, .. } =
                 self.bearing(k, speeds, carried, &mut |_| {});
+            let loading = &carried.loading;
             let [by_load, idle] = [LossPart::BearingLoad, LossPart::BearingNoLoad].map(|part| self.factor(part));
             torque = torque * idle + proportional * (by_load - idle);
             proportional *= by_load;
-            report.torque_n_m = torque.re() / f64::from(report.bearings);
+            bearings.push(torque / f64::from(mount.count * mount.places));
             // The part that grows with the load belongs to the meshes that make the load.
             let weight = loading.iter().fold(none, |sum, l| sum + l.1);
-            for (at, w) in loading {
+            for &(at, w) in loading {
                 let (m, own) = (&meshes[at], &mut losses[at]);
                 let mesh = &self.train.meshes[m.mesh.0];
                 let between =
@@ -561,49 +661,11 @@ impl<'t, R: Real> Physics<'t, R> {
                 }
             }
             drag(Source::Bearing(k), mount.members, torque);
-            reports.push(report);
         }
-        for (k, seal) in self.train.seals.iter().enumerate() {
-            drag(Source::Seal(k), seal.members, self.seal(k, speeds) * self.factor(LossPart::Seal));
-        }
-        for (k, body) in self.bodies.iter().enumerate() {
-            let part = match body.kind(&self.train).0 {
-                LossKind::Churning => LossPart::Churning,
-                _ => LossPart::Windage,
-            };
-            drag(Source::Body(k), [body.member, body.against], self.body(body, speeds) * self.factor(part));
-        }
-        for (k, rotor) in self.train.rotors.iter().enumerate() {
-            let torque = self.rotor(k, speeds) * self.factor(LossPart::Rotor);
-            drag(Source::Rotor(k), [rotor.member, crate::train::FRAME], torque);
-        }
-        if let Some(drags) = &self.drags {
-            for k in drags {
-                let members = self.train.drags[*k].members;
-                drag(Source::Drag(*k), members, self.drag(*k, self.slip(speeds, members)));
-            }
-            for (k, element) in self.train.shift_elements.iter().enumerate() {
-                if let Some(torque) = self.open(k, speeds) {
-                    drag(Source::Open(k), element.members, torque);
-                }
-            }
-            for (k, pump) in self.train.pumps.iter().enumerate() {
-                drag(Source::Pump(k), [pump.member, FRAME], self.pump(k, speeds));
-            }
-            for m in meshes {
-                let mesh = &self.train.meshes[m.mesh.0];
-                // Both gears bring the oil to their speed; each takes half of the power.
-                let Some(power) = self.jet(m) else { continue };
-                for k in 0..2 {
-                    let speed = real::abs(m.relative_speeds[k]);
-                    if speed.re() > 0.0 {
-                        drag(Source::Jet(m.mesh.0), [mesh.gears[k].member, mesh.carrier], power * 0.5 / speed);
-                    }
-                }
-            }
-        }
+        step.sources.extend(without_load.iter().map(|d| d.0));
+        step.drags.extend(without_load.iter().map(|d| d.1));
         step.meshes = losses;
-        step.bearings = reports;
+        step.bearings = bearings;
         step
     }
 
@@ -680,9 +742,15 @@ impl<'t, R: Real> Physics<'t, R> {
 }
 
 impl Physics<'_> {
+    /// The drags of a motion that do not depend on the load; any flow of it will do.
+    pub fn idle(&self, flow: &Flow, motion: &Motion) -> Idle {
+        Idle(self.without_load(&flow.speeds, &flow.meshes, &|m| motion.speeds[m.0].is_some()))
+    }
+
     /// The losses that the laws give for the torques and speeds of a flow.
-    pub fn step(&self, flow: &Flow, motion: &Motion) -> Step {
-        let mut step = self.evaluate(&flow.speeds, &flow.meshes, &|m| motion.speeds[m.0].is_some());
+    pub fn step(&self, flow: &Flow, motion: &Motion, idle: &Idle) -> Step {
+        let known = |m: MemberId| motion.speeds[m.0].is_some();
+        let mut step = self.evaluate_with(&flow.speeds, &flow.meshes, &known, &idle.0);
         let mut bus = self.train.members.len();
         for v in &flow.variators {
             let VariatorPath::Bus { machines, standby, .. } = &self.train.variators[v.variator].path else { continue };
@@ -700,25 +768,6 @@ impl Physics<'_> {
             bus += 1;
         }
         step
-    }
-
-    /// Where the laws were used outside their ranges.
-    pub fn extrapolations(&self, flow: &Flow) -> Vec<Extrapolation> {
-        let mut found = Some(vec![]);
-        for m in &flow.meshes {
-            let mesh = &self.train.meshes[m.mesh.0];
-            if let Some(teeth) = &mesh.teeth {
-                self.contact(mesh, teeth, m, &mut found);
-            }
-        }
-        let mut found = found.unwrap_or_default();
-        if self.oil.is_some() {
-            for (k, carried) in self.reactions(&flow.speeds, &flow.meshes).places.iter().enumerate() {
-                self.bearing_extrapolations(k, &flow.speeds, carried, &mut found);
-            }
-        }
-        self.wet_extrapolations(&flow.speeds, &mut found);
-        found
     }
 
     /// How far two rounds differ, in watts of this flow, and the loss.
@@ -757,10 +806,10 @@ impl Physics<'_> {
         from: Approach,
         mut solve: impl FnMut(&Step) -> Option<(F, Flow)>,
     ) -> Option<(Step, F, Flow, Convergence)> {
-        let Approach { mut step, mut rounds } = from;
+        let Approach { mut step, mut rounds, mut idle } = from;
         loop {
             let (own, flow) = solve(&step)?;
-            let next = self.step(&flow, motion);
+            let next = self.step(&flow, motion, idle.get_or_insert_with(|| self.idle(&flow, motion)));
             let (change, loss) = self.change(&flow, &step, &next);
             if let Some(convergence) = rounds.ended(change, loss) {
                 return Some((step, own, flow, convergence));
@@ -777,13 +826,13 @@ impl Physics<'_> {
         mut solve: impl FnMut(&Step) -> Option<Flow>,
     ) -> Approach {
         while let Some(flow) = solve(&from.step) {
-            let next = self.step(&flow, motion);
+            let next = self.step(&flow, motion, from.idle.get_or_insert_with(|| self.idle(&flow, motion)));
             let (change, loss) = self.change(&flow, &from.step, &next);
             let mut rounds = from.rounds;
             if rounds.ended(change, loss).is_some() {
                 break;
             }
-            from = Approach { step: next, rounds };
+            from = Approach { step: next, rounds, idle: from.idle };
         }
         from
     }
@@ -811,14 +860,24 @@ impl Physics<'_> {
         all
     }
 
+    /// What the laws say of a solved step beside its losses.
+    pub fn told(&self, step: &Step, flow: &Flow) -> Told {
+        let mut beyond = Some(vec![]);
+        let contacts = self.contacts(step, flow, &mut beyond);
+        let mut extrapolations = beyond.unwrap_or_default();
+        let (bearings, shafts) = self.bearings(step, flow, &mut extrapolations);
+        self.wet_extrapolations(&flow.speeds, &mut extrapolations);
+        Told { contacts, bearings, shafts, extrapolations }
+    }
+
     /// The contact of each mesh with teeth, with its losses in this flow.
-    pub fn contacts(&self, step: &Step, flow: &Flow) -> Vec<(String, ContactReport)> {
+    fn contacts(&self, step: &Step, flow: &Flow, beyond: &mut Option<Vec<Extrapolation>>) -> Named<ContactReport> {
         let mut all = Vec::new();
         for (m, own) in flow.meshes.iter().zip(&step.meshes) {
             let mesh = &self.train.meshes[m.mesh.0];
             let Some(teeth) = &mesh.teeth else { continue };
             // Loads of this flow, with the friction it was solved with.
-            let mut contact = self.contact(mesh, teeth, m, &mut None);
+            let mut contact = self.contact(mesh, teeth, m, beyond);
             contact.friction = own.friction;
             let bearings: f64 = own.bearings.iter().map(|b| b.1).sum();
             contact.sliding_loss_w = (m.loss - m.potential_power * bearings).max(0.0);
@@ -827,26 +886,31 @@ impl Physics<'_> {
                 rolling.filter(|(s, _)| **s == Source::Rolling(m.mesh.0)).map(|(_, loss)| *loss).sum::<f64>() + 0.0;
             all.push((mesh.name.clone(), contact));
         }
-        all
+        Named(all)
     }
 
     /// The bearings of a solved step, with their losses, and the loads of the shafts on them, by member.
-    pub fn bearings(&self, step: &Step, flow: &Flow) -> (Named<BearingReport>, Named<ShaftLoad>) {
+    fn bearings(
+        &self,
+        step: &Step,
+        flow: &Flow,
+        beyond: &mut Vec<Extrapolation>,
+    ) -> (Named<BearingReport>, Named<ShaftLoad>) {
         if self.oil.is_none() {
             return (Named(vec![]), Named(vec![]));
         }
         let mut all = Vec::new();
         let reactions = self.reactions(&flow.speeds, &flow.meshes);
-        for ((k, solved), carried) in step.bearings.iter().enumerate().zip(&reactions.places) {
-            // Loads of this flow, with the torque it was solved with.
-            let mut report = self.bearing(k, &flow.speeds, carried, &mut |_| {}).report;
-            report.torque_n_m = solved.torque_n_m;
+        for ((k, torque), carried) in step.bearings.iter().enumerate().zip(&reactions.places) {
             let by_load = flow.meshes.iter().zip(&step.meshes).flat_map(|(m, own)| {
                 own.bearings.iter().filter(|b| b.0 == k).map(|b| b.1 * m.potential_power).collect::<Vec<_>>()
             });
             let drags = step.sources.iter().zip(&flow.drag_losses);
             let rest = drags.filter(|(s, _)| **s == Source::Bearing(k)).map(|(_, loss)| *loss);
-            report.loss_w = by_load.chain(rest).sum::<f64>() + 0.0;
+            let loss_w = by_load.chain(rest).sum::<f64>() + 0.0;
+            // Loads of this flow, with the torque it was solved with.
+            let report = self.bearing_report(k, &flow.speeds, carried, beyond);
+            let report = BearingReport { torque_n_m: *torque, loss_w, ..report };
             all.push((self.train.bearings[k].name.clone(), report));
         }
         let named = |(m, load)| (self.train.member_name(m).to_owned(), load);

@@ -186,7 +186,10 @@ impl<'a> Setting<'a> {
         let lossless = Step::lossless(self.c.train);
         let Some(first) = self.solve(&lossless, &[])? else { return Ok(nothing(Certificate::Undecided)) };
         let start = match first.answer.solutions.first() {
-            Some(solution) => physics.step(&self.flow(&first, solution, &[]), self.motion),
+            Some(solution) => {
+                let flow = self.flow(&first, solution, &[]);
+                physics.step(&flow, self.motion, &physics.idle(&flow, self.motion))
+            }
             None => lossless,
         };
         let Some(second) = self.solve(&start, &start.drags)? else { return Ok(nothing(Certificate::Undecided)) };

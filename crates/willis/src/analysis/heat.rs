@@ -168,8 +168,8 @@ struct Near<'t> {
     point: Point<'t>,
     origin: Origin,
     physics: Physics<'t>,
-    /// The losses at the first temperature: from there all others are looked for, so that they do not depend on their order.
-    start: Option<Step>,
+    /// The losses at the last temperature: the next are looked for from there.
+    last: Option<Step>,
 }
 
 impl<'t> Losses<'t> {
@@ -181,10 +181,10 @@ impl<'t> Losses<'t> {
     /// The heat at a temperature from the equilibrium at another one, where that needs no second look.
     fn near(&self, oil: f64) -> Option<Vec<f64>> {
         let mut near = self.near.borrow_mut();
-        let Near { point, origin, physics, start } = near.as_mut()?;
+        let Near { point, origin, physics, last } = near.as_mut()?;
         physics.warm_to(oil);
-        let agreed = origin.follow(point, &self.operation, physics, start.as_ref())?;
-        start.get_or_insert_with(|| agreed.step.clone());
+        let agreed = origin.follow(point, &self.operation, physics, last.as_ref())?;
+        *last = Some(agreed.step.clone());
         self.drivers.borrow_mut().push((oil, agreed.flow.meshes.iter().map(|m| m.driver).collect()));
         Some(made_by(self.train, self.heat, physics, &agreed))
     }
@@ -221,7 +221,7 @@ impl Source for Losses<'_> {
         let made = made(self.train, self.heat, solution).0;
         if let (Some(point), Some(origin)) = (settled.point, settled.origin) {
             let physics = Physics::new(self.train, &operation);
-            *self.near.borrow_mut() = Some(Near { point, origin, physics, start: None });
+            *self.near.borrow_mut() = Some(Near { point, origin, physics, last: None });
             return Ok(self.near(oil).unwrap_or(made));
         }
         Ok(made)

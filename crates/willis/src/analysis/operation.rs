@@ -188,7 +188,8 @@ pub(super) fn settle_at<'t>(
             told: branch.told.as_ref(),
         })
         .collect();
-    let mut all: Vec<SolutionReport> = frames.iter().zip(&branches).map(|(f, b)| f.solution(&b.solution)).collect();
+    let (mut all, extrapolations): (Vec<SolutionReport>, Vec<_>) =
+        frames.iter().zip(&branches).map(|(f, b)| f.solution(&b.solution)).unzip();
     for s in &mut all {
         s.doubts = doubts(train, s.input_power_w, &s.contacts, &s.bearings, &s.shaft_loads);
     }
@@ -219,10 +220,7 @@ pub(super) fn settle_at<'t>(
     let mut report = OperationReport { verdict, certificate: Some(certificate.into()), ..report };
     whys.first().into_iter().for_each(|why| report.explain(why));
     findings.extend(whys.into_iter().map(Finding::Why));
-    if let Some(physics) = &physics {
-        let flows = frames.iter().zip(&branches).map(|(f, b)| f.flow(&b.solution));
-        report.outside_laws = flows.flat_map(|flow| OutsideLaw::of(&physics.extrapolations(&flow))).collect();
-    }
+    report.outside_laws = extrapolations.iter().flat_map(|own| OutsideLaw::of(own)).collect();
     findings.extend(report.outside_laws.iter().cloned().map(Finding::Outside));
     match verdict {
         Verdict::Locked => report.dissipative_solutions = all,

@@ -1,7 +1,7 @@
 //! Laws and statics in floating point, where it is known which ends drive.
 
 use crate::kinematics::{Configuration, Motion, Node};
-use crate::operating_point::{Approach, Convergence, Physics, Step};
+use crate::operating_point::{Approach, Convergence, Idle, Physics, Step};
 use crate::power_flow::{Drag, External, Flow, Known, rho};
 use crate::statics::{Equilibrium, SolvedColumn};
 use crate::train::{MemberId, Operation};
@@ -81,18 +81,27 @@ impl<'a> Rounds<'a> {
 
     /// Losses in agreement with the torques, from a train without any; `None` where other ends drive on the way.
     pub fn agree(&self, physics: &Physics<'_>, motion: &Motion) -> Option<Agreed> {
-        self.agree_from(physics, motion, Approach::new(self.start(physics, motion)?))
+        let (start, idle) = self.start(physics, motion)?;
+        self.agree_from(physics, motion, Approach::new(start).with(idle))
     }
 
     /// The same for losses that are compared with others closely, which may begin near those of a neighbour.
     pub fn agree_closely(&self, physics: &Physics<'_>, motion: &Motion, near: Option<&Step>) -> Option<Agreed> {
-        let start = near.cloned().or_else(|| self.start(physics, motion))?;
-        self.agree_from(physics, motion, Approach::closely(start))
+        let from = match near {
+            Some(near) => Approach::closely(near.clone()),
+            None => {
+                let (start, idle) = self.start(physics, motion)?;
+                Approach::closely(start).with(idle)
+            }
+        };
+        self.agree_from(physics, motion, from)
     }
 
-    /// The losses for the torques that there are without losses.
-    fn start(&self, physics: &Physics<'_>, motion: &Motion) -> Option<Step> {
-        Some(physics.step(&self.flow(&Step::lossless(self.c().train))?, motion))
+    /// The losses for the torques that there are without losses, and those of them that do not depend on the load.
+    fn start(&self, physics: &Physics<'_>, motion: &Motion) -> Option<(Step, Idle)> {
+        let flow = self.flow(&Step::lossless(self.c().train))?;
+        let idle = physics.idle(&flow, motion);
+        Some((physics.step(&flow, motion, &idle), idle))
     }
 
     fn agree_from(&self, physics: &Physics<'_>, motion: &Motion, from: Approach) -> Option<Agreed> {

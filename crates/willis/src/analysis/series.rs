@@ -11,7 +11,6 @@ use crate::diagnostic::Diagnostics;
 use crate::exact::Rational;
 use crate::heat::{HeatVerdict, Limits, Source, balance};
 use crate::kinematics::{Configuration, Motion, Transfer};
-use crate::named::Named;
 use crate::operating_point::{Physics, Step};
 use crate::power_flow::{External, MeshFlow};
 use crate::train::heat::Heat;
@@ -238,9 +237,9 @@ impl<'t> PointSeries<'t> {
             return None;
         }
         let step = &agreed.step;
-        let (bearings, shafts) = physics.bearings(step, &flow);
-        let doubts = doubts(train, flow.input_power, &Named(physics.contacts(step, &flow)), &bearings, &shafts);
-        let outside = OutsideLaw::of(&physics.extrapolations(&flow));
+        let told = physics.told(step, &flow);
+        let doubts = doubts(train, flow.input_power, &told.contacts, &told.bearings, &told.shafts);
+        let outside = OutsideLaw::of(&told.extrapolations);
         let findings = outside.iter().cloned().map(Finding::Outside).chain(doubts.into_iter().map(Finding::Doubt));
         let notes = words::found(train, operation, &findings.collect::<Vec<_>>());
         let held = held(c, operation);
@@ -308,7 +307,7 @@ impl Known<'_> {
 
     /// The only oil temperature of its heat balance, where nothing is to be said of it.
     fn oil(&self, physics: &mut Physics<'_>, heat: &Heat) -> Option<f64> {
-        let warm = Warm { point: self, heat, physics: RefCell::new(physics), start: RefCell::default() };
+        let warm = Warm { point: self, heat, physics: RefCell::new(physics), last: RefCell::default() };
         let found = balance(heat, &warm, Limits { highest: heat.limit, tolerance: TOLERANCE }).ok()?;
         let reached = found.from(heat.start).filter(|e| found.verdict == HeatVerdict::Unique && e.step.is_none())?;
         (heat.cooler.is_none() || heat.cooled(reached.at.oil) >= 0.0).then_some(reached.at.oil)
@@ -320,8 +319,8 @@ struct Warm<'a, 'p, 't> {
     point: &'a Known<'a>,
     heat: &'a Heat,
     physics: RefCell<&'p mut Physics<'t>>,
-    /// The losses at the first temperature.
-    start: RefCell<Option<Step>>,
+    /// The losses at the last temperature.
+    last: RefCell<Option<Step>>,
 }
 
 impl Source for Warm<'_, '_, '_> {
@@ -331,9 +330,9 @@ impl Source for Warm<'_, '_, '_> {
         let Known { train, rounds, motion, .. } = self.point;
         let mut physics = self.physics.borrow_mut();
         physics.warm_to(oil);
-        let mut start = self.start.borrow_mut();
-        let agreed = self.point.only(rounds.agree_closely(&physics, motion, start.as_ref())).ok_or(())?;
-        start.get_or_insert_with(|| agreed.step.clone());
+        let mut last = self.last.borrow_mut();
+        let agreed = self.point.only(rounds.agree_closely(&physics, motion, last.as_ref())).ok_or(())?;
+        *last = Some(agreed.step.clone());
         Ok(made_by(train, self.heat, &physics, &agreed))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::exact::Rational;
 use crate::kinematics::{Configuration, Motion};
-use crate::operating_point::{Convergence, LossKind, Physics, Step};
+use crate::operating_point::{Convergence, Extrapolation, LossKind, Physics, Step};
 use crate::power_flow::{Drag, Flow};
 use crate::statics::{Equilibrium, Solution, torque_exact};
 use crate::train::{FRAME, MemberId, MemberKind, Operation};
@@ -39,16 +39,18 @@ impl Frame<'_> {
         Flow::new(self.c, self.motion, s, self.problem.scale(), &acting, self.drags, &self.problem.driven)
     }
 
-    /// The equilibrium in SI, with its margins.
-    pub fn solution(&self, s: &Solution) -> SolutionReport {
+    /// The equilibrium in SI, with its margins, and where laws were used outside their ranges.
+    pub fn solution(&self, s: &Solution) -> (SolutionReport, Vec<Extrapolation>) {
         let flow = self.flow(s);
         let train = self.c.train;
         let held = held(self.c, self.operation);
         let members =
             (1..train.members.len()).map(|m| (train.members[m].name.clone(), self.member(MemberId(m), &flow, &held)));
         let members = Named(members.collect());
-        let none = || (Named(vec![]), Named(vec![]));
-        let (bearings, shaft_loads) = self.physics.map_or_else(none, |(p, (step, _))| p.bearings(step, &flow));
+        let told = self.physics.map(|(p, (step, _))| p.told(step, &flow));
+        let extrapolations = told.as_ref().map(|t| t.extrapolations.clone()).unwrap_or_default();
+        let (contacts, bearings, shaft_loads) =
+            told.map_or_else(Default::default, |t| (t.contacts, t.bearings, t.shafts));
         let meshes = flow.meshes.iter().map(|f| {
             let mesh = &train.meshes[f.mesh.0];
             let report = MeshReport {
@@ -91,7 +93,7 @@ impl Frame<'_> {
             }
         };
         let efficiency = decided.filter(|_| flow.input_power > 0.0).map(Rational::to_f64).or_else(|| efficiency(&flow));
-        SolutionReport {
+        let report = SolutionReport {
             efficiency,
             efficiency_exact: rational.filter(|_| self.problem.is_exact),
             all_dissipated,
@@ -106,7 +108,7 @@ impl Frame<'_> {
             beyond_limits: variators::beyond(train, &flow),
             losses_w,
             sources,
-            contacts: Named(self.physics.map(|(p, (step, _))| p.contacts(step, &flow)).unwrap_or_default()),
+            contacts,
             doubts: vec![],
             shaft_loads,
             bearings,
@@ -123,7 +125,8 @@ impl Frame<'_> {
                 .collect(),
             margin: self.margin(s, &flow),
             stiction: self.stiction(s, &flow),
-        }
+        };
+        (report, extrapolations)
     }
 
     /// What a member does; `held` are those at rest by a brake, the operation, or what is tied to them.

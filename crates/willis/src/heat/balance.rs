@@ -221,7 +221,7 @@ impl<E> From<Unsolved> for Failed<E> {
 /// ```
 pub fn balance<S: Source>(heat: &Heat, source: &S, limits: Limits) -> Result<Balance, Failed<S::Error>> {
     let cold = heat.cold()?;
-    let mut search = Search { heat, source, tolerance: limits.tolerance, sampled: false, asked: 0 };
+    let mut search = Search { heat, source, tolerance: limits.tolerance, sampled: false, asked: 0, last: [None, None] };
     if cold >= limits.highest {
         let samples = vec![search.sample(limits.highest)?];
         return Ok(search.finish(samples, Found::default(), Method::BranchAndBound, true, None));
@@ -353,15 +353,21 @@ struct Search<'a, S> {
     /// Whether something rests on samples.
     sampled: bool,
     asked: usize,
+    /// Temperatures of the last sample, with its heats and without any.
+    last: [Option<Vec<f64>>; 2],
 }
 
 impl<S: Source> Search<'_, S> {
     fn sample(&mut self, oil: f64) -> Result<Sample, Failed<S::Error>> {
         self.asked += 1;
         let made = self.source.heat(oil).map_err(Failed::Source)?;
-        let at = self.heat.at(oil, &made)?;
-        let idle = self.heat.carried(oil)?;
-        Ok(Sample { oil, made, temperatures: at.temperatures, carried: idle, reaching: idle - at.residual })
+        // Newton's method needs the fewest steps from the temperatures of the last sample.
+        let [warm, idle] = &mut self.last;
+        let at = self.heat.at_near(oil, &made, warm.as_deref())?;
+        let without = self.heat.at_near(oil, &vec![0.0; made.len()], idle.as_deref())?;
+        let carried = without.residual + self.heat.extra_heat;
+        (*warm, *idle) = (Some(at.temperatures.clone()), Some(without.temperatures));
+        Ok(Sample { oil, made, temperatures: at.temperatures, carried, reaching: carried - at.residual })
     }
 
     /// Elasticities between neighbouring samples.

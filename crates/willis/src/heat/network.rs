@@ -3,7 +3,7 @@
 use num_dual::Dual64;
 
 use crate::real::Real;
-use crate::train::heat::{Heat, OIL};
+use crate::train::heat::{Cooler, Heat, OIL, OilHeat};
 
 /// Most steps of Newton's method.
 const MOST_STEPS: usize = 100;
@@ -58,10 +58,15 @@ impl Heat {
     /// # Errors
     /// A heat that is no finite number, or heat that nothing carries away.
     pub fn temperatures(&self, known: &[Option<f64>], made: &[f64]) -> Result<Vec<f64>, Unsolved> {
-        let unknown: Vec<usize> = (0..self.nodes.len()).filter(|k| known[*k].is_none()).collect();
         let given = known.iter().flatten().copied();
         let mean = given.clone().sum::<f64>() / given.count().max(1) as f64;
-        let mut t: Vec<f64> = known.iter().map(|k| k.unwrap_or(mean)).collect();
+        self.temperatures_near(known, made, &vec![mean; known.len()])
+    }
+
+    /// The same, looked for from temperatures near them.
+    fn temperatures_near(&self, known: &[Option<f64>], made: &[f64], near: &[f64]) -> Result<Vec<f64>, Unsolved> {
+        let unknown: Vec<usize> = (0..self.nodes.len()).filter(|k| known[*k].is_none()).collect();
+        let mut t: Vec<f64> = known.iter().zip(near).map(|(k, near)| k.unwrap_or(*near)).collect();
         if unknown.is_empty() {
             return Ok(t);
         }
@@ -109,12 +114,16 @@ impl Heat {
     /// The slopes of the imbalance by the temperatures, and the imbalance.
     pub(super) fn slopes(&self, t: &[f64], made: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
         let n = self.nodes.len();
-        let lifted = self.map(&|_, x| Dual64::from(x));
         let mut matrix = vec![vec![0.0; n]; n];
-        for (k, path) in lifted.paths.iter().enumerate() {
+        for path in &self.paths {
             let [a, b] = path.between;
-            for (seed, column) in [([1.0, 0.0], a), ([0.0, 1.0], b)] {
-                let flow = lifted.flow(k, Dual64::new(t[a], seed[0]), Dual64::new(t[b], seed[1]));
+            let factor = if path.between.iter().any(|k| self.nodes[*k].fixed.is_some()) { self.factor } else { 1.0 };
+            let law = path.law.map(Dual64::from);
+            // A temperature that is given stays as it is.
+            let moves = |k: usize| self.nodes[k].fixed.is_none() || self.nodes[k].capacity > 0.0;
+            let seeds = [([1.0, 0.0], a), ([0.0, 1.0], b)].into_iter().filter(|(_, k)| moves(*k));
+            for (seed, column) in seeds {
+                let flow = law.flow(Dual64::new(t[a], seed[0]), Dual64::new(t[b], seed[1])) * factor;
                 // Free convection between equal temperatures has no slope at all; it never blocks a step.
                 let slope = match flow.eps == 0.0 {
                     true => (seed[0] - seed[1]) * 1e-9,
@@ -124,7 +133,15 @@ impl Heat {
                 matrix[b][column] -= slope;
             }
         }
-        matrix[OIL][OIL] += (lifted.cooled(Dual64::new(t[OIL], 1.0)) * self.factor).eps;
+        let cooled = |cooler: &Cooler| {
+            let oil = OilHeat {
+                density_15: Dual64::from(self.oil.density_15),
+                expansion: self.oil.expansion,
+                specific_heat: Dual64::from(self.oil.specific_heat),
+            };
+            (cooler.map(Dual64::from).cooled(&oil, Dual64::new(t[OIL], 1.0)) * self.factor).eps
+        };
+        matrix[OIL][OIL] += self.cooler.as_ref().map_or(0.0, cooled);
         (matrix, imbalance(self, t, made))
     }
 
@@ -158,9 +175,17 @@ impl Heat {
     /// # Ok::<(), willis::Diagnostics>(())
     /// ```
     pub fn at(&self, oil: f64, made: &[f64]) -> Result<Linearised, Unsolved> {
+        self.at_near(oil, made, None)
+    }
+
+    /// The same, looked for from other temperatures.
+    pub(super) fn at_near(&self, oil: f64, made: &[f64], near: Option<&[f64]>) -> Result<Linearised, Unsolved> {
         let known: Vec<Option<f64>> =
             self.nodes.iter().enumerate().map(|(k, n)| if k == OIL { Some(oil) } else { n.fixed }).collect();
-        let temperatures = self.temperatures(&known, made)?;
+        let temperatures = match near {
+            Some(near) => self.temperatures_near(&known, made, near)?,
+            None => self.temperatures(&known, made)?,
+        };
         let (matrix, imbalance) = self.slopes(&temperatures, made);
         let free: Vec<usize> = (0..self.nodes.len()).filter(|k| known[*k].is_none()).collect();
         let inner: Vec<Vec<f64>> = free.iter().map(|&a| free.iter().map(|&b| matrix[a][b]).collect()).collect();

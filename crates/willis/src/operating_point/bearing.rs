@@ -90,15 +90,14 @@ impl Duty<f64> {
 
 /// Friction of the bearings of a mount.
 pub(super) struct Friction<R> {
-    pub report: BearingReport,
     /// Speed of one ring relative to the other, rad/s.
     pub speed: R,
     /// Torque of all of them, N m.
     pub torque: R,
     /// The part of it that grows in proportion to the tooth loads, N m.
     pub proportional: R,
-    /// The meshes that make the load, with their weights.
-    pub loading: Vec<(usize, R)>,
+    /// Radial load of the one that is loaded most, axial load of each, N.
+    pub loads: [f64; 2],
 }
 
 impl<R: Real> Physics<'_, R> {
@@ -159,18 +158,22 @@ impl<R: Real> Physics<'_, R> {
         let none = R::from(0.0);
         let count = f64::from(mount.count);
         let fixed = Dual::from_re;
-        let Carried { radial: radials, axial, loading } = carried;
+        let Carried { radial: radials, axial, .. } = carried;
         let axial = *axial / count + fixed(numbers.axial_load / count);
         let mut torque = fixed(none);
         let mut radial = 0.0f64;
         let mut worst = fixed(none);
+        // Bearings side by side mostly carry the same.
+        let mut last = None::<(Dual<R>, Dual<R>)>;
         for own in radials {
             let own = *own + fixed(numbers.radial_load / count);
             if own.re.re() >= radial {
                 (radial, worst) = (own.re.re(), own);
             }
             if speed.re() > 0.0 {
-                torque += self.duty(k, speed, own, axial).torque() * (1.0 / radials.len() as f64);
+                let known = last.filter(|(load, _)| *load == own);
+                let (_, each) = *last.insert(known.unwrap_or_else(|| (own, self.duty(k, speed, own, axial).torque())));
+                torque += each * (1.0 / radials.len() as f64);
             }
         }
         if speed.re() > 0.0 {
@@ -180,18 +183,7 @@ impl<R: Real> Physics<'_, R> {
         let finite = |x: R| if x.re().is_finite() { x } else { none };
         let all = real::max(finite(torque.re), none) * f64::from(number);
         let proportional = real::clamp(finite(torque.eps) * f64::from(number), none, all);
-        let report = BearingReport {
-            designation: mount.bearing.designation.clone(),
-            members: mount.members.map(|m| train.member_name(m).to_owned()),
-            bearings: number,
-            speed_rad_s: speed.re(),
-            radial_load_n: radial,
-            axial_load_n: axial.re.re(),
-            torque_n_m: all.re() / f64::from(number),
-            law: self.bearing_law_name(mount).to_owned(),
-            loss_w: 0.0,
-        };
-        Friction { report, speed, torque: all, proportional, loading: loading.clone() }
+        Friction { speed, torque: all, proportional, loads: [radial, axial.re.re()] }
     }
 
     /// The law for a bearing: the SKF model has no constants for some kinds; Palmgren has.
@@ -223,18 +215,32 @@ impl<R: Real> Physics<'_, R> {
 }
 
 impl Physics<'_> {
-    /// Where the law of a bearing was used outside its range.
-    pub(super) fn bearing_extrapolations(
+    /// The bearings of a mount under what they carry, and where their law is used outside its range.
+    pub(super) fn bearing_report(
         &self,
         k: usize,
         speeds: &[f64],
         carried: &Carried<f64>,
-        all: &mut Vec<Extrapolation>,
-    ) {
-        let name = &self.train.bearings[k].name;
-        self.bearing(k, speeds, carried, &mut |duty| {
+        beyond: &mut Vec<Extrapolation>,
+    ) -> BearingReport {
+        let mount = &self.train.bearings[k];
+        let bearings = mount.count * mount.places;
+        let found = self.bearing(k, speeds, carried, &mut |duty| {
             let (family, law, outside) = duty.outside();
-            all.extend(outside.into_iter().map(|outside| Extrapolation { family, law, at: name.clone(), outside }));
+            let own = |outside| Extrapolation { family, law, at: mount.name.clone(), outside };
+            beyond.extend(outside.into_iter().map(own));
         });
+        let [radial_load_n, axial_load_n] = found.loads;
+        BearingReport {
+            designation: mount.bearing.designation.clone(),
+            members: mount.members.map(|m| self.train.member_name(m).to_owned()),
+            bearings,
+            speed_rad_s: found.speed,
+            radial_load_n,
+            axial_load_n,
+            torque_n_m: found.torque / f64::from(bearings),
+            law: self.bearing_law_name(mount).to_owned(),
+            loss_w: 0.0,
+        }
     }
 }

@@ -211,7 +211,7 @@ impl<R: Real> Loaded<'_, R> {
             overlap_ratio: pair.overlap_ratio,
         };
         let share = self.physics.train.laws.load_sharing.eval(&place);
-        let line_load = share * self.normal_force * pair.base_helix.cos() / pair.total_width();
+        let line_load = share * self.normal_force * pair.cos_base_helix() / pair.total_width();
         let radius = real::max(pair.reduced_radius(s), R::from(1e-9));
         let sliding = pair.sliding_per_speed(s) * self.speed;
         let sum = pair.sum_speed_per_speed(s) * self.speed;
@@ -244,7 +244,7 @@ impl<R: Real> Loaded<'_, R> {
             sum_speed: p.sum,
             radius: p.radius,
             normal_force: self.normal_force / pair.contact_ratio,
-            length: pair.total_width() / pair.base_helix.cos(),
+            length: pair.total_width() / pair.cos_base_helix(),
             dynamic_viscosity: oil.dynamic_viscosity,
             pressure_viscosity: oil.pressure_viscosity,
             reduced_modulus: self.teeth.reduced_modulus(),
@@ -295,7 +295,7 @@ impl<R: Real> Physics<'_, R> {
             teeth,
             torque,
             base_force,
-            normal_force: base_force / pair.base_helix.cos(),
+            normal_force: base_force / pair.cos_base_helix(),
             pitch_line_speed: real::abs(flow.relative_speeds[driver]) * pair.gears[driver].operating_radius,
             speed: real::abs(flow.relative_speeds[0]),
         }
@@ -317,7 +317,7 @@ impl<R: Real> Physics<'_, R> {
             return tooth;
         }
         let [start, end] = pair.path();
-        let state = |p: &Point<R>| self.state(mesh, &loaded, p, loss_factor);
+        let pitch = self.state(mesh, &loaded, &loaded.point(none), loss_factor);
         let mu = if self.friction.meta().tags.contains(&Tag::Local) {
             let (mut friction, mut weight) = (none, none);
             let breaks = loaded.breaks();
@@ -331,12 +331,12 @@ impl<R: Real> Physics<'_, R> {
                     let p = loaded.point(middle + half * node);
                     let own = half * w * p.line_load * p.sliding;
                     weight += own;
-                    friction += own * self.coefficient(&state(&p));
+                    friction += own * self.coefficient(&pitch.at(&p));
                 }
             }
             if weight.re() > 0.0 { friction / weight } else { none }
         } else {
-            self.coefficient(&state(&loaded.point(none)))
+            self.coefficient(&pitch)
         };
         if mu.re().is_finite() {
             tooth.friction = Some(real::max(mu, none));
@@ -388,13 +388,13 @@ impl<R: Real> Physics<'_, R> {
             pitch_line_speed,
             pitch_radius_transverse: pair.reduced_radius_transverse(zero),
             pitch_radius: pair.reduced_radius(zero),
-            local_line_load: p.line_load,
-            sliding_speed: p.sliding,
-            sum_speed: p.sum,
-            radius: p.radius,
-            hertz_pressure: p.pressure,
-            film: p.film,
-            film_ratio: if composite.re() > 0.0 { p.film / composite } else { R::from(f64::INFINITY) },
+            local_line_load: zero,
+            sliding_speed: zero,
+            sum_speed: zero,
+            radius: zero,
+            hertz_pressure: zero,
+            film: zero,
+            film_ratio: zero,
             dynamic_viscosity: oil(|o| o.dynamic_viscosity),
             kinematic_viscosity: oil(|o| o.kinematic_viscosity),
             pressure_viscosity: oil(|o| o.pressure_viscosity),
@@ -413,6 +413,24 @@ impl<R: Real> Physics<'_, R> {
             contact_length_ratio: pair.shortest_contact_length_ratio(),
             loss_factor,
             parallel: f64::from(mesh.count),
+        }
+        .at(p)
+    }
+}
+
+impl<R: Real> MeshContact<R> {
+    /// The same at another point of the path.
+    fn at(self, p: &Point<R>) -> Self {
+        let rough = self.composite_roughness;
+        Self {
+            local_line_load: p.line_load,
+            sliding_speed: p.sliding,
+            sum_speed: p.sum,
+            radius: p.radius,
+            hertz_pressure: p.pressure,
+            film: p.film,
+            film_ratio: if rough.re() > 0.0 { p.film / rough } else { R::from(f64::INFINITY) },
+            ..self
         }
     }
 }

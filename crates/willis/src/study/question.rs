@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis;
 use crate::diagnostic::{Code, Diagnostic, Diagnostics};
 use crate::exact::Rational;
-use crate::kinematics::Configuration;
+use crate::kinematics::{Configuration, Transfer, common};
 use crate::model::{Model, Target, Who, oil_temperature, quantity};
 use crate::train::{Document, Load, MemberId, Operation, Store, Train};
 use crate::units::{Dimension, Quantity};
@@ -68,7 +68,55 @@ pub struct Question<'s> {
 
 /// Trains that differ in quantities of their file, kept for the next point.
 #[derive(Debug, Default)]
-pub struct Trains(HashMap<Settings, Result<Arc<Train>, Diagnostics>>);
+pub struct Trains {
+    known: HashMap<Settings, Result<Arc<Train>, Diagnostics>>,
+    /// How the speeds of a train follow from those that are prescribed, for the last such question.
+    transfer: Option<(Tied, Transfer)>,
+}
+
+/// A train, and what of it is held and prescribed.
+#[derive(Debug)]
+struct Tied {
+    train: Arc<Train>,
+    state: Option<usize>,
+    fixed: Vec<MemberId>,
+    prescribed: Vec<MemberId>,
+}
+
+impl Tied {
+    fn is_of(&self, train: &Arc<Train>, operation: &Operation) -> bool {
+        Arc::ptr_eq(&self.train, train)
+            && self.state == operation.state
+            && self.fixed == operation.fixed
+            && self.prescribed.iter().eq(operation.speeds.iter().map(|(m, _)| m))
+    }
+}
+
+impl Trains {
+    /// Whether a member turns backwards at the prescribed speeds, as far as they say.
+    fn turns_backwards(&mut self, train: &Arc<Train>, operation: &Operation, member: MemberId) -> bool {
+        if !self.transfer.as_ref().is_some_and(|(tied, _)| tied.is_of(train, operation)) {
+            let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
+            let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
+            let transfer = Configuration::new(train, engaged, &operation.fixed, &prescribed).transfer(&prescribed);
+            let (train, state, fixed) = (train.clone(), operation.state, operation.fixed.clone());
+            self.transfer = Some((Tied { train, state, fixed, prescribed }, transfer));
+        }
+        let (_, transfer) = self.transfer.as_ref().expect("just made");
+        if transfer.conflicts.is_empty() {
+            let (values, _) = common(operation.speeds.iter().map(|(_, q)| q));
+            let Some(factors) = &transfer.speeds[member.0] else { return false };
+            let speed = factors.iter().zip(&values).fold(Rational::ZERO, |sum, (f, v)| sum + f * v);
+            return speed.sign() < 0;
+        }
+        // Speeds that contradict each other may yield.
+        let engaged = operation.state.map_or(&[][..], |k| &train.states[k].engaged);
+        let prescribed: Vec<MemberId> = operation.speeds.iter().map(|(m, _)| *m).collect();
+        let c = Configuration::new(train, engaged, &operation.fixed, &prescribed);
+        let motion = c.motion(&operation.speeds).ok();
+        motion.and_then(|motion| motion.speeds[member.0].as_ref().map(|w| w.sign() < 0)).unwrap_or(false)
+    }
+}
 
 /// What differs from the file.
 type Settings = Vec<(Target, String)>;
@@ -256,7 +304,7 @@ impl<'s> Question<'s> {
         trains: &mut Trains,
     ) -> Result<(Arc<Train>, Operation), Diagnostics> {
         let train = self.train(settings, trains)?;
-        let operation = self.operation(&train, settings)?;
+        let operation = self.operation(&train, settings, trains)?;
         Ok((train, operation))
     }
 
@@ -264,11 +312,11 @@ impl<'s> Question<'s> {
         let of_train: Vec<(&Target, String)> =
             settings.iter().filter(|s| s.0.is_of_train()).map(|(t, v)| (*t, v.clone())).collect();
         let key: Settings = of_train.iter().map(|(t, v)| ((*t).clone(), v.clone())).collect();
-        if let Some(known) = trains.0.get(&key) {
+        if let Some(known) = trains.known.get(&key) {
             return known.clone();
         }
-        if trains.0.len() >= MOST_TRAINS {
-            trains.0.clear();
+        if trains.known.len() >= MOST_TRAINS {
+            trains.known.clear();
         }
         let leads_into_a_question = |s: &(&Target, String)| matches!(s.0, Target::File(key) if key.is_of_a_question());
         let document = match of_train.iter().any(leads_into_a_question) {
@@ -276,12 +324,17 @@ impl<'s> Question<'s> {
             false => self.alone(),
         };
         let train = self.model.train_with(document, &of_train).map(Arc::new);
-        trains.0.insert(key, train.clone());
+        trains.known.insert(key, train.clone());
         train
     }
 
     /// The operating point on a train.
-    fn operation(&self, train: &Train, settings: &[(&Target, String)]) -> Result<Operation, Diagnostics> {
+    fn operation(
+        &self,
+        train: &Arc<Train>,
+        settings: &[(&Target, String)],
+        trains: &mut Trains,
+    ) -> Result<Operation, Diagnostics> {
         let mut operation = self.base.clone();
         let wrong = |message: String| refuse(Code::BadAxis, message, "");
         // The state first: input and output are its.
@@ -338,10 +391,9 @@ impl<'s> Question<'s> {
         if loads.is_empty() {
             return Ok(operation);
         }
-        let with_role = loads.iter().any(|l| matches!((l.1, &l.2), (Who::Input | Who::Output, Load::Torque(_))));
-        let turning = with_role.then(|| self.speeds(train, &operation));
         let new = loads.into_iter().map(|(member, who, load)| {
-            let backwards = turning.as_ref().and_then(|w| w(member)).is_some_and(|w| w.value.sign() < 0);
+            let with_role = matches!((who, &load), (Who::Input | Who::Output, Load::Torque(_)));
+            let backwards = with_role && trains.turns_backwards(train, &operation, member);
             // Power of the load is positive into the train.
             let turn = match (&load, who) {
                 (_, Who::Member(_)) => false,

@@ -245,26 +245,68 @@ impl<R: Real> Heat<R> {
     pub fn flow(&self, path: usize, from: R, to: R) -> R {
         let p = &self.paths[path];
         let outside = p.between.iter().any(|k| self.nodes[*k].fixed.is_some());
-        let flow = match &p.law {
-            PathLaw::Conductance(g) => *g * (from - to),
-            PathLaw::Coefficient(c, a) => *c * *a * (from - to),
-            PathLaw::Surface(s) => s.flow(from, to),
-        };
+        let flow = p.law.flow(from, to);
         if outside { flow * self.factor } else { flow }
     }
 
     /// Heat that the cooler takes from the oil, W.
     pub fn cooled(&self, oil: R) -> R {
-        let Some(c) = &self.cooler else { return R::from(0.0) };
-        let open = match c.thermostat {
+        self.cooler.as_ref().map_or(R::from(0.0), |cooler| cooler.cooled(&self.oil, oil))
+    }
+}
+
+impl<R: Real> PathLaw<R> {
+    /// Heat from one temperature to another, K, in W.
+    pub(crate) fn flow(&self, from: R, to: R) -> R {
+        match self {
+            Self::Conductance(g) => *g * (from - to),
+            Self::Coefficient(c, a) => *c * *a * (from - to),
+            Self::Surface(s) => s.flow(from, to),
+        }
+    }
+
+    /// The same in other numbers.
+    pub(crate) fn map<S>(&self, of: impl Fn(R) -> S) -> PathLaw<S> {
+        match self {
+            Self::Conductance(g) => PathLaw::Conductance(of(*g)),
+            Self::Coefficient(c, a) => PathLaw::Coefficient(of(*c), of(*a)),
+            Self::Surface(s) => PathLaw::Surface(Surface {
+                area: of(s.area),
+                height: of(s.height),
+                emissivity: of(s.emissivity),
+                air_speed: of(s.air_speed),
+                flow_length: of(s.flow_length),
+                air_share: of(s.air_share),
+                fins: s.fins.map(|all| all.map(&of)),
+            }),
+        }
+    }
+}
+
+impl<R: Real> Cooler<R> {
+    /// Heat that it takes from oil of a temperature, W.
+    pub(crate) fn cooled(&self, oil: &OilHeat<R>, temperature: R) -> R {
+        let open = match self.thermostat {
             None => R::from(1.0),
-            Some([from, to]) => real::clamp((oil - from) / (to - from), R::from(0.0), R::from(1.0)),
+            Some([from, to]) => real::clamp((temperature - from) / (to - from), R::from(0.0), R::from(1.0)),
         };
-        let conductance = match c.exchange {
+        let conductance = match self.exchange {
             Exchange::Conductance(g) => g,
-            Exchange::Flow(v, e) => self.oil.volumetric(oil) * v * e,
+            Exchange::Flow(v, e) => oil.volumetric(temperature) * v * e,
         };
-        open * conductance * (oil - c.inlet)
+        open * conductance * (temperature - self.inlet)
+    }
+
+    /// The same in other numbers.
+    pub(crate) fn map<S>(&self, of: impl Fn(R) -> S) -> Cooler<S> {
+        Cooler {
+            inlet: of(self.inlet),
+            exchange: match self.exchange {
+                Exchange::Flow(v, e) => Exchange::Flow(of(v), of(e)),
+                Exchange::Conductance(g) => Exchange::Conductance(of(g)),
+            },
+            thermostat: self.thermostat,
+        }
     }
 }
 
