@@ -4,7 +4,7 @@
 pub mod draw;
 
 use serde::{Deserialize, Serialize};
-use willis::analysis::{Direction, Selection, StateReport, Verdict, analyze};
+use willis::analysis::{Direction, Selection, StateReport, Verdict, Why, analyze};
 use willis::diagnostic::{Code, Diagnostic, Diagnostics};
 use willis::exact::Rational;
 use willis::train::{ShiftElementKind, Train};
@@ -187,9 +187,20 @@ fn row(name: &str, closed: Vec<bool>, report: Option<&StateReport>) -> ShiftRow 
         path: Some([r.input.clone(), r.output.clone()]),
         ratio: r.value,
         exact: r.exact.as_ref().map(Rational::to_fraction),
-        note: r.no_ratio.clone().or_else(|| beyond.then(|| "the ratio is beyond floating point".to_owned())),
+        note: note(r).or_else(|| beyond.then(|| "the ratio is beyond floating point".to_owned())),
         drive: efficiency(&r.drive),
         coast: efficiency(&r.coast),
+    }
+}
+
+/// Why there is no ratio; a picture says what is, not what to do about it.
+fn note(r: &StateReport) -> Option<String> {
+    let text = r.no_ratio.clone()?;
+    match &r.drive.why {
+        Some(Why::SpeedNotSettled { freedoms, input, output, .. }) => {
+            Some(format!("{freedoms} degrees of freedom: {input} alone does not settle {output}"))
+        }
+        _ => Some(text),
     }
 }
 
@@ -198,6 +209,7 @@ fn efficiency(d: &Direction) -> ShiftEfficiency {
         (_, Some(_)) => String::new(),
         (Verdict::Locked, None) => "locks".to_owned(),
         (Verdict::Multiple, None) => "several".to_owned(),
+        (_, None) if matches!(d.why, Some(Why::SpeedNotSettled { .. })) => "not settled".to_owned(),
         (_, None) => d.reason.clone().unwrap_or_else(|| "not determined".to_owned()),
     };
     ShiftEfficiency { value: d.efficiency, words }

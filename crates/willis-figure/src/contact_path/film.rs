@@ -9,7 +9,7 @@ use crate::parts::style::{
     Anchor, BOLD, FAINT, INK, LINE, PAPER, colour, digits, fit, halo, line, lines, number, page, rectangle, text,
     ticks, wide,
 };
-use crate::parts::words::law;
+use crate::parts::words::{law, spelled};
 
 pub(crate) const KIND: Kind<ContactPath> = Kind {
     title: "Oil film along the path of contact",
@@ -141,7 +141,7 @@ fn draw_on(path: &ContactPath, paper: Drawing) -> String {
 /// Title and subtitle.
 pub(crate) fn heading(path: &ContactPath, width: f64, laws: &str) -> Group {
     let title = format!("{}: {}", path.title, path.operation);
-    let caption = format!("{} at {} °C; {laws}", path.oil, digits(path.temperature_celsius));
+    let caption = format!("oil {}; temperature {} °C; {laws}", spelled(&path.oil), digits(path.temperature_celsius));
     Group::new()
         .add(
             text(28.0, 38.0, 20.0, Anchor::Start, &fit(&title, (width - 56.0) / BOLD, 20.0)).set("font-weight", "bold"),

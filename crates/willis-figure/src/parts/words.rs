@@ -148,10 +148,39 @@ pub fn spelled(quantity: &str) -> String {
     let units = |word: &str| match word.trim_end_matches([',', ';']) {
         "um" => word.replace("um", "µm"),
         "degC" => word.replace("degC", "°C"),
-        _ => word.replace("..", " to "),
+        _ => word.split("..").map(rounded).collect::<Vec<_>>().join(" to "),
     };
     let rest = by_authors(rest);
     rest.split(' ').filter(|w| !w.is_empty()).fold(words, |all, word| all + " " + &units(word))
+}
+
+/// Decimals in a word to four figures: `lognormal(1, 1.28403)` is no more certain for its digits.
+fn rounded(word: &str) -> String {
+    let is_part = |c: char| c.is_ascii_digit() || c == '.';
+    let mut all = String::new();
+    let mut rest = word;
+    while let Some(start) = rest.find(is_part) {
+        let end = rest[start..].find(|c| !is_part(c)).map_or(rest.len(), |at| start + at);
+        let number = &rest[start..end];
+        all += &rest[..start];
+        let figures = number.trim_start_matches(['0', '.']).bytes().filter(u8::is_ascii_digit).count();
+        match number.parse::<f64>() {
+            // A name may hold digits, and an exponent belongs to its number.
+            Ok(x)
+                if number.contains('.')
+                    && figures > 4
+                    && (all.is_empty() || all.ends_with(['(', '-', '±']))
+                    && !rest[end..].starts_with(['e', 'E']) =>
+            {
+                let decimals = 3 - x.abs().log10().floor() as i32;
+                let text = format!("{x:.*}", decimals.max(0) as usize);
+                all += if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+            }
+            _ => all += number,
+        }
+        rest = &rest[end..];
+    }
+    all + rest
 }
 
 /// Fields of answers, and what people call them.
@@ -289,6 +318,9 @@ mod tests {
     fn places_are_words() {
         assert_eq!(spelled("P4.mesh_efficiency.external 0.976..0.984"), "P4, mesh efficiency, external 0.976 to 0.984");
         assert_eq!(spelled("sun_1.speed 55..65 degC; x"), "sun_1, speed 55 to 65 °C; x");
+        let rough = "P1.geometry.roughness 0.66664..0.99996 um, lognormal(1, 1.28403), 1.5e-12345, 12345 h";
+        let told = "P1, geometry, roughness 0.6666 to 1 µm, lognormal(1, 1.284), 1.5e-12345, 12345 h";
+        assert_eq!(spelled(rough), told);
         assert_eq!(spelled("load"), "load");
         assert_eq!(quantity("input_power_w 5 kW"), "input power 5 kW");
         assert_eq!(quantity("loss_w"), "loss");
