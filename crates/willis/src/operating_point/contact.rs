@@ -310,7 +310,8 @@ impl<R: Real> Physics<'_, R> {
 
     /// The tooth loss factor of a mesh: an integral over the path of contact, worked out once.
     fn loss_factor(&self, teeth: &Teeth<R>, flow: &MeshFlow<R>) -> R {
-        *self.loss_factors[flow.mesh.0].get_or_init(|| self.train.laws.loss_factor.eval(&Path::of(&teeth.pair)))
+        *self.loss_factors[flow.mesh.0]
+            .get_or_init(|| self.train.laws.loss_factor(&self.friction).eval(&Path::of(&teeth.pair)))
     }
 
     /// Friction and rolling loss of a mesh.
@@ -349,9 +350,9 @@ impl<R: Real> Physics<'_, R> {
             // Mean over the path: away from the pitch point sliding heats the inlet and thins the film, on both sides
             // alike, so the film has a kink there.
             let pitch = real::min(real::max(none, start), end);
-            let sum = gauss(start, pitch).chain(gauss(pitch, end)).fold(none, |sum, (place, w)| {
-                sum + law.eval(&loaded.rolling_contact(oil, &loaded.point(place))) * w
-            });
+            let sum = gauss(start, pitch)
+                .chain(gauss(pitch, end))
+                .fold(none, |sum, (place, w)| sum + law.eval(&loaded.rolling_contact(oil, &loaded.point(place))) * w);
             let rolling = sum / (end - start) * pair.contact_ratio * f64::from(mesh.count);
             tooth.rolling = if rolling.re().is_finite() { real::max(rolling, none) } else { none };
         }
@@ -535,7 +536,8 @@ impl Physics<'_> {
             }
         };
         if mesh.computed && beyond.is_some() {
-            note(beyond, "loss_factor", laws.loss_factor.meta().id, laws.loss_factor.outside(&path));
+            let factor = laws.loss_factor(&self.friction);
+            note(beyond, "loss_factor", factor.meta().id, factor.outside(&path));
             let place = ToothLoad {
                 position: pair.position(0.0),
                 contact_ratio: pair.contact_ratio,

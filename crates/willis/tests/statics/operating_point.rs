@@ -307,7 +307,8 @@ fn rolling_is_the_mean_over_both_sides_of_the_pitch_point() {
     let beyond = |r: f64| ((r + m).powi(2) - (r * alpha.cos()).powi(2)).sqrt() - r * alpha.sin();
     let ring = r_r * alpha.sin() - ((r_r - m).powi(2) - (r_r * alpha.cos()).powi(2)).sqrt();
     // The first gear, the second with the sign of its curvature, and the ends of the path.
-    let meshes = [("P1.sun-planet", r_s, r_p, beyond(r_p), beyond(r_s)), ("P1.planet-ring", r_p, -r_r, ring, beyond(r_p))];
+    let meshes =
+        [("P1.sun-planet", r_s, r_p, beyond(r_p), beyond(r_s)), ("P1.planet-ring", r_p, -r_r, ring, beyond(r_p))];
     for (name, r_1, r_2, before, after) in meshes {
         let contact = s.contacts.get(name).unwrap();
         let turn = speed * r_s / r_1;
@@ -329,6 +330,53 @@ fn rolling_is_the_mean_over_both_sides_of_the_pitch_point() {
         }
         close(contact.rolling_loss_w, sum / f64::from(steps) * ratio * 3.0, 5e-4);
     }
+}
+
+/// The technical report takes the load as uniform along the path and has the helix in its loss factor.
+#[test]
+fn iso_14179_1_brings_its_own_loss_factor() {
+    let text =
+        |law: &str| stage(3, 50.0, law, RATED).replace("width = \"50 mm\"", "width = \"50 mm\", helix = \"15 deg\"");
+    let contact = |law: &str| only(&text(law)).contacts.get("P1.sun-planet").unwrap().clone();
+    let whole = contact("mesh_friction = \"iso-14179-1\"");
+    let mix = contact("mesh_friction = \"iso-14179-1-friction\"");
+    let merritt = contact("mesh_friction = \"iso-14179-1-friction\"\nloss_factor = \"buckingham-merritt\"");
+    // By hand: without shifts the operating helix is that of the reference circle.
+    close(whole.loss_factor, merritt.loss_factor * 15f64.to_radians().cos().powi(2), 1e-12);
+    // A helix with an overlap above one: the factor that is chosen by default is a tenth larger here.
+    assert!(mix.loss_factor > 1.05 * whole.loss_factor, "{} {}", mix.loss_factor, whole.loss_factor);
+    // The same coefficient but for the torque, of which the losses at the planet take a little.
+    close(whole.friction.unwrap(), mix.friction.unwrap(), 1e-3);
+    let all = analysis(&text("mesh_friction = \"iso-14179-1\""));
+    let said = "tooth friction by `iso-14179-1`, loss factor `iso-14179-1`";
+    assert!(all.assumptions.iter().any(|a| a == said), "{:?}", all.assumptions);
+
+    let wrong = text("mesh_friction = \"iso-14179-1\"\nloss_factor = \"uniform\"");
+    let refused = Train::from_toml(&wrong).unwrap_err();
+    let d = refused.iter().next().unwrap();
+    assert_eq!((d.code, d.place.as_str()), (Code::Conflict, "laws.loss_factor"));
+    assert!(d.hints[0].contains("iso-14179-1-friction"), "{d:?}");
+}
+
+/// Under one lubrication gears and rotors turn in one fluid: by default in that in which the law of windage was measured.
+#[test]
+fn gears_and_rotors_turn_in_one_fluid() {
+    let with = |mist: &str, law: &str, fluid: &str| {
+        let text = stage(3, 50.0, law, RATED).replace("mist = 34.25\n", mist);
+        let s = only(&text.replace("radial_gap = \"10 mm\"", &format!("radial_gap = \"10 mm\"\n{fluid}")));
+        [source(&s, "sun"), source(&s, "drum")]
+    };
+    for law in ["", "windage = \"dawson-1984\""] {
+        // Nothing is known of the oil in the air: both turn in air.
+        let dry = with("", law, "");
+        assert_eq!(dry, with("", law, "fluid = \"air\""));
+        // Oil makes the air heavier for both.
+        let wet = with("mist = 34.25\n", law, "");
+        assert!(wet[1] > 4.0 * dry[1] && wet[0] >= dry[0], "{dry:?} {wet:?}");
+    }
+    // This law was measured in a mist, and the drum is in the same.
+    let law = "windage = \"anderson-loewenthal\"";
+    assert_eq!(with("", law, ""), with("mist = 34.25\n", law, ""));
 }
 
 // ---- Laws that every result keeps ----------------------------------------------------------------
